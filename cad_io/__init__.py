@@ -1,0 +1,37 @@
+"""The CAD boundary: files and kernel shapes in, arrays out; labelled faces in, annotated files out.
+
+No machining words here. This package alone imports the CAD kernel (OCP); names are handed on lazily so that
+importing `cad_io` costs nothing until a name is used.
+"""
+
+from importlib import import_module
+from typing import Any
+
+_HOME = {
+    "CadIoError": "errors",
+    "ReadError": "errors",
+    "WriteError": "errors",
+    "Part": "part",
+    "read_part": "read",
+    "orient": "orient",
+    "Orientation": "arrays",
+    "SurfaceSamples": "arrays",
+    "FaceGrid": "arrays",
+    "FaceInfo": "arrays",
+    "Triangles": "arrays",
+    "FaceLabels": "arrays",
+    "Style": "arrays",
+    "sample": "sample",
+    "locate": "sample",
+    "tessellate": "tessellate",
+    "split": "split",
+    "write_step": "write_step",
+    "write_gltf": "write_gltf",
+}
+__all__ = sorted(_HOME)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'cad_io' has no attribute {name!r}")
+    return getattr(import_module(f"cad_io.{_HOME[name]}"), name)

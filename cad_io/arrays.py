@@ -1,0 +1,191 @@
+"""The arrays that cross the CAD boundary. Lengths in mm, part coordinates, angles in radians; frozen, no kernel here."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+#: Shapes that are not sculptured, whatever the file calls them.
+SIMPLE_KINDS = ("plane", "cylinder", "cone", "sphere", "torus")
+
+
+@dataclass(frozen=True, slots=True)
+class FaceInfo:
+    """One face of a part.
+
+    Attributes
+    ----------
+    number : int
+        From 1, in the order of the kernel's map of the read shape; written `F<number>`.
+    name : str
+        Name in the file; empty if it has none.
+    surface : str
+        Kind of the stored surface: one of SIMPLE_KINDS, `bezier`, `bspline`, `revolution`, `extrusion`, `offset`, `other`.
+    shape : str
+        What it is in shape: one of SIMPLE_KINDS if it is that within tolerance, else `sculptured`.
+    area : float
+        mm2.
+    colour : tuple of float, optional
+        sRGB, 0 to 1, as found in the file.
+    unjudged : str, optional
+        Why no surface can be judged here; None for a face that can.
+    """
+
+    number: int
+    name: str
+    surface: str
+    shape: str
+    area: float
+    colour: tuple[float, float, float] | None = None
+    unjudged: str | None = None
+
+    @property
+    def id(self) -> str:
+        return f"F{self.number}"
+
+
+@dataclass(frozen=True, slots=True)
+class Orientation:
+    """Which side of each face is out of the material.
+
+    Attributes
+    ----------
+    sign : (faces,) float
+        +1 where `dS/du x dS/dv` points out of the material, -1 where it points in.
+    method : str
+        How it was found, for people.
+    confident : bool
+        False where it is a guess.
+    """
+
+    sign: Floats
+    method: str
+    confident: bool
+
+
+@dataclass(frozen=True, slots=True)
+class FaceGrid:
+    """The parameter grid of one face and which sample sits at each node.
+
+    Attributes
+    ----------
+    face : int
+        Face number.
+    u, v : (nu,), (nv,) float
+        Grid lines.
+    index : (nu, nv) int32
+        Row of the sample in SurfaceSamples, -1 outside the trim.
+    closed_u, closed_v : bool
+        The last line's neighbour is the first one (a seam).
+    """
+
+    face: int
+    u: Floats
+    v: Floats
+    index: Ints
+    closed_u: bool
+    closed_v: bool
+
+
+@dataclass(frozen=True, slots=True)
+class SurfaceSamples:
+    """Sampled points of faces, with the kernel's exact differential geometry.
+
+    Attributes
+    ----------
+    point, normal : (n, 3) float
+        Surface point, mm, and unit normal out of the material.
+    direction_max : (n, 3) float
+        Unit principal direction of `curvature[:, 0]`; at an umbilic the kernel's u tangent.
+    curvature : (n, 2) float
+        kappa_max, kappa_min in 1/mm, positive where the material rises around the point (concave).
+    uv : (n, 2) float
+        Surface parameters.
+    face : (n,) int32
+        Face number.
+    area : (n,) float
+        Share of the face's area that the sample stands for, mm2.
+    neighbours : (m, 2) int32
+        Pairs of samples next to each other, within a face and across smooth joints.
+    unjudged : (n,) int32
+        -1 where the geometry is good, else an index into `reasons`.
+    reasons : tuple of str
+    grids : tuple of FaceGrid
+    max_gap : float
+        Largest distance between grid neighbours, mm.
+    empty : tuple of (int, str)
+        Faces that gave no sample, with the reason.
+    """
+
+    point: Floats
+    normal: Floats
+    direction_max: Floats
+    curvature: Floats
+    uv: Floats
+    face: Ints
+    area: Floats
+    neighbours: Ints
+    unjudged: Ints
+    reasons: tuple[str, ...]
+    grids: tuple[FaceGrid, ...]
+    max_gap: float
+    empty: tuple[tuple[int, str], ...]
+
+    def __len__(self) -> int:
+        return len(self.point)
+
+
+@dataclass(frozen=True, slots=True)
+class Triangles:
+    """A part's surface as triangles close to it.
+
+    Attributes
+    ----------
+    vertex : (t, 3, 3) float
+        Corners, mm.
+    face : (t,) int32
+        Face number.
+    chord_error : float
+        Largest measured distance between a triangle and the surface that it stands for, mm.
+    missing : tuple of (int, str)
+        Faces without triangles, with the reason.
+    """
+
+    vertex: Floats
+    face: Ints
+    chord_error: float
+    missing: tuple[tuple[int, str], ...]
+
+    def __len__(self) -> int:
+        return len(self.vertex)
+
+
+@dataclass(frozen=True, slots=True)
+class FaceLabels:
+    """Labels on a face's parameter grid, along whose boundaries it is to be split.
+
+    Attributes
+    ----------
+    face : int
+    u, v : (nu,), (nv,) float
+        Strictly increasing grid lines.
+    label : (nu, nv) int32
+        0, 1, 2, ...; -1 where unknown (outside the trim). Labels are ordinal: between nodes with labels 0 and 2
+        runs a strip of label 1.
+    """
+
+    face: int
+    u: Floats
+    v: Floats
+    label: Ints
+
+
+class Style(NamedTuple):
+    """Name and sRGB colour (0 to 1) that a piece of a face gets in a written file."""
+
+    name: str
+    rgb: tuple[float, float, float]
