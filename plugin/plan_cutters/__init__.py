@@ -1,0 +1,30 @@
+"""Which of my cutters can finish this surface? Flat-end cutter accessibility before any toolpath exists.
+
+Names are handed on lazily: importing the package loads neither the CAD kernel nor the compiler.
+"""
+
+from importlib import import_module
+from typing import Any
+
+__version__ = "0.1.0"
+
+_HOME = {
+    "Cutter": "cutter",
+    "Machine": "machine",
+    "plan": "pipeline",
+    "Result": "pipeline",
+    "posture_map": "posture_map",
+    "PostureMap": "posture_map",
+    "Plan": "model",
+    "PlanError": "errors",
+    "CutterError": "errors",
+    "MachineError": "errors",
+    "OptionError": "errors",
+}
+__all__ = ["__version__", *sorted(_HOME)]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'plan_cutters' has no attribute {name!r}")
+    return getattr(import_module(f"plan_cutters.{_HOME[name]}"), name)

@@ -1,0 +1,3 @@
+from plan_cutters.cli import main
+
+main()

@@ -1,0 +1,29 @@
+"""What can go wrong in planning. Every error says the file, the face where there is one, and the cause."""
+
+
+class PlanError(Exception):
+    """Base of all errors of `plan_cutters`.
+
+    Parameters
+    ----------
+    cause : str
+        What is wrong and what to try, one line.
+    file, face : str, optional
+        The file and face concerned.
+    """
+
+    def __init__(self, cause: str, *, file: str | None = None, face: str | None = None) -> None:
+        self.cause, self.file, self.face = cause, file, face
+        super().__init__(": ".join(p for p in (file, face, cause) if p))
+
+
+class OptionError(PlanError):
+    """An option has no meaning."""
+
+
+class CutterError(OptionError):
+    """A cutter cannot exist, or is of a kind that is not judged yet."""
+
+
+class MachineError(OptionError):
+    """A machine is unknown or contradicts itself."""

@@ -1,0 +1,106 @@
+"""Closed-form ranges of tilt: what one obstacle point forbids, what local gouging and an axis limit leave."""
+
+import numpy as np
+
+from plan_cutters.kernels.jit import inlined
+
+#: A bound this close to zero is zero: planes and ridges are free at tilt 0.
+ROUNDING = 1e-9
+
+
+@inlined
+def point_arc(height, px, py, tilt, radius_offset, radius, low, high):  # type: ignore[no-untyped-def]
+    """Tilts at which an obstacle point lies in the cylinder, the rotation held.
+
+    Turning the tool about the line through P along y_T keeps the point's distance d from P across that line and
+    shifts its polar angle `alpha` about P, counted from the direction P -> bottom centre towards the spindle. The
+    point is inside while `|d cos(alpha) - offset| < sqrt(radius^2 - py^2)` and `low < d sin(alpha) < high`.
+
+    Parameters
+    ----------
+    height, px, py : float
+        The point at `tilt`: height along the axis from P, x and y from the cylinder's axis, mm.
+    tilt : float
+        rad.
+    radius_offset, radius, low, high : float
+        Distance of the axis from P, radius, solid heights; `low >= 0`, `radius <= radius_offset`, mm.
+
+    Returns
+    -------
+    first, last : float
+        The forbidden tilts, rad; `first > last` if there are none. One arc suffices: with the radius no larger than
+        the offset, alpha stays within 0 to 90 deg, where the top cuts off one end only.
+    """
+    square = radius * radius - py * py
+    if square <= 0.0:
+        return 1.0, 0.0
+    r = np.sqrt(square)
+    back = radius_offset - px
+    d = np.hypot(back, height)
+    if d <= low or d * 1.0 <= radius_offset - r:
+        return 1.0, 0.0
+    alpha = np.arctan2(height, back)
+    least = np.arcsin(low / d)
+    if d > radius_offset - r and d > 0.0:
+        most = np.arccos((radius_offset - r) / d)
+    else:
+        return 1.0, 0.0
+    if d > radius_offset + r:
+        least = max(least, np.arccos((radius_offset + r) / d))
+    if d > high:
+        most = min(most, np.arcsin(high / d))
+    if least > most:
+        return 1.0, 0.0
+    return tilt + alpha - most, tilt + alpha - least
+
+
+@inlined
+def local_gouge(kappa_max, kappa_min, cosine, sine, radius):  # type: ignore[no-untyped-def]
+    """Least tilt without local gouging at a rotation, rad; nan if none: sin(tilt) >= R kappa across the lean."""
+    bound = radius * (kappa_max * sine * sine + kappa_min * cosine * cosine)
+    if bound <= ROUNDING:
+        return 0.0
+    if bound > 1.0:
+        return np.nan
+    return np.arcsin(bound)
+
+
+@inlined
+def axis_arcs(along_n, along_f, limit_cos, low, high, out):  # type: ignore[no-untyped-def]
+    """Tilts within [low, high] whose axis stays within a cone about the setup axis m.
+
+    Parameters
+    ----------
+    along_n, along_f : float
+        m . n and m . f.
+    limit_cos : float
+        Cosine of the cone's half angle; -1 or less: no limit.
+    low, high : float
+        Range asked for, rad, within 0 to pi/2.
+    out : (2, 2) float64
+        Written: the intervals, ascending.
+
+    Returns
+    -------
+    count : int
+    """
+    if limit_cos <= -1.0:
+        out[0, 0], out[0, 1] = low, high
+        return 1
+    amplitude = np.hypot(along_n, along_f)
+    if amplitude <= abs(limit_cos):
+        # m is nearly across the great circle: all of it within the cone or none.
+        if limit_cos <= 0.0:
+            out[0, 0], out[0, 1] = low, high
+            return 1
+        return 0
+    middle = np.arctan2(along_f, along_n)
+    half = np.arccos(limit_cos / amplitude)
+    count = 0
+    for turn in range(-1, 2):
+        first = max(low, middle + 2.0 * np.pi * turn - half)
+        last = min(high, middle + 2.0 * np.pi * turn + half)
+        if first <= last:
+            out[count, 0], out[count, 1] = first, last
+            count += 1
+    return count

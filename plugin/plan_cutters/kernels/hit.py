@@ -1,0 +1,222 @@
+"""Does a triangle, or any triangle of a tree, reach into a solid cylinder?
+
+A body is a row of 16 numbers: contact P (3), axis a (3), x_T (3), y_T (3), then the distance from the cylinder's
+axis to P along x_T, its radius, and the two heights between which it is solid, measured from P along a. A cutter
+`(R, L)` shrunk by s is `(R, R - s, s, L - s)`; its dummy `(0, 2R - s, s, L - s)`.
+
+The clever part: a triangle cut off at the two heights is a convex polygon, and it meets the cylinder exactly when
+its shadow along the axis comes nearer to the axis than the radius. No subdivision, no trigonometry, no tolerance.
+
+`rate` widens the body by `rate * |Q - P|` at a point Q. Turning the tool by at most `rate` about any line through P
+moves Q by no more than that in the tool's frame, so a miss with `rate` is a miss at every posture within that turn.
+"""
+
+import numpy as np
+
+from plan_cutters.kernels.jit import inlined, kernel
+
+P, A, X, Y, OFFSET, RADIUS, LOW, HIGH, BODY = 0, 3, 6, 9, 12, 13, 14, 15, 16
+
+
+@inlined
+def stand(body, p, n, f, t, tilt_cos, tilt_sin, offset, radius, low, high):  # type: ignore[no-untyped-def]
+    """Write the body whose axis leans from n towards f by a tilt; t = n x f."""
+    for k in range(3):
+        body[P + k] = p[k]
+        body[A + k] = tilt_cos * n[k] + tilt_sin * f[k]
+        body[X + k] = tilt_cos * f[k] - tilt_sin * n[k]
+        body[Y + k] = t[k]
+    body[OFFSET], body[RADIUS], body[LOW], body[HIGH] = offset, radius, low, high
+
+
+@inlined
+def _box_apart(box, i, body, rate):  # type: ignore[no-untyped-def]
+    """True only if no point of box i lies in the body (separating slab along the axis, then across it)."""
+    dx, dy, dz = box[i, 0] - body[0], box[i, 1] - body[1], box[i, 2] - body[2]
+    hx, hy, hz, diagonal = box[i, 3], box[i, 4], box[i, 5], box[i, 6]
+    grow = 0.0
+    if rate > 0.0:
+        grow = rate * (np.sqrt(dx * dx + dy * dy + dz * dz) + diagonal)
+    height = dx * body[3] + dy * body[4] + dz * body[5]
+    reach = hx * abs(body[3]) + hy * abs(body[4]) + hz * abs(body[5]) + grow
+    if height + reach < body[LOW] or height - reach > body[HIGH]:
+        return True
+    across = dx * body[6] + dy * body[7] + dz * body[8] + body[OFFSET]
+    along = dx * body[9] + dy * body[10] + dz * body[11]
+    square = across * across + along * along
+    radius = body[RADIUS] + grow
+    if square <= radius * radius:
+        return False
+    if square > (radius + diagonal) * (radius + diagonal):
+        return True
+    distance = np.sqrt(square)
+    ux, uy = across / distance, along / distance
+    reach = (
+        hx * abs(ux * body[6] + uy * body[9])
+        + hy * abs(ux * body[7] + uy * body[10])
+        + hz * abs(ux * body[8] + uy * body[11])
+    )
+    return distance - reach > radius
+
+
+@inlined
+def _cut(source, count, target, level, keep):  # type: ignore[no-untyped-def]
+    """Keep the part of a polygon with `keep * (height - level) >= 0` (Sutherland and Hodgman, one side)."""
+    kept = 0
+    for i in range(count):
+        j = i + 1 if i + 1 < count else 0
+        here, there = keep * (source[i, 0] - level), keep * (source[j, 0] - level)
+        if here >= 0.0:
+            for k in range(3):
+                target[kept, k] = source[i, k]
+            kept += 1
+        if (here > 0.0 and there < 0.0) or (here < 0.0 and there > 0.0):
+            part = here / (here - there)
+            target[kept, 0] = level
+            for k in range(1, 3):
+                target[kept, k] = source[i, k] + part * (source[j, k] - source[i, k])
+            kept += 1
+    return kept
+
+
+@inlined
+def _nearest(polygon, count):  # type: ignore[no-untyped-def]
+    """Point of a convex polygon whose shadow is nearest to the axis: (height, x, y, squared distance)."""
+    area = 0.0
+    for i in range(count):
+        j = i + 1 if i + 1 < count else 0
+        area += polygon[i, 1] * polygon[j, 2] - polygon[j, 1] * polygon[i, 2]
+    inside = abs(area) > 0.0
+    best, height, px, py = np.inf, polygon[0, 0], polygon[0, 1], polygon[0, 2]
+    for i in range(count):
+        j = i + 1 if i + 1 < count else 0
+        xi, yi = polygon[i, 1], polygon[i, 2]
+        ex, ey = polygon[j, 1] - xi, polygon[j, 2] - yi
+        if (xi * ey - yi * ex) * area < 0.0:
+            inside = False
+        square = ex * ex + ey * ey
+        part = 0.0
+        if square > 0.0:
+            part = min(1.0, max(0.0, -(xi * ex + yi * ey) / square))
+        x, y = xi + part * ex, yi + part * ey
+        distance = x * x + y * y
+        if distance < best:
+            best, px, py = distance, x, y
+            height = polygon[i, 0] + part * (polygon[j, 0] - polygon[i, 0])
+    if inside:
+        best = 0.0
+    return height, px, py, best
+
+
+@inlined
+def triangle_hit(vertex, i, body, rate, polygon, spare):  # type: ignore[no-untyped-def]
+    """Whether triangle i reaches into the body, and a point of it that does.
+
+    Parameters
+    ----------
+    vertex : (n, 3, 3) float64
+    body : (16,) float64
+    rate : float
+    polygon, spare : (8, 3) float64
+        Scratch.
+
+    Returns
+    -------
+    hit : bool
+    height, px, py : float
+        With `rate` 0, a point of the triangle in the body, in the tool's frame from the cylinder's axis.
+    """
+    low, high, radius = body[LOW], body[HIGH], body[RADIUS]
+    grow, least, most = 0.0, np.inf, -np.inf
+    for corner in range(3):
+        dx = vertex[i, corner, 0] - body[0]
+        dy = vertex[i, corner, 1] - body[1]
+        dz = vertex[i, corner, 2] - body[2]
+        height = dx * body[3] + dy * body[4] + dz * body[5]
+        polygon[corner, 0] = height
+        polygon[corner, 1] = dx * body[6] + dy * body[7] + dz * body[8] + body[OFFSET]
+        polygon[corner, 2] = dx * body[9] + dy * body[10] + dz * body[11]
+        if rate > 0.0:
+            grow = max(grow, rate * np.sqrt(dx * dx + dy * dy + dz * dz))
+        least, most = min(least, height), max(most, height)
+    low, high, radius = low - grow, high + grow, radius + grow
+    if most <= low or least >= high or radius <= 0.0 or high <= low:
+        return False, 0.0, 0.0, 0.0
+    source, count = polygon, 3
+    if least < low:
+        count = _cut(source, count, spare, low, 1.0)
+        source = spare
+    if most > high:
+        target = polygon if least < low else spare
+        count = _cut(source, count, target, high, -1.0)
+        source = target
+    if count == 0:
+        return False, 0.0, 0.0, 0.0
+    height, px, py, square = _nearest(source, count)
+    if square >= radius * radius:
+        return False, 0.0, 0.0, 0.0
+    # A point well inside says more than one on the rim: go from the nearest point half way to where the line
+    # to the polygon's centre leaves the cylinder.
+    mh, mx, my = 0.0, 0.0, 0.0
+    for k in range(count):
+        mh += source[k, 0] / count
+        mx += source[k, 1] / count
+        my += source[k, 2] / count
+    if mx * mx + my * my < radius * radius:
+        return True, mh, mx, my
+    dx, dy = mx - px, my - py
+    a, b = dx * dx + dy * dy, px * dx + py * dy
+    part = 0.0
+    if a > 0.0:
+        part = 0.5 * (np.sqrt(max(0.0, b * b + a * (radius * radius - square))) - b) / a
+    part = min(1.0, max(0.0, part))
+    return True, height + part * (mh - height), px + part * dx, py + part * dy
+
+
+@kernel
+def tree_hit(vertex, box, depth, body, rate, hint, stack, polygon, spare):  # type: ignore[no-untyped-def]
+    """First triangle found that reaches into the body.
+
+    Parameters
+    ----------
+    vertex : (n, 3, 3) float64
+        Triangles in tree order.
+    box, depth
+        The tree, as `tree.build` gives it.
+    body : (16,) float64
+    rate : float
+    hint : int
+        Triangle to try first (the last one that was in the way), or -1.
+    stack : (64,) int64
+    polygon, spare : (8, 3) float64
+        Scratch.
+
+    Returns
+    -------
+    triangle : int
+        -1 if none.
+    height, px, py : float
+        Its point, as `triangle_hit` gives it.
+    """
+    if hint >= 0:
+        hit, height, px, py = triangle_hit(vertex, hint, body, rate, polygon, spare)
+        if hit:
+            return hint, height, px, py
+    n, first, top = len(vertex), (1 << depth) - 1, 1
+    stack[0] = 0
+    while top > 0:
+        top -= 1
+        node = stack[top]
+        if _box_apart(box, node, body, rate):
+            continue
+        if node < first:
+            stack[top] = 2 * node + 2
+            stack[top + 1] = 2 * node + 1
+            top += 2
+            continue
+        leaf = node - first
+        for i in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
+            hit, height, px, py = triangle_hit(vertex, i, body, rate, polygon, spare)
+            if hit:
+                return i, height, px, py
+    return -1, 0.0, 0.0, 0.0

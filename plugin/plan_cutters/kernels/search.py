@@ -1,0 +1,267 @@
+"""Is there a posture? Probe a tilt; whatever is in the way forbids a whole arc; probe what is left.
+
+A found posture is safe: no triangle reaches deeper into the cutter than `safe`. Where none is found, the same search
+at the depth `blocked` decides whether the sample is inaccessible (everything is forbidden by what certainly lies too
+deep) or undecided.
+"""
+
+import numpy as np
+
+from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
+from plan_cutters.kernels.hit import BODY, OFFSET, RADIUS, stand, tree_hit
+from plan_cutters.kernels.jit import inlined, kernel
+
+INACCESSIBLE, ACCESSIBLE, FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
+AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, SHANK = 0, 1, 2, 3
+
+#: Gaps narrower than this are not searched: no machine holds a tilt to 0.01 deg. rad.
+NARROWEST = 1.7e-4
+#: Intervals that one rotation may fall into; widest first, a search has not been seen to need ten.
+_ROOM = 256
+
+
+@inlined
+def remove(intervals, count, first, last, narrowest):  # type: ignore[no-untyped-def]
+    """Take [first, last] out of sorted intervals in place, drop what is narrower than `narrowest`; the new count."""
+    kept = 0
+    for row in range(count):
+        low, high = intervals[row, 0], intervals[row, 1]
+        if last <= low or first >= high:
+            intervals[kept, 0], intervals[kept, 1] = low, high
+            kept += 1
+            continue
+        below, above = first - low >= narrowest, high - last >= narrowest
+        if below and above and kept == row:
+            # One interval becomes two: those after it, all above `last`, move up.
+            if count == len(intervals):
+                below = first - low > high - last
+                above = not below
+            else:
+                for k in range(count, row, -1):
+                    intervals[k, 0], intervals[k, 1] = intervals[k - 1, 0], intervals[k - 1, 1]
+                intervals[row, 1] = first
+                intervals[row + 1, 0] = last
+                return count + 1
+        if below:
+            intervals[kept, 0], intervals[kept, 1] = low, first
+            kept += 1
+        if above:
+            intervals[kept, 0], intervals[kept, 1] = last, high
+            kept += 1
+    return kept
+
+
+@inlined
+def _sweep(
+    p, n, e1, e2, kappa_max, kappa_min,
+    rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
+    radius, length, depth_allowed, vertex, box, depth,
+    first_rotation, first_tilt, hint,
+    intervals, f, t, body, stack, polygon, spare, tally,
+):  # type: ignore[no-untyped-def]  # fmt: skip
+    """Search all rotations of one sample; (rotation index or -1, tilt, last triangle in the way)."""
+    rotations = len(rotation_cos)
+    tally[:] = 0.0
+    low, high, shrunk = depth_allowed, length - depth_allowed, radius - depth_allowed
+    for turn in range(rotations):
+        step = (turn + 1) // 2 if turn % 2 else -(turn // 2)
+        rotation = (first_rotation + step) % rotations
+        cosine, sine = rotation_cos[rotation], rotation_sin[rotation]
+        along_n, along_f = 0.0, 0.0
+        for k in range(3):
+            f[k] = cosine * e1[k] + sine * e2[k]
+            t[k] = cosine * e2[k] - sine * e1[k]
+            along_n += setup[k] * n[k]
+            along_f += setup[k] * f[k]
+        count = axis_arcs(along_n, along_f, limit_cos, tilt_low, tilt_high, intervals)
+        for i in range(count):
+            tally[AXIS_LIMIT] += intervals[i, 1] - intervals[i, 0] + NARROWEST
+        least = local_gouge(kappa_max, kappa_min, cosine, sine, radius)
+        if np.isnan(least):
+            continue
+        if least > 0.0:
+            count = remove(intervals, count, -1.0, least, 0.0)
+        for i in range(count):
+            tally[LOCAL_GOUGE] += intervals[i, 1] - intervals[i, 0] + NARROWEST
+        wish = first_tilt
+        while count > 0:
+            widest, tilt = -1.0, 0.0
+            for i in range(count):
+                if intervals[i, 0] <= wish <= intervals[i, 1]:
+                    widest, tilt = 10.0, wish
+                elif intervals[i, 1] - intervals[i, 0] > widest:
+                    widest = intervals[i, 1] - intervals[i, 0]
+                    tilt = 0.5 * (intervals[i, 0] + intervals[i, 1])
+            wish = -1.0
+            stand(body, p, n, f, t, np.cos(tilt), np.sin(tilt), radius, shrunk, low, high)
+            triangle, height, px, py = tree_hit(vertex, box, depth, body, 0.0, hint, stack, polygon, spare)
+            if triangle < 0:
+                return rotation, tilt, hint
+            hint = triangle
+            first, last = point_arc(height, px, py, tilt, radius, shrunk, low, high)
+            # At the edge of the body the arc may be no wider than rounding: take the probe's own neighbourhood too.
+            first, last = min(first, tilt - 0.5 * NARROWEST), max(last, tilt + 0.5 * NARROWEST)
+            back = px - radius
+            near = back * back + py * py + height * height <= 4.0 * radius * radius
+            reason = REAR_GOUGE if near else SHANK
+            before = 0.0
+            for i in range(count):
+                before += intervals[i, 1] - intervals[i, 0]
+            count = remove(intervals, count, first, last, NARROWEST)
+            for i in range(count):
+                before -= intervals[i, 1] - intervals[i, 0]
+            tally[reason] += before + NARROWEST
+    return -1, 0.0, hint
+
+
+@kernel
+def search(
+    rows, point, normal, direction_max, curvature,
+    rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
+    radius, length, safe, blocked, vertex, box, depth,
+    verdict, axis, lean, tilt_out, rotation_out, reason,
+):  # type: ignore[no-untyped-def]  # fmt: skip
+    """Decide the samples `rows`, one after the other, each starting from the posture of the one before.
+
+    Parameters
+    ----------
+    rows : (m,) int64
+        Samples to decide, neighbours in sequence.
+    point, normal, direction_max : (n, 3) float64
+    curvature : (n, 2) float64
+        kappa_max, kappa_min, 1/mm, concave positive.
+    rotation_cos, rotation_sin : (k,) float64
+    tilt_low, tilt_high : float
+        rad.
+    setup : (3,) float64
+        Unit setup axis.
+    limit_cos : float
+        Cosine of the axis limit about it, -2 for none.
+    radius, length : float
+        Flat-end cutter, mm.
+    safe, blocked : float
+        Depths (mm) up to which a triangle does not matter, and beyond which it certainly does.
+    vertex, box, depth
+        Triangles in tree order and the tree.
+    verdict, reason : (n,) uint8, written
+    axis, lean : (n, 3) float64, written
+    tilt_out, rotation_out : (n,) float64, int32, written
+    """
+    intervals = np.empty((_ROOM, 2))
+    f, t, e2 = np.empty(3), np.empty(3), np.empty(3)
+    body = np.empty(BODY)
+    stack = np.empty(64, np.int64)
+    polygon, spare = np.empty((8, 3)), np.empty((8, 3))
+    tally = np.empty(4)
+    last_rotation, last_tilt, hint = 0, -1.0, -1
+    for row in rows:
+        p, n, e1 = point[row], normal[row], direction_max[row]
+        e2[0] = n[1] * e1[2] - n[2] * e1[1]
+        e2[1] = n[2] * e1[0] - n[0] * e1[2]
+        e2[2] = n[0] * e1[1] - n[1] * e1[0]
+        rotation, tilt, hint = _sweep(
+            p, n, e1, e2, curvature[row, 0], curvature[row, 1],
+            rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
+            radius, length, safe, vertex, box, depth, last_rotation, last_tilt, hint,
+            intervals, f, t, body, stack, polygon, spare, tally,
+        )  # fmt: skip
+        if rotation >= 0:
+            verdict[row] = ACCESSIBLE
+            last_rotation, last_tilt = rotation, tilt
+            tilt_out[row], rotation_out[row] = tilt, rotation
+            cosine, sine = np.cos(tilt), np.sin(tilt)
+            for k in range(3):
+                lean[row, k] = rotation_cos[rotation] * e1[k] + rotation_sin[rotation] * e2[k]
+                axis[row, k] = cosine * n[k] + sine * lean[row, k]
+        else:
+            rotation, tilt, hint = _sweep(
+                p, n, e1, e2, curvature[row, 0], curvature[row, 1],
+                rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
+                radius, length, blocked, vertex, box, depth, last_rotation, last_tilt, hint,
+                intervals, f, t, body, stack, polygon, spare, tally,
+            )  # fmt: skip
+            verdict[row] = UNDECIDED if rotation >= 0 else INACCESSIBLE
+            if tally[AXIS_LIMIT] == 0.0:
+                reason[row] = AXIS_LIMIT
+            elif tally[LOCAL_GOUGE] == 0.0:
+                reason[row] = LOCAL_GOUGE
+            else:
+                reason[row] = REAR_GOUGE if tally[REAR_GOUGE] >= tally[SHANK] else SHANK
+
+
+@kernel
+def dummy_free(rows, point, normal, radius, length, safe, vertex, box, depth, free):  # type: ignore[no-untyped-def]
+    """Test the dummy cutter `(2 radius, length)`, bottom centre on the sample, axis along the normal.
+
+    Parameters
+    ----------
+    rows : (m,) int64
+    point, normal : (n, 3) float64
+    radius, length, safe : float
+        The flat-end cutter, mm, and the depth up to which a triangle does not matter.
+    vertex, box, depth
+        Triangles in tree order and the tree.
+    free : (n,) bool, written
+        True where nothing reaches deeper than `safe` into the dummy.
+    """
+    body = np.empty(BODY)
+    f, t = np.empty(3), np.empty(3)
+    stack = np.empty(64, np.int64)
+    polygon, spare = np.empty((8, 3)), np.empty((8, 3))
+    hint = -1
+    for row in rows:
+        n = normal[row]
+        # Any direction across the axis will do.
+        k = 0 if abs(n[0]) < 0.6 else 1
+        for i in range(3):
+            f[i] = -n[k] * n[i]
+        f[k] += 1.0
+        size = np.sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2])
+        for i in range(3):
+            f[i] /= size
+        t[0], t[1], t[2] = n[1] * f[2] - n[2] * f[1], n[2] * f[0] - n[0] * f[2], n[0] * f[1] - n[1] * f[0]
+        stand(body, point[row], n, f, t, 1.0, 0.0, 0.0, 2.0 * radius - safe, safe, length - safe)
+        triangle, _, _, _ = tree_hit(vertex, box, depth, body, 0.0, hint, stack, polygon, spare)
+        free[row] = triangle < 0
+        if triangle >= 0:
+            hint = triangle
+
+
+@kernel
+def probe(rows, point, axis, lean, radius, length, depths, vertex, box, depth, triangle):  # type: ignore[no-untyped-def]
+    """Test given postures: the triangle that reaches deeper than `depths[i]` into the cutter of posture i, or -1.
+
+    Parameters
+    ----------
+    rows : (m,) int64
+        Rows of `point`, `axis` and `lean` to test.
+    point, axis, lean : (n, 3) float64
+        Contact, unit tool axis and unit lean direction.
+    radius, length : float
+    depths : (n,) float64
+    vertex, box, depth
+        Triangles in tree order and the tree.
+    triangle : (n,) int32, written
+    """
+    body = np.empty(BODY)
+    stack = np.empty(64, np.int64)
+    polygon, spare = np.empty((8, 3)), np.empty((8, 3))
+    hint = -1
+    for row in rows:
+        a, f = axis[row], lean[row]
+        along = a[0] * f[0] + a[1] * f[1] + a[2] * f[2]
+        size = 0.0
+        for k in range(3):
+            body[k], body[3 + k] = point[row, k], a[k]
+            body[6 + k] = f[k] - along * a[k]
+            size += body[6 + k] * body[6 + k]
+        for k in range(3):
+            body[6 + k] /= np.sqrt(size)
+        body[9] = a[1] * body[8] - a[2] * body[7]
+        body[10] = a[2] * body[6] - a[0] * body[8]
+        body[11] = a[0] * body[7] - a[1] * body[6]
+        s = depths[row]
+        body[OFFSET], body[RADIUS], body[14], body[15] = radius, radius - s, s, length - s
+        triangle[row], _, _, _ = tree_hit(vertex, box, depth, body, 0.0, hint, stack, polygon, spare)
+        if triangle[row] >= 0:
+            hint = triangle[row]
