@@ -27,3 +27,7 @@ class CutterError(OptionError):
 
 class MachineError(OptionError):
     """A machine is unknown or contradicts itself."""
+
+
+class UnjudgeableError(PlanError):
+    """The part was read, but holds nothing that could be judged."""

@@ -77,7 +77,7 @@ def axis_arcs(along_n, along_f, limit_cos, low, high, out):  # type: ignore[no-u
         Cosine of the cone's half angle; -1 or less: no limit.
     low, high : float
         Range asked for, rad, within 0 to pi/2.
-    out : (2, 2) float64
+    out : (3, 2) float64
         Written: the intervals, ascending.
 
     Returns

@@ -1,0 +1,294 @@
+"""The command: arguments in, exit code out. The only module that prints and exits."""
+
+import math
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
+
+from plan_cutters import __version__
+
+if TYPE_CHECKING:
+    from plan_cutters.model import Plan
+    from plan_cutters.options import Options
+
+FEASIBLE, NONE_FEASIBLE, USAGE, UNREADABLE, NOT_ALL_JUDGED, INTERRUPTED = 0, 1, 2, 3, 4, 130
+
+#: Options of the interface that later versions will have: asked for now, they must not be ignored.
+_NOT_BUILT = {
+    "cutters": "tool library files are not read yet; give each cutter with --cutter R6L80",
+    "fixture": "fixtures are not read yet",
+    "allowance": "an allowance is not judged yet",
+    "holder_clearance": "holders are not judged yet",
+    "posture_maps": "posture maps of all samples are not written yet; plan_cutters.posture_map gives one point's",
+    "cluster": "clusters are not used yet; --jobs gives threads on this machine",
+}
+
+
+class _Range(click.ParamType):
+    """Two numbers of degrees, MIN:MAX, as radians."""
+
+    name = "MIN:MAX"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, float]:
+        try:
+            low, high = (math.radians(float(part)) for part in value.split(":"))
+        except ValueError:
+            self.fail(f"{value!r} is not of the form MIN:MAX in degrees, as 0:60", param, ctx)
+        return low, high
+
+
+class _Vector(click.ParamType):
+    """A direction x,y,z."""
+
+    name = "X,Y,Z"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...]:
+        try:
+            x, y, z = (float(part) for part in value.split(","))
+        except ValueError:
+            self.fail(f"{value!r} is not of the form x,y,z, as 0,0,1", param, ctx)
+        return x, y, z
+
+
+@click.command(
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
+    epilog="Exit codes: 0 a cutter finishes every sample; 1 none does; 2 wrong command line; 3 the part cannot be "
+    "read; 4 a cutter would finish all that could be judged, but something could not; 130 interrupted.",
+)
+@click.argument("parts", nargs=-1, required=True, metavar="PART...")
+@click.option("--cutters", multiple=True, metavar="FILE", hidden=True)
+@click.option("--cutter", multiple=True, metavar="SPEC", help="A flat end as R6L80: radius 6, length 80 mm. Repeatable; default: built-in flat ends, R 1 to 12.")
+@click.option("--machine", default="unlimited", metavar="NAME", help="`unlimited` or `tilt:DEG`, a limit of the tool axis from the setup axis.  [default: unlimited]")
+@click.option("--setup", type=_Vector(), default="0,0,1", metavar="X,Y,Z", help="Direction of the part along the machine's spindle.  [default: 0,0,1]")
+@click.option("--faces", default="sculptured", metavar="SELECT", help="Faces to machine: `sculptured`, `all`, `3,7-12`, `name:REGEX` or `color:#RRGGBB`; the others are obstacles.  [default: sculptured]")
+@click.option("--fixture", multiple=True, metavar="FILE", hidden=True)
+@click.option("--grid", type=int, metavar="N", help="N x N parameter samples a face.")
+@click.option("--spacing", type=float, metavar="MM", help="Samples at most this far apart.  [default: from curvature, the smallest cutter and a budget]")
+@click.option("--tilt", type=_Range(), default="0:90", metavar="MIN:MAX", help="Tilts to search, degrees.  [default: 0:90]")
+@click.option("--rotation", type=_Range(), default="0:360", metavar="MIN:MAX", help="Rotations to search, from the direction of the largest curvature, degrees.  [default: 0:360]")
+@click.option("--rotation-step", type=float, default=10.0, metavar="DEG", help="[default: 10]")
+@click.option("--tolerance", type=float, default=0.01, metavar="MM", help="Gouge tolerance.  [default: 0.01]")
+@click.option("--allowance", type=float, hidden=True)
+@click.option("--holder-clearance", type=float, hidden=True)
+@click.option("-o", "--out", metavar="DIR", help="Folder for the files.  [default: <stem>-plan]")
+@click.option("--formats", metavar="LIST", help="Of json,step,glb,npz.  [default: all]")
+@click.option("--json", "json_out", metavar="-", help="With `-`: the plan on standard output, nothing else there.")
+@click.option("--posture-maps", is_flag=True, hidden=True)
+@click.option("--jobs", type=int, metavar="N", help="Threads.  [default: all cores]")
+@click.option("--cluster", metavar="ADDRESS", hidden=True)
+@click.option("--flip", is_flag=True, help="Machine the other side of open shells and loose faces.")
+@click.option("--quiet", is_flag=True, help="No progress and no summary.")
+@click.option("--debug", is_flag=True, help="Show tracebacks.")
+@click.version_option(__version__, prog_name="plan-cutters")
+def command(parts: tuple[str, ...], **given: Any) -> int:
+    """Which cutters can finish the sculptured faces of PART (STEP, IGES, BREP) without gouging or collision?
+
+    Each is judged at samples of the surface: interference-free, accessible, undecided or inaccessible, and why. Writes
+    plan.json, a coloured STEP, a coloured GLB and the samples into a folder.
+    """
+    from plan_cutters.errors import OptionError
+
+    for name, why in _NOT_BUILT.items():
+        if given[name] not in (None, (), False):
+            raise OptionError(f"--{name.replace('_', '-')}: {why}")
+    if given["json_out"] not in (None, "-"):
+        raise OptionError("--json takes -, for standard output; --formats json writes plan.json into the folder")
+    if given["out"] is not None and len(parts) > 1:
+        outs = [Path(given["out"]) / f"{Path(p).stem}-plan" for p in parts]
+    else:
+        outs = [Path(given["out"] or f"{Path(p).stem}-plan") for p in parts]
+    if len(set(outs)) < len(outs):
+        raise OptionError("two parts have the same name and would write to the same folder; plan them one by one")
+    options = _options(given)
+    codes = []
+    for part, out in zip(parts, outs, strict=True):
+        code, line = _guarded(lambda part=part, out=out: _one(part, out, options, given), given["debug"])
+        codes.append(code)
+        if len(parts) > 1 and not given["quiet"]:
+            click.echo(f"{part}: {line}", err=True)
+        elif code and line:
+            click.echo(line, err=True)
+    return max(codes)
+
+
+def _options(given: dict[str, Any]) -> "Options":
+    from plan_cutters.cutter import Cutter
+    from plan_cutters.machine import Machine
+    from plan_cutters.options import Options
+    from plan_cutters.posture import PostureRange
+
+    more = {} if given["jobs"] is None else {"jobs": given["jobs"]}
+    return Options(
+        cutters=tuple(Cutter.parse(spec) for spec in given["cutter"]),
+        machine=Machine.parse(given["machine"]),
+        setup=given["setup"],
+        faces=given["faces"],
+        grid=given["grid"],
+        spacing=given["spacing"],
+        postures=PostureRange(given["tilt"], given["rotation"], math.radians(given["rotation_step"])),
+        tolerance=given["tolerance"],
+        flip=given["flip"],
+        **more,
+    )
+
+
+def _one(part: str, out: Path, options: "Options", given: dict[str, Any]) -> tuple[int, str]:
+    """Plan one part; exit code and a line about it."""
+    from plan_cutters.report import FORMATS, Staging, read_formats, write_all
+
+    to_stdout = given["json_out"] == "-"
+    # The plan on standard output: files only where they are asked for.
+    default = () if to_stdout and given["out"] is None else FORMATS
+    formats = read_formats(given["formats"]) if given["formats"] else default
+    staging = Staging(out) if formats else None
+    try:
+        from plan_cutters.pipeline import run
+
+        with _progress(given["quiet"]) as tell:
+            result = run(part, options, progress=tell)
+            if formats:
+                tell("write", 0, 1)
+                document = write_all(result, out, formats, staging)
+                tell("write", 1, 1)
+            else:
+                document = result.plan
+    finally:
+        if staging:
+            staging.discard()
+    if to_stdout:
+        from plan_cutters.report.to_json import dumps
+
+        sys.stdout.write(dumps(document))
+        sys.stdout.flush()
+    if not given["quiet"]:
+        _summary(document, out if formats else None)
+    unjudged = document.samples.unjudged or any(f.target and f.unjudged for f in document.faces)
+    if document.selected is None:
+        return NONE_FEASIBLE, ""
+    return (NOT_ALL_JUDGED if unjudged else FEASIBLE), ""
+
+
+def _summary(plan: "Plan", out: Path | None) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console(stderr=True, highlight=False, soft_wrap=True)
+    size = " x ".join(f"{s:.4g}" for s in plan.part.size_mm)
+    targets = len(plan.effective.target_faces)
+    console.print(f"{plan.part.file or 'part'}: {size} mm, {plan.part.faces} faces, {targets} to machine, "
+                  f"{plan.samples.count} samples at most {plan.samples.max_gap_mm:.3g} mm apart")  # fmt: skip
+    table = Table(box=None, pad_edge=False)
+    for column in ("cutter", "feasible", "free", "accessible", "undecided", "inaccessible"):
+        table.add_column(column, justify="left" if column in ("cutter", "feasible") else "right")
+    for c in plan.cutters:
+        word = {True: "yes", False: "no", None: "undecided"}[c.feasible]
+        table.add_row(c.id + (" *" if c.id == plan.selected else ""), word, str(c.interference_free),
+                      str(c.accessible), str(c.undecided), str(c.inaccessible))  # fmt: skip
+    console.print(table)
+    console.print(f"Selected: {plan.selected or 'none'} ({plan.selection.why}).")
+    for warning in plan.part.warnings:
+        console.print(f"Warning: {warning}")
+    for note in plan.notes:
+        console.print(f"Note: {note}")
+    if out:
+        console.print(f"Written: {', '.join([*sorted(f.name for f in plan.files.values()), 'plan.json'])} in {out}")
+    for face in plan.faces:
+        if face.target and face.unjudged:
+            console.print(f"Not judged: {face.id} ({face.unjudged}).")
+    for line in _not_reached(plan):
+        console.print(line)
+
+
+def _not_reached(plan: "Plan") -> list[str]:
+    """What the larger cutters than the selected (or all) leave, and why."""
+    lines = []
+    for c in plan.cutters:
+        if c.id == plan.selected:
+            break
+        reasons = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in c.by_reason.items() if count)
+        deepest = max((w for w in c.witnesses if w.depth_mm is not None), key=lambda w: w.depth_mm or 0, default=None)
+        where = ""
+        if deepest and deepest.depth_mm is not None:
+            x, y, z = deepest.point
+            where = (f"; at ({x:.4g}, {y:.4g}, {z:.4g}) on {deepest.face} the best posture is "
+                     f"{deepest.depth_mm:.3g} mm too deep")  # fmt: skip
+        left = c.inaccessible + c.undecided
+        undecided = f", {c.undecided} undecided" if c.undecided else ""
+        lines.append(f"Not reached by {c.id}: {left} of {plan.samples.count} samples ({reasons or 'none'}{undecided}){where}.")
+    return lines
+
+
+class _progress:
+    """A bar on a terminal, plain lines otherwise, nothing where quiet."""
+
+    def __init__(self, quiet: bool) -> None:
+        self.quiet, self.bar, self.tasks, self.told = quiet, None, {}, set()  # type: ignore[var-annotated]
+
+    def __enter__(self) -> Any:
+        if not self.quiet and sys.stderr.isatty():
+            from rich.console import Console
+            from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+            self.bar = Progress(TextColumn("{task.description:>10}"), BarColumn(), TimeElapsedColumn(),
+                                console=Console(stderr=True), transient=True)  # fmt: skip
+            self.bar.start()
+        return self.tell
+
+    def tell(self, stage: str, done: int, total: int) -> None:
+        if self.bar is not None:
+            if stage not in self.tasks:
+                self.tasks[stage] = self.bar.add_task(stage, total=total)
+            self.bar.update(self.tasks[stage], completed=done, total=total)
+        elif not self.quiet and stage not in self.told:
+            self.told.add(stage)
+            click.echo(f"{stage} ...", err=True)
+
+    def __exit__(self, *_: object) -> None:
+        if self.bar is not None:
+            self.bar.stop()
+
+
+def _guarded(work: Any, debug: bool) -> tuple[int, str]:
+    """Run; errors that have a cause become an exit code and a line."""
+    from cad_io.errors import CadIoError, WriteError
+    from plan_cutters.errors import PlanError, UnjudgeableError
+
+    try:
+        code, line = work()
+        return int(code), str(line)
+    except KeyboardInterrupt:
+        if debug:
+            raise
+        return INTERRUPTED, "plan-cutters: interrupted; nothing was written"
+    except (CadIoError, PlanError) as error:
+        if debug:
+            raise
+        unreadable = isinstance(error, UnjudgeableError) or (
+            isinstance(error, CadIoError) and not isinstance(error, WriteError)
+        )
+        return (UNREADABLE if unreadable else USAGE), f"plan-cutters: {error}"
+    except click.ClickException as error:
+        return USAGE, f"plan-cutters: {error.format_message()}"
+    except Exception as error:
+        if debug:
+            raise
+        return UNREADABLE, f"plan-cutters: internal error ({type(error).__name__}: {error}); --debug shows where"
+
+
+def main(args: Sequence[str] | None = None) -> NoReturn:
+    """Entry point of the command."""
+    words = list(sys.argv[1:] if args is None else args)
+
+    def work() -> tuple[int, str]:
+        try:
+            return int(command.main(words, prog_name="plan-cutters", standalone_mode=False) or 0), ""
+        except click.Abort:
+            return INTERRUPTED, "plan-cutters: interrupted; nothing was written"
+
+    code, line = _guarded(work, "--debug" in words)
+    if line:
+        click.echo(line, err=True)
+    sys.exit(code)

@@ -1,0 +1,1 @@
+"""Steps inside CAD hosts. Nothing here registers itself at import."""

@@ -1,0 +1,18 @@
+"""A planning step in CadQuery chains: `register()`, then `Workplane(...).plan_cutters(...)`."""
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from plan_cutters.pipeline import Result
+
+
+def register() -> None:
+    """Add `plan_cutters` to `cadquery.Workplane`; it takes the options of `plan_cutters.plan`, returns its Result."""
+    import cadquery
+
+    def step(self: Any, **options: Any) -> "Result":
+        from plan_cutters.pipeline import plan
+
+        return plan(self, **options)
+
+    cadquery.Workplane.plan_cutters = step

@@ -1,0 +1,158 @@
+"""The plan as written: one pydantic model is the file's form, its JSON Schema and its documentation.
+
+Lengths in mm, angles in degrees, part coordinates.
+"""
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+FORMAT_VERSION = 1
+
+Vector = tuple[float, float, float]
+
+
+class _Frozen(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Units(_Frozen):
+    length: Literal["mm"] = "mm"
+    angle: Literal["deg"] = "deg"
+
+
+class OrientationInfo(_Frozen):
+    """How the side out of the material was found, and whether that is more than a guess."""
+
+    method: str
+    confident: bool
+
+
+class PartInfo(_Frozen):
+    file: str | None
+    sha256: str | None
+    size_mm: Vector
+    solids: int
+    faces: int
+    orientation: OrientationInfo
+    warnings: list[str]
+
+
+class Effective(_Frozen):
+    """Every option after defaults."""
+
+    cutters: list[str]
+    cutter_source: str
+    machine: str
+    setup: Vector
+    faces: str
+    target_faces: list[str]
+    grid: int | None = Field(description="samples a side and face; null where sampled by spacing")
+    spacing_mm: float | None = Field(description="largest spacing asked for; null where sampled by grid")
+    tilt_deg: tuple[float, float]
+    rotation_deg: tuple[float, float]
+    rotation_step_deg: float
+    tolerance_mm: float = Field(description="the gouge tolerance that was kept, raised where a budget binds")
+    chord_error_mm: float = Field(description="largest measured distance from obstacle triangles to the surface")
+    obstacle_triangles: int
+    flip: bool
+
+
+class SampleCounts(_Frozen):
+    count: int
+    max_gap_mm: float = Field(description="largest distance between neighbouring samples; verdicts are about samples")
+    convex: int
+    concave: int
+    saddle: int
+    unjudged: int
+    regions: int
+
+
+class Verdicts(_Frozen):
+    interference_free: int = 0
+    accessible: int = 0
+    inaccessible: int = 0
+    undecided: int = 0
+    unjudged: int = 0
+
+
+class FaceEntry(_Frozen):
+    id: str
+    name: str
+    surface: str = Field(description="kind of the stored surface")
+    shape: str = Field(description="what it is in shape: plane, cylinder, cone, sphere, torus or sculptured")
+    target: bool
+    area_mm2: float
+    samples: int
+    unjudged: str | None = Field(description="why the face, or some of its samples, could not be judged")
+
+
+class Posture(_Frozen):
+    tilt: float
+    rotation: float
+    axis: Vector
+
+
+class WitnessEntry(_Frozen):
+    """A sample that is not reached and the posture that comes nearest to reaching it."""
+
+    point: Vector
+    face: str
+    reason: str
+    obstacle_face: str | None
+    best_posture: Posture | None
+    depth_mm: float | None = Field(description="how deep the part reaches into the cutter at the best posture")
+
+
+class CutterEntry(Verdicts):
+    id: str
+    name: str
+    radius: float
+    corner_radius: float
+    length: float
+    feasible: bool | None = Field(description="null: only undecided samples stand in the way")
+    march_differs: int = Field(description="convex samples on which the seed's boundary march gives another answer")
+    by_reason: dict[str, int]
+    faces: dict[str, Verdicts]
+    witnesses: list[WitnessEntry]
+    seconds: float = Field(default=0.0, exclude=True, description="dummy tests and search; not written")
+
+
+class Selection(_Frozen):
+    rule: str
+    runner_up: str | None
+    why: str
+
+
+class FileEntry(_Frozen):
+    name: str
+    sha256: str
+
+
+class Run(_Frozen):
+    """What differs between two runs with the same input."""
+
+    time: str
+    seconds: dict[str, float]
+
+
+class Plan(_Frozen):
+    """Which cutters finish the target faces of a part, where each does not, and why."""
+
+    format: Literal["plan-cutters-plan"] = "plan-cutters-plan"
+    format_version: int = FORMAT_VERSION
+    units: Units = Units()
+    part: PartInfo
+    effective: Effective
+    versions: dict[str, str]
+    samples: SampleCounts
+    faces: list[FaceEntry]
+    reasons: list[str] = Field(description="what `reason_ID` in samples.npz counts in")
+    cutters: list[CutterEntry]
+    selected: str | None
+    selection: Selection
+    notes: list[str] = Field(description="what these verdicts do not say")
+    legend: dict[str, str] = Field(description="colour of each verdict in the STEP and GLB files, sRGB")
+    split: dict[str, str] = Field(default={}, description="faces coloured whole although their verdicts are mixed: why")
+    files: dict[str, FileEntry] = {}
+    run: Run

@@ -1,0 +1,422 @@
+"""The order of the stages: part in, plan out. Nothing else knows it."""
+
+import datetime
+import platform
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io import Orientation, Part, SurfaceSamples, orient, read_part, sample, tessellate
+from plan_cutters import __version__
+from plan_cutters.access import access, witnesses
+from plan_cutters.classify import CONCAVE, CONVEX, SADDLE, classify, regions
+from plan_cutters.cutter import Cutter
+from plan_cutters.decompose import decompose
+from plan_cutters.errors import UnjudgeableError
+from plan_cutters.faces import select_faces
+from plan_cutters.machine import Machine
+from plan_cutters.model import (
+    CutterEntry, Effective, FaceEntry, OrientationInfo, PartInfo, Plan, Posture, Run, SampleCounts, Selection,
+    Verdicts, WitnessEntry,
+)  # fmt: skip
+from plan_cutters.obstacles import Obstacles
+from plan_cutters.options import Options
+from plan_cutters.palette import PALETTE
+from plan_cutters.posture import PostureRange, unit
+from plan_cutters.reach import ACCESSIBLE, FREE, INACCESSIBLE, REASONS, UNDECIDED, UNJUDGED, Reach, Witness
+from plan_cutters.select_cutters import RULE, ranked
+from plan_cutters.spacing import default_spacing
+
+#: Told the stage, how much of it is done, of how much.
+Progress = Callable[[str, int, int], None]
+
+#: Share of the tolerance that the obstacles' chord error may take, and what is asked of the tessellation.
+_CHORD_SHARE, _CHORD_ASKED = 0.25, 0.2
+
+
+@dataclass(frozen=True)
+class Result:
+    """A plan with the arrays behind it.
+
+    Attributes
+    ----------
+    plan : Plan
+        What is written as `plan.json`.
+    part : Part
+    samples : SurfaceSamples
+        Of the target faces.
+    surface_class : (n,) uint8
+    reaches : dict
+        Cutter id -> Reach.
+    postures : PostureRange
+    """
+
+    plan: Plan
+    part: Part
+    samples: SurfaceSamples
+    surface_class: NDArray[np.uint8]
+    reaches: dict[str, Reach]
+    postures: PostureRange
+
+    @property
+    def cutters(self) -> list[CutterEntry]:
+        """One entry a cutter, from the most wanted down."""
+        return self.plan.cutters
+
+    @property
+    def selected(self) -> str | None:
+        """Id of the cutter to take, or None."""
+        return self.plan.selected
+
+    @property
+    def shown(self) -> str:
+        """Id of the cutter that the models show: the selected, else the one that reaches the most samples."""
+        return self.selected or max(self.cutters, key=lambda c: c.interference_free + c.accessible).id
+
+    def to_json(self, path: str | Path) -> None:
+        """Write the plan alone."""
+        from plan_cutters.report.to_json import write_plan
+
+        write_plan(self.plan, Path(path))
+
+    def write(self, out: str | Path, formats: Sequence[str] = ("json", "step", "glb", "npz")) -> Plan:
+        """Write files into the folder `out`, each whole or not at all.
+
+        Returns
+        -------
+        Plan
+            The plan as written, with its `files` and `split`.
+        """
+        from plan_cutters.report import write_all
+
+        return write_all(self, Path(out), formats)
+
+
+def plan(
+    part: Any,
+    *,
+    cutters: Sequence[Cutter] = (),
+    machine: Machine | None = None,
+    setup: tuple[float, float, float] = (0.0, 0.0, 1.0),
+    faces: str = "sculptured",
+    grid: int | None = None,
+    spacing: float | None = None,
+    tilt: tuple[float, float] = (0.0, np.pi / 2),
+    rotation: tuple[float, float] = (0.0, 2 * np.pi),
+    rotation_step: float = np.pi / 18,
+    tolerance: float = 0.01,
+    jobs: int | None = None,
+    flip: bool = False,
+    progress: Progress | None = None,
+) -> Result:
+    """Judge each cutter on the target faces of a part.
+
+    Parameters
+    ----------
+    part : Part, path, TopoDS_Shape, CadQuery or build123d object
+    cutters : sequence of Cutter
+        None given: the built-in flat ends.
+    machine : Machine, optional
+        Default: no axis limit.
+    setup : tuple of float
+        Direction of the part along the machine's spindle at zero angles.
+    faces : str
+        Target faces, as on the command line.
+    grid, spacing : int, float, optional
+        N x N samples a face, or at most `spacing` mm apart; default from curvature, smallest cutter and a budget.
+    tilt, rotation : tuple of float
+        Posture range, rad.
+    rotation_step : float
+        rad.
+    tolerance : float
+        Gouge tolerance, mm.
+    jobs : int, optional
+        Threads; default all cores.
+    flip : bool
+        Machine the other side of open shells and loose faces.
+    progress : callable, optional
+        Told (stage, done, total).
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    CadIoError
+        The part cannot be read or holds no surface to judge.
+    PlanError
+        An option has no meaning.
+    """
+    more = {} if jobs is None else {"jobs": jobs}
+    options = Options(
+        cutters=tuple(cutters), machine=machine or Machine(), setup=setup, faces=faces, grid=grid, spacing=spacing,
+        postures=PostureRange(tilt, rotation, rotation_step), tolerance=tolerance, flip=flip, **more,
+    )  # fmt: skip
+    return run(part, options, progress=progress)
+
+
+@dataclass
+class _Clock:
+    """Seconds by stage, and whom to tell."""
+
+    progress: Progress | None
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[Callable[[int, int], None]]:
+        def tell(done: int, total: int) -> None:
+            if self.progress:
+                self.progress(name, done, total)
+
+        tell(0, 1)
+        began = time.perf_counter()
+        yield tell
+        self.seconds[name] = time.perf_counter() - began
+        tell(1, 1)
+
+
+def run(part: Any, options: Options, *, progress: Progress | None = None) -> Result:
+    """`plan` with its options gathered."""
+    clock = _Clock(progress)
+    started = datetime.datetime.now(datetime.UTC)
+    with clock.stage("read"):
+        whole = part if isinstance(part, Part) else read_part(part)
+    targets = select_faces(whole.faces, options.faces)
+    setup = unit(options.setup, "setup axis")
+    cutters = ranked(options.judged)
+    with clock.stage("sample"):
+        orientation = orient(whole, towards=options.setup, flip=options.flip)
+        spacing: float | dict[int, float] | None = options.spacing
+        if options.grid is None and options.spacing is None:
+            spacing = default_spacing(whole, orientation, targets, cutters)
+        samples = sample(whole, orientation, grid=options.grid, spacing=spacing, faces=targets)
+        surface_class = classify(samples, float(np.linalg.norm(whole.size)))
+        region = regions(samples, surface_class)
+    if not (samples.unjudged < 0).any():
+        causes = {reason for _, reason in samples.empty} | set(samples.reasons)
+        raise UnjudgeableError(f"no target face can be judged: {'; '.join(sorted(causes)) or 'no samples'}", file=whole.file)
+    with clock.stage("tessellate"):
+        triangles = tessellate(whole, _CHORD_ASKED * options.tolerance)
+        obstacles = Obstacles(triangles)
+        tolerance = max(options.tolerance, triangles.chord_error / _CHORD_SHARE)
+    with clock.stage("compile"):
+        _warm(samples, cutters[0], setup, options, obstacles)
+    entries: list[CutterEntry] = []
+    reaches: dict[str, Reach] = {}
+    for cutter in cutters:
+        with clock.stage(cutter.id) as tell:
+            shared: dict[str, Any] = {
+                "machine": options.machine, "setup": setup, "postures": options.postures,
+                "obstacles": obstacles, "tolerance": tolerance,
+            }  # fmt: skip
+            began = time.perf_counter()
+            decomposition = decompose(samples, surface_class == CONVEX, region, cutter, jobs=options.jobs, **shared)
+            reach = access(samples, decomposition.free, cutter, jobs=options.jobs, progress=tell, **shared)
+            seconds = time.perf_counter() - began
+            found = witnesses(samples, reach, cutter, **shared)
+        reaches[cutter.id] = reach
+        entries.append(_cutter_entry(cutter, samples, reach, found, decomposition.march_differs, seconds))
+    selected, selection = _select(entries)
+    document = Plan(
+        part=_part_info(whole, orientation),
+        effective=Effective(
+            cutters=[c.id for c in cutters],
+            cutter_source="given" if options.cutters else "built-in",
+            machine=options.machine.name,
+            setup=_vector(setup),
+            faces=options.faces,
+            target_faces=[f"F{n}" for n in targets],
+            grid=options.grid,
+            spacing_mm=max(spacing.values()) if isinstance(spacing, dict) else spacing,
+            tilt_deg=_degrees(options.postures.tilt),
+            rotation_deg=_degrees(options.postures.rotation),
+            rotation_step_deg=float(np.degrees(options.postures.step)),
+            tolerance_mm=tolerance,
+            chord_error_mm=triangles.chord_error,
+            obstacle_triangles=len(triangles),
+            flip=options.flip,
+        ),
+        versions=_versions(),
+        samples=SampleCounts(
+            count=len(samples),
+            max_gap_mm=samples.max_gap,
+            convex=int((surface_class == CONVEX).sum()),
+            concave=int((surface_class == CONCAVE).sum()),
+            saddle=int((surface_class == SADDLE).sum()),
+            unjudged=int((samples.unjudged >= 0).sum()),
+            regions=len(np.unique(region)),
+        ),
+        faces=_faces(whole, samples, targets),
+        reasons=list(REASONS),
+        cutters=entries,
+        selected=selected,
+        selection=selection,
+        notes=_notes(whole, orientation, options, tolerance, samples, triangles.missing),
+        legend=PALETTE,
+        run=Run(time=started.isoformat(timespec="seconds"), seconds=clock.seconds),
+    )
+    return Result(document, whole, samples, surface_class, reaches, options.postures)
+
+
+def _warm(
+    samples: SurfaceSamples, cutter: Cutter, setup: NDArray[np.float64], options: Options, obstacles: Obstacles
+) -> None:
+    """Build the tree and load or compile every kernel, so that stage times are those of the work."""
+    from plan_cutters.kernels import search
+
+    empty, n = np.zeros(0, np.int64), len(samples)
+    search.dummy_free(empty, samples.point, samples.normal, cutter.radius, cutter.length, options.tolerance,
+                      *obstacles.tree, np.zeros(n, bool))  # fmt: skip
+    search.search(
+        empty, samples.point, samples.normal, samples.direction_max, samples.curvature, np.ones(1), np.zeros(1),
+        0.0, 1.0, setup, -2.0, cutter.radius, cutter.length, 0.0, 0.0, *obstacles.tree,
+        np.zeros(1, np.uint8), np.zeros((1, 3)), np.zeros((1, 3)), np.zeros(1), np.zeros(1, np.int32),
+        np.zeros(1, np.uint8),
+    )  # fmt: skip
+
+
+def _vector(v: NDArray[np.float64]) -> tuple[float, float, float]:
+    return float(v[0]), float(v[1]), float(v[2])
+
+
+def _degrees(pair: tuple[float, float]) -> tuple[float, float]:
+    # Rounded to what a person typed: 90, not 90.00000000000001.
+    return round(float(np.degrees(pair[0])), 9), round(float(np.degrees(pair[1])), 9)
+
+
+def _counts(verdict: NDArray[np.uint8]) -> dict[str, int]:
+    names = {FREE: "interference_free", ACCESSIBLE: "accessible", INACCESSIBLE: "inaccessible",
+             UNDECIDED: "undecided", UNJUDGED: "unjudged"}  # fmt: skip
+    return {name: int((verdict == code).sum()) for code, name in names.items()}
+
+
+def _cutter_entry(
+    cutter: Cutter, samples: SurfaceSamples, reach: Reach, found: Sequence[Witness], march_differs: int, seconds: float
+) -> CutterEntry:
+    counts = _counts(reach.verdict)
+    feasible = None if counts["undecided"] and not counts["inaccessible"] else not counts["inaccessible"]
+    lost = reach.verdict == INACCESSIBLE
+    return CutterEntry(
+        id=cutter.id,
+        name=cutter.name,
+        radius=cutter.radius,
+        corner_radius=cutter.corner_radius,
+        length=cutter.length,
+        feasible=feasible,
+        march_differs=march_differs,
+        **counts,
+        by_reason={name: int((lost & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
+        faces={
+            f"F{n}": Verdicts(**_counts(reach.verdict[samples.face == n])) for n in np.unique(samples.face).tolist()
+        },
+        witnesses=[_witness_entry(w, samples) for w in found],
+        seconds=seconds,
+    )
+
+
+def _witness_entry(witness: Witness, samples: SurfaceSamples) -> WitnessEntry:
+    posture = None
+    if witness.tilt is not None and witness.rotation is not None and witness.axis is not None:
+        posture = Posture(
+            tilt=float(np.degrees(witness.tilt)),
+            rotation=float(np.degrees(witness.rotation)),
+            axis=_vector(witness.axis),
+        )
+    return WitnessEntry(
+        point=_vector(samples.point[witness.sample]),
+        face=f"F{samples.face[witness.sample]}",
+        reason=witness.reason,
+        obstacle_face=None if witness.obstacle_face is None else f"F{witness.obstacle_face}",
+        best_posture=posture,
+        depth_mm=witness.depth,
+    )
+
+
+def _select(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:
+    feasible = [e for e in entries if e.feasible]
+    if not feasible:
+        best = min(entries, key=lambda e: e.inaccessible + e.undecided)
+        left = best.inaccessible + best.undecided
+        return None, Selection(
+            rule=RULE, runner_up=None, why=f"no cutter reaches every sample; {best.id} comes nearest, {left} not reached"
+        )
+    first = feasible[0]
+    larger = [e.id for e in entries if e.radius > first.radius]
+    why = f"{', '.join(larger)} {'is' if len(larger) == 1 else 'are'} larger but not feasible" if larger else (
+        "no larger cutter was given"
+    )  # fmt: skip
+    return first.id, Selection(rule=RULE, runner_up=feasible[1].id if len(feasible) > 1 else None, why=why)
+
+
+def _part_info(part: Part, orientation: Orientation) -> PartInfo:
+    return PartInfo(
+        file=Path(part.file).name if part.file else None,
+        sha256=part.sha256,
+        size_mm=part.size,
+        solids=part.solids,
+        faces=len(part.faces),
+        orientation=OrientationInfo(method=orientation.method, confident=orientation.confident),
+        warnings=list(part.warnings),
+    )
+
+
+def _faces(part: Part, samples: SurfaceSamples, targets: Sequence[int]) -> list[FaceEntry]:
+    empty = dict(samples.empty)
+    chosen = set(targets)
+    result = []
+    for face in part.faces:
+        mine = samples.face == face.number
+        bad = samples.unjudged[mine]
+        bad = bad[bad >= 0]
+        reason = face.unjudged or empty.get(face.number)
+        if reason is None and len(bad):
+            reason = f"{len(bad)} samples: " + "; ".join(samples.reasons[i] for i in np.unique(bad))
+        result.append(
+            FaceEntry(
+                id=face.id,
+                name=face.name,
+                surface=face.surface,
+                shape=face.shape,
+                target=face.number in chosen,
+                area_mm2=face.area,
+                samples=int(mine.sum()),
+                unjudged=reason if face.number in chosen else face.unjudged,
+            )
+        )
+    return result
+
+
+def _notes(
+    part: Part, orientation: Orientation, options: Options, tolerance: float, samples: SurfaceSamples,
+    missing: Sequence[tuple[int, str]],
+) -> list[str]:  # fmt: skip
+    notes = [
+        "Cutters are flat ends, judged as solid cylinders of their length, without a holder.",
+        f"Verdicts are about samples; the largest gap between neighbouring samples is {samples.max_gap:.3g} mm.",
+    ]
+    if options.machine.tilt_limit is None:
+        notes.append("No machine was given: any tool axis counts as possible.")
+    if not orientation.confident:
+        notes.append(f"Which side is material is a guess ({orientation.method}); --flip machines the other side.")
+    if tolerance > options.tolerance:
+        notes.append(
+            f"The tolerance was raised from {options.tolerance:g} to {tolerance:.3g} mm: "
+            "the obstacle triangles could not be made to follow the surface more closely."
+        )
+    notes += [f"F{number} is not an obstacle: {reason}." for number, reason in missing]
+    return notes
+
+
+def _versions() -> dict[str, str]:
+    from importlib.metadata import version
+
+    names = {"cadquery-ocp": "occt", "numba": "numba", "numpy": "numpy", "scipy": "scipy", "trimesh": "trimesh"}
+    found = {label: version(name) for name, label in names.items()}
+    return {"plan_cutters": __version__, **found, "python": platform.python_version()}

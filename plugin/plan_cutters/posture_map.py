@@ -1,0 +1,273 @@
+"""Every free tilt at one point: what the union of all attributes leaves, and what each forbids alone.
+
+The seed's Fig. 7, with a list of intervals at each rotation in place of one pair of numbers.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cad_io import Part, SurfaceSamples, Triangles, locate, orient, read_part, tessellate
+from cad_io.arrays import Floats
+from plan_cutters.cutter import Cutter
+from plan_cutters.errors import OptionError
+from plan_cutters.machine import Machine
+from plan_cutters.obstacles import Obstacles
+from plan_cutters.posture import unit
+
+#: Width (rad) below which a range of tilts stays undecided: with a tolerance, and for the nominal answer.
+_NARROWEST, _NARROWEST_NOMINAL = 1e-4, 1e-5
+#: Parts that one rotation may fall into before the rest is called undecided.
+_ROOM = 20_000
+#: The nominal answer: first chord error (mm), its share kept at each refinement, rounds, movement of ends (rad) to stop at.
+_FIRST_CHORD, _FINER, _ROUNDS, _SETTLED = 2e-3, 0.2, 6, np.radians(0.01)
+#: Pieces of obstacles cut at the border between rear gouging and collision are no larger than this share of R.
+_BORDER = 0.02
+
+
+@dataclass(frozen=True, slots=True)
+class PostureMap:
+    """Free tilts of a cutter at a point.
+
+    Attributes
+    ----------
+    rotations : (k,) float
+        rad, from `direction_max`.
+    free : tuple of (m, 2) float
+        At each rotation, the sorted free tilt intervals, rad.
+    undecided : tuple of (m, 2) float
+        Tilts that are neither called free nor known to be forbidden: the uncertainty of the ends.
+    local_gouge : (k,) float
+        Least tilt that local gouging allows, rad; nan if none.
+    rear_gouge, collision, axis_limit : tuple of (m, 2) float
+        Each attribute alone: forbidden intervals. Obstacles within 2R of the contact and above its tangent plane are
+        rear gouging, all others collision.
+    point, normal, direction_max : (3,) float
+        The frame: contact, unit normal out of the material, direction from which rotations count.
+    curvature : (2,) float
+        kappa_max, kappa_min, 1/mm, concave positive.
+    tolerance : float
+        The gouge tolerance kept, mm; 0 for the nominal answer.
+    certified : bool
+        Whether free tilts are safe for the true surface to the tolerance; the nominal answer is not.
+    chord_error : float
+        Of the obstacles, mm.
+    settled : bool
+        For the nominal answer: whether a last refinement moved no end by more than 0.01 deg.
+    """
+
+    rotations: Floats
+    free: tuple[Floats, ...]
+    undecided: tuple[Floats, ...]
+    local_gouge: Floats
+    rear_gouge: tuple[Floats, ...]
+    collision: tuple[Floats, ...]
+    axis_limit: tuple[Floats, ...]
+    point: Floats
+    normal: Floats
+    direction_max: Floats
+    curvature: Floats
+    tolerance: float
+    certified: bool
+    chord_error: float
+    settled: bool
+
+    def axis(self, i: int, tilt: float) -> Floats:
+        """Unit tool axis at `rotations[i]` and a tilt (rad), in part coordinates."""
+        lean = _lean(self.normal, self.direction_max, float(self.rotations[i]))
+        return np.cos(tilt) * self.normal + np.sin(tilt) * lean
+
+
+def posture_map(
+    part: Any,
+    *,
+    point: Sequence[float],
+    cutter: Cutter,
+    rotations: Sequence[float] | Floats,
+    tilt: tuple[float, float] = (0.0, np.pi / 2),
+    machine: Machine | None = None,
+    setup: tuple[float, float, float] = (0.0, 0.0, 1.0),
+    tolerance: float = 0.01,
+    flip: bool = False,
+) -> PostureMap:
+    """Find the free tilt intervals of a cutter at a point of a part.
+
+    Parameters
+    ----------
+    part : Part, path, TopoDS_Shape, CadQuery or build123d object
+    point : (3,) float
+        mm; projected to the nearest face.
+    cutter : Cutter
+    rotations : sequence of float
+        rad, from the direction of the largest curvature.
+    tilt : tuple of float
+        Range, rad, within 0 to pi/2.
+    machine : Machine, optional
+        Default: no axis limit.
+    setup : tuple of float
+    tolerance : float
+        Gouge tolerance, mm. 0: the nominal answer, obstacles refined until the ends settle; not certified.
+    flip : bool
+        Take the other side of open shells and loose faces.
+
+    Raises
+    ------
+    CadIoError
+        The part cannot be read; the point is farther than 1e-3 mm from it.
+    OptionError
+        A range or tolerance has no meaning.
+    """
+    low, high = tilt
+    if not -1e-9 <= low <= high <= np.pi / 2 + 1e-9:
+        raise OptionError("the tilt range must run upwards within 0 to pi/2")
+    if not 0 <= tolerance < cutter.radius / 4:
+        raise OptionError(f"tolerance {tolerance:g} mm must lie between 0 and a quarter of the radius")
+    low, high = max(0.0, low), min(np.pi / 2, high)
+    whole = part if isinstance(part, Part) else read_part(part)
+    machine = machine or Machine()
+    contact = locate(whole, orient(whole, towards=setup, flip=flip), point)
+    turns = np.atleast_1d(np.asarray(rotations, float))
+    ask = _Ask(contact, cutter, turns, (low, high), machine, unit(setup, "setup axis"))
+    if tolerance > 0:
+        triangles = tessellate(whole, 0.2 * tolerance)
+        tolerance = max(tolerance, 4 * triangles.chord_error)
+        safe, _ = Obstacles(triangles).depths(tolerance)
+        return _map(ask, triangles, safe, _NARROWEST, tolerance, settled=True)
+    chord = min(_FIRST_CHORD, 1e-3 * cutter.radius)
+    before: PostureMap | None = None
+    for _ in range(_ROUNDS):
+        triangles = tessellate(whole, chord)
+        # Twice the chord error: next to the contact, where the true clearance is zero, triangles must not count,
+        # local gouging does.
+        now = _map(ask, triangles, 2 * triangles.chord_error + 1e-9, _NARROWEST_NOMINAL, 0.0, settled=False)
+        if before is not None and _moved(before, now) < _SETTLED:
+            return _map(ask, triangles, 2 * triangles.chord_error + 1e-9, _NARROWEST_NOMINAL, 0.0, settled=True)
+        before, chord = now, chord * _FINER
+    assert before is not None
+    return before
+
+
+@dataclass(frozen=True, slots=True)
+class _Ask:
+    contact: SurfaceSamples
+    cutter: Cutter
+    rotations: Floats
+    tilt: tuple[float, float]
+    machine: Machine
+    setup: Floats
+
+
+def _lean(normal: Floats, direction_max: Floats, rotation: float) -> Floats:
+    return np.asarray(np.cos(rotation) * direction_max + np.sin(rotation) * np.cross(normal, direction_max))
+
+
+def _map(
+    ask: _Ask, triangles: Triangles, depth_allowed: float, narrowest: float, tolerance: float, *, settled: bool
+) -> PostureMap:
+    from plan_cutters.kernels.maps import FORBIDDEN, OPEN, UNSURE, free_tilts
+    from plan_cutters.kernels.points import axis_intervals, local_gouge_bound
+
+    contact, cutter, (low, high) = ask.contact, ask.cutter, ask.tilt
+    p, n, e1 = contact.point[0], contact.normal[0], contact.direction_max[0]
+    kappa_max, kappa_min = contact.curvature[0]
+    whole = Obstacles(triangles)
+    near, far = (Obstacles(t) if len(t) else None for t in _by_attribute(triangles, p, n, cutter.radius))
+    free, undecided, rear, collision, axis = [], [], [], [], []
+    gouge = np.empty(len(ask.rotations))
+    for i, rotation in enumerate(ask.rotations):
+        f = _lean(n, e1, float(rotation))
+        gouge[i] = local_gouge_bound(kappa_max, kappa_min, float(rotation), cutter.radius)
+        allowed = axis_intervals(float(ask.setup @ n), float(ask.setup @ f), ask.machine.limit_cos, low, high)
+        axis.append(_complement(allowed, low, high))
+
+        def parts(obstacles: Obstacles | None, first: float, last: float, f: Floats = f) -> Floats:
+            if obstacles is None:
+                return np.array([[first, last, OPEN]])
+            return np.asarray(free_tilts(p, n, f, first, last, cutter.radius, cutter.length, depth_allowed, narrowest,
+                                         *obstacles.tree, _ROOM))  # fmt: skip
+
+        rear.append(_complement(_merged(parts(near, low, high), OPEN), low, high))
+        collision.append(_complement(_merged(parts(far, low, high), OPEN), low, high))
+        pieces = [np.zeros((0, 3))]
+        for first, last in allowed:
+            first = max(first, gouge[i]) if not np.isnan(gouge[i]) else np.inf
+            if first <= last:
+                pieces.append(parts(whole, first, last))
+        found = np.concatenate(pieces)
+        free.append(_merged(found, OPEN))
+        undecided.append(_merged(found, UNSURE))
+        assert set(found[:, 2]) <= {OPEN, FORBIDDEN, UNSURE}
+    return PostureMap(
+        rotations=ask.rotations, free=tuple(free), undecided=tuple(undecided), local_gouge=gouge,
+        rear_gouge=tuple(rear), collision=tuple(collision), axis_limit=tuple(axis), point=p, normal=n,
+        direction_max=e1, curvature=contact.curvature[0], tolerance=tolerance, certified=tolerance > 0,
+        chord_error=triangles.chord_error, settled=settled,
+    )  # fmt: skip
+
+
+def _merged(parts: Floats, kind: int) -> Floats:
+    """Intervals of one kind, those that touch joined, ascending."""
+    chosen = parts[parts[:, 2] == kind][:, :2]
+    chosen = chosen[np.argsort(chosen[:, 0], kind="stable")]
+    joined: list[list[float]] = []
+    for first, last in chosen.tolist():
+        if joined and first <= joined[-1][1]:
+            joined[-1][1] = max(joined[-1][1], last)
+        else:
+            joined.append([first, last])
+    return np.array(joined).reshape(-1, 2)
+
+
+def _complement(intervals: Floats, low: float, high: float) -> Floats:
+    edges = np.concatenate([[low], intervals.ravel(), [high]]).reshape(-1, 2)
+    return edges[edges[:, 1] > edges[:, 0]]
+
+
+def _moved(a: PostureMap, b: PostureMap) -> float:
+    """Largest movement of an end between two maps; inf where intervals came or went (slivers aside)."""
+    worst = 0.0
+    for x, y in zip(a.free, b.free, strict=True):
+        x, y = (i[(i[:, 1] - i[:, 0]) > _SETTLED] for i in (x, y))
+        if len(x) != len(y):
+            return np.inf
+        worst = max(worst, float(np.abs(x - y).max(initial=0.0)))
+    return worst
+
+
+def _by_attribute(triangles: Triangles, p: Floats, n: Floats, radius: float) -> tuple[Triangles, Triangles]:
+    """Share obstacles out: within 2R of the contact and above its tangent plane, and all others.
+
+    Triangles across the border are cut in four until they are small; then their centre decides.
+    """
+    reach, smallest = 2 * radius, _BORDER * radius
+    vertex, face = triangles.vertex, triangles.face
+    near: list[tuple[Floats, Any]] = []
+    far: list[tuple[Floats, Any]] = []
+    while len(vertex):
+        offset = vertex - p
+        distance = np.linalg.norm(offset, axis=2)
+        height = offset @ n
+        side = np.linalg.norm(vertex - np.roll(vertex, 1, axis=1), axis=2).max(axis=1)
+        # The nearest point of a triangle is no nearer than its nearest corner less its longest side.
+        outside = (distance.min(axis=1) - side > reach) | (height.max(axis=1) <= 0)
+        inside = (distance.max(axis=1) <= reach) & (height.min(axis=1) > 0)
+        small = ~outside & ~inside & (side <= smallest)
+        centre = offset.mean(axis=1)
+        inside |= small & (np.linalg.norm(centre, axis=1) <= reach) & (centre @ n > 0)
+        outside |= small & ~inside
+        near.append((vertex[inside], face[inside]))
+        far.append((vertex[outside], face[outside]))
+        rest = ~inside & ~outside
+        v, face = vertex[rest], np.tile(face[rest], 4)
+        a, b, c = v[:, 0], v[:, 1], v[:, 2]
+        ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
+        corners = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
+        vertex = np.concatenate([np.stack(t, axis=1) for t in corners])
+
+    def gather(parts: list[tuple[Floats, Any]]) -> Triangles:
+        return Triangles(np.concatenate([x for x, _ in parts]), np.concatenate([x for _, x in parts]),
+                         triangles.chord_error, ())  # fmt: skip
+
+    return gather(near), gather(far)

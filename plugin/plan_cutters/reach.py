@@ -1,0 +1,85 @@
+"""Verdicts: the words and arrays that say what a cutter reaches, and why not where it does not."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats, Ints
+
+INACCESSIBLE, ACCESSIBLE, FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
+
+#: Why no posture is left, in the order in which the attributes are applied; `Reach.reason` is an index into it.
+REASONS = ("axis_limit", "local_gouge", "rear_gouge", "shank")
+NO_REASON = 255
+
+Bytes = NDArray[np.uint8]
+
+
+@dataclass(frozen=True, slots=True)
+class Reach:
+    """What one cutter reaches, sample by sample.
+
+    Attributes
+    ----------
+    verdict : (n,) uint8
+        INACCESSIBLE, ACCESSIBLE, FREE (interference-free), UNDECIDED or UNJUDGED.
+    axis, lean : (n, 3) float
+        Unit tool axis and lean direction of the posture found; nan where there is none.
+    tilt : (n,) float
+        rad, nan where there is none.
+    rotation : (n,) int32
+        Index into the posture range's rotations, -1 where there is none.
+    reason : (n,) uint8
+        Index into REASONS where inaccessible or undecided, else NO_REASON.
+    """
+
+    verdict: Bytes
+    axis: Floats
+    lean: Floats
+    tilt: Floats
+    rotation: Ints
+    reason: Bytes
+
+    @property
+    def reached(self) -> NDArray[np.bool_]:
+        return (self.verdict == FREE) | (self.verdict == ACCESSIBLE)
+
+
+@dataclass(frozen=True, slots=True)
+class Witness:
+    """A sample that is not reached, and the posture that comes nearest to reaching it.
+
+    Attributes
+    ----------
+    sample : int
+    reason : str
+        One of REASONS.
+    obstacle_face : int, optional
+        Face that is in the way at that posture.
+    tilt, rotation : float, optional
+        rad; None where the axis limit leaves no posture at all.
+    axis : (3,) float, optional
+    depth : float, optional
+        How deep the part reaches into the cutter there, mm, to the resolution of the search.
+    """
+
+    sample: int
+    reason: str
+    obstacle_face: int | None
+    tilt: float | None
+    rotation: float | None
+    axis: Floats | None
+    depth: float | None
+
+
+def blank(n: int) -> Reach:
+    """A reach over n samples on which nothing is known yet, for a search to fill."""
+    return Reach(
+        verdict=np.full(n, UNJUDGED, np.uint8),
+        axis=np.full((n, 3), np.nan),
+        lean=np.full((n, 3), np.nan),
+        tilt=np.full(n, np.nan),
+        rotation=np.full(n, -1, np.int32),
+        reason=np.full(n, NO_REASON, np.uint8),
+    )

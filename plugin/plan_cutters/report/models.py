@@ -1,0 +1,108 @@
+"""The annotated models: faces split along the boundaries of the verdicts, in STEP and GLB alike.
+
+They show one cutter: the selected one or, where none is feasible, the one that reaches the most.
+"""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import cad_io
+from cad_io.arrays import FaceGrid, FaceLabels, Style
+from plan_cutters.palette import LABELS, rgb
+from plan_cutters.reach import ACCESSIBLE, FREE, INACCESSIBLE, UNDECIDED, UNJUDGED
+
+_LABEL = {
+    FREE: LABELS.index("interference_free"),
+    ACCESSIBLE: LABELS.index("accessible"),
+    UNDECIDED: LABELS.index("undecided"),
+    INACCESSIBLE: LABELS.index("inaccessible"),
+    UNJUDGED: LABELS.index("unjudged"),
+}
+
+
+def _grid_labels(grid: FaceGrid, label: NDArray[np.int32]) -> FaceLabels:
+    """Labels at a face's grid nodes; a seam, sampled once, is put at both ends."""
+    on = np.where(grid.index >= 0, label[grid.index], -1).astype(np.int32)
+    u, v = grid.u, grid.v
+    if grid.closed_u:
+        u, on = np.append(u, 2 * u[-1] - u[-2]), np.vstack([on, on[:1]])
+    if grid.closed_v:
+        v, on = np.append(v, 2 * v[-1] - v[-2]), np.hstack([on, on[:, :1]])
+    return FaceLabels(grid.face, u, v, on)
+
+
+def split_result(result: Any) -> Any:
+    """Split the part's target faces along the verdicts of the cutter shown."""
+    samples = result.samples
+    code = np.full(256, -1, np.int32)
+    for verdict, label in _LABEL.items():
+        code[verdict] = label
+    label = code[result.reaches[result.shown].verdict]
+    grids = {g.face: g for g in samples.grids}
+    check = LABELS.index("check")
+    labels = []
+    for face in result.plan.faces:
+        number = int(face.id[1:])
+        if not face.target:
+            labels.append(_whole(number, check))
+        elif number in grids:
+            labels.append(_grid_labels(grids[number], label))
+        elif (mine := samples.face == number).any():
+            # Sampled without a grid: its worst verdict stands for the face.
+            labels.append(_whole(number, int(label[mine].max())))
+        else:
+            labels.append(_whole(number, LABELS.index("unjudged")))
+    return cad_io.split(result.part, labels)
+
+
+def _whole(face: int, label: int) -> FaceLabels:
+    ends = np.array([0.0, 1.0])
+    return FaceLabels(face, ends, ends, np.full((2, 2), label, np.int32))
+
+
+def _verdict(piece: Any) -> str:
+    return LABELS[piece.label] if piece.label >= 0 else "mixed"
+
+
+def write_step(result: Any, split: Any, path: Path) -> None:
+    """Write `annotated.step`: each piece a face named `F<number>_<verdict>` with the verdict's colour."""
+    cad_io.write_step(
+        split, path, lambda p: Style(f"F{p.face}_{_verdict(p)}", rgb(_verdict(p))), product=_product(result)
+    )
+
+
+def write_glb(result: Any, split: Any, path: Path) -> None:
+    """Write `annotated.glb`: face numbers, verdicts and reasons in `extras`."""
+    shown = next(c for c in result.plan.cutters if c.id == result.shown)
+    entries = {int(f.id[1:]): f for f in result.plan.faces}
+
+    def extras(face: int) -> dict[str, Any]:
+        entry = entries[face]
+        counts = shown.faces.get(entry.id)
+        reasons = sorted({w.reason for w in shown.witnesses if w.face == entry.id})
+        return {
+            "face": entry.id,
+            "number": face,
+            "name": entry.name,
+            "surface": entry.surface,
+            "target": entry.target,
+            "cutter": shown.id,
+            "verdicts": counts.model_dump() if counts else {},
+            "reasons": reasons,
+            "unjudged": entry.unjudged,
+        }
+
+    cad_io.write_gltf(
+        split,
+        path,
+        lambda p: Style(f"F{p.face}_{_verdict(p)}", rgb(_verdict(p))),
+        extras=extras,
+        piece_extras=lambda p: {"face": f"F{p.face}", "verdict": _verdict(p), "cutter": shown.id},
+    )
+
+
+def _product(result: Any) -> str:
+    return Path(result.part.file).stem if result.part.file else "part"

@@ -1,0 +1,37 @@
+"""The plan as JSON, and its schema."""
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+from plan_cutters.errors import PlanError
+from plan_cutters.model import Plan
+
+
+def dumps(plan: Plan) -> str:
+    """The plan's text; the same plan gives the same bytes."""
+    return plan.model_dump_json(indent=2) + "\n"
+
+
+def schema() -> dict[str, Any]:
+    """JSON Schema of the plan file (draft 2020-12), made from the model."""
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **Plan.model_json_schema(mode="serialization"),
+    }
+
+
+def schema_text() -> str:
+    return json.dumps(schema(), indent=2) + "\n"
+
+
+def write_plan(plan: Plan, path: Path) -> None:
+    """Write the plan, whole or not at all."""
+    aside = path.with_name(f".{path.name}.part")
+    try:
+        aside.write_text(dumps(plan), encoding="utf-8")
+        os.replace(aside, path)
+    except OSError as error:
+        aside.unlink(missing_ok=True)
+        raise PlanError(f"cannot write the plan ({error.strerror})", file=str(path)) from None
