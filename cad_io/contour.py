@@ -1,0 +1,286 @@
+"""Where on a grid of labels do the boundaries run? Smooth parameter-plane curves between nodes of different label.
+
+A boundary between labels k and k + 1 is first a chain of grid edges that it must cross (marching squares on a field
+that knows only whole numbers, hence a staircase). Each crossing may slide along its own grid edge but not past its
+ends, and slides to where the chain bends least: the staircase of a straight boundary becomes straight, and no node
+changes sides. A cubic B-spline is then fitted to the chain. No kernel here: only arrays.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import BSpline, make_interp_spline, splprep
+from scipy.ndimage import distance_transform_edt
+
+from cad_io.arrays import Floats, Ints
+
+#: Share of its allowed stretch that a crossing keeps from either end, so that curves of two levels stay apart.
+MARGIN = 0.1
+#: Steps of the accelerated descent; they straighten stairs up to about 40 cells long.
+STEPS = 300
+#: Curves reach this many cells past the last known node: over the trim, but not across a whole hole.
+REACH = 2
+
+
+@dataclass(frozen=True, slots=True)
+class LabelGrid:
+    """A filled label field ready to be contoured.
+
+    Attributes
+    ----------
+    u, v : (nu + closed,), (nv + closed,) float
+        Grid lines; a closed direction repeats its first line one period later.
+    field : (nu, nv) int32
+        Labels, known everywhere.
+    near : (nu, nv) bool
+        Nodes within REACH cells of a known one.
+    closed_u, closed_v : bool
+        The last line's neighbour is the first one.
+    """
+
+    u: Floats
+    v: Floats
+    field: Ints
+    near: NDArray[np.bool_]
+    closed_u: bool
+    closed_v: bool
+
+
+class Spline(NamedTuple):
+    """Cubic curve in (u, v): clamped knots (m + 4,) and poles (m, 2); closed if it ends where it starts."""
+
+    knots: Floats
+    poles: Floats
+    closed: bool
+
+
+class _Chain(NamedTuple):
+    """Crossings in order: x = base + t * step in cells, lo <= t <= hi; `turn` is what closing the chain adds to x."""
+
+    base: Floats
+    step: Floats
+    lo: Floats
+    hi: Floats
+    closed: bool
+    turn: Floats
+
+
+def fill(label: Ints) -> Ints:
+    """Unknown nodes (-1) take the label of the nearest known node, counted in cells. At least one must be known."""
+    nearest = distance_transform_edt(label < 0, return_distances=False, return_indices=True)
+    return np.asarray(label[tuple(nearest)], np.int32)
+
+
+def without_specks(field: Ints, closed_u: bool, closed_v: bool) -> Ints:
+    """The field without islands of a single node: too small for a smooth boundary.
+
+    Levels are cleared one by one, high islands first, so that the result does not depend on the order of nodes.
+    """
+    out = np.zeros_like(field)
+    low = int(field.min())
+    for k in range(low, int(field.max())):
+        above = field > k
+        for value in (True, False):
+            alone = above == value
+            for axis, closed in ((0, closed_u), (1, closed_v)):
+                for way in (1, -1):
+                    beside = np.roll(above, way, axis)
+                    if not closed:
+                        edge = [slice(None), slice(None)]
+                        edge[axis] = slice(0, 1) if way == 1 else slice(-1, None)
+                        beside[tuple(edge)] = not value  # beyond the border is nobody
+                    alone &= beside != value
+            above = above ^ alone
+        out += above
+    return out + low
+
+
+def boundaries(grid: LabelGrid, fit: float) -> list[Spline]:
+    """Curves along all label boundaries of a grid, cut at the seams of closed directions.
+
+    Parameters
+    ----------
+    grid : LabelGrid
+    fit : float
+        Root mean square distance between curve and chain that the fit may leave, cells.
+
+    Returns
+    -------
+    list of Spline
+        In surface parameters, inside the rectangle of the grid lines. A curve ends on that rectangle, on a seam or
+        REACH cells off the known nodes; else it is closed. Empty for a field of one label.
+    """
+    chains = [chain for k in range(int(grid.field.min()), int(grid.field.max())) for chain in _chains(grid, k)]
+    shape = np.array(grid.field.shape, float)
+    lines = (grid.u, grid.v)
+    corner = np.array([g[0] for g in lines])
+    cell = np.array([(g[-1] - g[0]) / (len(g) - 1) for g in lines])
+    out = []
+    for chain, t in zip(chains, _relaxed(chains), strict=True):
+        x = chain.base + t[:, None] * chain.step
+        for piece, closed in _cut(chain, x, grid):
+            if closed:
+                piece = np.vstack([piece, piece[:1]])
+            for a, is_closed in enumerate((grid.closed_u, grid.closed_v)):
+                if is_closed:
+                    piece[:, a] -= np.floor(piece[:, a].mean() / shape[a]) * shape[a]
+            uv = np.stack([np.interp(piece[:, a], np.arange(len(g)), g) for a, g in enumerate(lines)], axis=1)
+            knots, poles = _fitted((uv - corner) / cell, closed, fit)
+            # The curve lies in the hull of its poles: clipped poles keep it on the surface's own domain.
+            poles = np.clip(poles * cell + corner, corner, [g[-1] for g in lines])
+            out.append(Spline(knots, poles, closed))
+    return out
+
+
+def _chains(grid: LabelGrid, k: int) -> list[_Chain]:
+    """Crossings of the boundary between `<= k` and `> k`, linked in order."""
+    nu, nv = grid.field.shape
+    pad = ((0, int(grid.closed_u)), (0, int(grid.closed_v)))
+    value = np.pad(grid.field, pad, mode="wrap")
+    above = value > k
+    # Numbers of the grid edges: along u first, then along v; those on a repeated line get the first line's number.
+    iu, ju = np.indices((value.shape[0] - 1, value.shape[1]))
+    iv, jv = np.indices((value.shape[0], value.shape[1] - 1))
+    along_u = iu * nv + ju % nv
+    along_v = value.size + (iv % nu) * nv + jv
+
+    a, b, c, d = above[:-1, :-1], above[1:, :-1], above[1:, 1:], above[:-1, 1:]
+    sides = np.stack([along_u[:, :-1], along_v[1:], along_u[:, 1:], along_v[:-1]], axis=-1)  # bottom, right, top, left
+    crossed = np.stack([a ^ b, b ^ c, d ^ c, a ^ d], axis=-1)
+    count = crossed.sum(-1)
+    plain = sides[count == 2][crossed[count == 2]].reshape(-1, 2)
+    saddle = count == 4
+    joined = (value[:-1, :-1] + value[1:, :-1] + value[1:, 1:] + value[:-1, 1:])[saddle] > 4 * k + 2
+    order = np.where((a[saddle] == joined)[:, None], [0, 1, 2, 3], [0, 3, 2, 1])  # cut off b and d, or a and c
+    segments = np.concatenate([plain, np.take_along_axis(sides[saddle], order, axis=1).reshape(-1, 2)])
+
+    out = []
+    for ids, closed in _linked(segments):
+        is_u = ids < value.size
+        i, j = np.divmod(np.where(is_u, ids, ids - value.size), nv)
+        step = np.stack([is_u, ~is_u], axis=1).astype(float)
+        first = grid.field[i, j]
+        second = value[i + is_u, j + ~is_u]
+        ends = np.sort(np.stack([(k - first) / (second - first), (k + 1 - first) / (second - first)]), axis=0)
+        middle = np.stack([i, j], axis=1) + 0.5 * step
+        for axis, is_closed in enumerate((grid.closed_u, grid.closed_v)):
+            if is_closed:
+                middle[:, axis] = np.unwrap(middle[:, axis], period=grid.field.shape[axis])
+        turn = np.zeros(2)
+        if closed:
+            turn = np.round((middle[-1] - middle[0]) / (nu, nv)) * (nu, nv) * (grid.closed_u, grid.closed_v)
+        spare = MARGIN * (ends[1] - ends[0])
+        out.append(_Chain(middle - 0.5 * step, step, ends[0] + spare, ends[1] - spare, closed, turn))
+    return out
+
+
+def _linked(segments: NDArray[np.int64]) -> list[tuple[NDArray[np.int64], bool]]:
+    """Chains of the numbers that pairs share (each in at most two pairs): (numbers, closed), open ones first."""
+    ids, where = np.unique(segments, return_inverse=True)
+    beside = np.full((len(ids), 2), -1)
+    for a, b in where.reshape(-1, 2).tolist():
+        beside[a, int(beside[a, 0] >= 0)] = b
+        beside[b, int(beside[b, 0] >= 0)] = a
+    links = beside.tolist()
+    used = [False] * len(ids)
+    out = []
+    for start in [*np.flatnonzero(beside[:, 1] < 0).tolist(), *range(len(ids))]:
+        if used[start]:
+            continue
+        closed = links[start][1] >= 0
+        chain = []
+        at = start
+        while at >= 0 and not used[at]:
+            used[at] = True
+            chain.append(at)
+            ahead, behind = links[at]
+            at = ahead if ahead >= 0 and not used[ahead] else behind
+        out.append((ids[chain], closed))
+    return out
+
+
+def _relaxed(chains: list[_Chain]) -> list[Floats]:
+    """Positions t of all crossings that make the sum of squared second differences small, by projected fast descent."""
+    if not chains:
+        return []
+    sizes = [len(c.base) for c in chains]
+    last = np.cumsum(sizes) - 1
+    first = last - np.array(sizes) + 1
+    total = int(last[-1]) + 1
+    base, step = np.concatenate([c.base for c in chains]), np.concatenate([c.step for c in chains])
+    lo, hi = np.concatenate([c.lo for c in chains]), np.concatenate([c.hi for c in chains])
+    before, after = np.arange(total) - 1, np.arange(total) + 1
+    jump = np.zeros((total, 2))  # what the neighbours' sum lacks at the ends of closed chains
+    free_end = np.zeros(total, bool)
+    for f, l, c in zip(first.tolist(), last.tolist(), chains, strict=True):
+        before[f], after[l] = (l, f) if c.closed else (f, l)
+        free_end[[f, l]] = not c.closed
+        jump[f] -= c.turn
+        jump[l] += c.turn
+    inner = ~free_end[:, None]
+
+    t = 0.5 * (lo + hi)
+    ahead, momentum = t.copy(), 1.0
+    for _ in range(STEPS):
+        x = base + ahead[:, None] * step
+        bend = (x[before] + x[after] + jump - 2 * x) * inner
+        pull = bend[before] * (before != np.arange(total))[:, None] + bend[after] * (after != np.arange(total))[:, None]
+        gradient = ((pull - 2 * bend) * step).sum(1)
+        new = np.clip(ahead - gradient / 16, lo, hi)  # 16: the largest curvature of the sum
+        following = 0.5 * (1 + np.sqrt(1 + 4 * momentum * momentum))
+        ahead = np.clip(new + (momentum - 1) / following * (new - t), lo, hi)
+        t, momentum = new, following
+    return np.split(t, last[:-1] + 1)
+
+
+def _cut(chain: _Chain, x: Floats, grid: LabelGrid) -> list[tuple[Floats, bool]]:
+    """Parts of a chain that lie near known nodes and do not cross a seam: (points in cells, closed)."""
+    node = np.round(chain.base).astype(int) % grid.field.shape
+    near = grid.near[node[:, 0], node[:, 1]]
+    seam = np.zeros(len(x), bool)
+    for axis, is_closed in enumerate((grid.closed_u, grid.closed_v)):
+        if is_closed:
+            seam |= (node[:, axis] == 0) & (chain.step[:, axis] == 0)
+    if chain.closed:
+        if near.all() and not seam.any():
+            return [(x, True)]
+        start = int(np.argmax(seam | ~near))
+        order = np.r_[start : len(x), 0 : start + 1]
+        shift = np.where((np.arange(len(order)) >= len(x) - start)[:, None], chain.turn, 0.0)
+        x, near, seam = x[order] + shift, near[order], seam[order]
+    out = []
+    begin = 0
+    for i in range(len(x)):
+        ends = not near[i] or seam[i] or i == len(x) - 1
+        if not ends:
+            continue
+        stop = i + 1 if near[i] else i
+        if stop - begin >= 2:
+            out.append((x[begin:stop].copy(), False))
+        begin = i if near[i] else i + 1
+    return out
+
+
+def _fitted(points: Floats, closed: bool, fit: float) -> tuple[Floats, Floats]:
+    """Clamped cubic through the ends of a chain and close to the rest: knots and poles. Lengths in cells."""
+    while len(points) < 5:  # a cubic needs four points, a closed one five
+        halves = 0.5 * (points[1:] + points[:-1])
+        points = np.insert(points, np.arange(1, len(points)), halves, axis=0)
+    weight = np.ones(len(points))
+    if not closed:
+        weight[[0, -1]] = 100
+    for tolerance in (fit, fit / 2, fit / 4, 0.0):
+        (knots, poles, _), t = splprep(points.T, w=weight, s=len(points) * tolerance**2, k=3, per=closed, quiet=2)
+        curve = BSpline(knots, np.stack(poles, axis=1), 3)
+        if np.abs(curve(t) - points).max() < 3 * fit:
+            break
+    # A periodic fit runs over its ends; the same piecewise cubic on clamped knots, found by interpolation, does not.
+    clamped = np.concatenate([[knots[3]] * 4, knots[4:-4], [knots[-4]] * 4])
+    sites = np.convolve(clamped[1:-1], np.ones(3) / 3, mode="valid")
+    poles = make_interp_spline(sites, curve(sites), k=3, t=clamped).c
+    poles[0], poles[-1] = points[0], points[-1]
+    if closed:
+        poles[0] = poles[-1] = curve(knots[3])
+    return clamped, poles
