@@ -1,0 +1,209 @@
+"""Which side of each face is out of the material?
+
+Solids say it themselves, unless they are inside out (mirrored placements, reversed solids), which the sign of their
+volume tells. Closed shells are turned outward by the same sign. Open shells and loose faces have no inside: they are
+made consistent with their neighbours, and the side is guessed towards a direction.
+"""
+
+from collections import defaultdict, deque
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from OCP.BRep import BRep_Tool
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Sewing
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_FORWARD, TopAbs_REVERSED
+from OCP.TopoDS import TopoDS, TopoDS_Face
+from OCP.TopTools import TopTools_IndexedMapOfShape
+
+from cad_io.arrays import Floats, Orientation
+from cad_io.kernel import edges_of, explore, shape_map, translated
+from cad_io.part import Part
+
+#: Sewing joins edges nearer than this share of the part's diagonal, and never farther than so many mm.
+SEW_SHARE, SEW_MOST = 1e-5, 0.1
+#: Below this, the mean normal says little about the side.
+WEAK = 0.3
+#: Volumes below this share of area times diagonal are none.
+_FLAT = 1e-6
+#: A shell whose vector area is below this share of its area is nearly closed.
+_NEARLY_CLOSED = 0.05
+
+
+def orient(part: Part, towards: tuple[float, float, float] = (0.0, 0.0, 1.0), flip: bool = False) -> Orientation:
+    """Find the side of every face of a part.
+
+    Parameters
+    ----------
+    part : Part
+    towards : tuple of float
+        Direction from which open shells and loose faces are worked on; any length but zero.
+    flip : bool
+        Turn open shells and loose faces the other way.
+
+    Returns
+    -------
+    Orientation
+        `confident` is False where any face's side is a guess.
+    """
+    count = len(part.faces)
+    sign = np.zeros(count)
+    said: list[str] = []
+    confident = True
+    numbers = shape_map(part.shape, TopAbs_FACE)
+    for solid in part.solid_shapes():
+        members = [(numbers.FindIndex(f), TopoDS.Face_s(f)) for f in explore(solid, TopAbs_FACE)]
+        members = [(n - 1, f) for n, f in members if n and sign[n - 1] == 0]
+        confident &= _orient_solid(part, members, sign, said)
+    rest = [i for i in range(count) if sign[i] == 0]
+    if rest:
+        confident &= _orient_rest(part, rest, sign, said, np.asarray(towards, float), flip)
+    return Orientation(sign, "; ".join(dict.fromkeys(said)), confident)
+
+
+def _orient_solid(part: Part, members: Sequence[tuple[int, TopoDS_Face]], sign: Floats, said: list[str]) -> bool:
+    """Set the signs of one solid's faces; True if they are sure."""
+    flags = np.array([-1.0 if face.Orientation() == TopAbs_REVERSED else 1.0 for _, face in members])
+    index = np.array([i for i, _ in members], dtype=int)
+    if not len(index):
+        return True
+    found = _components([face for _, face in members])
+    closed = all(c.closed for c in found)
+    if closed and all(c.relative is not None for c in found):
+        disagree = False
+        for c in found:
+            # The flags of one shell must all agree, or all disagree, with what its edges say.
+            ratio = flags[c.members] * c.relative
+            disagree |= bool(np.ptp(ratio) > 0)
+        if disagree:
+            for c in found:
+                flags[c.members] = c.relative * np.sign((flags[c.members] * c.relative).sum() or 1.0)
+            said.append("solids whose faces contradict each other were made consistent")
+    volume = _volume(part, index, flags)
+    if volume < 0:
+        flags = -flags
+        said.append("solids that were inside out were turned")
+    sign[index] = flags
+    said.append("faces of solids as the solid says")
+    if not closed:
+        said.append("a solid is not closed, so its side is a guess")
+    return closed and volume != 0
+
+
+def _orient_rest(
+    part: Part, rest: Sequence[int], sign: Floats, said: list[str], towards: Floats, flip: bool
+) -> bool:  # fmt: skip
+    """Set the signs of faces outside solids; True if all belong to closed shells."""
+    direction = towards / np.linalg.norm(towards)
+    sure, guessed, weakest = True, False, 1.0
+    sewn = _sewn(part, rest)
+    for c in _components(sewn):
+        index = np.array(rest)[c.members]
+        relative = c.relative if c.relative is not None else np.ones(len(index))
+        volume = _volume(part, index, relative) if c.closed else 0.0
+        if volume:
+            sign[index] = relative * np.sign(volume)
+            said.append("closed shells outward")
+            continue
+        sure = False
+        area, vector = _vector(part, index, relative)
+        lean = float(vector @ direction) / area if area > 0 else 0.0
+        # A shell that is nearly closed faces no direction; what it nearly encloses tells more than chance.
+        nearly = float(np.linalg.norm(vector)) < _NEARLY_CLOSED * area and (volume := _volume(part, index, relative))
+        side = np.sign(volume) if nearly else (-1.0 if lean < 0 else 1.0)
+        sign[index] = relative * side * (-1.0 if flip else 1.0)
+        if nearly:
+            said.append("nearly closed shells outward" + (", flipped" if flip else ""))
+            continue
+        weakest, guessed = min(weakest, abs(lean)), True
+    if guessed:
+        text = "open shells and loose faces " + ("away from" if flip else "towards") + " the given direction"
+        if weakest < WEAK:
+            text += f", a weak guess (a mean normal makes only {weakest:.2f} with it)"
+        said.append(text)
+    return sure
+
+
+class _Component:
+    """Faces joined by edges. `relative` (k,): +1 or -1 so that all point to one side by `dS/du x dS/dv`."""
+
+    def __init__(self, members: list[int], relative: Floats | None, closed: bool) -> None:
+        self.members, self.relative, self.closed = members, relative, closed
+
+
+def _components(shapes: Sequence[TopoDS_Face]) -> list[_Component]:
+    """Split faces into groups joined by shared edges.
+
+    Two faces on either side of an edge point to the same side if they run along the edge in opposite directions.
+    `relative` is None where the faces of a group cannot be made consistent (a Moebius strip).
+    """
+    edges = TopTools_IndexedMapOfShape()
+    uses: dict[int, list[tuple[int, int]]] = defaultdict(list)
+    for i, face in enumerate(shapes):
+        # Seen with the surface's own normal, so that signs refer to dS/du x dS/dv.
+        for edge in edges_of(TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))):
+            if edge.Orientation() in (TopAbs_FORWARD, TopAbs_REVERSED) and not BRep_Tool.Degenerated_s(edge):
+                uses[edges.Add(edge)].append((i, 1 if edge.Orientation() == TopAbs_FORWARD else -1))
+    links: dict[int, list[tuple[int, int]]] = defaultdict(list)
+    open_faces = set()
+    for users in uses.values():
+        if len(users) == 2:
+            (i, way_i), (j, way_j) = users
+            if i != j:
+                links[i].append((j, -way_i * way_j))
+                links[j].append((i, -way_i * way_j))
+        else:
+            open_faces.update(i for i, _ in users)
+    found, seen = [], np.zeros(len(shapes))
+    for first in range(len(shapes)):
+        if seen[first]:
+            continue
+        seen[first], members, consistent = 1, [first], True
+        queue = deque(members)
+        while queue:
+            i = queue.popleft()
+            for j, same in links[i]:
+                if not seen[j]:
+                    seen[j] = seen[i] * same
+                    members.append(j)
+                    queue.append(j)
+                consistent &= bool(seen[j] == seen[i] * same)
+        closed = consistent and not open_faces.intersection(members)
+        found.append(_Component(members, seen[members].copy() if consistent else None, closed))
+    return found
+
+
+def _sewn(part: Part, rest: Sequence[int]) -> list[TopoDS_Face]:
+    """The faces after joining edges that coincide; a face that sewing drops stays as it was."""
+    originals = [part.face(i + 1) for i in rest]
+    if len(originals) < 2:
+        return originals
+    sewing = BRepBuilderAPI_Sewing(min(SEW_SHARE * float(np.linalg.norm(part.size)), SEW_MOST))
+    for face in originals:
+        sewing.Add(face)
+    with translated("joining faces", file=part.file):
+        sewing.Perform()
+    result = []
+    for face in originals:
+        joined = sewing.ModifiedSubShape(face) if sewing.IsModifiedSubShape(face) else face
+        whole = not joined.IsNull() and joined.ShapeType() == TopAbs_FACE and any(explore(joined, TopAbs_EDGE))
+        result.append(TopoDS.Face_s(joined) if whole else face)
+    return result
+
+
+def _volume(part: Part, index: Iterable[int], sign: Floats) -> float:
+    """Signed volume of a closed set of faces, mm3; 0 if there is none to speak of."""
+    measures = [part.measure(int(i) + 1) for i in index]
+    flux = sum(s * m.flux for s, m in zip(sign, measures, strict=True) if m and np.isfinite(m.flux))
+    area = sum(m.area for m in measures if m and np.isfinite(m.area))
+    enough = abs(flux) > 3 * _FLAT * area * float(np.linalg.norm(part.size))
+    return float(flux) / 3 if enough else 0.0
+
+
+def _vector(part: Part, index: Iterable[int], sign: Floats) -> tuple[float, Floats]:
+    """Area and vector area of a set of faces, mm2."""
+    area, vector = 0.0, np.zeros(3)
+    for i, s in zip(index, sign, strict=True):
+        m = part.measure(int(i) + 1)
+        if m and np.isfinite(m.area):
+            area, vector = area + m.area, vector + s * m.vector
+    return area, vector

@@ -1,0 +1,257 @@
+"""A part: the kernel's shape, its faces by number, and what is known about each."""
+
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from OCP.Bnd import Bnd_Box
+from OCP.BRepAdaptor import BRepAdaptor_Surface
+from OCP.BRepBndLib import BRepBndLib
+from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_EDGE, TopAbs_EXTERNAL, TopAbs_INTERNAL, TopAbs_SOLID
+from OCP.TopoDS import TopoDS_Face, TopoDS_Iterator, TopoDS_Shape
+
+from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats
+from cad_io.errors import ReadError
+from cad_io.kernel import edges_of, explore, faces, is_kernel_error, shape_map, translated
+from cad_io.measure import Measure, measure
+from cad_io.recognise import recognise
+from cad_io.trim import Trim, trim_of
+
+#: Sizes that are rather a wrong unit than a part, mm.
+LEAST_SIZE, MOST_SIZE = 1.0, 3000.0
+#: A face smaller than this share of the squared diagonal has no area.
+_NO_AREA = 1e-12
+
+_KINDS = {
+    "Plane": "plane", "Cylinder": "cylinder", "Cone": "cone", "Sphere": "sphere", "Torus": "torus",
+    "BezierSurface": "bezier", "BSplineSurface": "bspline", "SurfaceOfRevolution": "revolution",
+    "SurfaceOfExtrusion": "extrusion", "OffsetSurface": "offset",
+}  # fmt: skip
+
+
+class Part:
+    """A shape whose faces are numbered from 1 in the order of the kernel's map. Not to be changed once made.
+
+    Parameters
+    ----------
+    shape : TopoDS_Shape
+        One shape, located, lengths in mm.
+    file, sha256 : str, optional
+        Where it was read from, and the checksum of those bytes.
+    names, colours : mapping, optional
+        By face number: names and sRGB colours (0 to 1) found in the file.
+    warnings : sequence of str
+        What the reader found odd; odd sizes are added here.
+
+    Attributes
+    ----------
+    shape, file, sha256 : as given
+    faces : tuple of FaceInfo
+        Entry i is face number i + 1.
+    size : tuple of float
+        Extent along x, y, z, mm.
+    solids : int
+        Number of solids.
+    closed : bool
+        Every edge joins two faces: the shape has an inside.
+    warnings : tuple of str
+
+    Raises
+    ------
+    ReadError
+        The shape holds no face, or the kernel cannot make sense of it.
+    """
+
+    def __init__(
+        self,
+        shape: TopoDS_Shape,
+        *,
+        file: str | None = None,
+        sha256: str | None = None,
+        names: Mapping[int, str] | None = None,
+        colours: Mapping[int, tuple[float, float, float]] | None = None,
+        warnings: tuple[str, ...] = (),
+    ) -> None:
+        self.shape, self.file, self.sha256 = shape, file, sha256
+        with translated("looking for faces", error=ReadError, file=file):
+            self._faces = faces(shape)
+        if not self._faces:
+            raise ReadError("holds no surface (no faces): export it as a solid or surface model", file=file)
+        self._adaptors: dict[int, BRepAdaptor_Surface] = {}
+        self._trims: dict[int, Trim | None] = {}
+        self._measures: dict[int, Measure | None] = {}
+        self.solids = shape_map(shape, TopAbs_SOLID).Extent()
+        with translated("measuring the part", error=ReadError, file=file):
+            low, high = _box(self._faces)
+        if not np.isfinite([low, high]).all():
+            raise ReadError("no face has a finite size: nothing can be judged", file=file)
+        self.size: tuple[float, float, float] = tuple((high - low).tolist())
+        self._centre = 0.5 * (low + high)
+        self.faces = tuple(self._describe(n, names or {}, colours or {}) for n in range(1, len(self._faces) + 1))
+        self.warnings = (*warnings, *_size_warnings(self.size))
+
+    def __repr__(self) -> str:
+        size = " x ".join(f"{length:.4g}" for length in self.size)
+        return f"Part({self.file or 'shape'}, {len(self.faces)} faces, {size} mm)"
+
+    def face(self, number: int) -> TopoDS_Face:
+        """The kernel's face of a number from 1."""
+        return self._faces[self._checked(number) - 1]
+
+    def adaptor(self, number: int) -> BRepAdaptor_Surface:
+        """Evaluator of a face's whole surface (not restricted to the face), in part coordinates."""
+        if number not in self._adaptors:
+            with translated("opening a surface", file=self.file, face=f"F{number}"):
+                self._adaptors[number] = BRepAdaptor_Surface(self.face(number), False)
+        return self._adaptors[number]
+
+    def trim(self, number: int) -> Trim | None:
+        """Border of a face in its parameter plane; None where it has none."""
+        if number not in self._trims:
+            with translated("reading a border", file=self.file, face=f"F{number}"):
+                self._trims[number] = trim_of(self.face(number), self.adaptor(number))
+        return self._trims[number]
+
+    def measure(self, number: int) -> Measure | None:
+        """Area, vector area and flux about the middle of the part's box; None where the face has no border."""
+        if number not in self._measures:
+            trim = self.trim(number)
+            with translated("measuring a face", file=self.file, face=f"F{number}"):
+                self._measures[number] = trim and measure(self.adaptor(number), trim, self._centre)
+        return self._measures[number]
+
+    @cached_property
+    def closed(self) -> bool:
+        # Seams and degenerated edges lie within one face; every other edge must be used once by each of two.
+        uses: dict[int, int] = {}
+        edges = shape_map(self.shape, TopAbs_EDGE)
+        for face in self._faces:
+            for edge in edges_of(face):
+                if edge.Orientation() not in (TopAbs_INTERNAL, TopAbs_EXTERNAL):
+                    index = edges.FindIndex(edge)
+                    uses[index] = uses.get(index, 0) + 1
+        degenerated = {i for i in uses if _is_degenerated(edges.FindKey(i))}
+        return bool(uses) and all(count % 2 == 0 for i, count in uses.items() if i not in degenerated)
+
+    def solid_shapes(self) -> Iterator[TopoDS_Shape]:
+        """Every solid, as it stands in the shape."""
+        return explore(self.shape, TopAbs_SOLID)
+
+    def _checked(self, number: int) -> int:
+        if not 1 <= number <= len(self._faces):
+            raise IndexError(f"face numbers run from 1 to {len(self._faces)}, not {number}")
+        return number
+
+    def _describe(
+        self, number: int, names: Mapping[int, str], colours: Mapping[int, tuple[float, float, float]]
+    ) -> FaceInfo:
+        surface, shape, area, reason = "other", "sculptured", 0.0, None
+        try:
+            kind = str(self.adaptor(number).GetType()).rsplit("GeomAbs_", 1)[-1]
+            surface = _KINDS.get(kind, "other")
+            shape = surface if surface in SIMPLE_KINDS else "sculptured"
+            reason, area = self._judgeable(number, surface)
+            trim = self.trim(number)
+            if reason is None and shape == "sculptured" and trim:
+                shape = recognise(self.adaptor(number), trim.box)
+        except Exception as thrown:
+            if not (is_kernel_error(thrown) or is_kernel_error(thrown.__cause__ or thrown)):
+                raise
+            reason = reason or f"the CAD kernel cannot work with this face ({thrown})"
+        return FaceInfo(number, names.get(number, ""), surface, shape, area, colours.get(number), reason)
+
+    def _judgeable(self, number: int, surface: str) -> tuple[str | None, float]:
+        """Why the face cannot be judged (None if it can), and its area."""
+        if surface == "other":
+            return "has no surface that can be evaluated", 0.0
+        if not edges_of(self.face(number)):
+            return "has no edges", 0.0
+        measured = self.measure(number)
+        if measured is None:
+            return "its edges have no finite curve on the surface", 0.0
+        if not np.isfinite(measured.area):
+            return "its surface cannot be evaluated everywhere", 0.0
+        if measured.area <= _NO_AREA * float(np.dot(self.size, self.size)):
+            return "has no area", measured.area
+        return None, measured.area
+
+
+def as_one(shapes: list[TopoDS_Shape]) -> TopoDS_Shape:
+    """The shape itself if there is one, else a compound."""
+    from OCP.BRep import BRep_Builder
+    from OCP.TopoDS import TopoDS_Compound
+
+    if len(shapes) == 1:
+        return shapes[0]
+    builder, compound = BRep_Builder(), TopoDS_Compound()
+    builder.MakeCompound(compound)
+    for shape in shapes:
+        builder.Add(compound, shape)
+    return compound
+
+
+def unwrapped(shape: TopoDS_Shape) -> TopoDS_Shape:
+    """A compound of one shape is that shape."""
+    while shape.ShapeType() == TopAbs_COMPOUND:
+        children = TopoDS_Iterator(shape)
+        first = children.Value() if children.More() else None
+        children.Next() if first is not None else None
+        if first is None or children.More():
+            return shape
+        shape = first
+    return shape
+
+
+def _is_degenerated(edge: Any) -> bool:
+    from OCP.BRep import BRep_Tool
+    from OCP.TopoDS import TopoDS
+
+    return BRep_Tool.Degenerated_s(TopoDS.Edge_s(edge))
+
+
+def _box(found: list[TopoDS_Face]) -> tuple[Floats, Floats]:
+    """Tight corners of the box around faces.
+
+    The kernel's quick box is padded and its tight one is slow, so the tight one is asked only of faces whose padded
+    box still sticks out of what is covered, the farthest first.
+    """
+    loose = np.array([_face_box(face, tight=False) for face in found])
+    usable = np.isfinite(loose).all(axis=(1, 2))
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    if not usable.any():
+        return low, high
+    stick = np.concatenate([loose[:, 0] - np.nanmin(loose[usable, 0], axis=0),
+                            np.nanmax(loose[usable, 1], axis=0) - loose[:, 1]], axis=1)  # fmt: skip
+    for i in np.argsort(np.where(usable, stick.min(axis=1), np.inf), kind="stable")[: usable.sum()]:
+        if (loose[i, 0] < low).any() or (loose[i, 1] > high).any():
+            tight = _face_box(found[i], tight=True)
+            tight = tight if np.isfinite(tight).all() else loose[i]
+            low, high = np.minimum(low, tight[0]), np.maximum(high, tight[1])
+    return low, high
+
+
+def _face_box(face: TopoDS_Face, *, tight: bool) -> Floats:
+    box = Bnd_Box()
+    try:
+        if tight:
+            BRepBndLib.AddOptimal_s(face, box, False, False)
+        else:
+            BRepBndLib.Add_s(face, box, False)
+    except Exception as thrown:
+        if not is_kernel_error(thrown):
+            raise
+        return np.full((2, 3), np.nan)
+    if box.IsVoid() or box.IsOpen():
+        return np.full((2, 3), np.nan)
+    box.SetGap(0.0)
+    return np.array([box.CornerMin().Coord(), box.CornerMax().Coord()])
+
+
+def _size_warnings(size: tuple[float, float, float]) -> Iterator[str]:
+    largest = max(size)
+    if not LEAST_SIZE <= largest <= MOST_SIZE:
+        yield (
+            f"the part is {largest:.4g} mm long, outside {LEAST_SIZE:g} to {MOST_SIZE:g} mm: "
+            "check the length unit in the file"
+        )

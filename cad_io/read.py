@@ -1,0 +1,94 @@
+"""Read a part: STEP, IGES or BREP files, kernel shapes, CadQuery and build123d objects."""
+
+import hashlib
+import os
+from typing import Any
+
+from OCP.TopoDS import TopoDS_Shape
+
+from cad_io import read_iges, read_step
+from cad_io.errors import ReadError
+from cad_io.kernel import silence, translated
+from cad_io.part import Part, as_one, unwrapped
+from cad_io.sniff import sniff
+
+
+def read_part(source: Any) -> Part:
+    """Read a part; faces are numbered from 1 in the order of the kernel's map of the shape read.
+
+    Parameters
+    ----------
+    source : path, TopoDS_Shape or object
+        Path of a STEP, IGES or BREP file; a kernel shape; an object with `.wrapped` (CadQuery, build123d) or with
+        `.vals()` (CadQuery Workplane) that gives such.
+
+    Returns
+    -------
+    Part
+        Lengths in mm, one located shape.
+
+    Raises
+    ------
+    ReadError
+        In one line: what is wrong and what to try.
+    """
+    silence()
+    if isinstance(source, str | os.PathLike):
+        return _read_file(os.fspath(source))
+    return Part(unwrapped(_kernel_shape(source)))
+
+
+def _read_file(file: str) -> Part:
+    if not os.path.exists(file):
+        raise ReadError("no such file", file=file)
+    if os.path.isdir(file):
+        raise ReadError("is a folder, not a file", file=file)
+    try:
+        with open(file, "rb") as stream:
+            data = stream.read()
+    except OSError as error:
+        raise ReadError(f"cannot be read: {error.strerror}", file=file) from error
+    kind = sniff(data, file)
+    checksum = hashlib.sha256(data).hexdigest()
+    with translated("reading the file", error=ReadError, file=file):
+        if kind == "step":
+            read = read_step.read(file, data)
+        elif kind == "iges":
+            read = read_iges.read(file, data)
+        else:
+            read = read_step.Read(_read_brep(file, kind))
+    return Part(
+        read.shape, file=file, sha256=checksum, names=read.names, colours=read.colours, warnings=tuple(read.warnings)
+    )
+
+
+def _read_brep(file: str, kind: str) -> TopoDS_Shape:
+    from OCP.BinTools import BinTools
+    from OCP.BRep import BRep_Builder
+    from OCP.BRepTools import BRepTools
+
+    shape = TopoDS_Shape()
+    if kind == "brep":
+        BRepTools.Read_s(shape, file, BRep_Builder())
+    else:
+        BinTools.Read_s(shape, file)
+    if shape.IsNull():
+        raise ReadError("is not a whole BREP file: write it again", file=file)
+    return unwrapped(shape)
+
+
+def _kernel_shape(source: Any) -> TopoDS_Shape:
+    """The kernel shape in an object, a compound if it holds several."""
+    if isinstance(source, TopoDS_Shape):
+        shape = source
+    elif callable(getattr(source, "vals", None)):
+        shape = as_one([_kernel_shape(value) for value in source.vals() if hasattr(value, "wrapped")] or [TopoDS_Shape()])
+    elif hasattr(source, "wrapped"):
+        shape = source.wrapped
+    else:
+        raise ReadError(
+            f"a {type(source).__name__} is not a part: give a path, a kernel shape, a CadQuery or a build123d object"
+        )
+    if not isinstance(shape, TopoDS_Shape) or shape.IsNull():
+        raise ReadError(f"the {type(source).__name__} holds no shape")
+    return shape

@@ -1,0 +1,182 @@
+"""Read STEP through the kernel's document reader, with names and colours of faces, and with guards against half a part.
+
+The reader's return codes mean little: a file with "NaN" in it hangs the transfer, and one with a bad knot loses faces
+without a word. So the model is checked before the transfer, and faces are counted after it.
+"""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+from OCP.IFSelect import IFSelect_RetDone
+from OCP.Interface import Interface_Static
+from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
+from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Reader
+from OCP.TCollection import TCollection_ExtendedString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDF import TDF_Label, TDF_LabelSequence
+from OCP.TDocStd import TDocStd_Document
+from OCP.TopAbs import TopAbs_FACE
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Shape
+from OCP.TopTools import TopTools_IndexedMapOfShape
+from OCP.XCAFDoc import XCAFDoc_ColorGen, XCAFDoc_ColorSurf, XCAFDoc_ColorTool, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
+
+from cad_io.errors import ReadError
+from cad_io.kernel import explore, shape_map
+from cad_io.part import as_one, unwrapped
+
+Colour = tuple[float, float, float]
+
+#: Faults of the model that do not touch geometry: a missing name, for one.
+_HARMLESS = re.compile(r"not a quoted String|\(name\)|\(description\)")
+_FACES = re.compile(rb"\b(?:ADVANCED_FACE|FACE_SURFACE)\s*\(")
+
+
+@dataclass
+class Read:
+    """What a reader found: one shape, and by face number names and sRGB colours."""
+
+    shape: TopoDS_Shape
+    names: dict[int, str] = field(default_factory=dict)
+    colours: dict[int, Colour] = field(default_factory=dict)
+    warnings: list[str] = field(default_factory=list)
+
+
+def read(file: str, data: bytes) -> Read:
+    """Read a STEP file.
+
+    Parameters
+    ----------
+    file : str
+    data : bytes
+        Its content, to count faces in.
+
+    Raises
+    ------
+    ReadError
+        Cut off, faulty, or without a shape.
+    """
+    STEPCAFControl_Controller.Init_s()
+    Interface_Static.SetIVal_s("read.stepcaf.subshapes.name", 1)
+    reader = STEPCAFControl_Reader()
+    reader.SetColorMode(True)
+    reader.SetNameMode(True)
+    if reader.ReadFile(file) != IFSelect_RetDone:
+        cut = b"END-ISO-10303-21" not in data[-4096:]
+        raise ReadError(
+            "is cut off (its end is missing): fetch or export it again"
+            if cut
+            else "is not valid STEP (syntax): export it again",
+            file=file,
+        )
+    faults = [fault for fault in faults_of(reader.ChangeReader()) if not _HARMLESS.search(fault)]
+    if faults:
+        more = f" and {len(faults) - 1} more" if len(faults) > 1 else ""
+        raise ReadError(f"is faulty STEP ({faults[0]}{more}): export it again", file=file)
+    document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
+    if not reader.Transfer(document):
+        raise ReadError("holds no shape that can be read: export it as a solid or surface model", file=file)
+    labels = TDF_LabelSequence()
+    XCAFDoc_DocumentTool.ShapeTool_s(document.Main()).GetFreeShapes(labels)
+    roots = [XCAFDoc_ShapeTool.GetShape_s(label) for label in _each(labels)]
+    if not roots:
+        raise ReadError("holds no shape that can be read: export it as a solid or surface model", file=file)
+    result = Read(unwrapped(as_one(roots)))
+    _Walk(result).roots(labels)
+    written, found = len(_FACES.findall(data)), _distinct_faces(result.shape)
+    if found < written:
+        result.warnings.append(
+            f"{written - found} of the {written} faces written in the file could not be read: the part has holes"
+        )
+    return result
+
+
+def faults_of(reader: Any) -> list[str]:
+    """What the kernel's check of a loaded (not yet transferred) model finds wrong."""
+    checks = reader.WS().ModelCheckList(True)
+    found = []
+    checks.Start()
+    while checks.More():
+        check = checks.Value()
+        found += [" ".join(check.CFail(i + 1).split()) for i in range(check.NbFails())]
+        checks.Next()
+    return found
+
+
+def _distinct_faces(shape: TopoDS_Shape) -> int:
+    """Faces counted once however often the assembly shows them."""
+    placed_once = TopTools_IndexedMapOfShape()
+    for face in explore(shape, TopAbs_FACE):
+        placed_once.Add(face.Located(TopLoc_Location()))
+    return placed_once.Extent()
+
+
+def _each(labels: TDF_LabelSequence) -> Iterator[TDF_Label]:
+    for i in range(1, labels.Length() + 1):
+        yield labels.Value(i)
+
+
+class _Walk:
+    """Names and colours of faces, gathered from the document's tree: the innermost label that has one wins."""
+
+    def __init__(self, result: Read) -> None:
+        self.result, self.map = result, shape_map(result.shape, TopAbs_FACE)
+
+    def roots(self, labels: TDF_LabelSequence) -> None:
+        for label in _each(labels):
+            self.label(label, TopLoc_Location(), None)
+
+    def label(self, label: TDF_Label, place: TopLoc_Location, colour: Colour | None) -> None:
+        """`colour` is what an enclosing instance gave, which beats the product's own."""
+        if XCAFDoc_ShapeTool.IsReference_s(label):
+            colour = colour or _colour(label)
+            product = TDF_Label()
+            XCAFDoc_ShapeTool.GetReferredShape_s(label, product)
+            self.label(product, place.Multiplied(XCAFDoc_ShapeTool.GetLocation_s(label)), colour)
+            return
+        colour = colour or _colour(label)
+        inner = TDF_LabelSequence()
+        if XCAFDoc_ShapeTool.IsAssembly_s(label):
+            XCAFDoc_ShapeTool.GetComponents_s(label, inner, False)
+            for component in _each(inner):
+                self.label(component, place, colour)
+            return
+        shape = XCAFDoc_ShapeTool.GetShape_s(label)
+        self.paint(shape, place, colour)
+        XCAFDoc_ShapeTool.GetSubShapes_s(label, inner)
+        parts = [(sub, XCAFDoc_ShapeTool.GetShape_s(sub)) for sub in _each(inner)]
+        # Solids before shells before faces, so that the innermost has the last word.
+        for sub, part in sorted(parts, key=lambda pair: int(pair[1].ShapeType().value)):
+            self.paint(part, place, _colour(sub))
+            if part.ShapeType() == TopAbs_FACE and (name := _name(sub)):
+                for number in self.numbers(part, place):
+                    self.result.names[number] = name
+
+    def paint(self, shape: TopoDS_Shape, place: TopLoc_Location, colour: Colour | None) -> None:
+        if colour:
+            for number in self.numbers(shape, place):
+                self.result.colours[number] = colour
+
+    def numbers(self, shape: TopoDS_Shape, place: TopLoc_Location) -> list[int]:
+        return [n for face in explore(shape.Moved(place), TopAbs_FACE) if (n := self.map.FindIndex(face))]
+
+
+def _colour(label: TDF_Label) -> Colour | None:
+    found = Quantity_Color()
+    for kind in (XCAFDoc_ColorSurf, XCAFDoc_ColorGen):
+        if XCAFDoc_ColorTool.GetColor_s(label, kind, found):
+            red, green, blue = found.Values(Quantity_TOC_sRGB)
+            return round(red, 6), round(green, 6), round(blue, 6)
+    return None
+
+
+def _name(label: TDF_Label) -> str:
+    # Asking for a name that is not there ends the process, so look first.
+    if not label.IsAttribute(TDataStd_Name.GetID_s()):
+        return ""
+    name = TDataStd_Name()
+    label.FindAttribute(TDataStd_Name.GetID_s(), name)
+    text = str(name.Get().ToExtString()).strip()
+    return "" if text == "NONE" else text  # SolidWorks' word for no name

@@ -1,0 +1,244 @@
+"""Which part of its surface does a face use? Its border in (u, v), and whether points lie inside.
+
+The border is read off the parameter curves of the edges as a polygon, whose chord error is measured. Inside is decided
+by the even-odd rule, so the order of the edges does not matter, and neither do seams (which occur twice) nor
+degenerated edges (which have a parameter curve too). Points nearer to the border than the chord error are asked of the
+kernel, which is right but a thousand times slower. On the border counts as inside.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRep import BRep_Tool
+from OCP.BRepAdaptor import BRepAdaptor_Curve2d, BRepAdaptor_Surface
+from OCP.BRepTools import BRepTools
+from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
+from OCP.GeomAbs import GeomAbs_C2, GeomAbs_Line
+from OCP.gp import gp_Pnt2d
+from OCP.TColStd import TColStd_Array1OfReal
+from OCP.TopAbs import TopAbs_FORWARD, TopAbs_IN, TopAbs_ON, TopAbs_REVERSED
+from OCP.TopoDS import TopoDS, TopoDS_Face
+from scipy.optimize import linear_sum_assignment
+
+from cad_io.arrays import Floats
+from cad_io.kernel import edges_of, first_derivatives
+
+Bools = NDArray[np.bool_]
+
+#: Chord error of the border polygon as a share of the face's size.
+DEFLECTION = 1e-5
+#: Distances from the border that count as on it, mm: the edge's own tolerance within these limits.
+ON_LEAST, ON_MOST = 1e-7, 1e-3
+_CHORDS = 4  # that each span of a parameter curve starts with
+_HALVINGS = 12
+
+
+@dataclass(frozen=True, slots=True)
+class Trim:
+    """The border of a face in its parameter plane.
+
+    Attributes
+    ----------
+    face : TopoDS_Face
+    segments : (n, 2, 2) float
+        (u, v) of start and end, the face on the left if its surface is seen with `dS/du x dS/dv` towards the eye.
+    exact : (n,) bool
+        Segments that are the border itself, not chords of it.
+    box : tuple of float
+        u least, u most, v least, v most; tight.
+    scale : (2,) float
+        Typical mm per unit of u and of v.
+    deflection : float
+        Largest measured distance of the polygon from the border, mm.
+    tolerance : float
+        Distance from the border that counts as on it, mm.
+    closed : bool
+        False where the parameter curves do not close; then the kernel decides about every point.
+    rectangular : bool
+        The face uses the whole of `box`.
+    """
+
+    face: TopoDS_Face
+    segments: Floats
+    exact: Bools
+    box: tuple[float, float, float, float]
+    scale: Floats
+    deflection: float
+    tolerance: float
+    closed: bool
+    rectangular: bool
+
+    def inside_grid(self, u: Floats, v: Floats) -> Bools:
+        """Which nodes of the grid of increasing lines u (nu,) and v (nv,) lie in the face: (nu, nv)."""
+        on_u, on_v = self.tolerance / self.scale
+        u0, u1, v0, v1 = self.box
+        boxed = np.outer((u >= u0 - on_u) & (u <= u1 + on_u), (v >= v0 - on_v) & (v <= v1 + on_v))
+        if self.rectangular:
+            return boxed
+        if not self.closed:
+            i, j = np.nonzero(boxed)
+            boxed[i, j] = self._asked(u[i], v[j])
+            return boxed
+        inside = _even_odd(self.segments, u, v)
+        i, j, near_exact, near = self._band(u, v)
+        inside[i[near_exact], j[near_exact]] = True
+        rest = near & ~near_exact
+        if rest.any():
+            i, j = np.unique(np.stack([i[rest], j[rest]]), axis=1)
+            inside[i, j] = self._asked(u[i], v[j])
+        return inside
+
+    def inside(self, u: Floats, v: Floats) -> Bools:
+        """Which of the points (n,), (n,) lie in the face."""
+        # The diagonal of a grid is wasteful, but points come here a few at a time.
+        order_u, order_v = np.argsort(u), np.argsort(v)
+        found = np.empty((len(u), len(v)), bool)
+        found[np.ix_(order_u, order_v)] = self.inside_grid(u[order_u], v[order_v])
+        return found.diagonal().copy()
+
+    def _asked(self, u: Floats, v: Floats) -> Bools:
+        classifier = BRepTopAdaptor_FClass2d(self.face, float(self.tolerance / self.scale.max()))
+        states = [classifier.Perform(gp_Pnt2d(a, b)) for a, b in zip(u.tolist(), v.tolist(), strict=True)]
+        return np.array([state in (TopAbs_IN, TopAbs_ON) for state in states], dtype=bool)
+
+    def _band(self, u: Floats, v: Floats) -> tuple[NDArray[np.intp], NDArray[np.intp], Bools, Bools]:
+        """Grid nodes beside segments: i, j, whether on an exact segment, whether too near to any to be sure."""
+        reach = self.tolerance + 2 * self.deflection
+        low, high = self.segments.min(axis=1), self.segments.max(axis=1)
+        i0, i1 = (np.searchsorted(u, b, s) for b, s in ((low[:, 0] - reach / self.scale[0], "left"),
+                                                        (high[:, 0] + reach / self.scale[0], "right")))  # fmt: skip
+        j0, j1 = (np.searchsorted(v, b, s) for b, s in ((low[:, 1] - reach / self.scale[1], "left"),
+                                                        (high[:, 1] + reach / self.scale[1], "right")))  # fmt: skip
+        count = (i1 - i0) * (j1 - j0)
+        which = np.repeat(np.arange(len(count)), count)
+        nth = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
+        width = (j1 - j0)[which]
+        i, j = i0[which] + nth // np.maximum(width, 1), j0[which] + nth % np.maximum(width, 1)
+        start = self.segments[which, 0] * self.scale
+        along = self.segments[which, 1] * self.scale - start
+        offset = np.stack([u[i], v[j]], axis=1) * self.scale - start
+        length = np.maximum((along**2).sum(axis=1), 1e-300)
+        share = np.clip((offset * along).sum(axis=1) / length, 0, 1)
+        distance = np.linalg.norm(offset - share[:, None] * along, axis=1)
+        return i, j, self.exact[which] & (distance <= self.tolerance), ~self.exact[which] & (distance <= reach)
+
+
+def trim_of(face: TopoDS_Face, adaptor: BRepAdaptor_Surface) -> Trim | None:
+    """Border of a face, None if it has no edge with a finite parameter curve.
+
+    Parameters
+    ----------
+    face : TopoDS_Face
+    adaptor : BRepAdaptor_Surface
+        Of that face, not restricted to it.
+    """
+    forward = TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
+    scale, size = _scale(forward, adaptor)
+    if scale is None:
+        return None
+    pieces, exact, tolerance, deflection = [], [], ON_LEAST, 0.0
+    for edge in edges_of(forward):
+        if edge.Orientation() not in (TopAbs_FORWARD, TopAbs_REVERSED):
+            continue
+        curve = BRepAdaptor_Curve2d(edge, forward)
+        points, deviation = _polyline(curve, scale, DEFLECTION * size)
+        if not np.isfinite(points).all():
+            return None
+        pieces.append(points if edge.Orientation() == TopAbs_FORWARD else points[::-1])
+        exact.append(len(points) == 2 and deviation == 0)
+        tolerance, deflection = max(tolerance, BRep_Tool.Tolerance_s(edge)), max(deflection, deviation)
+    if not pieces:
+        return None
+    tolerance = min(tolerance, ON_MOST, 1e-4 * size)
+    joins, gap = _joins(pieces, scale)
+    segments = np.concatenate([np.stack([p[:-1], p[1:]], axis=1) for p in pieces] + [joins])
+    straight = np.concatenate([np.full(len(p) - 1, e) for p, e in zip(pieces, exact, strict=True)])
+    straight = np.append(straight, np.ones(len(joins), bool))
+    low, high = segments.min(axis=(0, 1)), segments.max(axis=(0, 1))
+    box = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
+    closed = gap < max(10 * tolerance, 1e-3 * size)
+    return Trim(
+        face, segments, straight, box, scale, deflection, tolerance, closed,
+        rectangular=closed and _is_rectangle(segments, low, high, scale, tolerance),
+    )  # fmt: skip
+
+
+def _scale(face: TopoDS_Face, adaptor: BRepAdaptor_Surface) -> tuple[Floats, float] | tuple[None, float]:
+    """Typical mm per unit of u and v, and the face's size in mm, from the kernel's (padded) bounds."""
+    u0, u1, v0, v1 = BRepTools.UVBounds_s(face)
+    if not (np.isfinite([u0, u1, v0, v1]).all() and u0 < u1 and v0 < v1 and max(-u0, u1, -v0, v1) < 1e50):
+        return None, 0.0
+    share = np.array([0.2, 0.5, 0.8])
+    u, v = (grid.ravel() for grid in np.meshgrid(u0 + share * (u1 - u0), v0 + share * (v1 - v0)))
+    speed = np.linalg.norm(first_derivatives(adaptor, u, v)[:, 1:], axis=2)
+    scale = np.nanmean(speed, axis=0) if np.isfinite(speed).any() else np.zeros(2)
+    if not (np.isfinite(scale).all() and (scale > 0).all()):
+        return None, 0.0
+    return scale, float(np.hypot(*(scale * (u1 - u0, v1 - v0))))
+
+
+def _polyline(curve: BRepAdaptor_Curve2d, scale: Floats, deflection: float) -> tuple[Floats, float]:
+    """Points (n, 2) of a parameter curve with chords within `deflection` (mm), and the largest distance left."""
+    ends = np.array([curve.FirstParameter(), curve.LastParameter()])
+    if curve.GetType() == GeomAbs_Line:
+        return np.array([curve.Value(t).Coord() for t in ends.tolist()]), 0.0
+    spans = curve.NbIntervals(GeomAbs_C2)
+    knots = TColStd_Array1OfReal(1, spans + 1)
+    curve.Intervals(knots, GeomAbs_C2)
+    knot = np.array([knots.Value(i) for i in range(1, spans + 2)])
+    t = np.interp(np.arange(spans * _CHORDS + 1) / _CHORDS, np.arange(spans + 1), knot)
+    points = np.array([curve.Value(x).Coord() for x in t.tolist()])
+    new = np.arange(len(t) - 1)  # chords not measured yet
+    worst = 0.0
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (t[new] + t[new + 1])
+        there = np.array([curve.Value(x).Coord() for x in middle.tolist()]).reshape(-1, 2)
+        off = np.linalg.norm((there - 0.5 * (points[new] + points[new + 1])) * scale, axis=1)
+        bad = off > deflection
+        worst = max(worst, float(off[~bad].max(initial=0.0)))
+        if not bad.any():
+            break
+        at = new[bad] + 1
+        t, points = np.insert(t, at, middle[bad]), np.insert(points, at, there[bad], axis=0)
+        halved = new[bad] + np.arange(bad.sum())
+        new = np.sort(np.concatenate([halved, halved + 1]))
+    else:
+        worst = max(worst, float(off.max()))
+    return points, worst
+
+
+def _joins(pieces: list[Floats], scale: Floats) -> tuple[Floats, float]:
+    """Segments that lead from each piece's end to the start that continues it, and the longest of them in mm."""
+    start, end = np.array([p[0] for p in pieces]), np.array([p[-1] for p in pieces])
+    distance = np.linalg.norm((end[:, None] - start[None]) * scale, axis=2)
+    following = distance.argmin(axis=1)
+    if len(np.unique(following)) < len(following):
+        following = linear_sum_assignment(distance)[1]
+    joins = np.stack([end, start[following]], axis=1)
+    gap = distance[np.arange(len(end)), following]
+    return joins[gap > 0], float(gap.max())
+
+
+def _is_rectangle(segments: Floats, low: Floats, high: Floats, scale: Floats, tolerance: float) -> bool:
+    """True if all of the border lies on the border of its box and encloses the box."""
+    points = np.concatenate([segments[:, 0], segments.mean(axis=1)])
+    off = np.minimum(points - low, high - points) * scale
+    if (off.min(axis=1) > tolerance).any():
+        return False
+    a, b = segments[:, 0] - low, segments[:, 1] - low
+    return bool(abs(0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum()) > 0.999 * (high - low).prod())
+
+
+def _even_odd(segments: Floats, u: Floats, v: Floats) -> Bools:
+    """Nodes (nu, nv) with an odd number of border crossings at smaller u on their row."""
+    p, q = segments[:, 0], segments[:, 1]
+    first = np.searchsorted(v, np.minimum(p[:, 1], q[:, 1]))
+    rows = np.searchsorted(v, np.maximum(p[:, 1], q[:, 1])) - first
+    which = np.repeat(np.arange(len(p)), rows)
+    row = np.arange(len(which)) - np.repeat(np.cumsum(rows) - rows, rows) + first[which]
+    p, q = p[which], q[which]
+    crossing = p[:, 0] + (v[row] - p[:, 1]) / (q[:, 1] - p[:, 1]) * (q[:, 0] - p[:, 0])
+    toggles = np.zeros((len(u) + 1, len(v)), np.int64)
+    np.add.at(toggles, (np.searchsorted(u, crossing), row), 1)
+    return toggles[:-1].cumsum(axis=0) % 2 == 1
