@@ -134,7 +134,7 @@ def _witness(
         else:
             low = depth
     triangle = np.full(1, -1, np.int32)
-    probe(first, geometry[0], best.axis, best.lean, cutter.radius, cutter.length, np.array([low]),
+    probe(first, *geometry[:2], best.axis, best.lean, cutter.radius, cutter.length, np.array([low]),
           *obstacles.tree, triangle)  # fmt: skip
     return Witness(
         sample=row,

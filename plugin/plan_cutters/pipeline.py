@@ -12,7 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io import Orientation, Part, SurfaceSamples, orient, read_part, sample, tessellate
+from cad_io import Orientation, Part, SurfaceSamples, read_part
+from cad_io.orient import orient
+from cad_io.sample import sample
+from cad_io.tessellate import tessellate
 from plan_cutters import __version__
 from plan_cutters.access import access, witnesses
 from plan_cutters.classify import CONCAVE, CONVEX, SADDLE, classify, regions

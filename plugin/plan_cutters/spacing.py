@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cad_io import Orientation, Part, sample
+from cad_io import Orientation, Part
+from cad_io.sample import sample
 from plan_cutters.cutter import Cutter
 
 #: Samples that a default plan may take, in all.

@@ -30,17 +30,31 @@ def stand(body, p, n, f, t, tilt_cos, tilt_sin, offset, radius, low, high):  # t
 
 
 @inlined
+def _half_width(box, i, x, y, z):  # type: ignore[no-untyped-def]
+    """Half the extent of box i along a unit direction."""
+    return (
+        box[i, 12] * abs(x * box[i, 3] + y * box[i, 4] + z * box[i, 5])
+        + box[i, 13] * abs(x * box[i, 6] + y * box[i, 7] + z * box[i, 8])
+        + box[i, 14] * abs(x * box[i, 9] + y * box[i, 10] + z * box[i, 11])
+    )
+
+
+@inlined
 def _box_apart(box, i, body, rate):  # type: ignore[no-untyped-def]
     """True only if no point of box i lies in the body (separating slab along the axis, then across it)."""
     dx, dy, dz = box[i, 0] - body[0], box[i, 1] - body[1], box[i, 2] - body[2]
-    hx, hy, hz, diagonal = box[i, 3], box[i, 4], box[i, 5], box[i, 6]
+    diagonal = box[i, 15]
     grow = 0.0
     if rate > 0.0:
         grow = rate * (np.sqrt(dx * dx + dy * dy + dz * dz) + diagonal)
     height = dx * body[3] + dy * body[4] + dz * body[5]
-    reach = hx * abs(body[3]) + hy * abs(body[4]) + hz * abs(body[5]) + grow
-    if height + reach < body[LOW] or height - reach > body[HIGH]:
+    low, high = body[LOW] - grow, body[HIGH] + grow
+    if height + diagonal < low or height - diagonal > high:
         return True
+    if height < low or height > high:
+        reach = _half_width(box, i, body[3], body[4], body[5])
+        if height + reach < low or height - reach > high:
+            return True
     across = dx * body[6] + dy * body[7] + dz * body[8] + body[OFFSET]
     along = dx * body[9] + dy * body[10] + dz * body[11]
     square = across * across + along * along
@@ -51,11 +65,9 @@ def _box_apart(box, i, body, rate):  # type: ignore[no-untyped-def]
         return True
     distance = np.sqrt(square)
     ux, uy = across / distance, along / distance
-    reach = (
-        hx * abs(ux * body[6] + uy * body[9])
-        + hy * abs(ux * body[7] + uy * body[10])
-        + hz * abs(ux * body[8] + uy * body[11])
-    )
+    reach = _half_width(
+        box, i, ux * body[6] + uy * body[9], ux * body[7] + uy * body[10], ux * body[8] + uy * body[11]
+    )  # fmt: skip
     return distance - reach > radius
 
 
@@ -103,8 +115,16 @@ def _nearest(polygon, count):  # type: ignore[no-untyped-def]
         if distance < best:
             best, px, py = distance, x, y
             height = polygon[i, 0] + part * (polygon[j, 0] - polygon[i, 0])
-    if inside:
-        best = 0.0
+    if not inside:
+        return height, px, py, best
+    # The axis goes through the polygon: find the crossing in the fan of triangles about its first corner.
+    for i in range(1, count - 1):
+        a = polygon[i, 1] * polygon[i + 1, 2] - polygon[i + 1, 1] * polygon[i, 2]
+        b = polygon[i + 1, 1] * polygon[0, 2] - polygon[0, 1] * polygon[i + 1, 2]
+        c = polygon[0, 1] * polygon[i, 2] - polygon[i, 1] * polygon[0, 2]
+        if a * area >= 0.0 and b * area >= 0.0 and c * area >= 0.0 and abs(a + b + c) > 0.0:
+            height = (a * polygon[0, 0] + b * polygon[i, 0] + c * polygon[i + 1, 0]) / (a + b + c)
+            return height, 0.0, 0.0, 0.0
     return height, px, py, best
 
 
@@ -173,9 +193,49 @@ def triangle_hit(vertex, i, body, rate, polygon, spare):  # type: ignore[no-unty
     return True, height + part * (mh - height), px + part * dx, py + part * dy
 
 
+@inlined
+def _swept_hit(vertex, i, body, rate, polygon, spare, pieces):  # type: ignore[no-untyped-def]
+    """`triangle_hit` with a rate, for triangles that reach from near the contact to far from it.
+
+    The widening is that of the farthest corner; where this hits, the longest side is halved until the widening is
+    about the same all over the piece.
+    """
+    for corner in range(3):
+        for k in range(3):
+            pieces[0, corner, k] = vertex[i, corner, k]
+    top = 1
+    while top > 0:
+        top -= 1
+        hit, _, _, _ = triangle_hit(pieces, top, body, rate, polygon, spare)
+        if not hit:
+            continue
+        farthest, longest, side = 0.0, -1.0, 0
+        for corner in range(3):
+            other = corner + 1 if corner < 2 else 0
+            away, length = 0.0, 0.0
+            for k in range(3):
+                away += (pieces[top, corner, k] - body[k]) ** 2
+                length += (pieces[top, corner, k] - pieces[top, other, k]) ** 2
+            farthest = max(farthest, away)
+            if length > longest:
+                longest, side = length, corner
+        if longest <= 0.04 * farthest or rate * np.sqrt(farthest) < 1e-9 or top + 2 > len(pieces):
+            return True
+        other = side + 1 if side < 2 else 0
+        for corner in range(3):
+            for k in range(3):
+                pieces[top + 1, corner, k] = pieces[top, corner, k]
+        for k in range(3):
+            middle = 0.5 * (pieces[top, side, k] + pieces[top, other, k])
+            pieces[top, side, k] = middle
+            pieces[top + 1, other, k] = middle
+        top += 2
+    return False
+
+
 @kernel
-def tree_hit(vertex, box, depth, body, rate, hint, stack, polygon, spare):  # type: ignore[no-untyped-def]
-    """First triangle found that reaches into the body.
+def tree_hit(vertex, box, depth, body, rate, hint, stack, polygon, spare, pieces):  # type: ignore[no-untyped-def]
+    """First triangle found that reaches into the body, its point with `rate` 0.
 
     Parameters
     ----------
@@ -190,6 +250,8 @@ def tree_hit(vertex, box, depth, body, rate, hint, stack, polygon, spare):  # ty
     stack : (64,) int64
     polygon, spare : (8, 3) float64
         Scratch.
+    pieces : (k, 3, 3) float64
+        Scratch, for `rate` > 0: k of 64 lets a triangle be halved often enough.
 
     Returns
     -------
@@ -200,7 +262,7 @@ def tree_hit(vertex, box, depth, body, rate, hint, stack, polygon, spare):  # ty
     """
     if hint >= 0:
         hit, height, px, py = triangle_hit(vertex, hint, body, rate, polygon, spare)
-        if hit:
+        if hit and (rate == 0.0 or _swept_hit(vertex, hint, body, rate, polygon, spare, pieces)):
             return hint, height, px, py
     n, first, top = len(vertex), (1 << depth) - 1, 1
     stack[0] = 0
@@ -217,6 +279,6 @@ def tree_hit(vertex, box, depth, body, rate, hint, stack, polygon, spare):  # ty
         leaf = node - first
         for i in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
             hit, height, px, py = triangle_hit(vertex, i, body, rate, polygon, spare)
-            if hit:
+            if hit and (rate == 0.0 or _swept_hit(vertex, i, body, rate, polygon, spare, pieces)):
                 return i, height, px, py
     return -1, 0.0, 0.0, 0.0

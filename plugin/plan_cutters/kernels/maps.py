@@ -42,7 +42,7 @@ def free_tilts(p, n, f, low, high, radius, length, depth_allowed, narrowest, ver
     t[0], t[1], t[2] = n[1] * f[2] - n[2] * f[1], n[2] * f[0] - n[0] * f[2], n[0] * f[1] - n[1] * f[0]
     body = np.empty(BODY)
     stack = np.empty(64, np.int64)
-    polygon, spare = np.empty((8, 3)), np.empty((8, 3))
+    polygon, spare, pieces = np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3))
     parts = np.empty((room + 4, 3))
     pending = np.empty((room + 4, 2))
     pending[0, 0], pending[0, 1] = low, high
@@ -54,12 +54,12 @@ def free_tilts(p, n, f, low, high, radius, length, depth_allowed, narrowest, ver
         tilt, half = 0.5 * (first + last), 0.5 * (last - first)
         stand(body, p, n, f, t, np.cos(tilt), np.sin(tilt), radius, shrunk, bottom, ceiling)
         # A hair more than half, so that a free range holds at its very ends.
-        triangle, height, px, py = tree_hit(vertex, box, depth, body, half + 1e-12, hint, stack, polygon, spare)
+        triangle, height, px, py = tree_hit(vertex, box, depth, body, half + 1e-12, hint, stack, polygon, spare, pieces)
         kind, cut_first, cut_last = OPEN, first, last
         if triangle >= 0:
             hint = triangle
             kind, cut_first, cut_last = UNSURE, tilt, tilt
-            triangle, height, px, py = tree_hit(vertex, box, depth, body, 0.0, hint, stack, polygon, spare)
+            triangle, height, px, py = tree_hit(vertex, box, depth, body, 0.0, hint, stack, polygon, spare, pieces)
             if triangle >= 0:
                 hint = triangle
                 arc_first, arc_last = point_arc(height, px, py, tilt, radius, shrunk, bottom, ceiling)

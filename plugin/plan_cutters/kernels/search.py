@@ -8,7 +8,7 @@ deep) or undecided.
 import numpy as np
 
 from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
-from plan_cutters.kernels.hit import BODY, OFFSET, RADIUS, stand, tree_hit
+from plan_cutters.kernels.hit import BODY, stand, tree_hit
 from plan_cutters.kernels.jit import inlined, kernel
 
 INACCESSIBLE, ACCESSIBLE, FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
@@ -18,6 +18,8 @@ AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, SHANK = 0, 1, 2, 3
 NARROWEST = 1.7e-4
 #: Intervals that one rotation may fall into; widest first, a search has not been seen to need ten.
 _ROOM = 256
+#: Obstacle points remembered from probe to probe.
+_KNOWN = 16
 
 
 @inlined
@@ -52,14 +54,27 @@ def remove(intervals, count, first, last, narrowest):  # type: ignore[no-untyped
 
 
 @inlined
+def _forbid(intervals, count, first, last, x, y, z, radius, tally):  # type: ignore[no-untyped-def]
+    """Take an obstacle point's arc out and book what it takes on the point's attribute; the new count."""
+    before = 0.0
+    for i in range(count):
+        before += intervals[i, 1] - intervals[i, 0]
+    count = remove(intervals, count, first, last, NARROWEST)
+    for i in range(count):
+        before -= intervals[i, 1] - intervals[i, 0]
+    tally[REAR_GOUGE if x * x + y * y + z * z <= 4.0 * radius * radius else SHANK] += before
+    return count
+
+
+@inlined
 def _sweep(
     p, n, e1, e2, kappa_max, kappa_min,
     rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
     radius, length, depth_allowed, vertex, box, depth,
-    first_rotation, first_tilt, hint,
-    intervals, f, t, body, stack, polygon, spare, tally,
+    first_rotation, first_tilt, hint, known, known_count,
+    intervals, f, t, body, stack, polygon, spare, pieces, tally,
 ):  # type: ignore[no-untyped-def]  # fmt: skip
-    """Search all rotations of one sample; (rotation index or -1, tilt, last triangle in the way)."""
+    """Search all rotations of one sample; (rotation index or -1, tilt, last triangle in the way, count of known points)."""
     rotations = len(rotation_cos)
     tally[:] = 0.0
     low, high, shrunk = depth_allowed, length - depth_allowed, radius - depth_allowed
@@ -83,6 +98,18 @@ def _sweep(
             count = remove(intervals, count, -1.0, least, 0.0)
         for i in range(count):
             tally[LOCAL_GOUGE] += intervals[i, 1] - intervals[i, 0] + NARROWEST
+        # What was in the way before, at other rotations and at the neighbours, is most likely so again.
+        for i in range(min(known_count, len(known))):
+            x, y, z = 0.0, 0.0, 0.0
+            for k in range(3):
+                x += (known[i, k] - p[k]) * f[k]
+                y += (known[i, k] - p[k]) * t[k]
+                z += (known[i, k] - p[k]) * n[k]
+            first, last = point_arc(z, x + radius, y, 0.0, radius, shrunk, low, high)
+            if first <= last:
+                count = _forbid(intervals, count, first, last, x, y, z, radius, tally)
+                if count == 0:
+                    break
         wish = first_tilt
         while count > 0:
             widest, tilt = -1.0, 0.0
@@ -94,24 +121,20 @@ def _sweep(
                     tilt = 0.5 * (intervals[i, 0] + intervals[i, 1])
             wish = -1.0
             stand(body, p, n, f, t, np.cos(tilt), np.sin(tilt), radius, shrunk, low, high)
-            triangle, height, px, py = tree_hit(vertex, box, depth, body, 0.0, hint, stack, polygon, spare)
+            triangle, height, px, py = tree_hit(vertex, box, depth, body, 0.0, hint, stack, polygon, spare, pieces)
             if triangle < 0:
-                return rotation, tilt, hint
+                return rotation, tilt, hint, known_count
             hint = triangle
             first, last = point_arc(height, px, py, tilt, radius, shrunk, low, high)
             # At the edge of the body the arc may be no wider than rounding: take the probe's own neighbourhood too.
             first, last = min(first, tilt - 0.5 * NARROWEST), max(last, tilt + 0.5 * NARROWEST)
-            back = px - radius
-            near = back * back + py * py + height * height <= 4.0 * radius * radius
-            reason = REAR_GOUGE if near else SHANK
-            before = 0.0
-            for i in range(count):
-                before += intervals[i, 1] - intervals[i, 0]
-            count = remove(intervals, count, first, last, NARROWEST)
-            for i in range(count):
-                before -= intervals[i, 1] - intervals[i, 0]
-            tally[reason] += before + NARROWEST
-    return -1, 0.0, hint
+            back, cosine_tilt, sine_tilt = px - radius, np.cos(tilt), np.sin(tilt)
+            x, z = cosine_tilt * back + sine_tilt * height, cosine_tilt * height - sine_tilt * back
+            count = _forbid(intervals, count, first, last, x, py, z, radius, tally)
+            for k in range(3):
+                known[known_count % len(known), k] = p[k] + x * f[k] + py * t[k] + z * n[k]
+            known_count += 1
+    return -1, 0.0, hint, known_count
 
 
 @kernel
@@ -151,19 +174,20 @@ def search(
     f, t, e2 = np.empty(3), np.empty(3), np.empty(3)
     body = np.empty(BODY)
     stack = np.empty(64, np.int64)
-    polygon, spare = np.empty((8, 3)), np.empty((8, 3))
+    polygon, spare, pieces = np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3))
     tally = np.empty(4)
+    known, known_count = np.empty((_KNOWN, 3)), 0
     last_rotation, last_tilt, hint = 0, -1.0, -1
     for row in rows:
         p, n, e1 = point[row], normal[row], direction_max[row]
         e2[0] = n[1] * e1[2] - n[2] * e1[1]
         e2[1] = n[2] * e1[0] - n[0] * e1[2]
         e2[2] = n[0] * e1[1] - n[1] * e1[0]
-        rotation, tilt, hint = _sweep(
+        rotation, tilt, hint, known_count = _sweep(
             p, n, e1, e2, curvature[row, 0], curvature[row, 1],
             rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
-            radius, length, safe, vertex, box, depth, last_rotation, last_tilt, hint,
-            intervals, f, t, body, stack, polygon, spare, tally,
+            radius, length, safe, vertex, box, depth, last_rotation, last_tilt, hint, known, known_count,
+            intervals, f, t, body, stack, polygon, spare, pieces, tally,
         )  # fmt: skip
         if rotation >= 0:
             verdict[row] = ACCESSIBLE
@@ -174,11 +198,11 @@ def search(
                 lean[row, k] = rotation_cos[rotation] * e1[k] + rotation_sin[rotation] * e2[k]
                 axis[row, k] = cosine * n[k] + sine * lean[row, k]
         else:
-            rotation, tilt, hint = _sweep(
+            rotation, tilt, hint, known_count = _sweep(
                 p, n, e1, e2, curvature[row, 0], curvature[row, 1],
                 rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
-                radius, length, blocked, vertex, box, depth, last_rotation, last_tilt, hint,
-                intervals, f, t, body, stack, polygon, spare, tally,
+                radius, length, blocked, vertex, box, depth, last_rotation, last_tilt, hint, known, known_count,
+                intervals, f, t, body, stack, polygon, spare, pieces, tally,
             )  # fmt: skip
             verdict[row] = UNDECIDED if rotation >= 0 else INACCESSIBLE
             if tally[AXIS_LIMIT] == 0.0:
@@ -207,7 +231,7 @@ def dummy_free(rows, point, normal, radius, length, safe, vertex, box, depth, fr
     body = np.empty(BODY)
     f, t = np.empty(3), np.empty(3)
     stack = np.empty(64, np.int64)
-    polygon, spare = np.empty((8, 3)), np.empty((8, 3))
+    polygon, spare, pieces = np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3))
     hint = -1
     for row in rows:
         n = normal[row]
@@ -221,47 +245,38 @@ def dummy_free(rows, point, normal, radius, length, safe, vertex, box, depth, fr
             f[i] /= size
         t[0], t[1], t[2] = n[1] * f[2] - n[2] * f[1], n[2] * f[0] - n[0] * f[2], n[0] * f[1] - n[1] * f[0]
         stand(body, point[row], n, f, t, 1.0, 0.0, 0.0, 2.0 * radius - safe, safe, length - safe)
-        triangle, _, _, _ = tree_hit(vertex, box, depth, body, 0.0, hint, stack, polygon, spare)
+        triangle, _, _, _ = tree_hit(vertex, box, depth, body, 0.0, hint, stack, polygon, spare, pieces)
         free[row] = triangle < 0
         if triangle >= 0:
             hint = triangle
 
 
 @kernel
-def probe(rows, point, axis, lean, radius, length, depths, vertex, box, depth, triangle):  # type: ignore[no-untyped-def]
+def probe(rows, point, normal, axis, lean, radius, length, depths, vertex, box, depth, triangle):  # type: ignore[no-untyped-def]
     """Test given postures: the triangle that reaches deeper than `depths[i]` into the cutter of posture i, or -1.
 
     Parameters
     ----------
     rows : (m,) int64
-        Rows of `point`, `axis` and `lean` to test.
-    point, axis, lean : (n, 3) float64
-        Contact, unit tool axis and unit lean direction.
+        Rows to test.
+    point, normal, axis, lean : (n, 3) float64
+        Contact, unit normal, unit tool axis, unit lean direction.
     radius, length : float
     depths : (n,) float64
     vertex, box, depth
         Triangles in tree order and the tree.
     triangle : (n,) int32, written
     """
-    body = np.empty(BODY)
+    body, t = np.empty(BODY), np.empty(3)
     stack = np.empty(64, np.int64)
-    polygon, spare = np.empty((8, 3)), np.empty((8, 3))
+    polygon, spare, pieces = np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3))
     hint = -1
     for row in rows:
-        a, f = axis[row], lean[row]
-        along = a[0] * f[0] + a[1] * f[1] + a[2] * f[2]
-        size = 0.0
-        for k in range(3):
-            body[k], body[3 + k] = point[row, k], a[k]
-            body[6 + k] = f[k] - along * a[k]
-            size += body[6 + k] * body[6 + k]
-        for k in range(3):
-            body[6 + k] /= np.sqrt(size)
-        body[9] = a[1] * body[8] - a[2] * body[7]
-        body[10] = a[2] * body[6] - a[0] * body[8]
-        body[11] = a[0] * body[7] - a[1] * body[6]
-        s = depths[row]
-        body[OFFSET], body[RADIUS], body[14], body[15] = radius, radius - s, s, length - s
-        triangle[row], _, _, _ = tree_hit(vertex, box, depth, body, 0.0, hint, stack, polygon, spare)
+        n, f, s = normal[row], lean[row], depths[row]
+        cosine = axis[row, 0] * n[0] + axis[row, 1] * n[1] + axis[row, 2] * n[2]
+        sine = axis[row, 0] * f[0] + axis[row, 1] * f[1] + axis[row, 2] * f[2]
+        t[0], t[1], t[2] = n[1] * f[2] - n[2] * f[1], n[2] * f[0] - n[0] * f[2], n[0] * f[1] - n[1] * f[0]
+        stand(body, point[row], n, f, t, cosine, sine, radius, radius - s, s, length - s)
+        triangle[row], _, _, _ = tree_hit(vertex, box, depth, body, 0.0, hint, stack, polygon, spare, pieces)
         if triangle[row] >= 0:
             hint = triangle[row]

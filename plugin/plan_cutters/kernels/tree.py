@@ -1,4 +1,7 @@
-"""A bounding tree of boxes over triangles, as a heap: node i has the children 2i + 1 and 2i + 2.
+"""A bounding tree of oriented boxes over triangles, as a heap: node i has the children 2i + 1 and 2i + 2.
+
+Boxes lie flat on the surface: next to a contact, where cutter and surface are nearly tangent, only their thickness
+counts, and it shrinks with the square of their size.
 
 The tree is complete: node j of level k covers the triangles `[n j >> k, n (j + 1) >> k)` of the ordered list, so
 no pointers are kept. Splitting is at the median of the triangles' centres along the longest side of their box.
@@ -36,6 +39,71 @@ def _select(order, key, lo, hi, nth):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def _bound(vertex, order, lo, hi, box):  # type: ignore[no-untyped-def]
+    """Bound `order[lo:hi]` by a box whose third side is along the mean normal."""
+    mean, first, normal = np.zeros(3), np.zeros(3), np.zeros(3)
+    for i in range(lo, hi):
+        v = vertex[order[i]]
+        ax, ay, az = v[1, 0] - v[0, 0], v[1, 1] - v[0, 1], v[1, 2] - v[0, 2]
+        bx, by, bz = v[2, 0] - v[0, 0], v[2, 1] - v[0, 1], v[2, 2] - v[0, 2]
+        normal[0], normal[1], normal[2] = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+        if i == lo:
+            first[:] = normal
+        # Faces may be turned either way: count each normal to the side of the first.
+        side = 1.0 if normal[0] * first[0] + normal[1] * first[1] + normal[2] * first[2] >= 0.0 else -1.0
+        for k in range(3):
+            mean[k] += side * normal[k]
+    size = np.sqrt(mean[0] ** 2 + mean[1] ** 2 + mean[2] ** 2)
+    if size < 1e-100:
+        mean[0], mean[1], mean[2] = 0.0, 0.0, 1.0
+    else:
+        mean /= size
+    # The other sides: across the mean normal, the first along the longest side of the node that allows it.
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for i in range(lo, hi):
+        for corner in range(3):
+            for k in range(3):
+                low[k] = min(low[k], vertex[order[i], corner, k])
+                high[k] = max(high[k], vertex[order[i], corner, k])
+    along, best = 0, -1.0
+    for k in range(3):
+        extent = (high[k] - low[k] + 1e-300) * np.sqrt(max(0.0, 1.0 - mean[k] ** 2))
+        if extent > best:
+            along, best = k, extent
+    axes = np.zeros((3, 3))
+    axes[0, along] = 1.0
+    for k in range(3):
+        axes[0, k] -= mean[along] * mean[k]
+    axes[0] /= np.sqrt(axes[0, 0] ** 2 + axes[0, 1] ** 2 + axes[0, 2] ** 2)
+    axes[2] = mean
+    axes[1, 0] = mean[1] * axes[0, 2] - mean[2] * axes[0, 1]
+    axes[1, 1] = mean[2] * axes[0, 0] - mean[0] * axes[0, 2]
+    axes[1, 2] = mean[0] * axes[0, 1] - mean[1] * axes[0, 0]
+    # Extents from the box's middle, so that far from the origin nothing is lost to rounding.
+    middle = 0.5 * (low + high)
+    low[:], high[:] = np.inf, -np.inf
+    for i in range(lo, hi):
+        for corner in range(3):
+            v = vertex[order[i], corner]
+            for k in range(3):
+                c = (v[0] - middle[0]) * axes[k, 0] + (v[1] - middle[1]) * axes[k, 1] + (v[2] - middle[2]) * axes[k, 2]
+                low[k], high[k] = min(low[k], c), max(high[k], c)
+    square, scale = 0.0, abs(middle[0]) + abs(middle[1]) + abs(middle[2])
+    for k in range(3):
+        box[k] = middle[k]
+        box[3 + k], box[6 + k], box[9 + k] = axes[0, k], axes[1, k], axes[2, k]
+    for k in range(3):
+        # A hair wider, so that rounding cannot leave a corner outside.
+        half = 0.5 * (high[k] - low[k]) * (1 + 1e-12) + 1e-14 * scale
+        centre = 0.5 * (high[k] + low[k])
+        for i in range(3):
+            box[i] += centre * axes[k, i]
+        box[12 + k] = half
+        square += half * half
+    box[15] = np.sqrt(square) * (1 + 1e-12)
+
+
+@kernel
 def build(vertex):  # type: ignore[no-untyped-def]
     """Order triangles and bound them.
 
@@ -48,8 +116,8 @@ def build(vertex):  # type: ignore[no-untyped-def]
     -------
     order : (n,) int32
         Triangles in the order of the tree's leaves.
-    box : (nodes, 7) float64
-        Centre, half sides and half diagonal of each node.
+    box : (nodes, 16) float64
+        Of each node: centre, three unit sides (the last along the mean normal), three half sides, half diagonal.
     depth : int
         Level of the leaves; there are 2 ** depth of them.
     """
@@ -77,29 +145,11 @@ def build(vertex):  # type: ignore[no-untyped-def]
                     axis, longest = k, high - low
             _select(order, centre[axis], lo, hi, (n * (2 * j + 1)) >> (level + 1))
     nodes = (2 << depth) - 1
-    low_high = np.empty((nodes, 6))
-    first = (1 << depth) - 1
-    for j in range(1 << depth):
-        node = first + j
-        low_high[node, :3], low_high[node, 3:] = np.inf, -np.inf
-        for i in range((n * j) >> depth, (n * (j + 1)) >> depth):
-            for corner in range(3):
-                for k in range(3):
-                    c = vertex[order[i], corner, k]
-                    low_high[node, k] = min(low_high[node, k], c)
-                    low_high[node, 3 + k] = max(low_high[node, 3 + k], c)
-    for node in range(first - 1, -1, -1):
-        for k in range(3):
-            low_high[node, k] = min(low_high[2 * node + 1, k], low_high[2 * node + 2, k])
-            low_high[node, 3 + k] = max(low_high[2 * node + 1, 3 + k], low_high[2 * node + 2, 3 + k])
-    box = np.empty((nodes, 7))
+    box = np.empty((nodes, 16))
     for node in range(nodes):
-        square = 0.0
-        for k in range(3):
-            box[node, k] = 0.5 * (low_high[node, k] + low_high[node, 3 + k])
-            # A hair wider, so that rounding the centre cannot leave a corner outside.
-            half = 0.5 * (low_high[node, 3 + k] - low_high[node, k]) * (1 + 1e-14) + 1e-14 * abs(box[node, k])
-            box[node, 3 + k] = half
-            square += half * half
-        box[node, 6] = np.sqrt(square) * (1 + 1e-14)
+        level = 0
+        while (2 << level) - 1 <= node:
+            level += 1
+        j = node - ((1 << level) - 1)
+        _bound(vertex, order, (n * j) >> level, (n * (j + 1)) >> level, box[node])
     return order, box, depth

@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-import cad_io
 from cad_io.arrays import FaceGrid, FaceLabels, Style
+from cad_io.split import split
+from cad_io.write_gltf import write_gltf
+from cad_io.write_step import write_step as write_cad
 from plan_cutters.palette import LABELS, rgb
 from plan_cutters.reach import ACCESSIBLE, FREE, INACCESSIBLE, UNDECIDED, UNJUDGED
 
@@ -55,7 +57,7 @@ def split_result(result: Any) -> Any:
             labels.append(_whole(number, int(label[mine].max())))
         else:
             labels.append(_whole(number, LABELS.index("unjudged")))
-    return cad_io.split(result.part, labels)
+    return split(result.part, labels)
 
 
 def _whole(face: int, label: int) -> FaceLabels:
@@ -69,7 +71,7 @@ def _verdict(piece: Any) -> str:
 
 def write_step(result: Any, split: Any, path: Path) -> None:
     """Write `annotated.step`: each piece a face named `F<number>_<verdict>` with the verdict's colour."""
-    cad_io.write_step(
+    write_cad(
         split, path, lambda p: Style(f"F{p.face}_{_verdict(p)}", rgb(_verdict(p))), product=_product(result)
     )
 
@@ -95,7 +97,7 @@ def write_glb(result: Any, split: Any, path: Path) -> None:
             "unjudged": entry.unjudged,
         }
 
-    cad_io.write_gltf(
+    write_gltf(
         split,
         path,
         lambda p: Style(f"F{p.face}_{_verdict(p)}", rgb(_verdict(p))),

@@ -9,8 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from cad_io import Part, SurfaceSamples, Triangles, locate, orient, read_part, tessellate
+from cad_io import Part, SurfaceSamples, Triangles, read_part
 from cad_io.arrays import Floats
+from cad_io.orient import orient
+from cad_io.sample import locate
+from cad_io.tessellate import tessellate
 from plan_cutters.cutter import Cutter
 from plan_cutters.errors import OptionError
 from plan_cutters.machine import Machine
@@ -23,6 +26,8 @@ _NARROWEST, _NARROWEST_NOMINAL = 1e-4, 1e-5
 _ROOM = 20_000
 #: The nominal answer: first chord error (mm), its share kept at each refinement, rounds, movement of ends (rad) to stop at.
 _FIRST_CHORD, _FINER, _ROUNDS, _SETTLED = 2e-3, 0.2, 6, np.radians(0.01)
+#: More than this are not refined again.
+_TRIANGLES = 600_000
 #: Pieces of obstacles cut at the border between rear gouging and collision are no larger than this share of R.
 _BORDER = 0.02
 
@@ -145,6 +150,8 @@ def posture_map(
         if before is not None and _moved(before, now) < _SETTLED:
             return _map(ask, triangles, 2 * triangles.chord_error + 1e-9, _NARROWEST_NOMINAL, 0.0, settled=True)
         before, chord = now, chord * _FINER
+        if len(triangles) > _TRIANGLES:
+            break
     assert before is not None
     return before
 
@@ -239,7 +246,7 @@ def _moved(a: PostureMap, b: PostureMap) -> float:
 def _by_attribute(triangles: Triangles, p: Floats, n: Floats, radius: float) -> tuple[Triangles, Triangles]:
     """Share obstacles out: within 2R of the contact and above its tangent plane, and all others.
 
-    Triangles across the border are cut in four until they are small; then their centre decides.
+    Triangles across the border are halved until they are small; then their centre decides.
     """
     reach, smallest = 2 * radius, _BORDER * radius
     vertex, face = triangles.vertex, triangles.face
@@ -260,11 +267,12 @@ def _by_attribute(triangles: Triangles, p: Floats, n: Floats, radius: float) -> 
         near.append((vertex[inside], face[inside]))
         far.append((vertex[outside], face[outside]))
         rest = ~inside & ~outside
-        v, face = vertex[rest], np.tile(face[rest], 4)
-        a, b, c = v[:, 0], v[:, 1], v[:, 2]
-        ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
-        corners = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
-        vertex = np.concatenate([np.stack(t, axis=1) for t in corners])
+        # Halve the longest side: long thin triangles come out compact.
+        v, face = vertex[rest], np.tile(face[rest], 2)
+        longest = np.linalg.norm(v - np.roll(v, -1, axis=1), axis=2).argmax(axis=1)
+        a, b, c = (v[np.arange(len(v)), (longest + k) % 3] for k in range(3))
+        middle = (a + b) / 2
+        vertex = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
 
     def gather(parts: list[tuple[Floats, Any]]) -> Triangles:
         return Triangles(np.concatenate([x for x, _ in parts]), np.concatenate([x for _, x in parts]),

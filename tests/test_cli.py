@@ -1,0 +1,196 @@
+"""The command as a user calls it: exit codes, one clear line, nothing half-written."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+ROOT = Path(__file__).parent.parent
+SAMPLES = ROOT / "samples"
+ENV = {**os.environ, "PYTHONPATH": f"{ROOT / 'plugin'}{os.pathsep}{ROOT}"}
+
+
+def run(*words, cwd, timeout=240):
+    return subprocess.run([sys.executable, "-m", "plan_cutters", *map(str, words)], cwd=cwd, env=ENV,
+                          capture_output=True, text=True, timeout=timeout, check=False)  # fmt: skip
+
+
+def assert_one_line(done, code, *words):
+    assert done.returncode == code, done.stderr
+    assert done.stdout == ""
+    lines = done.stderr.strip().splitlines()
+    message = lines[-1]
+    assert message.startswith("plan-cutters: ")
+    for word in words:
+        assert word in message
+    assert "Traceback" not in done.stderr
+    return message
+
+
+def leftovers(folder, *known):
+    return sorted(p.name for p in folder.iterdir() if p.name not in known)
+
+
+def test_help_and_version_do_not_load_the_kernel(tmp_path):
+    done = run("--help", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "R6L80" in done.stdout
+    code = "import sys; sys.argv = ['x', '--help']\nfrom plan_cutters.cli import main\ntry: main()\nexcept SystemExit: pass\n"
+    code += "assert not {'OCP', 'numba', 'scipy', 'numpy', 'pydantic'} & set(sys.modules), sorted(sys.modules)"
+    subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=ENV, check=True, capture_output=True)
+    assert "0.1.0" in run("--version", cwd=tmp_path).stdout
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "cause"),
+    [
+        ("missing.step", None, "missing.step"),
+        ("empty.step", b"", "empty"),
+        ("text.step", b"This is a shopping list.\nMilk\n", "STEP"),
+        ("page.step", b"<!DOCTYPE html><html><body>404</body></html>", "STEP"),
+        ("garbage.igs", bytes(range(256)) * 40, "IGES"),
+        ("part.dwg", b"AC1032\0\0\0", "part.dwg"),
+    ],
+)
+def test_what_cannot_be_read_is_refused_with_its_cause(tmp_path, name, content, cause):
+    if content is not None:
+        (tmp_path / name).write_bytes(content)
+    done = run(name, "--cutter", "R6L80", cwd=tmp_path)
+    assert_one_line(done, 3, name, cause)
+    assert leftovers(tmp_path, name) == []
+
+
+def test_part_without_faces(tmp_path):
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge
+    from OCP.gp import gp_Pnt
+    from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
+
+    writer = STEPControl_Writer()
+    writer.Transfer(BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(1, 0, 0)).Edge(), STEPControl_AsIs)
+    writer.Write(str(tmp_path / "wire.step"))
+    assert_one_line(run("wire.step", cwd=tmp_path), 3, "wire.step", "surface")
+    assert leftovers(tmp_path, "wire.step") == []
+
+
+@pytest.mark.parametrize(
+    ("words", "cause"),
+    [
+        (["--cutter", "X9"], "R6L80"),
+        (["--cutter", "R-6L80"], "positive"),
+        (["--cutter", "R6L0"], "positive"),
+        (["--cutter", "R6L80rc1"], "not judged yet"),
+        (["--cutter", "R6L80rc9"], "corner radius"),
+        (["--tilt", "60:0"], "60:0"),
+        (["--tilt", "0:120"], "0:120"),
+        (["--tilt", "steep"], "MIN:MAX"),
+        (["--rotation", "0:400"], "0:400"),
+        (["--rotation-step", "0"], "rotation step"),
+        (["--machine", "tilt:x"], "tilt:"),
+        (["--machine", "haas"], "haas"),
+        (["--setup", "0,0,0"], "setup"),
+        (["--setup", "up"], "x,y,z"),
+        (["--grid", "1"], "grid"),
+        (["--grid", "5", "--spacing", "1"], "not both"),
+        (["--spacing", "-1"], "spacing"),
+        (["--tolerance", "0"], "tolerance"),
+        (["--faces", "F3"], "--faces"),
+        (["--faces", "7"], "F7"),
+        (["--formats", "pdf"], "pdf"),
+        (["--jobs", "0"], "jobs"),
+        (["--cutters", "shop.tools"], "not read yet"),
+        (["--fixture", "vice.stl"], "not read yet"),
+        (["--allowance", "0.3"], "not judged yet"),
+        (["--holder-clearance", "1"], "not judged yet"),
+        (["--posture-maps"], "not written yet"),
+        (["--cluster", "tcp://x:1"], "not used yet"),
+        (["--nonsense"], "--nonsense"),
+        (["--json", "plan.json"], "standard output"),
+    ],
+)
+def test_wrong_words_are_named(tmp_path, words, cause):
+    done = run(SAMPLES / "v_groove.step", *words, cwd=tmp_path)
+    assert_one_line(done, 2, cause)
+    assert leftovers(tmp_path) == []
+
+
+def test_output_that_cannot_be_written(tmp_path):
+    (tmp_path / "taken").write_text("a file")
+    assert_one_line(run(SAMPLES / "v_groove.step", "-o", "taken", cwd=tmp_path), 2, "taken", "folder")
+    assert_one_line(run(SAMPLES / "v_groove.step", "-o", "taken/inside", cwd=tmp_path), 2, "taken", "write")
+    assert leftovers(tmp_path, "taken") == []
+
+
+def test_the_files_of_a_plan(tmp_path):
+    done = run(SAMPLES / "pocket_top.step", "--cutter", "R3L60", "--cutter", "R40L60", "--spacing", "2.5", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    out = tmp_path / "pocket_top-plan"
+    assert leftovers(tmp_path) == ["pocket_top-plan"]
+    assert leftovers(out) == ["annotated.glb", "annotated.step", "plan.json", "samples.npz"]
+    plan = json.loads((out / "plan.json").read_text())
+    schema = json.loads((ROOT / "plugin/plan_cutters/plan.schema.json").read_text())
+    jsonschema.Draft202012Validator(schema).validate(plan)
+    assert plan["selected"] == "R3L60"
+    assert [c["id"] for c in plan["cutters"]] == ["R40L60", "R3L60"]
+    assert plan["cutters"][0]["feasible"] is False
+    for c in plan["cutters"]:
+        parts = ("interference_free", "accessible", "inaccessible", "undecided", "unjudged")
+        assert sum(c[k] for k in parts) == plan["samples"]["count"]
+        assert sum(c["by_reason"].values()) == c["inaccessible"]
+    assert "R3L60" in done.stderr
+    assert "without a holder" in done.stderr
+    # The last lines say what is not reached, and why.
+    assert "Not reached by R40L60" in done.stderr.strip().splitlines()[-1]
+
+
+def test_two_runs_give_the_same_bytes(tmp_path):
+    words = [SAMPLES / "pocket_top.step", "--cutter", "R4L60", "--grid", "21", "--quiet"]
+    for name, jobs in (("a", 1), ("b", 2)):
+        done = run(*words, "-o", name, "--jobs", jobs, cwd=tmp_path)
+        assert done.returncode == 0
+        assert done.stderr == ""
+    for file in ("annotated.glb", "annotated.step", "samples.npz"):
+        assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes(), file
+    plans = [json.loads((tmp_path / n / "plan.json").read_text()) for n in ("a", "b")]
+    for plan in plans:
+        del plan["run"]
+    assert plans[0] == plans[1]
+
+
+def test_plan_on_standard_output_and_exit_1(tmp_path):
+    done = run(SAMPLES / "v_groove.step", "--cutter", "R8L90", "--grid", "9", "--json", "-", "--machine", "tilt:10", cwd=tmp_path)
+    assert done.returncode == 1
+    plan = json.loads(done.stdout)
+    assert plan["selected"] is None
+    assert leftovers(tmp_path) == []
+
+
+def test_several_parts_the_largest_code(tmp_path):
+    (tmp_path / "bad.step").write_text("no")
+    done = run(SAMPLES / "v_groove.step", "bad.step", "--cutter", "R2L90", "--grid", "9", "--formats", "json", cwd=tmp_path)
+    assert done.returncode == 3
+    assert leftovers(tmp_path, "bad.step") == ["v_groove-plan"]
+    assert "bad.step: plan-cutters: bad.step" in done.stderr
+
+
+def test_an_interrupt_leaves_nothing(tmp_path):
+    process = subprocess.Popen(
+        [sys.executable, "-m", "plan_cutters", str(SAMPLES / "peaks_and_valleys.step"), "--grid", "401"],
+        cwd=tmp_path, env=ENV, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert process.stderr is not None
+    for line in process.stderr:
+        if line.startswith("R12L120"):
+            break
+    time.sleep(0.2)
+    process.send_signal(signal.SIGINT)
+    _, rest = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "Traceback" not in rest
+    assert "interrupted" in rest
+    assert leftovers(tmp_path) == []
