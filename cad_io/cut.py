@@ -12,10 +12,10 @@ from OCP.BRepAlgoAPI import BRepAlgoAPI_Splitter
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepTools import BRepTools
 from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
-from OCP.TopExp import TopExp, TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Iterator, TopoDS_Shape
-from OCP.TopTools import TopTools_IndexedMapOfShape, TopTools_ListOfShape
+from OCP.TopTools import TopTools_ListOfShape
 
+from cad_io.kernel import explore, shape_map
 from cad_io.limited import ChildDied, TimeLimit, limited
 from cad_io.uv_region import uv_area
 
@@ -92,8 +92,7 @@ def _cut(shape: Any, faces: dict[int, Any], edges: dict[int, list[Any]]) -> byte
     if result.ShapeType() == TopAbs_COMPOUND != shape.ShapeType() and len(inner := _children(result)) == 1:
         result = inner[0]
 
-    known = TopTools_IndexedMapOfShape()
-    TopExp.MapShapes_s(result, TopAbs_FACE, known)
+    known = shape_map(result, TopAbs_FACE)
     pieces: dict[int, list[Any]] = {}
     for number, face in faces.items():
         images = list(splitter.Modified(face)) or [face]
@@ -126,14 +125,8 @@ def _wrong(shape: Any, result: Any, faces: dict[int, Any], pieces: dict[int, lis
 
 def _shells(shape: Any) -> tuple[int, list[bool]]:
     """Number of solids; closedness of all shells, sorted."""
-    solids = TopTools_IndexedMapOfShape()
-    TopExp.MapShapes_s(shape, TopAbs_SOLID, solids)
-    closed = []
-    shells = TopExp_Explorer(shape, TopAbs_SHELL)
-    while shells.More():
-        closed.append(bool(BRep_Tool.IsClosed_s(shells.Current())))
-        shells.Next()
-    return solids.Extent(), sorted(closed)
+    closed = [bool(BRep_Tool.IsClosed_s(shell)) for shell in explore(shape, TopAbs_SHELL)]
+    return shape_map(shape, TopAbs_SOLID).Extent(), sorted(closed)
 
 
 def _compound(shapes: list[Any]) -> Any:

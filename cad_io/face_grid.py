@@ -5,13 +5,11 @@ from typing import Any
 import numpy as np
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
-from OCP.TopAbs import TopAbs_EDGE
-from OCP.TopExp import TopExp_Explorer
-from OCP.TopoDS import TopoDS
 from scipy.ndimage import maximum_filter
 
 from cad_io.arrays import FaceLabels, Floats, Ints
 from cad_io.contour import REACH, LabelGrid, fill, without_specks
+from cad_io.kernel import edges_of
 from cad_io.uv_region import outline
 
 #: Curves may end this far past the trim, cells: an end exactly on it could miss the edge it should cut.
@@ -35,8 +33,15 @@ def label_grid(face: Any, labels: FaceLabels) -> tuple[LabelGrid, Ints, int]:
         The labels at the grid's nodes, -1 where unknown.
     dropped : int
         Known nodes that were islands of one node and went to their surroundings.
+
+    Raises
+    ------
+    ValueError
+        The face has no border.
     """
     segments = outline(face)
+    if not len(segments):
+        raise ValueError("the face has no border")
     low, high = segments.min(axis=(0, 1)), segments.max(axis=(0, 1))
     surface = BRep_Tool.Surface_s(face)
     u0, u1, v0, v1 = surface.Bounds()
@@ -87,10 +92,7 @@ def label_grid(face: Any, labels: FaceLabels) -> tuple[LabelGrid, Ints, int]:
 def _poles(face: Any) -> list[tuple[int, float]]:
     """Sides of the parameter plane that are a point in space: (0 for u or 1 for v, the side's parameter)."""
     out = []
-    edges = TopExp_Explorer(face, TopAbs_EDGE)
-    while edges.More():
-        edge = TopoDS.Edge_s(edges.Current())
-        edges.Next()
+    for edge in edges_of(face):
         if BRep_Tool.Degenerated_s(edge):
             curve = BRepAdaptor_Curve2d(edge, face)
             start, stop = (curve.Value(t).Coord() for t in (curve.FirstParameter(), curve.LastParameter()))

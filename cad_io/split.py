@@ -15,7 +15,9 @@ import numpy as np
 from cad_io.arrays import FaceLabels, Ints
 from cad_io.contour import LabelGrid, boundaries
 from cad_io.cut import Cut, cut
+from cad_io.errors import CadIoError
 from cad_io.face_grid import label_grid
+from cad_io.kernel import translated
 from cad_io.surface_edge import surface_edge
 from cad_io.uv_region import inside, interior_point, outline
 
@@ -117,16 +119,19 @@ def split(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 60) -> Sp
         if len(_shares(fields[number].label)) < 2:
             continue
         face = part.face(number)
-        grid, known, specks = label_grid(face, fields[number])
+        try:
+            with translated("drawing label boundaries"):
+                grid, known, specks = label_grid(face, fields[number])
+                drawn = _Work(face, grid, known)
+                drawn.draw(_FITS[0])
+        except (ValueError, CadIoError) as error:
+            whole[number] = str(error)
+            continue
         if specks:
             dropped[number] = specks
-        if grid.field.min() < grid.field.max():
-            work[number] = _Work(face, grid, known)
-            try:
-                work[number].draw(_FITS[0])
-            except ValueError as error:
-                whole[number] = str(error)
-    found = _search(part, work, whole, seconds) if len(work) > len(whole) else None
+        if drawn.edges:
+            work[number] = drawn
+    found = _search(part, work, whole, seconds) if work else None
     pieces: list[Piece] = []
     for info in part.faces:
         number = info.number
@@ -152,14 +157,15 @@ def _search(part: Any, work: dict[int, _Work], whole: dict[int, str], seconds: f
 
     def redraw(number: int, fit: float) -> bool:
         try:
-            work[number].draw(fit)
-        except ValueError:
+            with translated("drawing label boundaries"):
+                work[number].draw(fit)
+        except (ValueError, CadIoError):
             return False
         return True
 
     best = None
     done: list[int] = []
-    groups = [[n for n in work if n not in whole]]
+    groups = [list(work)]
     while groups:
         group = groups.pop()
         tries: list[Callable[[], bool]] = [lambda: True]

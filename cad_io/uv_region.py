@@ -12,11 +12,11 @@ from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from OCP.GeomAbs import GeomAbs_CN, GeomAbs_Line
 from OCP.gp import gp_Pnt2d, gp_Vec2d
 from OCP.TColStd import TColStd_Array1OfReal
-from OCP.TopAbs import TopAbs_EDGE, TopAbs_FORWARD, TopAbs_REVERSED
-from OCP.TopExp import TopExp_Explorer
+from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopoDS import TopoDS
 
 from cad_io.arrays import Floats
+from cad_io.kernel import edges_of
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)  # exact for polynomial curves up to degree 6
 _CHORDS = 4  # of an interval, in an outline
@@ -83,10 +83,7 @@ def _boundary(face: Any) -> list[tuple[Any, Floats, float]]:
     """Boundary curves in (u, v), the ends (k + 1,) of their smooth intervals, +1 or -1 for their direction."""
     forward = TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
     out = []
-    edges = TopExp_Explorer(forward, TopAbs_EDGE)
-    while edges.More():
-        edge = TopoDS.Edge_s(edges.Current())
-        edges.Next()
+    for edge in edges_of(forward):
         if edge.Orientation() not in (TopAbs_FORWARD, TopAbs_REVERSED):
             continue
         curve = BRepAdaptor_Curve2d(edge, forward)
