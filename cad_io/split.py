@@ -1,20 +1,21 @@
 """Faces split along the boundaries of labels on them; all other faces stay, and so do solids, shells and gaps.
 
-All boundary curves of all faces cut the part in one call of the kernel. The result is accepted by checks of our own; if
-it fails them, the faces that spoil it are found by halving, tried with other curves and, as a last resort, left whole.
+A boundary is drawn in the face's parameter plane (`contour`), laid on its surface (`surface_edge`), and cuts the part
+together with all others (`cut_faces`). Results are accepted by checks of our own (`cut`); a face that cannot be cut is
+left whole, and that is said.
 """
 
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter, minimum_filter
 
-from cad_io.arrays import FaceLabels, Ints
+from cad_io.arrays import FaceLabels, Floats, Ints
 from cad_io.contour import LabelGrid, boundaries
-from cad_io.cut import Cut, cut
+from cad_io.cut_faces import FITS, cut_faces
 from cad_io.errors import CadIoError
 from cad_io.face_grid import label_grid
 from cad_io.kernel import translated
@@ -24,8 +25,8 @@ from cad_io.uv_region import inside, interior_point, outline
 #: Label of a piece about which nothing is known, and of a face left whole although its labels differ.
 UNKNOWN, MIXED = -1, -2
 
-#: Fits tried for the boundary curves, cells of root mean square distance.
-_FITS = (0.1, 0.05, 0.2)
+#: Share of the nodes off the boundary that may end up in a piece of another label.
+_ASTRAY = 0.01
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,8 +82,52 @@ class _Work:
     known: Ints
     edges: list[Any] = field(default_factory=list)
 
-    def draw(self, fit: float) -> None:
-        self.edges = [surface_edge(self.face, spline) for spline in boundaries(self.grid, fit)]
+    def draw(self, fit: float) -> str:
+        """Draw the boundary; why that is not possible, or nothing."""
+        try:
+            with translated("drawing label boundaries"):
+                self.edges = [surface_edge(self.face, spline) for spline in boundaries(self.grid, fit)]
+        except (ValueError, CadIoError) as error:
+            return str(error)
+        return ""
+
+    def differs(self, pieces: list[Any]) -> str:
+        """Whether too many nodes off the boundary lie in a piece of another label: a curve did not cut."""
+        field, closed = self.grid.field, (self.grid.closed_u, self.grid.closed_v)
+        modes = ["wrap" if c else "nearest" for c in closed]
+        calm = maximum_filter(field, 3, mode=modes) == minimum_filter(field, 3, mode=modes)
+        calm &= self.known >= 0
+        astray = 0
+        for shape in pieces:
+            ranks = field[calm & self.within(outline(shape))]
+            astray += len(ranks) - np.bincount(ranks, minlength=1).max()
+        if astray > _ASTRAY * calm.sum():
+            return f"{astray} of {calm.sum()} nodes end up in a piece of another label"
+        return ""
+
+    def within(self, segments: Floats) -> NDArray[np.bool_]:
+        """Nodes (nu, nv) inside an outline, also one that lies whole periods off the grid."""
+        nu, nv = self.known.shape
+        found = np.zeros((nu, nv), bool)
+        for du in _turns(segments[..., 0], self.grid.u, self.grid.closed_u):
+            for dv in _turns(segments[..., 1], self.grid.v, self.grid.closed_v):
+                found |= inside(segments - (du, dv), self.grid.u[:nu], self.grid.v[:nv])
+        return found
+
+    def labelled(self, number: int, shape: Any) -> Piece:
+        """A piece with the label of the nodes inside it, or of the nearest one (in cells)."""
+        segments = outline(shape)
+        shares = _shares(self.known[self.within(segments)])
+        if shares:
+            return Piece(number, max(shares, key=lambda k: shares[k]), shape, shares)
+        at = list(interior_point(segments))
+        for axis, (line, closed) in enumerate(((self.grid.u, self.grid.closed_u), (self.grid.v, self.grid.closed_v))):
+            if closed:
+                at[axis] = line[0] + (at[axis] - line[0]) % (line[-1] - line[0])
+            at[axis] = float(np.interp(at[axis], line, np.arange(len(line))))
+        i, j = np.nonzero(self.known >= 0)
+        nearest = int(np.argmin(np.hypot(i - at[0], j - at[1])))
+        return Piece(number, int(self.known[i[nearest], j[nearest]]), shape)
 
 
 def split(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 60) -> Split:
@@ -115,105 +160,42 @@ def split(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 60) -> Sp
     whole: dict[int, str] = {}
     dropped: dict[int, int] = {}
     work: dict[int, _Work] = {}
+    faces = {info.number: part.face(info.number) for info in part.faces}
     for number in sorted(fields):
         if len(_shares(fields[number].label)) < 2:
             continue
-        face = part.face(number)
         try:
-            with translated("drawing label boundaries"):
-                grid, known, specks = label_grid(face, fields[number])
-                drawn = _Work(face, grid, known)
-                drawn.draw(_FITS[0])
+            with translated("reading the face's border"):
+                grid, known, specks = label_grid(faces[number], fields[number])
         except (ValueError, CadIoError) as error:
             whole[number] = str(error)
             continue
         if specks:
             dropped[number] = specks
-        if drawn.edges:
+        drawn = _Work(faces[number], grid, known)
+        reason = drawn.draw(FITS[0])
+        if reason:
+            whole[number] = reason
+        elif drawn.edges:
             work[number] = drawn
-    found = _search(part, work, whole, seconds) if work else None
+    shape, shapes = part.shape, {number: [face] for number, face in faces.items()}
+    if work:
+        shape, shapes, failed = cut_faces(part.shape, faces, dict(work), seconds)
+        whole |= failed
     pieces: list[Piece] = []
-    for info in part.faces:
-        number = info.number
-        shapes = [part.face(number)] if found is None else found.pieces[number]
+    for number in faces:
         shares = _shares(fields[number].label) if number in fields else {}
         if number in work and number not in whole:
-            pieces += [_labelled(number, shape, work[number]) for shape in shapes]
+            pieces += [work[number].labelled(number, piece) for piece in shapes[number]]
         else:
             label = MIXED if number in whole else max(shares, key=lambda k: shares[k], default=UNKNOWN)
-            pieces += [Piece(number, label, shape, shares) for shape in shapes]
-    return Split(part.shape if found is None else found.shape, tuple(pieces), whole, dropped)
-
-
-def _search(part: Any, work: dict[int, _Work], whole: dict[int, str], seconds: float) -> Cut | None:
-    """The cut with the most faces that passes the checks; faces that had to be left out are added to `whole`."""
-    deadline = time.monotonic() + seconds
-    faces = {info.number: part.face(info.number) for info in part.faces}
-
-    def attempt(numbers: list[int]) -> Cut | str:
-        edges = {n: work[n].edges for n in numbers}
-        # Half of what is left, so that one endless call does not cost all faces their turn.
-        return cut(part.shape, faces, edges, 0.5 * (deadline - time.monotonic()))
-
-    def redraw(number: int, fit: float) -> bool:
-        try:
-            with translated("drawing label boundaries"):
-                work[number].draw(fit)
-        except (ValueError, CadIoError):
-            return False
-        return True
-
-    best = None
-    done: list[int] = []
-    groups = [list(work)]
-    while groups:
-        group = groups.pop()
-        tries: list[Callable[[], bool]] = [lambda: True]
-        if len(group) == 1:
-            tries += [partial(redraw, group[0], fit) for fit in _FITS[1:]]
-        reason = ""
-        for prepare in tries:
-            found = attempt(done + group) if prepare() else "its boundary cannot be drawn"
-            if isinstance(found, Cut):
-                best, done = found, done + group
-                break
-            reason = reason or found
-        else:
-            if len(group) == 1:
-                whole[group[0]] = reason
-            else:
-                half = len(group) // 2
-                groups += [group[half:], group[:half]]
-    return best
+            pieces += [Piece(number, label, piece, shares) for piece in shapes[number]]
+    return Split(shape, tuple(pieces), whole, dropped)
 
 
 def _shares(label: Ints) -> dict[int, float]:
     value, count = np.unique(label[label >= 0], return_counts=True)
     return {int(k): float(n / count.sum()) for k, n in zip(value, count, strict=True)}
-
-
-def _labelled(number: int, shape: Any, work: _Work) -> Piece:
-    """A piece with the label of the nodes inside it."""
-    segments = outline(shape)
-    nu, nv = work.known.shape
-    u, v = work.grid.u[:nu], work.grid.v[:nv]
-    within = np.zeros((nu, nv), bool)
-    for du in _turns(segments[..., 0], work.grid.u, work.grid.closed_u):
-        for dv in _turns(segments[..., 1], work.grid.v, work.grid.closed_v):
-            within |= inside(segments - (du, dv), u, v)
-    shares = _shares(work.known[within])
-    if shares:
-        return Piece(number, max(shares, key=lambda k: shares[k]), shape, shares)
-    # Nearest in cells, among known nodes.
-    at_u, at_v = interior_point(segments)
-    if work.grid.closed_u:
-        at_u = u[0] + (at_u - u[0]) % (work.grid.u[-1] - u[0])
-    if work.grid.closed_v:
-        at_v = v[0] + (at_v - v[0]) % (work.grid.v[-1] - v[0])
-    i, j = np.nonzero(work.known >= 0)
-    away = np.hypot(i - np.interp(at_u, u, np.arange(nu)), j - np.interp(at_v, v, np.arange(nv)))
-    k = int(np.argmin(away))
-    return Piece(number, int(work.known[i[k], j[k]]), shape)
 
 
 def _turns(segments: Any, line: Any, closed: bool) -> list[float]:

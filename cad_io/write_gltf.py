@@ -128,7 +128,7 @@ def _mesh(face: Any, meshed: Any) -> _Mesh | None:
     if face.Orientation() == TopAbs_REVERSED:
         triangle, normal = triangle[:, ::-1], -normal
     # Corners that are one point in 32 bits make a triangle without a normal or an inside.
-    corner = np.float32(point * _METRE)[triangle]
+    corner = (point * _METRE).astype(np.float32)[triangle]
     facet = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]).astype(float)
     kept = (facet**2).sum(1) > 0
     triangle, facet = triangle[kept], facet[kept]

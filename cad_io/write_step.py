@@ -18,12 +18,13 @@ from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDocStd import TDocStd_Document
 from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
-from OCP.TopoDS import TopoDS_Compound, TopoDS_Shell
+from OCP.TopoDS import TopoDS_Shell
 from OCP.TopTools import TopTools_IndexedMapOfShape
 from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
 
 from cad_io.arrays import Style
 from cad_io.aside import aside
+from cad_io.components import compound
 from cad_io.errors import WriteError
 from cad_io.kernel import explore, shape_map, silence, translated
 from cad_io.split import Piece, Split
@@ -107,18 +108,12 @@ def _product(split: Split) -> Any:
 
     Pieces of a face that stands in no shell get a shell of their own, or readers would see them as separate surfaces.
     """
-    compound, builder = TopoDS_Compound(), BRep_Builder()
-    builder.MakeCompound(compound)
     loose = TopTools_IndexedMapOfShape()
     for face in explore(split.shape, TopAbs_FACE, TopAbs_SHELL):
         loose.Add(face)
     if loose.IsEmpty():
-        builder.Add(compound, split.shape)
-        return compound
-    for solid in explore(split.shape, TopAbs_SOLID):
-        builder.Add(compound, solid)
-    for shell in explore(split.shape, TopAbs_SHELL, TopAbs_SOLID):
-        builder.Add(compound, shell)
+        return compound([split.shape])
+    builder = BRep_Builder()
     shells: dict[int, Any] = {}
     for piece in split.pieces:
         if loose.Contains(piece.shape):
@@ -126,9 +121,8 @@ def _product(split: Split) -> Any:
                 shells[piece.face] = TopoDS_Shell()
                 builder.MakeShell(shells[piece.face])
             builder.Add(shells[piece.face], piece.shape)
-    for shell in shells.values():
-        builder.Add(compound, shell)
-    return compound
+    solids, others = explore(split.shape, TopAbs_SOLID), explore(split.shape, TopAbs_SHELL, TopAbs_SOLID)
+    return compound([*solids, *others, *shells.values()])
 
 
 def _head(model: Any, product: str) -> None:

@@ -1,0 +1,158 @@
+"""Cut all faces that can be cut: everything in one go, and only where that fails, less and less at a time."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Sewing
+from OCP.TopAbs import TopAbs_FACE
+from OCP.TopoDS import TopoDS
+
+from cad_io.components import components, compound
+from cad_io.cut import FUZZY, Cut, Job, cut
+from cad_io.kernel import faces as faces_of
+from cad_io.kernel import shape_map
+
+#: Fits of the drawn curves that are tried, cells of root mean square distance; the first one first.
+FITS = (0.1, 0.05, 0.2)
+
+
+class Drawing(Protocol):
+    """Edges on a face that are to cut it."""
+
+    edges: list[Any]
+
+    def draw(self, fit: float) -> str:
+        """Draw the edges anew; why that is not possible, or nothing."""
+
+    def differs(self, pieces: list[Any]) -> str:
+        """Why these pieces are not what was asked for, or nothing."""
+
+
+@dataclass(slots=True)
+class _Unit:
+    """A component of the part with its faces by number, and how far it is."""
+
+    shape: Any
+    faces: dict[int, Any]
+    done: list[int] = field(default_factory=list)
+    cut: Cut | None = None
+
+
+def cut_faces(
+    shape: Any, faces: dict[int, Any], drawings: dict[int, Drawing], seconds: float
+) -> tuple[Any, dict[int, list[Any]], dict[int, str]]:
+    """Cut faces of a shape along the edges drawn on them.
+
+    Components of the shape (solids, shells, loose faces) are cut one by one. Where the cut of a component fails, its
+    faces are halved until the ones that spoil it are found; those are tried with other curves.
+
+    Parameters
+    ----------
+    shape : TopoDS_Shape
+    faces : dict
+        Number -> TopoDS_Face, all faces of the shape.
+    drawings : dict
+        Number -> Drawing, of the faces to cut; drawn.
+    seconds : float
+        Limit for the kernel's work.
+
+    Returns
+    -------
+    shape : TopoDS_Shape
+        Components that were cut are copies; the shape itself if there is none.
+    pieces : dict
+        Number -> list of TopoDS_Face, all faces.
+    failed : dict
+        Number -> why a face was not cut.
+    """
+    deadline = time.monotonic() + seconds
+    units = _units(shape, faces)
+    failed: dict[int, str] = {}
+
+    def attempt(jobs: list[Job], numbers: list[list[int]]) -> list[Cut | str]:
+        # Half of what is left, so that one endless call does not cost all faces their turn.
+        found = cut(jobs, 0.5 * (deadline - time.monotonic()))
+        for i, mine in enumerate(numbers):
+            result = found[i]
+            if isinstance(result, Cut):
+                reasons = [drawings[n].differs(result.pieces[n]) for n in mine]
+                found[i] = next(filter(None, reasons), result)
+        return found
+
+    def job(shape: Any, faces: dict[int, Any], numbers: list[int]) -> Job:
+        return Job(shape, faces, [edge for n in numbers for edge in drawings[n].edges])
+
+    asked = [(unit, [n for n in unit.faces if n in drawings]) for unit in units]
+    asked = [(unit, numbers) for unit, numbers in asked if numbers]
+    jobs = [job(unit.shape, unit.faces, numbers) for unit, numbers in asked]
+    found = attempt(jobs, [numbers for _, numbers in asked])
+    for (unit, numbers), result in zip(asked, found, strict=True):
+        if isinstance(result, Cut):
+            unit.cut, unit.done = result, numbers
+        else:
+            failed |= _rescue(unit, numbers, drawings, lambda s, f, n: attempt([job(s, f, n)], [n])[0])
+
+    pieces = {number: [face] for number, face in faces.items()}
+    for unit in units:
+        if unit.cut:
+            pieces |= unit.cut.pieces
+    if not any(unit.cut for unit in units):
+        return shape, pieces, failed
+    shapes = [unit.cut.shape if unit.cut else unit.shape for unit in units]
+    return shapes[0] if len(shapes) == 1 else compound(shapes), pieces, failed
+
+
+def _units(shape: Any, faces: dict[int, Any]) -> list[_Unit]:
+    numbers = list(faces)
+    known = shape_map(shape, TopAbs_FACE)
+    units = []
+    for part in components(shape):
+        mine = {numbers[known.FindIndex(face) - 1]: face for face in faces_of(part)}
+        units.append(_Unit(part, mine))
+    return units
+
+
+def _bases(unit: _Unit) -> list[tuple[Any, dict[int, Any]]]:
+    """Shapes to try the cut on, with their faces by number."""
+    bases = [(unit.shape, unit.faces)]
+    if unit.shape.ShapeType() == TopAbs_FACE:
+        # IGES closes a face with two edges in one place; the kernel splits it only with a true seam.
+        sewing = BRepBuilderAPI_Sewing(FUZZY)
+        sewing.Add(unit.shape)
+        sewing.Perform()
+        sewn = sewing.SewedShape()
+        if sewn.ShapeType() == TopAbs_FACE:
+            bases.append((sewn, {n: TopoDS.Face_s(sewn) for n in unit.faces}))
+    return bases
+
+
+def _rescue(
+    unit: _Unit,
+    numbers: list[int],
+    drawings: dict[int, Drawing],
+    attempt: Callable[[Any, dict[int, Any], list[int]], Cut | str],
+) -> dict[int, str]:
+    """Cut as many of the faces as possible; why the others were not cut."""
+    failed: dict[int, str] = {}
+    bases = _bases(unit)
+    groups = [numbers]
+    while groups:
+        group = groups.pop()
+        alone = len(group) == 1
+        reason = ""
+        for base, fit in [(b, f) for f in FITS for b in bases] if alone else [(bases[0], FITS[0])]:
+            undrawn = drawings[group[0]].draw(fit) if alone else ""
+            found = undrawn or attempt(*base, unit.done + group)
+            if isinstance(found, Cut):
+                unit.cut, unit.done = found, unit.done + group
+                break
+            reason = reason or found
+        else:
+            if alone:
+                failed[group[0]] = reason
+            else:
+                half = len(group) // 2
+                groups += [group[half:], group[:half]]
+    return failed
