@@ -4,7 +4,7 @@ The seed's Fig. 7, with a list of intervals at each rotation in place of one pai
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -139,16 +139,16 @@ def posture_map(
         triangles = tessellate(whole, 0.2 * tolerance)
         tolerance = max(tolerance, 4 * triangles.chord_error)
         safe, _ = Obstacles(triangles).depths(tolerance)
-        return _map(ask, triangles, safe, _NARROWEST, tolerance, settled=True)
+        return _map(ask, triangles, safe, _NARROWEST, tolerance)
     chord = min(_FIRST_CHORD, 1e-3 * cutter.radius)
     before: PostureMap | None = None
     for _ in range(_ROUNDS):
         triangles = tessellate(whole, chord)
         # Twice the chord error: next to the contact, where the true clearance is zero, triangles must not count,
         # local gouging does.
-        now = _map(ask, triangles, 2 * triangles.chord_error + 1e-9, _NARROWEST_NOMINAL, 0.0, settled=False)
+        now = _map(ask, triangles, 2 * triangles.chord_error + 1e-9, _NARROWEST_NOMINAL, 0.0)
         if before is not None and _moved(before, now) < _SETTLED:
-            return _map(ask, triangles, 2 * triangles.chord_error + 1e-9, _NARROWEST_NOMINAL, 0.0, settled=True)
+            return replace(now, settled=True)
         before, chord = now, chord * _FINER
         if len(triangles) > _TRIANGLES:
             break
@@ -171,7 +171,7 @@ def _lean(normal: Floats, direction_max: Floats, rotation: float) -> Floats:
 
 
 def _map(
-    ask: _Ask, triangles: Triangles, depth_allowed: float, narrowest: float, tolerance: float, *, settled: bool
+    ask: _Ask, triangles: Triangles, depth_allowed: float, narrowest: float, tolerance: float
 ) -> PostureMap:
     from plan_cutters.kernels.maps import FORBIDDEN, OPEN, UNSURE, free_tilts
     from plan_cutters.kernels.points import axis_intervals, local_gouge_bound
@@ -210,7 +210,7 @@ def _map(
         rotations=ask.rotations, free=tuple(free), undecided=tuple(undecided), local_gouge=gouge,
         rear_gouge=tuple(rear), collision=tuple(collision), axis_limit=tuple(axis), point=p, normal=n,
         direction_max=e1, curvature=contact.curvature[0], tolerance=tolerance, certified=tolerance > 0,
-        chord_error=triangles.chord_error, settled=settled,
+        chord_error=triangles.chord_error, settled=tolerance > 0,
     )  # fmt: skip
 
 

@@ -7,8 +7,9 @@ axis to P along x_T, its radius, and the two heights between which it is solid, 
 The clever part: a triangle cut off at the two heights is a convex polygon, and it meets the cylinder exactly when
 its shadow along the axis comes nearer to the axis than the radius. No subdivision, no trigonometry, no tolerance.
 
-`rate` widens the body by `rate * |Q - P|` at a point Q. Turning the tool by at most `rate` about any line through P
-moves Q by no more than that in the tool's frame, so a miss with `rate` is a miss at every posture within that turn.
+`rate` widens the body, at a point Q, by `rate` times the distance of Q from the line through P along y_T. Tilting turns
+the tool about that line, and turning by at most `rate` moves Q by no more than that in the tool's frame: a miss with
+`rate` is a miss at every tilt within that turn.
 """
 
 import numpy as np
@@ -45,9 +46,11 @@ def _box_apart(box, i, body, rate):  # type: ignore[no-untyped-def]
     dx, dy, dz = box[i, 0] - body[0], box[i, 1] - body[1], box[i, 2] - body[2]
     diagonal = box[i, 15]
     grow = 0.0
-    if rate > 0.0:
-        grow = rate * (np.sqrt(dx * dx + dy * dy + dz * dz) + diagonal)
     height = dx * body[3] + dy * body[4] + dz * body[5]
+    across = dx * body[6] + dy * body[7] + dz * body[8]
+    if rate > 0.0:
+        grow = rate * (np.sqrt(height * height + across * across) + diagonal)
+    across += body[OFFSET]
     low, high = body[LOW] - grow, body[HIGH] + grow
     if height + diagonal < low or height - diagonal > high:
         return True
@@ -55,7 +58,6 @@ def _box_apart(box, i, body, rate):  # type: ignore[no-untyped-def]
         reach = _half_width(box, i, body[3], body[4], body[5])
         if height + reach < low or height - reach > high:
             return True
-    across = dx * body[6] + dy * body[7] + dz * body[8] + body[OFFSET]
     along = dx * body[9] + dy * body[10] + dz * body[11]
     square = across * across + along * along
     radius = body[RADIUS] + grow
@@ -153,11 +155,12 @@ def triangle_hit(vertex, i, body, rate, polygon, spare):  # type: ignore[no-unty
         dy = vertex[i, corner, 1] - body[1]
         dz = vertex[i, corner, 2] - body[2]
         height = dx * body[3] + dy * body[4] + dz * body[5]
+        across = dx * body[6] + dy * body[7] + dz * body[8]
         polygon[corner, 0] = height
-        polygon[corner, 1] = dx * body[6] + dy * body[7] + dz * body[8] + body[OFFSET]
+        polygon[corner, 1] = across + body[OFFSET]
         polygon[corner, 2] = dx * body[9] + dy * body[10] + dz * body[11]
         if rate > 0.0:
-            grow = max(grow, rate * np.sqrt(dx * dx + dy * dy + dz * dz))
+            grow = max(grow, rate * np.sqrt(height * height + across * across))
         least, most = min(least, height), max(most, height)
     low, high, radius = low - grow, high + grow, radius + grow
     if most <= low or least >= high or radius <= 0.0 or high <= low:
@@ -195,7 +198,7 @@ def triangle_hit(vertex, i, body, rate, polygon, spare):  # type: ignore[no-unty
 
 @inlined
 def _swept_hit(vertex, i, body, rate, polygon, spare, pieces):  # type: ignore[no-untyped-def]
-    """`triangle_hit` with a rate, for triangles that reach from near the contact to far from it.
+    """`triangle_hit` with a rate, for triangles that reach from near the line of turning to far from it.
 
     The widening is that of the farthest corner; where this hits, the longest side is halved until the widening is
     about the same all over the piece.
@@ -209,14 +212,18 @@ def _swept_hit(vertex, i, body, rate, polygon, spare, pieces):  # type: ignore[n
         hit, _, _, _ = triangle_hit(pieces, top, body, rate, polygon, spare)
         if not hit:
             continue
+        # Distances from the line of turning: only they make the widening differ over the piece.
         farthest, longest, side = 0.0, -1.0, 0
         for corner in range(3):
-            other = corner + 1 if corner < 2 else 0
-            away, length = 0.0, 0.0
+            height, across = 0.0, 0.0
             for k in range(3):
-                away += (pieces[top, corner, k] - body[k]) ** 2
-                length += (pieces[top, corner, k] - pieces[top, other, k]) ** 2
-            farthest = max(farthest, away)
+                height += (pieces[top, corner, k] - body[k]) * body[3 + k]
+                across += (pieces[top, corner, k] - body[k]) * body[6 + k]
+            spare[corner, 0], spare[corner, 1] = height, across
+            farthest = max(farthest, height * height + across * across)
+        for corner in range(3):
+            other = corner + 1 if corner < 2 else 0
+            length = (spare[corner, 0] - spare[other, 0]) ** 2 + (spare[corner, 1] - spare[other, 1]) ** 2
             if length > longest:
                 longest, side = length, corner
         if longest <= 0.04 * farthest or rate * np.sqrt(farthest) < 1e-9 or top + 2 > len(pieces):
