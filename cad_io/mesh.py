@@ -21,6 +21,10 @@ from cad_io.kernel import edges_of
 from cad_io.part import Part, as_one
 
 
+#: How far a border curve may pass a mesh's nodes, as a share of its length in the parameter plane.
+_FITS = 1e-4
+
+
 class BorderCurve(NamedTuple):
     """One edge use in a mesh: nodes (k,) along it, their parameters (k,), and the parameter curve."""
 
@@ -76,7 +80,18 @@ def _taken(face: TopoDS_Face) -> UVMesh | None:
             continue
         count = range(1, polygon.NbNodes() + 1)
         nodes = np.array([polygon.Node(i) for i in count], dtype=np.int32) - 1
-        border.append(
-            BorderCurve(nodes, np.array([polygon.Parameter(i) for i in count]), BRepAdaptor_Curve2d(edge, forward))
-        )
+        parameter = np.array([polygon.Parameter(i) for i in count])
+        # A seam has two curves, and the mesher does not always give each its own polygon: take the one that fits.
+        fitting = [
+            curve
+            for use in (edge, TopoDS.Edge_s(edge.Reversed()))
+            if _runs_through(curve := BRepAdaptor_Curve2d(use, forward), parameter, uv[nodes])
+        ]
+        if fitting:
+            border.append(BorderCurve(nodes, parameter, fitting[0]))
     return UVMesh(uv, corner, tuple(border))
+
+
+def _runs_through(curve: BRepAdaptor_Curve2d, parameter: Floats, uv: Floats) -> bool:
+    there = np.array([curve.Value(t).Coord() for t in parameter.tolist()])
+    return bool(np.abs(there - uv).max() <= _FITS * max(float(np.ptp(uv, axis=0).max()), 1e-12))

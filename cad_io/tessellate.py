@@ -1,0 +1,139 @@
+"""Triangles close to a part's surface, with the distance measured, not wished.
+
+The kernel's mesher gives a start: triangles in each face's parameter plane. Every triangle is then measured against
+the true surface at points of its edges and its inside, border edges against the true border curve, and what is too far
+is split there. Neighbours may be split differently: the result is a soup, each of whose triangles is near the surface.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from cad_io.arrays import Floats, Triangles
+from cad_io.kernel import translated
+from cad_io.mesh import UVMesh, uv_meshes
+from cad_io.part import Part
+from cad_io.soup import Indices, Soup
+
+#: Measured distances count this much larger, for what lies between the points measured.
+MARGIN = 1.05
+#: The start is asked of the kernel's mesher this much coarser than wanted: splitting is quicker.
+_COARSER = 16.0
+_ANGLE = 0.5
+_LEVELS = 24
+#: A face is missing if more than this share of it has no triangles.
+_UNCOVERED = 0.01
+
+
+def tessellate(
+    part: Part, chord: float, *, budget: int = 2_000_000, faces: Sequence[int] | None = None
+) -> Triangles:  # fmt: skip
+    """Triangles whose distance from the surface is at most `chord`.
+
+    Parameters
+    ----------
+    part : Part
+        Any mesh that its shape carries is removed.
+    chord : float
+        mm, positive.
+    budget : int
+        Most triangles. Where it binds, the farthest are split first, and `chord_error` says what was reached.
+    faces : sequence of int, optional
+        Face numbers; default all.
+
+    Returns
+    -------
+    Triangles
+        `chord_error` is measured from points of the surface to the triangles, and from points of the faces' borders
+        to the triangles' borders, with a margin for what lies between these points.
+    """
+    if not chord > 0:
+        raise ValueError(f"the chord error must be positive, not {chord}")
+    numbers = list(faces) if faces is not None else [f.number for f in part.faces]
+    missing = {n: str(part.faces[n - 1].unjudged) for n in numbers if part.faces[n - 1].unjudged is not None}
+    wanted = [n for n in numbers if n not in missing]
+    with translated("meshing", file=part.file):
+        meshes = _start(part, wanted, chord, budget)
+        missing.update({n: "the kernel's mesher fails on it" for n in wanted if n not in meshes})
+        done = _refined(part, meshes, chord / MARGIN, budget)
+    missing.update(_uncovered(part, done, chord))
+    whole = np.isfinite(done.vertex).all(axis=(1, 2)) & np.isfinite(done.off)
+    missing.update({int(n): "its surface cannot be evaluated everywhere" for n in np.unique(done.face[~whole])})
+    return Triangles(
+        vertex=done.vertex[whole],
+        face=done.face[whole].astype(np.int32),
+        chord_error=MARGIN * float(done.off[whole].max(initial=0.0)),
+        missing=tuple(sorted(missing.items())),
+    )
+
+
+class _Done(NamedTuple):
+    """Finished triangles: corners in mm and in the parameter plane, face, measured distance."""
+
+    vertex: Floats
+    uv: Floats
+    face: Indices
+    off: Floats
+
+
+def _start(part: Part, wanted: Sequence[int], chord: float, budget: int) -> dict[int, UVMesh]:
+    """The kernel's triangles; coarser where they would take the whole budget, finer where a face gets none."""
+    if not wanted:
+        return {}
+    deflection, size = _COARSER * chord, float(np.linalg.norm(part.size))
+    meshes = uv_meshes(part, wanted, deflection, _ANGLE)
+    while sum(len(m.corner) for m in meshes.values()) > budget and deflection < size:
+        deflection *= 4
+        meshes = uv_meshes(part, wanted, deflection, 2 * _ANGLE)
+    for number in wanted:
+        if number not in meshes:
+            meshes.update(uv_meshes(part, [number], 0.1 * chord, 0.2 * _ANGLE))
+    return meshes
+
+
+def _refined(part: Part, meshes: Mapping[int, UVMesh], chord: float, budget: int) -> _Done:
+    """Split until every triangle is within `chord` or the budget is spent."""
+    soup = Soup(part, meshes)
+    finished: list[_Done] = []
+    count = 0
+    for level in range(_LEVELS + 1):
+        edge_off = soup.edge_off(chord)
+        off, marked = edge_off.max(axis=1), edge_off > chord
+        # Edges near enough: look inside. What is too far there is split at all its edges.
+        near = np.flatnonzero(~marked.any(axis=1))
+        off[near] = np.maximum(off[near], soup.inner_off(near))
+        marked[near[off[near] > chord]] = True
+        grow = marked.sum(axis=1)
+        if level == _LEVELS:
+            marked[:] = False
+        elif count + len(soup) + grow.sum() > budget:
+            worst = np.argsort(-off, kind="stable")
+            spent = np.cumsum(grow[worst]) > budget - count - len(soup)
+            marked[worst[spent]] = False
+        split = marked.any(axis=1)
+        finished.append(_Done(soup.point[soup.corner[~split]], soup.uv[soup.corner[~split]], soup.face[~split], off[~split]))
+        count += int((~split).sum())
+        if not split.any():
+            break
+        soup.keep(split)
+        soup.split(marked[split])
+    return _Done(*(np.concatenate(columns) for columns in zip(*finished, strict=True)))
+
+
+def _uncovered(part: Part, done: _Done, chord: float) -> dict[int, str]:
+    """Faces whose triangles leave out more than a sliver, by the area in the parameter plane."""
+    a, b = done.uv[:, 1] - done.uv[:, 0], done.uv[:, 2] - done.uv[:, 0]
+    area = 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    found: dict[int, str] = {}
+    for number in np.unique(done.face).tolist():
+        trim = part.trim(number)
+        if trim is None or not trim.closed:
+            continue
+        p, q = trim.segments[:, 0], trim.segments[:, 1]
+        whole = abs(0.5 * float((p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]).sum()))
+        left = 1.0 - float(area[done.face == number].sum()) / whole if whole > 0 else 0.0
+        border = float(np.linalg.norm((q - p) * trim.scale, axis=1).sum())
+        if left > _UNCOVERED and left * part.faces[number - 1].area > 2 * chord * border:
+            found[number] = f"its triangles leave {100 * left:.0f} % of it uncovered"
+    return found
