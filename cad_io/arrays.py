@@ -1,4 +1,4 @@
-"""The arrays that cross the CAD boundary. Lengths in mm, part coordinates, angles in radians; frozen, no kernel here."""
+"""The arrays that cross the CAD boundary: mm, part coordinates, radians; frozen, no kernel here."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -24,7 +24,8 @@ class FaceInfo:
     name : str
         Name in the file; empty if it has none.
     surface : str
-        Kind of the stored surface: one of SIMPLE_KINDS, `bezier`, `bspline`, `revolution`, `extrusion`, `offset`, `other`.
+        Kind of the stored surface: one of SIMPLE_KINDS, `bezier`, `bspline`, `revolution`, `extrusion`, `offset` or
+        `other`.
     shape : str
         What it is in shape: one of SIMPLE_KINDS if it is that within tolerance, else `sculptured`.
     area : float

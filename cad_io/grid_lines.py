@@ -66,7 +66,8 @@ def spaced(adaptor: BRepAdaptor_Surface, trim: Trim, spacing: float, more: tuple
     Lines are laid by the largest speed across them, so the gap holds everywhere as far as the probes saw.
     """
     u, v = _ranges(adaptor, trim, trim.box)
-    n = [int(np.clip(8 * spans + 1, *_PROBES)) for spans in (adaptor.NbUIntervals(GeomAbs_C2), adaptor.NbVIntervals(GeomAbs_C2))]
+    spans = adaptor.NbUIntervals(GeomAbs_C2), adaptor.NbVIntervals(GeomAbs_C2)
+    n = [int(np.clip(8 * count + 1, *_PROBES)) for count in spans]
     share_u, share_v = np.linspace(0.0, 1.0, n[0]), np.linspace(0.0, 1.0, n[1])
     grid_u, grid_v = np.meshgrid(u.low + share_u * (u.high - u.low), v.low + share_v * (v.high - v.low), indexing="ij")
     d = first_derivatives(adaptor, grid_u.ravel(), grid_v.ravel()).reshape(n[0], n[1], 3, 3)

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d, BRepAdaptor_Surface
 from OCP.TopAbs import TopAbs_EDGE
@@ -24,7 +25,7 @@ _POINTS = (3, 200)  # least and most points looked at along one edge
 
 def smooth_joints(
     part: Part, orientation: Orientation, point: Floats, face: Ints, gap: Mapping[int, float]
-) -> Ints:  # fmt: skip
+) -> NDArray[np.intp]:  # fmt: skip
     """Pairs (m, 2) of samples of different faces, nearest to the same point of a smooth common edge.
 
     Parameters
@@ -43,8 +44,8 @@ def smooth_joints(
     for number in gap:
         for edge in edges_of(part.face(number)):
             uses[edges.FindIndex(edge)].append((number, edge))
-    trees: dict[int, tuple[cKDTree, Ints]] = {}
-    pairs = [np.zeros((0, 2), np.int64)]
+    trees: dict[int, tuple[cKDTree, NDArray[np.intp]]] = {}
+    pairs = [np.zeros((0, 2), np.intp)]
     for users in uses.values():
         if len(users) != 2 or users[0][0] == users[1][0] or BRep_Tool.Degenerated_s(users[0][1]):
             continue

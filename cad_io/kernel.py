@@ -78,7 +78,7 @@ def faces(shape: TopoDS_Shape) -> list[TopoDS_Face]:
 
 
 def explore(shape: TopoDS_Shape, kind: Any, avoid: Any = None) -> Iterator[TopoDS_Shape]:
-    """Every occurrence of a kind of sub-shape, with the orientation it has in `shape`; `avoid` skips inside that kind."""
+    """Every occurrence of a kind of sub-shape, oriented as in `shape`; those inside a shape of kind `avoid` not."""
     explorer = TopExp_Explorer(shape, kind) if avoid is None else TopExp_Explorer(shape, kind, avoid)
     while explorer.More():
         yield explorer.Current()

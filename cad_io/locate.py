@@ -1,5 +1,6 @@
 """The surface point of a part at a given place."""
 
+import itertools
 from collections.abc import Sequence
 
 import numpy as np
@@ -16,6 +17,7 @@ from cad_io.curvature import curvature
 from cad_io.errors import SampleError
 from cad_io.kernel import second_derivatives, translated
 from cad_io.part import Part
+from cad_io.trim import Trim
 
 _PRECISION = 1e-9  # mm, asked of the projection
 
@@ -59,7 +61,8 @@ def locate(part: Part, orientation: Orientation, point: Sequence[float], within:
             vertex = BRepBuilderAPI_MakeVertex(target).Vertex()
             distance = BRepExtrema_DistShapeShape(vertex, part.shape).Value()
         where = ", ".join(f"{x:g}" for x in place)
-        raise SampleError(f"no face within {within:g} mm of ({where}): the nearest is {distance:.4g} mm away", file=part.file)
+        cause = f"no face within {within:g} mm of ({where}): the nearest is {distance:.4g} mm away"
+        raise SampleError(cause, file=part.file)
     _, number, uv = best
     d = second_derivatives(part.adaptor(number), np.array([uv[0]]), np.array([uv[1]]))
     geometry = curvature(d, float(orientation.sign[number - 1]), float(np.linalg.norm(part.size)))
@@ -68,7 +71,8 @@ def locate(part: Part, orientation: Orientation, point: Sequence[float], within:
     return SurfaceSamples(
         point=d[:, 0], normal=geometry.normal, direction_max=geometry.direction_max, curvature=geometry.curvature,
         uv=np.array([uv]), face=np.array([number], np.int32), area=np.zeros(1),
-        neighbours=np.zeros((0, 2), np.int32), unjudged=np.full(1, -1, np.int32), reasons=(), grids=(), max_gap=0.0, empty=(),
+        neighbours=np.zeros((0, 2), np.int32), unjudged=np.full(1, -1, np.int32), reasons=(), grids=(), max_gap=0.0,
+        empty=(),
     )  # fmt: skip
 
 
@@ -90,11 +94,10 @@ def _projected(part: Part, number: int, place: Floats, within: float) -> tuple[f
     # The kernel may answer on another turn of a periodic surface than the face uses.
     turns_u = _turns(adaptor.IsUPeriodic() and adaptor.UPeriod(), found.X(), trim.box[:2])
     turns_v = _turns(adaptor.IsVPeriodic() and adaptor.VPeriod(), found.Y(), trim.box[2:])
-    for u in turns_u:
-        for v in turns_v:
-            distance = float(np.linalg.norm(np.array(adaptor.Value(u, v).Coord()) - place))
-            if distance <= within and (trim.inside(np.array([u]), np.array([v]))[0] or _beside(trim.segments, trim.scale, u, v, within)):
-                return distance, (u, v)
+    for u, v in itertools.product(turns_u, turns_v):
+        distance = float(np.linalg.norm(np.array(adaptor.Value(u, v).Coord()) - place))
+        if distance <= within and _on_face(trim, u, v, within):
+            return distance, (u, v)
     return None
 
 
@@ -103,12 +106,15 @@ def _turns(period: float, value: float, bounds: Sequence[float]) -> list[float]:
     if not period:
         return [value]
     first = int(np.floor((bounds[0] - value) / period))
-    return sorted((value + k * period for k in range(first, first + 3)), key=lambda x: max(bounds[0] - x, x - bounds[1], 0.0))
+    turns = (value + k * period for k in range(first, first + 3))
+    return sorted(turns, key=lambda x: max(bounds[0] - x, x - bounds[1], 0.0))
 
 
-def _beside(segments: Floats, scale: Floats, u: float, v: float, within: float) -> bool:
-    """True if (u, v) lies within reach, mm, of the border: a point on an edge is on both its faces."""
-    start, along = segments[:, 0] * scale, (segments[:, 1] - segments[:, 0]) * scale
-    offset = np.array([u, v]) * scale - start
+def _on_face(trim: Trim, u: float, v: float, within: float) -> bool:
+    """True if (u, v) lies in the trim, or at most `within` mm beside it: a point on an edge is on both its faces."""
+    if trim.inside(np.array([u]), np.array([v]))[0]:
+        return True
+    start, along = trim.segments[:, 0] * trim.scale, (trim.segments[:, 1] - trim.segments[:, 0]) * trim.scale
+    offset = np.array([u, v]) * trim.scale - start
     share = np.clip((offset * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-300), 0, 1)
     return bool(np.linalg.norm(offset - share[:, None] * along, axis=1).min() <= within)

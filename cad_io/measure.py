@@ -2,7 +2,8 @@
 
 The kernel's own figures cannot be relied on (areas up to 9 % off on surfaces of extrusion), so the densities are
 tabulated at Chebyshev nodes of the trim's box, integrated along u in closed form, and summed around the border
-(Green). One table gives the area, the vector area and the flux of the position, from which follow mean normal and volume.
+(Green). One table gives the area, the vector area and the flux of the position, from which follow the mean normal and
+the volume.
 """
 
 from typing import NamedTuple

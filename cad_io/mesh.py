@@ -20,7 +20,6 @@ from cad_io.arrays import Floats, Ints
 from cad_io.kernel import edges_of
 from cad_io.part import Part, as_one
 
-
 #: How far a border curve may pass a mesh's nodes, as a share of its length in the parameter plane.
 _FITS = 1e-4
 

@@ -144,7 +144,7 @@ def _components(shapes: Sequence[TopoDS_Face]) -> list[_Component]:
             if edge.Orientation() in (TopAbs_FORWARD, TopAbs_REVERSED) and not BRep_Tool.Degenerated_s(edge):
                 uses[edges.Add(edge)].append((i, 1 if edge.Orientation() == TopAbs_FORWARD else -1))
     links: dict[int, list[tuple[int, int]]] = defaultdict(list)
-    open_faces = set()
+    open_faces: set[int] = set()
     for users in uses.values():
         if len(users) == 2:
             (i, way_i), (j, way_j) = users

@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 from OCP.Bnd import Bnd_Box
+from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepBndLib import BRepBndLib
 from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_EDGE, TopAbs_EXTERNAL, TopAbs_INTERNAL, TopAbs_SOLID
-from OCP.TopoDS import TopoDS_Face, TopoDS_Iterator, TopoDS_Shape
+from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Face, TopoDS_Iterator, TopoDS_Shape
 
 from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats
 from cad_io.errors import ReadError
@@ -118,7 +119,7 @@ class Part:
         if number not in self._measures:
             trim = self.trim(number)
             with translated("measuring a face", file=self.file, face=f"F{number}"):
-                self._measures[number] = trim and measure(self.adaptor(number), trim, self._centre)
+                self._measures[number] = None if trim is None else measure(self.adaptor(number), trim, self._centre)
         return self._measures[number]
 
     @cached_property
@@ -179,9 +180,6 @@ class Part:
 
 def as_one(shapes: list[TopoDS_Shape]) -> TopoDS_Shape:
     """The shape itself if there is one, else a compound."""
-    from OCP.BRep import BRep_Builder
-    from OCP.TopoDS import TopoDS_Compound
-
     if len(shapes) == 1:
         return shapes[0]
     builder, compound = BRep_Builder(), TopoDS_Compound()
@@ -195,19 +193,18 @@ def unwrapped(shape: TopoDS_Shape) -> TopoDS_Shape:
     """A compound of one shape is that shape."""
     while shape.ShapeType() == TopAbs_COMPOUND:
         children = TopoDS_Iterator(shape)
-        first = children.Value() if children.More() else None
-        children.Next() if first is not None else None
-        if first is None or children.More():
+        if not children.More():
             return shape
-        shape = first
+        only = children.Value()
+        children.Next()
+        if children.More():
+            return shape
+        shape = only
     return shape
 
 
 def _is_degenerated(edge: Any) -> bool:
-    from OCP.BRep import BRep_Tool
-    from OCP.TopoDS import TopoDS
-
-    return BRep_Tool.Degenerated_s(TopoDS.Edge_s(edge))
+    return bool(BRep_Tool.Degenerated_s(TopoDS.Edge_s(edge)))
 
 
 def _box(found: list[TopoDS_Face]) -> tuple[Floats, Floats]:

@@ -82,7 +82,8 @@ def _kernel_shape(source: Any) -> TopoDS_Shape:
     if isinstance(source, TopoDS_Shape):
         shape = source
     elif callable(getattr(source, "vals", None)):
-        shape = as_one([_kernel_shape(value) for value in source.vals() if hasattr(value, "wrapped")] or [TopoDS_Shape()])
+        found = [_kernel_shape(value) for value in source.vals() if hasattr(value, "wrapped")]
+        shape = as_one(found) if found else TopoDS_Shape()
     elif hasattr(source, "wrapped"):
         shape = source.wrapped
     else:

@@ -10,7 +10,7 @@ from OCP.TopAbs import TopAbs_FACE
 from cad_io.errors import ReadError
 from cad_io.kernel import shape_map
 from cad_io.part import unwrapped
-from cad_io.read_step import Read, faults_of
+from cad_io.read_step import Read, faults_of, lost_faces
 
 #: Entity numbers that must each become a face: bounded surface, trimmed surface, face.
 _FACES = (143, 144, 510)
@@ -54,12 +54,12 @@ def read(file: str, data: bytes) -> Read:
     if shape.IsNull():
         raise ReadError(f"nothing in it could be read{fault}: export it again, or as STEP", file=file)
     warnings = []
-    kinds = Counter(
-        int(line[:8]) for line in lines if line[72:73] == b"D" and line[:8].strip().isdigit() and line[73:].strip()[-1:] in b"13579"
-    )  # fmt: skip
-    written, found = sum(kinds[k] for k in _FACES), shape_map(shape, TopAbs_FACE).Extent()
+    # Two lines an entity: the first starts with its number, and so does the second, so every other line counts.
+    directory = [line[:8].strip() for line in lines if line[72:73] == b"D"][::2]
+    written = sum(number.isdigit() and int(number) in _FACES for number in directory)
+    found = shape_map(shape, TopAbs_FACE).Extent()
     if found < written:
-        warnings.append(f"{written - found} of the {written} faces written in the file could not be read: the part has holes")
+        warnings.append(lost_faces(found, written))
     if faults:
         warnings.append(f"the file has faults{fault}")
     return Read(unwrapped(shape), warnings=warnings)

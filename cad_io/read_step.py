@@ -87,10 +87,13 @@ def read(file: str, data: bytes) -> Read:
     _Walk(result).roots(labels)
     written, found = len(_FACES.findall(data)), _distinct_faces(result.shape)
     if found < written:
-        result.warnings.append(
-            f"{written - found} of the {written} faces written in the file could not be read: the part has holes"
-        )
+        result.warnings.append(lost_faces(found, written))
     return result
+
+
+def lost_faces(found: int, written: int) -> str:
+    """The warning for a file whose faces could not all be read."""
+    return f"{written - found} of the {written} faces written in the file could not be read: the part has holes"
 
 
 def faults_of(reader: Any) -> list[str]:

@@ -73,8 +73,7 @@ def _ruled(point: Floats, normal: Floats, within: float) -> str:
     flat, height = point @ axes[:2].T, point @ axis
     if abs(slope) < 1e-4:
         return "cylinder" if np.abs(_circle(flat)[2]).max() <= within else "sculptured"
-    # Cone: distance from the axis is linear in the height, by -tan(half angle) for normals that point away from it;
-    # sliding every point along its normal by t lands on the axis where radius = t cos(half angle): linear in centre and t.
+    # A cone's points stand off its axis along the normals' part across it, by a distance that is linear in the height.
     across = normal @ axes[:2].T
     across /= np.linalg.norm(across, axis=1)[:, None]
     # flat = centre + (r0 + k height) across, unknown: centre, r0, k.

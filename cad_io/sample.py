@@ -1,6 +1,7 @@
 """Sample faces on parameter grids, with the kernel's exact normals and curvatures."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -124,8 +125,9 @@ def _on_grid(part: Part, number: int, trim: Trim, lines: Lines, inside: NDArray[
     index[i, j] = np.arange(len(i))
     uv = np.stack([lines.u[i], lines.v[j]], axis=1)
     derivatives = second_derivatives(part.adaptor(number), uv[:, 0], uv[:, 1])
-    width = np.outer(_cells(lines.u, lines.closed_u, *lines.span[:2])[1], _cells(lines.v, lines.closed_v, *lines.span[2:])[1])
-    weight = np.linalg.norm(np.cross(derivatives[:, 1], derivatives[:, 2]), axis=1) * width[i, j]
+    _, width_u = _cells(lines.u, lines.closed_u, *lines.span[:2])
+    _, width_v = _cells(lines.v, lines.closed_v, *lines.span[2:])
+    weight = _density(derivatives) * width_u[i] * width_v[j]
     if not inside.all():
         weight *= _share_inside(trim, lines)[i, j]
     pairs = [_adjacent(index), _adjacent(index.T)]
@@ -147,7 +149,7 @@ def _in_triangles(part: Part, number: int) -> _FaceSamples | None:
     uv = corners.mean(axis=1)
     derivatives = second_derivatives(part.adaptor(number), uv[:, 0], uv[:, 1])
     (a, b) = (corners[:, k] - corners[:, 0] for k in (1, 2))
-    weight = np.linalg.norm(np.cross(derivatives[:, 1], derivatives[:, 2]), axis=1) * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    weight = _density(derivatives) * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
     # Triangles that share two corners are neighbours.
     sides = np.sort(np.concatenate([mesh.corner[:, [0, 1]], mesh.corner[:, [1, 2]], mesh.corner[:, [2, 0]]]), axis=1)
     owner = np.tile(np.arange(len(uv)), 3)
@@ -182,14 +184,18 @@ def _together(
         neighbours=neighbours.reshape(-1, 2),
         unjudged=np.where(bad, 0, -1).astype(np.int32),
         reasons=REASONS if bad.any() else (),
-        grids=tuple(
-            f.grid.__class__(f.number, f.grid.u, f.grid.v, np.where(f.grid.index < 0, -1, f.grid.index + s).astype(np.int32),
-                             f.grid.closed_u, f.grid.closed_v)
-            for f, s in zip(taken, start[:-1], strict=True) if f.grid is not None
-        ),
+        grids=tuple(_moved(f.grid, int(s)) for f, s in zip(taken, start[:-1], strict=True) if f.grid is not None),
         max_gap=max(gaps, default=0.0),
         empty=empty,
     )  # fmt: skip
+
+
+def _density(derivatives: Floats) -> Floats:
+    return np.linalg.norm(np.cross(derivatives[:, 1], derivatives[:, 2]), axis=1)
+
+
+def _moved(grid: FaceGrid, by: int) -> FaceGrid:
+    return replace(grid, index=np.where(grid.index < 0, -1, grid.index + by).astype(np.int32))
 
 
 def _stack(rows: Sequence[Floats], width: int) -> Floats:
@@ -241,7 +247,7 @@ def _cells(lines: Floats, closed: bool, low: float, high: float) -> tuple[Floats
 def _share_inside(trim: Trim, lines: Lines) -> Floats:
     """Share of each node's cell that lies inside the trim, from the middles of its quarters: (nu, nv)."""
 
-    def quarters(line: Floats, closed: bool, low: float, high: float) -> tuple[Floats, Ints]:
+    def quarters(line: Floats, closed: bool, low: float, high: float) -> tuple[Floats, NDArray[np.intp]]:
         half, _ = _cells(line, closed, low, high)
         at = (line[:, None] + 0.5 * half * (-1.0, 1.0)).ravel()
         if closed:

@@ -1,4 +1,4 @@
-"""Triangles in faces' parameter planes that can be measured against the surface and split. Used by `tessellate` alone."""
+"""Triangles in faces' parameter planes that can be measured against the surface, and split. For `tessellate` alone."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -15,17 +15,17 @@ from cad_io.part import Part
 Indices = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
-#: Children of a triangle with corners 0, 1, 2 and edge middles 3 (of 0-1), 4 (of 1-2), 5 (of 2-0), when its first edge is
-#: split, its first two, or all. Two leave a quad, which is cut along its shorter diagonal, 0-4 or 3-2.
+#: Children of a triangle with corners 0, 1, 2 and edge middles 3 (of 0-1), 4 (of 1-2), 5 (of 2-0), when its first edge
+#: is split, its first two, or all. Two leave a quad, which is cut along its shorter diagonal, 0-4 or 3-2.
 _CHILDREN = (
     ((0, 3, 2), (3, 1, 2)),
     ((3, 1, 4), (0, 3, 4), (0, 4, 2)),
     ((3, 1, 4), (0, 3, 2), (3, 4, 2)),
     ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)),
 )
-#: The distance between a point of the surface and the same point of a triangle is an upper bound of its distance from the
-#: triangle. The lesser one counts only where the former is below this share of the triangle's size: around the poles of
-#: a sphere a triangle may come near the wrong part of the surface.
+#: The distance between a point of the surface and the same point of a triangle is an upper bound of its distance from
+#: the triangle. The lesser one counts only where the former is below this share of the triangle's size: around the poles
+#: of a sphere a triangle may come near the wrong part of the surface.
 _TAME = 0.3
 #: Where edges are measured: at the middle alone, an S-shaped course would pass for a straight one.
 _ALONG = (0.5, 0.25, 0.75)
@@ -43,7 +43,7 @@ class Soup:
     corner (t, 3), face (t,)
         Triangles: nodes, face numbers.
     curve (t, 3), span (t, 3, 2)
-        Edge k runs from corner k to the next: which border curve it is a chord of (-1: none), from and to which parameter.
+        Edge k runs from corner k to the next: which border curve it is a chord of (-1: none), and its parameters there.
     """
 
     def __init__(self, part: Part, meshes: Mapping[int, UVMesh]) -> None:
@@ -104,7 +104,7 @@ class Soup:
         return point
 
     def _on_edges(self, row: Indices, edge: Indices, share: float) -> tuple[Floats, Floats]:
-        """Points along edges: surface parameters (k, 2), and the border curve's own (k,) where an edge is a chord of one."""
+        """Points along edges: surface parameters (k, 2), and the border curve's own (k,) where there is one."""
         a, b = self.corner[row, edge], self.corner[row, (edge + 1) % 3]
         uv = (1 - share) * self.uv[a] + share * self.uv[b]
         t = self.span[row, edge] @ (1 - share, share)
@@ -165,9 +165,10 @@ class Soup:
             worst = np.maximum(worst, off)
         return worst
 
-    def keep(self, row: Indices | Bools) -> None:
+    def keep(self, chosen: Bools) -> None:
         """Leave only these triangles."""
-        self.corner, self.face, self.curve, self.span = self.corner[row], self.face[row], self.curve[row], self.span[row]
+        self.corner, self.face = self.corner[chosen], self.face[chosen]
+        self.curve, self.span = self.curve[chosen], self.span[chosen]
 
     def split(self, marked: Bools) -> None:
         """Split every triangle, which must have some edge marked (t, 3), at the middles of its marked edges."""

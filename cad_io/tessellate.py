@@ -111,8 +111,10 @@ def _refined(part: Part, meshes: Mapping[int, UVMesh], chord: float, budget: int
             worst = np.argsort(-off, kind="stable")
             spent = np.cumsum(grow[worst]) > budget - count - len(soup)
             marked[worst[spent]] = False
-        split = marked.any(axis=1)
-        finished.append(_Done(soup.point[soup.corner[~split]], soup.uv[soup.corner[~split]], soup.face[~split], off[~split]))
+        split = np.asarray(marked.any(axis=1))
+        finished.append(
+            _Done(soup.point[soup.corner[~split]], soup.uv[soup.corner[~split]], soup.face[~split], off[~split])
+        )
         count += int((~split).sum())
         if not split.any():
             break

@@ -106,10 +106,9 @@ class Trim:
         """Grid nodes beside segments: i, j, whether on an exact segment, whether too near to any to be sure."""
         reach = self.tolerance + 2 * self.deflection
         low, high = self.segments.min(axis=1), self.segments.max(axis=1)
-        i0, i1 = (np.searchsorted(u, b, s) for b, s in ((low[:, 0] - reach / self.scale[0], "left"),
-                                                        (high[:, 0] + reach / self.scale[0], "right")))  # fmt: skip
-        j0, j1 = (np.searchsorted(v, b, s) for b, s in ((low[:, 1] - reach / self.scale[1], "left"),
-                                                        (high[:, 1] + reach / self.scale[1], "right")))  # fmt: skip
+        low, high = low - reach / self.scale, high + reach / self.scale
+        i0, i1 = np.searchsorted(u, low[:, 0], "left"), np.searchsorted(u, high[:, 0], "right")
+        j0, j1 = np.searchsorted(v, low[:, 1], "left"), np.searchsorted(v, high[:, 1], "right")
         count = (i1 - i0) * (j1 - j0)
         which = np.repeat(np.arange(len(count)), count)
         nth = np.arange(len(which)) - np.repeat(np.cumsum(count) - count, count)
