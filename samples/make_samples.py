@@ -11,6 +11,8 @@ import math
 from pathlib import Path
 
 import numpy as np
+import peaks
+from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepBuilderAPI import (
     BRepBuilderAPI_MakeEdge,
@@ -29,23 +31,20 @@ from OCP.gp import gp_Pnt, gp_Vec
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Controller, STEPControl_Writer
-from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
-from OCP.TCollection import TCollection_HAsciiString
 from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array2OfPnt
+from OCP.TCollection import TCollection_HAsciiString
 from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
-from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL
+from OCP.TopAbs import TopAbs_SHELL
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Shape, TopoDS_Shell
 from scipy.interpolate import make_interp_spline
-
-import peaks
 
 HERE = Path(__file__).parent
 
 #: The parameters that `peaks.py` found.
 PEAKS = peaks.Shape(
-    dx=15.245, dy=32.99, wx=20.0, wy=52.724, peak_sx=19.716, peak_sy=26.758, peak_q=5.14,
-    valley_sx=28.352, valley_sy=43.915, valley_q=2.0, depth=0.945,
+    dx=13.658, dy=34.89, wx=14.337, wy=55.749, peak_sx=18.055, peak_sy=28.25, peak_q=4.774,
+    valley_sx=22.351, valley_sy=42.886, valley_q=2.451, depth=0.959,
 )  # fmt: skip
 
 
@@ -115,7 +114,7 @@ def v_groove() -> None:
 
 
 def peaks_and_valleys() -> None:
-    points, _ = peaks.grid(PEAKS, 61)
+    points, _ = peaks.grid(PEAKS, 81)
     shell, builder = TopoDS_Shell(), BRep_Builder()
     builder.MakeShell(shell)
     builder.Add(shell, face_of(bspline(points)))

@@ -59,7 +59,9 @@ def grid(shape: Shape, n: int):
     # The peak in the quadrant x > 0, y > 0; the valleys mirror each other.
     quadrant = np.where((x >= 0) & (y >= 0), z, -np.inf)
     top = np.unravel_index(np.argmax(quadrant), z.shape)
-    bottom = [np.unravel_index(np.argmin(np.where(s, z, np.inf)), z.shape) for s in ((x >= 0) & (y <= 0), (x <= 0) & (y >= 0))]
+    bottom = [
+        np.unravel_index(np.argmin(np.where(s, z, np.inf)), z.shape) for s in ((x >= 0) & (y <= 0), (x <= 0) & (y >= 0))
+    ]
     apart = [np.hypot(x[top] - x[b], y[top] - y[b]) for b in bottom]
     near = bottom[int(np.argmin(apart))]
     scale = ALTITUDE / (z[top] - z[near])
@@ -95,7 +97,9 @@ def figures(shape: Shape, n: int = 81, mesh: int = 141) -> dict:
     normal, direction, curvature = geometry(points)
     convex = curvature[..., 0] <= 1e-6 / 100
     result = {"convex": 100 * convex.mean(), "regions": label(convex)[1], "distance": distance}
-    cost = ((result["convex"] - CONVEX) / 1.0) ** 2 + ((distance - DISTANCE) / 2.0) ** 2 + 25 * abs(result["regions"] - 2)
+    cost = (
+        ((result["convex"] - CONVEX) / 1.0) ** 2 + ((distance - DISTANCE) / 2.0) ** 2 + 25 * abs(result["regions"] - 2)
+    )
     result["cost"] = cost
     if cost > 400:
         return {**result, "cost": cost + 1000}
@@ -142,7 +146,9 @@ def main(seconds: float, seed: int) -> None:
         if found["cost"] < best_cost:
             best, best_cost = trial, found["cost"]
             print(f"{time.time() - began:6.0f} s", {k: round(float(v), 2) for k, v in found.items()}, flush=True)
-            print("        ", {f.name: round(float(v), 3) for f, v in zip(fields(Shape), trial, strict=True)}, flush=True)
+            print(
+                "        ", {f.name: round(float(v), 3) for f, v in zip(fields(Shape), trial, strict=True)}, flush=True
+            )
 
 
 if __name__ == "__main__":

@@ -163,7 +163,18 @@ def test_two_runs_give_the_same_bytes(tmp_path):
 
 
 def test_plan_on_standard_output_and_exit_1(tmp_path):
-    done = run(SAMPLES / "v_groove.step", "--cutter", "R8L90", "--grid", "9", "--json", "-", "--machine", "tilt:10", cwd=tmp_path)
+    done = run(
+        SAMPLES / "v_groove.step",
+        "--cutter",
+        "R8L90",
+        "--grid",
+        "9",
+        "--json",
+        "-",
+        "--machine",
+        "tilt:10",
+        cwd=tmp_path,
+    )
     assert done.returncode == 1
     plan = json.loads(done.stdout)
     assert plan["selected"] is None
@@ -172,7 +183,9 @@ def test_plan_on_standard_output_and_exit_1(tmp_path):
 
 def test_several_parts_the_largest_code(tmp_path):
     (tmp_path / "bad.step").write_text("no")
-    done = run(SAMPLES / "v_groove.step", "bad.step", "--cutter", "R2L90", "--grid", "9", "--formats", "json", cwd=tmp_path)
+    done = run(
+        SAMPLES / "v_groove.step", "bad.step", "--cutter", "R2L90", "--grid", "9", "--formats", "json", cwd=tmp_path
+    )
     assert done.returncode == 3
     assert leftovers(tmp_path, "bad.step") == ["v_groove-plan"]
     assert "bad.step: plan-cutters: bad.step" in done.stderr

@@ -86,7 +86,9 @@ def test_plane_alone_is_free_at_every_posture():
     assert found.local_gouge == pytest.approx(0)
 
 
-@pytest.mark.parametrize(("a", "radius", "length"), [(6.0, 5.0, 50.0), (2.0, 5.0, 50.0), (9.0, 5.0, 12.0), (20.0, 5.0, 50.0)])
+@pytest.mark.parametrize(
+    ("a", "radius", "length"), [(6.0, 5.0, 50.0), (2.0, 5.0, 50.0), (9.0, 5.0, 12.0), (20.0, 5.0, 50.0)]
+)
 def test_plane_with_a_wall(a, radius, length):
     """A wall x = a, higher than the cutter is long. Leaning to it, the generator through the contact reaches x = L sin(tilt);
     leaning from it, the far rim is at 2R cos(tilt); leaning along it, the cutter is R wide."""
@@ -158,7 +160,9 @@ def test_axis_limit_cuts_the_plane():
         assert np.degrees(found.axis_limit[i]) == pytest.approx(np.array([[25.0, 90.0]]))
     # The setup axis leant by 40 deg towards x: along x, tilts from 15 to 65 deg.
     setup = (math.sin(math.radians(40)), 0.0, math.cos(math.radians(40)))
-    _, (along, against) = free(part, Cutter.flat(radius=5, length=50), [0, 180], machine=Machine.parse("tilt:25"), setup=setup)
+    _, (along, against) = free(
+        part, Cutter.flat(radius=5, length=50), [0, 180], machine=Machine.parse("tilt:25"), setup=setup
+    )
     assert_intervals(along, (15, 65))
     assert_intervals(against)
 

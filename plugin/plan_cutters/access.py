@@ -11,6 +11,7 @@ from plan_cutters.posture import PostureRange
 from plan_cutters.reach import ACCESSIBLE, FREE, INACCESSIBLE, REASONS, UNDECIDED, Reach, Witness, blank
 from plan_cutters.threads import Progress, in_chunks
 
+
 def access(
     samples: SurfaceSamples,
     free: NDArray[np.bool_],
@@ -114,12 +115,16 @@ def _witness(
     samples: SurfaceSamples, row: int, reach: Reach, cutter: Cutter, machine: Machine, setup: Floats,
     postures: PostureRange, obstacles: Obstacles, tolerance: float,
 ) -> Witness:  # fmt: skip
-    """Find the posture with the least depth by halving the depth that is let pass; local gouging is measured too."""
+    """Find the posture with the least depth by halving the depth that is let pass.
+
+    Local gouging holds as it does in the search, except where it alone leaves no posture: there it is what is measured.
+    """
     from plan_cutters.kernels.search import probe
 
     reason = REASONS[reach.reason[row]]
     one, first = slice(row, row + 1), np.zeros(1, np.int64)
-    geometry = (samples.point[one], samples.normal[one], samples.direction_max[one], np.zeros((1, 2)))
+    curvature = np.zeros((1, 2)) if reason == "local_gouge" else samples.curvature[one]
+    geometry = (samples.point[one], samples.normal[one], samples.direction_max[one], curvature)
     deepest = min(cutter.radius, cutter.length / 2) * (1 - 1e-9)
     low, high = obstacles.depths(tolerance)[0], deepest
     best: Reach | None = None

@@ -60,15 +60,49 @@ class _Vector(click.ParamType):
 )
 @click.argument("parts", nargs=-1, required=True, metavar="PART...")
 @click.option("--cutters", multiple=True, metavar="FILE", hidden=True)
-@click.option("--cutter", multiple=True, metavar="SPEC", help="A flat end as R6L80: radius 6, length 80 mm. Repeatable; default: built-in flat ends, R 1 to 12.")
-@click.option("--machine", default="unlimited", metavar="NAME", help="`unlimited` or `tilt:DEG`, a limit of the tool axis from the setup axis.  [default: unlimited]")
-@click.option("--setup", type=_Vector(), default="0,0,1", metavar="X,Y,Z", help="Direction of the part along the machine's spindle.  [default: 0,0,1]")
-@click.option("--faces", default="sculptured", metavar="SELECT", help="Faces to machine: `sculptured`, `all`, `3,7-12`, `name:REGEX` or `color:#RRGGBB`; the others are obstacles.  [default: sculptured]")
+@click.option(
+    "--cutter",
+    multiple=True,
+    metavar="SPEC",
+    help="A flat end as R6L80: radius 6, length 80 mm. Repeatable; default: built-in flat ends, R 1 to 12.",
+)
+@click.option(
+    "--machine",
+    default="unlimited",
+    metavar="NAME",
+    help="`unlimited` or `tilt:DEG`, a limit of the tool axis from the setup axis.  [default: unlimited]",
+)
+@click.option(
+    "--setup",
+    type=_Vector(),
+    default="0,0,1",
+    metavar="X,Y,Z",
+    help="Direction of the part along the machine's spindle.  [default: 0,0,1]",
+)
+@click.option(
+    "--faces",
+    default="sculptured",
+    metavar="SELECT",
+    help="`sculptured`, `all`, `3,7-12`, `name:REGEX` or `color:#RRGGBB`; the others are obstacles.  [default: sculptured]",
+)
 @click.option("--fixture", multiple=True, metavar="FILE", hidden=True)
 @click.option("--grid", type=int, metavar="N", help="N x N parameter samples a face.")
-@click.option("--spacing", type=float, metavar="MM", help="Samples at most this far apart.  [default: from curvature, the smallest cutter and a budget]")
-@click.option("--tilt", type=_Range(), default="0:90", metavar="MIN:MAX", help="Tilts to search, degrees.  [default: 0:90]")
-@click.option("--rotation", type=_Range(), default="0:360", metavar="MIN:MAX", help="Rotations to search, from the direction of the largest curvature, degrees.  [default: 0:360]")
+@click.option(
+    "--spacing",
+    type=float,
+    metavar="MM",
+    help="Samples at most this far apart.  [default: from curvature, the smallest cutter and a budget]",
+)
+@click.option(
+    "--tilt", type=_Range(), default="0:90", metavar="MIN:MAX", help="Tilts to search, degrees.  [default: 0:90]"
+)
+@click.option(
+    "--rotation",
+    type=_Range(),
+    default="0:360",
+    metavar="MIN:MAX",
+    help="Rotations to search, from the direction of the largest curvature, degrees.  [default: 0:360]",
+)
 @click.option("--rotation-step", type=float, default=10.0, metavar="DEG", help="[default: 10]")
 @click.option("--tolerance", type=float, default=0.01, metavar="MM", help="Gouge tolerance.  [default: 0.01]")
 @click.option("--allowance", type=float, hidden=True)
@@ -217,7 +251,9 @@ def _not_reached(plan: "Plan") -> list[str]:
                      f"{deepest.depth_mm:.3g} mm too deep")  # fmt: skip
         left = c.inaccessible + c.undecided
         undecided = f", {c.undecided} undecided" if c.undecided else ""
-        lines.append(f"Not reached by {c.id}: {left} of {plan.samples.count} samples ({reasons or 'none'}{undecided}){where}.")
+        lines.append(
+            f"Not reached by {c.id}: {left} of {plan.samples.count} samples ({reasons or 'none'}{undecided}){where}."
+        )
     return lines
 
 
@@ -225,7 +261,10 @@ class _progress:
     """A bar on a terminal, plain lines otherwise, nothing where quiet."""
 
     def __init__(self, quiet: bool) -> None:
-        self.quiet, self.bar, self.tasks, self.told = quiet, None, {}, set()  # type: ignore[var-annotated]
+        self.quiet = quiet
+        self.bar: Any = None
+        self.tasks: dict[str, Any] = {}
+        self.told: set[str] = set()
 
     def __enter__(self) -> Any:
         if not self.quiet and sys.stderr.isatty():

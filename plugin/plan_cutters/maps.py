@@ -170,9 +170,7 @@ def _lean(normal: Floats, direction_max: Floats, rotation: float) -> Floats:
     return np.asarray(np.cos(rotation) * direction_max + np.sin(rotation) * np.cross(normal, direction_max))
 
 
-def _map(
-    ask: _Ask, triangles: Triangles, depth_allowed: float, narrowest: float, tolerance: float
-) -> PostureMap:
+def _map(ask: _Ask, triangles: Triangles, depth_allowed: float, narrowest: float, tolerance: float) -> PostureMap:
     from plan_cutters.kernels.maps import FORBIDDEN, OPEN, UNSURE, free_tilts
     from plan_cutters.kernels.points import axis_intervals, local_gouge_bound
 

@@ -25,8 +25,18 @@ from plan_cutters.errors import UnjudgeableError
 from plan_cutters.faces import select_faces
 from plan_cutters.machine import Machine
 from plan_cutters.model import (
-    CutterEntry, Effective, FaceEntry, OrientationInfo, PartInfo, Plan, Posture, Run, SampleCounts, Selection,
-    Verdicts, WitnessEntry,
+    CutterEntry,
+    Effective,
+    FaceEntry,
+    OrientationInfo,
+    PartInfo,
+    Plan,
+    Posture,
+    Run,
+    SampleCounts,
+    Selection,
+    Verdicts,
+    WitnessEntry,
 )  # fmt: skip
 from plan_cutters.obstacles import Obstacles
 from plan_cutters.options import Options
@@ -204,7 +214,9 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
         region = regions(samples, surface_class)
     if not (samples.unjudged < 0).any():
         causes = {reason for _, reason in samples.empty} | set(samples.reasons)
-        raise UnjudgeableError(f"no target face can be judged: {'; '.join(sorted(causes)) or 'no samples'}", file=whole.file)
+        raise UnjudgeableError(
+            f"no target face can be judged: {'; '.join(sorted(causes)) or 'no samples'}", file=whole.file
+        )
     with clock.stage("tessellate"):
         triangles = tessellate(whole, _CHORD_ASKED * options.tolerance)
         obstacles = Obstacles(triangles)
@@ -348,7 +360,9 @@ def _select(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:
         best = min(entries, key=lambda e: e.inaccessible + e.undecided)
         left = best.inaccessible + best.undecided
         return None, Selection(
-            rule=RULE, runner_up=None, why=f"no cutter reaches every sample; {best.id} comes nearest, {left} not reached"
+            rule=RULE,
+            runner_up=None,
+            why=f"no cutter reaches every sample; {best.id} comes nearest, {left} not reached",
         )
     first = feasible[0]
     larger = [e.id for e in entries if e.radius > first.radius]
@@ -408,7 +422,7 @@ def _notes(
         notes.append("No machine was given: any tool axis counts as possible.")
     if not orientation.confident:
         notes.append(f"Which side is material is a guess ({orientation.method}); --flip machines the other side.")
-    if tolerance > options.tolerance:
+    if tolerance > 1.001 * options.tolerance:
         notes.append(
             f"The tolerance was raised from {options.tolerance:g} to {tolerance:.3g} mm: "
             "the obstacle triangles could not be made to follow the surface more closely."

@@ -67,13 +67,13 @@ def _forbid(intervals, count, first, last, x, y, z, radius, tally):  # type: ign
 
 
 @inlined
-def _sweep(
+def _sweep(  # type: ignore[no-untyped-def]
     p, n, e1, e2, kappa_max, kappa_min,
     rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
     radius, length, depth_allowed, vertex, box, depth,
     first_rotation, first_tilt, hint, known, known_count,
     intervals, f, t, body, stack, polygon, spare, pieces, tally,
-):  # type: ignore[no-untyped-def]  # fmt: skip
+):  # fmt: skip
     """Search all rotations of one sample; (rotation index or -1, tilt, last triangle in the way, count of known points)."""
     rotations = len(rotation_cos)
     tally[:] = 0.0
@@ -138,12 +138,12 @@ def _sweep(
 
 
 @kernel
-def search(
+def search(  # type: ignore[no-untyped-def]
     rows, point, normal, direction_max, curvature,
     rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
     radius, length, safe, blocked, vertex, box, depth,
     verdict, axis, lean, tilt_out, rotation_out, reason,
-):  # type: ignore[no-untyped-def]  # fmt: skip
+):  # fmt: skip
     """Decide the samples `rows`, one after the other, each starting from the posture of the one before.
 
     Parameters

@@ -49,7 +49,9 @@ class Staging:
             out.absolute().parent.mkdir(parents=True, exist_ok=True)
             self.folder = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.absolute().parent))
         except OSError as error:
-            raise PlanError(f"cannot write there ({error.strerror}); give another folder with -o", file=str(out)) from None
+            raise PlanError(
+                f"cannot write there ({error.strerror}); give another folder with -o", file=str(out)
+            ) from None
 
     def __enter__(self) -> Path:
         return self.folder

@@ -71,9 +71,7 @@ def _verdict(piece: Any) -> str:
 
 def write_step(result: Any, split: Any, path: Path) -> None:
     """Write `annotated.step`: each piece a face named `F<number>_<verdict>` with the verdict's colour."""
-    write_cad(
-        split, path, lambda p: Style(f"F{p.face}_{_verdict(p)}", rgb(_verdict(p))), product=_product(result)
-    )
+    write_cad(split, path, lambda p: Style(f"F{p.face}_{_verdict(p)}", rgb(_verdict(p))), product=_product(result))
 
 
 def write_glb(result: Any, split: Any, path: Path) -> None:
