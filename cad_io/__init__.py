@@ -1,7 +1,8 @@
 """The CAD boundary: files and kernel shapes in, arrays out; labelled faces in, annotated files out.
 
 No machining words here. This package alone imports the CAD kernel (OCP); names are handed on lazily so that
-importing `cad_io` costs nothing until a name is used.
+importing `cad_io` costs nothing until a name is used. Stages are imported from the module of their name, as
+`from cad_io.sample import sample`.
 """
 
 from importlib import import_module
@@ -13,7 +14,6 @@ _HOME = {
     "WriteError": "errors",
     "Part": "part",
     "read_part": "read",
-    "orient": "orient",
     "Orientation": "arrays",
     "SurfaceSamples": "arrays",
     "FaceGrid": "arrays",
@@ -21,12 +21,6 @@ _HOME = {
     "Triangles": "arrays",
     "FaceLabels": "arrays",
     "Style": "arrays",
-    "sample": "sample",
-    "locate": "sample",
-    "tessellate": "tessellate",
-    "split": "split",
-    "write_step": "write_step",
-    "write_gltf": "write_gltf",
 }
 __all__ = sorted(_HOME)
 
