@@ -53,8 +53,8 @@ def test_help_and_version_do_not_load_the_kernel(tmp_path):
         ("missing.step", None, "missing.step"),
         ("empty.step", b"", "empty"),
         ("text.step", b"This is a shopping list.\nMilk\n", "STEP"),
-        ("page.step", b"<!DOCTYPE html><html><body>404</body></html>", "STEP"),
-        ("garbage.igs", bytes(range(256)) * 40, "IGES"),
+        ("page.step", b"<!DOCTYPE html><html><body>404</body></html>", "web page"),
+        ("garbage.igs", bytes(range(256)) * 40, "not"),
         ("part.dwg", b"AC1032\0\0\0", "part.dwg"),
     ],
 )

@@ -35,3 +35,7 @@ def write_plan(plan: Plan, path: Path) -> None:
     except OSError as error:
         aside.unlink(missing_ok=True)
         raise PlanError(f"cannot write the plan ({error.strerror})", file=str(path)) from None
+
+
+if __name__ == "__main__":
+    (Path(__file__).parent.parent / "plan.schema.json").write_text(schema_text(), encoding="utf-8")
