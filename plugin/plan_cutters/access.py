@@ -80,7 +80,9 @@ def _search(
 
 
 #: Witnesses kept for each face and reason, and samples tried to find them, in all.
-_KEPT, _TRIED, _TRIED_IN_ALL = 2, 8, 240
+_KEPT, _TRIED, _TRIED_IN_ALL = 2, 6, 60
+#: Depths are found to this share of themselves.
+_PRECISION = 0.02
 
 
 def witnesses(
@@ -93,6 +95,7 @@ def witnesses(
     postures: PostureRange,
     obstacles: Obstacles,
     tolerance: float,
+    jobs: int,
 ) -> tuple[Witness, ...]:
     """Samples that are not reached, the deepest tried of each face and reason first."""
     lost = np.flatnonzero((reach.verdict == INACCESSIBLE) | (reach.verdict == UNDECIDED))
@@ -100,14 +103,20 @@ def witnesses(
     for row in lost:
         groups.setdefault((int(samples.face[row]), int(reach.reason[row])), []).append(int(row))
     tries = max(1, min(_TRIED, _TRIED_IN_ALL // max(1, len(groups))))
+    picked = [
+        [group[i] for i in np.unique(np.linspace(0, len(group) - 1, tries).astype(int))] for group in groups.values()
+    ]
+    looked: dict[int, Witness] = {}
+
+    def work(rows: NDArray[np.int64]) -> None:
+        for row in rows.tolist():
+            looked[row] = _witness(samples, row, reach, cutter, machine, setup, postures, obstacles, tolerance)
+
+    in_chunks(work, np.array([row for group in picked for row in group], np.int64), jobs, chunk=1)
     found: list[Witness] = []
-    for group in groups.values():
-        picked = [group[i] for i in np.unique(np.linspace(0, len(group) - 1, tries).astype(int))]
-        looked = [
-            _witness(samples, row, reach, cutter, machine, setup, postures, obstacles, tolerance) for row in picked
-        ]
-        looked.sort(key=lambda w: (-(w.depth or 0.0), w.sample))
-        found += looked[:_KEPT]
+    for group in picked:
+        ranked = sorted((looked[row] for row in group), key=lambda w: (-(w.depth or 0.0), w.sample))
+        found += ranked[:_KEPT]
     return tuple(found)
 
 
@@ -128,8 +137,8 @@ def _witness(
     deepest = min(cutter.radius, cutter.length / 2) * (1 - 1e-9)
     low, high = obstacles.depths(tolerance)[0], deepest
     best: Reach | None = None
-    while best is None or high - low > 1e-3 * (high + tolerance):
-        depth = 0.5 * (low + high) if best else deepest
+    while best is None or high - low > _PRECISION * high:
+        depth = np.sqrt(low * high) if best else deepest
         trial = blank(1)
         _search(geometry, first, cutter, machine, setup, postures, obstacles, (depth, depth), 1, trial)
         if trial.verdict[0] == ACCESSIBLE:

@@ -235,7 +235,7 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
             decomposition = decompose(samples, surface_class == CONVEX, region, cutter, jobs=options.jobs, **shared)
             reach = access(samples, decomposition.free, cutter, jobs=options.jobs, progress=tell, **shared)
             seconds = time.perf_counter() - began
-            found = witnesses(samples, reach, cutter, **shared)
+            found = witnesses(samples, reach, cutter, jobs=options.jobs, **shared)
         reaches[cutter.id] = reach
         entries.append(_cutter_entry(cutter, samples, reach, found, decomposition.march_differs, seconds))
     selected, selection = _select(entries)

@@ -17,12 +17,13 @@ def in_chunks(
     rows: NDArray[np.int64],
     jobs: int,
     progress: Progress | None = None,
+    chunk: int = CHUNK,
 ) -> None:
-    """Call `work` on consecutive pieces of `rows`, `jobs` at a time.
+    """Call `work` on consecutive pieces of `rows`, `chunk` rows each, `jobs` at a time.
 
     An interrupt or an error drops the pieces that have not begun and is raised once those under way end.
     """
-    pieces = [rows[i : i + CHUNK] for i in range(0, len(rows), CHUNK)]
+    pieces = [rows[i : i + chunk] for i in range(0, len(rows), chunk)]
     with ThreadPoolExecutor(jobs) as pool:
         futures = [pool.submit(work, piece) for piece in pieces]
         try:
