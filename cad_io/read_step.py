@@ -72,6 +72,8 @@ def read(file: str, data: bytes) -> Read:
             file=file,
         )
     faults = [fault for fault in faults_of(reader.ChangeReader()) if not _HARMLESS.search(fault)]
+    if any(fault.startswith("DATA NOT AVAILABLE") for fault in faults):
+        raise ReadError("is not valid STEP (syntax): export it again", file=file)
     if faults:
         more = f" and {len(faults) - 1} more" if len(faults) > 1 else ""
         raise ReadError(f"is faulty STEP ({faults[0]}{more}): export it again", file=file)

@@ -1,0 +1,113 @@
+"""Parts for the tests of `cad_io`: solids and patches made with the kernel, real files, and what independent code says."""
+
+from pathlib import Path
+
+import numpy as np
+from OCP.BRep import BRep_Builder
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_NurbsConvert
+from OCP.BRepPrimAPI import (
+    BRepPrimAPI_MakeBox,
+    BRepPrimAPI_MakeCone,
+    BRepPrimAPI_MakeCylinder,
+    BRepPrimAPI_MakeSphere,
+    BRepPrimAPI_MakeTorus,
+)
+from OCP.GeomAPI import GeomAPI_PointsToBSplineSurface
+from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
+from OCP.TColgp import TColgp_Array2OfPnt
+from OCP.TopoDS import TopoDS_Compound
+
+CAD = Path(__file__).resolve().parents[2] / "shared" / "data" / "cad"
+
+
+def real(*names):
+    """Those of the named real files that are here, as paths."""
+    return [CAD / name for name in names if (CAD / name).exists()]
+
+
+def ax(point=(0, 0, 0), z=(0, 0, 1)):
+    return gp_Ax2(gp_Pnt(*map(float, point)), gp_Dir(*map(float, z)))
+
+
+def ball(r=10.0, at=(0, 0, 0)):
+    return BRepPrimAPI_MakeSphere(ax(at), r).Solid()
+
+
+def box(x=10.0, y=10.0, z=10.0, at=(0, 0, 0)):
+    return BRepPrimAPI_MakeBox(gp_Pnt(*map(float, at)), x, y, z).Solid()
+
+
+def rod(r=5.0, h=20.0, at=(0, 0, 0)):
+    return BRepPrimAPI_MakeCylinder(ax(at), r, h).Solid()
+
+
+def cone(r0=8.0, r1=0.0, h=10.0):
+    return BRepPrimAPI_MakeCone(ax(), r0, r1, h).Solid()
+
+
+def ring(r=20.0, tube=5.0):
+    return BRepPrimAPI_MakeTorus(ax(), r, tube).Solid()
+
+
+def cut(whole, tool):
+    return BRepAlgoAPI_Cut(whole, tool).Shape()
+
+
+def drilled(r=3.0):
+    """A box with a hole through it."""
+    return cut(box(20, 20, 10), rod(r, 30, (10, 10, -5)))
+
+
+def pocketed(r=5.0):
+    """A box with a round pocket in its top."""
+    return cut(box(20, 20, 10), ball(r, (10, 10, 10)))
+
+
+def as_nurbs(shape):
+    return BRepBuilderAPI_NurbsConvert(shape, True).Shape()
+
+
+def compound(*shapes):
+    result, builder = TopoDS_Compound(), BRep_Builder()
+    builder.MakeCompound(result)
+    for shape in shapes:
+        builder.Add(result, shape)
+    return result
+
+
+def moved(angle=0.7, axis=(1, 2, 3), by=(5, -7, 11)):
+    turn, shift = gp_Trsf(), gp_Trsf()
+    turn.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(*map(float, axis))), float(angle))
+    shift.SetTranslation(gp_Vec(*map(float, by)))
+    return shift.Multiplied(turn)
+
+
+def mirror():
+    """Mirror in the plane x = 0."""
+    result = gp_Trsf()
+    result.SetMirror(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(1, 0, 0)))
+    return result
+
+
+def patch(seed=1, count=9, width=84.0, height=15.0):
+    """An untrimmed bicubic B-spline patch of random bumps over a square."""
+    rng = np.random.default_rng(seed)
+    centre, high = rng.uniform(-width / 3, width / 3, (5, 2)), rng.uniform(-height, height, 5)
+    line = np.linspace(-width / 2, width / 2, count)
+    points = TColgp_Array2OfPnt(1, count, 1, count)
+    for i, x in enumerate(line.tolist()):
+        for j, y in enumerate(line.tolist()):
+            z = high @ np.exp(-((x - centre[:, 0]) ** 2 + (y - centre[:, 1]) ** 2) / (width / 4) ** 2)
+            points.SetValue(i + 1, j + 1, gp_Pnt(x, y, float(z)))
+    made = GeomAPI_PointsToBSplineSurface()
+    made.Interpolate(points)
+    return BRepBuilderAPI_MakeFace(made.Surface(), 1e-6).Face()
+
+
+def holed_patch(seed=1):
+    """The patch with two round holes and a corner cut off, by rods along z."""
+    shape = patch(seed)
+    for r, x, y in ((12, 0, 5), (7, 25, -20), (20, 42, 42)):
+        shape = cut(shape, rod(r, 200, (x, y, -100)))
+    return shape
