@@ -96,7 +96,7 @@ def deepest_of_free_postures(name, cutter, count, dense, grid):
     rows = rng.choice(np.flatnonzero(reach.reached), count)
     surface = dense_points(part, dense)
     tree = cKDTree(surface)
-    deepest = -np.inf
+    deepest, radius = -np.inf, cutter.radius
     for row in rows:
         normal, axis, lean = samples.normal[row], reach.axis[row], reach.lean[row]
         if reach.verdict[row] == FREE:
@@ -104,8 +104,13 @@ def deepest_of_free_postures(name, cutter, count, dense, grid):
             axis, lean = posture(normal, samples.direction_max[row], 0.0, rng.uniform(0, 2 * math.pi))
         else:
             assert reach.verdict[row] == ACCESSIBLE
-        middle = samples.point[row] + 0.5 * cutter.length * axis
-        near = surface[tree.query_ball_point(middle, 0.5 * cutter.length + 2 * cutter.radius + 1e-6)]
+        # Balls strung along the axis cover the cutter.
+        x_t = (axis @ normal) * lean - (axis @ lean) * normal
+        heights = np.arange(radius, cutter.length + radius, 2 * radius)
+        centres = samples.point[row] - radius * x_t + heights[:, None] * axis
+        near = surface[np.unique(np.concatenate(tree.query_ball_point(centres, 1.4143 * radius)).astype(int))]
+        if len(near) == 0:
+            continue
         depth = depth_in_cutter(near, samples.point[row], normal, axis, lean, cutter.radius, cutter.length)
         deepest = max(deepest, float(depth.max()))
     return deepest
@@ -130,6 +135,6 @@ def test_reported_postures_do_not_gouge(name, cutter, grid):
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "cutter", "grid"), CASES)
 def test_ten_thousand_reported_postures_do_not_gouge(name, cutter, grid):
-    deepest = deepest_of_free_postures(name, cutter, 10_000, 100 if name == "control_arm" else 500, grid)
+    deepest = deepest_of_free_postures(name, cutter, 10_000, 60 if name == "control_arm" else 300, grid)
     print(f"{name}: deepest penetration {deepest:.6f} mm")
     assert -0.01 < deepest <= 0.01

@@ -1,0 +1,110 @@
+"""The annotated STEP and GLB of a plan, read back by other means than they were written with."""
+
+import json
+import os
+import struct
+import subprocess
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from cad_io import read_part
+from plan_cutters import Cutter, plan
+from plan_cutters.palette import PALETTE, rgb
+
+ROOT = Path(__file__).parent.parent
+SAMPLES = ROOT / "samples"
+
+
+@pytest.fixture(scope="module", params=["pocket_top", "peaks_and_valleys", "blade", "v_groove"])
+def written(request, tmp_path_factory):
+    out = tmp_path_factory.mktemp(request.param)
+    result = plan(SAMPLES / f"{request.param}.step", cutters=[Cutter.flat(radius=8, length=90)], grid=61)
+    return result, result.write(out), out
+
+
+def shares(result):
+    """Share of the target samples' area that has each verdict."""
+    verdict, area = result.reaches["R8L90"].verdict, result.samples.area
+    names = {2: "interference_free", 1: "accessible", 0: "inaccessible"}
+    return {name: float(area[verdict == code].sum()) for code, name in names.items() if (verdict == code).any()}
+
+
+def test_step_pieces_have_the_verdicts_names_colours_and_areas(written):
+    result, document, out = written
+    assert document.split == {}
+    again = read_part(out / "annotated.step")
+    assert again.solids == result.part.solids
+    faces = {f.id: f for f in document.faces}
+    area: Counter = Counter()
+    for face in again.faces:
+        number, _, verdict = face.name.partition("_")
+        assert face.colour == pytest.approx(rgb(verdict), abs=2e-3)
+        assert (verdict == "check") == (not faces[number].target)
+        area[number] += face.area
+        if faces[number].target:
+            area[verdict] += face.area
+    for f in document.faces:
+        assert area[f.id] == pytest.approx(f.area_mm2, rel=2e-4)
+    whole = sum(f.area_mm2 for f in document.faces if f.target)
+    for verdict, expected in shares(result).items():
+        assert area[verdict] == pytest.approx(expected, abs=0.04 * whole)
+
+
+def chunks(path):
+    data = path.read_bytes()
+    assert data[:4] == b"glTF"
+    length = struct.unpack_from("<I", data, 12)[0]
+    return json.loads(data[20 : 20 + length])
+
+
+def linear(value):
+    return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
+
+
+def test_glb_says_face_and_verdict_and_stands_upright_in_metres(written):
+    result, document, out = written
+    tree = chunks(out / "annotated.glb")
+    said = [n["extras"] for n in tree["nodes"] if "verdicts" in n.get("extras", {})]
+    assert sorted(e["face"] for e in said) == sorted(f.id for f in document.faces)
+    entry = document.cutters[0]
+    for extras in said:
+        if extras["target"]:
+            assert extras["verdicts"] == entry.faces[extras["face"]].model_dump()
+    pieces = [n["extras"] for n in tree["nodes"] if "verdict" in n.get("extras", {})]
+    assert {p["verdict"] for p in pieces} <= set(PALETTE)
+    colours = {tuple(np.round(m["pbrMetallicRoughness"]["baseColorFactor"][:3], 3)) for m in tree["materials"]}
+    for verdict in {p["verdict"] for p in pieces}:
+        assert tuple(round(linear(c), 3) for c in rgb(verdict)) in colours
+    scene = trimesh.load(out / "annotated.glb")
+    x, y, z = np.ptp(scene.bounds, axis=0) * 1000
+    assert (x, z, y) == pytest.approx(result.part.size, rel=0.02)
+
+
+def test_glb_passes_the_khronos_validator(written):
+    _, _, out = written
+    assert (ROOT / "node_modules" / "gltf-validator").is_dir(), "run: sh setup.sh dev"
+    done = subprocess.run(
+        ["node", str(ROOT / "tests" / "gltf_validate.js"), str(out / "annotated.glb")],
+        capture_output=True, text=True, check=True, env={**os.environ, "NODE_PATH": str(ROOT / "node_modules")},
+    )  # fmt: skip
+    issues = json.loads(done.stdout)
+    assert (issues["numErrors"], issues["numWarnings"]) == (0, 0), issues
+
+
+def test_a_face_without_a_grid_is_coloured_by_its_worst_verdict(written):
+    from dataclasses import replace
+
+    from plan_cutters.palette import LABELS
+    from plan_cutters.report.models import split_result
+
+    result, _, _ = written
+    bare = replace(result, samples=replace(result.samples, grids=()))
+    target = {int(f.id[1:]) for f in result.plan.faces if f.target}
+    for piece in split_result(bare).pieces:
+        if piece.face in target:
+            verdicts = result.reaches["R8L90"].verdict[result.samples.face == piece.face]
+            assert LABELS[piece.label] == ("inaccessible" if (verdicts == 0).any() else "accessible")
