@@ -1,18 +1,24 @@
-"""One cut of shapes by edges that lie on their faces, and whether the result can be trusted."""
+"""Cut shapes by edges that lie on their faces, and tell whether the result can be trusted.
+
+The kernel estimates how far an edge is from its face by projecting eleven points of it. On rough faces (slopes that
+change by 45 deg within a span) a projection may end on another slope, millimetres off (OCCT 7.9), and the edge's
+tolerance then swallows what is near it. So tolerances are among the things checked.
+"""
 
 import io
 import pickle
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 from OCP.BinTools import BinTools
 from OCP.BRep import BRep_Tool
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Splitter
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepTools import BRepTools
-from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
+from OCP.ShapeAnalysis import ShapeAnalysis_ShapeTolerance
+from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_EDGE, TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
 from OCP.TopoDS import TopoDS, TopoDS_Shape
 from OCP.TopTools import TopTools_ListOfShape
 
@@ -23,6 +29,8 @@ from cad_io.uv_region import uv_area
 
 #: Points closer than this are one, mm: what the kernel's splitter was tried with.
 FUZZY = 1e-4
+#: What a cut may add to the largest tolerance of a shape, mm.
+_LOOSER = 0.1
 #: Relative error of a face's parameter area that is still the same area.
 _SAME_AREA = 1e-5
 
@@ -44,7 +52,14 @@ class Cut:
     pieces: dict[int, list[Any]]
 
 
-def cut(jobs: Sequence[Job], seconds: float) -> list[Cut | str]:
+class Fault(NamedTuple):
+    """Why a cut is no good, and the face that it is about, if it is about one."""
+
+    reason: str
+    face: int | None = None
+
+
+def cut(jobs: Sequence[Job], seconds: float) -> list[Cut | Fault]:
     """Cut shapes by edges on their faces, in a process of its own with a time limit.
 
     Parameters
@@ -56,21 +71,22 @@ def cut(jobs: Sequence[Job], seconds: float) -> list[Cut | str]:
 
     Returns
     -------
-    list of Cut or str
+    list of Cut or Fault
         For each job a copy of the shape, cut; or why the cut is no good: the kernel fails, hangs or crashes, the result
-        is invalid where the shape was valid, solids, shells or their closedness differ, a face is lost, or the pieces
-        of a face do not have its area. Areas are those of the region in the parameter plane, integrated exactly along
-        its boundary: pieces that tile the region there tile the face, and the kernel's own areas in mm2 are off by up
-        to 9 % on some surfaces.
+        is invalid where the shape was valid, solids, shells or their closedness differ, edges are much looser than
+        they were, a face is lost, or the pieces of a face do not have its area. Areas are those of the region in the
+        parameter plane, integrated exactly along its boundary: pieces that tile the region there tile the face, and
+        the kernel's own areas in mm2 are off by up to 9 % on some surfaces.
     """
     try:
         answers = pickle.loads(limited(partial(_answers, jobs), seconds))
     except TimeLimit:
-        return ["splitting it takes too long"] * len(jobs)
+        return [Fault("splitting it takes too long")] * len(jobs)
     except ChildDied as error:
-        return [f"splitting it fails: {error}"] * len(jobs)
+        return [Fault(f"splitting it fails: {error}")] * len(jobs)
     return [
-        answer if isinstance(answer, str) else _unpacked(answer, job) for job, answer in zip(jobs, answers, strict=True)
+        Fault(*answer) if isinstance(answer, tuple) else _unpacked(answer, job)
+        for job, answer in zip(jobs, answers, strict=True)
     ]
 
 
@@ -78,8 +94,8 @@ def _answers(jobs: Sequence[Job]) -> bytes:
     return pickle.dumps([_cut(job) for job in jobs])
 
 
-def _cut(job: Job) -> bytes | str:
-    """What `_unpacked` takes, or a reason."""
+def _cut(job: Job) -> bytes | Fault:
+    """What `_unpacked` takes, or why there is none."""
     tools, arguments = TopTools_ListOfShape(), TopTools_ListOfShape()
     arguments.Append(job.shape)
     for edge in job.edges:
@@ -91,7 +107,7 @@ def _cut(job: Job) -> bytes | str:
     splitter.SetNonDestructive(True)
     splitter.Build()
     if not splitter.IsDone():
-        return "the kernel cannot split it"
+        return Fault("the kernel cannot split it")
     result = splitter.Shape()
     # Ends of curves past the trim would stay as loose edges inside solids and faces.
     BRepTools.RemoveInternals_s(result, False)
@@ -101,13 +117,13 @@ def _cut(job: Job) -> bytes | str:
     pieces: dict[int, list[Any]] = {}
     for number, face in job.faces.items():
         images = list(splitter.Modified(face)) or [face]
-        if splitter.IsDeleted(face) or not all(known.Contains(f) for f in images):
-            return f"splitting loses a piece of F{number}"
+        if splitter.IsDeleted(face) or not all(map(known.Contains, images)):
+            return Fault(f"splitting loses a piece of F{number}", number)
         # From the map: with the orientation that the face has in the result.
         pieces[number] = [known.FindKey(known.FindIndex(f)) for f in images]
-    reason = _wrong(job, result, pieces)
-    if reason:
-        return reason
+    fault = _wrong(job, result, pieces)
+    if fault:
+        return fault
     # One compound of the cut shape and, for every face, the compound of its pieces: sharing survives.
     stream = io.BytesIO()
     BinTools.Write_s(compound([result, *(compound(p) for p in pieces.values())]), stream)
@@ -121,19 +137,26 @@ def _unpacked(data: bytes, job: Job) -> Cut:
     return Cut(result, {n: [TopoDS.Face_s(f) for f in children(g)] for n, g in zip(job.faces, groups, strict=True)})
 
 
-def _wrong(job: Job, result: Any, pieces: dict[int, list[Any]]) -> str:
-    """Why a result is not to be trusted; empty if it is."""
+def _wrong(job: Job, result: Any, pieces: dict[int, list[Any]]) -> Fault | None:
+    """Why a result is not to be trusted, if so."""
     if _shells(job.shape) != _shells(result):
-        return "splitting changes solids or shells"
+        return Fault("splitting changes solids or shells")
+    tolerance = ShapeAnalysis_ShapeTolerance().Tolerance
+    allowed = tolerance(job.shape, 1) + _LOOSER
     for number, face in job.faces.items():
+        # The loose edge is on the face that spoils the cut; its vertices are on neighbours, too.
+        loosest = max(tolerance(piece, 1, TopAbs_EDGE) for piece in pieces[number])
+        if not loosest <= allowed:
+            return Fault(f"splitting leaves gaps of up to {loosest:.2g} mm", number)
         if len(pieces[number]) == 1 and pieces[number][0].IsSame(face):
             continue
         before, after = uv_area(face), sum(uv_area(TopoDS.Face_s(p)) for p in pieces[number])
         if not abs(after - before) <= _SAME_AREA * abs(before):
-            return f"the pieces of F{number} do not have its area"
+            return Fault(f"the pieces of F{number} do not have its area", number)
     if not BRepCheck_Analyzer(result).IsValid() and BRepCheck_Analyzer(job.shape).IsValid():
-        return "splitting makes the shape invalid"
-    return ""
+        bad = (n for n in pieces if not all(BRepCheck_Analyzer(piece).IsValid() for piece in pieces[n]))
+        return Fault("splitting makes the shape invalid", next(bad, None))
+    return None
 
 
 def _shells(shape: Any) -> tuple[int, list[bool]]:

@@ -1,8 +1,8 @@
 """Cut all faces that can be cut: everything in one go, and only where that fails, less and less at a time."""
 
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Sewing
@@ -10,12 +10,12 @@ from OCP.TopAbs import TopAbs_FACE
 from OCP.TopoDS import TopoDS
 
 from cad_io.components import components, compound
-from cad_io.cut import FUZZY, Cut, Job, cut
+from cad_io.cut import FUZZY, Cut, Fault, Job, cut
 from cad_io.kernel import faces as faces_of
 from cad_io.kernel import shape_map
 
 #: Fits of the drawn curves that are tried, cells of root mean square distance; the first one first.
-FITS = (0.1, 0.05, 0.2)
+FITS = (0.1, 0.05, 0.2, 0.14, 0.07)
 
 
 class Drawing(Protocol):
@@ -32,11 +32,10 @@ class Drawing(Protocol):
 
 @dataclass(slots=True)
 class _Unit:
-    """A component of the part with its faces by number, and how far it is."""
+    """A component of the part, its faces by number, and the result."""
 
     shape: Any
     faces: dict[int, Any]
-    done: list[int] = field(default_factory=list)
     cut: Cut | None = None
 
 
@@ -71,28 +70,24 @@ def cut_faces(
     units = _units(shape, faces)
     failed: dict[int, str] = {}
 
-    def attempt(jobs: list[Job], numbers: list[list[int]]) -> list[Cut | str]:
+    def attempt(jobs: list[Job], numbers: list[list[int]]) -> list[Cut | Fault]:
         # Half of what is left, so that one endless call does not cost all faces their turn.
         found = cut(jobs, 0.5 * (deadline - time.monotonic()))
         for i, mine in enumerate(numbers):
             result = found[i]
             if isinstance(result, Cut):
-                reasons = [drawings[n].differs(result.pieces[n]) for n in mine]
-                found[i] = next(filter(None, reasons), result)
+                faults = (Fault(reason, n) for n in mine if (reason := drawings[n].differs(result.pieces[n])))
+                found[i] = next(faults, result)
         return found
-
-    def job(shape: Any, faces: dict[int, Any], numbers: list[int]) -> Job:
-        return Job(shape, faces, [edge for n in numbers for edge in drawings[n].edges])
 
     asked = [(unit, [n for n in unit.faces if n in drawings]) for unit in units]
     asked = [(unit, numbers) for unit, numbers in asked if numbers]
-    jobs = [job(unit.shape, unit.faces, numbers) for unit, numbers in asked]
-    found = attempt(jobs, [numbers for _, numbers in asked])
-    for (unit, numbers), result in zip(asked, found, strict=True):
+    jobs = [Job(unit.shape, unit.faces, _edges(drawings, numbers)) for unit, numbers in asked]
+    for (unit, numbers), result in zip(asked, attempt(jobs, [n for _, n in asked]), strict=True):
         if isinstance(result, Cut):
-            unit.cut, unit.done = result, numbers
+            unit.cut = result
         else:
-            failed |= _rescue(unit, numbers, drawings, lambda s, f, n: attempt([job(s, f, n)], [n])[0])
+            failed |= _rescue(unit, numbers, drawings, lambda job, numbers: attempt([job], [numbers])[0])
 
     pieces = {number: [face] for number, face in faces.items()}
     for unit in units:
@@ -128,30 +123,38 @@ def _bases(unit: _Unit) -> list[tuple[Any, dict[int, Any]]]:
     return bases
 
 
+def _edges(drawings: dict[int, Drawing], numbers: Iterable[int]) -> list[Any]:
+    return [edge for n in numbers for edge in drawings[n].edges]
+
+
 def _rescue(
-    unit: _Unit,
-    numbers: list[int],
-    drawings: dict[int, Drawing],
-    attempt: Callable[[Any, dict[int, Any], list[int]], Cut | str],
+    unit: _Unit, numbers: list[int], drawings: dict[int, Drawing], attempt: Callable[[Job, list[int]], Cut | Fault]
 ) -> dict[int, str]:
     """Cut as many of the faces as possible; why the others were not cut."""
     failed: dict[int, str] = {}
     bases = _bases(unit)
+    done: list[int] = []
     groups = [numbers]
     while groups:
         group = groups.pop()
         alone = len(group) == 1
-        reason = ""
-        for base, fit in [(b, f) for f in FITS for b in bases] if alone else [(bases[0], FITS[0])]:
-            undrawn = drawings[group[0]].draw(fit) if alone else ""
-            found = undrawn or attempt(*base, unit.done + group)
+        faults = []
+        for (shape, faces), fit in [(b, f) for f in FITS for b in bases] if alone else [(bases[0], FITS[0])]:
+            if alone and (reason := drawings[group[0]].draw(fit)):
+                faults.append(Fault(reason))
+                continue
+            found = attempt(Job(shape, faces, _edges(drawings, done + group)), done + group)
             if isinstance(found, Cut):
-                unit.cut, unit.done = found, unit.done + group
+                unit.cut = found
+                done += group
                 break
-            reason = reason or found
+            faults.append(found)
         else:
+            culprit = faults[0].face
             if alone:
-                failed[group[0]] = reason
+                failed[group[0]] = faults[0].reason
+            elif culprit in group:
+                groups += [[culprit], [n for n in group if n != culprit]]
             else:
                 half = len(group) // 2
                 groups += [group[half:], group[:half]]
