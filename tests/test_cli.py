@@ -207,3 +207,32 @@ def test_an_interrupt_leaves_nothing(tmp_path):
     assert "Traceback" not in rest
     assert "interrupted" in rest
     assert leftovers(tmp_path) == []
+
+
+def test_a_read_that_hangs_is_ended(tmp_path):
+    os.mkfifo(tmp_path / "hang.step")
+    done = run("hang.step", "--read-timeout", "1", cwd=tmp_path, timeout=60)
+    assert_one_line(done, 3, "hang.step", "--read-timeout")
+    assert leftovers(tmp_path, "hang.step") == []
+
+
+def test_a_crash_of_the_kernel_is_one_line(tmp_path):
+    process = subprocess.Popen(
+        [sys.executable, "-m", "plan_cutters", str(SAMPLES / "peaks_and_valleys.step"), "--grid", "401"],
+        cwd=tmp_path, env=ENV, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert process.stderr is not None
+    for line in process.stderr:
+        if line.startswith("sample"):
+            break
+    children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+    os.kill(int(children[0]), signal.SIGSEGV)
+    _, rest = process.communicate(timeout=60)
+    assert process.returncode == 3
+    assert "Traceback" not in rest
+    assert "SIGSEGV" in rest.strip().splitlines()[-1]
+    assert leftovers(tmp_path) == []
+
+
+def test_too_little_memory_is_said(tmp_path):
+    assert_one_line(run(SAMPLES / "v_groove.step", "--memory", "1", cwd=tmp_path), 2, "--memory")

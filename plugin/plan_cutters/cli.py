@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from plan_cutters import __version__
+from plan_cutters.supervise import Supervised, default_memory, is_child, limit_memory, report, supervise
 
 if TYPE_CHECKING:
     from plan_cutters.model import Plan
@@ -114,6 +115,14 @@ class _Vector(click.ParamType):
 @click.option("--jobs", type=int, metavar="N", help="Threads.  [default: all cores]")
 @click.option("--cluster", metavar="ADDRESS", hidden=True)
 @click.option("--flip", is_flag=True, help="Machine the other side of open shells and loose faces.")
+@click.option(
+    "--read-timeout",
+    type=float,
+    default=120.0,
+    metavar="S",
+    help="Seconds that reading a part may take.  [default: 120]",
+)
+@click.option("--memory", type=float, metavar="GB", help="Most memory to use.  [default: 3/4 of the machine's]")
 @click.option("--quiet", is_flag=True, help="No progress and no summary.")
 @click.option("--debug", is_flag=True, help="Show tracebacks.")
 @click.version_option(__version__, prog_name="plan-cutters")
@@ -177,7 +186,10 @@ def _one(part: str, out: Path, options: "Options", given: dict[str, Any]) -> tup
     # The plan on standard output: files only where they are asked for.
     default = () if to_stdout and given["out"] is None else FORMATS
     formats = read_formats(given["formats"]) if given["formats"] else default
+    report("part", part)
     staging = Staging(out) if formats else None
+    if staging:
+        report("staging", str(staging.folder))
     try:
         from plan_cutters.pipeline import run
 
@@ -277,6 +289,8 @@ class _progress:
         return self.tell
 
     def tell(self, stage: str, done: int, total: int) -> None:
+        if done == 0:
+            report("stage", stage)
         if self.bar is not None:
             if stage not in self.tasks:
                 self.tasks[stage] = self.bar.add_task(stage, total=total)
@@ -298,6 +312,10 @@ def _guarded(work: Any, debug: bool) -> tuple[int, str]:
     try:
         code, line = work()
         return int(code), str(line)
+    except Supervised as end:
+        return UNREADABLE, f"plan-cutters: {end}"
+    except MemoryError:
+        return UNREADABLE, "plan-cutters: out of memory; sample more coarsely (--spacing), or give --memory"
     except KeyboardInterrupt:
         if debug:
             raise
@@ -318,16 +336,35 @@ def _guarded(work: Any, debug: bool) -> tuple[int, str]:
 
 
 def main(args: Sequence[str] | None = None) -> NoReturn:
-    """Entry point of the command."""
+    """Entry point of the command: what has a part to read runs in a child process."""
     words = list(sys.argv[1:] if args is None else args)
-
-    def work() -> tuple[int, str]:
-        try:
-            return int(command.main(words, prog_name="plan-cutters", standalone_mode=False) or 0), ""
-        except click.Abort:
-            return INTERRUPTED, "plan-cutters: interrupted; nothing was written"
-
-    code, line = _guarded(work, "--debug" in words)
+    if is_child():
+        limit_memory()
+        code, line = _guarded(lambda: (_parsed(words), ""), "--debug" in words)
+    else:
+        code, line = _guarded(lambda: (_watched(words), ""), "--debug" in words)
     if line:
         click.echo(line, err=True)
     sys.exit(code)
+
+
+def _parsed(words: list[str]) -> int:
+    try:
+        return int(command.main(words, prog_name="plan-cutters", standalone_mode=False) or 0)
+    except click.Abort:
+        raise KeyboardInterrupt from None
+
+
+def _watched(words: list[str]) -> int:
+    """Look at the words here, so that help and mistakes cost nothing; leave the work to a child."""
+    try:
+        with command.make_context("plan-cutters", list(words)) as context:
+            given = dict(context.params)
+    except click.exceptions.Exit as done:
+        return done.exit_code
+    if not given["read_timeout"] > 0:
+        raise click.BadParameter("--read-timeout must be a positive number of seconds")
+    memory = default_memory() if given["memory"] is None else int(given["memory"] * 1e9)
+    if memory < 2e9:
+        raise click.BadParameter("--memory must be at least 2 GB")
+    return supervise(words, read_timeout=given["read_timeout"], memory=memory)

@@ -1,0 +1,140 @@
+"""One child process does the whole job; this one only watches it.
+
+The CAD kernel can crash or hang on a bad file, and neither can be caught from inside. A child that dies, takes too long
+to read or too much memory becomes one line and an exit code; what it had begun to write is taken away.
+"""
+
+import os
+import select
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+#: Environment variable by which the child knows its number of the pipe to report on, and its memory limit in bytes.
+REPORT, MEMORY = "PLAN_CUTTERS_REPORT", "PLAN_CUTTERS_MEMORY"
+#: Stages in which the kernel works on what the file says; only these have a time limit.
+READING = ("read",)
+
+
+class Supervised(Exception):
+    """The child did not end by itself: `str` says what happened, in words for the user."""
+
+
+def is_child() -> bool:
+    """Whether this process was started by `supervise`."""
+    return REPORT in os.environ
+
+
+def limit_memory() -> None:
+    """Keep to the memory limit that the parent set."""
+    if MEMORY in os.environ:
+        import resource
+
+        limit = int(os.environ[MEMORY])
+        resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+
+
+def report(word: str, text: str) -> None:
+    """Tell the parent, if there is one: `stage NAME`, `part FILE`, `staging FOLDER`."""
+    if is_child():
+        os.write(int(os.environ[REPORT]), f"{word} {text}\n".encode())
+
+
+def default_memory() -> int:
+    """Three quarters of the machine's memory, bytes."""
+    return int(0.75 * os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+
+
+def supervise(words: Sequence[str], *, read_timeout: float, memory: int) -> int:
+    """Run the command in a child.
+
+    Parameters
+    ----------
+    words : sequence of str
+        Its arguments.
+    read_timeout : float
+        Seconds that reading one part may take.
+    memory : int
+        Bytes of address space that the child may use.
+
+    Returns
+    -------
+    int
+        The child's exit code.
+
+    Raises
+    ------
+    Supervised
+        It crashed or was stopped.
+    """
+    here, there = os.pipe()
+    environment = {**os.environ, REPORT: str(there), MEMORY: str(memory)}
+    # A session of its own: an interrupt from the terminal reaches the child once, through us.
+    child = subprocess.Popen([sys.executable, "-m", "plan_cutters", *words], env=environment, pass_fds=(there,),
+                             start_new_session=True)  # fmt: skip
+    os.close(there)
+    watch = _Watch(here, read_timeout)
+    previous = {
+        s: signal.signal(s, lambda number, _: child.send_signal(number)) for s in (signal.SIGINT, signal.SIGTERM)
+    }
+    try:
+        while child.poll() is None:
+            watch.listen(0.2)
+            if watch.late():
+                child.kill()
+                child.wait()
+                watch.clear()
+                raise Supervised(
+                    f"{watch.part}: not read within {read_timeout:g} s; the file may be damaged, or give --read-timeout"
+                )
+        watch.listen(0.0)
+    finally:
+        os.close(here)
+        for number, handler in previous.items():
+            signal.signal(number, handler)
+        if child.poll() is None:
+            child.kill()
+            child.wait()
+    if child.returncode >= 0:
+        return child.returncode
+    watch.clear()
+    name = signal.Signals(-child.returncode).name
+    raise Supervised(f"{watch.part}: the CAD kernel crashed ({name}, while it was at '{watch.stage}'); "
+                     "the file may be damaged: export it again")  # fmt: skip
+
+
+class _Watch:
+    """What the child has told so far."""
+
+    def __init__(self, pipe: int, read_timeout: float) -> None:
+        self.pipe, self.read_timeout = pipe, read_timeout
+        self.part, self.stage, self.since = "part", "start", time.monotonic()
+        self.staging: set[str] = set()
+        self.rest = b""
+
+    def listen(self, seconds: float) -> None:
+        while select.select([self.pipe], [], [], seconds)[0]:
+            data = os.read(self.pipe, 1 << 16)
+            if not data:
+                time.sleep(seconds)
+                return
+            *lines, self.rest = (self.rest + data).split(b"\n")
+            for line in lines:
+                word, _, text = line.decode(errors="replace").partition(" ")
+                if word == "stage":
+                    self.stage, self.since = text, time.monotonic()
+                elif word == "part":
+                    self.part = text
+                elif word == "staging":
+                    self.staging.add(text)
+
+    def late(self) -> bool:
+        return self.stage in READING and time.monotonic() - self.since > self.read_timeout
+
+    def clear(self) -> None:
+        for folder in self.staging:
+            shutil.rmtree(Path(folder), ignore_errors=True)
