@@ -20,7 +20,7 @@ from cad_io.arrays import Floats, Ints
 MARGIN = 0.1
 #: Steps of the accelerated descent; they straighten stairs up to about 40 cells long.
 STEPS = 300
-#: Curves reach this many cells past the last known node: over the trim, but not across a whole hole.
+#: Curves reach this many cells past the last node on the face: over the trim, but not across a whole hole.
 REACH = 2
 
 
@@ -35,7 +35,7 @@ class LabelGrid:
     field : (nu, nv) int32
         Labels, known everywhere.
     near : (nu, nv) bool
-        Nodes within REACH cells of a known one.
+        Nodes within REACH cells of a node on the face.
     closed_u, closed_v : bool
         The last line's neighbour is the first one.
     """
@@ -110,7 +110,7 @@ def boundaries(grid: LabelGrid, fit: float) -> list[Spline]:
     -------
     list of Spline
         In surface parameters, inside the rectangle of the grid lines. A curve ends on that rectangle, on a seam or
-        REACH cells off the known nodes; else it is closed. Empty for a field of one label.
+        REACH cells off the face; else it is closed. Empty for a field of one label.
     """
     chains = [chain for k in range(int(grid.field.min()), int(grid.field.max())) for chain in _chains(grid, k)]
     shape = np.array(grid.field.shape, float)
@@ -236,7 +236,7 @@ def _relaxed(chains: list[_Chain]) -> list[Floats]:
 
 
 def _cut(chain: _Chain, x: Floats, grid: LabelGrid) -> list[tuple[Floats, bool]]:
-    """Parts of a chain that lie near known nodes and do not cross a seam: (points in cells, closed)."""
+    """Parts of a chain that lie near the face and do not cross a seam: (points in cells, closed)."""
     node = np.round(chain.base).astype(int) % grid.field.shape
     near = grid.near[node[:, 0], node[:, 1]]
     seam = np.zeros(len(x), bool)

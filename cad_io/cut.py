@@ -2,13 +2,13 @@
 
 The kernel estimates how far an edge is from its face by projecting eleven points of it. On rough faces (slopes that
 change by 45 deg within a span) a projection may end on another slope, millimetres off (OCCT 7.9), and the edge's
-tolerance then swallows what is near it. So tolerances are among the things checked.
+tolerance then swallows what is near it. So tolerances are among the things checked, and there is a remedy (`denser`).
 """
 
 import io
 import pickle
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -23,6 +23,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Shape
 from OCP.TopTools import TopTools_ListOfShape
 
 from cad_io.components import children, compound
+from cad_io.denser import denser
 from cad_io.kernel import explore, shape_map
 from cad_io.limited import ChildDied, TimeLimit, limited
 from cad_io.uv_region import uv_area
@@ -37,11 +38,15 @@ _SAME_AREA = 1e-5
 
 @dataclass(frozen=True, slots=True)
 class Job:
-    """A shape, all its faces by number, and the edges that are to cut it."""
+    """A shape, all its faces by number, and the edges on some of them that are to cut it.
+
+    `rough` tells into how many parts the spans of a face's surface are cut while the kernel works.
+    """
 
     shape: Any
     faces: dict[int, Any]
     edges: list[Any]
+    rough: dict[int, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +110,9 @@ def _cut(job: Job) -> bytes | Fault:
     splitter.SetTools(tools)
     splitter.SetFuzzyValue(FUZZY)
     splitter.SetNonDestructive(True)
-    splitter.Build()
+    # In place, which a copy of the process may do.
+    with denser((job.faces[n], parts) for n, parts in job.rough.items()):
+        splitter.Build()
     if not splitter.IsDone():
         return Fault("the kernel cannot split it")
     result = splitter.Shape()

@@ -15,7 +15,9 @@ from cad_io.kernel import faces as faces_of
 from cad_io.kernel import shape_map
 
 #: Fits of the drawn curves that are tried, cells of root mean square distance; the first one first.
-FITS = (0.1, 0.05, 0.2, 0.14, 0.07)
+FITS = (0.1, 0.05, 0.2)
+#: Into how many parts the spans of a face's surface are cut: a remedy for rough ones.
+DENSITIES = (1, 4, 8)
 
 
 class Drawing(Protocol):
@@ -45,7 +47,8 @@ def cut_faces(
     """Cut faces of a shape along the edges drawn on them.
 
     Components of the shape (solids, shells, loose faces) are cut one by one. Where the cut of a component fails, its
-    faces are halved until the ones that spoil it are found; those are tried with other curves.
+    faces are halved until the ones that spoil it are found; those are tried with denser
+    surfaces and other curves.
 
     Parameters
     ----------
@@ -134,19 +137,23 @@ def _rescue(
     failed: dict[int, str] = {}
     bases = _bases(unit)
     done: list[int] = []
+    rough: dict[int, int] = {}
     groups = [numbers]
     while groups:
         group = groups.pop()
         alone = len(group) == 1
         faults = []
-        for (shape, faces), fit in [(b, f) for f in FITS for b in bases] if alone else [(bases[0], FITS[0])]:
+        ways = [(b, f, d) for f in FITS for d in DENSITIES for b in bases] if alone else [(bases[0], FITS[0], 1)]
+        for (shape, faces), fit, dense in ways:
             if alone and (reason := drawings[group[0]].draw(fit)):
                 faults.append(Fault(reason))
                 continue
-            found = attempt(Job(shape, faces, _edges(drawings, done + group)), done + group)
+            denser = rough | ({group[0]: dense} if dense > 1 else {})
+            found = attempt(Job(shape, faces, _edges(drawings, done + group), denser), done + group)
             if isinstance(found, Cut):
                 unit.cut = found
                 done += group
+                rough = denser
                 break
             faults.append(found)
         else:

@@ -10,7 +10,7 @@ from scipy.ndimage import maximum_filter
 from cad_io.arrays import FaceLabels, Floats, Ints
 from cad_io.contour import REACH, LabelGrid, fill, without_specks
 from cad_io.kernel import edges_of
-from cad_io.uv_region import outline
+from cad_io.uv_region import inside, outline
 
 #: Curves may end this far past the trim, cells: an end exactly on it could miss the edge it should cut.
 _OVER = 0.25
@@ -84,7 +84,8 @@ def label_grid(face: Any, labels: FaceLabels) -> tuple[LabelGrid, Ints, int]:
         row[i] = np.bincount(row[i]).argmax()
     despeckled = without_specks(field, closed[0], closed[1])
     modes = ["wrap" if c else "nearest" for c in closed]
-    near = maximum_filter((label >= 0).astype(np.uint8), size=2 * REACH + 1, mode=modes) > 0
+    on_face = (label >= 0) | inside(segments, *(line[:n] for line, n in zip(lines, label.shape, strict=True)))
+    near = maximum_filter(on_face.astype(np.uint8), size=2 * REACH + 1, mode=modes) > 0
     dropped = int(((despeckled != field) & (label >= 0)).sum())
     return LabelGrid(lines[0], lines[1], despeckled, near, closed[0], closed[1]), label, dropped
 

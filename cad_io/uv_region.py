@@ -20,6 +20,7 @@ from cad_io.kernel import edges_of
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)  # exact for polynomial curves up to degree 6
 _CHORDS = 4  # of an interval, in an outline
+_OFF = 1e-7  # of the grid, that rows are moved by
 _ARCS = 8  # intervals that a curve without knots (conic) is cut into
 
 
@@ -51,6 +52,8 @@ def uv_area(face: Any) -> float:
 
 def inside(segments: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:
     """Which nodes of the grid u (nu,) x v (nv,), both increasing, lie in an outline: (nu, nv), by even-odd rows."""
+    # Borders like to run along grid lines, where rounding decides what a row crosses: rows are taken a little off.
+    v = v + _OFF * (v[-1] - v[0])
     p, q = segments[:, 0], segments[:, 1]
     first = np.searchsorted(v, np.minimum(p[:, 1], q[:, 1]))
     rows = np.searchsorted(v, np.maximum(p[:, 1], q[:, 1])) - first

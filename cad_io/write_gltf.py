@@ -23,7 +23,7 @@ from OCP.TopoDS import TopoDS
 from cad_io.arrays import Floats, Style
 from cad_io.aside import aside
 from cad_io.errors import WriteError
-from cad_io.kernel import first_derivatives, translated, values
+from cad_io.kernel import first_derivatives, translated
 from cad_io.split import Piece, Split
 
 #: Largest angle between neighbouring facets, rad.
@@ -119,11 +119,11 @@ def _mesh(face: Any, meshed: Any) -> _Mesh | None:
         return None
     uv = np.array([triangulation.UVNode(i + 1).Coord() for i in range(triangulation.NbNodes())])
     triangle = np.array([triangulation.Triangle(i + 1).Get() for i in range(triangulation.NbTriangles())]) - 1
-    adaptor = BRepAdaptor_Surface(face, False)
-    s = first_derivatives(adaptor, uv[:, 0], uv[:, 1])
-    point = np.where(np.isfinite(s[:, 0]), s[:, 0], values(adaptor, uv[:, 0], uv[:, 1]))
-    if not np.isfinite(point).all():
-        return None
+    # The mesh's own nodes, not the surface's points: along an edge both faces have the same ones, and no cracks.
+    place = location.Transformation()
+    nodes = (triangulation.Node(i + 1).Transformed(place).Coord() for i in range(triangulation.NbNodes()))
+    point = np.array(list(nodes))
+    s = first_derivatives(BRepAdaptor_Surface(face, False), uv[:, 0], uv[:, 1])
     normal = np.cross(s[:, 1], s[:, 2])
     if face.Orientation() == TopAbs_REVERSED:
         triangle, normal = triangle[:, ::-1], -normal
