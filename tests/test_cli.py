@@ -234,5 +234,27 @@ def test_a_crash_of_the_kernel_is_one_line(tmp_path):
     assert leftovers(tmp_path) == []
 
 
+def test_an_interrupt_at_the_very_start(tmp_path):
+    for delay in (0.1, 0.3, 0.8):
+        process = subprocess.Popen(
+            [sys.executable, "-m", "plan_cutters", str(SAMPLES / "v_groove.step")],
+            cwd=tmp_path, env=ENV, stderr=subprocess.PIPE, text=True,
+        )  # fmt: skip
+        time.sleep(delay)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=60)
+        assert process.returncode in (130, -signal.SIGINT)
+        assert delay < 0.2 or process.returncode == 130
+        assert delay < 0.2 or "Traceback" not in said
+        assert leftovers(tmp_path) == []
+
+
+def test_debug_shows_the_traceback_and_keeps_the_code(tmp_path):
+    done = run("missing.step", "--debug", cwd=tmp_path)
+    assert done.returncode == 3
+    assert "Traceback" in done.stderr
+    assert done.stderr.strip().splitlines()[-1].startswith("plan-cutters: missing.step")
+
+
 def test_too_little_memory_is_said(tmp_path):
     assert_one_line(run(SAMPLES / "v_groove.step", "--memory", "1", cwd=tmp_path), 2, "--memory")

@@ -2,6 +2,7 @@
 
 import math
 import sys
+import traceback
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -221,7 +222,7 @@ def _summary(plan: "Plan", out: Path | None) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    console = Console(stderr=True, highlight=False, soft_wrap=True)
+    console = Console(stderr=True, highlight=False, soft_wrap=True, markup=False)
     size = " x ".join(f"{s:.4g}" for s in plan.part.size_mm)
     targets = len(plan.effective.target_faces)
     console.print(f"{plan.part.file or 'part'}: {size} mm, {plan.part.faces} faces, {targets} to machine, "
@@ -240,7 +241,7 @@ def _summary(plan: "Plan", out: Path | None) -> None:
     for note in plan.notes:
         console.print(f"Note: {note}")
     if out:
-        console.print(f"Written: {', '.join([*sorted(f.name for f in plan.files.values()), 'plan.json'])} in {out}")
+        console.print(f"Written: {', '.join(sorted(p.name for p in out.iterdir()))} in {out}")
     for face in plan.faces:
         if face.target and face.unjudged:
             console.print(f"Not judged: {face.id} ({face.unjudged}).")
@@ -312,27 +313,29 @@ def _guarded(work: Any, debug: bool) -> tuple[int, str]:
     try:
         code, line = work()
         return int(code), str(line)
-    except Supervised as end:
-        return UNREADABLE, f"plan-cutters: {end}"
-    except MemoryError:
-        return UNREADABLE, "plan-cutters: out of memory; sample more coarsely (--spacing), or give --memory"
-    except KeyboardInterrupt:
+    except (Exception, KeyboardInterrupt) as error:
         if debug:
-            raise
-        return INTERRUPTED, "plan-cutters: interrupted; nothing was written"
-    except (CadIoError, PlanError) as error:
-        if debug:
-            raise
-        unreadable = isinstance(error, UnjudgeableError) or (
-            isinstance(error, CadIoError) and not isinstance(error, WriteError)
-        )
-        return (UNREADABLE if unreadable else USAGE), f"plan-cutters: {error}"
-    except click.ClickException as error:
-        return USAGE, f"plan-cutters: {error.format_message()}"
-    except Exception as error:
-        if debug:
-            raise
-        return UNREADABLE, f"plan-cutters: internal error ({type(error).__name__}: {error}); --debug shows where"
+            traceback.print_exc()
+        match error:
+            case KeyboardInterrupt():
+                return INTERRUPTED, "plan-cutters: interrupted; nothing was written"
+            case Supervised():
+                return UNREADABLE, f"plan-cutters: {error}"
+            case MemoryError():
+                return UNREADABLE, "plan-cutters: out of memory; sample more coarsely (--spacing), or give --memory"
+            case UnjudgeableError():
+                return UNREADABLE, f"plan-cutters: {error}"
+            case WriteError() | PlanError():
+                return USAGE, f"plan-cutters: {error}"
+            case CadIoError():
+                return UNREADABLE, f"plan-cutters: {error}"
+            case click.ClickException():
+                return USAGE, f"plan-cutters: {error.format_message()}"
+            case _:
+                return (
+                    UNREADABLE,
+                    f"plan-cutters: internal error ({type(error).__name__}: {error}); --debug shows where",
+                )
 
 
 def main(args: Sequence[str] | None = None) -> NoReturn:

@@ -78,9 +78,17 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int) -> int:
                              start_new_session=True)  # fmt: skip
     os.close(there)
     watch = _Watch(here, read_timeout)
-    previous = {
-        s: signal.signal(s, lambda number, _: child.send_signal(number)) for s in (signal.SIGINT, signal.SIGTERM)
-    }
+    asked: list[int] = []
+
+    def stop(number: int, _: object) -> None:
+        # Ask once; a child that has not begun, or is deep in the kernel when asked again, has nothing to tidy itself.
+        asked.append(number)
+        if len(asked) > 1 or watch.stage == "start":
+            child.kill()
+        else:
+            child.send_signal(signal.SIGINT)
+
+    previous = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
         while child.poll() is None:
             watch.listen(0.2)
@@ -102,6 +110,8 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int) -> int:
     if child.returncode >= 0:
         return child.returncode
     watch.clear()
+    if asked:
+        raise KeyboardInterrupt
     name = signal.Signals(-child.returncode).name
     raise Supervised(f"{watch.part}: the CAD kernel crashed ({name}, while it was at '{watch.stage}'); "
                      "the file may be damaged: export it again")  # fmt: skip
