@@ -98,6 +98,8 @@ def test_part_without_faces(tmp_path):
         (["--grid", "1"], "grid"),
         (["--grid", "5", "--spacing", "1"], "not both"),
         (["--spacing", "-1"], "spacing"),
+        (["--spacing", "1e-9"], "samples"),
+        (["--grid", "4000"], "samples"),
         (["--tolerance", "0"], "tolerance"),
         (["--faces", "F3"], "--faces"),
         (["--faces", "7"], "F7"),

@@ -211,14 +211,14 @@ def _one(part: str, out: Path, options: "Options", given: dict[str, Any]) -> tup
         sys.stdout.write(dumps(document))
         sys.stdout.flush()
     if not given["quiet"]:
-        _summary(document, out if formats else None)
+        _summary(document, out, formats)
     unjudged = document.samples.unjudged or any(f.target and f.unjudged for f in document.faces)
     if document.selected is None:
         return NONE_FEASIBLE, ""
     return (NOT_ALL_JUDGED if unjudged else FEASIBLE), ""
 
 
-def _summary(plan: "Plan", out: Path | None) -> None:
+def _summary(plan: "Plan", out: Path, formats: Sequence[str]) -> None:
     from rich.console import Console
     from rich.table import Table
 
@@ -240,8 +240,9 @@ def _summary(plan: "Plan", out: Path | None) -> None:
         console.print(f"Warning: {warning}")
     for note in plan.notes:
         console.print(f"Note: {note}")
-    if out:
-        console.print(f"Written: {', '.join(sorted(p.name for p in out.iterdir()))} in {out}")
+    written = [*sorted(f.name for f in plan.files.values()), *(["plan.json"] if "json" in formats else [])]
+    if written:
+        console.print(f"Written: {', '.join(written)} in {out}")
     for face in plan.faces:
         if face.target and face.unjudged:
             console.print(f"Not judged: {face.id} ({face.unjudged}).")

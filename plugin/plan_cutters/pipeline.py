@@ -21,7 +21,7 @@ from plan_cutters.access import access, witnesses
 from plan_cutters.classify import CONCAVE, CONVEX, SADDLE, classify, regions
 from plan_cutters.cutter import Cutter
 from plan_cutters.decompose import decompose
-from plan_cutters.errors import UnjudgeableError
+from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.faces import select_faces
 from plan_cutters.machine import Machine
 from plan_cutters.model import (
@@ -49,6 +49,8 @@ from plan_cutters.spacing import default_spacing
 #: Told the stage, how much of it is done, of how much.
 Progress = Callable[[str, int, int], None]
 
+#: Samples that a plan may take.
+MOST_SAMPLES = 5_000_000
 #: Share of the tolerance that the obstacles' chord error may take, and what is asked of the tessellation.
 _CHORD_SHARE, _CHORD_ASKED = 0.25, 0.2
 
@@ -209,6 +211,7 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
         spacing: float | dict[int, float] | None = options.spacing
         if options.grid is None and options.spacing is None:
             spacing = default_spacing(whole, orientation, targets, cutters)
+        _affordable(whole, targets, options)
         samples = sample(whole, orientation, grid=options.grid, spacing=spacing, faces=targets)
         surface_class = classify(samples, float(np.linalg.norm(whole.size)))
         region = regions(samples, surface_class)
@@ -278,6 +281,21 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
         run=Run(time=started.isoformat(timespec="seconds"), seconds=clock.seconds),
     )
     return Result(document, whole, samples, surface_class, reaches, options.postures)
+
+
+def _affordable(part: Part, targets: Sequence[int], options: Options) -> None:
+    """Refuse to sample more than memory holds, before it is tried."""
+    wanted = 0.0
+    if options.grid is not None:
+        wanted = len(targets) * float(options.grid) ** 2
+    elif options.spacing is not None:
+        wanted = sum(part.faces[n - 1].area for n in targets) / options.spacing**2
+    if wanted > MOST_SAMPLES:
+        raise OptionError(
+            f"that would take about {wanted:.2g} samples, at most {MOST_SAMPLES:.0e} are taken: sample more coarsely, "
+            "or choose faces with --faces",
+            file=part.file,
+        )
 
 
 def _warm(
