@@ -163,6 +163,7 @@ def test_a_located_solid_and_a_single_face(tmp_path):
         found = split(part, [])
         write_step(found, tmp_path / "part.step", style, product="part")
         assert same(styled_faces(tmp_path / "part.step"), expected(found))
+        assert same(read_back(tmp_path / "part.step")[1], expected(found))
 
 
 def test_names_become_ascii(tmp_path):
