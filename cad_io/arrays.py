@@ -175,8 +175,8 @@ class FaceLabels:
     u, v : (nu,), (nv,) float
         Strictly increasing grid lines.
     label : (nu, nv) int32
-        0, 1, 2, ...; -1 where unknown (outside the trim). Labels are ordinal: between nodes with labels 0 and 2
-        runs a strip of label 1.
+        0, 1, 2, ...; -1 where unknown (outside the trim). Labels are ordinal: of the labels that a face has, a middle one
+        lies between its neighbours, so boundaries never cross.
     """
 
     face: int
