@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 from OCP.BRepAdaptor import BRepAdaptor_Surface
-from OCP.GeomAbs import GeomAbs_C2
+from OCP.GeomAbs import GeomAbs_CN
 
 from cad_io.arrays import Floats
 from cad_io.kernel import first_derivatives, values
@@ -16,7 +16,7 @@ _ENDLESS = 1e50  # the kernel's infinite parameters are 2e100
 _SAME = 1e-7  # of a range
 _MOST_NODES = 2_000_000
 _LEAST_LINES = 3
-_PROBES = (17, 49)  # least and most probes of speed a direction
+_PROBES = (17, 97)  # least and most probes of speed a direction
 
 
 class Lines(NamedTuple):
@@ -66,8 +66,8 @@ def spaced(adaptor: BRepAdaptor_Surface, trim: Trim, spacing: float, more: tuple
     Lines are laid by the largest speed across them, so the gap holds everywhere as far as the probes saw.
     """
     u, v = _ranges(adaptor, trim, trim.box)
-    spans = adaptor.NbUIntervals(GeomAbs_C2), adaptor.NbVIntervals(GeomAbs_C2)
-    n = [int(np.clip(8 * count + 1, *_PROBES)) for count in spans]
+    spans = adaptor.NbUIntervals(GeomAbs_CN), adaptor.NbVIntervals(GeomAbs_CN)
+    n = [int(np.clip(2 * count + 1, *_PROBES)) for count in spans]
     share_u, share_v = np.linspace(0.0, 1.0, n[0]), np.linspace(0.0, 1.0, n[1])
     grid_u, grid_v = np.meshgrid(u.low + share_u * (u.high - u.low), v.low + share_v * (v.high - v.low), indexing="ij")
     d = first_derivatives(adaptor, grid_u.ravel(), grid_v.ravel()).reshape(n[0], n[1], 3, 3)

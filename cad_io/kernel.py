@@ -12,6 +12,7 @@ import numpy as np
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.gp import gp_Pnt, gp_Vec
 from OCP.Message import Message
+from OCP.TColStd import TColStd_Array1OfReal
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
 from OCP.TopExp import TopExp, TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
@@ -137,3 +138,10 @@ def _derivatives(evaluate: Any, u: Floats, v: Floats, count: int) -> Floats:
         for out in outs:
             flat.extend(out.Coord())
     return np.array(flat, dtype=float).reshape(-1, count + 1, 3)
+
+
+def interval_ends(count: int, intervals: Any, continuity: Any) -> Floats:
+    """Ends (count + 1,) of the intervals in which a curve or surface is that smooth, by its own `...Intervals`."""
+    ends = TColStd_Array1OfReal(1, count + 1)
+    intervals(ends, continuity)
+    return np.array([ends.Value(i) for i in range(1, count + 2)])

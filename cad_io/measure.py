@@ -6,6 +6,7 @@ has kinks or jumps of curvature along knots, every cell between these has its ow
 vector area and the flux of the position, from which follow the mean normal and the volume.
 """
 
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,10 +15,9 @@ from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepGProp import BRepGProp
 from OCP.GeomAbs import GeomAbs_C2
 from OCP.GProp import GProp_GProps
-from OCP.TColStd import TColStd_Array1OfReal
 
 from cad_io.arrays import Floats
-from cad_io.kernel import first_derivatives
+from cad_io.kernel import first_derivatives, interval_ends
 from cad_io.trim import Trim
 
 #: Nodes per direction and cell, tried in turn until the area agrees with the one before to ACCURACY.
@@ -49,8 +49,7 @@ def measure(adaptor: BRepAdaptor_Surface, trim: Trim, origin: Floats) -> Measure
     breaks_u = _breaks(adaptor.NbUIntervals(GeomAbs_C2), adaptor.UIntervals, u0, u1)
     breaks_v = _breaks(adaptor.NbVIntervals(GeomAbs_C2), adaptor.VIntervals, v0, v1)
     u, v, step = _border_nodes(_split(_split(trim.segments, 0, breaks_u[1:-1]), 1, breaks_v[1:-1]), breaks_u, breaks_v)
-    cells = [(a, b, c, d) for a, b in zip(breaks_u[:-1], breaks_u[1:], strict=True)
-             for c, d in zip(breaks_v[:-1], breaks_v[1:], strict=True)]  # fmt: skip
+    cells = [(a, b, c, d) for a, b in pairwise(breaks_u.tolist()) for c, d in pairwise(breaks_v.tolist())]
     before, total = np.inf, np.zeros(5)
     for turn, n in enumerate(_NODES):
         if turn > 1 and len(cells) * n * n > _MOST_TABLE:
@@ -72,9 +71,7 @@ def _breaks(count: int, intervals: Any, low: float, high: float) -> Floats:
     """Ends of the box and, between them, parameters at which second derivatives jump, unless there are many."""
     found = np.zeros(0)
     if 1 < count <= 10 * _MOST_CELLS:
-        knots = TColStd_Array1OfReal(1, count + 1)
-        intervals(knots, GeomAbs_C2)
-        found = np.array([knots.Value(i) for i in range(1, count + 2)])
+        found = interval_ends(count, intervals, GeomAbs_C2)
         slack = 1e-9 * (high - low)
         found = found[(found > low + slack) & (found < high - slack)]
     return np.concatenate([[low], found if len(found) < _MOST_CELLS else [], [high]])

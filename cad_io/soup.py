@@ -1,14 +1,15 @@
 """Triangles in faces' parameter planes that can be measured against the surface, and split. For `tessellate` alone."""
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
+from OCP.GeomAbs import GeomAbs_CN
 
 from cad_io.arrays import Floats
-from cad_io.kernel import values
+from cad_io.kernel import interval_ends, values
 from cad_io.mesh import UVMesh
 from cad_io.part import Part
 
@@ -23,52 +24,75 @@ _CHILDREN = (
     ((3, 1, 4), (0, 3, 2), (3, 4, 2)),
     ((0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)),
 )
-#: The distance between a point of the surface and the same point of a triangle is an upper bound of its distance from
-#: the triangle. The lesser one counts only where the former is below this share of the triangle's size: around the poles
-#: of a sphere a triangle may come near the wrong part of the surface.
-_TAME = 0.3
 #: Where edges are measured: at the middle alone, an S-shaped course would pass for a straight one.
 _ALONG = (0.5, 0.25, 0.75)
 #: Where the inside of a triangle is measured.
 _INNER = np.array([[2, 2, 2], [4, 1, 1], [1, 4, 1], [1, 1, 4]]) / 6
+#: An edge may pass so many knots; a triangle that has more than one within it is looked at at more points.
+_MOST_PIECES = 4
+#: Age from which triangles that are still too far are also split at their longest edge.
+_STUBBORN = 6
+_MOST_KNOTS = 64  # that are told apart along a surface: some files have them in dense clusters
+_INNER_MANY = np.array([(a, b, 16 - a - b) for a in range(1, 16, 3) for b in range(1, 16 - a, 3)]) / 16
+
+
+class Rows(NamedTuple):
+    """Triangles.
+
+    corner (t, 3): nodes. face (t,): face numbers. curve (t, 3): which border curve the edge from corner k to the next is
+    a chord of (-1: none), and span (t, 3, 2) its parameters there. age (t,): how often the parent was split.
+    """
+
+    corner: Indices
+    face: Indices
+    curve: Indices
+    span: Floats
+    age: Indices
+
+    def at(self, chosen: Indices | Bools) -> "Rows":
+        """Some of the triangles."""
+        return Rows(
+            self.corner[chosen], self.face[chosen], self.curve[chosen], self.span[chosen], self.age[chosen]
+        )  # fmt: skip
+
+    @staticmethod
+    def joined(parts: Sequence["Rows"]) -> "Rows":
+        """All triangles of several."""
+        return Rows(
+            np.concatenate([np.zeros((0, 3), np.int64), *(part.corner for part in parts)]),
+            np.concatenate([np.zeros(0, np.int64), *(part.face for part in parts)]),
+            np.concatenate([np.zeros((0, 3), np.int64), *(part.curve for part in parts)]),
+            np.concatenate([np.zeros((0, 3, 2)), *(part.span for part in parts)]),
+            np.concatenate([np.zeros(0, np.int64), *(part.age for part in parts)]),
+        )
 
 
 class Soup:
-    """A working set of triangles.
+    """The nodes of triangles, and what can be done with triangles between them.
 
     Attributes
     ----------
     uv (n, 2), point (n, 3)
         Nodes: parameters, surface points in mm.
-    corner (t, 3), face (t,)
-        Triangles: nodes, face numbers.
-    curve (t, 3), span (t, 3, 2)
-        Edge k runs from corner k to the next: which border curve it is a chord of (-1: none), and its parameters there.
     """
 
-    def __init__(self, part: Part, meshes: Mapping[int, UVMesh]) -> None:
+    def __init__(self, part: Part) -> None:
         self.part = part
+        self.uv, self.point = np.zeros((0, 2)), np.zeros((0, 3))
         self.curves: list[BRepAdaptor_Curve2d] = []
-        uv, faces, corners, owners, curves, spans = [], [], [], [], [], []
-        start = 0
-        for number, mesh in meshes.items():
-            curve, span = self._border(mesh)
-            uv.append(mesh.uv)
-            faces.append(np.full(len(mesh.uv), number))
-            corners.append(mesh.corner.astype(np.int64) + start)
-            owners.append(np.full(len(mesh.corner), number))
-            curves.append(curve)
-            spans.append(span)
-            start += len(mesh.uv)
-        self.uv = np.concatenate([np.zeros((0, 2)), *uv])
-        self.corner = np.concatenate([np.zeros((0, 3), np.int64), *corners])
-        self.face = np.concatenate([np.zeros(0, np.int64), *owners])
-        self.curve = np.concatenate([np.zeros((0, 3), np.int64), *curves])
-        self.span = np.concatenate([np.zeros((0, 3, 2)), *spans])
-        self.point = self._surface(self.uv, np.concatenate([np.zeros(0, np.int64), *faces]))
+        self.knots: dict[int, tuple[Floats, Floats]] = {}
 
-    def __len__(self) -> int:
-        return len(self.corner)
+    def add(self, number: int, mesh: UVMesh) -> Rows:
+        """Take in the triangles of a face."""
+        count, start = len(mesh.corner), len(self.uv)
+        face = np.full(count, number, np.int64)
+        curve, span = self._border(mesh)
+        self._grow(mesh.uv, np.full(len(mesh.uv), number, np.int64))
+        return Rows(mesh.corner.astype(np.int64) + start, face, curve, span, np.zeros(count, np.int64))
+
+    def _grow(self, uv: Floats, face: Indices) -> None:
+        self.point = np.concatenate([self.point, self._surface(uv, face)])
+        self.uv = np.concatenate([self.uv, uv])
 
     def _border(self, mesh: UVMesh) -> tuple[Indices, Floats]:
         """`curve` and `span` of a mesh's triangles."""
@@ -103,104 +127,127 @@ class Soup:
             point[rows] = values(self.part.adaptor(int(face[rows[0]])), uv[rows, 0], uv[rows, 1])
         return point
 
-    def _on_edges(self, row: Indices, edge: Indices, share: float) -> tuple[Floats, Floats]:
+    def _on_edges(self, rows: Rows, row: Indices, edge: Indices, share: float) -> tuple[Floats, Floats]:
         """Points along edges: surface parameters (k, 2), and the border curve's own (k,) where there is one."""
-        a, b = self.corner[row, edge], self.corner[row, (edge + 1) % 3]
+        a, b = rows.corner[row, edge], rows.corner[row, (edge + 1) % 3]
         uv = (1 - share) * self.uv[a] + share * self.uv[b]
-        t = self.span[row, edge] @ (1 - share, share)
-        for k in np.flatnonzero(self.curve[row, edge] >= 0).tolist():
-            uv[k] = self.curves[self.curve[row[k], edge[k]]].Value(float(t[k])).Coord()
+        t = rows.span[row, edge] @ (1 - share, share)
+        for k in np.flatnonzero(rows.curve[row, edge] >= 0).tolist():
+            uv[k] = self.curves[rows.curve[row[k], edge[k]]].Value(float(t[k])).Coord()
         return uv, t
 
-    def _unique_edges(self, row: Indices, edge: Indices) -> tuple[Indices, Indices]:
+    def _unique_edges(self, rows: Rows, row: Indices, edge: Indices) -> tuple[Indices, Indices]:
         """One representative of each edge among (row, edge), and for each of these which it is."""
-        a, b = self.corner[row, edge], self.corner[row, (edge + 1) % 3]
+        a, b = rows.corner[row, edge], rows.corner[row, (edge + 1) % 3]
         key = np.minimum(a, b) * len(self.uv) + np.maximum(a, b)
         _, first, which = np.unique(key, return_index=True, return_inverse=True)
         return first, which
 
-    def edge_off(self, enough: float) -> Floats:
-        """Largest measured distance (t, 3) of each edge's true course from the triangles, mm.
+    def measured(self, rows: Rows, enough: float, *, wholly: bool = False) -> tuple[Floats, Bools]:
+        """Measured distance (t,) of triangles from the surface, mm, and which edges (t, 3) are to be split.
 
-        A point of an inner edge counts to the nearer of the triangles on both sides; one of a border to its chord, so
-        that neither surface is left out nor anything added. An edge that is farther than `enough` is not measured on.
+        The distance is that between a point of the surface and the point of the triangle with the same parameters: an
+        upper bound both of the surface point's distance from the triangle and of the triangle point's from the surface.
+        A triangle that is not within `enough` is measured no further than needed to tell, unless `wholly`.
         """
-        row, edge = (grid.ravel() for grid in np.indices((len(self), 3)))
-        _, which = self._unique_edges(row, edge)
-        worst = np.zeros(len(self) * 3)
-        for share in _ALONG:
-            left = np.flatnonzero(worst[which] <= enough)
-            found = self._edge_off_at(row[left], edge[left], share)
-            np.maximum.at(worst, which[left], found)
-        return worst[which].reshape(len(self), 3)
+        edge_off = self._edge_off(rows, np.inf if wholly else enough)
+        off, marked = edge_off.max(axis=1, initial=0.0), (edge_off > enough) | self._wide_edges(rows)
+        # Edges near enough: look inside. What is too far there is split at all its edges.
+        near = np.flatnonzero((off <= enough) | wholly)
+        off[near] = np.maximum(off[near], self._inner_off(rows.at(near)))
+        marked[near[off[near] > enough]] = True
+        # Needles can be split for ever at their short edges: take the long one along.
+        far = np.flatnonzero(marked.any(axis=1) & (rows.age >= _STUBBORN))
+        marked[far, self._longest(rows.corner[far])] = True
+        return off, marked
 
-    def _edge_off_at(self, row: Indices, edge: Indices, share: float) -> Floats:
-        """Distances (k,) at one point of each edge; rows that share an edge get the same."""
-        first, which = self._unique_edges(row, edge)
-        uv, _ = self._on_edges(row[first], edge[first], share)
-        there = self._surface(uv, self.face[row[first]])
-        start, end = self.point[self.corner[row, edge]], self.point[self.corner[row, (edge + 1) % 3]]
-        slide = np.linalg.norm(there - (1 - share) * start[first] - share * end[first], axis=1)
-        tame = slide <= _TAME * self._length(self.corner[row, edge][first], self.corner[row, (edge + 1) % 3][first])
-        there, off, tame = there[which], slide[which], tame[which]
-        inner = self.curve[row, edge] < 0
-        near, border = tame & inner, tame & ~inner
-        off[near] = distance_to_triangle(there[near], self.point[self.corner[row[near]]])
-        off[border] = _distance_to_segment(there[border], start[border], end[border])
-        nearer = np.full(len(first), np.inf)
-        np.minimum.at(nearer, which, off)
-        return nearer[which]
-
-    def inner_off(self, row: Indices) -> Floats:
-        """Largest measured distance (k,) of inner surface points of triangles from them, mm."""
-        corner = self.corner[row]
-        triangle = self.point[corner]
-        size = np.linalg.norm(triangle - np.roll(triangle, 1, axis=1), axis=2).max(axis=1)
+    def _edge_off(self, rows: Rows, enough: float) -> Floats:
+        """Largest measured distance (t, 3) of each edge from its true course, mm."""
+        row, edge = (grid.ravel() for grid in np.indices(rows.corner.shape))
+        first, which = self._unique_edges(rows, row, edge)
+        row, edge = row[first], edge[first]
+        start, end = self.point[rows.corner[row, edge]], self.point[rows.corner[row, (edge + 1) % 3]]
         worst = np.zeros(len(row))
-        for weight in _INNER:
-            there = self._surface(np.einsum("c,kcx->kx", weight, self.uv[corner]), self.face[row])
-            off = np.linalg.norm(there - np.einsum("c,kcx->kx", weight, triangle), axis=1)
-            near = off <= _TAME * size
-            off[near] = distance_to_triangle(there[near], triangle[near])
-            worst = np.maximum(worst, off)
+        for share in _ALONG:
+            left = np.flatnonzero(worst <= enough)
+            uv, _ = self._on_edges(rows, row[left], edge[left], share)
+            there = self._surface(uv, rows.face[row[left]])
+            off = np.linalg.norm(there - (1 - share) * start[left] - share * end[left], axis=1)
+            worst[left] = np.maximum(worst[left], off)
+        return worst[which].reshape(rows.corner.shape)
+
+    def _wide_edges(self, rows: Rows) -> Bools:
+        """Edges (t, 3) that pass more polynomial pieces of the surface than can be looked at one by one."""
+        ends = np.stack([rows.corner, np.roll(rows.corner, -1, axis=1)], axis=2)
+        return self._crossed(self.uv[ends], rows.face) > _MOST_PIECES
+
+    def _inner_off(self, rows: Rows) -> Floats:
+        """Largest measured distance (t,) of inner surface points of triangles from them, mm."""
+        worst = np.zeros(len(rows.face))
+        many = self._crossed(self.uv[rows.corner][:, None], rows.face)[:, 0] > 1
+        for chosen, weights in ((np.flatnonzero(~many), _INNER), (np.flatnonzero(many), _INNER_MANY)):
+            for weight in weights if len(chosen) else ():
+                worst[chosen] = np.maximum(worst[chosen], self._off_at(rows.corner[chosen], rows.face[chosen], weight))
         return worst
 
-    def keep(self, chosen: Bools) -> None:
-        """Leave only these triangles."""
-        self.corner, self.face = self.corner[chosen], self.face[chosen]
-        self.curve, self.span = self.curve[chosen], self.span[chosen]
+    def _off_at(self, corner: Indices, face: Indices, weight: Floats) -> Floats:
+        there = self._surface(np.einsum("c,kcx->kx", weight, self.uv[corner]), face)
+        return np.linalg.norm(there - np.einsum("c,kcx->kx", weight, self.point[corner]), axis=1)
 
-    def split(self, marked: Bools) -> None:
-        """Split every triangle, which must have some edge marked (t, 3), at the middles of its marked edges."""
+    def _crossed(self, uv: Floats, face: Indices) -> Indices:
+        """Most knots (t, k), along u or v, that groups (t, k, n, 2) of points of faces (t,) have between them."""
+        low, high = uv.min(axis=2), uv.max(axis=2)
+        crossed = np.zeros(low.shape[:2], np.int64)
+        for number in np.unique(face).tolist():
+            mine = np.flatnonzero(face == number)
+            for axis, knots in enumerate(self._knots(number)):
+                if len(knots):
+                    between = np.searchsorted(knots, high[mine, :, axis]) - np.searchsorted(knots, low[mine, :, axis])
+                    crossed[mine] = np.maximum(crossed[mine], between)
+        return crossed
+
+    def _knots(self, number: int) -> tuple[Floats, Floats]:
+        """Inner knots of a face's surface along u and v: between two of them it is about one polynomial piece."""
+        if number not in self.knots:
+            adaptor = self.part.adaptor(number)
+            self.knots[number] = (
+                _thinned(interval_ends(adaptor.NbUIntervals(GeomAbs_CN), adaptor.UIntervals, GeomAbs_CN)),
+                _thinned(interval_ends(adaptor.NbVIntervals(GeomAbs_CN), adaptor.VIntervals, GeomAbs_CN)),
+            )
+        return self.knots[number]
+
+    def _longest(self, corner: Indices) -> Indices:
+        lengths = [self._length(corner[:, k], corner[:, (k + 1) % 3]) for k in range(3)]
+        return np.argmax(np.stack(lengths, axis=1), axis=1)
+
+    def _length(self, a: Indices, b: Indices) -> Floats:
+        return np.linalg.norm(self.point[a] - self.point[b], axis=1)
+
+    def split(self, rows: Rows, marked: Bools) -> Rows:
+        """Children of triangles, each of which must have some edge marked (t, 3): it is split at their middles."""
         row, edge = np.nonzero(marked)
-        first, which = self._unique_edges(row, edge)
-        uv, t = self._on_edges(row[first], edge[first], 0.5)
-        face = self.face[row[first]]
-        middle = np.full(marked.shape, -1, np.int64)
+        first, which = self._unique_edges(rows, row, edge)
+        uv, t = self._on_edges(rows, row[first], edge[first], 0.5)
+        middle, halfway = np.full(marked.shape, -1, np.int64), np.zeros(marked.shape)
         middle[row, edge] = len(self.uv) + which
-        halfway = np.zeros(marked.shape)
         halfway[row, edge] = t[which]
-        self.uv = np.concatenate([self.uv, uv])
-        self.point = np.concatenate([self.point, self._surface(uv, face)])
+        self._grow(uv, rows.face[row[first]])
         count = marked.sum(axis=1)
         # Turn each triangle so that its marked edges come first: the one, or the two after the unmarked.
         turn = np.where(count == 1, marked.argmax(axis=1), np.where(count == 2, ((~marked).argmax(axis=1) + 1) % 3, 0))
         order = (turn[:, None] + np.arange(3)) % 3
-        rows = np.arange(len(marked))[:, None]
-        node = np.concatenate([self.corner[rows, order], middle[rows, order]], axis=1)
-        edges = _Edges(self.curve[rows, order], self.span[rows, order], halfway[rows, order])
+        every = np.arange(len(marked))[:, None]
+        node = np.concatenate([rows.corner[every, order], middle[every, order]], axis=1)
+        edges = _Edges(rows.curve[every, order], rows.span[every, order], halfway[every, order])
         shorter = self._length(node[:, 0], node[:, 4]) <= self._length(node[:, 3], node[:, 2])
+        made = []
         groups = (count == 1, (count == 2) & shorter, (count == 2) & ~shorter, count == 3)
-        made: list[tuple[Indices, Indices, Indices, Floats]] = []
         for children, group in zip(_CHILDREN, groups, strict=True):
             for child in children:
                 curves, spans = zip(*(edges.between(child[k], child[(k + 1) % 3]) for k in range(3)), strict=True)
-                made.append((node[group][:, child], self.face[group],
-                             np.stack(curves, axis=1)[group], np.stack(spans, axis=1)[group]))  # fmt: skip
-        self.corner, self.face, self.curve, self.span = (np.concatenate(column) for column in zip(*made, strict=True))
-
-    def _length(self, a: Indices, b: Indices) -> Floats:
-        return np.linalg.norm(self.point[a] - self.point[b], axis=1)
+                made.append(Rows(node[group][:, child], rows.face[group], np.stack(curves, axis=1)[group],
+                                 np.stack(spans, axis=1)[group], rows.age[group] + 1))  # fmt: skip
+        return Rows.joined(made)
 
 
 class _Edges(NamedTuple):
@@ -221,28 +268,8 @@ class _Edges(NamedTuple):
         return np.full(len(self.curve), -1, np.int64), np.zeros((len(self.curve), 2))
 
 
-def _distance_to_segment(point: Floats, start: Floats, end: Floats) -> Floats:
-    along = end - start
-    length = np.maximum((along**2).sum(axis=1), 1e-300)
-    share = np.clip(((point - start) * along).sum(axis=1) / length, 0.0, 1.0)
-    return np.linalg.norm(point - start - share[:, None] * along, axis=1)
-
-
-def distance_to_triangle(point: Floats, triangle: Floats) -> Floats:
-    """Distance (n,) of points (n, 3) from triangles (n, 3, 3), point by triangle."""
-    a, b, c = triangle[:, 0], triangle[:, 1], triangle[:, 2]
-    normal = np.cross(b - a, c - a)
-    square = (normal**2).sum(axis=1)
-    with np.errstate(all="ignore"):
-        # Barycentric coordinates of the foot in the triangle's plane; a flat triangle has none and is its edges.
-        at_b = (np.cross(point - a, c - a) * normal).sum(axis=1) / square
-        at_c = (np.cross(b - a, point - a) * normal).sum(axis=1) / square
-        height = np.abs(((point - a) * normal).sum(axis=1)) / np.sqrt(square)
-    over = (at_b >= 0) & (at_c >= 0) & (at_b + at_c <= 1)
-    beside = np.flatnonzero(~over)
-    off = height
-    p, a, b, c = point[beside], a[beside], b[beside], c[beside]
-    off[beside] = np.minimum(
-        np.minimum(_distance_to_segment(p, a, b), _distance_to_segment(p, b, c)), _distance_to_segment(p, c, a)
-    )
-    return off
+def _thinned(ends: Floats) -> Floats:
+    """Inner ones of increasing ends, without those that follow another too soon to matter."""
+    step = (ends[-1] - ends[0]) / _MOST_KNOTS
+    _, first = np.unique(np.floor((ends - ends[0]) / step), return_index=True)
+    return ends[first][1:-1]

@@ -9,19 +9,21 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Triangles
 from cad_io.kernel import translated
 from cad_io.mesh import UVMesh, uv_meshes
 from cad_io.part import Part
-from cad_io.soup import Indices, Soup
+from cad_io.soup import Indices, Rows, Soup
 
 #: Measured distances count this much larger, for what lies between the points measured.
 MARGIN = 1.05
 #: The start is asked of the kernel's mesher this much coarser than wanted: splitting is quicker.
-_COARSER = 16.0
+_COARSER = 32.0
+_COARSE = 3e-4  # of the part's size: never asked to be finer than this
 _ANGLE = 0.5
-_LEVELS = 24
+_OLDEST = 24  # no triangle is split more often
 #: A face is missing if more than this share of it has no triangles.
 _UNCOVERED = 0.01
 
@@ -45,8 +47,8 @@ def tessellate(
     Returns
     -------
     Triangles
-        `chord_error` is measured from points of the surface to the triangles, and from points of the faces' borders
-        to the triangles' borders, with a margin for what lies between these points.
+        `chord_error` is the largest distance measured between a point of a triangle and the point of the surface, or
+        of the face's border, that has the same parameters, with a margin for what lies between the points measured.
     """
     if not chord > 0:
         raise ValueError(f"the chord error must be positive, not {chord}")
@@ -81,7 +83,8 @@ def _start(part: Part, wanted: Sequence[int], chord: float, budget: int) -> dict
     """The kernel's triangles; coarser where they would take the whole budget, finer where a face gets none."""
     if not wanted:
         return {}
-    deflection, size = _COARSER * chord, float(np.linalg.norm(part.size))
+    size = float(np.linalg.norm(part.size))
+    deflection = max(_COARSER * chord, _COARSE * size)
     meshes = uv_meshes(part, wanted, deflection, _ANGLE)
     while sum(len(m.corner) for m in meshes.values()) > budget and deflection < size:
         deflection *= 4
@@ -93,34 +96,46 @@ def _start(part: Part, wanted: Sequence[int], chord: float, budget: int) -> dict
 
 
 def _refined(part: Part, meshes: Mapping[int, UVMesh], chord: float, budget: int) -> _Done:
-    """Split until every triangle is within `chord` or the budget is spent."""
-    soup = Soup(part, meshes)
+    """Split until every triangle is within `chord` or the budget is spent, the farthest first where it binds."""
+    soup = Soup(part)
+    new = Rows.joined([soup.add(number, mesh) for number, mesh in meshes.items()])
     finished: list[_Done] = []
     count = 0
-    for level in range(_LEVELS + 1):
-        edge_off = soup.edge_off(chord)
-        off, marked = edge_off.max(axis=1), edge_off > chord
-        # Edges near enough: look inside. What is too far there is split at all its edges.
-        near = np.flatnonzero(~marked.any(axis=1))
-        off[near] = np.maximum(off[near], soup.inner_off(near))
-        marked[near[off[near] > chord]] = True
-        grow = marked.sum(axis=1)
-        if level == _LEVELS:
-            marked[:] = False
-        elif count + len(soup) + grow.sum() > budget:
-            worst = np.argsort(-off, kind="stable")
-            spent = np.cumsum(grow[worst]) > budget - count - len(soup)
-            marked[worst[spent]] = False
-        split = np.asarray(marked.any(axis=1))
-        finished.append(
-            _Done(soup.point[soup.corner[~split]], soup.uv[soup.corner[~split]], soup.face[~split], off[~split])
-        )
-        count += int((~split).sum())
-        if not split.any():
-            break
-        soup.keep(split)
-        soup.split(marked[split])
+    waiting, waiting_off, waiting_marked = Rows.joined([]), np.zeros(0), np.zeros((0, 3), bool)
+    scarce = False
+    while len(new.face):
+        off, marked = soup.measured(new, chord, wholly=scarce)
+        far = np.asarray(marked.any(axis=1))
+        finished.append(_done(soup, new.at(~far), off[~far]))
+        count += int((~far).sum())
+        waiting = Rows.joined([waiting, new.at(far)])
+        waiting_off = np.concatenate([waiting_off, off[far]])
+        waiting_marked = np.concatenate([waiting_marked, marked[far]])
+        left = budget - count - len(waiting.face)
+        if not scarce and waiting_marked.sum() > left:
+            # Which is farthest matters from now on.
+            scarce = True
+            waiting_off, waiting_marked = soup.measured(waiting, chord, wholly=True)
+        chosen = _affordable(waiting, waiting_off, waiting_marked.sum(axis=1), left)
+        new = soup.split(waiting.at(chosen), waiting_marked[chosen])
+        waiting, waiting_off, waiting_marked = waiting.at(~chosen), waiting_off[~chosen], waiting_marked[~chosen]
+    finished.append(_done(soup, waiting, soup.measured(waiting, chord, wholly=True)[0]))
     return _Done(*(np.concatenate(columns) for columns in zip(*finished, strict=True)))
+
+
+def _affordable(rows: Rows, off: Floats, grow: Indices, left: int) -> NDArray[np.bool_]:
+    """Which triangles to split next so that at most `left` are added: all, or the farther half of distances first."""
+    young = rows.age < _OLDEST
+    if grow[young].sum() <= left:
+        return young
+    order = np.argsort(np.where(young, -off, 0.0), kind="stable")
+    chosen = np.zeros(len(off), bool)
+    chosen[order[np.cumsum(grow[order]) <= left]] = True
+    return chosen & young & (off >= 0.5 * off[young].max(initial=0.0))
+
+
+def _done(soup: Soup, rows: Rows, off: Floats) -> _Done:
+    return _Done(soup.point[rows.corner], soup.uv[rows.corner], rows.face, off)
 
 
 def _uncovered(part: Part, done: _Done, chord: float) -> dict[int, str]:

@@ -16,13 +16,12 @@ from OCP.BRepTools import BRepTools
 from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
 from OCP.GeomAbs import GeomAbs_C2, GeomAbs_Line
 from OCP.gp import gp_Pnt2d
-from OCP.TColStd import TColStd_Array1OfReal
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_IN, TopAbs_ON, TopAbs_REVERSED
 from OCP.TopoDS import TopoDS, TopoDS_Face
 from scipy.optimize import linear_sum_assignment
 
 from cad_io.arrays import Floats
-from cad_io.kernel import edges_of, first_derivatives
+from cad_io.kernel import edges_of, first_derivatives, interval_ends
 
 Bools = NDArray[np.bool_]
 
@@ -183,9 +182,7 @@ def _polyline(curve: BRepAdaptor_Curve2d, scale: Floats, deflection: float) -> t
     if curve.GetType() == GeomAbs_Line:
         return np.array([curve.Value(t).Coord() for t in ends.tolist()]), 0.0
     spans = curve.NbIntervals(GeomAbs_C2)
-    knots = TColStd_Array1OfReal(1, spans + 1)
-    curve.Intervals(knots, GeomAbs_C2)
-    knot = np.array([knots.Value(i) for i in range(1, spans + 2)])
+    knot = interval_ends(spans, curve.Intervals, GeomAbs_C2)
     t = np.interp(np.arange(spans * _CHORDS + 1) / _CHORDS, np.arange(spans + 1), knot)
     points = np.array([curve.Value(x).Coord() for x in t.tolist()])
     new = np.arange(len(t) - 1)  # chords not measured yet
