@@ -149,6 +149,15 @@ def test_axis_arcs_are_where_the_axis_is_within_the_cone(n, f, limit, setup):
     assert (within == (angle >= 0))[sure].all()
 
 
+def test_kernels_and_reach_speak_of_the_same_verdicts():
+    from plan_cutters import reach
+
+    for name in ("INACCESSIBLE", "ACCESSIBLE", "FREE", "UNDECIDED", "UNJUDGED"):
+        assert getattr(search, name) == getattr(reach, name)
+    order = (search.AXIS_LIMIT, search.LOCAL_GOUGE, search.REAR_GOUGE, search.SHANK)
+    assert [reach.REASONS[i] for i in order] == ["axis_limit", "local_gouge", "rear_gouge", "shank"]
+
+
 def test_local_gouge_bound():
     assert local_gouge_bound(0.2, 0.0, 0.0, 8.0) == 0.0
     assert local_gouge_bound(0.2, 0.0, math.radians(20), 8.0) == pytest.approx(math.radians(10.7874), abs=1e-6)

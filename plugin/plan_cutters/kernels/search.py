@@ -11,6 +11,7 @@ from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
 from plan_cutters.kernels.hit import BODY, stand, tree_hit
 from plan_cutters.kernels.jit import inlined, kernel
 
+# As in `plan_cutters.reach`, which must not load the compiler; a test holds them together.
 INACCESSIBLE, ACCESSIBLE, FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
 AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, SHANK = 0, 1, 2, 3
 
