@@ -79,7 +79,7 @@ class Trim:
             i, j = np.nonzero(boxed)
             boxed[i, j] = self._asked(u[i], v[j])
             return boxed
-        inside = _even_odd(self.segments, u, v)
+        inside = even_odd(self.segments, u, v)
         i, j, near_exact, near = self._band(u, v)
         inside[i[near_exact], j[near_exact]] = True
         rest = near & ~near_exact
@@ -226,7 +226,7 @@ def _is_rectangle(segments: Floats, low: Floats, high: Floats, scale: Floats, to
     return bool(abs(0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum()) > 0.999 * (high - low).prod())
 
 
-def _even_odd(segments: Floats, u: Floats, v: Floats) -> Bools:
+def even_odd(segments: Floats, u: Floats, v: Floats) -> Bools:
     """Nodes (nu, nv) with an odd number of border crossings at smaller u on their row."""
     p, q = segments[:, 0], segments[:, 1]
     first = np.searchsorted(v, np.minimum(p[:, 1], q[:, 1]))

@@ -17,6 +17,7 @@ from OCP.TopoDS import TopoDS
 
 from cad_io.arrays import Floats
 from cad_io.kernel import edges_of
+from cad_io.trim import even_odd
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)  # exact for polynomial curves up to degree 6
 _CHORDS = 4  # of an interval, in an outline
@@ -54,16 +55,7 @@ def inside(segments: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:
     """Which nodes of the grid u (nu,) x v (nv,), both increasing, lie in an outline: (nu, nv), by even-odd rows."""
     # Borders like to run along grid lines, where rounding decides what a row crosses: rows are taken a little off.
     v = v + _OFF * (v[-1] - v[0])
-    p, q = segments[:, 0], segments[:, 1]
-    first = np.searchsorted(v, np.minimum(p[:, 1], q[:, 1]))
-    rows = np.searchsorted(v, np.maximum(p[:, 1], q[:, 1])) - first
-    which = np.repeat(np.arange(len(p)), rows)
-    row = np.arange(len(which)) - np.repeat(np.cumsum(rows) - rows, rows) + first[which]
-    p, q = p[which], q[which]
-    crossing = p[:, 0] + (v[row] - p[:, 1]) / (q[:, 1] - p[:, 1]) * (q[:, 0] - p[:, 0])
-    flips = np.zeros((len(u) + 1, len(v)), np.int32)
-    np.add.at(flips, (np.searchsorted(u, crossing), row), 1)
-    return np.asarray(np.cumsum(flips, axis=0)[:-1] % 2 == 1)
+    return even_odd(segments, u, v)
 
 
 def interior_point(segments: Floats) -> tuple[float, float]:

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from plan_cutters.kernels.jit import inlined
+from plan_cutters.kernels.jit import kernel
 
 #: A bound this close to zero is zero: planes and ridges are free at tilt 0.
 ROUNDING = 1e-9
 
 
-@inlined
+@kernel
 def point_arc(height, px, py, tilt, radius_offset, radius, low, high):  # type: ignore[no-untyped-def]
     """Tilts at which an obstacle point lies in the cylinder, the rotation held.
 
@@ -37,14 +37,11 @@ def point_arc(height, px, py, tilt, radius_offset, radius, low, high):  # type: 
     r = np.sqrt(square)
     back = radius_offset - px
     d = np.hypot(back, height)
-    if d <= low or d * 1.0 <= radius_offset - r:
+    if d <= low or d <= radius_offset - r:
         return 1.0, 0.0
     alpha = np.arctan2(height, back)
     least = np.arcsin(low / d)
-    if d > radius_offset - r and d > 0.0:
-        most = np.arccos((radius_offset - r) / d)
-    else:
-        return 1.0, 0.0
+    most = np.arccos((radius_offset - r) / d)
     if d > radius_offset + r:
         least = max(least, np.arccos((radius_offset + r) / d))
     if d > high:
@@ -54,7 +51,7 @@ def point_arc(height, px, py, tilt, radius_offset, radius, low, high):  # type: 
     return tilt + alpha - most, tilt + alpha - least
 
 
-@inlined
+@kernel
 def local_gouge(kappa_max, kappa_min, cosine, sine, radius):  # type: ignore[no-untyped-def]
     """Least tilt without local gouging at a rotation, rad; nan if none: sin(tilt) >= R kappa across the lean."""
     bound = radius * (kappa_max * sine * sine + kappa_min * cosine * cosine)
@@ -65,7 +62,7 @@ def local_gouge(kappa_max, kappa_min, cosine, sine, radius):  # type: ignore[no-
     return np.arcsin(bound)
 
 
-@inlined
+@kernel
 def axis_arcs(along_n, along_f, limit_cos, low, high, out):  # type: ignore[no-untyped-def]
     """Tilts within [low, high] whose axis stays within a cone about the setup axis m.
 

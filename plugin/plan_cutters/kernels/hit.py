@@ -14,12 +14,12 @@ the tool about that line, and turning by at most `rate` moves Q by no more than 
 
 import numpy as np
 
-from plan_cutters.kernels.jit import inlined, kernel
+from plan_cutters.kernels.jit import kernel
 
 P, A, X, Y, OFFSET, RADIUS, LOW, HIGH, BODY = 0, 3, 6, 9, 12, 13, 14, 15, 16
 
 
-@inlined
+@kernel
 def stand(body, p, n, f, t, tilt_cos, tilt_sin, offset, radius, low, high):  # type: ignore[no-untyped-def]
     """Write the body whose axis leans from n towards f by a tilt; t = n x f."""
     for k in range(3):
@@ -30,7 +30,7 @@ def stand(body, p, n, f, t, tilt_cos, tilt_sin, offset, radius, low, high):  # t
     body[OFFSET], body[RADIUS], body[LOW], body[HIGH] = offset, radius, low, high
 
 
-@inlined
+@kernel
 def _half_width(box, i, x, y, z):  # type: ignore[no-untyped-def]
     """Half the extent of box i along a unit direction."""
     return (
@@ -40,7 +40,7 @@ def _half_width(box, i, x, y, z):  # type: ignore[no-untyped-def]
     )
 
 
-@inlined
+@kernel
 def _box_apart(box, i, body, rate):  # type: ignore[no-untyped-def]
     """True only if no point of box i lies in the body (separating slab along the axis, then across it)."""
     dx, dy, dz = box[i, 0] - body[0], box[i, 1] - body[1], box[i, 2] - body[2]
@@ -73,7 +73,7 @@ def _box_apart(box, i, body, rate):  # type: ignore[no-untyped-def]
     return distance - reach > radius
 
 
-@inlined
+@kernel
 def _cut(source, count, target, level, keep):  # type: ignore[no-untyped-def]
     """Keep the part of a polygon with `keep * (height - level) >= 0` (Sutherland and Hodgman, one side)."""
     kept = 0
@@ -93,7 +93,7 @@ def _cut(source, count, target, level, keep):  # type: ignore[no-untyped-def]
     return kept
 
 
-@inlined
+@kernel
 def _nearest(polygon, count):  # type: ignore[no-untyped-def]
     """Point of a convex polygon whose shadow is nearest to the axis: (height, x, y, squared distance)."""
     area = 0.0
@@ -130,7 +130,7 @@ def _nearest(polygon, count):  # type: ignore[no-untyped-def]
     return height, px, py, best
 
 
-@inlined
+@kernel
 def triangle_hit(vertex, i, body, rate, polygon, spare):  # type: ignore[no-untyped-def]
     """Whether triangle i reaches into the body, and a point of it that does.
 
@@ -196,7 +196,7 @@ def triangle_hit(vertex, i, body, rate, polygon, spare):  # type: ignore[no-unty
     return True, height + part * (mh - height), px + part * dx, py + part * dy
 
 
-@inlined
+@kernel
 def _swept_hit(vertex, i, body, rate, polygon, spare, pieces):  # type: ignore[no-untyped-def]
     """`triangle_hit` with a rate, for triangles that reach from near the line of turning to far from it.
 

@@ -39,8 +39,3 @@ VERSION: str = numba.__version__
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile on first call, keep the result on disk, release the GIL."""
     return numba.njit(cache=True, nogil=True, error_model="numpy")(function)
-
-
-def inlined(function: Callable[..., Any]) -> Callable[..., Any]:
-    """A small kernel that other kernels call; left to the compiler to inline."""
-    return numba.njit(cache=True, nogil=True, error_model="numpy", inline="never")(function)

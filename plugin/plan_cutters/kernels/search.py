@@ -9,7 +9,7 @@ import numpy as np
 
 from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
 from plan_cutters.kernels.hit import BODY, stand, tree_hit
-from plan_cutters.kernels.jit import inlined, kernel
+from plan_cutters.kernels.jit import kernel
 
 # As in `plan_cutters.reach`, which must not load the compiler; a test holds them together.
 INACCESSIBLE, ACCESSIBLE, FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
@@ -23,7 +23,7 @@ _ROOM = 256
 _KNOWN = 16
 
 
-@inlined
+@kernel
 def remove(intervals, count, first, last, narrowest):  # type: ignore[no-untyped-def]
     """Take [first, last] out of sorted intervals in place, drop what is narrower than `narrowest`; the new count."""
     kept = 0
@@ -54,7 +54,7 @@ def remove(intervals, count, first, last, narrowest):  # type: ignore[no-untyped
     return kept
 
 
-@inlined
+@kernel
 def _forbid(intervals, count, first, last, x, y, z, radius, tally):  # type: ignore[no-untyped-def]
     """Take an obstacle point's arc out and book what it takes on the point's attribute; the new count."""
     before = 0.0
@@ -67,7 +67,7 @@ def _forbid(intervals, count, first, last, x, y, z, radius, tally):  # type: ign
     return count
 
 
-@inlined
+@kernel
 def _sweep(  # type: ignore[no-untyped-def]
     p, n, e1, e2, kappa_max, kappa_min,
     rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
