@@ -10,9 +10,11 @@ from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepBndLib import BRepBndLib
 from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_EDGE, TopAbs_EXTERNAL, TopAbs_INTERNAL, TopAbs_SOLID
+from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Face, TopoDS_Iterator, TopoDS_Shape
 
 from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats
+from cad_io.assembly import Node
 from cad_io.errors import ReadError
 from cad_io.kernel import edges_of, explore, faces, is_kernel_error, shape_map, translated
 from cad_io.measure import Measure, measure
@@ -42,12 +44,16 @@ class Part:
         Where it was read from, and the checksum of those bytes.
     names, colours : mapping, optional
         By face number: names and sRGB colours (0 to 1) found in the file.
+    layers : mapping, optional
+        By face number: the layers that it is on in the file.
+    tree : tuple of Node, optional
+        The products in the file; default one without a name.
     warnings : sequence of str
         What the reader found odd; odd sizes are added here.
 
     Attributes
     ----------
-    shape, file, sha256 : as given
+    shape, file, sha256, layers, tree : as given
     faces : tuple of FaceInfo
         Entry i is face number i + 1.
     size : tuple of float
@@ -72,6 +78,8 @@ class Part:
         sha256: str | None = None,
         names: Mapping[int, str] | None = None,
         colours: Mapping[int, tuple[float, float, float]] | None = None,
+        layers: Mapping[int, tuple[str, ...]] | None = None,
+        tree: tuple[Node, ...] = (),
         warnings: tuple[str, ...] = (),
     ) -> None:
         self.shape, self.file, self.sha256 = shape, file, sha256
@@ -79,6 +87,8 @@ class Part:
             self._faces = faces(shape)
         if not self._faces:
             raise ReadError("holds no surface (no faces): export it as a solid or surface model", file=file)
+        self.layers = dict(layers or {})
+        self.tree = tree or (Node("", "", TopLoc_Location(), faces=tuple(range(1, len(self._faces) + 1))),)
         self._adaptors: dict[int, BRepAdaptor_Surface] = {}
         self._trims: dict[int, Trim | None] = {}
         self._measures: dict[int, Measure | None] = {}

@@ -58,8 +58,9 @@ def _read_file(file: str) -> Part:
         else:
             read = read_step.Read(_read_brep(file, kind))
     return Part(
-        read.shape, file=file, sha256=checksum, names=read.names, colours=read.colours, warnings=tuple(read.warnings)
-    )
+        read.shape, file=file, sha256=checksum, names=read.names, colours=read.colours, layers=read.layers,
+        tree=read.tree, warnings=tuple(read.warnings),
+    )  # fmt: skip
 
 
 def _read_brep(file: str, kind: str) -> TopoDS_Shape:

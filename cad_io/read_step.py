@@ -1,4 +1,4 @@
-"""Read STEP through the kernel's document reader, with names and colours of faces, and with guards against half a part.
+"""Read STEP through the kernel's document reader: products, names, colours and layers, guarded against half a part.
 
 The reader's return codes mean little: a file with "NaN" in it hangs the transfer, and one with a bad knot loses faces
 without a word. So the model is checked before the transfer, and faces are counted after it.
@@ -7,13 +7,14 @@ without a word. So the model is checked before the transfer, and faces are count
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
 from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
 from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Reader
 from OCP.TCollection import TCollection_ExtendedString
+from OCP.TColStd import TColStd_HSequenceOfExtendedString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDF import TDF_Label, TDF_LabelSequence
 from OCP.TDocStd import TDocStd_Document
@@ -23,6 +24,7 @@ from OCP.TopoDS import TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 from OCP.XCAFDoc import XCAFDoc_ColorGen, XCAFDoc_ColorSurf, XCAFDoc_ColorTool, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
+from cad_io.assembly import Node
 from cad_io.errors import ReadError
 from cad_io.kernel import explore, shape_map
 from cad_io.part import as_one, unwrapped
@@ -36,11 +38,13 @@ _FACES = re.compile(rb"\b(?:ADVANCED_FACE|FACE_SURFACE)\s*\(")
 
 @dataclass
 class Read:
-    """What a reader found: one shape, and by face number names and sRGB colours."""
+    """What a reader found: one shape, its products, and by face number names, sRGB colours and layers."""
 
     shape: TopoDS_Shape
     names: dict[int, str] = field(default_factory=dict)
     colours: dict[int, Colour] = field(default_factory=dict)
+    layers: dict[int, tuple[str, ...]] = field(default_factory=dict)
+    tree: tuple[Node, ...] = ()
     warnings: list[str] = field(default_factory=list)
 
 
@@ -63,6 +67,7 @@ def read(file: str, data: bytes) -> Read:
     reader = STEPCAFControl_Reader()
     reader.SetColorMode(True)
     reader.SetNameMode(True)
+    reader.SetLayerMode(True)
     if reader.ReadFile(file) != IFSelect_RetDone:
         cut = b"END-ISO-10303-21" not in data[-4096:]
         raise ReadError(
@@ -124,48 +129,72 @@ def _each(labels: TDF_LabelSequence) -> Iterator[TDF_Label]:
 
 
 class _Walk:
-    """Names and colours of faces, gathered from the document's tree: the innermost label that has one wins."""
+    """Products, names, colours and layers of faces, gathered from the document: the innermost label that has one wins."""
 
     def __init__(self, result: Read) -> None:
         self.result, self.map = result, shape_map(result.shape, TopAbs_FACE)
+        self.taken: set[int] = set()
 
     def roots(self, labels: TDF_LabelSequence) -> None:
-        for label in _each(labels):
-            self.label(label, TopLoc_Location(), None)
+        start = _Inherited(TopLoc_Location())
+        self.result.tree = tuple(self.node(label, start) for label in _each(labels))
 
-    def label(self, label: TDF_Label, place: TopLoc_Location, colour: Colour | None) -> None:
-        """`colour` is what an enclosing instance gave, which beats the product's own."""
+    def node(self, label: TDF_Label, given: "_Inherited") -> Node:
+        instance, place = "", TopLoc_Location()
         if XCAFDoc_ShapeTool.IsReference_s(label):
-            colour = colour or _colour(label)
+            instance, place = _name(label), XCAFDoc_ShapeTool.GetLocation_s(label)
+            given = given.at(label, place)
             product = TDF_Label()
             XCAFDoc_ShapeTool.GetReferredShape_s(label, product)
-            self.label(product, place.Multiplied(XCAFDoc_ShapeTool.GetLocation_s(label)), colour)
-            return
-        colour = colour or _colour(label)
-        inner = TDF_LabelSequence()
+            label = product
+        given = given.at(label)
         if XCAFDoc_ShapeTool.IsAssembly_s(label):
+            inner = TDF_LabelSequence()
             XCAFDoc_ShapeTool.GetComponents_s(label, inner, False)
-            for component in _each(inner):
-                self.label(component, place, colour)
-            return
-        shape = XCAFDoc_ShapeTool.GetShape_s(label)
-        self.paint(shape, place, colour)
+            return Node(_name(label), instance, place, children=tuple(self.node(each, given) for each in _each(inner)))
+        mine = [n for n in self.leaf(label, given) if n not in self.taken]
+        self.taken.update(mine)
+        return Node(_name(label), instance, place, faces=tuple(mine))
+
+    def leaf(self, label: TDF_Label, given: "_Inherited") -> list[int]:
+        """Paint the faces of a product; their numbers."""
+        shape, inner = XCAFDoc_ShapeTool.GetShape_s(label), TDF_LabelSequence()
+        numbers = self.numbers(shape, given.place)
+        self.paint(numbers, given.colour, given.layers)
         XCAFDoc_ShapeTool.GetSubShapes_s(label, inner)
         parts = [(sub, XCAFDoc_ShapeTool.GetShape_s(sub)) for sub in _each(inner)]
         # Solids before shells before faces, so that the innermost has the last word.
         for sub, part in sorted(parts, key=lambda pair: int(pair[1].ShapeType().value)):
-            self.paint(part, place, _colour(sub))
+            covered = self.numbers(part, given.place)
+            self.paint(covered, _colour(sub), _layers(sub))
             if part.ShapeType() == TopAbs_FACE and (name := _name(sub)):
-                for number in self.numbers(part, place):
-                    self.result.names[number] = name
+                self.result.names.update(dict.fromkeys(covered, name))
+        return numbers
 
-    def paint(self, shape: TopoDS_Shape, place: TopLoc_Location, colour: Colour | None) -> None:
+    def paint(self, numbers: list[int], colour: Colour | None, layers: tuple[str, ...]) -> None:
         if colour:
-            for number in self.numbers(shape, place):
-                self.result.colours[number] = colour
+            self.result.colours.update(dict.fromkeys(numbers, colour))
+        if layers:
+            self.result.layers.update(dict.fromkeys(numbers, layers))
 
     def numbers(self, shape: TopoDS_Shape, place: TopLoc_Location) -> list[int]:
-        return [n for face in explore(shape.Moved(place), TopAbs_FACE) if (n := self.map.FindIndex(face))]
+        moved = shape.Moved(place)
+        return list(dict.fromkeys(n for face in explore(moved, TopAbs_FACE) if (n := self.map.FindIndex(face))))
+
+
+class _Inherited(NamedTuple):
+    """What the labels around give: an enclosing instance's colour beats the product's own."""
+
+    place: TopLoc_Location
+    colour: Colour | None = None
+    layers: tuple[str, ...] = ()
+
+    def at(self, label: TDF_Label, place: TopLoc_Location | None = None) -> "_Inherited":
+        return _Inherited(
+            self.place.Multiplied(place) if place else self.place,
+            self.colour or _colour(label),
+            self.layers or _layers(label),
+        )
 
 
 def _colour(label: TDF_Label) -> Colour | None:
@@ -175,6 +204,14 @@ def _colour(label: TDF_Label) -> Colour | None:
             red, green, blue = found.Values(Quantity_TOC_sRGB)
             return round(red, 6), round(green, 6), round(blue, 6)
     return None
+
+
+def _layers(label: TDF_Label) -> tuple[str, ...]:
+    found = TColStd_HSequenceOfExtendedString()
+    tool = XCAFDoc_DocumentTool.LayerTool_s(label)
+    if not tool.GetLayers(label, found):
+        return ()
+    return tuple(str(found.Value(i).ToExtString()) for i in range(1, found.Length() + 1))
 
 
 def _name(label: TDF_Label) -> str:
