@@ -1,4 +1,7 @@
-"""A part: the kernel's shape, its faces by number, and what is known about each."""
+"""A part: the kernel's shape, its faces by number, and what is known about each.
+
+Making a part costs next to nothing beside reading it: what is known about a face is worked out when first asked for.
+"""
 
 from collections.abc import Iterator, Mapping
 from functools import cached_property
@@ -94,17 +97,26 @@ class Part:
         self._measures: dict[int, Measure | None] = {}
         self.solids = shape_map(shape, TopAbs_SOLID).Extent()
         with translated("measuring the part", error=ReadError, file=file):
-            low, high = _box(self._faces)
-        if not np.isfinite([low, high]).all():
-            raise ReadError("no face has a finite size: nothing can be judged", file=file)
-        self.size: tuple[float, float, float] = tuple((high - low).tolist())
-        self._centre = 0.5 * (low + high)
-        self.faces = tuple(self._describe(n, names or {}, colours or {}) for n in range(1, len(self._faces) + 1))
-        self.warnings = (*warnings, *_size_warnings(self.size))
+            if not any(np.isfinite(_face_box(face, tight=False)).all() for face in self._faces):
+                raise ReadError("no face has a finite size: nothing can be judged", file=file)
+        self._names, self._colours, self._said = names or {}, colours or {}, warnings
 
     def __repr__(self) -> str:
         size = " x ".join(f"{length:.4g}" for length in self.size)
-        return f"Part({self.file or 'shape'}, {len(self.faces)} faces, {size} mm)"
+        return f"Part({self.file or 'shape'}, {len(self._faces)} faces, {size} mm)"
+
+    @cached_property
+    def faces(self) -> tuple[FaceInfo, ...]:
+        return tuple(self._describe(number) for number in range(1, len(self._faces) + 1))
+
+    @cached_property
+    def size(self) -> tuple[float, float, float]:
+        low, high = self._box
+        return tuple((high - low).tolist())
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        return (*self._said, *_size_warnings(self.size))
 
     def face(self, number: int) -> TopoDS_Face:
         """The kernel's face of a number from 1."""
@@ -129,8 +141,18 @@ class Part:
         if number not in self._measures:
             trim = self.trim(number)
             with translated("measuring a face", file=self.file, face=f"F{number}"):
-                self._measures[number] = None if trim is None else measure(self.adaptor(number), trim, self._centre)
+                self._measures[number] = None if trim is None else measure(self.adaptor(number), trim, self._middle)
         return self._measures[number]
+
+    @cached_property
+    def _box(self) -> tuple[Floats, Floats]:
+        with translated("measuring the part", error=ReadError, file=self.file):
+            return _box(self._faces)
+
+    @cached_property
+    def _middle(self) -> Floats:
+        low, high = self._box
+        return 0.5 * (low + high)
 
     @cached_property
     def closed(self) -> bool:
@@ -154,9 +176,7 @@ class Part:
             raise IndexError(f"face numbers run from 1 to {len(self._faces)}, not {number}")
         return number
 
-    def _describe(
-        self, number: int, names: Mapping[int, str], colours: Mapping[int, tuple[float, float, float]]
-    ) -> FaceInfo:
+    def _describe(self, number: int) -> FaceInfo:
         surface, shape, area, reason = "other", "sculptured", 0.0, None
         try:
             kind = str(self.adaptor(number).GetType()).rsplit("GeomAbs_", 1)[-1]
@@ -170,7 +190,8 @@ class Part:
             if not (is_kernel_error(thrown) or is_kernel_error(thrown.__cause__ or thrown)):
                 raise
             reason = reason or f"the CAD kernel cannot work with this face ({thrown})"
-        return FaceInfo(number, names.get(number, ""), surface, shape, area, colours.get(number), reason)
+        name, colour = self._names.get(number, ""), self._colours.get(number)
+        return FaceInfo(number, name, surface, shape, area, colour, reason)
 
     def _judgeable(self, number: int, surface: str) -> tuple[str | None, float]:
         """Why the face cannot be judged (None if it can), and its area."""
