@@ -6,6 +6,7 @@ has kinks or jumps of curvature along knots, every cell between these has its ow
 vector area and the flux of the position, from which follow the mean normal and the volume.
 """
 
+from functools import cache
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -13,18 +14,21 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepGProp import BRepGProp
-from OCP.GeomAbs import GeomAbs_C2
+from OCP.GeomAbs import GeomAbs_C2, GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Plane, GeomAbs_Sphere, GeomAbs_Torus
 from OCP.GProp import GProp_GProps
 
 from cad_io.arrays import Floats
 from cad_io.kernel import first_derivatives, interval_ends
 from cad_io.trim import Trim
 
-#: Nodes per direction and cell, tried in turn until the area agrees with the one before to ACCURACY.
-_NODES = (6, 10, 16, 28, 48)
-ACCURACY = 1e-6
+#: Nodes along one direction of a cell, tried in turn until what the last two orders add to the densities is below
+#: ACCURACY. Only quadrics and tori are so tame that the fewest nodes can be trusted.
+_NODES = (4, 8, 14, 24, 48)
+ACCURACY = 3e-6
+_TAME = (GeomAbs_Plane, GeomAbs_Cylinder, GeomAbs_Cone, GeomAbs_Sphere, GeomAbs_Torus)
 _MOST_CELLS = 8  # a direction; with more breaks than that, each is too small to matter
-_MOST_TABLE = 5000  # nodes in all, once the first two tables are made
+_MOST_TABLE = 5000  # nodes of all cells together
+_LEAST_TABLE = 200  # nodes that each cell may have nevertheless
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 _PIECE = 0.05  # of a cell: longest piece of border that is given three Gauss nodes
 
@@ -50,14 +54,8 @@ def measure(adaptor: BRepAdaptor_Surface, trim: Trim, origin: Floats) -> Measure
     breaks_v = _breaks(adaptor.NbVIntervals(GeomAbs_C2), adaptor.VIntervals, v0, v1)
     u, v, step = _border_nodes(_split(_split(trim.segments, 0, breaks_u[1:-1]), 1, breaks_v[1:-1]), breaks_u, breaks_v)
     cells = [(a, b, c, d) for a, b in pairwise(breaks_u.tolist()) for c, d in pairwise(breaks_v.tolist())]
-    before, total = np.inf, np.zeros(5)
-    for turn, n in enumerate(_NODES):
-        if turn > 1 and len(cells) * n * n > _MOST_TABLE:
-            break
-        total = sum((_around(_table(adaptor, cell, origin, n), cell, u, v, step) for cell in cells), np.zeros(5))
-        if not np.isfinite(total).all() or abs(total[0] - before) <= ACCURACY * abs(total[0]):
-            break
-        before = float(total[0])
+    most = max(_MOST_TABLE // len(cells), _LEAST_TABLE)
+    total = sum((_around(_resolved(adaptor, cell, origin, most), cell, u, v, step) for cell in cells), np.zeros(5))
     # A border that runs the wrong way round makes all of it negative.
     total = total if total[0] >= 0 else -total
     if not trim.closed:
@@ -103,19 +101,43 @@ def _border_nodes(segments: Floats, breaks_u: Floats, breaks_v: Floats) -> tuple
     return nodes[..., 0].ravel(), nodes[..., 1].ravel(), step.ravel()
 
 
-def _table(adaptor: BRepAdaptor_Surface, cell: tuple[float, float, float, float], origin: Floats, n: int) -> Floats:
-    """Chebyshev coefficients (n, n, 5) over a cell of |N|, N and (S - origin) . N."""
-    u0, u1, v0, v1 = cell
+def _resolved(
+    adaptor: BRepAdaptor_Surface, cell: tuple[float, float, float, float], origin: Floats, most: int
+) -> Floats:
+    """The table of a cell with as many nodes each way as the densities |N| and N need, at most so many in all."""
+    turn = [0, 0] if adaptor.GetType() in _TAME else [1, 1]
+    while True:
+        table = _table(adaptor, cell, origin, _NODES[turn[0]], _NODES[turn[1]])
+        size = np.abs(table[..., :4])
+        enough = ACCURACY * size.max()
+        rough = [axis for axis in (0, 1) if size.take([-2, -1], axis).max() > enough and turn[axis] + 1 < len(_NODES)]
+        for axis in rough:
+            turn[axis] += 1
+        if not rough or _NODES[turn[0]] * _NODES[turn[1]] > most:
+            return table
+
+
+@cache
+def _nodes(n: int) -> tuple[Floats, Floats]:
+    """Chebyshev nodes, and the matrix (n, n) that takes values there to coefficients."""
     nodes = chebyshev.chebpts1(n)
-    u, v = np.meshgrid(u0 + 0.5 * (nodes + 1) * (u1 - u0), v0 + 0.5 * (nodes + 1) * (v1 - v0), indexing="ij")
+    transform = chebyshev.chebvander(nodes, n - 1).T * (2.0 / n)
+    transform[0] *= 0.5
+    return nodes, transform
+
+
+def _table(
+    adaptor: BRepAdaptor_Surface, cell: tuple[float, float, float, float], origin: Floats, n: int, m: int
+) -> Floats:
+    """Chebyshev coefficients (n, m, 5) over a cell of |N|, N and (S - origin) . N."""
+    u0, u1, v0, v1 = cell
+    (x, along_u), (y, along_v) = _nodes(n), _nodes(m)
+    u, v = np.meshgrid(u0 + 0.5 * (x + 1) * (u1 - u0), v0 + 0.5 * (y + 1) * (v1 - v0), indexing="ij")
     d = first_derivatives(adaptor, u.ravel(), v.ravel())
     normal = np.cross(d[:, 1], d[:, 2])
     flux = ((d[:, 0] - origin) * normal).sum(axis=1)
     density = np.column_stack([np.linalg.norm(normal, axis=1), normal, flux])
-    transform = chebyshev.chebvander(nodes, n - 1).T * (2.0 / n)
-    transform[0] *= 0.5
-    along = (transform @ density.reshape(n, -1)).reshape(n, n, 5)
-    return transform @ along
+    return along_v @ (along_u @ density.reshape(n, -1)).reshape(n, m, 5)
 
 
 def _around(

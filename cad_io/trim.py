@@ -7,6 +7,7 @@ kernel, which is right but a thousand times slower. On the border counts as insi
 """
 
 from dataclasses import dataclass
+from math import hypot
 
 import numpy as np
 from numpy.typing import NDArray
@@ -183,25 +184,26 @@ def _polyline(curve: BRepAdaptor_Curve2d, scale: Floats, deflection: float) -> t
         return np.array([curve.Value(t).Coord() for t in ends.tolist()]), 0.0
     spans = curve.NbIntervals(GeomAbs_C2)
     knot = interval_ends(spans, curve.Intervals, GeomAbs_C2)
-    t = np.interp(np.arange(spans * _CHORDS + 1) / _CHORDS, np.arange(spans + 1), knot)
-    points = np.array([curve.Value(x).Coord() for x in t.tolist()])
-    new = np.arange(len(t) - 1)  # chords not measured yet
-    worst = 0.0
-    for _ in range(_HALVINGS):
-        middle = 0.5 * (t[new] + t[new + 1])
-        there = np.array([curve.Value(x).Coord() for x in middle.tolist()]).reshape(-1, 2)
-        off = np.linalg.norm((there - 0.5 * (points[new] + points[new + 1])) * scale, axis=1)
-        bad = off > deflection
-        worst = max(worst, float(off[~bad].max(initial=0.0)))
-        if not bad.any():
-            break
-        at = new[bad] + 1
-        t, points = np.insert(t, at, middle[bad]), np.insert(points, at, there[bad], axis=0)
-        halved = new[bad] + np.arange(bad.sum())
-        new = np.sort(np.concatenate([halved, halved + 1]))
-    else:
-        worst = max(worst, float(off.max()))
-    return points, worst
+    t = np.interp(np.arange(spans * _CHORDS + 1) / _CHORDS, np.arange(spans + 1), knot).tolist()
+    (per_u, per_v), value, worst = scale.tolist(), curve.Value, 0.0
+    # Plain numbers: a few dozen points a curve are too few for arrays to pay.
+    start = (t[0], *value(t[0]).Coord())
+    points = [start[1:]]
+    for last in t[1:]:
+        far = [((last, *value(last).Coord()), 0)]  # ends of chords yet to be measured, the next one last
+        while far:
+            end, halvings = far[-1]
+            middle = 0.5 * (start[0] + end[0])
+            u, v = value(middle).Coord()
+            off = hypot((u - 0.5 * (start[1] + end[1])) * per_u, (v - 0.5 * (start[2] + end[2])) * per_v)
+            if off > deflection and halvings < _HALVINGS:
+                far[-1] = end, halvings + 1
+                far.append(((middle, u, v), halvings + 1))
+            else:
+                worst = max(worst, off)
+                points.append(end[1:])
+                start = far.pop()[0]
+    return np.array(points), worst
 
 
 def _joins(pieces: list[Floats], scale: Floats) -> tuple[Floats, float]:
