@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d, BRepAdaptor_Surface
-from OCP.TopAbs import TopAbs_EDGE
-from OCP.TopoDS import TopoDS_Edge
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
+from OCP.TopTools import TopTools_IndexedMapOfShape
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, Ints, Orientation
-from cad_io.kernel import edges_of, first_derivatives, shape_map
+from cad_io.kernel import edges_of, first_derivatives
 from cad_io.part import Part
 
 #: Normals (out of the material) on both sides of a smooth joint agree within this, rad.
@@ -39,11 +39,11 @@ def smooth_joints(
     gap : mapping
         Largest distance between grid neighbours, mm, by face number; its keys are the sampled faces.
     """
-    edges = shape_map(part.shape, TopAbs_EDGE)
+    edges = TopTools_IndexedMapOfShape()
     uses: dict[int, list[tuple[int, TopoDS_Edge]]] = defaultdict(list)
     for number in gap:
-        for edge in edges_of(part.face(number)):
-            uses[edges.FindIndex(edge)].append((number, edge))
+        for edge in edges_of(_joined(part, number)):
+            uses[edges.Add(edge)].append((number, edge))
     trees: dict[int, tuple[cKDTree, NDArray[np.intp]]] = {}
     pairs = [np.zeros((0, 2), np.intp)]
     for users in uses.values():
@@ -88,9 +88,14 @@ class _Curve(NamedTuple):
         return first_derivatives(self.adaptor, uv[:, 0], uv[:, 1])
 
 
+def _joined(part: Part, number: int) -> TopoDS_Face:
+    """A face with the edges that it shares with faces it touches, in a solid or sewn; the surface is the part's own."""
+    return part.sewn.faces.get(number) or part.face(number)
+
+
 def _curve(part: Part, number: int, edge: TopoDS_Edge) -> _Curve:
     low, high = BRep_Tool.Range_s(edge)
-    return _Curve(part.adaptor(number), BRepAdaptor_Curve2d(edge, part.face(number)), low, high)
+    return _Curve(part.adaptor(number), BRepAdaptor_Curve2d(edge, _joined(part, number)), low, high)
 
 
 def _shares(curve: _Curve, reach: float) -> Floats | None:

@@ -9,18 +9,14 @@ from collections import defaultdict, deque
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from OCP.BRep import BRep_Tool
-from OCP.BRepBuilderAPI import BRepBuilderAPI_Sewing
-from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_FORWARD, TopAbs_REVERSED
+from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED
 from OCP.TopoDS import TopoDS, TopoDS_Face
-from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cad_io.arrays import Floats, Orientation
-from cad_io.kernel import edges_of, explore, shape_map, translated
+from cad_io.kernel import explore, shape_map
 from cad_io.part import Part
+from cad_io.sew import edge_uses
 
-#: Sewing joins edges nearer than this share of the part's diagonal, and never farther than so many mm.
-SEW_SHARE, SEW_MOST = 1e-5, 0.1
 #: Below this, the mean normal says little about the side.
 WEAK = 0.3
 #: Volumes below this share of area times diagonal are none.
@@ -95,8 +91,8 @@ def _orient_rest(
     """Set the signs of faces outside solids; True if all belong to closed shells."""
     direction = towards / np.linalg.norm(towards)
     sure, guessed, weakest = True, False, 1.0
-    sewn = _sewn(part, rest)
-    for c in _components(sewn):
+    joined = part.sewn.faces
+    for c in _components([joined[i + 1] for i in rest]):
         index = np.array(rest)[c.members]
         relative = c.relative if c.relative is not None else np.ones(len(index))
         volume = _volume(part, index, relative) if c.closed else 0.0
@@ -136,16 +132,9 @@ def _components(shapes: Sequence[TopoDS_Face]) -> list[_Component]:
     Two faces on either side of an edge point to the same side if they run along the edge in opposite directions.
     `relative` is None where the faces of a group cannot be made consistent (a Moebius strip).
     """
-    edges = TopTools_IndexedMapOfShape()
-    uses: dict[int, list[tuple[int, int]]] = defaultdict(list)
-    for i, face in enumerate(shapes):
-        # Seen with the surface's own normal, so that signs refer to dS/du x dS/dv.
-        for edge in edges_of(TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))):
-            if edge.Orientation() in (TopAbs_FORWARD, TopAbs_REVERSED) and not BRep_Tool.Degenerated_s(edge):
-                uses[edges.Add(edge)].append((i, 1 if edge.Orientation() == TopAbs_FORWARD else -1))
     links: dict[int, list[tuple[int, int]]] = defaultdict(list)
     open_faces: set[int] = set()
-    for users in uses.values():
+    for _, users in edge_uses(shapes):
         if len(users) == 2:
             (i, way_i), (j, way_j) = users
             if i != j:
@@ -170,24 +159,6 @@ def _components(shapes: Sequence[TopoDS_Face]) -> list[_Component]:
         closed = consistent and not open_faces.intersection(members)
         found.append(_Component(members, seen[members].copy() if consistent else None, closed))
     return found
-
-
-def _sewn(part: Part, rest: Sequence[int]) -> list[TopoDS_Face]:
-    """The faces after joining edges that coincide; a face that sewing drops stays as it was."""
-    originals = [part.face(i + 1) for i in rest]
-    if len(originals) < 2:
-        return originals
-    sewing = BRepBuilderAPI_Sewing(min(SEW_SHARE * float(np.linalg.norm(part.size)), SEW_MOST))
-    for face in originals:
-        sewing.Add(face)
-    with translated("joining faces", file=part.file):
-        sewing.Perform()
-    result = []
-    for face in originals:
-        joined = sewing.ModifiedSubShape(face) if sewing.IsModifiedSubShape(face) else face
-        whole = not joined.IsNull() and joined.ShapeType() == TopAbs_FACE and any(explore(joined, TopAbs_EDGE))
-        result.append(TopoDS.Face_s(joined) if whole else face)
-    return result
 
 
 def _volume(part: Part, index: Iterable[int], sign: Floats) -> float:

@@ -22,6 +22,7 @@ from cad_io.errors import ReadError
 from cad_io.kernel import edges_of, explore, faces, is_kernel_error, shape_map, translated
 from cad_io.measure import Measure, measure
 from cad_io.recognise import recognise
+from cad_io.sew import Sewn, sew
 from cad_io.trim import Trim, trim_of
 
 #: Sizes that are rather a wrong unit than a part, mm.
@@ -65,6 +66,8 @@ class Part:
         Number of solids.
     closed : bool
         Every edge joins two faces: the shape has an inside.
+    sewn : Sewn
+        Faces that stand in no solid, joined where they touch.
     warnings : tuple of str
 
     Raises
@@ -166,6 +169,10 @@ class Part:
                     uses[index] = uses.get(index, 0) + 1
         degenerated = {i for i in uses if _is_degenerated(edges.FindKey(i))}
         return bool(uses) and all(count % 2 == 0 for i, count in uses.items() if i not in degenerated)
+
+    @cached_property
+    def sewn(self) -> Sewn:
+        return sew(self)
 
     def solid_shapes(self) -> Iterator[TopoDS_Shape]:
         """Every solid, as it stands in the shape."""
