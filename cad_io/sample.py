@@ -259,6 +259,6 @@ def _share_inside(trim: Trim, lines: Lines) -> Floats:
 
     u, back_u = quarters(lines.u, lines.closed_u, *lines.span[:2])
     v, back_v = quarters(lines.v, lines.closed_v, *lines.span[2:])
-    inside = trim.inside_grid(u, v)[np.ix_(back_u, back_v)]
+    inside = trim.inside_grid(u, v, beside=False)[np.ix_(back_u, back_v)]
     share = inside.reshape(len(lines.u), 2, len(lines.v), 2).mean(axis=(1, 3))
     return np.maximum(share, _LEAST_SHARE)

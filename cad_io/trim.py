@@ -69,8 +69,11 @@ class Trim:
     closed: bool
     rectangular: bool
 
-    def inside_grid(self, u: Floats, v: Floats) -> Bools:
-        """Which nodes of the grid of increasing lines u (nu,) and v (nv,) lie in the face: (nu, nv)."""
+    def inside_grid(self, u: Floats, v: Floats, *, beside: bool = True) -> Bools:
+        """Which nodes of the grid of increasing lines u (nu,) and v (nv,) lie in the face: (nu, nv).
+
+        Without `beside`, the polygon alone decides, also about nodes nearer to it than its chord error.
+        """
         on_u, on_v = self.tolerance / self.scale
         u0, u1, v0, v1 = self.box
         boxed = np.outer((u >= u0 - on_u) & (u <= u1 + on_u), (v >= v0 - on_v) & (v <= v1 + on_v))
@@ -81,6 +84,8 @@ class Trim:
             boxed[i, j] = self._asked(u[i], v[j])
             return boxed
         inside = even_odd(self.segments, u, v)
+        if not beside:
+            return inside
         i, j, near_exact, near = self._band(u, v)
         inside[i[near_exact], j[near_exact]] = True
         rest = near & ~near_exact
