@@ -1,7 +1,7 @@
 """Reading beside the kernel's own reader, and sampling: seconds on one core, all figures in one run.
 
-`python benchmarks/reading.py FILE_OR_FOLDER...` prints a table: the kernel's reader (transfer with names and colours for
-STEP, all roots for IGES) and `read_part`, turn and turn about, best of five each; the description of all faces;
+`python benchmarks/reading.py FILE_OR_FOLDER...` prints a table: the kernel's reader (transfer with names, colours and
+layers for STEP, all roots for IGES) and `read_part`, turn and turn about, best of five each; the description of all faces;
 100,000 samples over the whole part with normals and curvatures, best of three. Files are warm and kernels loaded;
 seconds are processor time, so that other work on the machine does not count.
 """
@@ -38,6 +38,7 @@ def kernel_read(file: Path) -> None:
     step = STEPCAFControl_Reader()
     step.SetColorMode(True)
     step.SetNameMode(True)
+    step.SetLayerMode(True)
     step.ReadFile(str(file))
     step.Transfer(TDocStd_Document(TCollection_ExtendedString("XmlXCAF")))
 

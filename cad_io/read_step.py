@@ -13,8 +13,9 @@ from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
 from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
 from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Reader
+from OCP.STEPConstruct import STEPConstruct_UnitContext
+from OCP.StepData import StepData_Factors
 from OCP.TCollection import TCollection_ExtendedString
-from OCP.TColStd import TColStd_HSequenceOfExtendedString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDF import TDF_Label, TDF_LabelSequence
 from OCP.TDocStd import TDocStd_Document
@@ -28,12 +29,14 @@ from cad_io.assembly import Node
 from cad_io.errors import ReadError
 from cad_io.kernel import explore, shape_map
 from cad_io.part import as_one, unwrapped
+from cad_io.units import in_mm
 
 Colour = tuple[float, float, float]
 
 #: Faults of the model that do not touch geometry: a missing name, for one.
 _HARMLESS = re.compile(r"not a quoted String|\(name\)|\(description\)")
-_FACES = re.compile(rb"\b(?:ADVANCED_FACE|FACE_SURFACE)\s*\(")
+#: Each a pattern that starts with plain text, which is searched for ten times as fast as alternatives.
+_FACES = [re.compile(rb"%s\s*\(" % kind) for kind in (b"ADVANCED_FACE", b"FACE_SURFACE")]
 
 
 @dataclass
@@ -48,7 +51,7 @@ class Read:
     warnings: list[str] = field(default_factory=list)
 
 
-def read(file: str, data: bytes) -> Read:
+def read(file: str, data: bytes, unit: str | None = None) -> Read:
     """Read a STEP file.
 
     Parameters
@@ -56,6 +59,8 @@ def read(file: str, data: bytes) -> Read:
     file : str
     data : bytes
         Its content, to count faces in.
+    unit : str, optional
+        Length unit to take instead of the file's, one of `units.UNITS`.
 
     Raises
     ------
@@ -83,6 +88,9 @@ def read(file: str, data: bytes) -> Read:
         more = f" and {len(faults) - 1} more" if len(faults) > 1 else ""
         raise ReadError(f"is faulty STEP ({faults[0]}{more}): export it again", file=file)
     document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
+    if unit is not None:
+        # The kernel divides by the document's unit, in metres: chosen so that numbers come out as if in the unit wanted.
+        XCAFDoc_DocumentTool.SetLengthUnit_s(document, 1e-3 * _length_unit(reader) / in_mm(unit))
     if not reader.Transfer(document):
         raise ReadError("holds no shape that can be read: export it as a solid or surface model", file=file)
     labels = TDF_LabelSequence()
@@ -92,10 +100,23 @@ def read(file: str, data: bytes) -> Read:
         raise ReadError("holds no shape that can be read: export it as a solid or surface model", file=file)
     result = Read(unwrapped(as_one(roots)))
     _Walk(result).roots(labels)
-    written, found = len(_FACES.findall(data)), _distinct_faces(result.shape)
+    written, found = sum(len(kind.findall(data)) for kind in _FACES), _distinct_faces(result.shape)
     if found < written:
         result.warnings.append(lost_faces(found, written))
     return result
+
+
+def _length_unit(reader: STEPCAFControl_Reader) -> float:
+    """Length unit of a loaded file's first geometry, mm."""
+    model = reader.ChangeReader().StepModel()
+    for i in range(1, model.NbEntities() + 1):
+        context = getattr(model.Value(i), "GlobalUnitAssignedContext", None)
+        if context is not None:
+            units = STEPConstruct_UnitContext()
+            units.ComputeFactors(context(), StepData_Factors())
+            if units.LengthDone():
+                return float(units.LengthFactor())
+    return 1.0
 
 
 def lost_faces(found: int, written: int) -> str:
@@ -207,11 +228,9 @@ def _colour(label: TDF_Label) -> Colour | None:
 
 
 def _layers(label: TDF_Label) -> tuple[str, ...]:
-    found = TColStd_HSequenceOfExtendedString()
-    tool = XCAFDoc_DocumentTool.LayerTool_s(label)
-    if not tool.GetLayers(label, found):
-        return ()
-    return tuple(str(found.Value(i).ToExtString()) for i in range(1, found.Length() + 1))
+    found = TDF_LabelSequence()  # asked for strings, the kernel gives none (OCCT 7.9)
+    XCAFDoc_DocumentTool.LayerTool_s(label).GetLayers(label, found)
+    return tuple(sorted(filter(None, map(_name, _each(found)))))
 
 
 def _name(label: TDF_Label) -> str:
