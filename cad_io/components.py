@@ -12,7 +12,7 @@ from cad_io.kernel import shape_map
 
 def components(shape: Any) -> list[Any]:
     """Parts of a shape that share no edge, in order; several that do are one compound. Not a compound: itself."""
-    parts = _flat(shape)
+    parts = flat(shape)
     edges = TopTools_IndexedMapOfShape()
     owner: dict[int, int] = {}
     root = list(range(len(parts)))
@@ -54,7 +54,8 @@ def children(shape: Any) -> list[Any]:
     return out
 
 
-def _flat(shape: Any) -> list[Any]:
+def flat(shape: Any) -> list[Any]:
+    """Solids, shells, loose faces and all else that is no compound, in order."""
     if shape.ShapeType() != TopAbs_COMPOUND:
         return [shape]
-    return [part for child in children(shape) for part in _flat(child)]
+    return [part for child in children(shape) for part in flat(child)]

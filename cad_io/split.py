@@ -2,7 +2,7 @@
 
 A boundary is drawn in the face's parameter plane (`contour`), laid on its surface (`surface_edge`), and cuts the part
 together with all others (`cut_faces`). Results are accepted by checks of our own (`cut`); a face that cannot be cut is
-left whole, and that is said.
+split as a copy of itself beside the part; if that fails too it is left whole; which of these is said.
 """
 
 from collections.abc import Sequence
@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
+from OCP.TopoDS import TopoDS
 from scipy.ndimage import maximum_filter, minimum_filter
 
 from cad_io.arrays import FaceLabels, Floats, Ints
@@ -63,6 +65,8 @@ class Split:
         Of every face of the part, by face number.
     whole : dict
         Face number -> why a face of several labels was left whole; its piece is MIXED.
+    beside : dict
+        Face number -> pieces of a copy of such a face, which could be split alone: they stand beside `shape`.
     dropped : dict
         Face number -> how many known nodes were single-node islands and got no piece of their own.
     """
@@ -71,6 +75,7 @@ class Split:
     pieces: tuple[Piece, ...]
     whole: dict[int, str]
     dropped: dict[int, int]
+    beside: dict[int, tuple[Piece, ...]] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
@@ -140,7 +145,7 @@ def split(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 60) -> Sp
         At most one a face. The boundary runs between nodes of different label, smooth, within about half a cell. Faces
         not mentioned, or of one label, stay whole.
     seconds : float
-        Limit for the kernel's work; faces not split by then stay whole.
+        Limit for the kernel's work, and for that on each face that could not be split in the part.
 
     Returns
     -------
@@ -182,6 +187,7 @@ def split(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 60) -> Sp
     if work:
         shape, shapes, failed = cut_faces(part.shape, faces, dict(work), seconds)
         whole |= failed
+    beside = {n: found for n in sorted(whole.keys() & work.keys()) if (found := _alone(n, work[n], seconds))}
     pieces: list[Piece] = []
     for number in faces:
         shares = _shares(fields[number].label) if number in fields else {}
@@ -190,7 +196,17 @@ def split(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 60) -> Sp
         else:
             label = MIXED if number in whole else max(shares, key=lambda k: shares[k], default=UNKNOWN)
             pieces += [Piece(number, label, piece, shares) for piece in shapes[number]]
-    return Split(shape, tuple(pieces), whole, dropped)
+    return Split(shape, tuple(pieces), whole, dropped, beside)
+
+
+def _alone(number: int, work: _Work, seconds: float) -> tuple[Piece, ...]:
+    """Pieces of a copy of a face that could not be cut where it stands; none if it cannot be cut alone either."""
+    face = TopoDS.Face_s(BRepBuilderAPI_Copy(work.face, False, False).Shape())
+    copy = _Work(face, work.grid, work.known)
+    if copy.draw(FITS[0]):
+        return ()
+    _, pieces, failed = cut_faces(face, {number: face}, {number: copy}, seconds)
+    return () if failed else tuple(copy.labelled(number, piece) for piece in pieces[number])
 
 
 def _shares(label: Ints) -> dict[int, float]:

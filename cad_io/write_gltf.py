@@ -1,12 +1,15 @@
 """A split part as GLB: metres, Y up, one node a face of the part and below it one a piece, facts in their `extras`.
 
+Colours are linear vertex colours, so that the merged variant (one mesh for all, for parts of thousands of faces, with
+the face number at each vertex as `_FACE`) looks the same.
+
 An own writer, because trimesh (5.2) rounds linear colours to 8 bits, which shows in dark ones, and ties the bytes of a
 file to its version. The format asked for here is small: see the glTF 2.0 specification, sections 3.6 and 4.4.
 """
 
 import json
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -22,6 +25,7 @@ from OCP.TopoDS import TopoDS
 
 from cad_io.arrays import Floats, Style
 from cad_io.aside import aside
+from cad_io.components import compound
 from cad_io.errors import WriteError
 from cad_io.kernel import first_derivatives, translated
 from cad_io.split import Piece, Split
@@ -31,7 +35,7 @@ ANGLE = 0.35
 #: Default chord error as a share of the part's diagonal.
 FINE = 5e-4
 _METRE = 1e-3
-_FLOAT, _INDEX = 5126, 5125  # component types: 32-bit float, 32-bit unsigned integer
+_COMPONENT = {"float32": 5126, "uint32": 5125, "uint16": 5123}
 _VERTICES, _TRIANGLES = 34962, 34963  # what a buffer view is for
 
 
@@ -43,6 +47,13 @@ class _Mesh(NamedTuple):
     triangle: NDArray[np.uint32]
 
 
+class _Drawn(NamedTuple):
+    """A piece as vertex attributes: by name, arrays of n vertices; and its triangles (m, 3)."""
+
+    attributes: dict[str, NDArray[Any]]
+    triangle: NDArray[np.uint32]
+
+
 def write_gltf(
     split: Split,
     path: str | Path,
@@ -51,8 +62,9 @@ def write_gltf(
     extras: Callable[[int], dict[str, Any]],
     piece_extras: Callable[[Piece], dict[str, Any]],
     deflection: float | None = None,
+    merged: bool = False,
 ) -> tuple[int, ...]:
-    """Write all pieces as triangles.
+    """Write all pieces as triangles; those `beside` the part in the place of their face.
 
     Parameters
     ----------
@@ -67,11 +79,14 @@ def write_gltf(
         Facts about a piece: `extras` of its node, which has the style's name.
     deflection : float, optional
         Chord error of the triangles, mm; default FINE times the part's diagonal.
+    merged : bool
+        One node and mesh for everything: `extras` of the node holds a list of the faces' facts, and each vertex its
+        face number as `_FACE`.
 
     Returns
     -------
     tuple of int
-        Places in `split.pieces` that the kernel could not mesh; their nodes have no mesh.
+        Numbers of faces of which the kernel could not mesh all pieces; what is missing has a node without a mesh.
 
     Raises
     ------
@@ -80,11 +95,22 @@ def write_gltf(
     """
     with aside(path) as temporary:
         with translated("meshing", error=WriteError, file=str(path)):
-            meshes = _meshes(split, deflection)
+            pieces = [p for piece in split.pieces for p in _shown(split, piece)]
+            meshes = _meshes(split, pieces, deflection)
         if not any(meshes):
             raise WriteError("the CAD kernel made no triangle of the part", file=str(path))
-        temporary.write_bytes(_glb(split, meshes, style, extras, piece_extras))
-    return tuple(i for i, mesh in enumerate(meshes) if mesh is None)
+        drawn = [_draw(p, mesh, style) if mesh else None for p, mesh in zip(pieces, meshes, strict=True)]
+        glb = _Glb()
+        if merged:
+            _fill_merged(glb, pieces, drawn, extras)
+        else:
+            _fill(glb, pieces, drawn, style, extras, piece_extras)
+        temporary.write_bytes(glb.bytes())
+    return tuple(sorted({p.face for p, mesh in zip(pieces, meshes, strict=True) if mesh is None}))
+
+
+def _shown(split: Split, piece: Piece) -> tuple[Piece, ...]:
+    return split.beside.get(piece.face, (piece,))
 
 
 def linear(rgb: tuple[float, float, float]) -> list[float]:
@@ -94,13 +120,14 @@ def linear(rgb: tuple[float, float, float]) -> list[float]:
     return [round(float(x), 6) for x in light]
 
 
-def _meshes(split: Split, deflection: float | None) -> list[_Mesh | None]:
+def _meshes(split: Split, pieces: Sequence[Piece], deflection: float | None) -> list[_Mesh | None]:
     # A copy without triangles: the part is not to carry ours, and finer ones that it carries would change the file.
-    copy = BRepBuilderAPI_Copy(split.shape, False, False)
+    whole = compound([split.shape, *(p.shape for beside in split.beside.values() for p in beside)])
+    copy = BRepBuilderAPI_Copy(whole, False, False)
     if deflection is None:
         deflection = FINE * _diagonal(split)
     BRepMesh_IncrementalMesh(copy.Shape(), deflection, False, ANGLE, False)
-    return [_mesh(piece.shape, TopoDS.Face_s(copy.ModifiedShape(piece.shape))) for piece in split.pieces]
+    return [_mesh(piece.shape, TopoDS.Face_s(copy.ModifiedShape(piece.shape))) for piece in pieces]
 
 
 def _diagonal(split: Split) -> float:
@@ -146,82 +173,114 @@ def _mesh(face: Any, meshed: Any) -> _Mesh | None:
     return _Mesh(point, normal, triangle.reshape(-1, 3).astype(np.uint32))
 
 
-def _glb(
-    split: Split,
-    meshes: list[_Mesh | None],
+def _draw(piece: Piece, mesh: _Mesh, style: Callable[[Piece], Style]) -> _Drawn:
+    light = np.round(np.array([*linear(style(piece).rgb), 1.0]) * 65535).astype(np.uint16)
+    attributes: dict[str, NDArray[Any]] = {
+        "POSITION": _y_up(mesh.point * _METRE),
+        "NORMAL": _y_up(mesh.normal),
+        "COLOR_0": np.tile(light, (len(mesh.point), 1)),
+    }
+    return _Drawn(attributes, mesh.triangle)
+
+
+def _fill(
+    glb: "_Glb",
+    pieces: Sequence[Piece],
+    drawn: Sequence[_Drawn | None],
     style: Callable[[Piece], Style],
     extras: Callable[[int], dict[str, Any]],
     piece_extras: Callable[[Piece], dict[str, Any]],
-) -> bytes:
-    data = bytearray()
-    views: list[dict[str, Any]] = []
-    accessors: list[dict[str, Any]] = []
-    materials: list[dict[str, Any]] = []
-    material_of: dict[tuple[float, ...], int] = {}
-    nodes: list[dict[str, Any]] = [{"name": "part", "children": []}]
-    drawn: list[dict[str, Any]] = []
-    node_of: dict[int, dict[str, Any]] = {}
-
-    def accessor(array: NDArray[Any], kind: str, target: int, **more: Any) -> int:
-        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": array.nbytes, "target": target})
-        component = _INDEX if array.dtype == np.uint32 else _FLOAT
-        accessors.append(
-            {"bufferView": len(views) - 1, "componentType": component, "count": len(array), "type": kind, **more}
-        )
-        data.extend(array.tobytes())  # all items have 4 bytes: every view starts aligned
-        return len(accessors) - 1
-
-    for piece, mesh in zip(split.pieces, meshes, strict=True):
-        name, rgb = style(piece)
+) -> None:
+    node_of: dict[int, int] = {}
+    root = glb.node({"name": "part"})
+    for piece, mesh in zip(pieces, drawn, strict=True):
         if piece.face not in node_of:
-            node_of[piece.face] = {"name": f"F{piece.face}", "extras": extras(piece.face), "children": []}
-            nodes[0]["children"].append(len(nodes))
-            nodes.append(node_of[piece.face])
-        node: dict[str, Any] = {"name": name, "extras": piece_extras(piece)}
-        node_of[piece.face]["children"].append(len(nodes))
-        nodes.append(node)
-        if mesh is None:
-            continue
-        if rgb not in material_of:
-            material_of[rgb] = len(materials)
-            pbr = {"baseColorFactor": [*linear(rgb), 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.8}
-            # Open shells are looked at from both sides.
-            materials.append({"name": _hex(rgb), "pbrMetallicRoughness": pbr, "doubleSided": True})
-        point = _y_up(mesh.point * _METRE)
-        ends = {"min": point.min(axis=0).tolist(), "max": point.max(axis=0).tolist()}
-        primitive = {
-            "attributes": {
-                "POSITION": accessor(point, "VEC3", _VERTICES, **ends),
-                "NORMAL": accessor(_y_up(mesh.normal), "VEC3", _VERTICES),
-            },
-            "indices": accessor(mesh.triangle.reshape(-1), "SCALAR", _TRIANGLES),
-            "material": material_of[rgb],
-        }
-        node["mesh"] = len(drawn)
-        drawn.append({"name": name, "primitives": [primitive]})
+            node_of[piece.face] = glb.node({"name": f"F{piece.face}", "extras": extras(piece.face)}, root)
+        name = style(piece).name
+        glb.node({"name": name, "extras": piece_extras(piece), **glb.mesh(name, mesh)}, node_of[piece.face])
 
-    document = {
-        "asset": {"version": "2.0", "generator": "plan-cutters"},
-        "scene": 0,
-        "scenes": [{"nodes": [0]}],
-        "nodes": nodes,
-        "meshes": drawn,
-        "materials": materials,
-        "accessors": accessors,
-        "bufferViews": views,
-        "buffers": [{"byteLength": len(data)}],
-    }
-    text = json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False).encode()
-    text += b" " * (-len(text) % 4)
-    chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(data), b"BIN\0") + bytes(data)
-    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+def _fill_merged(
+    glb: "_Glb", pieces: Sequence[Piece], drawn: Sequence[_Drawn | None], extras: Callable[[int], dict[str, Any]]
+) -> None:
+    shown = [(piece, mesh) for piece, mesh in zip(pieces, drawn, strict=True) if mesh]
+    sizes = [len(mesh.attributes["POSITION"]) for _, mesh in shown]
+    starts = np.cumsum([0, *sizes[:-1]])
+    attributes = {k: np.concatenate([mesh.attributes[k] for _, mesh in shown]) for k in shown[0][1].attributes}
+    attributes["_FACE"] = np.repeat(np.array([piece.face for piece, _ in shown], np.float32), sizes)
+    triangle = np.concatenate([mesh.triangle + np.uint32(a) for a, (_, mesh) in zip(starts, shown, strict=True)])
+    facts = [extras(number) for number in dict.fromkeys(piece.face for piece in pieces)]
+    glb.node({"name": "part", "extras": {"faces": facts}, **glb.mesh("part", _Drawn(attributes, triangle))})
+
+
+class _Glb:
+    """The file as it grows."""
+
+    def __init__(self) -> None:
+        self.data = bytearray()
+        self.views: list[dict[str, Any]] = []
+        self.accessors: list[dict[str, Any]] = []
+        self.nodes: list[dict[str, Any]] = []
+        self.meshes: list[dict[str, Any]] = []
+
+    def node(self, node: dict[str, Any], parent: int | None = None) -> int:
+        if parent is not None:
+            self.nodes[parent].setdefault("children", []).append(len(self.nodes))
+        self.nodes.append(node)
+        return len(self.nodes) - 1
+
+    def mesh(self, name: str, drawn: _Drawn | None) -> dict[str, int]:
+        """The `mesh` of a node; nothing where nothing could be drawn."""
+        if drawn is None:
+            return {}
+        attributes = {key: self._accessor(array, key) for key, array in drawn.attributes.items()}
+        indices = self._accessor(drawn.triangle.reshape(-1))
+        self.meshes.append(
+            {"name": name, "primitives": [{"attributes": attributes, "indices": indices, "material": 0}]}
+        )
+        return {"mesh": len(self.meshes) - 1}
+
+    def _accessor(self, array: NDArray[Any], attribute: str = "") -> int:
+        target = _VERTICES if attribute else _TRIANGLES
+        self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": array.nbytes, "target": target})
+        item: dict[str, Any] = {
+            "bufferView": len(self.views) - 1,
+            "componentType": _COMPONENT[array.dtype.name],
+            "count": len(array),
+            "type": "SCALAR" if array.ndim == 1 else f"VEC{array.shape[1]}",
+        }
+        if attribute == "POSITION":
+            item |= {"min": array.min(axis=0).tolist(), "max": array.max(axis=0).tolist()}
+        if array.dtype == np.uint16:
+            item["normalized"] = True
+        self.accessors.append(item)
+        self.data.extend(array.tobytes())  # every item has a multiple of 4 bytes: every view starts aligned
+        return len(self.accessors) - 1
+
+    def bytes(self) -> bytes:
+        document = {
+            "asset": {"version": "2.0", "generator": "plan-cutters"},
+            "scene": 0,
+            "scenes": [{"nodes": [0]}],
+            "nodes": self.nodes,
+            "meshes": self.meshes,
+            # White: vertex colours are multiplied by it. Open shells are looked at from both sides.
+            "materials": [
+                {"name": "verdicts", "doubleSided": True,
+                 "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.8}}
+            ],
+            "accessors": self.accessors,
+            "bufferViews": self.views,
+            "buffers": [{"byteLength": len(self.data)}],
+        }  # fmt: skip
+        text = json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False).encode()
+        text += b" " * (-len(text) % 4)
+        data = bytes(self.data)
+        chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(data), b"BIN\0") + data
+        return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
 
 
 def _y_up(xyz: Floats) -> NDArray[np.float32]:
     """Part coordinates (Z up) as glTF's (Y up), in 32 bits."""
     # Adding zero turns -0.0 into 0.0.
     return np.ascontiguousarray(np.stack([xyz[:, 0], xyz[:, 2], -xyz[:, 1]], axis=1) + 0.0, np.float32)
-
-
-def _hex(rgb: tuple[float, ...]) -> str:
-    return "#" + "".join(f"{round(255 * c):02X}" for c in rgb)

@@ -1,8 +1,11 @@
-"""A split part as STEP: every piece a face with its own name and colour. The same input gives the same bytes."""
+"""A split part as STEP: the input's products, every piece a face with its own name, colour and layers.
+
+The same input gives the same bytes. Two instances of one product differ in their verdicts, so each is a product.
+"""
 
 import re
 import unicodedata
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -17,16 +20,18 @@ from OCP.STEPControl import STEPControl_AsIs
 from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDocStd import TDocStd_Document
-from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
+from OCP.TopAbs import TopAbs_FACE
+from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shell
 from OCP.TopTools import TopTools_IndexedMapOfShape
 from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
 
 from cad_io.arrays import Style
 from cad_io.aside import aside
-from cad_io.components import compound
+from cad_io.assembly import Node
+from cad_io.components import compound, flat
 from cad_io.errors import WriteError
-from cad_io.kernel import explore, shape_map, silence, translated
+from cad_io.kernel import explore, silence, translated
 from cad_io.split import Piece, Split
 
 #: Of every file: a fixed one, so that the same input gives the same bytes.
@@ -35,21 +40,33 @@ ORIGIN = "plan-cutters"
 
 
 def write_step(
-    split: Split, path: str | Path, style: Callable[[Piece], Style], *, schema: str = "AP242DIS", product: str
+    split: Split,
+    path: str | Path,
+    style: Callable[[Piece], Style],
+    *,
+    product: str,
+    tree: Sequence[Node] = (),
+    layers: Mapping[int, Sequence[str]] | None = None,
+    schema: str = "AP242DIS",
 ) -> None:
-    """Write all pieces, coloured and named, as one product.
+    """Write all pieces, coloured and named, in the products that they belong to.
 
     Parameters
     ----------
     split : Split
+        Its pieces `beside` go into a product of their own.
     path : path-like
         Appears whole or not at all.
     style : callable
         Name and colour of a piece. Names become ASCII.
+    product : str
+        Name of products that have none.
+    tree : sequence of Node
+        Products of the part, which hold all its faces; default a single one.
+    layers : mapping, optional
+        Face number -> layers of the face.
     schema : str
         The kernel's name of an application protocol: `AP242DIS`, `AP214IS`, `AP203`.
-    product : str
-        Name of the product in the file.
 
     Raises
     ------
@@ -61,16 +78,17 @@ def write_step(
     with aside(path) as temporary, translated("writing STEP", error=WriteError, file=file):
         with _settings(schema, file):
             document = TDocStd_Document(TCollection_ExtendedString("BinXCAF"))
-            _fill(document, split, style, product, file)
+            _Document(document, style, layers or {}, product, file).fill(split, tree)
             writer = STEPCAFControl_Writer()
             writer.SetColorMode(True)
             writer.SetNameMode(True)
+            writer.SetLayerMode(True)
             if not writer.Transfer(document, STEPControl_AsIs):
                 raise WriteError("the CAD kernel cannot turn the part into STEP", file=file)
             _head(writer.ChangeWriter().Model(), product)
             if writer.Write(str(temporary)) != IFSelect_RetDone:
                 raise WriteError("the CAD kernel cannot write the file (is the disk full?)", file=file)
-        _recount(temporary, split, file)
+        _recount(temporary, len(split.pieces) + sum(map(len, split.beside.values())), file)
 
 
 @contextmanager
@@ -89,40 +107,98 @@ def _settings(schema: str, file: str) -> Iterator[None]:
         Interface_Static.SetIVal_s("write.stepcaf.subshapes.name", old_names)
 
 
-def _fill(document: Any, split: Split, style: Callable[[Piece], Style], product: str, file: str) -> None:
-    shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
-    colours = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
-    root = shapes.AddShape(_product(split), False)
-    TDataStd_Name.Set_s(root, TCollection_ExtendedString(_ascii(product)))
-    for piece in split.pieces:
-        label = shapes.AddSubShape(root, piece.shape)
-        if label.IsNull():
-            raise WriteError("the CAD kernel gives this face no label", file=file, face=f"F{piece.face}")
-        name, rgb = style(piece)
-        TDataStd_Name.Set_s(label, TCollection_ExtendedString(_ascii(name)))
-        colours.SetColor(label, Quantity_Color(*rgb, Quantity_TOC_sRGB), XCAFDoc_ColorSurf)
+class _Document:
+    """The kernel's document as it grows."""
+
+    def __init__(
+        self,
+        document: Any,
+        style: Callable[[Piece], Style],
+        layers: Mapping[int, Sequence[str]],
+        product: str,
+        file: str,
+    ) -> None:
+        self.shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+        self.colours = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
+        self.layer_tool = XCAFDoc_DocumentTool.LayerTool_s(document.Main())
+        self.style, self.layers, self.product, self.file = style, layers, product, file
+
+    def fill(self, split: Split, tree: Sequence[Node]) -> None:
+        pieces: dict[int, list[Piece]] = {}
+        for piece in split.pieces:
+            pieces.setdefault(piece.face, []).append(piece)
+        tree = tree or [Node(self.product, "", TopLoc_Location(), faces=tuple(pieces))]
+        leaves = [leaf for root in tree for leaf, _, _ in root.leaves()]
+        leaf_of = {number: i for i, leaf in enumerate(leaves) for number in leaf.faces}
+        owner = TopTools_IndexedMapOfShape()
+        number_of = [piece.face for piece in split.pieces if owner.Add(piece.shape) == owner.Extent()]
+        parts: dict[int, list[Any]] = {}
+        for part in flat(split.shape):
+            first = next(explore(part, TopAbs_FACE), None)
+            # What has no face (curves, points) goes with the first product.
+            at = 0 if first is None else leaf_of[number_of[owner.FindIndex(first) - 1]]
+            parts.setdefault(at, []).append(part)
+        mine = {
+            id(leaf): (parts.get(i, []), [p for n in leaf.faces for p in pieces[n]]) for i, leaf in enumerate(leaves)
+        }
+        for root in tree:
+            self.node(root, root.place, mine)
+        for number, beside in split.beside.items():
+            self.leaf(f"F{number} regions", [p.shape for p in beside], beside, TopLoc_Location())
+        self.shapes.UpdateAssemblies()
+
+    def node(self, node: Node, place: TopLoc_Location, mine: dict[int, tuple[list[Any], list[Piece]]]) -> Any:
+        """Label of a product; `place` is where it stands in the part. None if nothing of it is left."""
+        if not node.children:
+            parts, pieces = mine[id(node)]
+            return self.leaf(node.name, parts, pieces, place) if parts else None
+        found = [(child, self.node(child, place.Multiplied(child.place), mine)) for child in node.children]
+        label = self.shapes.NewShape()
+        _name(label, node.name or self.product)
+        for child, product in found:
+            if product is not None:
+                _name(self.shapes.AddComponent(label, product, child.place), child.instance or child.name)
+        return label
+
+    def leaf(self, name: str, parts: Sequence[Any], pieces: Sequence[Piece], place: TopLoc_Location) -> Any:
+        """Label of a product made of parts that stand at `place` in the part."""
+        back = place.Inverted()
+        label = self.shapes.AddShape(_whole(parts, pieces, back), False)
+        _name(label, name or self.product)
+        for piece in pieces:
+            sub = self.shapes.AddSubShape(label, piece.shape.Moved(back))
+            if sub.IsNull():
+                raise WriteError("the CAD kernel gives this face no label", file=self.file, face=f"F{piece.face}")
+            title, rgb = self.style(piece)
+            _name(sub, title)
+            self.colours.SetColor(sub, Quantity_Color(*rgb, Quantity_TOC_sRGB), XCAFDoc_ColorSurf)
+            for layer in self.layers.get(piece.face, ()):
+                self.layer_tool.SetLayer(sub, TCollection_ExtendedString(_ascii(layer)))
+        return label
 
 
-def _product(split: Split) -> Any:
+def _name(label: Any, name: str) -> None:
+    TDataStd_Name.Set_s(label, TCollection_ExtendedString(_ascii(name)))
+
+
+def _whole(parts: Sequence[Any], pieces: Sequence[Piece], back: TopLoc_Location) -> Any:
     """A fresh compound without a location: in a located shape, or one that is itself a face, faces get no label.
 
     Pieces of a face that stands in no shell get a shell of their own, or readers would see them as separate surfaces.
     """
     loose = TopTools_IndexedMapOfShape()
-    for face in explore(split.shape, TopAbs_FACE, TopAbs_SHELL):
-        loose.Add(face)
-    if loose.IsEmpty():
-        return compound([split.shape])
+    for part in parts:
+        if part.ShapeType() == TopAbs_FACE:
+            loose.Add(part)
     builder = BRep_Builder()
     shells: dict[int, Any] = {}
-    for piece in split.pieces:
+    for piece in pieces:
         if loose.Contains(piece.shape):
             if piece.face not in shells:
                 shells[piece.face] = TopoDS_Shell()
                 builder.MakeShell(shells[piece.face])
-            builder.Add(shells[piece.face], piece.shape)
-    solids, others = explore(split.shape, TopAbs_SOLID), explore(split.shape, TopAbs_SHELL, TopAbs_SOLID)
-    return compound([*solids, *others, *shells.values()])
+            builder.Add(shells[piece.face], piece.shape.Moved(back))
+    return compound([p.Moved(back) for p in parts if p.ShapeType() != TopAbs_FACE] + list(shells.values()))
 
 
 def _head(model: Any, product: str) -> None:
@@ -135,10 +211,9 @@ def _head(model: Any, product: str) -> None:
     header.SetAuthorisation(TCollection_HAsciiString(ORIGIN))
 
 
-def _recount(path: Path, split: Split, file: str) -> None:
+def _recount(path: Path, asked: int, file: str) -> None:
     """Count faces and styles in the written text: the kernel is known to lose some in silence."""
     text = path.read_bytes()
-    asked = shape_map(split.shape, TopAbs_FACE).Extent()
     faces = len(re.findall(rb"=\s*ADVANCED_FACE\s*\(", text))
     styles = len(re.findall(rb"=\s*(?:OVER_RIDING_)?STYLED_ITEM\s*\(", text))
     if faces < asked or styles < asked:

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import struct
 import subprocess
 from collections import Counter
@@ -14,6 +15,7 @@ import trimesh
 from cad_io import read_part
 from plan_cutters import Cutter, plan
 from plan_cutters.palette import PALETTE, rgb
+from plan_cutters.report import DEFAULT_FORMATS
 
 ROOT = Path(__file__).parent.parent
 SAMPLES = ROOT / "samples"
@@ -23,7 +25,7 @@ SAMPLES = ROOT / "samples"
 def written(request, tmp_path_factory):
     out = tmp_path_factory.mktemp(request.param)
     result = plan(SAMPLES / f"{request.param}.step", cutters=[Cutter.flat(radius=8, length=90)], grid=61)
-    return result, result.write(out), out
+    return result, result.write(out, (*DEFAULT_FORMATS, "merged")), out
 
 
 def shares(result):
@@ -35,7 +37,7 @@ def shares(result):
 
 def test_step_pieces_have_the_verdicts_names_colours_and_areas(written):
     result, document, out = written
-    assert document.split == {}
+    assert {entry.rung for entry in document.split.values()} <= {"contour"}
     again = read_part(out / "annotated.step")
     assert again.solids == result.part.solids
     faces = {f.id: f for f in document.faces}
@@ -76,19 +78,31 @@ def test_glb_says_face_and_verdict_and_stands_upright_in_metres(written):
             assert extras["verdicts"] == entry.faces[extras["face"]].model_dump()
     pieces = [n["extras"] for n in tree["nodes"] if "verdict" in n.get("extras", {})]
     assert {p["verdict"] for p in pieces} <= set(PALETTE)
-    colours = {tuple(np.round(m["pbrMetallicRoughness"]["baseColorFactor"][:3], 3)) for m in tree["materials"]}
-    for verdict in {p["verdict"] for p in pieces}:
-        assert tuple(round(linear(c), 3) for c in rgb(verdict)) in colours
     scene = trimesh.load(out / "annotated.glb")
+    for name, mesh in scene.geometry.items():
+        expected = [linear(c) for c in rgb(re.sub(r"_\d+$", "", name.split()[0].partition("_")[2]))]
+        assert np.abs(mesh.visual.vertex_attributes["color"][:, :3] / 65535 - expected).max() < 1e-4
     x, y, z = np.ptp(scene.bounds, axis=0) * 1000
     assert (x, z, y) == pytest.approx(result.part.size, rel=0.02)
 
 
-def test_glb_passes_the_khronos_validator(written):
+def test_merged_glb_has_the_same_triangles_in_one_mesh_with_face_numbers(written):
+    _, document, out = written
+    single, merged = (trimesh.load(out / f"{name}.glb") for name in ("annotated", "merged"))
+    (mesh,) = merged.geometry.values()
+    assert len(mesh.faces) == sum(len(m.faces) for m in single.geometry.values())
+    assert mesh.area == pytest.approx(sum(m.area for m in single.geometry.values()), rel=1e-9)
+    tree = chunks(out / "merged.glb")
+    assert [f["face"] for f in tree["nodes"][0]["extras"]["faces"]] == [f.id for f in document.faces]
+    assert set(np.unique(mesh.vertex_attributes["_FACE"])) == {float(f.id[1:]) for f in document.faces}
+
+
+@pytest.mark.parametrize("name", ["annotated.glb", "merged.glb"])
+def test_glb_passes_the_khronos_validator(written, name):
     _, _, out = written
     assert (ROOT / "node_modules" / "gltf-validator").is_dir(), "run: sh setup.sh dev"
     done = subprocess.run(
-        ["node", str(ROOT / "tests" / "gltf_validate.js"), str(out / "annotated.glb")],
+        ["node", str(ROOT / "tests" / "gltf_validate.js"), str(out / name)],
         capture_output=True, text=True, check=True, env={**os.environ, "NODE_PATH": str(ROOT / "node_modules")},
     )  # fmt: skip
     issues = json.loads(done.stdout)

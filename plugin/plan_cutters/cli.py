@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from plan_cutters import __version__
-from plan_cutters.supervise import Supervised, default_memory, is_child, limit_memory, report, supervise
+from plan_cutters.supervise import Supervised, default_memory, is_child, keep_output, limit_memory, report, supervise
 
 if TYPE_CHECKING:
     from plan_cutters.model import Plan
@@ -110,7 +110,18 @@ class _Vector(click.ParamType):
 @click.option("--allowance", type=float, hidden=True)
 @click.option("--holder-clearance", type=float, hidden=True)
 @click.option("-o", "--out", metavar="DIR", help="Folder for the files.  [default: <stem>-plan]")
-@click.option("--formats", metavar="LIST", help="Of json,step,glb,npz.  [default: all]")
+@click.option(
+    "--formats",
+    metavar="LIST",
+    help="Of json,step,glb,npz and merged (a GLB of one mesh, for parts of thousands of faces).  "
+    "[default: json,step,glb,npz]",
+)
+@click.option(
+    "--step-schema",
+    type=click.Choice(["ap242", "ap214", "ap203"]),
+    default="ap242",
+    help="Application protocol of the STEP file.  [default: ap242]",
+)
 @click.option("--json", "json_out", metavar="-", help="With `-`: the plan on standard output, nothing else there.")
 @click.option("--posture-maps", is_flag=True, hidden=True)
 @click.option("--jobs", type=int, metavar="N", help="Threads.  [default: all cores]")
@@ -181,11 +192,11 @@ def _options(given: dict[str, Any]) -> "Options":
 
 def _one(part: str, out: Path, options: "Options", given: dict[str, Any]) -> tuple[int, str]:
     """Plan one part; exit code and a line about it."""
-    from plan_cutters.report import FORMATS, Staging, read_formats, write_all
+    from plan_cutters.report import DEFAULT_FORMATS, Staging, read_formats, write_all
 
     to_stdout = given["json_out"] == "-"
     # The plan on standard output: files only where they are asked for.
-    default = () if to_stdout and given["out"] is None else FORMATS
+    default = () if to_stdout and given["out"] is None else DEFAULT_FORMATS
     formats = read_formats(given["formats"]) if given["formats"] else default
     report("part", part)
     staging = Staging(out) if formats else None
@@ -198,7 +209,7 @@ def _one(part: str, out: Path, options: "Options", given: dict[str, Any]) -> tup
             result = run(part, options, progress=tell)
             if formats:
                 tell("write", 0, 1)
-                document = write_all(result, out, formats, staging)
+                document = write_all(result, out, formats, staging, step_schema=given["step_schema"])
                 tell("write", 1, 1)
             else:
                 document = result.plan
@@ -344,6 +355,8 @@ def main(args: Sequence[str] | None = None) -> NoReturn:
     words = list(sys.argv[1:] if args is None else args)
     if is_child():
         limit_memory()
+        keep_output()
+        keep_output()
         code, line = _guarded(lambda: (_parsed(words), ""), "--debug" in words)
     else:
         code, line = _guarded(lambda: (_watched(words), ""), "--debug" in words)

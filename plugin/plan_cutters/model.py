@@ -83,6 +83,7 @@ class FaceEntry(_Frozen):
     shape: str = Field(description="what it is in shape: plane, cylinder, cone, sphere, torus or sculptured")
     target: bool
     area_mm2: float
+    component: str = Field(description="names of the instances in the file down to the product that it belongs to")
     samples: int
     unjudged: str | None = Field(description="why the face, or some of its samples, could not be judged")
 
@@ -129,6 +130,15 @@ class FileEntry(_Frozen):
     sha256: str
 
 
+class SplitEntry(_Frozen):
+    """How the models show a face of mixed verdicts."""
+
+    rung: Literal["contour", "beside", "whole"] = Field(
+        description="split in its place; split as a copy of the face beside the part; coloured whole"
+    )
+    why: str | None = Field(description="why it could not be split in its place")
+
+
 class Run(_Frozen):
     """What differs between two runs with the same input."""
 
@@ -153,6 +163,6 @@ class Plan(_Frozen):
     selection: Selection
     notes: list[str] = Field(description="what these verdicts do not say")
     legend: dict[str, str] = Field(description="colour of each verdict in the STEP and GLB files, sRGB")
-    split: dict[str, str] = Field(default={}, description="faces coloured whole although their verdicts are mixed: why")
+    split: dict[str, SplitEntry] = Field(default={}, description="faces of mixed verdicts: how the models show them")
     files: dict[str, FileEntry] = {}
     run: Run

@@ -100,8 +100,18 @@ class Result:
 
         write_plan(self.plan, Path(path))
 
-    def write(self, out: str | Path, formats: Sequence[str] = ("json", "step", "glb", "npz")) -> Plan:
+    def write(
+        self, out: str | Path, formats: Sequence[str] = ("json", "step", "glb", "npz"), *, step_schema: str = "ap242"
+    ) -> Plan:
         """Write files into the folder `out`, each whole or not at all.
+
+        Parameters
+        ----------
+        out : path-like
+        formats : sequence of str
+            Of `json`, `step`, `glb`, `npz` and `merged` (a GLB of one mesh, for parts of thousands of faces).
+        step_schema : str
+            Application protocol of the STEP file: `ap242`, `ap214` or `ap203`.
 
         Returns
         -------
@@ -110,7 +120,7 @@ class Result:
         """
         from plan_cutters.report import write_all
 
-        return write_all(self, Path(out), formats)
+        return write_all(self, Path(out), formats, step_schema=step_schema)
 
 
 def plan(
@@ -405,6 +415,7 @@ def _part_info(part: Part, orientation: Orientation) -> PartInfo:
 def _faces(part: Part, samples: SurfaceSamples, targets: Sequence[int]) -> list[FaceEntry]:
     empty = dict(samples.empty)
     chosen = set(targets)
+    component = {number: path for root in part.tree for leaf, path, _ in root.leaves() for number in leaf.faces}
     result = []
     for face in part.faces:
         mine = samples.face == face.number
@@ -421,6 +432,7 @@ def _faces(part: Part, samples: SurfaceSamples, targets: Sequence[int]) -> list[
                 shape=face.shape,
                 target=face.number in chosen,
                 area_mm2=face.area,
+                component=component[face.number],
                 samples=int(mine.sum()),
                 unjudged=reason if face.number in chosen else face.unjudged,
             )

@@ -16,9 +16,12 @@ from plan_cutters.model import FileEntry, Plan
 _WRITERS = {
     "step": ("annotated.step", "models", "write_step"),
     "glb": ("annotated.glb", "models", "write_glb"),
+    "merged": ("merged.glb", "models", "write_merged"),
     "npz": ("samples.npz", "to_npz", "write_npz"),
 }
 FORMATS = ("json", *_WRITERS)
+#: What is written unless asked otherwise; `merged` is for parts of thousands of faces.
+DEFAULT_FORMATS = tuple(f for f in FORMATS if f != "merged")
 
 
 def read_formats(text: str) -> tuple[str, ...]:
@@ -73,7 +76,9 @@ class Staging:
         shutil.rmtree(self.folder, ignore_errors=True)
 
 
-def write_all(result: Any, out: Path, formats: Sequence[str], staging: Staging | None = None) -> Plan:
+def write_all(
+    result: Any, out: Path, formats: Sequence[str], staging: Staging | None = None, *, step_schema: str = "ap242"
+) -> Plan:
     """Write the formats asked for into the folder `out`.
 
     Parameters
@@ -84,6 +89,8 @@ def write_all(result: Any, out: Path, formats: Sequence[str], staging: Staging |
         Of FORMATS.
     staging : Staging, optional
         One made before the work began.
+    step_schema : str
+        `ap242`, `ap214` or `ap203`.
 
     Returns
     -------
@@ -91,21 +98,24 @@ def write_all(result: Any, out: Path, formats: Sequence[str], staging: Staging |
         The plan as written.
     """
     read_formats(",".join(formats))
-    from plan_cutters.report.models import split_result
+    from plan_cutters.report.models import SCHEMAS, rungs, split_result
     from plan_cutters.report.to_json import write_plan
 
+    if step_schema not in SCHEMAS:
+        raise OptionError(f"STEP schema {step_schema!r} is not built in; give one of {', '.join(SCHEMAS)}")
     document: Plan = result.plan
     files: dict[str, FileEntry] = {}
     with staging or Staging(out) as folder:
-        split = split_result(result) if {"step", "glb"} & set(formats) else None
+        split = split_result(result) if {"step", "glb", "merged"} & set(formats) else None
         if split is not None:
-            document = document.model_copy(update={"split": {f"F{n}": why for n, why in sorted(split.whole.items())}})
+            document = document.model_copy(update={"split": rungs(split)})
         for name in formats:
             if name == "json":
                 continue
             file, module, function = _WRITERS[name]
             write: Callable[..., None] = getattr(import_module(f"plan_cutters.report.{module}"), function)
-            write(result, split, folder / file)
+            more = {"schema": step_schema} if name == "step" else {}
+            write(result, split, folder / file, **more)
             files[name] = FileEntry(name=file, sha256=hashlib.sha256((folder / file).read_bytes()).hexdigest())
         document = document.model_copy(update={"files": files})
         if "json" in formats:

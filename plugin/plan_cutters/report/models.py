@@ -3,6 +3,8 @@
 They show one cutter: the selected one or, where none is feasible, the one that reaches the most.
 """
 
+from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +15,7 @@ from cad_io.arrays import FaceGrid, FaceLabels, Style
 from cad_io.split import split
 from cad_io.write_gltf import write_gltf
 from cad_io.write_step import write_step as write_cad
+from plan_cutters.model import SplitEntry
 from plan_cutters.palette import LABELS, rgb
 from plan_cutters.reach import ACCESSIBLE, FREE, INACCESSIBLE, UNDECIDED, UNJUDGED
 
@@ -23,6 +26,9 @@ _LABEL = {
     INACCESSIBLE: LABELS.index("inaccessible"),
     UNJUDGED: LABELS.index("unjudged"),
 }
+
+#: STEP application protocols that can be asked for, and the kernel's names of them.
+SCHEMAS = {"ap242": "AP242DIS", "ap214": "AP214IS", "ap203": "AP203"}
 
 
 def _grid_labels(grid: FaceGrid, label: NDArray[np.int32]) -> FaceLabels:
@@ -69,12 +75,35 @@ def _verdict(piece: Any) -> str:
     return LABELS[piece.label] if piece.label >= 0 else "mixed"
 
 
-def write_step(result: Any, split: Any, path: Path) -> None:
-    """Write `annotated.step`: each piece a face named `F<number>_<verdict>` with the verdict's colour."""
-    write_cad(split, path, lambda p: Style(f"F{p.face}_{_verdict(p)}", rgb(_verdict(p))), product=_product(result))
+def rungs(split: Any) -> dict[str, SplitEntry]:
+    """How each face of mixed verdicts is shown."""
+    counts = Counter(piece.face for piece in split.pieces)
+    shown = {number: SplitEntry(rung="contour", why=None) for number, count in counts.items() if count > 1}
+    for number, why in split.whole.items():
+        shown[number] = SplitEntry(rung="beside" if number in split.beside else "whole", why=why)
+    return {f"F{number}": shown[number] for number in sorted(shown)}
 
 
-def write_glb(result: Any, split: Any, path: Path) -> None:
+def _styles(result: Any) -> Callable[[Any], Style]:
+    """Name and colour of a piece: a target face has the colour of its verdict, a check face keeps its own."""
+    faces = result.part.faces
+
+    def style(piece: Any) -> Style:
+        info, verdict = faces[piece.face - 1], _verdict(piece)
+        own = info.colour if piece.label == LABELS.index("check") else None
+        return Style(f"F{piece.face}_{verdict} {info.name}".strip(), own or rgb(verdict))
+
+    return style
+
+
+def write_step(result: Any, split: Any, path: Path, *, schema: str = "ap242") -> None:
+    """Write `annotated.step`: the input's products and layers, each piece a face named `F<number>_<verdict>`."""
+    part = result.part
+    write_cad(split, path, _styles(result), product=_product(result), tree=part.tree, layers=part.layers,
+              schema=SCHEMAS[schema])  # fmt: skip
+
+
+def write_glb(result: Any, split: Any, path: Path, *, merged: bool = False) -> None:
     """Write `annotated.glb`: face numbers, verdicts and reasons in `extras`."""
     shown = next(c for c in result.plan.cutters if c.id == result.shown)
     entries = {int(f.id[1:]): f for f in result.plan.faces}
@@ -87,6 +116,8 @@ def write_glb(result: Any, split: Any, path: Path) -> None:
             "face": entry.id,
             "number": face,
             "name": entry.name,
+            "component": entry.component,
+            "layers": list(result.part.layers.get(face, ())),
             "surface": entry.surface,
             "target": entry.target,
             "cutter": shown.id,
@@ -98,10 +129,16 @@ def write_glb(result: Any, split: Any, path: Path) -> None:
     write_gltf(
         split,
         path,
-        lambda p: Style(f"F{p.face}_{_verdict(p)}", rgb(_verdict(p))),
+        _styles(result),
         extras=extras,
         piece_extras=lambda p: {"face": f"F{p.face}", "verdict": _verdict(p), "cutter": shown.id},
+        merged=merged,
     )
+
+
+def write_merged(result: Any, split: Any, path: Path) -> None:
+    """Write `merged.glb`: one mesh for parts of so many faces that viewers are slow with a node each."""
+    write_glb(result, split, path, merged=True)
 
 
 def _product(result: Any) -> str:
