@@ -121,7 +121,7 @@ def _resolved(
 def _nodes(n: int) -> tuple[Floats, Floats]:
     """Chebyshev nodes, and the matrix (n, n) that takes values there to coefficients."""
     nodes = chebyshev.chebpts1(n)
-    transform = chebyshev.chebvander(nodes, n - 1).T * (2.0 / n)
+    transform = 2.0 / n * np.cos(np.outer(np.arange(n), np.arccos(nodes)))
     transform[0] *= 0.5
     return nodes, transform
 
