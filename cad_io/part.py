@@ -27,6 +27,8 @@ from cad_io.trim import Trim, trim_of
 
 #: Sizes that are rather a wrong unit than a part, mm.
 LEAST_SIZE, MOST_SIZE = 1.0, 3000.0
+#: Beyond this, mm, a coordinate has too few digits left for any tolerance.
+FARTHEST = 1e9
 #: A face smaller than this share of the squared diagonal has no area.
 _NO_AREA = 1e-12
 
@@ -100,8 +102,17 @@ class Part:
         self._measures: dict[int, Measure | None] = {}
         self.solids = shape_map(shape, TopAbs_SOLID).Extent()
         with translated("measuring the part", error=ReadError, file=file):
-            if not any(np.isfinite(_face_box(face, tight=False)).all() for face in self._faces):
+            boxes = np.array([_face_box(face, tight=False) for face in self._faces])
+            finite = np.isfinite(boxes).all(axis=(1, 2))
+            if not finite.any():
                 raise ReadError("no face has a finite size: nothing can be judged", file=file)
+            farthest = float(np.abs(boxes[finite]).max())
+            if farthest > FARTHEST:
+                raise ReadError(
+                    f"reaches {farthest:.3g} mm from the origin, where no tolerance can be kept: its coordinates are "
+                    "damaged, or its unit is wrong; export it again",
+                    file=file,
+                )
         self._names, self._colours, self._said = names or {}, colours or {}, warnings
 
     def __repr__(self) -> str:
@@ -288,5 +299,5 @@ def _size_warnings(size: tuple[float, float, float]) -> Iterator[str]:
     if not LEAST_SIZE <= largest <= MOST_SIZE:
         yield (
             f"the part is {largest:.4g} mm long, outside {LEAST_SIZE:g} to {MOST_SIZE:g} mm: "
-            "check the length unit in the file"
+            "if the length unit in the file is wrong, give the right one with --unit (unit= in Python)"
         )

@@ -10,7 +10,7 @@ from cad_io import read_iges, read_step
 from cad_io.errors import ReadError
 from cad_io.kernel import silence, translated
 from cad_io.part import Part, as_one, unwrapped
-from cad_io.sniff import sniff
+from cad_io.sniff import load
 
 
 def read_part(source: Any) -> Part:
@@ -39,16 +39,7 @@ def read_part(source: Any) -> Part:
 
 
 def _read_file(file: str) -> Part:
-    if not os.path.exists(file):
-        raise ReadError("no such file", file=file)
-    if os.path.isdir(file):
-        raise ReadError("is a folder, not a file", file=file)
-    try:
-        with open(file, "rb") as stream:
-            data = stream.read()
-    except OSError as error:
-        raise ReadError(f"cannot be read: {error.strerror}", file=file) from error
-    kind = sniff(data, file)
+    kind, data = load(file)
     checksum = hashlib.sha256(data).hexdigest()
     with translated("reading the file", error=ReadError, file=file):
         if kind == "step":

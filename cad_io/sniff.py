@@ -1,11 +1,16 @@
-"""What kind of file is this? Told from its content, since names lie."""
+"""What kind of file is this? Told from its content, since names lie; what is no CAD file is not read to its end."""
 
+import os
 import re
+import stat
 from pathlib import Path
 
 from cad_io.errors import ReadError
 
-_STEP = re.compile(rb"\s*(/\*.*?\*/\s*)*ISO-10303-21\s*;", re.DOTALL)
+#: Bytes that must tell the kind.
+_HEAD = 4096
+# Possessive, or a file of nothing but comments would be tried in every way to part them.
+_STEP = re.compile(rb"(?>\s|/\*.*?\*/)*+ISO-10303-21\s*;", re.DOTALL)
 _IGES = re.compile(rb"[^\r\n]{72}[SBC]\s*\d+\s*[\r\n]")
 _BREP = re.compile(rb"\s*(DBRep_DrawableShape|CASCADE Topology)")
 _BINARY_BREP = re.compile(rb"\s*Open CASCADE Topology V")
@@ -22,13 +27,42 @@ _OTHERS = (
 )
 
 
+def load(file: str) -> tuple[str, bytes]:
+    """Kind, as `sniff` tells it, and content of a CAD file.
+
+    Raises
+    ------
+    ReadError
+        There is no such file, or it is not one that can be read.
+    """
+    try:
+        mode = os.stat(file).st_mode
+        if stat.S_ISDIR(mode):
+            raise ReadError("is a folder, not a file", file=file)
+        if not stat.S_ISREG(mode):
+            # The kernel opens it once more, and some have no end.
+            raise ReadError("is a pipe or a device, not a file: save its content in a file", file=file)
+        with open(file, "rb") as stream:
+            kind = sniff(stream.read(_HEAD), file)
+            stream.seek(0)
+            return kind, stream.read()
+    except FileNotFoundError:
+        raise ReadError("no such file", file=file) from None
+    except MemoryError:
+        raise ReadError(
+            "is too large for the memory allowed: give more, or check that it is the part", file=file
+        ) from None
+    except (OSError, ValueError) as error:
+        raise ReadError(f"cannot be read: {getattr(error, 'strerror', None) or error}", file=file) from error
+
+
 def sniff(data: bytes, file: str) -> str:
     """Kind of a CAD file: `step`, `iges`, `brep` or `binary brep`.
 
     Parameters
     ----------
     data : bytes
-        The whole content.
+        Its content, or at least the first 4096 bytes.
     file : str
         Named in errors.
 
@@ -37,9 +71,9 @@ def sniff(data: bytes, file: str) -> str:
     ReadError
         Empty, or not a CAD file that can be read.
     """
-    if not data.strip():
-        raise ReadError("is empty", file=file)
-    start = data[:4096]
+    start = data[:_HEAD]
+    if not start.strip():
+        raise ReadError("is empty" if len(data) < _HEAD else "starts with nothing but blanks", file=file)
     for kind, pattern in (("step", _STEP), ("iges", _IGES), ("brep", _BREP), ("binary brep", _BINARY_BREP)):
         if pattern.match(start):
             return kind

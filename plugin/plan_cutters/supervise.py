@@ -38,6 +38,14 @@ def limit_memory() -> None:
         resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
 
 
+def keep_output() -> None:
+    """Leave standard output to us: what the kernel prints past Python, as its BREP reader does, goes nowhere."""
+    ours, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    os.close(nowhere)
+    sys.stdout = os.fdopen(ours, "w", encoding="utf-8")
+
+
 def report(word: str, text: str) -> None:
     """Tell the parent, if there is one: `stage NAME`, `part FILE`, `staging FOLDER`."""
     if is_child():
