@@ -4,6 +4,8 @@ import hashlib
 import os
 from typing import Any
 
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
+from OCP.gp import gp_Pnt, gp_Trsf
 from OCP.TopoDS import TopoDS_Shape
 
 from cad_io import read_iges, read_step
@@ -11,9 +13,10 @@ from cad_io.errors import ReadError
 from cad_io.kernel import silence, translated
 from cad_io.part import Part, as_one, unwrapped
 from cad_io.sniff import load
+from cad_io.units import in_mm
 
 
-def read_part(source: Any) -> Part:
+def read_part(source: Any, unit: str | None = None) -> Part:
     """Read a part; faces are numbered from 1 in the order of the kernel's map of the shape read.
 
     Parameters
@@ -21,6 +24,9 @@ def read_part(source: Any) -> Part:
     source : path, TopoDS_Shape or object
         Path of a STEP, IGES or BREP file; a kernel shape; an object with `.wrapped` (CadQuery, build123d) or with
         `.vals()` (CadQuery Workplane) that gives such.
+    unit : str, optional
+        What the numbers in the source are in: one of `um`, `mm`, `cm`, `m`, `km`, `mil`, `in`, `ft`. Default: the unit
+        that the file names; mm for BREP files and shapes.
 
     Returns
     -------
@@ -33,21 +39,23 @@ def read_part(source: Any) -> Part:
         In one line: what is wrong and what to try.
     """
     silence()
+    if unit is not None:
+        in_mm(unit)
     if isinstance(source, str | os.PathLike):
-        return _read_file(os.fspath(source))
-    return Part(unwrapped(_kernel_shape(source)))
+        return _read_file(os.fspath(source), unit)
+    return Part(_scaled(unwrapped(_kernel_shape(source)), unit))
 
 
-def _read_file(file: str) -> Part:
+def _read_file(file: str, unit: str | None) -> Part:
     kind, data = load(file)
     checksum = hashlib.sha256(data).hexdigest()
     with translated("reading the file", error=ReadError, file=file):
         if kind == "step":
-            read = read_step.read(file, data)
+            read = read_step.read(file, data, unit)
         elif kind == "iges":
-            read = read_iges.read(file, data)
+            read = read_iges.read(file, data, unit)
         else:
-            read = read_step.Read(_read_brep(file, kind))
+            read = read_step.Read(_scaled(_read_brep(file, kind), unit))
     return Part(
         read.shape, file=file, sha256=checksum, names=read.names, colours=read.colours, layers=read.layers,
         tree=read.tree, warnings=tuple(read.warnings),
@@ -67,6 +75,15 @@ def _read_brep(file: str, kind: str) -> TopoDS_Shape:
     if shape.IsNull():
         raise ReadError("is not a whole BREP file: write it again", file=file)
     return unwrapped(shape)
+
+
+def _scaled(shape: TopoDS_Shape, unit: str | None) -> TopoDS_Shape:
+    """A shape without a unit of its own, in mm."""
+    if unit is None or unit == "mm":
+        return shape
+    scale = gp_Trsf()
+    scale.SetScale(gp_Pnt(), in_mm(unit))
+    return BRepBuilderAPI_Transform(shape, scale, True).Shape()
 
 
 def _kernel_shape(source: Any) -> TopoDS_Shape:

@@ -93,17 +93,27 @@ def read(file: str, data: bytes, unit: str | None = None) -> Read:
         XCAFDoc_DocumentTool.SetLengthUnit_s(document, 1e-3 * _length_unit(reader) / in_mm(unit))
     if not reader.Transfer(document):
         raise ReadError("holds no shape that can be read: export it as a solid or surface model", file=file)
-    labels = TDF_LabelSequence()
-    XCAFDoc_DocumentTool.ShapeTool_s(document.Main()).GetFreeShapes(labels)
+    labels = _roots(document)
     roots = [XCAFDoc_ShapeTool.GetShape_s(label) for label in _each(labels)]
     if not roots:
         raise ReadError("holds no shape that can be read: export it as a solid or surface model", file=file)
     result = Read(unwrapped(as_one(roots)))
-    _Walk(result).roots(labels)
+    add_attributes(document, result)
     written, found = sum(len(kind.findall(data)) for kind in _FACES), _distinct_faces(result.shape)
     if found < written:
         result.warnings.append(lost_faces(found, written))
     return result
+
+
+def add_attributes(document: TDocStd_Document, result: Read) -> None:
+    """Fill in the tree of products, names, colours and layers that a document has for the faces of its shape."""
+    _Walk(result).roots(_roots(document))
+
+
+def _roots(document: TDocStd_Document) -> TDF_LabelSequence:
+    labels = TDF_LabelSequence()
+    XCAFDoc_DocumentTool.ShapeTool_s(document.Main()).GetFreeShapes(labels)
+    return labels
 
 
 def _length_unit(reader: STEPCAFControl_Reader) -> float:
