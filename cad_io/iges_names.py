@@ -34,7 +34,8 @@ def any_names(directory: Sequence[bytes]) -> bool:
 
 def add_names(reader: Any, result: Read) -> None:
     """Fill in the names of faces that a reader has transferred."""
-    transferred = reader.WS().TransferReader()
+    if reader.NbShapes() != reader.NbRootsForTransfer():
+        return  # some were lost: no one knows which shape is which root's
     numbers = shape_map(result.shape, TopAbs_FACE)
 
     def found(entity: Any, shape: Any) -> None:
@@ -42,10 +43,7 @@ def add_names(reader: Any, result: Read) -> None:
             result.names[number] = name
 
     for i in range(1, reader.NbRootsForTransfer() + 1):
-        root = reader.RootForTransfer(i)
-        shape = transferred.ShapeResult(root)
-        if shape is not None and not shape.IsNull():
-            _walk(root, shape, found)
+        _walk(reader.RootForTransfer(i), reader.Shape(i), found)
 
 
 def _walk(entity: Any, shape: Any, found: Callable[[Any, Any], None]) -> None:
@@ -55,9 +53,7 @@ def _walk(entity: Any, shape: Any, found: Callable[[Any, Any], None]) -> None:
             found(entity, face)
         return
     parts = children(shape)
-    if len(inner) == 1 and len(parts) != 1:
-        parts = [shape]  # the kernel gives a group of one as that one
-    # Where the kernel lost some, no one knows which: none is better than a wrong name.
+    # No name is better than a wrong one.
     if len(inner) == len(parts):
         for sub, part in zip(inner, parts, strict=True):
             _walk(sub, part, found)

@@ -1,0 +1,90 @@
+"""A length unit given instead of the file's: the numbers stay, their unit changes; placements and names with them."""
+
+import re
+
+import pytest
+from cad_parts import box, compound, drilled, moved, real
+from OCP.BinTools import BinTools
+from OCP.BRepTools import BRepTools
+from OCP.IGESControl import IGESControl_Writer
+from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
+from OCP.TopLoc import TopLoc_Location
+
+from cad_io import ReadError, read_part
+from cad_io.units import UNITS
+
+
+def pair():
+    """Two instances of one solid, turned and moved."""
+    return compound(drilled(), drilled().Moved(TopLoc_Location(moved(by=(50, 10, -20)))))
+
+
+@pytest.fixture(params=["step mm", "step cm", "iges mm", "iges in", "brep", "binary brep", "shape"])
+def source(request, tmp_path):
+    """The pair as a file or shape, and what its unit is in mm."""
+    kind, _, unit = request.param.partition(" ")
+    path = tmp_path / "part"
+    if kind == "step":
+        writer = STEPControl_Writer()
+        writer.Transfer(pair(), STEPControl_AsIs)
+        writer.Write(str(path))
+        prefix = {"mm": ".MILLI.", "cm": ".CENTI."}[unit]
+        text, count = re.subn(r"SI_UNIT\(\.MILLI\.,\.METRE\.\)", f"SI_UNIT({prefix},.METRE.)", path.read_text())
+        assert count
+        path.write_text(text)
+    elif kind == "iges":
+        writer = IGESControl_Writer(unit.upper(), 0)
+        writer.AddShape(pair())
+        writer.ComputeModel()
+        writer.Write(str(path))
+    elif request.param == "brep":
+        BRepTools.Write_s(pair(), str(path))
+    elif request.param == "binary brep":
+        BinTools.Write_s(pair(), str(path))
+    else:
+        path = pair()
+    return path, UNITS.get(unit, 1.0)
+
+
+@pytest.mark.parametrize("unit", ["mm", "in", "m", "um"])
+def test_lengths_are_as_if_written_in_the_unit(source, unit):
+    path, written = source
+    own, given = read_part(path), read_part(path, unit=unit)
+    scale = UNITS[unit] / written
+    assert given.size == pytest.approx([scale * length for length in own.size], rel=1e-6)
+    assert len(given.faces) == len(own.faces) == 14
+    # Face by face, so that numbers stay and both instances are in their places.
+    for mine, other in zip(given.faces, own.faces, strict=True):
+        assert (mine.shape, mine.area) == (other.shape, pytest.approx(scale**2 * other.area, rel=1e-5))
+        flux = scale**3 * own.measure(mine.number).flux
+        assert given.measure(mine.number).flux == pytest.approx(flux, rel=1e-4, abs=1e-4 * scale**3)
+    assert given.solids == own.solids
+
+
+def test_giving_a_unit_changes_no_later_reading(source):
+    path, _ = source
+    before = read_part(path).size
+    read_part(path, unit="ft")
+    assert read_part(path).size == pytest.approx(before)
+
+
+def test_units_that_do_not_exist_are_refused():
+    with pytest.raises(ReadError, match=r"'parsec'.*um, mm, cm"):
+        read_part(box(), unit="parsec")
+
+
+def test_an_odd_size_names_what_would_right_it():
+    assert "--unit" in read_part(box(0.1, 0.1, 0.1)).warnings[0]
+    assert read_part(box(0.1, 0.1, 0.1), unit="m").warnings == ()
+
+
+@pytest.mark.parametrize("path", real("occt_bearing.iges"), ids=lambda p: p.name)
+def test_a_real_file_with_a_wrong_unit(path):
+    part = read_part(path, unit="m")
+    assert part.size == pytest.approx((100.977, 121.977, 31.3517), rel=1e-4)
+    assert part.warnings == ()
+
+
+@pytest.mark.parametrize("path", real("trimesh_featuretype.STEP", "axom_boxed_sphere.step"), ids=lambda p: p.name)
+def test_real_units_are_told(path):
+    assert read_part(path, unit={".STEP": "in", ".step": "cm"}[path.suffix]).size == pytest.approx(read_part(path).size)
