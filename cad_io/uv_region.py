@@ -28,7 +28,7 @@ _ARCS = 8  # intervals that a curve without knots (conic) is cut into
 def outline(face: Any) -> Floats:
     """Segments (n, 2, 2) between (u, v) points of the face's boundary, in no order; empty for an unbounded face."""
     out = []
-    for curve, ends, _ in _boundary(face):
+    for curve, ends, _ in boundary(face):
         t = ends
         if len(ends) > 2 or curve.GetType() != GeomAbs_Line:
             t = np.append((ends[:-1, None] + np.diff(ends)[:, None] * np.arange(_CHORDS) / _CHORDS).ravel(), ends[-1])
@@ -41,7 +41,7 @@ def uv_area(face: Any) -> float:
     """Area of the region in (u, v), exact for polynomial boundaries: the integral of u dv around it."""
     total = 0.0
     point, tangent = gp_Pnt2d(), gp_Vec2d()
-    for curve, ends, sign in _boundary(face):
+    for curve, ends, sign in boundary(face):
         half = 0.5 * np.diff(ends)
         t = (0.5 * (ends[1:] + ends[:-1]))[:, None] + half[:, None] * _NODES
         weight = half[:, None] * _WEIGHTS
@@ -74,7 +74,7 @@ def interior_point(segments: Floats) -> tuple[float, float]:
     return middle
 
 
-def _boundary(face: Any) -> list[tuple[Any, Floats, float]]:
+def boundary(face: Any) -> list[tuple[Any, Floats, float]]:
     """Boundary curves in (u, v), the ends (k + 1,) of their smooth intervals, +1 or -1 for their direction."""
     forward = TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
     out = []
