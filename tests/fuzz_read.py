@@ -1,14 +1,13 @@
 """Damage CAD files and give them to the command, thousands of times: `python tests/fuzz_read.py --count 20000 --seed 1`.
 
-A preloaded process forks the command's own child for each damaged file, so that kernel and kernels are loaded once, and
-watches it as the command's supervisor does. What that turns into one line (a crash, a read past its limit) is counted,
+A preloaded process forks the command's child, so that kernel and kernels are loaded once, and watches it as the command's
+supervisor does. What that turns into one line (a crash, a read past its limit) is counted,
 not blamed. Faults are: a traceback or an internal error, an exit code that the command does not have, words on standard
 output, a hang after reading, files left behind, and a plan that is wrong: see `wrong`.
 """
 
 import argparse
-import contextlib
-import io
+import gc
 import json
 import math
 import os
@@ -20,8 +19,9 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterator
-from functools import partial
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -38,7 +38,8 @@ LARGEST = 60_000  # bytes; larger files only cost time
 READING, REST = 10.0, 30.0  # seconds
 #: A plan as coarse as can be: what is tried is not the search.
 WORDS = ["--cutter", "R3L40", "--faces", "all", "--grid", "3", "--tolerance", "0.5", "--rotation-step", "60",
-         "--jobs", "1"]  # fmt: skip
+         "--jobs", "1", "--quiet"]  # fmt: skip
+BATCH = 25  # files to a fork
 TRIANGLES = 20_000
 MODELS = 10  # every so many damaged files are written as models, too
 #: A damaged part this many times larger or smaller than the whole one must come with a warning.
@@ -101,77 +102,128 @@ def _other(number: bytes, rng: np.random.Generator) -> bytes:
     return NUMBERS[int(rng.integers(len(NUMBERS)))].ljust(len(number))
 
 
-def attempt(file: Path, *, models: bool) -> Outcome:
-    """Run the command's child on one file."""
-    out, said = file.parent / "out", file.parent / "said"
+@dataclass(frozen=True)
+class Case:
+    """One damaged file, in a folder of its own, in which the command leaves `out` and what it `said`."""
+
+    file: Path
+    whole: dict[str, Any] = field(default_factory=dict)
+    models: bool = False
+
+    @property
+    def folder(self) -> Path:
+        return self.file.parent
+
+    def clear(self) -> None:
+        """Take away what a run has left."""
+        for left in self.folder.iterdir():
+            if left.is_dir():
+                shutil.rmtree(left)
+
+    def run(self) -> int:
+        """Exit code of the command."""
+        words = [
+            str(self.file),
+            "-o",
+            str(self.folder / "out"),
+            *([] if self.models else ["--formats", "json"]),
+            *WORDS,
+        ]
+        with (self.folder / "said").open("w") as said, (self.folder / "printed").open("w") as printed:
+            sys.stderr, sys.stdout = said, printed
+            code, line = cli._guarded(lambda: (cli._parsed(words), ""), False)
+            print(line, file=sys.stderr)
+        return code
+
+
+def attempt(cases: Sequence[Case]) -> Iterator[Outcome]:
+    """Run the command's child on one file after the other.
+
+    One fork serves many, since it costs more than most files do. What ends it is tried again alone, so that nothing is
+    blamed on a file that an earlier one has caused.
+    """
+    rest = list(cases)
+    while rest:
+        codes, ended = _forked(rest)
+        yield from (_judged(code, case) for code, case in zip(codes, rest, strict=False))
+        rest = rest[len(codes) :]
+        if ended and rest:
+            rest[0].clear()
+            codes, ended = _forked(rest[:1])
+            yield ended if ended else _judged(codes[0], rest[0])
+            del rest[0]
+
+
+def _forked(cases: Sequence[Case]) -> tuple[list[int], Outcome | None]:
+    """Exit codes of the cases that came to their end, and how the next one ended the process, if one did."""
     here, there = os.pipe()
     pid = os.fork()
     if pid == 0:
-        code = 70
         try:
             os.close(here)
-            for number, name in ((1, "printed"), (2, "said")):
-                os.dup2(os.open(file.parent / name, os.O_CREAT | os.O_TRUNC | os.O_WRONLY), number)
-            os.environ[supervise.REPORT] = str(there)
-            os.environ[supervise.MEMORY] = str(8 << 30)
-            cli.main([str(file), "-o", str(out), *([] if models else ["--formats", "json"]), *WORDS])
-        except SystemExit as end:
-            code = int(end.code or 0)
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+            os.environ[supervise.REPORT], os.environ[supervise.MEMORY] = str(there), str(8 << 30)
+            supervise.limit_memory()
+            supervise.keep_output()
+            for case in cases:
+                os.write(there, b"stage start\n")
+                os.write(there, f"done {case.run()}\n".encode())
         finally:
-            sys.stderr.flush()
-            os._exit(code)
+            os._exit(70)
     os.close(there)
+    codes: list[int] = []
+    stage, since, left, open_ = "start", time.monotonic(), b"", True
     try:
-        status, stage = _watched(pid, here)
-        return _judged(status, stage, said.read_text(errors="replace"), out, file)
+        while len(codes) < len(cases):
+            limit = READING if stage in ("start", *supervise.READING) else REST
+            if not select.select([here], [], [], max(0.0, since + limit - time.monotonic()))[0]:
+                return codes, Outcome("read past its limit" if stage in supervise.READING else "HANG", stage)
+            data = os.read(here, 1 << 16)
+            if not data:
+                open_ = False
+                break
+            *lines, left = (left + data).split(b"\n")
+            for word, _, text in (line.decode(errors="replace").partition(" ") for line in lines):
+                if word == "done":
+                    codes.append(int(text))
+                elif word == "stage":
+                    stage, since = text, time.monotonic()
     finally:
         os.close(here)
-        for left in (out, *file.parent.glob(".out-*")):
-            shutil.rmtree(left, ignore_errors=True)
-
-
-def _watched(pid: int, pipe: int) -> tuple[int | None, str]:
-    """Wait status, None if it had to be ended, and the stage it was last in."""
-    stage, since, late = "start", time.monotonic(), False
-    while True:
-        limit = READING if stage in ("start", *supervise.READING) else REST
-        if not select.select([pipe], [], [], max(0.0, since + limit - time.monotonic()))[0]:
+        if open_:
             os.kill(pid, signal.SIGKILL)
-            late = True
-            break
-        data = os.read(pipe, 1 << 16)
-        if not data:
-            break
-        for told in re.findall(r"stage (\S+)", data.decode(errors="replace")):
-            stage, since = told, time.monotonic()
-    _, status = os.waitpid(pid, 0)
-    return None if late else status, stage
-
-
-def _judged(status: int | None, stage: str, said: str, out: Path, file: Path) -> Outcome:
-    if status is None:
-        return Outcome("read past its limit" if stage in supervise.READING else "HANG", stage)
+        _, status = os.waitpid(pid, 0)
+    if len(codes) == len(cases):
+        return codes, None
     if os.WIFSIGNALED(status):
-        return Outcome(f"crash at {stage}", signal.Signals(os.WTERMSIG(status)).name)
-    code, last = os.waitstatus_to_exitcode(status), (said.strip().splitlines() or [""])[-1]
+        return codes, Outcome(f"crash at {stage}", signal.Signals(os.WTERMSIG(status)).name)
+    return codes, Outcome("TRACEBACK", f"outside of the command's guard, at {stage}")
+
+
+def _judged(code: int, case: Case) -> Outcome:
+    said = (case.folder / "said").read_text(errors="replace").strip()
+    last = said.splitlines()[-1] if said else ""
     if "Traceback" in said or "internal error" in said or code not in (0, 1, 2, 3, 4):
-        return Outcome("TRACEBACK", f"exit {code}, {stage}: {last}")
-    if (file.parent / "printed").stat().st_size:
+        return Outcome("TRACEBACK", f"exit {code}: {last}")
+    if (case.folder / "printed").stat().st_size:
         return Outcome("PRINTED", last)
     if code in (0, 1, 4):
         try:
-            plan = json.loads((out / "plan.json").read_text())
+            plan = json.loads((case.folder / "out" / "plan.json").read_text())
         except (OSError, ValueError) as error:
             return Outcome("NO PLAN", f"exit {code}: {error}")
-        return Outcome(f"planned {code}", last, plan)
-    if list(file.parent.glob(".out-*")) or out.exists():
+        if said:
+            return Outcome("TALKS", said)
+        fault = wrong(plan, code, case.file.read_bytes(), case.whole or plan)
+        return Outcome("WRONG PLAN", fault, plan) if fault else Outcome(f"planned {code}", "", plan)
+    if {p.name for p in case.folder.iterdir()} != {case.file.name, "said", "printed"}:
         return Outcome("LEFT BEHIND", last)
-    if not last.startswith("plan-cutters: ") or str(file) not in last or len(last) > 600:
-        return Outcome("UNCLEAR", last)
-    return Outcome(f"refused {code}", last)
+    if said != last or not said.startswith("plan-cutters: ") or str(case.file) not in said or len(said) > 600:
+        return Outcome("UNCLEAR", said)
+    return Outcome(f"refused {code}", said)
 
 
-def wrong(plan: dict[str, Any], code: str, text: bytes, whole: dict[str, Any]) -> str:
+def wrong(plan: dict[str, Any], code: int, text: bytes, whole: dict[str, Any]) -> str:
     """What is wrong with the plan of a damaged file, given that of the whole one; empty if nothing is."""
     try:
         VALIDATOR.validate(plan)
@@ -196,7 +248,7 @@ def wrong(plan: dict[str, Any], code: str, text: bytes, whole: dict[str, Any]) -
                 return f"{cutter['id']}: {found} verdicts on {count} samples"
         if cutter["id"] == plan["selected"] and cutter["inaccessible"] + cutter["undecided"]:
             return "the cutter selected does not reach every sample"
-    if code == "planned 0" and (samples["unjudged"] or any(f["target"] and f["unjudged"] for f in plan["faces"])):
+    if code == 0 and (samples["unjudged"] or any(f["target"] and f["unjudged"] for f in plan["faces"])):
         return "exit 0 although something was not judged"
     warned = bool(part["warnings"])
     written = len(_STEP_FACES.findall(text)) if text.lstrip().startswith(b"ISO-10303") else 0
@@ -224,18 +276,20 @@ def _numbers(value: Any) -> Iterator[float]:
 
 def sources(folders: list[Path], scratch: Path) -> list[tuple[Path, dict[str, Any]]]:
     """Small files that can be planned, each with its plan."""
-    found = sorted(f for d in (*folders, scratch) for f in d.glob("*") if f.suffix.lower() in SUFFIXES)
-    result = []
-    for file in (f for f in found if 0 < f.stat().st_size < LARGEST):
-        copy = scratch / f"whole{file.suffix}"
-        copy.write_bytes(file.read_bytes())
-        outcome = attempt(copy, models=False)
-        copy.unlink()
-        if outcome.plan:
-            result.append((file, outcome.plan))
-        else:
+    found = sorted(f for d in folders for f in d.glob("*") if f.suffix.lower() in SUFFIXES)
+    found = [f for f in found if 0 < f.stat().st_size < LARGEST]
+    cases = [_case(scratch / str(i), file.name, file.read_bytes()) for i, file in enumerate(found)]
+    outcomes = list(attempt(cases))
+    for file, outcome in zip(found, outcomes, strict=True):
+        if not outcome.plan:
             print(f"not used: {file.name}: {outcome.kind} {outcome.detail}", flush=True)
-    return result
+    return [(file, outcome.plan) for file, outcome in zip(found, outcomes, strict=True) if outcome.plan]
+
+
+def _case(folder: Path, name: str, text: bytes, whole: dict[str, Any] | None = None, models: bool = False) -> Case:
+    folder.mkdir(parents=True)
+    (folder / name).write_bytes(text)
+    return Case(folder / name, whole or {}, models)
 
 
 def main() -> int:
@@ -243,42 +297,47 @@ def main() -> int:
     words.add_argument("folders", type=Path, nargs="*", help="more files to damage than those made here")
     words.add_argument("--count", type=int, default=200)
     words.add_argument("--seed", type=int, default=0)
+    words.add_argument("--first", type=int, default=0, help="number of the first file: takes a run up again")
     words.add_argument("--keep", type=Path, help="folder for the files that show a fault or a crash")
     given = words.parse_args()
     # Compile and load everything once, here; the children inherit it.
     silence()
     pipeline.tessellate = partial(pipeline.tessellate, budget=TRIANGLES)
+    pipeline._versions = cache(pipeline._versions)
     outcomes: Counter[str] = Counter()
-    faults = 0
     with tempfile.TemporaryDirectory() as folder:
         (seeds := Path(folder) / "seeds").mkdir()
         write_seeds(seeds)
-        with contextlib.redirect_stderr(io.StringIO()):
-            made = [str(file) for file in seeds.glob("*")]
-            cli.command.main([*made, "-o", f"{folder}/out", *WORDS], prog_name="plan-cutters", standalone_mode=False)
-        files = sources([*given.folders, seeds], Path(folder))
+        made = [str(file) for file in seeds.glob("*")]
+        cli.command.main([*made, "-o", f"{folder}/out", *WORDS], prog_name="plan-cutters", standalone_mode=False)
+        files = sources([*given.folders, seeds], Path(folder) / "whole")
+        gc.collect()
+        gc.freeze()  # not to be touched, and so copied, by the children
         began = time.monotonic()
-        for i in range(given.count):
-            # Each has its own stream, so that one can be made again alone.
-            rng = np.random.default_rng([given.seed, i])
-            source, whole = files[int(rng.integers(len(files)))]
-            file = Path(folder) / f"mutated{source.suffix}"
-            text = mutated(source.read_bytes(), rng)
-            file.write_bytes(text)
-            outcome = attempt(file, models=i % MODELS == 0)
-            if outcome.plan and (fault := wrong(outcome.plan, outcome.kind, text, whole)):
-                outcome = Outcome("WRONG PLAN", fault)
-            kind = outcome.kind + (" with models" if i % MODELS == 0 and outcome.plan else "")
-            outcomes[kind] += 1
-            faults += kind.isupper()
-            if kind.isupper() or "crash" in kind or "limit" in kind:
-                print(f"{i} {source.name}: {kind}: {outcome.detail}", flush=True)
-                if given.keep:
-                    given.keep.mkdir(exist_ok=True)
-                    (given.keep / f"{given.seed}-{i}-{source.name}").write_bytes(text)
-            if i % 1000 == 999 or i + 1 == given.count:
+        for start in range(given.first, given.first + given.count, BATCH):
+            numbers = range(start, min(start + BATCH, given.first + given.count))
+            cases = []
+            for i in numbers:
+                # Each has its own stream, so that one can be made again alone.
+                rng = np.random.default_rng([given.seed, i])
+                source, whole = files[int(rng.integers(len(files)))]
+                text = mutated(source.read_bytes(), rng)
+                cases.append(_case(Path(folder) / str(i), source.name, text, whole, models=i % MODELS == 0))
+            for i, case, outcome in zip(numbers, cases, attempt(cases), strict=True):
+                kind = outcome.kind + (" with models" if case.models and outcome.plan else "")
+                outcomes[kind] += 1
+                if outcome.kind.isupper() or outcome.kind.startswith(("crash", "read past")):
+                    print(f"{i} {case.file.name}: {kind}: {outcome.detail}", flush=True)
+                    if given.keep:
+                        given.keep.mkdir(exist_ok=True)
+                        (given.keep / f"{given.seed}-{i}-{case.file.name}").write_bytes(case.file.read_bytes())
+                shutil.rmtree(case.folder)
+            done = numbers.stop - given.first
+            if done % 1000 < BATCH or done == given.count:
                 told = {k: outcomes[k] for k in sorted(outcomes)}
-                print(f"{i + 1} files, {time.monotonic() - began:.0f} s: {told}; {faults} faults", flush=True)
+                print(f"{done} files, {time.monotonic() - began:.0f} s: {told}", flush=True)
+    faults = sum(count for kind, count in outcomes.items() if kind.split(" with")[0].isupper())
+    print(f"{given.count} files, seed {given.seed}: {faults} faults")
     return 1 if faults else 0
 
 

@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 import time
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -39,7 +40,13 @@ def limit_memory() -> None:
 
 
 def keep_output() -> None:
-    """Leave standard output to us: what the kernel prints past Python, as its BREP reader does, goes nowhere."""
+    """Leave the output to us: what the kernel prints past Python, as its BREP reader does, goes nowhere.
+
+    So do Python's warnings, of overflows for one, unless asked for with -W: numbers that are not finite are dealt with
+    where they arise.
+    """
+    if not sys.warnoptions:
+        warnings.simplefilter("ignore")
     ours, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)
     os.close(nowhere)

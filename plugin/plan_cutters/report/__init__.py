@@ -9,6 +9,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from cad_io.errors import WriteError
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.model import FileEntry, Plan
 
@@ -115,7 +116,11 @@ def write_all(
             file, module, function = _WRITERS[name]
             write: Callable[..., None] = getattr(import_module(f"plan_cutters.report.{module}"), function)
             more = {"schema": step_schema} if name == "step" else {}
-            write(result, split, folder / file, **more)
+            try:
+                write(result, split, folder / file, **more)
+            except WriteError as error:
+                raise WriteError(f"{file} cannot be written ({error.cause}); leave {name} out of --formats",
+                                 file=result.part.file) from error  # fmt: skip
             files[name] = FileEntry(name=file, sha256=hashlib.sha256((folder / file).read_bytes()).hexdigest())
         document = document.model_copy(update={"files": files})
         if "json" in formats:
