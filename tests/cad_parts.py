@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 from OCP.BRep import BRep_Builder
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_NurbsConvert
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_NurbsConvert, BRepBuilderAPI_Transform
 from OCP.BRepPrimAPI import (
     BRepPrimAPI_MakeBox,
     BRepPrimAPI_MakeCone,
@@ -17,6 +17,8 @@ from OCP.GeomAPI import GeomAPI_PointsToBSplineSurface
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.TColgp import TColgp_Array2OfPnt
 from OCP.TopoDS import TopoDS_Compound
+
+from cad_io.kernel import faces
 
 CAD = Path(__file__).resolve().parents[2] / "shared" / "data" / "cad"
 
@@ -74,6 +76,16 @@ def compound(*shapes):
     for shape in shapes:
         builder.Add(result, shape)
     return result
+
+
+def loose(shape, gap=0.0):
+    """Its faces with edges of their own, every second one moved so far off along z."""
+    return compound(
+        *(
+            BRepBuilderAPI_Transform(face, moved(0, by=(0, 0, gap * (i % 2))), True).Shape()
+            for i, face in enumerate(faces(shape))
+        )
+    )
 
 
 def moved(angle=0.7, axis=(1, 2, 3), by=(5, -7, 11)):

@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from cad_parts import box, compound, drilled, moved, patch, real
+from cad_parts import box, compound, drilled, loose, patch, real
 from OCP.BRep import BRep_Builder, BRep_Tool
-from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
 from OCP.BRepFilletAPI import BRepFilletAPI_MakeFillet
 from OCP.Geom import Geom_SphericalSurface
 from OCP.gp import gp_Ax3
@@ -19,16 +18,6 @@ from cad_io.sample import sample
 from cad_io.sew import MOST, RUNGS, sew
 
 DIAGONAL = 10 * np.sqrt(3)
-
-
-def loose(shape, gap=0.0):
-    """Its faces with edges of their own, every second one moved so far off."""
-    return compound(
-        *(
-            BRepBuilderAPI_Transform(face, moved(0, by=(0, 0, gap * (i % 2))), True).Shape()
-            for i, face in enumerate(faces(shape))
-        )
-    )
 
 
 def rounded():

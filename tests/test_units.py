@@ -1,17 +1,22 @@
 """A length unit given instead of the file's: the numbers stay, their unit changes; placements and names with them."""
 
+import json
 import re
 
 import pytest
-from cad_parts import box, compound, drilled, moved, real
+from cad_parts import box, compound, drilled, loose, moved, real
 from OCP.BinTools import BinTools
 from OCP.BRepTools import BRepTools
 from OCP.IGESControl import IGESControl_Writer
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
 from OCP.TopLoc import TopLoc_Location
+from test_cli import run
 
 from cad_io import ReadError, read_part
+from cad_io.kernel import faces
 from cad_io.units import UNITS
+from plan_cutters import Cutter, plan
+from plan_cutters.errors import OptionError
 
 
 def pair():
@@ -88,3 +93,34 @@ def test_a_real_file_with_a_wrong_unit(path):
 @pytest.mark.parametrize("path", real("trimesh_featuretype.STEP", "axom_boxed_sphere.step"), ids=lambda p: p.name)
 def test_real_units_are_told(path):
     assert read_part(path, unit={".STEP": "in", ".step": "cm"}[path.suffix]).size == pytest.approx(read_part(path).size)
+
+
+def test_the_command_takes_a_unit_and_says_the_side_in_its_summary(tmp_path):
+    lidless = compound(*faces(loose(box(0.3, 0.3, 0.3)))[1:])
+    BRepTools.Write_s(lidless, str(tmp_path / "part.brep"))
+    words = ("part.brep", "--faces", "all", "--cutter", "R1L20", "--grid", "4", "--formats", "json", "--unit", "in")
+    done = run(*words, cwd=tmp_path)
+    said = done.stderr.splitlines()
+    side = next(line for line in said if line.startswith("Side of the material:"))
+    assert "towards the given direction" in side
+    assert "(a guess)" in side
+    assert "Faces were joined at" in side
+    assert "Open edges: 4, 30.48 mm long" in side
+    assert any("--flip" in line for line in said)
+    plan = json.loads((tmp_path / "part-plan" / "plan.json").read_text())
+    assert plan["effective"]["unit"] == "in"
+    assert plan["part"]["size_mm"] == pytest.approx([7.62] * 3)
+    assert not plan["part"]["orientation"]["confident"]
+    assert plan["part"]["sewing"]["open_edges"] == 4
+    assert plan["part"]["sewing"]["open_length_mm"] == pytest.approx(30.48)
+    assert run("part.brep", "--unit", "parsec", cwd=tmp_path).returncode == 2
+
+
+def test_a_part_that_was_read_has_its_unit():
+    with pytest.raises(OptionError, match="read_part"):
+        plan(read_part(box()), unit="in")
+    with pytest.raises(OptionError, match="parsec"):
+        plan(box(), unit="parsec")
+    result = plan(box(0.3, 0.3, 0.3), unit="in", faces="all", grid=4, cutters=[Cutter.flat(radius=1, length=20)])
+    assert result.plan.part.sewing is None
+    assert result.plan.part.size_mm == pytest.approx((7.62,) * 3)

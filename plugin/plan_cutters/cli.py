@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
+from cad_io.units import UNITS
 from plan_cutters import __version__
 from plan_cutters.supervise import Supervised, default_memory, is_child, keep_output, limit_memory, report, supervise
 
@@ -128,6 +129,11 @@ class _Vector(click.ParamType):
 @click.option("--cluster", metavar="ADDRESS", hidden=True)
 @click.option("--flip", is_flag=True, help="Machine the other side of open shells and loose faces.")
 @click.option(
+    "--unit",
+    type=click.Choice(list(UNITS)),
+    help="What lengths in the part's file are in, where it says so wrongly.  [default: what it says]",
+)
+@click.option(
     "--read-timeout",
     type=float,
     default=120.0,
@@ -186,6 +192,7 @@ def _options(given: dict[str, Any]) -> "Options":
         postures=PostureRange(given["tilt"], given["rotation"], math.radians(given["rotation_step"])),
         tolerance=given["tolerance"],
         flip=given["flip"],
+        unit=given["unit"],
         **more,
     )
 
@@ -247,6 +254,7 @@ def _summary(plan: "Plan", out: Path, formats: Sequence[str]) -> None:
                       str(c.accessible), str(c.undecided), str(c.inaccessible))  # fmt: skip
     console.print(table)
     console.print(f"Selected: {plan.selected or 'none'} ({plan.selection.why}).")
+    console.print(_side(plan))
     for warning in plan.part.warnings:
         console.print(f"Warning: {warning}")
     for note in plan.notes:
@@ -259,6 +267,17 @@ def _summary(plan: "Plan", out: Path, formats: Sequence[str]) -> None:
             console.print(f"Not judged: {face.id} ({face.unjudged}).")
     for line in _not_reached(plan):
         console.print(line)
+
+
+def _side(plan: "Plan") -> str:
+    """How the side of the material was found, how sure that is, and what is open."""
+    found, sewing = plan.part.orientation, plan.part.sewing
+    line = f"Side of the material: {found.method} ({'sure' if found.confident else 'a guess'})."
+    if sewing and sewing.tolerance_mm is not None:
+        line += f" Faces were joined at {sewing.tolerance_mm:.3g} mm."
+    if sewing and sewing.open_edges:
+        line += f" Open edges: {sewing.open_edges}, {sewing.open_length_mm:.4g} mm long."
+    return line
 
 
 def _not_reached(plan: "Plan") -> list[str]:

@@ -28,6 +28,15 @@ class OrientationInfo(_Frozen):
     confident: bool
 
 
+class SewingInfo(_Frozen):
+    """Faces that stand in no solid, joined where their edges coincide to find out which side is material."""
+
+    tolerance_mm: float | None = Field(description="the smallest tried that left the least open; null: nothing to join")
+    tried_mm: float | None = Field(description="the largest tried")
+    open_edges: int = Field(description="edges that still belong to one face alone")
+    open_length_mm: float
+
+
 class PartInfo(_Frozen):
     file: str | None
     sha256: str | None
@@ -35,6 +44,7 @@ class PartInfo(_Frozen):
     solids: int
     faces: int
     orientation: OrientationInfo
+    sewing: SewingInfo | None = Field(default=None, description="null where every face belongs to a solid")
     warnings: list[str]
 
 
@@ -43,6 +53,7 @@ class Effective(_Frozen):
 
     cutters: list[str]
     cutter_source: str
+    unit: str | None = Field(default=None, description="length unit taken instead of the file's")
     machine: str
     setup: Vector
     faces: str

@@ -4,6 +4,7 @@ import math
 import os
 from dataclasses import dataclass, field
 
+from cad_io.units import UNITS
 from plan_cutters.cutter import Cutter, builtin
 from plan_cutters.errors import OptionError
 from plan_cutters.machine import Machine
@@ -34,6 +35,8 @@ class Options:
         Threads.
     flip : bool
         Machine the other side of open shells and loose faces.
+    unit : str, optional
+        Length unit to take instead of the part's own, one of `cad_io.units.UNITS`.
 
     Raises
     ------
@@ -51,6 +54,7 @@ class Options:
     tolerance: float = 0.01
     jobs: int = field(default_factory=lambda: len(os.sched_getaffinity(0)))
     flip: bool = False
+    unit: str | None = None
 
     def __post_init__(self) -> None:
         if self.grid is not None and self.spacing is not None:
@@ -61,6 +65,8 @@ class Options:
             raise OptionError(f"spacing {self.spacing:g} must be a positive number of mm")
         if not 1e-4 <= self.tolerance <= 10:
             raise OptionError(f"tolerance {self.tolerance:g} must lie between 0.0001 and 10 mm")
+        if self.unit is not None and self.unit not in UNITS:
+            raise OptionError(f"unit {self.unit!r} is not one of {', '.join(UNITS)}")
         if self.jobs < 1:
             raise OptionError(f"jobs {self.jobs} must be at least 1")
         unit(self.setup, "setup axis")

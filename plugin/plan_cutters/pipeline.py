@@ -35,6 +35,7 @@ from plan_cutters.model import (
     Run,
     SampleCounts,
     Selection,
+    SewingInfo,
     Verdicts,
     WitnessEntry,
 )  # fmt: skip
@@ -138,6 +139,7 @@ def plan(
     tolerance: float = 0.01,
     jobs: int | None = None,
     flip: bool = False,
+    unit: str | None = None,
     progress: Progress | None = None,
 ) -> Result:
     """Judge each cutter on the target faces of a part.
@@ -165,6 +167,8 @@ def plan(
         Threads; default all cores.
     flip : bool
         Machine the other side of open shells and loose faces.
+    unit : str, optional
+        Length unit to take instead of the file's: `um`, `mm`, `cm`, `m`, `km`, `mil`, `in` or `ft`.
     progress : callable, optional
         Told (stage, done, total).
 
@@ -182,7 +186,7 @@ def plan(
     more = {} if jobs is None else {"jobs": jobs}
     options = Options(
         cutters=tuple(cutters), machine=machine or Machine(), setup=setup, faces=faces, grid=grid, spacing=spacing,
-        postures=PostureRange(tilt, rotation, rotation_step), tolerance=tolerance, flip=flip, **more,
+        postures=PostureRange(tilt, rotation, rotation_step), tolerance=tolerance, flip=flip, unit=unit, **more,
     )  # fmt: skip
     return run(part, options, progress=progress)
 
@@ -212,7 +216,9 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
     clock = _Clock(progress)
     started = datetime.datetime.now(datetime.UTC)
     with clock.stage("read"):
-        whole = part if isinstance(part, Part) else read_part(part)
+        if isinstance(part, Part) and options.unit is not None:
+            raise OptionError("the part has been read already: give the unit to read_part", file=part.file)
+        whole = part if isinstance(part, Part) else read_part(part, unit=options.unit)
     targets = select_faces(whole.faces, options.faces)
     setup = unit(options.setup, "setup axis")
     cutters = ranked(options.judged)
@@ -257,6 +263,7 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
         effective=Effective(
             cutters=[c.id for c in cutters],
             cutter_source="given" if options.cutters else "built-in",
+            unit=options.unit,
             machine=options.machine.name,
             setup=_vector(setup),
             faces=options.faces,
@@ -408,7 +415,17 @@ def _part_info(part: Part, orientation: Orientation) -> PartInfo:
         solids=part.solids,
         faces=len(part.faces),
         orientation=OrientationInfo(method=orientation.method, confident=orientation.confident),
+        sewing=_sewing(part),
         warnings=list(part.warnings),
+    )
+
+
+def _sewing(part: Part) -> SewingInfo | None:
+    sewn = part.sewn
+    if not sewn.faces:
+        return None
+    return SewingInfo(
+        tolerance_mm=sewn.tolerance, tried_mm=sewn.tried, open_edges=sewn.open_edges, open_length_mm=sewn.open_length
     )
 
 
@@ -451,7 +468,7 @@ def _notes(
     if options.machine.tilt_limit is None:
         notes.append("No machine was given: any tool axis counts as possible.")
     if not orientation.confident:
-        notes.append(f"Which side is material is a guess ({orientation.method}); --flip machines the other side.")
+        notes.append("Which side is material is a guess; --flip machines the other side.")
     if tolerance > 1.001 * options.tolerance:
         notes.append(
             f"The tolerance was raised from {options.tolerance:g} to {tolerance:.3g} mm: "
