@@ -6,7 +6,12 @@ layers for STEP, all roots for IGES) and `read_part`, turn and turn about, best 
 seconds are processor time, so that other work on the machine does not count.
 """
 
+# ruff: noqa: E402
 import os
+
+# Other cores would only hide what one costs; numpy counts the cores when it is loaded.
+os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+
 import sys
 import time
 from collections.abc import Callable
@@ -82,8 +87,6 @@ def row(file: Path) -> list[str]:
 
 
 def main(*given: str) -> None:
-    # Other cores would only hide what one costs.
-    os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     files = [f for path in map(Path, given) for f in (sorted(path.rglob("*")) if path.is_dir() else [path])]
     for cells in (HEAD, ["---"] * len(HEAD)):
         print("| " + " | ".join(cells) + " |")
