@@ -375,7 +375,6 @@ def main(args: Sequence[str] | None = None) -> NoReturn:
     if is_child():
         limit_memory()
         keep_output()
-        keep_output()
         code, line = _guarded(lambda: (_parsed(words), ""), "--debug" in words)
     else:
         code, line = _guarded(lambda: (_watched(words), ""), "--debug" in words)
