@@ -34,14 +34,14 @@ from plan_cutters import cli, pipeline, supervise
 from plan_cutters.report.to_json import schema
 
 SUFFIXES = {".step", ".stp", ".iges", ".igs"}
-LARGEST = 60_000  # bytes; larger files only cost time
-READING, REST = 10.0, 30.0  # seconds
+LARGEST = 30_000  # bytes; larger files only cost time
+READING, REST = 5.0, 15.0  # seconds
 #: A plan as coarse as can be: what is tried is not the search.
 WORDS = ["--cutter", "R3L40", "--faces", "all", "--grid", "3", "--tolerance", "0.5", "--rotation-step", "60",
          "--jobs", "1", "--quiet"]  # fmt: skip
 BATCH = 25  # files to a fork
 TRIANGLES = 20_000
-MODELS = 10  # every so many damaged files are written as models, too
+MODELS = 40  # every so many damaged files are written as models, too
 #: A damaged part this many times larger or smaller than the whole one must come with a warning.
 PLAUSIBLE = 100.0
 NUMBERS = [b"0.", b"1.", b"-1.", b"1E300", b"1E-300", b"NaN", b"INF", b"99999999", b"1.E12", b"#1", b"$", b"*", b"''"]
@@ -175,9 +175,9 @@ def _forked(cases: Sequence[Case]) -> tuple[list[int], Outcome | None]:
     stage, since, left, open_ = "start", time.monotonic(), b"", True
     try:
         while len(codes) < len(cases):
-            limit = READING if stage in ("start", *supervise.READING) else REST
+            limit = READING if stage in ("start", "read") else REST
             if not select.select([here], [], [], max(0.0, since + limit - time.monotonic()))[0]:
-                return codes, Outcome("read past its limit" if stage in supervise.READING else "HANG", stage)
+                return codes, Outcome(f"{stage} past its limit" if stage in supervise.LIMITED else "HANG", stage)
             data = os.read(here, 1 << 16)
             if not data:
                 open_ = False
@@ -326,7 +326,7 @@ def main() -> int:
             for i, case, outcome in zip(numbers, cases, attempt(cases), strict=True):
                 kind = outcome.kind + (" with models" if case.models and outcome.plan else "")
                 outcomes[kind] += 1
-                if outcome.kind.isupper() or outcome.kind.startswith(("crash", "read past")):
+                if outcome.kind.isupper() or outcome.kind.startswith(("crash", *supervise.LIMITED)):
                     print(f"{i} {case.file.name}: {kind}: {outcome.detail}", flush=True)
                     if given.keep:
                         given.keep.mkdir(exist_ok=True)

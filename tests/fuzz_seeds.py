@@ -39,7 +39,7 @@ def write_seeds(folder: Path) -> None:
         "offset": BRepBuilderAPI_MakeFace(offset, 1e-6).Face(),
         "cone": cone(8, 4),
         "open": compound(*list(explore(pocketed(), TopAbs_FACE))[3:]),
-        "two": compound(drilled(), drilled().Moved(TopLoc_Location(moved()))),
+        "two": compound(cone(8, 4), cone(8, 4).Moved(TopLoc_Location(moved()))),
     }
     for name, shape in shapes.items():
         for unit in ("MM", "INCH") if name in ("bump", "pocket") else ("MM",):

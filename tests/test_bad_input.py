@@ -12,6 +12,7 @@ from test_cli import SAMPLES, assert_one_line, leftovers, run
 
 from cad_io import ReadError, read_part
 from cad_io.sniff import load
+from plan_cutters.supervise import _Watch
 
 HEADER = (
     b"ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
@@ -108,3 +109,18 @@ def test_crashes_and_chatter_of_the_kernel_are_one_line(tmp_path, name, content,
     (tmp_path / name).write_bytes(content)
     assert_one_line(run(name, "--cutter", "R3L40", cwd=tmp_path, timeout=60), 3, name, cause)
     assert leftovers(tmp_path, name) == []
+
+
+def test_every_stage_of_the_kernel_has_a_limit():
+    here, there = os.pipe()
+    watch = _Watch(here, read_timeout=0.01)
+    late = {}
+    for stage in ("start", "read", "tessellate", "R3L40", "write"):
+        os.write(there, f"stage {stage}\n".encode())
+        watch.listen(0.0)
+        assert not watch.late()
+        time.sleep(0.1)
+        late[stage] = watch.late()
+    os.close(here)
+    os.close(there)
+    assert late == {"start": False, "read": True, "tessellate": True, "R3L40": False, "write": True}

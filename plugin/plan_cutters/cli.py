@@ -138,7 +138,7 @@ class _Vector(click.ParamType):
     type=float,
     default=120.0,
     metavar="S",
-    help="Seconds that reading a part may take.  [default: 120]",
+    help="Seconds that reading a part may take; later stages of the CAD kernel five times as long.  [default: 120]",
 )
 @click.option("--memory", type=float, metavar="GB", help="Most memory to use.  [default: 3/4 of the machine's]")
 @click.option("--quiet", is_flag=True, help="No progress and no summary.")

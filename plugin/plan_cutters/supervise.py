@@ -4,6 +4,7 @@ The CAD kernel can crash or hang on a bad file, and neither can be caught from i
 to read or too much memory becomes one line and an exit code; what it had begun to write is taken away.
 """
 
+import math
 import os
 import select
 import shutil
@@ -17,8 +18,8 @@ from pathlib import Path
 
 #: Environment variable by which the child knows its number of the pipe to report on, and its memory limit in bytes.
 REPORT, MEMORY = "PLAN_CUTTERS_REPORT", "PLAN_CUTTERS_MEMORY"
-#: Stages in which the kernel works on what the file says; only these have a time limit.
-READING = ("read",)
+#: Stages in which the kernel works on what the file says, and how many times the limit of reading each may take.
+LIMITED = {"read": 1.0, "sample": 5.0, "tessellate": 5.0, "write": 5.0}
 
 
 class Supervised(Exception):
@@ -72,7 +73,7 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int) -> int:
     words : sequence of str
         Its arguments.
     read_timeout : float
-        Seconds that reading one part may take.
+        Seconds that reading one part may take; the limits of later stages follow from it.
     memory : int
         Bytes of address space that the child may use.
 
@@ -111,8 +112,9 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int) -> int:
                 child.kill()
                 child.wait()
                 watch.clear()
+                what = "not read" if watch.stage == "read" else f"the CAD kernel did not end its '{watch.stage}'"
                 raise Supervised(
-                    f"{watch.part}: not read within {read_timeout:g} s; the file may be damaged, or give --read-timeout"
+                    f"{watch.part}: {what} within {watch.limit:g} s; the file may be damaged, or give --read-timeout"
                 )
         watch.listen(0.0)
     finally:
@@ -157,8 +159,12 @@ class _Watch:
                 elif word == "staging":
                     self.staging.add(text)
 
+    @property
+    def limit(self) -> float:
+        return self.read_timeout * LIMITED.get(self.stage, math.inf)
+
     def late(self) -> bool:
-        return self.stage in READING and time.monotonic() - self.since > self.read_timeout
+        return time.monotonic() - self.since > self.limit
 
     def clear(self) -> None:
         for folder in self.staging:
