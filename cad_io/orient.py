@@ -100,9 +100,12 @@ def _orient_rest(
             sign[index] = relative * np.sign(volume)
             said.append("closed shells outward")
             continue
-        sure = False
         area, vector = _vector(part, index, relative)
-        lean = float(vector @ direction) / area if area > 0 else 0.0
+        if not area:  # no surface, no side
+            sign[index] = relative
+            continue
+        sure = False
+        lean = float(vector @ direction) / area
         # A shell that is nearly closed faces no direction; what it nearly encloses tells more than chance.
         nearly = float(np.linalg.norm(vector)) < _NEARLY_CLOSED * area and (volume := _volume(part, index, relative))
         side = np.sign(volume) if nearly else (-1.0 if lean < 0 else 1.0)

@@ -214,6 +214,8 @@ class Part:
     def _judgeable(self, number: int, surface: str) -> tuple[str | None, float]:
         """Why the face cannot be judged (None if it can), and its area."""
         if surface == "other":
+            if BRep_Tool.Triangulation_s(self.face(number), TopLoc_Location()) is not None:
+                return "holds only triangles, no surface: export exact geometry (B-rep)", 0.0
             return "has no surface that can be evaluated", 0.0
         if not edges_of(self.face(number)):
             return "has no edges", 0.0

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
-from OCP.BRep import BRep_Builder
+from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
 from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
@@ -88,7 +88,9 @@ def write_step(
             _head(writer.ChangeWriter().Model(), product)
             if writer.Write(str(temporary)) != IFSelect_RetDone:
                 raise WriteError("the CAD kernel cannot write the file (is the disk full?)", file=file)
-        _recount(temporary, len(split.pieces) + sum(map(len, split.beside.values())), file)
+        # What holds only triangles is written as such, not as an advanced face.
+        pieces = [*split.pieces, *(piece for beside in split.beside.values() for piece in beside)]
+        _recount(temporary, sum(BRep_Tool.Surface_s(piece.shape) is not None for piece in pieces), file)
 
 
 @contextmanager

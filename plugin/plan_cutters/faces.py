@@ -21,7 +21,10 @@ def select_faces(faces: tuple[FaceInfo, ...], text: str) -> tuple[int, ...]:
         The text is not of that form, or selects nothing.
     """
     if text == "sculptured":
-        chosen = [f.number for f in faces if f.shape == "sculptured"] or [f.number for f in faces]
+        chosen = [f.number for f in faces if f.shape == "sculptured"]
+        # What has no surface may have been sculptured: it is asked for, but alone it would hide all others.
+        if all(faces[number - 1].unjudged for number in chosen):
+            chosen = [f.number for f in faces]
     elif text == "all":
         chosen = [f.number for f in faces]
     elif text.startswith("name:"):

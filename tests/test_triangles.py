@@ -1,0 +1,79 @@
+"""Parts that hold triangles instead of surfaces, as tessellated AP242 does: said, and the rest planned."""
+
+import json
+
+import pytest
+from cad_parts import ball, box, compound
+from OCP.BRep import BRep_Builder, BRep_Tool
+from OCP.BRepMesh import BRepMesh_IncrementalMesh
+from OCP.BRepTools import BRepTools
+from OCP.Interface import Interface_Static
+from OCP.STEPCAFControl import STEPCAFControl_Controller
+from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Face, TopoDS_Shell
+from test_cli import assert_one_line, run
+
+from cad_io import read_part
+from cad_io.kernel import faces
+from cad_io.orient import orient
+
+REASON = "holds only triangles, no surface"
+
+
+def triangulated(shape):
+    """A shell of the shape's faces with their triangles alone."""
+    BRepMesh_IncrementalMesh(shape, 0.1, False, 0.3, False)
+    builder, shell = BRep_Builder(), TopoDS_Shell()
+    builder.MakeShell(shell)
+    for face in faces(shape):
+        only = TopoDS_Face()
+        builder.MakeFace(only, BRep_Tool.Triangulation_s(face, TopLoc_Location()))
+        builder.Add(shell, only)
+    return shell
+
+
+def write_step(shape, path):
+    STEPCAFControl_Controller.Init_s()
+    before = Interface_Static.CVal_s("write.step.schema")
+    try:
+        Interface_Static.SetCVal_s("write.step.schema", "AP242DIS")
+        writer = STEPControl_Writer()
+        writer.Transfer(shape, STEPControl_AsIs)
+        writer.Write(str(path))
+    finally:
+        Interface_Static.SetCVal_s("write.step.schema", before)
+    assert "TRIANGULATED_FACE" in path.read_text()
+    return path
+
+
+def write_brep(shape, path):
+    BRepTools.Write_s(shape, str(path))
+    return path
+
+
+@pytest.mark.parametrize("write", [write_step, write_brep])
+def test_faces_of_triangles_say_so(tmp_path, write):
+    part = read_part(write(compound(box(at=(30, 0, 0)), triangulated(ball())), tmp_path / "part"))
+    assert [face.unjudged for face in part.faces[:6]] == [None] * 6
+    assert [REASON in face.unjudged for face in part.faces[6:]] == [True]
+    # They have no side, so they take nothing from what is sure.
+    assert orient(part).confident
+
+
+def test_a_part_of_triangles_is_refused_with_its_cause(tmp_path):
+    write_step(triangulated(box()), tmp_path / "mesh.step")
+    assert_one_line(run("mesh.step", "--cutter", "R3L40", cwd=tmp_path), 3, "mesh.step", REASON)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["mesh.step"]
+
+
+def test_the_rest_of_a_part_is_planned(tmp_path):
+    write_step(compound(box(at=(30, 0, 0)), triangulated(ball())), tmp_path / "some.step")
+    done = run("some.step", "--cutter", "R3L40", "--grid", "4", cwd=tmp_path)
+    assert done.returncode == 4, done.stderr
+    assert f"Not judged: F7 ({REASON}" in done.stderr
+    plan = json.loads((tmp_path / "some-plan" / "plan.json").read_text())
+    assert [bool(face["unjudged"]) for face in plan["faces"]] == [False] * 6 + [True]
+    assert plan["cutters"][0]["interference_free"] == plan["samples"]["count"] == 96
+    written = read_part(tmp_path / "some-plan" / "annotated.step").faces
+    assert [face.unjudged is None for face in written] == [True] * 6 + [False]
