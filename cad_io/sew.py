@@ -5,6 +5,7 @@ open. The first that leaves nothing open is the last. The part itself is not cha
 surfaces, and only say who is whose neighbour.
 """
 
+import math
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -131,7 +132,8 @@ def _open(shapes: Sequence[TopoDS_Face]) -> list[float]:
 
 def _length(edge: TopoDS_Edge) -> float:
     try:
-        return float(GCPnts_AbscissaPoint.Length_s(BRepAdaptor_Curve(edge)))
+        length = float(GCPnts_AbscissaPoint.Length_s(BRepAdaptor_Curve(edge)))
+        return length if math.isfinite(length) else 0.0  # a damaged curve; the face lives by that in its parameter plane
     except Exception as thrown:
         if not is_kernel_error(thrown):
             raise
