@@ -133,7 +133,8 @@ def _open(shapes: Sequence[TopoDS_Face]) -> list[float]:
 def _length(edge: TopoDS_Edge) -> float:
     try:
         length = float(GCPnts_AbscissaPoint.Length_s(BRepAdaptor_Curve(edge)))
-        return length if math.isfinite(length) else 0.0  # a damaged curve; the face lives by that in its parameter plane
+        # A damaged curve: the face lives by the one in its parameter plane.
+        return length if math.isfinite(length) else 0.0
     except Exception as thrown:
         if not is_kernel_error(thrown):
             raise
