@@ -38,7 +38,7 @@ def read(file: str, data: bytes, unit: str | None = None) -> Read:
     ReadError
         Cut off, faulty, or without a shape.
     """
-    lines = [line for line in re.split(rb"\r\n|\n|\r", data) if line.strip()]
+    lines = [line for line in data.splitlines() if line.strip()]
     sections = Counter(line[72:73] for line in lines if len(line) > 72)
     last = [line for line in lines if line[72:73] == b"T"]
     if not last:

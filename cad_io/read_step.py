@@ -194,6 +194,7 @@ class _Walk:
         self.paint(numbers, given.colour, given.layers)
         XCAFDoc_ShapeTool.GetSubShapes_s(label, inner)
         parts = [(sub, XCAFDoc_ShapeTool.GetShape_s(sub)) for sub in _each(inner)]
+        parts = [(sub, part) for sub, part in parts if part.ShapeType().value <= TopAbs_FACE.value]
         # Solids before shells before faces, so that the innermost has the last word.
         for sub, part in sorted(parts, key=lambda pair: int(pair[1].ShapeType().value)):
             covered = self.numbers(part, given.place)
