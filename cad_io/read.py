@@ -12,11 +12,16 @@ from cad_io import read_iges, read_step
 from cad_io.errors import ReadError
 from cad_io.kernel import silence, translated
 from cad_io.part import Part, as_one, unwrapped
+from cad_io.read_guarded import Found
+from cad_io.read_guarded import guarded as in_copy
 from cad_io.sniff import load
 from cad_io.units import in_mm
 
+#: Seconds that a guarded reading may take.
+TIMEOUT = 120.0
 
-def read_part(source: Any, unit: str | None = None) -> Part:
+
+def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, timeout: float = TIMEOUT) -> Part:
     """Read a part; faces are numbered from 1 in the order of the kernel's map of the shape read.
 
     Parameters
@@ -27,6 +32,11 @@ def read_part(source: Any, unit: str | None = None) -> Part:
     unit : str, optional
         What the numbers in the source are in: one of `um`, `mm`, `cm`, `m`, `km`, `mil`, `in`, `ft`. Default: the unit
         that the file names; mm for BREP files and shapes.
+    guarded : bool
+        Let a copy of the process read, so that a file that crashes or hangs the CAD kernel is a ReadError. Costs a
+        little time; needs a system that can fork (not Windows).
+    timeout : float
+        Seconds that a guarded reading may take.
 
     Returns
     -------
@@ -41,12 +51,25 @@ def read_part(source: Any, unit: str | None = None) -> Part:
     silence()
     if unit is not None:
         in_mm(unit)
+    if not guarded:
+        return Part(**_find(source, unit))
+
+    def find() -> Found:
+        found = _find(source, unit)
+        Part(**found)  # which asks the kernel more, better here than outside
+        return found
+
+    return Part(**in_copy(find, timeout, os.fspath(source) if isinstance(source, str | os.PathLike) else None))
+
+
+def _find(source: Any, unit: str | None) -> Found:
+    """What the part is made of."""
     if isinstance(source, str | os.PathLike):
         return _read_file(os.fspath(source), unit)
-    return Part(_scaled(unwrapped(_kernel_shape(source)), unit))
+    return {"shape": _scaled(unwrapped(_kernel_shape(source)), unit)}
 
 
-def _read_file(file: str, unit: str | None) -> Part:
+def _read_file(file: str, unit: str | None) -> Found:
     kind, data = load(file)
     checksum = hashlib.sha256(data).hexdigest()
     with translated("reading the file", error=ReadError, file=file):
@@ -56,10 +79,10 @@ def _read_file(file: str, unit: str | None) -> Part:
             read = read_iges.read(file, data, unit)
         else:
             read = read_step.Read(_scaled(_read_brep(file, kind), unit))
-    return Part(
-        read.shape, file=file, sha256=checksum, names=read.names, colours=read.colours, layers=read.layers,
-        tree=read.tree, warnings=tuple(read.warnings),
-    )  # fmt: skip
+    return {
+        "shape": read.shape, "file": file, "sha256": checksum, "names": read.names, "colours": read.colours,
+        "layers": read.layers, "tree": read.tree, "warnings": tuple(read.warnings),
+    }  # fmt: skip
 
 
 def _read_brep(file: str, kind: str) -> TopoDS_Shape:
