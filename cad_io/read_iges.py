@@ -1,7 +1,7 @@
 """Read IGES, with guards: the kernel reads a file that was cut off as a success."""
 
 import re
-from collections import Counter
+from collections import defaultdict
 
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.IGESCAFControl import IGESCAFControl_Reader
@@ -38,17 +38,18 @@ def read(file: str, data: bytes, unit: str | None = None) -> Read:
     ReadError
         Cut off, faulty, or without a shape.
     """
-    lines = [line for line in data.splitlines() if line.strip()]
-    sections = Counter(line[72:73] for line in lines if len(line) > 72)
-    last = [line for line in lines if line[72:73] == b"T"]
+    sections: dict[bytes, list[bytes]] = defaultdict(list)
+    for line in data.splitlines():
+        sections[line[72:73]].append(line)
+    last = sections[b"T"]
     if not last:
         raise ReadError("is cut off (it has no terminate record): fetch or export it again", file=file)
     counts = _COUNTS.match(last[-1])
     if counts:
         for section, written in zip((b"S", b"G", b"D", b"P"), map(int, counts.groups()), strict=True):
-            if sections[section] < written:
+            if len(sections[section]) < written:
                 raise ReadError(
-                    f"has lost lines ({sections[section]} of {written} in section {section.decode()}): fetch it again",
+                    f"has lost lines ({len(sections[section])} of {written} in section {section.decode()}): fetch it again",
                     file=file,
                 )
     reader = IGESCAFControl_Reader()
@@ -70,7 +71,7 @@ def read(file: str, data: bytes, unit: str | None = None) -> Read:
     add_attributes(document, result)
     result.tree = ()  # its roots are surfaces rather than products
     # Two lines an entity: the first starts with its number.
-    directory = [line for line in lines if line[72:73] == b"D"]
+    directory = sections[b"D"]
     if any_names(directory):
         add_names(reader, result)
     kinds = [line[:8].strip() for line in directory[::2]]

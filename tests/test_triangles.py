@@ -5,8 +5,11 @@ import json
 import pytest
 from cad_parts import ball, box, compound
 from OCP.BRep import BRep_Builder, BRep_Tool
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.BRepTools import BRepTools
+from OCP.Geom import Geom_SphericalSurface
+from OCP.gp import gp_Ax3, gp_Pln
 from OCP.Interface import Interface_Static
 from OCP.STEPCAFControl import STEPCAFControl_Controller
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
@@ -77,3 +80,16 @@ def test_the_rest_of_a_part_is_planned(tmp_path):
     assert plan["cutters"][0]["interference_free"] == plan["samples"]["count"] == 96
     written = read_part(tmp_path / "some-plan" / "annotated.step").faces
     assert [face.unjudged is None for face in written] == [True] * 6 + [False]
+
+
+def test_faces_without_area_or_edges_do_not_stop_the_rest(tmp_path):
+    builder, edgeless = BRep_Builder(), TopoDS_Face()
+    builder.MakeFace(edgeless, Geom_SphericalSurface(gp_Ax3(), 3.0), TopLoc_Location(), 1e-6)
+    speck = BRepBuilderAPI_MakeFace(gp_Pln(), 0.0, 1e-6, 0.0, 1e-6).Face()
+    write_brep(compound(box(at=(30, 0, 0)), speck, edgeless), tmp_path / "part.brep")
+    done = run("part.brep", "--faces", "all", "--cutter", "R3L40", "--grid", "4", "--formats", "json", cwd=tmp_path)
+    assert done.returncode == 4, done.stderr
+    assert "Not judged: F7 (has no area)." in done.stderr
+    assert "Not judged: F8 (has no edges)." in done.stderr
+    plan = json.loads((tmp_path / "part-plan" / "plan.json").read_text())
+    assert plan["samples"]["count"] == 96
