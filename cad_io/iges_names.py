@@ -47,6 +47,8 @@ def add_names(reader: Any, result: Read) -> None:
 
 
 def _walk(entity: Any, shape: Any, found: Callable[[Any, Any], None]) -> None:
+    if entity is None:
+        return
     inner = _inside(entity)
     if not inner:
         if (face := unwrapped(shape)).ShapeType() == TopAbs_FACE:
@@ -74,7 +76,8 @@ def _name(entity: Any) -> str:
     """The long name where there is one, else the label of eight letters."""
     for has, get in ((entity.HasName, entity.NameValue), (entity.HasShortLabel, entity.ShortLabel)):
         try:
-            if has() and (text := str(get().ToCString()).strip()):
+            # A damaged file may say that there is a name and have none.
+            if has() and (found := get()) is not None and (text := str(found.ToCString()).strip()):
                 return text
         except UnicodeDecodeError:  # IGES is ASCII: a name that is not has no meaning
             continue
