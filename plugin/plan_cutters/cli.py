@@ -127,6 +127,13 @@ class _Vector(click.ParamType):
 @click.option("--posture-maps", is_flag=True, hidden=True)
 @click.option("--jobs", type=int, metavar="N", help="Threads.  [default: all cores]")
 @click.option("--cluster", metavar="ADDRESS", hidden=True)
+@click.option(
+    "--area-budget",
+    type=int,
+    default=100_000,
+    metavar="N",
+    help="Contacts to look at between the samples of the selected cutter; 0: samples alone.  [default: 100000]",
+)
 @click.option("--flip", is_flag=True, help="Machine the other side of open shells and loose faces.")
 @click.option(
     "--unit",
@@ -192,6 +199,7 @@ def _options(given: dict[str, Any]) -> "Options":
         postures=PostureRange(given["tilt"], given["rotation"], math.radians(given["rotation_step"])),
         tolerance=given["tolerance"],
         flip=given["flip"],
+        area_budget=given["area_budget"],
         unit=given["unit"],
         **more,
     )
@@ -255,6 +263,9 @@ def _summary(plan: "Plan", out: Path, formats: Sequence[str]) -> None:
     console.print(table)
     console.print(f"Selected: {plan.selected or 'none'} ({plan.selection.why}).")
     console.print(_side(plan))
+    for area in (c.area for c in plan.cutters if c.area):
+        console.print(f"Between samples: {_percent(area.share)} of the target area is served with the axes found "
+                      f"({area.contacts} contacts looked at).")  # fmt: skip
     for warning in plan.part.warnings:
         console.print(f"Warning: {warning}")
     for note in plan.notes:
@@ -278,6 +289,11 @@ def _side(plan: "Plan") -> str:
     if sewing and sewing.open_edges:
         line += f" Open edges: {sewing.open_edges}, {sewing.open_length_mm:.4g} mm long."
     return line
+
+
+def _percent(share: float) -> str:
+    """Rounded down, so that 100 % is all of it."""
+    return f"{math.floor(1e4 * share) / 100:g} %"
 
 
 def _not_reached(plan: "Plan") -> list[str]:

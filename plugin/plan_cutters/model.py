@@ -67,6 +67,7 @@ class Effective(_Frozen):
     chord_error_mm: float = Field(description="largest measured distance from obstacle triangles to the surface")
     obstacle_triangles: int
     flip: bool
+    area_budget: int = Field(description="contacts that may be added between the samples")
 
 
 class SampleCounts(_Frozen):
@@ -116,6 +117,15 @@ class WitnessEntry(_Frozen):
     depth_mm: float | None = Field(description="how deep the part reaches into the cutter at the best posture")
 
 
+class AreaEntry(_Frozen):
+    """How far a cutter's postures, each with its axis kept, serve the surface between the samples."""
+
+    share: float = Field(description="of the target area, 0 to 1")
+    feasible: bool = Field(description="all of it, to one part in a million")
+    contacts: int = Field(description="contacts looked at, samples included")
+    left: int = Field(description="contacts whose cells were not shown to be served when the budget ended")
+
+
 class CutterEntry(Verdicts):
     id: str
     name: str
@@ -127,6 +137,7 @@ class CutterEntry(Verdicts):
     by_reason: dict[str, int]
     faces: dict[str, Verdicts]
     witnesses: list[WitnessEntry]
+    area: AreaEntry | None = Field(default=None, description="of the selected cutter; null where it was not asked for")
     seconds: float = Field(default=0.0, exclude=True, description="dummy tests and search; not written")
 
 

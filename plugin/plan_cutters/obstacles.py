@@ -33,9 +33,14 @@ class Obstacles:
         order, box, depth = self._built
         return np.ascontiguousarray(self.triangles.vertex[order]), box, depth
 
+    @cached_property
+    def faces(self) -> Ints:
+        """Face numbers (n,) in tree order."""
+        return np.ascontiguousarray(self.triangles.face[self._built[0]])
+
     def face(self, triangle: int) -> int:
         """Face number of a triangle in tree order."""
-        return int(self.triangles.face[self._built[0][triangle]])
+        return int(self.faces[triangle])
 
     def depths(self, tolerance: float) -> tuple[float, float]:
         """Depths `(safe, blocked)`, mm, that decide for the true surface.

@@ -35,6 +35,8 @@ class Options:
         Threads.
     flip : bool
         Machine the other side of open shells and loose faces.
+    area_budget : int
+        Most contacts to look at between the samples for the selected cutter; 0: none.
     unit : str, optional
         Length unit to take instead of the part's own, one of `cad_io.units.UNITS`.
 
@@ -54,6 +56,7 @@ class Options:
     tolerance: float = 0.01
     jobs: int = field(default_factory=lambda: len(os.sched_getaffinity(0)))
     flip: bool = False
+    area_budget: int = 100_000
     unit: str | None = None
 
     def __post_init__(self) -> None:
@@ -67,6 +70,8 @@ class Options:
             raise OptionError(f"tolerance {self.tolerance:g} must lie between 0.0001 and 10 mm")
         if self.unit is not None and self.unit not in UNITS:
             raise OptionError(f"unit {self.unit!r} is not one of {', '.join(UNITS)}")
+        if self.area_budget < 0:
+            raise OptionError(f"area budget {self.area_budget} must not be negative")
         if self.jobs < 1:
             raise OptionError(f"jobs {self.jobs} must be at least 1")
         unit(self.setup, "setup axis")

@@ -13,11 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io import Orientation, Part, SurfaceSamples, read_part
+from cad_io.evaluate import evaluate
 from cad_io.orient import orient
 from cad_io.sample import sample
 from cad_io.tessellate import tessellate
 from plan_cutters import __version__
 from plan_cutters.access import access, witnesses
+from plan_cutters.between import Evaluate, between
 from plan_cutters.classify import CONCAVE, CONVEX, SADDLE, classify, regions
 from plan_cutters.cutter import Cutter
 from plan_cutters.decompose import decompose
@@ -25,6 +27,7 @@ from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.faces import select_faces
 from plan_cutters.machine import Machine
 from plan_cutters.model import (
+    AreaEntry,
     CutterEntry,
     Effective,
     FaceEntry,
@@ -139,6 +142,7 @@ def plan(
     tolerance: float = 0.01,
     jobs: int | None = None,
     flip: bool = False,
+    area_budget: int = 100_000,
     unit: str | None = None,
     progress: Progress | None = None,
 ) -> Result:
@@ -167,6 +171,8 @@ def plan(
         Threads; default all cores.
     flip : bool
         Machine the other side of open shells and loose faces.
+    area_budget : int
+        Most contacts to look at between the samples for the selected cutter; 0: none.
     unit : str, optional
         Length unit to take instead of the file's: `um`, `mm`, `cm`, `m`, `km`, `mil`, `in` or `ft`.
     progress : callable, optional
@@ -186,7 +192,8 @@ def plan(
     more = {} if jobs is None else {"jobs": jobs}
     options = Options(
         cutters=tuple(cutters), machine=machine or Machine(), setup=setup, faces=faces, grid=grid, spacing=spacing,
-        postures=PostureRange(tilt, rotation, rotation_step), tolerance=tolerance, flip=flip, unit=unit, **more,
+        postures=PostureRange(tilt, rotation, rotation_step), tolerance=tolerance, flip=flip, unit=unit,
+        area_budget=area_budget, **more,
     )  # fmt: skip
     return run(part, options, progress=progress)
 
@@ -244,12 +251,12 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
         _warm(samples, cutters[0], setup, options, obstacles)
     entries: list[CutterEntry] = []
     reaches: dict[str, Reach] = {}
+    shared: dict[str, Any] = {
+        "machine": options.machine, "setup": setup, "postures": options.postures,
+        "obstacles": obstacles, "tolerance": tolerance,
+    }  # fmt: skip
     for cutter in cutters:
         with clock.stage(cutter.id) as tell:
-            shared: dict[str, Any] = {
-                "machine": options.machine, "setup": setup, "postures": options.postures,
-                "obstacles": obstacles, "tolerance": tolerance,
-            }  # fmt: skip
             began = time.perf_counter()
             decomposition = decompose(samples, surface_class == CONVEX, region, cutter, jobs=options.jobs, **shared)
             reach = access(samples, decomposition.free, cutter, jobs=options.jobs, progress=tell, **shared)
@@ -258,6 +265,13 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
         reaches[cutter.id] = reach
         entries.append(_cutter_entry(cutter, samples, reach, found, decomposition.march_differs, seconds))
     selected, selection = _select(entries)
+    if selected and options.area_budget:
+        with clock.stage("area"):
+            chosen = next(c for c in cutters if c.id == selected)
+            served = between(samples, reaches[selected], chosen, _geometry(whole, orientation), jobs=options.jobs,
+                             budget=options.area_budget, **shared)  # fmt: skip
+        area = AreaEntry(share=served.share, feasible=served.share == 1, contacts=served.contacts, left=served.left)
+        entries = [e.model_copy(update={"area": area}) if e.id == selected else e for e in entries]
     document = Plan(
         part=_part_info(whole, orientation),
         effective=Effective(
@@ -277,6 +291,7 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
             chord_error_mm=triangles.chord_error,
             obstacle_triangles=len(triangles),
             flip=options.flip,
+            area_budget=options.area_budget,
         ),
         versions=_versions(),
         samples=SampleCounts(
@@ -332,6 +347,14 @@ def _warm(
     )  # fmt: skip
 
 
+def _geometry(part: Part, orientation: Orientation) -> Evaluate:
+    def at(face: int, uv: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
+        point, shape = evaluate(part, orientation, face, uv)
+        return point, shape.normal, shape.direction_max, shape.curvature
+
+    return at
+
+
 def _vector(v: NDArray[np.float64]) -> tuple[float, float, float]:
     return float(v[0]), float(v[1]), float(v[2])
 
@@ -341,7 +364,7 @@ def _degrees(pair: tuple[float, float]) -> tuple[float, float]:
     return round(float(np.degrees(pair[0])), 9), round(float(np.degrees(pair[1])), 9)
 
 
-def _counts(verdict: NDArray[np.uint8]) -> dict[str, int]:
+def _counts(verdict: NDArray[np.uint8]) -> dict[str, Any]:
     names = {FREE: "interference_free", ACCESSIBLE: "accessible", INACCESSIBLE: "inaccessible",
              UNDECIDED: "undecided", UNJUDGED: "unjudged"}  # fmt: skip
     return {name: int((verdict == code).sum()) for code, name in names.items()}
@@ -463,7 +486,8 @@ def _notes(
 ) -> list[str]:  # fmt: skip
     notes = [
         "Cutters are flat ends, judged as solid cylinders of their length, without a holder.",
-        f"Verdicts are about samples; the largest gap between neighbouring samples is {samples.max_gap:.3g} mm.",
+        f"Verdicts are about samples; the largest gap between neighbouring samples is {samples.max_gap:.3g} mm. "
+        "`area` of the selected cutter is about the surface between them.",
     ]
     if options.machine.tilt_limit is None:
         notes.append("No machine was given: any tool axis counts as possible.")

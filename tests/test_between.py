@@ -1,0 +1,138 @@
+"""Cells that are called served, against the exact surface: random contacts in them, random leans where any will do."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapes
+
+from cad_io import read_part
+from cad_io.evaluate import evaluate
+from cad_io.orient import orient
+from cad_io.sample import sample
+from cad_io.tessellate import tessellate
+from plan_cutters import Cutter, Machine, plan
+from plan_cutters.between import between
+from plan_cutters.obstacles import Obstacles
+
+SAMPLES = Path(__file__).parent.parent / "samples"
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def served(part, cutter, *, budget, tolerance=0.01, chord=None, **how):
+    """What `between` finds after a plan, and the geometry that it is asked of."""
+    result = plan(part, cutters=[cutter], tolerance=tolerance, area_budget=0, **how)
+    whole, samples = result.part, result.samples
+    side = orient(whole, towards=UP, flip=False)
+
+    def geometry(face, uv):
+        point, shape = evaluate(whole, side, face, uv)
+        return point, shape.normal, shape.direction_max, shape.curvature
+
+    found = between(
+        samples, result.reaches[cutter.id], cutter, geometry, machine=Machine(), setup=UP, postures=result.postures,
+        obstacles=Obstacles(tessellate(whole, chord or 0.2 * tolerance)), tolerance=tolerance, jobs=2, budget=budget,
+    )  # fmt: skip
+    return found, geometry, whole
+
+
+def dense(whole, spacing):
+    """Points all over the part's exact surface."""
+    return sample(whole, orient(whole, towards=UP, flip=False), spacing=spacing,
+                  faces=[f.number for f in whole.faces]).point  # fmt: skip
+
+
+def deepest(found, geometry, whole, cutter, cloud, count, rng):
+    """Largest depth of the surface in the cutter over random contacts in served cells, mm."""
+    cells, worst = found.cells, -math.inf
+    for row in rng.choice(len(cells.face), count):
+        face = int(cells.face[row])
+        u0, u1, v0, v1 = whole.trim(face).box
+        within = ([u0, v0], [u1, v1])  # beyond, the surface goes on, but not the face
+        uv = cells.uv[row] + rng.uniform(-0.5, 0.5, 2) * cells.span[row]
+        if not whole.trim(face).inside(uv[:1], uv[1:])[0]:
+            continue
+        contact, normal = (x[0] for x in geometry(face, uv[None])[:2])
+        axis = cells.axis[row]
+        across = normal - (normal @ axis) * axis
+        if cells.any_lean[row]:
+            across = rng.standard_normal(3)
+            across -= (across @ axis) * axis
+        x_t = -across / np.linalg.norm(across)
+        # The surface all over, and very near the contact, where the clearance is smallest.
+        offsets = np.concatenate([rng.standard_normal((400, 2)) * size for size in (0.5, 2.0, 8.0)])
+        near = geometry(face, np.clip(uv + offsets * cells.span[row], *within))[0]
+        points = np.concatenate([cloud, near])
+        centre = contact - cutter.radius * x_t
+        height = (points - centre) @ axis
+        radial = np.linalg.norm(points - centre - height[:, None] * axis, axis=1)
+        depth = np.minimum(np.minimum(height, cutter.length - height), cutter.radius - radial)
+        worst = max(worst, float(depth.max()))
+    return worst
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_no_contact_of_a_served_cell_gouges_a_random_surface(seed):
+    rng = np.random.default_rng(seed)
+    part = read_part(shapes.shell(shapes.Patch.random(rng, height=6.0).face()))
+    cutter = Cutter.flat(radius=2.0, length=40.0)
+    found, geometry, whole = served(part, cutter, budget=20_000, grid=121)
+    assert found.cells.face.size > 1000, "nothing to look at"
+    assert deepest(found, geometry, whole, cutter, dense(whole, 0.5), 150, rng) < 0.01
+
+
+def test_all_of_a_gentle_block_is_served():
+    cutter = Cutter.flat(radius=8.0, length=90.0)
+    found, geometry, whole = served(SAMPLES / "pocket_top.step", cutter, budget=60_000)
+    assert found.share == 1
+    assert found.left == 0
+    assert deepest(found, geometry, whole, cutter, dense(whole, 0.5), 150, np.random.default_rng(0)) < 0.01
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "cutter", "how"), [
+    ("peaks_and_valleys", Cutter.flat(radius=6, length=80), {"grid": 201}),
+    ("blade", Cutter.flat(radius=2, length=30), {}),
+])  # fmt: skip
+def test_no_contact_of_a_served_cell_gouges_a_sample_part(name, cutter, how):
+    found, geometry, whole = served(SAMPLES / f"{name}.step", cutter, budget=60_000, **how)
+    worst = deepest(found, geometry, whole, cutter, dense(whole, 0.4), 3000, np.random.default_rng(1))
+    print(name, found.share, found.contacts, f"deepest {worst:.4f} mm")
+    assert worst < 0.01
+
+
+def test_flat_surfaces_are_served_by_their_samples():
+    """On planes and ridges nothing changes between the samples."""
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
+
+    found, _, _ = served(
+        BRepPrimAPI_MakeBox(40, 30, 10).Solid(), Cutter.flat(radius=5, length=60), budget=0, spacing=3.0
+    )
+    assert found.share == 1
+
+
+def test_more_budget_never_serves_less_and_threads_do_not_matter():
+    part = read_part(SAMPLES / "pocket_top.step")
+    cutter = Cutter.flat(radius=8.0, length=90.0)
+    shares = [served(part, cutter, budget=b)[0].share for b in (0, 400, 2000, 20_000)]
+    assert shares == sorted(shares)
+    assert shares[0] < shares[-1]
+
+
+def test_what_a_wall_hides_between_samples_is_not_served():
+    """A thin rib between two rows of samples: no cell next to it may be called served by an axis that hits it."""
+    rng = np.random.default_rng(5)
+    part = shapes_with_rib()
+    cutter = Cutter.flat(radius=4.0, length=40.0)
+    found, geometry, whole = served(part, cutter, budget=4000, spacing=4.0, faces="all")
+    assert deepest(found, geometry, whole, cutter, dense(whole, 0.25), 300, rng) < 0.01
+
+
+def shapes_with_rib():
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
+    from OCP.gp import gp_Pnt
+
+    base = BRepPrimAPI_MakeBox(40, 40, 5).Solid()
+    return BRepAlgoAPI_Fuse(base, BRepPrimAPI_MakeBox(gp_Pnt(17.3, 0, 4), 0.4, 40, 8).Solid()).Shape()
