@@ -34,3 +34,65 @@ def random_frame(rng):
     """Orthonormal normal and direction."""
     q, _ = np.linalg.qr(rng.standard_normal((3, 3)))
     return q[0].copy(), q[1].copy()
+
+
+def depth_while_tilting(point, tilts, radius, length):
+    """How deep a point (along lean, lean's left and normal, from the contact) lies in the cutter at each tilt."""
+    along, left, up = point
+    tilts = np.asarray(tilts)
+    axis = np.stack([np.sin(tilts), 0 * tilts, np.cos(tilts)], -1)
+    centre = -radius * np.stack([np.cos(tilts), 0 * tilts, -np.sin(tilts)], -1)
+    offset = np.array([along, left, up]) - centre
+    height = (offset * axis).sum(-1)
+    radial = np.linalg.norm(offset - height[:, None] * axis, axis=-1)
+    return np.minimum(np.minimum(height, length - height), radius - radial)
+
+
+def _best(function, steps=45):
+    """Largest value of a concave function on [0, 1], by golden section: (value, place)."""
+    share = (5**0.5 - 1) / 2
+    low, high = 0.0, 1.0
+    a, b = high - share, low + share
+    at_a, at_b = function(a), function(b)
+    best = max((function(0.0), 0.0), (function(1.0), 1.0), (at_a, a), (at_b, b))
+    for _ in range(steps):
+        if at_a < at_b:
+            low, a, at_a = a, b, at_b
+            b = low + share * (high - low)
+            at_b = function(b)
+            best = max(best, (at_b, b))
+        else:
+            high, b, at_b = b, a, at_a
+            a = high - share * (high - low)
+            at_a = function(a)
+            best = max(best, (at_a, a))
+    return best
+
+
+def deepest_in_cylinder(triangle, radius, low, high):
+    """Depth of the deepest point of a triangle in a cylinder about the z axis, negative outside.
+
+    Depth is the least of linear functions and of minus a distance, so concave: two searches, one within the other.
+    """
+    (ax, ay, az), (bx, by, bz), (cx, cy, cz) = np.asarray(triangle).tolist()
+
+    def depth(w, s):
+        a, b = (1 - w) * (1 - s), (1 - w) * s
+        x, y, z = a * ax + b * bx + w * cx, a * ay + b * by + w * cy, a * az + b * bz + w * cz
+        return min(z - low, high - z, radius - (x * x + y * y) ** 0.5)
+
+    return _best(lambda w: _best(lambda s: depth(w, s))[0])[0]
+
+
+def distance_to_triangle(point, triangle):
+    """How far a point lies from a triangle, one without area included."""
+    distances = []
+    for i in range(3):
+        edge, to = triangle[(i + 1) % 3] - triangle[i], point - triangle[i]
+        along = np.clip((edge @ to) / max(edge @ edge, 1e-300), 0, 1)
+        distances.append(np.linalg.norm(to - along * edge))
+    edges = np.stack([triangle[1] - triangle[0], triangle[2] - triangle[0]], 1)
+    shares = np.linalg.lstsq(edges, point - triangle[0], rcond=1e-14)[0]
+    if shares.min() >= 0 and shares.sum() <= 1:
+        distances.append(np.linalg.norm(edges @ shares - (point - triangle[0])))
+    return min(distances)

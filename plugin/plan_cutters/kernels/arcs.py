@@ -7,6 +7,13 @@ from plan_cutters.kernels.jit import kernel
 #: A bound this close to zero is zero: planes and ridges are free at tilt 0.
 ROUNDING = 1e-9
 
+#: No arc: empty, and beyond every tilt both ways, so that widening it about a tilt gives that tilt's neighbourhood.
+NOTHING = (9.0, -9.0)
+
+#: Cosines this close to an axis limit are on it: a limit of 0 deg leaves the setup axis itself, which rounding moves.
+#: 1e-6 rad at that limit, less at any other.
+ON_LIMIT = 5e-13
+
 
 @kernel
 def point_arc(height, px, py, tilt, radius_offset, radius, low, high):  # type: ignore[no-untyped-def]
@@ -23,22 +30,23 @@ def point_arc(height, px, py, tilt, radius_offset, radius, low, high):  # type: 
     tilt : float
         rad.
     radius_offset, radius, low, high : float
-        Distance of the axis from P, radius, solid heights; `low >= 0`, `radius <= radius_offset`, mm.
+        Distance of the axis from P, radius, solid heights; `low >= 0`, `radius <= radius_offset`, mm. A body without
+        volume (`radius <= 0` or `low >= high`) forbids nothing.
 
     Returns
     -------
     first, last : float
-        The forbidden tilts, rad; `first > last` if there are none. One arc suffices: with the radius no larger than
+        The forbidden tilts, rad; `NOTHING` if there are none. One arc suffices: with the radius no larger than
         the offset, alpha stays within 0 to 90 deg, where the top cuts off one end only.
     """
     square = radius * radius - py * py
-    if square <= 0.0:
-        return 1.0, 0.0
+    if square <= 0.0 or radius <= 0.0 or low >= high:
+        return NOTHING
     r = np.sqrt(square)
     back = radius_offset - px
     d = np.hypot(back, height)
     if d <= low or d <= radius_offset - r:
-        return 1.0, 0.0
+        return NOTHING
     alpha = np.arctan2(height, back)
     least = np.arcsin(low / d)
     most = np.arccos((radius_offset - r) / d)
@@ -47,7 +55,7 @@ def point_arc(height, px, py, tilt, radius_offset, radius, low, high):  # type: 
     if d > high:
         most = min(most, np.arcsin(high / d))
     if least > most:
-        return 1.0, 0.0
+        return NOTHING
     return tilt + alpha - most, tilt + alpha - least
 
 
@@ -71,7 +79,7 @@ def axis_arcs(along_n, along_f, limit_cos, low, high, out):  # type: ignore[no-u
     along_n, along_f : float
         m . n and m . f.
     limit_cos : float
-        Cosine of the cone's half angle; -1 or less: no limit.
+        Cosine of the cone's half angle; -1 or less: no limit. Kept to `ON_LIMIT`.
     low, high : float
         Range asked for, rad, within 0 to pi/2.
     out : (3, 2) float64
@@ -84,6 +92,7 @@ def axis_arcs(along_n, along_f, limit_cos, low, high, out):  # type: ignore[no-u
     if limit_cos <= -1.0:
         out[0, 0], out[0, 1] = low, high
         return 1
+    limit_cos -= ON_LIMIT
     amplitude = np.hypot(along_n, along_f)
     if amplitude <= abs(limit_cos):
         # m is nearly across the great circle: all of it within the cone or none.
