@@ -109,7 +109,6 @@ def test_part_without_faces(tmp_path):
         (["--fixture", "vice.stl"], "not read yet"),
         (["--allowance", "0.3"], "not judged yet"),
         (["--holder-clearance", "1"], "not judged yet"),
-        (["--posture-maps"], "not written yet"),
         (["--cluster", "tcp://x:1"], "not used yet"),
         (["--nonsense"], "--nonsense"),
         (["--json", "plan.json"], "standard output"),

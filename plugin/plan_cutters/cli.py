@@ -25,7 +25,6 @@ _NOT_BUILT = {
     "fixture": "fixtures are not read yet",
     "allowance": "an allowance is not judged yet",
     "holder_clearance": "holders are not judged yet",
-    "posture_maps": "posture maps of all samples are not written yet; plan_cutters.posture_map gives one point's",
     "cluster": "clusters are not used yet; --jobs gives threads on this machine",
 }
 
@@ -124,7 +123,11 @@ class _Vector(click.ParamType):
     help="Application protocol of the STEP file.  [default: ap242]",
 )
 @click.option("--json", "json_out", metavar="-", help="With `-`: the plan on standard output, nothing else there.")
-@click.option("--posture-maps", is_flag=True, hidden=True)
+@click.option(
+    "--posture-maps",
+    is_flag=True,
+    help="Also write every sample's free tilt intervals at every rotation (postures.npz), for the cutter shown.",
+)
 @click.option("--jobs", type=int, metavar="N", help="Threads.  [default: all cores]")
 @click.option("--cluster", metavar="ADDRESS", hidden=True)
 @click.option(
@@ -200,6 +203,7 @@ def _options(given: dict[str, Any]) -> "Options":
         tolerance=given["tolerance"],
         flip=given["flip"],
         area_budget=given["area_budget"],
+        posture_maps=given["posture_maps"],
         unit=given["unit"],
         **more,
     )

@@ -68,6 +68,7 @@ class Effective(_Frozen):
     obstacle_triangles: int
     flip: bool
     area_budget: int = Field(description="contacts that may be added between the samples")
+    posture_maps: bool
 
 
 class SampleCounts(_Frozen):

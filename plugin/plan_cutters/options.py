@@ -37,6 +37,8 @@ class Options:
         Machine the other side of open shells and loose faces.
     area_budget : int
         Most contacts to look at between the samples for the selected cutter; 0: none.
+    posture_maps : bool
+        Find every free tilt of every sample, too, for the cutter that the models show.
     unit : str, optional
         Length unit to take instead of the part's own, one of `cad_io.units.UNITS`.
 
@@ -57,6 +59,7 @@ class Options:
     jobs: int = field(default_factory=lambda: len(os.sched_getaffinity(0)))
     flip: bool = False
     area_budget: int = 100_000
+    posture_maps: bool = False
     unit: str | None = None
 
     def __post_init__(self) -> None:

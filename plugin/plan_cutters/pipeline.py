@@ -5,7 +5,7 @@ import platform
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -46,6 +46,8 @@ from plan_cutters.obstacles import Obstacles
 from plan_cutters.options import Options
 from plan_cutters.palette import PALETTE
 from plan_cutters.posture import PostureRange, unit
+from plan_cutters.posture_maps import PostureMaps
+from plan_cutters.posture_maps import posture_maps as all_posture_maps
 from plan_cutters.reach import ACCESSIBLE, FREE, INACCESSIBLE, REASONS, UNDECIDED, UNJUDGED, Reach, Witness
 from plan_cutters.select_cutters import RULE, ranked
 from plan_cutters.spacing import default_spacing
@@ -74,6 +76,8 @@ class Result:
     reaches : dict
         Cutter id -> Reach.
     postures : PostureRange
+    maps : PostureMaps, optional
+        Every free tilt, for the cutter `shown`, where that was asked for.
     """
 
     plan: Plan
@@ -82,6 +86,7 @@ class Result:
     surface_class: NDArray[np.uint8]
     reaches: dict[str, Reach]
     postures: PostureRange
+    maps: PostureMaps | None = None
 
     @property
     def cutters(self) -> list[CutterEntry]:
@@ -143,6 +148,7 @@ def plan(
     jobs: int | None = None,
     flip: bool = False,
     area_budget: int = 100_000,
+    posture_maps: bool = False,
     unit: str | None = None,
     progress: Progress | None = None,
 ) -> Result:
@@ -173,6 +179,8 @@ def plan(
         Machine the other side of open shells and loose faces.
     area_budget : int
         Most contacts to look at between the samples for the selected cutter; 0: none.
+    posture_maps : bool
+        Find every free tilt of every sample, too: `Result.maps`.
     unit : str, optional
         Length unit to take instead of the file's: `um`, `mm`, `cm`, `m`, `km`, `mil`, `in` or `ft`.
     progress : callable, optional
@@ -193,7 +201,7 @@ def plan(
     options = Options(
         cutters=tuple(cutters), machine=machine or Machine(), setup=setup, faces=faces, grid=grid, spacing=spacing,
         postures=PostureRange(tilt, rotation, rotation_step), tolerance=tolerance, flip=flip, unit=unit,
-        area_budget=area_budget, **more,
+        area_budget=area_budget, posture_maps=posture_maps, **more,
     )  # fmt: skip
     return run(part, options, progress=progress)
 
@@ -292,6 +300,7 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
             obstacle_triangles=len(triangles),
             flip=options.flip,
             area_budget=options.area_budget,
+            posture_maps=options.posture_maps,
         ),
         versions=_versions(),
         samples=SampleCounts(
@@ -312,7 +321,12 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
         legend=PALETTE,
         run=Run(time=started.isoformat(timespec="seconds"), seconds=clock.seconds),
     )
-    return Result(document, whole, samples, surface_class, reaches, options.postures)
+    result = Result(document, whole, samples, surface_class, reaches, options.postures)
+    if options.posture_maps:
+        with clock.stage("maps") as tell:
+            shown = next(c for c in cutters if c.id == result.shown)
+            result = replace(result, maps=all_posture_maps(samples, shown, jobs=options.jobs, progress=tell, **shared))
+    return result
 
 
 def _affordable(part: Part, targets: Sequence[int], options: Options) -> None:

@@ -19,8 +19,9 @@ _WRITERS = {
     "glb": ("annotated.glb", "models", "write_glb"),
     "merged": ("merged.glb", "models", "write_merged"),
     "npz": ("samples.npz", "to_npz", "write_npz"),
+    "postures": ("postures.npz", "to_npz", "write_postures"),
 }
-FORMATS = ("json", *_WRITERS)
+FORMATS = ("json", *(f for f in _WRITERS if f != "postures"))
 #: What is written unless asked otherwise; `merged` is for parts of thousands of faces.
 DEFAULT_FORMATS = tuple(f for f in FORMATS if f != "merged")
 
@@ -110,7 +111,7 @@ def write_all(
         split = split_result(result) if {"step", "glb", "merged"} & set(formats) else None
         if split is not None:
             document = document.model_copy(update={"split": rungs(split)})
-        for name in formats:
+        for name in (*formats, *(("postures",) if result.maps else ())):
             if name == "json":
                 continue
             file, module, function = _WRITERS[name]

@@ -26,6 +26,17 @@ def write_npz(result: Any, _split: object, path: Path) -> None:
         arrays[f"axis_{name}"] = reach.axis
         arrays[f"lean_{name}"] = reach.lean
         arrays[f"reason_{name}"] = reach.reason
+    _write(arrays, path)
+
+
+def write_postures(result: Any, _split: object, path: Path) -> None:
+    """Write `postures.npz`: the free tilts of every sample at every rotation, as in PostureMaps, for the cutter shown."""
+    maps, name = result.maps, result.shown
+    _write({"rotation": maps.rotations, f"offset_{name}": maps.offset, f"free_{name}": maps.free,
+            f"undecided_{name}": maps.undecided}, path)  # fmt: skip
+
+
+def _write(arrays: dict[str, Any], path: Path) -> None:
     # numpy's own writer stamps the time: two runs would differ.
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
         for key, array in arrays.items():

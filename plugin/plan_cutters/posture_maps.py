@@ -1,0 +1,94 @@
+"""Every free tilt of every sample at every rotation, with certified ends."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats, SurfaceSamples
+from plan_cutters.cutter import Cutter
+from plan_cutters.machine import Machine
+from plan_cutters.obstacles import Obstacles
+from plan_cutters.posture import PostureRange
+from plan_cutters.threads import Progress, in_chunks
+
+#: Ends are certified to this, rad; where that cannot be, the band left is counted as undecided.
+NARROWEST = np.radians(0.1)
+#: Free intervals that one rotation may have; more count as undecided.
+_ROOM = 8
+
+
+@dataclass(frozen=True, slots=True)
+class PostureMaps:
+    """Free tilts of n samples at k rotations.
+
+    Attributes
+    ----------
+    rotations : (k,) float
+        rad, from each sample's `direction_max`.
+    offset : (n * k + 1,) int64
+        Sample i has at rotation j the intervals `free[offset[i * k + j]:offset[i * k + j + 1]]`.
+    free : (m, 2) float
+        Tilts from, to, rad, ascending; every tilt within is safe for the true surface to the tolerance.
+    undecided : (n, k) float32
+        Tilts that are neither free nor known to be forbidden, rad in all.
+    """
+
+    rotations: Floats
+    offset: NDArray[np.int64]
+    free: Floats
+    undecided: NDArray[np.float32]
+
+
+def posture_maps(
+    samples: SurfaceSamples,
+    cutter: Cutter,
+    *,
+    machine: Machine,
+    setup: Floats,
+    postures: PostureRange,
+    obstacles: Obstacles,
+    tolerance: float,
+    jobs: int,
+    progress: Progress | None = None,
+) -> PostureMaps:
+    """Find the free tilts of all judged samples; the others have none.
+
+    Parameters
+    ----------
+    samples : SurfaceSamples
+    cutter, machine, postures, obstacles
+    setup : (3,) float
+        Unit setup axis.
+    tolerance : float
+        mm.
+    jobs : int
+        Threads.
+    progress : callable, optional
+        Told how many pieces of the work are done, of how many.
+    """
+    from plan_cutters.kernels.maps import free_map
+
+    rotations = postures.rotations
+    cosine, sine = np.cos(rotations), np.sin(rotations)
+    low, high = max(0.0, postures.tilt[0]), min(np.pi / 2, postures.tilt[1])
+    safe, _ = obstacles.depths(tolerance)
+    n, k = len(samples), len(rotations)
+    count = np.zeros((n, k), np.int32)
+    undecided = np.zeros((n, k), np.float32)
+    free: dict[int, Floats] = {}
+
+    def work(rows: NDArray[np.int64]) -> None:
+        # Room for the most intervals only while a piece is worked on: memory grows with what is found.
+        part = np.empty((len(rows), k, _ROOM, 2))
+        mine, unsure = np.empty((len(rows), k), np.int32), np.empty((len(rows), k))
+        free_map(rows, samples.point, samples.normal, samples.direction_max, samples.curvature, cosine, sine, low, high,
+                 setup, machine.limit_cos, cutter.radius, cutter.length, safe, NARROWEST, *obstacles.tree, _ROOM, part,
+                 mine, unsure)  # fmt: skip
+        count[rows], undecided[rows] = mine, unsure
+        free[int(rows[0])] = part[np.arange(_ROOM) < mine[..., None]]
+
+    in_chunks(work, np.flatnonzero(samples.unjudged < 0), jobs, progress)
+    pieces = [free[first] for first in sorted(free)]
+    offset = np.concatenate([[0], np.cumsum(count.ravel(), dtype=np.int64)])
+    return PostureMaps(rotations, offset, np.concatenate([np.zeros((0, 2)), *pieces]), undecided)
