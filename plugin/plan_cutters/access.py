@@ -8,7 +8,7 @@ from plan_cutters.cutter import Cutter
 from plan_cutters.machine import Machine
 from plan_cutters.obstacles import Obstacles
 from plan_cutters.posture import PostureRange
-from plan_cutters.reach import ACCESSIBLE, FREE, INACCESSIBLE, REASONS, UNDECIDED, Reach, Witness, blank
+from plan_cutters.reach import ACCESSIBLE, FREE, INACCESSIBLE, REASONS, UNDECIDED, UNJUDGED, Reach, Witness, blank
 from plan_cutters.threads import Progress, in_chunks
 
 
@@ -23,6 +23,7 @@ def access(
     obstacles: Obstacles,
     tolerance: float,
     jobs: int,
+    known: Reach | None = None,
     progress: Progress | None = None,
 ) -> Reach:
     """Search a posture for every judged sample that is not interference-free.
@@ -39,6 +40,8 @@ def access(
         mm.
     jobs : int
         Threads.
+    known : Reach, optional
+        What follows from other cutters (`nesting.handed`): those samples are not searched again.
     progress : callable, optional
         Told how many pieces of the work are done, of how many.
     """
@@ -50,11 +53,35 @@ def access(
     reach.lean[free] = samples.direction_max[free]
     reach.tilt[free] = 0.0
     reach.rotation[free] = 0
-    _search(
-        (samples.point, samples.normal, samples.direction_max, samples.curvature), np.flatnonzero(judged & ~free),
-        cutter, machine, setup, postures, obstacles, obstacles.depths(tolerance), jobs, reach, progress,
-    )  # fmt: skip
+    geometry = (samples.point, samples.normal, samples.direction_max, samples.curvature)
+    wanted = judged & ~free
+    if known is not None:
+        follows = wanted & (known.verdict != UNJUDGED)
+        for name in Reach.__slots__:
+            getattr(reach, name)[follows] = getattr(known, name)[follows]
+        _first_reasons(geometry, np.flatnonzero(follows & (known.verdict == INACCESSIBLE)), cutter, machine, setup,
+                       postures, jobs, reach)  # fmt: skip
+        wanted &= ~follows
+    _search(geometry, np.flatnonzero(wanted), cutter, machine, setup, postures, obstacles,
+            obstacles.depths(tolerance), jobs, reach, progress)  # fmt: skip
     return reach
+
+
+def _first_reasons(
+    geometry: tuple[Floats, Floats, Floats, Floats], rows: NDArray[np.int64], cutter: Cutter, machine: Machine,
+    setup: Floats, postures: PostureRange, jobs: int, reach: Reach,
+) -> None:  # fmt: skip
+    """Where the axis limit or local gouging alone leaves this cutter nothing, that is the reason."""
+    from plan_cutters.kernels.search import first_reason
+
+    cosine, sine = np.cos(postures.rotations), np.sin(postures.rotations)
+    low, high = max(0.0, postures.tilt[0]), min(np.pi / 2, postures.tilt[1])
+
+    def work(piece: NDArray[np.int64]) -> None:
+        first_reason(piece, *geometry[1:], cosine, sine, low, high, setup, machine.limit_cos, cutter.radius,
+                     reach.reason)  # fmt: skip
+
+    in_chunks(work, rows, jobs)
 
 
 def _search(

@@ -65,6 +65,14 @@ class Cutter:
             pass
         raise CutterError(f"cutter {spec!r} is not of the form R6L80 (radius 6 mm, length 80 mm)")
 
+    def inside(self, other: "Cutter") -> bool:
+        """True if, touching the same contact with the same axis, this cutter lies within the other.
+
+        Corners alike, a radius no larger, a length no larger: the bottom disks touch inside one another at the contact.
+        With another corner radius, a longer cutter or a holder that is not so (`docs/nested_cutters.md`).
+        """
+        return self.corner_radius == other.corner_radius and self.radius <= other.radius and self.length <= other.length
+
     @property
     def id(self) -> str:
         """`R6L80`: the same dimensions, the same id."""

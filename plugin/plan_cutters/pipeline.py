@@ -42,6 +42,7 @@ from plan_cutters.model import (
     Verdicts,
     WitnessEntry,
 )  # fmt: skip
+from plan_cutters.nesting import handed, order
 from plan_cutters.obstacles import Obstacles
 from plan_cutters.options import Options
 from plan_cutters.palette import PALETTE
@@ -263,15 +264,17 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
         "machine": options.machine, "setup": setup, "postures": options.postures,
         "obstacles": obstacles, "tolerance": tolerance,
     }  # fmt: skip
-    for cutter in cutters:
+    for cutter in order(cutters):
         with clock.stage(cutter.id) as tell:
             began = time.perf_counter()
             decomposition = decompose(samples, surface_class == CONVEX, region, cutter, jobs=options.jobs, **shared)
-            reach = access(samples, decomposition.free, cutter, jobs=options.jobs, progress=tell, **shared)
+            known = handed(cutter, {c: reaches[c.id] for c in cutters if c.id in reaches}, len(samples))
+            reach = access(samples, decomposition.free, cutter, jobs=options.jobs, known=known, progress=tell, **shared)
             seconds = time.perf_counter() - began
             found = witnesses(samples, reach, cutter, jobs=options.jobs, **shared)
         reaches[cutter.id] = reach
         entries.append(_cutter_entry(cutter, samples, reach, found, decomposition.march_differs, seconds))
+    entries.sort(key=lambda e: [c.id for c in cutters].index(e.id))
     selected, selection = _select(entries)
     if selected and options.area_budget:
         with clock.stage("area"):

@@ -215,6 +215,40 @@ def search(  # type: ignore[no-untyped-def]
 
 
 @kernel
+def first_reason(  # type: ignore[no-untyped-def]
+    rows, normal, direction_max, curvature, rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos, radius,
+    reason,
+):  # fmt: skip
+    """Write AXIS_LIMIT or LOCAL_GOUGE as the reason of samples to which these alone leave no posture.
+
+    Parameters are those of `search`; other reasons stay as they are.
+    """
+    intervals = np.empty((8, 2))
+    for row in rows:
+        n, e1 = normal[row], direction_max[row]
+        axis_left, gouge_left = False, False
+        for rotation in range(len(rotation_cos)):
+            cosine, sine = rotation_cos[rotation], rotation_sin[rotation]
+            along_n, along_f = 0.0, 0.0
+            for k in range(3):
+                a, b = (k + 1) % 3, (k + 2) % 3
+                along_n += setup[k] * n[k]
+                along_f += setup[k] * (cosine * e1[k] + sine * (n[a] * e1[b] - n[b] * e1[a]))
+            count = axis_arcs(along_n, along_f, limit_cos, tilt_low, tilt_high, intervals)
+            axis_left = axis_left or count > 0
+            least = local_gouge(curvature[row, 0], curvature[row, 1], cosine, sine, radius)
+            if not np.isnan(least) and least > 0.0:
+                count = remove(intervals, count, -1.0, least, 0.0)
+            if not np.isnan(least) and count > 0:
+                gouge_left = True
+                break
+        if not axis_left:
+            reason[row] = AXIS_LIMIT
+        elif not gouge_left:
+            reason[row] = LOCAL_GOUGE
+
+
+@kernel
 def dummy_free(rows, point, normal, radius, length, safe, vertex, box, depth, free):  # type: ignore[no-untyped-def]
     """Test the dummy cutter `(2 radius, length)`, bottom centre on the sample, axis along the normal.
 
