@@ -38,9 +38,12 @@ PIECES = np.empty((64, 3, 3))
 OFF = st.sampled_from([0.0, 1e-16, 1e-14, 1e-11, 1e-8, 1e-5, 1e-2]).flatmap(lambda x: st.sampled_from([x, -x]))
 
 
-def near(*places):
+ANYWHERE = st.floats(-30, 30)
+
+
+def near(*places, anywhere=ANYWHERE):
     """On or next to one of the places, or anywhere."""
-    return st.one_of(st.builds(lambda x, d: x + d * max(1.0, abs(x)), st.sampled_from(places), OFF), st.floats(-30, 30))
+    return st.one_of(st.builds(lambda x, d: x + d * max(1.0, abs(x)), st.sampled_from(places), OFF), anywhere)
 
 
 cutters = st.tuples(
@@ -55,15 +58,17 @@ def points_by_the_arc(draw):
     """A cutter, and a point whose distances and polar angle are where the closed form changes its case."""
     radius, length, s = draw(cutters)
     shrunk = radius - s
-    y = draw(near(0.0, shrunk, -shrunk, radius, shrunk / 2))
+    y = draw(near(0.0, shrunk, -shrunk, radius, anywhere=st.floats(-shrunk, shrunk)))
     r = math.sqrt(max(0.0, shrunk * shrunk - y * y))
-    d = abs(draw(near(0.0, s, length - s, radius - r, radius + r, math.hypot(radius, length))))
-    angle = draw(near(0.0, RIGHT, -RIGHT, math.pi, RIGHT / 2, math.asin(min(1.0, s / max(d, s, 1e-300)))))
+    places = (0.0, s, length - s, radius - r, radius + r, math.hypot(radius + r, length))
+    d = abs(draw(near(*places, anywhere=st.floats(0, 2 * radius + length))))
+    lowest = math.asin(min(1.0, s / max(d, s, 1e-300)))
+    angle = draw(near(0.0, RIGHT, -RIGHT, math.pi, lowest, anywhere=st.floats(0, math.pi)))
     return radius, length, s, (-d * math.cos(angle), y, d * math.sin(angle))
 
 
 @given(points_by_the_arc(), near(0.0, RIGHT, RIGHT / 2))
-@settings(max_examples=1500, deadline=None)
+@settings(max_examples=1000, deadline=None)
 def test_an_arc_is_where_the_point_is_inside(case, tilt):
     radius, length, s, (x, y, z) = case
     assume(s < length / 2)
@@ -226,7 +231,7 @@ def stood(rng, tilt, radius, length, s):
 
 
 @given(triangles_by_the_body(), st.sampled_from([0.0, RIGHT, 0.4]), st.integers(0, 5))
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=400, deadline=None)
 def test_a_triangle_hits_where_its_deepest_point_is_inside(case, tilt, seed):
     radius, length, s, local = case
     assume(s < length / 2)
@@ -336,7 +341,7 @@ def probed(obstacles, postures, radius, length, depth):
 
 
 @given(seed=st.integers(0, 3), radius=st.floats(1, 6), share=st.floats(0.05, 1), shorter=st.floats(0.2, 1))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=25, deadline=None)
 def test_a_posture_of_a_cutter_serves_every_cutter_inside_it(seed, radius, share, shorter):
     """Same contact, axis and lean, smaller radius, no longer: at the same depth the one body lies in the other."""
     obstacles = surface(seed)
@@ -382,9 +387,9 @@ def test_results_are_the_same_bit_for_bit_whatever_the_thread_count(tmp_path):
     part, arrays = shapes.shell(patch.face()), []
     for jobs in (1, 2, 3):
         # More samples than one chunk, so that the threads do share them out.
-        plan(part, cutters=[Cutter.flat(radius=3, length=30)], grid=41, jobs=jobs).write(tmp_path / str(jobs), ["npz"])
+        plan(part, cutters=[Cutter.flat(radius=3, length=30)], grid=33, jobs=jobs).write(tmp_path / str(jobs), ["npz"])
         arrays.append(dict(np.load(tmp_path / str(jobs) / "samples.npz")))
-    assert len(arrays[0]["verdict_R3L30"]) > 3 * 512
+    assert len(arrays[0]["verdict_R3L30"]) > 2 * 512
     assert len(set(arrays[0]["verdict_R3L30"].tolist())) > 1
     for other in arrays[1:]:
         assert other.keys() == arrays[0].keys()

@@ -1,0 +1,215 @@
+"""What each kernel costs: time per call, and instructions per call where valgrind is at hand.
+
+`python benchmarks/kernels.py` prints a table. Inputs are waves by formula (`tests/waves.py`): 7,200 triangles, 400 samples,
+seed 0, 24 rotations, cutter R6L40. Seconds are processor time, the best of five, compiled before. Instructions are
+callgrind's for code compiled for one named processor, so they differ between machines only by the compiler's version.
+"""
+
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+sys.path.append(str(Path(__file__).parent.parent / "tests"))
+import waves
+
+from plan_cutters.kernels import arcs, hit, maps, search, tree
+from plan_cutters.kernels.jit import kernel
+
+RADIUS, LENGTH, SAFE, BLOCKED, TURNS = 6.0, 40.0, 0.04, 0.06, 24
+RIGHT, UP, NARROWEST = np.pi / 2, np.array([0.0, 0, 1]), np.radians(0.1)
+Driver = Callable[[int], object]
+#: Calls of a kernel under callgrind, at most: it takes fifty times as long.
+COUNTED = 10_000
+
+
+# Small kernels are called from compiled loops: a call from Python costs more than they do.
+@kernel
+def many_point_arcs(n, at):  # type: ignore[no-untyped-def]
+    total = 0.0
+    for i in range(n):
+        q = at[i % len(at)]
+        total += arcs.point_arc(q[2], q[0], q[1], q[3], 6.0, 5.99, 0.01, 39.99)[0]
+    return total
+
+
+@kernel
+def many_local_gouges(n, at):  # type: ignore[no-untyped-def]
+    total = 0.0
+    for i in range(n):
+        q = at[i % len(at)]
+        total += arcs.local_gouge(0.01 * q[0], 0.01 * q[1], q[4], q[5], 6.0)
+    return total
+
+
+@kernel
+def many_axis_arcs(n, at, out):  # type: ignore[no-untyped-def]
+    total = 0
+    for i in range(n):
+        q = at[i % len(at)]
+        total += arcs.axis_arcs(q[4], q[5], 0.7, 0.0, 1.5, out)
+    return total
+
+
+@kernel
+def many_removals(n, at, intervals):  # type: ignore[no-untyped-def]
+    count = 1
+    for i in range(n):
+        if i % 8 == 0:
+            intervals[0, 0], intervals[0, 1], count = 0.0, 1.5, 1
+        q = at[i % len(at)]
+        count = search.remove(intervals, count, q[3], q[3] + 0.05, 1e-4)
+    return count
+
+
+@kernel
+def many_boxes(n, box, bodies):  # type: ignore[no-untyped-def]
+    total = 0
+    for i in range(n):
+        total += hit._box_apart(box, i % len(box), bodies[i % len(bodies)], 0.0)
+    return total
+
+
+@kernel
+def many_triangles(n, vertex, which, bodies, polygon, spare):  # type: ignore[no-untyped-def]
+    total = 0
+    for i in range(n):
+        total += hit.triangle_hit(vertex, which[i % len(which)], bodies[i % len(bodies)], 0.0, polygon, spare)[0]
+    return total
+
+
+@kernel
+def many_walks(n, vertex, box, depth, bodies, stack, polygon, spare, pieces):  # type: ignore[no-untyped-def]
+    total = 0
+    for i in range(n):
+        body = bodies[i % len(bodies)]
+        total += hit.tree_hit(vertex, box, depth, body, 0.0, -1, stack, polygon, spare, pieces)[0]
+    return total
+
+
+def drivers() -> dict[str, tuple[str, int, Driver]]:
+    """Each kernel's name: what one of its calls is counted by, how many of them to time, and a run of n of them."""
+    rng = np.random.default_rng(0)
+    (point, normal, first, curvature), loose = waves.samples(20), waves.triangles(61)
+    order, box, depth = tree.build(loose)
+    vertex, n = np.ascontiguousarray(loose[order]), len(point)
+    angle = rng.uniform(0, 2 * np.pi, 997)
+    at = np.stack([*rng.normal(0, 6, (2, 997)), rng.uniform(0, 40, 997), rng.uniform(0, RIGHT, 997), np.cos(angle),
+                   np.sin(angle)], 1)  # fmt: skip
+    # Postures at random at every sample, and for each a triangle near its contact.
+    bodies, lean, axis = np.empty((n, hit.BODY)), np.empty((n, 3)), np.empty((n, 3))
+    centre, near = vertex.mean(1), np.empty(n, np.int64)
+    for i in range(n):
+        turn, tilt = rng.uniform(0, 2 * np.pi), rng.uniform(0, RIGHT)
+        lean[i] = np.cos(turn) * first[i] + np.sin(turn) * np.cross(normal[i], first[i])
+        axis[i] = np.cos(tilt) * normal[i] + np.sin(tilt) * lean[i]
+        left = np.cross(normal[i], lean[i])
+        hit.stand(bodies[i], point[i], normal[i], lean[i], left, np.cos(tilt), np.sin(tilt),
+                  RADIUS, RADIUS - SAFE, SAFE, LENGTH - SAFE)  # fmt: skip
+        near[i] = rng.choice(np.argsort(np.linalg.norm(centre - point[i], axis=1))[:200])
+    rotations = 2 * np.pi * np.arange(TURNS) / TURNS
+    cosine, sine = np.cos(rotations), np.sin(rotations)
+    polygon, spare, pieces, stack = np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3)), np.empty(64, np.int64)
+    out = (np.empty(n, np.uint8), axis.copy(), lean.copy(), np.empty(n), np.empty(n, np.int32), np.empty(n, np.uint8))
+    free, triangle, depths = np.empty(n, np.bool_), np.empty(n, np.int32), np.full(n, SAFE)
+
+    def maps_of(count: int) -> None:
+        for i in range(count):
+            maps.free_tilts(point[i % n], normal[i % n], lean[i % n], 0.0, RIGHT, RADIUS, LENGTH, SAFE, NARROWEST,
+                            vertex, box, depth, 2000)  # fmt: skip
+
+    return {
+        "point_arc": ("point", 200_000, lambda k: many_point_arcs(k, at)),
+        "local_gouge": ("rotation", 200_000, lambda k: many_local_gouges(k, at)),
+        "axis_arcs": ("rotation", 200_000, lambda k: many_axis_arcs(k, at, np.empty((3, 2)))),
+        "remove": ("arc", 200_000, lambda k: many_removals(k, at, np.empty((16, 2)))),
+        "_box_apart": ("node", 200_000, lambda k: many_boxes(k, box, bodies)),
+        "triangle_hit": ("triangle", 100_000, lambda k: many_triangles(k, vertex, near, bodies, polygon, spare)),
+        "tree_hit": (
+            "posture", 4_000, lambda k: many_walks(k, vertex, box, depth, bodies, stack, polygon, spare, pieces)
+        ),
+        "build": ("triangle", 7_200, lambda k: k and tree.build(loose[:k])),
+        "probe": ("posture", 400, lambda k: search.probe(
+            np.arange(k), point, normal, axis, lean, RADIUS, LENGTH, depths, vertex, box, depth, triangle)),
+        "dummy_free": ("sample", 400, lambda k: search.dummy_free(
+            np.arange(k), point, normal, RADIUS, LENGTH, SAFE, vertex, box, depth, free)),
+        "search": ("sample", 400, lambda k: search.search(
+            np.arange(k), point, normal, first, curvature, cosine, sine, 0.0, RIGHT, UP, 0.7, RADIUS, LENGTH, SAFE,
+            BLOCKED, vertex, box, depth, *out)),
+        "free_tilts": ("rotation", 100, maps_of),
+    }  # fmt: skip
+
+
+def seconds(count: int, run: Driver) -> float:
+    """Best of five, the work of calling taken off."""
+    run(count)
+    best = [np.inf, np.inf]
+    for _ in range(5):
+        for i, n in enumerate((0, count)):
+            began = time.process_time_ns()
+            run(n)
+            best[i] = min(best[i], time.process_time_ns() - began)
+    return float(best[1] - best[0]) / 1e9 / count
+
+
+def marked() -> None:
+    """Run every kernel 0 and then a few thousand times, a system call between: there callgrind writes its sums."""
+    runs = drivers()
+    for _, count, run in runs.values():
+        run(min(count, COUNTED))
+    for _, count, run in runs.values():
+        for n in (0, min(count, COUNTED)):
+            os.getppid()
+            run(n)
+    os.getppid()
+
+
+def instructions(names: list[str], counts: list[int]) -> dict[str, float]:
+    """Instructions per call by callgrind, none without it."""
+    # Valgrind shows another processor than there is: name one, so that what is compiled before is found again.
+    environment = {**os.environ, "NUMBA_CPU_NAME": "haswell", "NUMBA_CPU_FEATURES": "+avx2,+fma,+bmi,+bmi2,+popcnt"}
+    me = [sys.executable, __file__, "--marked"]
+    subprocess.run(me, env=environment, check=True)
+    with tempfile.TemporaryDirectory() as folder:
+        tool = ["valgrind", "--tool=callgrind", "--dump-before=getppid", f"--callgrind-out-file={folder}/sums"]
+        try:
+            subprocess.run([*tool, *me], env=environment, check=True, capture_output=True)
+        except (OSError, subprocess.CalledProcessError) as error:
+            print(f"no instructions counted: {error}", file=sys.stderr)
+            return {}
+        # Dump i holds what ran before mark i; the first is the start-up, and each kernel has two.
+        sums = []
+        for i in range(2, 2 * len(names) + 2):
+            found = re.search(r"^(?:totals|summary): (\d+)", Path(folder, f"sums.{i}").read_text(), re.M)
+            assert found
+            sums.append(int(found[1]))
+    return {
+        name: (sums[2 * i + 1] - sums[2 * i]) / min(counts[i], COUNTED) for i, name in enumerate(names)
+    }  # fmt: skip
+
+
+def main() -> None:
+    runs = drivers()
+    counted = instructions(list(runs), [count for _, count, _ in runs.values()])
+    print("| kernel | counted by | time | instructions |\n|---|---|---|---|")
+    for name, (unit, count, run) in runs.items():
+        spent = 1e6 * seconds(count, run)
+        shown = f"{1000 * spent:.1f} ns" if spent < 1 else f"{spent:.1f} us"
+        print(
+            f"| `{name}` | {unit} | {shown} | {counted[name]:,.0f} |"
+            if counted
+            else f"| `{name}` | {unit} | {shown} | |"
+        )
+
+
+if __name__ == "__main__":
+    if sys.argv[1:2] == ["--marked"]:
+        marked()
+    else:
+        main()

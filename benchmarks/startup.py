@@ -1,0 +1,64 @@
+"""What compiling costs: a first-ever run with an empty cache of kernels, and runs after it.
+
+`python benchmarks/startup.py` prints a table of wall seconds: each entry point on its own in a fresh process, then
+`plan` whole. The input is one planar face, so that next to nothing but start-up is left.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+HEAD = "import time; from pathlib import Path; import numpy as np; one = np.zeros((1, 3, 3)); none = np.empty(0, np.int64)\n"
+
+#: What each process does; it prints its own seconds.
+ENTRIES = {
+    "import of the compiler": "import numba",
+    "tree.build": "from plan_cutters.kernels.tree import build; build(one)",
+    "search, probe, dummy_free": (
+        "from plan_cutters.kernels import search as s; from plan_cutters.kernels.tree import build\n"
+        "_, box, depth = build(one); p, c, n = np.zeros((1, 3)), np.zeros((1, 2)), np.zeros(1)\n"
+        "i, b = np.zeros(1, np.int32), np.zeros(1, np.uint8)\n"
+        "s.dummy_free(none, p, p, 1.0, 9.0, 0.01, one, box, depth, np.zeros(1, bool))\n"
+        "s.probe(none, p, p, p, p, 1.0, 9.0, n, one, box, depth, i)\n"
+        "s.search(none, p, p, p, c, n, n, 0.0, 1.5, np.zeros(3), -2.0, 1.0, 9.0, 0.01, 0.01, one, box, depth,"
+        " b, p, p, n, i, b)"
+    ),
+    "free_tilts": (
+        "from plan_cutters.kernels.maps import free_tilts; from plan_cutters.kernels.tree import build\n"
+        "_, box, depth = build(one); z = np.zeros(3)\n"
+        "free_tilts(z, z, z, 0.0, 1.5, 1.0, 9.0, 0.01, 0.1, one, box, depth, 9)"
+    ),
+    "plan of one plane": (
+        "from plan_cutters import Cutter, plan; import build123d as b\n"
+        "began = time.perf_counter()\n"
+        "plan(b.Face.make_rect(20, 20), cutters=[Cutter.flat(radius=2, length=30)], grid=3, jobs=1)"
+    ),
+}
+
+
+def seconds(body: str, cache: Path) -> float:
+    """Wall seconds of the body in a fresh process, the interpreter's own start left out."""
+    text = f"{HEAD}began = time.perf_counter()\n{body}\nprint(time.perf_counter() - began)"
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(cache)}
+    run = subprocess.run([sys.executable, "-c", text], env=environment, check=True, capture_output=True, text=True)
+    return float(run.stdout)
+
+
+def size(folder: Path) -> float:
+    return sum(f.stat().st_size for f in folder.rglob("*") if f.is_file()) / 1e6
+
+
+def main() -> None:
+    print("| entry point | first run s | later runs s (best of 3) | cache MB |\n|---|---|---|---|")
+    for name, body in ENTRIES.items():
+        with tempfile.TemporaryDirectory() as folder:
+            cache = Path(folder)
+            first = seconds(body, cache)
+            later = min(seconds(body, cache) for _ in range(3))
+            print(f"| {name} | {first:.1f} | {later:.2f} | {size(cache):.1f} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
