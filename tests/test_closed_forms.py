@@ -195,6 +195,11 @@ def test_a_hole_narrower_than_the_cutter_is_out_of_reach():
         assert witness.depth_mm is not None
         assert witness.depth_mm > 0.01
         assert witness.obstacle_face == "F1"
+        x, y, z = witness.obstacle_point
+        point = np.array([x, y, z])
+        axis = np.array(witness.best_posture.axis)
+        assert np.linalg.norm(point - np.array(witness.point)) < math.hypot(12, 60)
+        assert (point - np.array(witness.point)) @ axis > -1e-6, "below the cutter's bottom"
 
 
 def test_the_axis_limit_is_a_reason():

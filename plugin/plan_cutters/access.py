@@ -171,18 +171,34 @@ def _witness(
         if trial.verdict[0] == ACCESSIBLE:
             best, high = trial, depth
         elif best is None:
-            return Witness(row, reason, None, None, None, None, None)
+            return Witness(row, reason, None, None, None, None, None, None)
         else:
             low = depth
     triangle = np.full(1, -1, np.int32)
     probe(first, *geometry[:2], best.axis, best.lean, cutter.radius, cutter.length, np.array([low]),
           *obstacles.tree, triangle)  # fmt: skip
+    hit = int(triangle[0])
     return Witness(
         sample=row,
         reason=reason,
-        obstacle_face=obstacles.face(int(triangle[0])) if triangle[0] >= 0 else None,
+        obstacle_face=obstacles.face(hit) if hit >= 0 else None,
+        obstacle_point=_deepest(obstacles.tree[0][hit], *(x[0] for x in geometry[:2]), best, cutter)
+        if hit >= 0
+        else None,
         tilt=float(best.tilt[0]),
         rotation=float(postures.rotations[best.rotation[0]]),
         axis=best.axis[0],
         depth=high,
     )
+
+
+def _deepest(triangle: Floats, contact: Floats, normal: Floats, posture: Reach, cutter: Cutter) -> Floats:
+    """The point of a triangle that is deepest in the cutter, of 66."""
+    axis, x_t = posture.axis[0], np.cos(posture.tilt[0]) * posture.lean[0] - np.sin(posture.tilt[0]) * normal
+    share = np.array([(i, j, 10 - i - j) for i in range(11) for j in range(11 - i)]) / 10
+    points = share @ triangle
+    offset = points - (contact - cutter.radius * x_t)
+    height = offset @ axis
+    radial = np.linalg.norm(offset - height[:, None] * axis, axis=1)
+    depth = np.minimum(np.minimum(height, cutter.length - height), cutter.radius - radial)
+    return np.asarray(points[int(depth.argmax())])

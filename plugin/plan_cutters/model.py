@@ -114,6 +114,7 @@ class WitnessEntry(_Frozen):
     face: str
     reason: str
     obstacle_face: str | None
+    obstacle_point: Vector | None = Field(description="a point of that face in the cutter at the best posture")
     best_posture: Posture | None
     depth_mm: float | None = Field(description="how deep the part reaches into the cutter at the best posture")
 

@@ -424,6 +424,7 @@ def _witness_entry(witness: Witness, samples: SurfaceSamples) -> WitnessEntry:
         face=f"F{samples.face[witness.sample]}",
         reason=witness.reason,
         obstacle_face=None if witness.obstacle_face is None else f"F{witness.obstacle_face}",
+        obstacle_point=None if witness.obstacle_point is None else _vector(witness.obstacle_point),
         best_posture=posture,
         depth_mm=witness.depth,
     )

@@ -57,6 +57,8 @@ class Witness:
         One of REASONS.
     obstacle_face : int, optional
         Face that is in the way at that posture.
+    obstacle_point : (3,) float, optional
+        Point of it that lies in the cutter.
     tilt, rotation : float, optional
         rad; None where the axis limit leaves no posture at all.
     axis : (3,) float, optional
@@ -67,6 +69,7 @@ class Witness:
     sample: int
     reason: str
     obstacle_face: int | None
+    obstacle_point: Floats | None
     tilt: float | None
     rotation: float | None
     axis: Floats | None
