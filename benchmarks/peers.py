@@ -1,7 +1,7 @@
 """Posture verdicts beside those of collision libraries: how fast, and how often `safe` where the surface is too deep.
 
-`python benchmarks/peers.py [STEM] [SAMPLES] [SEED]` (`peaks_and_valleys`, 6, 1) prints a markdown table, in minutes. The peers are no
-dependencies of the project: `pip install python-fcl coal embreex`.
+`python benchmarks/peers.py [STEM] [SAMPLES] [SEED]` (`peaks_and_valleys`, 6, 1) prints a markdown table, in minutes.
+The peers are no dependencies of the project: `pip install python-fcl coal embreex`.
 
 Everyone decides 72 rotations x 90 tilts (0 to 89 deg) with R6L80 at the same random samples of a 201 x 201 grid,
 tolerance 0.01 mm, in one run, warm, on one thread. What favours the peers: the poses and the rays' directions are not in
