@@ -1,6 +1,6 @@
 """What compiling costs: a first-ever run with an empty cache of kernels, and runs after it.
 
-`python benchmarks/startup.py` prints a table of wall seconds: each entry point on its own in a fresh process, then
+`python benchmarks/startup.py` prints a table of processor seconds: each entry point on its own in a fresh process, then
 `plan` whole. The input is one planar face, so that next to nothing but start-up is left.
 """
 
@@ -32,15 +32,15 @@ ENTRIES = {
     ),
     "plan of one plane": (
         "from plan_cutters import Cutter, plan; import build123d as b\n"
-        "began = time.perf_counter()\n"
+        "began = time.process_time()\n"
         "plan(b.Face.make_rect(20, 20), cutters=[Cutter.flat(radius=2, length=30)], grid=3, jobs=1)"
     ),
 }
 
 
 def seconds(body: str, cache: Path) -> float:
-    """Wall seconds of the body in a fresh process, the interpreter's own start left out."""
-    text = f"{HEAD}began = time.perf_counter()\n{body}\nprint(time.perf_counter() - began)"
+    """Processor seconds of the body in a fresh process, the interpreter's own start left out."""
+    text = f"{HEAD}began = time.process_time()\n{body}\nprint(time.process_time() - began)"
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(cache)}
     run = subprocess.run([sys.executable, "-c", text], env=environment, check=True, capture_output=True, text=True)
     return float(run.stdout)

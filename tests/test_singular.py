@@ -35,7 +35,7 @@ SCRATCH = (np.empty((8, 3)), np.empty((8, 3)))
 PIECES = np.empty((64, 3, 3))
 
 #: Distances from a singular case: on it, an ulp off, and ever further.
-OFF = st.sampled_from([0.0, 1e-16, 1e-14, 1e-11, 1e-8, 1e-5, 1e-2]).flatmap(lambda x: st.sampled_from([x, -x]))
+OFF = st.sampled_from([0.0, 1e-16, 1e-14, 1e-10, 1e-8, 1e-5, 1e-2]).flatmap(lambda x: st.sampled_from([x, -x]))
 
 
 ANYWHERE = st.floats(-30, 30)
@@ -244,6 +244,20 @@ def test_a_triangle_hits_where_its_deepest_point_is_inside(case, tilt, seed):
         assert distance_to_triangle(np.array([px, py, height]), local) < 10 * allowed
     else:
         assert deepest_in_cylinder(local, radius - s, s, length - s) < allowed
+
+
+@pytest.mark.parametrize("deeper", [1e-11, 1e-9, 1e-6, -1e-11, -1e-9, -1e-6])
+def test_a_triangle_at_a_bound_hits_from_the_first_hair(deeper):
+    """Flat on the bottom, on the top, and upright along the wall."""
+    radius, length, s = 3.0, 9.0, 0.01
+    body, _, frame = stood(np.random.default_rng(0), 0.4, radius, length, s)
+    body[hit.P : hit.P + 3] = 0.0
+    disk = np.array([[0.0, 1, 0], [1, -1, 0], [-1, -1, 0]])
+    wall = np.array([[0.0, -1, 2], [0, 1, 2], [0, 0, 5]])
+    up, out = np.array([0, 0, 1]), np.array([1, 0, 0])
+    for local in (disk + (s + deeper) * up, disk + (length - s - deeper) * up, wall + (deeper + s - radius) * out):
+        triangle = np.ascontiguousarray(((local - radius * out) @ frame)[None])
+        assert hit.triangle_hit(triangle, 0, body, 0.0, *SCRATCH)[0] == (deeper > 0)
 
 
 @given(triangles_by_the_body(), st.floats(1e-6, 0.3), st.integers(0, 3))
