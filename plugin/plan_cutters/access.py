@@ -182,9 +182,9 @@ def _witness(
         sample=row,
         reason=reason,
         obstacle_face=obstacles.face(hit) if hit >= 0 else None,
-        obstacle_point=_deepest(obstacles.tree[0][hit], *(x[0] for x in geometry[:2]), best, cutter)
-        if hit >= 0
-        else None,
+        obstacle_point=None
+        if hit < 0
+        else _deepest(obstacles.tree[0][hit], samples.point[row], samples.normal[row], best, cutter),
         tilt=float(best.tilt[0]),
         rotation=float(postures.rotations[best.rotation[0]]),
         axis=best.axis[0],

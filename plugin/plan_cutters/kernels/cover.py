@@ -37,10 +37,20 @@ def _apart(box, i, body, half):  # type: ignore[no-untyped-def]
     along = dx * body[9] + dy * body[10] + dz * body[11]
     along -= min(half, max(-half, along))
     square = across * across + along * along
-    if square <= body[RADIUS] * body[RADIUS]:
-        return False
     if square > (body[RADIUS] + diagonal) ** 2:
         return True
+    # A plane across the box's thin side.
+    mx, my, mz = box[i, 9], box[i, 10], box[i, 11]
+    lean = mx * body[3] + my * body[4] + mz * body[5]
+    front = mx * body[6] + my * body[7] + mz * body[8]
+    aside = mx * body[9] + my * body[10] + mz * body[11]
+    middle = 0.5 * (body[LOW] + body[HIGH])
+    apart = abs(mx * dx + my * dy + mz * dz + body[OFFSET] * front - middle * lean)
+    wide = 0.5 * (body[HIGH] - body[LOW]) * abs(lean) + body[RADIUS] * np.sqrt(max(0.0, 1.0 - lean * lean))
+    if apart > wide + half * abs(aside) + box[i, 14] + 1e-9:
+        return True
+    if square <= body[RADIUS] * body[RADIUS]:
+        return False
     distance = np.sqrt(square)
     ux, uy = across / distance, along / distance
     reach = _half_width(

@@ -41,6 +41,17 @@ def _half_width(box, i, x, y, z):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def _thin_apart(box, i, body, low, high, radius, dx, dy, dz):  # type: ignore[no-untyped-def]
+    """Whether a plane across the box's third side, the thin one, parts it from the body."""
+    mx, my, mz = box[i, 9], box[i, 10], box[i, 11]
+    lean = mx * body[3] + my * body[4] + mz * body[5]
+    side = mx * body[6] + my * body[7] + mz * body[8]
+    apart = abs(mx * dx + my * dy + mz * dz + body[OFFSET] * side - 0.5 * (low + high) * lean)
+    reach = 0.5 * (high - low) * abs(lean) + radius * np.sqrt(max(0.0, 1.0 - lean * lean))
+    return apart > reach + box[i, 14] + 1e-9
+
+
+@kernel
 def _box_apart(box, i, body, rate):  # type: ignore[no-untyped-def]
     """True only if no point of box i lies in the body (separating slab along the axis, then across it)."""
     dx, dy, dz = box[i, 0] - body[0], box[i, 1] - body[1], box[i, 2] - body[2]
@@ -62,7 +73,7 @@ def _box_apart(box, i, body, rate):  # type: ignore[no-untyped-def]
     square = across * across + along * along
     radius = body[RADIUS] + grow
     if square <= radius * radius:
-        return False
+        return _thin_apart(box, i, body, low, high, radius, dx, dy, dz)
     if square > (radius + diagonal) * (radius + diagonal):
         return True
     distance = np.sqrt(square)
@@ -70,7 +81,7 @@ def _box_apart(box, i, body, rate):  # type: ignore[no-untyped-def]
     reach = _half_width(
         box, i, ux * body[6] + uy * body[9], ux * body[7] + uy * body[10], ux * body[8] + uy * body[11]
     )  # fmt: skip
-    return distance - reach > radius
+    return distance - reach > radius or _thin_apart(box, i, body, low, high, radius, dx, dy, dz)
 
 
 @kernel
