@@ -1,4 +1,4 @@
-"""Cells that are called served, against the exact surface: random contacts in them, random leans where any will do."""
+"""Cells that are called served, against the exact surface: random contacts in them."""
 
 import math
 from pathlib import Path
@@ -56,7 +56,7 @@ def deepest(found, geometry, whole, cutter, cloud, count, rng):
         contact, normal = (x[0] for x in geometry(face, uv[None])[:2])
         axis = cells.axis[row]
         across = normal - (normal @ axis) * axis
-        if cells.any_lean[row]:
+        if np.linalg.norm(across) < 1e-9:  # the axis is the normal: any side will do
             across = rng.standard_normal(3)
             across -= (across @ axis) * axis
         x_t = -across / np.linalg.norm(across)

@@ -44,16 +44,14 @@ class Cells:
     uv, span : (m, 2) float
         Middle and full extent in surface parameters; what of it lies in the trim counts.
     axis : (m, 3) float
-        Unit tool axis.
-    any_lean : (m,) bool
-        Interference-free: with this axis, every position of the cutter about the contact will do.
+        Unit tool axis `a`. At a contact with the normal n the cutter stands on the side that they give: its bottom
+        centre lies from the contact along `n - (n.a) a`.
     """
 
     face: Ints
     uv: Floats
     span: Floats
     axis: Floats
-    any_lean: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,13 +139,15 @@ def between(
     searching = _Search(cutter, machine, setup, postures, obstacles, tolerance, jobs)
     for grid in samples.grids:
         radius, wobble = _cells(samples, grid, tensor)
-        field = _Field(grid, samples, tensor, wobble)
+        by_sample = np.full(len(samples), np.nan)
+        by_sample[grid.index[grid.index >= 0]] = radius[grid.index >= 0]
+        field = _Field(grid, samples, tensor, wobble, by_sample)
         on = (grid.index >= 0) & judged[grid.index]
         rows = grid.index[on]
-        du, dv = (np.gradient(np.append(line, 2 * line[-1] - line[-2]) if closed else line)[: len(line)]
-                  for line, closed in ((grid.u, grid.closed_u), (grid.v, grid.closed_v)))  # fmt: skip
-        span = np.stack(np.broadcast_arrays(du[:, None], dv[None, :]), axis=-1)[on]
-        middle, span = _within(samples.uv[rows], span, grid)
+        middle, span = (
+            np.stack(np.broadcast_arrays(along_u[:, None], along_v[None, :]), axis=-1)[on]
+            for along_u, along_v in zip(_tiles(grid.u, grid.closed_u), _tiles(grid.v, grid.closed_v), strict=True)
+        )
         now = _Contacts(
             samples.point[rows], samples.normal[rows], samples.direction_max[rows], samples.curvature[rows],
             reach.axis[rows], reach.verdict[rows] == FREE, radius[on], np.argwhere(on).astype(np.int32),
@@ -158,8 +158,9 @@ def between(
         for level in range(_LEVELS + 1):
             good = searching.served(now, field, _ROOM[min(level, len(_ROOM) - 1)])
             served += float(now.area[good].sum())
-            found.append(Cells(np.full(int(good.sum()), grid.face, np.int32), now.middle[good], now.span[good],
-                               now.axis[good], now.flat[good]))  # fmt: skip
+            found.append(
+                Cells(np.full(int(good.sum()), grid.face, np.int32), now.middle[good], now.span[good], now.axis[good])
+            )
             now = now.of(~good)
             # Where the budget is short, the largest cells first, in the order of the grid.
             most = allowed // 4 if level < _LEVELS else 0
@@ -185,6 +186,7 @@ class _Field:
     samples: SurfaceSamples
     tensor: Floats
     wobble: Floats
+    radius: Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,7 +224,7 @@ class _Search:
 
         def work(piece: NDArray[np.int64]) -> None:
             cover(piece, contacts.point, contacts.normal, tensor, contacts.axis, contacts.flat, contacts.patch,
-                  contacts.home, grid.index, closed, samples.point, samples.normal, field.tensor, field.wobble,
+                  contacts.home, grid.index, closed, samples.point, samples.normal, field.tensor, field.wobble, field.radius,
                   grid.face, self.cutter.radius, self.cutter.length, safe, self.obstacles.triangles.chord_error,
                   vertex, self.obstacles.faces, box, depth, good)  # fmt: skip
 
@@ -286,13 +288,14 @@ def _cells(samples: SurfaceSamples, grid: FaceGrid, tensor: Floats) -> tuple[Flo
     return _radius(point, grid), by_sample
 
 
-def _within(uv: Floats, span: Floats, grid: FaceGrid) -> tuple[Floats, Floats]:
-    """Middles and spans of cells, cut off where the grid ends."""
-    low, high = uv - 0.5 * span, uv + 0.5 * span
-    for axis, (line, closed) in enumerate(((grid.u, grid.closed_u), (grid.v, grid.closed_v))):
-        if not closed:
-            low[:, axis], high[:, axis] = np.maximum(low[:, axis], line[0]), np.minimum(high[:, axis], line[-1])
-    return 0.5 * (low + high), high - low
+def _tiles(line: Floats, closed: bool) -> tuple[Floats, Floats]:
+    """Middles and spans of the cells along grid lines: half way to the next lines, or to the end."""
+    ends = [line[:1], line[-1:]]
+    if closed:
+        half = 0.5 * (line[-1] - line[-2])  # the last line's next one is the first, a turn later
+        ends = [line[:1] - half, line[-1:] + half]
+    borders = np.concatenate([ends[0], 0.5 * (line[1:] + line[:-1]), ends[1]])
+    return 0.5 * (borders[1:] + borders[:-1]), np.diff(borders)
 
 
 def _next(field: Floats, axis: int, closed: bool) -> Floats:

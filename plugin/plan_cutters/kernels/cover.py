@@ -124,28 +124,33 @@ def _stadium_hit(vertex, i, body, half, polygon, spare):  # type: ignore[no-unty
 
 
 @kernel
-def _near(vertex, triangle_face, i, p, n, face, reach, rise):  # type: ignore[no-untyped-def]
-    """Whether triangle i is part of the surface that the contact lies on, within `reach` of it."""
+def _near(vertex, triangle_face, i, p, n, f, t, face, near):  # type: ignore[no-untyped-def]
+    """Whether triangle i is part of the surface that the contact lies on, and bent no more than was believed.
+
+    `near` holds the distance up to which, the largest height over the tangent plane, the bounds of curvature along f,
+    along t and mixed, and the chord error.
+    """
     if triangle_face[i] != face:
         return False
     for corner in range(3):
         dx, dy, dz = vertex[i, corner, 0] - p[0], vertex[i, corner, 1] - p[1], vertex[i, corner, 2] - p[2]
         height = dx * n[0] + dy * n[1] + dz * n[2]
-        if dx * dx + dy * dy + dz * dz > reach * reach or abs(height) > rise:
+        if dx * dx + dy * dy + dz * dz > near[0] * near[0] or abs(height) > near[1]:
+            return False
+        x, y = dx * f[0] + dy * f[1] + dz * f[2], dx * t[0] + dy * t[1] + dz * t[2]
+        if height > 0.5 * (near[2] * x * x + near[3] * y * y) + near[4] * abs(x * y) + near[5]:
             return False
     v = vertex[i]
     ax, ay, az = v[1, 0] - v[0, 0], v[1, 1] - v[0, 1], v[1, 2] - v[0, 2]
     bx, by, bz = v[2, 0] - v[0, 0], v[2, 1] - v[0, 1], v[2, 2] - v[0, 2]
     x, y, z = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
     up = x * n[0] + y * n[1] + z * n[2]
-    # Triangles are turned as their face is, or the other way round for all of it: the sheet overhead of a fold
-    # is told by its height, far above `rise` unless it all but touches the contact, where nothing is accessible.
     return up * up >= 0.25 * (x * x + y * y + z * z)
 
 
 @kernel
 def _free_of_far(  # type: ignore[no-untyped-def]
-    body, half, p, n, face, reach, rise, vertex, triangle_face, box, depth, stack, polygon, spare
+    body, half, p, n, f, t, face, near, vertex, triangle_face, box, depth, stack, polygon, spare
 ):  # fmt: skip
     """True if no triangle that is not near reaches into the stadium body."""
     count, first, top = len(vertex), (1 << depth) - 1, 1
@@ -163,7 +168,7 @@ def _free_of_far(  # type: ignore[no-untyped-def]
         leaf = node - first
         for i in range((count * leaf) >> depth, (count * (leaf + 1)) >> depth):
             if _stadium_hit(vertex, i, body, half, polygon, spare) and not _near(
-                vertex, triangle_face, i, p, n, face, reach, rise
+                vertex, triangle_face, i, p, n, f, t, face, near
             ):
                 return False
     return True
@@ -189,21 +194,24 @@ def _held(sine, cosine, turn, k_ff, k_ft, k_tt, reach, radius):  # type: ignore[
 
 
 @kernel
-def _zone(p, n, f, t, h, home, index, closed, node_point, node_normal, node_tensor, node_wobble, most):  # type: ignore[no-untyped-def]
+def _zone(  # type: ignore[no-untyped-def]
+    p, n, f, t, h, home, index, closed, node_point, node_normal, node_tensor, node_wobble, node_radius, most
+):  # fmt: skip
     """Bounds of curvature over the nodes around a contact, into rows of `most` for growing distances.
 
     Row k holds, over all nodes whose cells come within distance k of any contact of the patch: the largest normal
-    curvature along f and t, the largest mixed term, the largest curvature and spread of curvatures, and the largest
-    distance between the nodes' normals and n. False if a node within the first distance has no curvature.
+    curvature along f and t, the largest mixed term, the largest curvature and spread of curvatures, the largest
+    distance between the nodes' normals and n, and the largest radius of a cell. Returns the distance up to which all
+    nodes were looked at; -1 if one within the first distance has no curvature, or there is none.
     """
     for k in range(_REACHES):
         most[k, 0], most[k, 1] = -np.inf, -np.inf
-        for c in range(2, 6):
+        for c in range(2, 7):
             most[k, c] = 0.0
     rows, columns = index.shape
     last = _REACHES - 1
     # Square rings of nodes about the home node, until a whole ring is too far.
-    ring = 0
+    ring, full = 0, np.inf
     while True:
         nearest = np.inf
         for i in range(home[0] - ring, home[0] + ring + 1):
@@ -222,15 +230,16 @@ def _zone(p, n, f, t, h, home, index, closed, node_point, node_normal, node_tens
                     square += (node_point[node, k] - p[k]) ** 2
                     angle += (node_normal[node, k] - n[k]) ** 2
                 distance = np.sqrt(square)
-                nearest = min(nearest, distance)
-                # The node's cell (of the home node's size) against a disk about any contact of the patch.
-                x = (distance / h - 2.0 - 2.0) / (REACH - 2.0)
+                # The node's cell against a disk about any contact of the patch.
+                away = distance - h - node_radius[node] if node_radius[node] >= 0.0 else distance - h
+                nearest = min(nearest, away)
+                x = (away / h - 2.0) / (REACH - 2.0)
                 if x > 1.0:
                     continue
                 row = 0 if x <= 0.0 else min(last, int(np.ceil(np.sqrt(x) * last)))
-                if np.isnan(node_wobble[node]):
+                if np.isnan(node_wobble[node]) or np.isnan(node_radius[node]):
                     if row == 0:
-                        return False
+                        return -1.0
                     most[row, 3] = np.inf
                     continue
                 # Second derivatives there of the surface as a graph over the tangent plane at the contact: f and t are
@@ -241,6 +250,8 @@ def _zone(p, n, f, t, h, home, index, closed, node_point, node_normal, node_tens
                     lift_f -= node_normal[node, k] * f[k]
                     lift_t -= node_normal[node, k] * t[k]
                 if upright < 0.5:
+                    if row == 0:
+                        return -1.0
                     most[row, 3] = np.inf
                     continue
                 lift_f /= upright
@@ -263,19 +274,23 @@ def _zone(p, n, f, t, h, home, index, closed, node_point, node_normal, node_tens
                 most[row, 3] = max(most[row, 3], 0.5 * (abs(trace) + spread) + wobble)
                 most[row, 4] = max(most[row, 4], spread + 2.0 * wobble)
                 most[row, 5] = max(most[row, 5], np.sqrt(angle))
+                most[row, 6] = max(most[row, 6], node_radius[node])
         ring += 1
-        if nearest > (REACH + 2.0) * h or ring > _RINGS:
+        if nearest > REACH * h:
+            break
+        if ring > _RINGS:
+            full = nearest
             break
     for k in range(1, _REACHES):
-        for c in range(6):
+        for c in range(7):
             most[k, c] = max(most[k, c], most[k - 1, c])
-    return True
+    return full if most[0, 6] > 0.0 else -1.0
 
 
 @kernel
 def cover(  # type: ignore[no-untyped-def]
     rows, point, normal, tensor, axis, free, patch, home, index, closed,
-    node_point, node_normal, node_tensor, node_wobble, face,
+    node_point, node_normal, node_tensor, node_wobble, node_radius, face,
     radius, length, safe, chord, vertex, triangle_face, box, depth, covered,
 ):  # fmt: skip
     """Decide for contacts on one face whether their axis serves every contact within a patch about them.
@@ -299,6 +314,8 @@ def cover(  # type: ignore[no-untyped-def]
     node_tensor : (k, 3, 3) float64
     node_wobble : (k,) float64
         How far the tensor may differ in the node's cell, 1/mm; nan where it is not known.
+    node_radius : (k,) float64
+        Of the node's cell, mm; nan where it is not known.
     face : int
         Number of the face.
     radius, length, safe, chord : float
@@ -310,7 +327,7 @@ def cover(  # type: ignore[no-untyped-def]
     body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
     stack = np.empty(64, np.int64)
     polygon, spare = np.empty((8, 3)), np.empty((8, 3))
-    most = np.empty((_REACHES, 6))
+    most, near = np.empty((_REACHES, 7)), np.empty(6)
     for row in rows:
         covered[row] = False
         p, n, a, h, flat = point[row], normal[row], axis[row], patch[row], free[row]
@@ -335,11 +352,13 @@ def cover(  # type: ignore[no-untyped-def]
         for k in range(3):
             f[k] /= size
         t[0], t[1], t[2] = n[1] * f[2] - n[2] * f[1], n[2] * f[0] - n[0] * f[2], n[0] * f[1] - n[1] * f[0]
-        if not _zone(p, n, f, t, h, home[row], index, closed, node_point, node_normal, node_tensor, node_wobble, most):
+        full = _zone(p, n, f, t, h, home[row], index, closed, node_point, node_normal, node_tensor, node_wobble,
+                     node_radius, most)  # fmt: skip
+        if full < 0.0:
             continue
         # How far the normal turns within the patch, and how far the surface leaves the tangent plane.
         turn, lift = 1.05 * most[0, 3] * h, 0.55 * most[0, 3] * h * h
-        if turn > 0.2 or (not flat and (sine <= 2.0 * turn or cosine <= 2.0 * turn)):
+        if not turn <= 0.2 or (not flat and (sine <= 2.0 * turn or cosine <= 2.0 * turn)):
             continue
         # How far the cutter turns about its axis within the patch, in all and beside what follows from the curvature
         # at the contact.
@@ -350,15 +369,17 @@ def cover(  # type: ignore[no-untyped-def]
                     k_ft += tensor[row, k, m] * f[k] * t[m]
                     k_tt += tensor[row, k, m] * t[k] * t[m]
             wobble = node_wobble[index[home[row, 0], home[row, 1]]]
-            beside = (wobble * h + 0.5 * turn * turn + turn * turn / (sine - turn)) / (sine - turn)
+            beside = (2.0 * wobble * h + 0.5 * turn * turn + turn * turn / (sine - turn)) / (sine - turn)
             psi = min(turn / (sine - turn), (abs(k_tt) + abs(k_ft)) * h / sine + beside)
         # The largest distance up to which curvature alone keeps surface and cutter apart.
-        reach, rise = 0.0, 0.0
+        reach = 0.0
         for step in range(_REACHES):
             distance = h * (2.0 + (REACH - 2.0) * (step / (_REACHES - 1)) ** 2)
             whole = most[step, 3]
+            if distance > full:
+                break
             # Between nodes and between contacts normals turn some more than from node to node.
-            more = 2.1 * whole * h
+            more = 1.05 * whole * (h + most[step, 6])
             steep = 1.05 * most[step, 5] + more
             if not steep <= _MOST_TURN:
                 break
@@ -366,17 +387,19 @@ def cover(  # type: ignore[no-untyped-def]
             extra = 1.3 * whole * more * (3.5 * tangent + 2.0 * more)
             if flat:
                 top = 0.5 * (most[step, 0] + most[step, 1]) + 0.5 * most[step, 4] + extra
-                if 0.5 * max(0.0, top) * distance * distance > safe:
+                if not 0.5 * max(0.0, top) * distance * distance <= safe:
                     break
+                near[2], near[3], near[4] = top, top, 0.0
             else:
                 extra += 1.05 * most[step, 4] * (psi + turn * turn)
                 if not _held(sine, cosine, turn, most[step, 0] + extra, most[step, 2], most[step, 1] + extra,
                              distance, radius):  # fmt: skip
                     break
+                near[2], near[3], near[4] = most[step, 0] + extra, most[step, 1] + extra, most[step, 2]
             reach = distance
-            rise = 0.6 * whole * distance * distance + chord
-        inner = reach - h - chord
-        if inner <= 0.0:
+            near[1] = 0.6 * whole * distance * distance + chord
+        near[0], near[5] = reach - h - chord, chord + 1e-9
+        if not near[0] > 0.0:
             continue
         for k in range(3):
             body[A + k] = a[k]
@@ -387,8 +410,8 @@ def cover(  # type: ignore[no-untyped-def]
                 body[P + k] = p[k]
             body[OFFSET], body[RADIUS] = 0.0, 2.0 * radius + h - safe
             body[LOW], body[HIGH] = safe - lift, length - safe + lift
-            covered[row] = _free_of_far(body, 0.0, p, n, face, inner, rise, vertex, triangle_face, box, depth,
-                                        stack, polygon, spare)  # fmt: skip
+            covered[row] = _free_of_far(body, 0.0, p, n, f, t, face, near, vertex, triangle_face, box, depth, stack,
+                                        polygon, spare)  # fmt: skip
             continue
         grow = 0.5 * radius * psi * psi + lift
         slide = radius * k_ft / sine
@@ -404,8 +427,8 @@ def cover(  # type: ignore[no-untyped-def]
                 body[RADIUS] = radius - safe + grow + wide * cosine
                 body[LOW] = safe - grow - wide * sine
                 body[HIGH] = length - safe + grow + wide * sine
-                if not _free_of_far(body, half, p, n, face, inner, rise, vertex, triangle_face, box, depth,
-                                    stack, polygon, spare):  # fmt: skip
+                if not _free_of_far(body, half, p, n, f, t, face, near, vertex, triangle_face, box, depth, stack,
+                                    polygon, spare):  # fmt: skip
                     good = False
                     break
             if good:

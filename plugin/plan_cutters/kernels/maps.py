@@ -403,6 +403,24 @@ def _cut_gaps(  # type: ignore[no-untyped-def]
                 count += 1
             continue
         corners = 0
+        # A side or the middle of the triangle sticks out a little further than its corners.
+        shift, trimmed = narrowest, False
+        while shift <= 2.0 * narrowest and not trimmed:
+            c, s = np.cos(a + shift), np.sin(a + shift)
+            if a + shift < b and _passes(corner, c, s, cb, sb, radius, shrunk, low, high, first, second):
+                gap[g, 0], gap[g, 2], gap[g, 3], gap[g, _UF] = a + shift, c, s, gap[g, _UF] + shift
+                trimmed = True
+                continue
+            c, s = np.cos(b - shift), np.sin(b - shift)
+            if b - shift > a and _passes(corner, ca, sa, c, s, radius, shrunk, low, high, first, second):
+                gap[g, 1], gap[g, 4], gap[g, 5], gap[g, _UL] = b - shift, c, s, gap[g, _UL] + shift
+                trimmed = True
+                continue
+            shift *= 2.0
+        if trimmed:
+            cut = True
+            g += 1
+            continue
         left = _first_in_the_way(vertex, i, p, n, f, t, a, b, 1.0, narrowest, radius, shrunk, low, high, scratch)
         if np.isnan(left):
             g += 1

@@ -54,6 +54,18 @@ def _bound(vertex, order, lo, hi, box):  # type: ignore[no-untyped-def]
         for k in range(3):
             mean[k] += side * normal[k]
     size = np.sqrt(mean[0] ** 2 + mean[1] ** 2 + mean[2] ** 2)
+    if size < 1e-100 and hi - lo > 2:
+        # Points have no normals: the plane through them, then.
+        o = vertex[order[lo], 0]
+        for i in range(lo + 1, hi - 1):
+            v, w = vertex[order[i], 0], vertex[order[i + 1], 0]
+            ax, ay, az = v[0] - o[0], v[1] - o[1], v[2] - o[2]
+            bx, by, bz = w[0] - o[0], w[1] - o[1], w[2] - o[2]
+            normal[0], normal[1], normal[2] = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+            side = 1.0 if normal[0] * mean[0] + normal[1] * mean[1] + normal[2] * mean[2] >= 0.0 else -1.0
+            for k in range(3):
+                mean[k] += side * normal[k]
+        size = np.sqrt(mean[0] ** 2 + mean[1] ** 2 + mean[2] ** 2)
     if size < 1e-100:
         mean[0], mean[1], mean[2] = 0.0, 0.0, 1.0
     else:
