@@ -120,6 +120,21 @@ def test_more_budget_never_serves_less_and_threads_do_not_matter():
     assert shares[0] < shares[-1]
 
 
+def test_leans_too_small_to_know_their_side_serve_no_cell():
+    """A ridge beside a wall, tilts of a quarter degree: within a cell the cutter would swing over to the wall."""
+    x, y = np.meshgrid(np.linspace(-6, 6, 11), np.linspace(0, 12, 5), indexing="ij")
+    ridge = shapes.Patch(np.stack([x, y, 30 * np.cos(x / 30) - 30], axis=-1)).face()
+    part = read_part(shapes.shell(ridge, shapes.plane((-10, 22), (-3, 20), (9, 0, 0), (-1, 0, 0), (0, 1, 0))))
+    cutter = Cutter.flat(radius=5.0, length=30.0)
+    turn = math.pi / 2
+    for low, high in ((0.1, 0.4), (0.5, 20.0)):
+        found, geometry, whole = served(part, cutter, budget=20_000, spacing=4.0, faces="1", rotation=(turn, turn + 0.01),
+                                        tilt=(math.radians(low), math.radians(high)))  # fmt: skip
+        if len(found.cells.face):
+            assert deepest(found, geometry, whole, cutter, dense(whole, 0.4), 400, np.random.default_rng(0)) < 0.01
+        assert low > 0.4 or found.share == 0
+
+
 def test_what_a_wall_hides_between_samples_is_not_served():
     """A thin rib between two rows of samples: no cell next to it may be called served by an axis that hits it."""
     rng = np.random.default_rng(5)
