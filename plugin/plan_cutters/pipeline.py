@@ -320,7 +320,10 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
         cutters=entries,
         selected=selected,
         selection=selection,
-        notes=_notes(whole, orientation, options, tolerance, samples, triangles.missing),
+        notes=[
+            *_notes(whole, orientation, options, tolerance, samples, triangles.missing),
+            *_area_notes(entries),
+        ],
         legend=PALETTE,
         run=Run(time=started.isoformat(timespec="seconds"), seconds=clock.seconds),
     )
@@ -504,8 +507,7 @@ def _notes(
 ) -> list[str]:  # fmt: skip
     notes = [
         "Cutters are flat ends, judged as solid cylinders of their length, without a holder.",
-        f"Verdicts are about samples; the largest gap between neighbouring samples is {samples.max_gap:.3g} mm. "
-        "`area` of the selected cutter is about the surface between them.",
+        f"Verdicts are about samples; the largest gap between neighbouring samples is {samples.max_gap:.3g} mm.",
     ]
     if options.machine.tilt_limit is None:
         notes.append("No machine was given: any tool axis counts as possible.")
@@ -518,6 +520,18 @@ def _notes(
         )
     notes += [f"F{number} is not an obstacle: {reason}." for number, reason in missing]
     return notes
+
+
+def _area_notes(entries: Sequence[CutterEntry]) -> Iterator[str]:
+    for entry in entries:
+        if entry.area and not entry.area.feasible:
+            yield (
+                f"{entry.id} reaches every sample, but not all of the surface between them was shown to be served: "
+                f"{entry.area.left} contacts were left when the budget of {entry.area.contacts} ended, or no posture "
+                "serves a whole cell there. Sample more finely, or give a larger --area-budget."
+            )
+        elif entry.area:
+            yield f"{entry.id} serves all of the target surface, as far as curvature between grid nodes is known."
 
 
 def _versions() -> dict[str, str]:
