@@ -1,4 +1,4 @@
-"""All free tilts at one rotation, with certified ends.
+"""All free tilts at a rotation, with certified ends: at one point by ranges (`free_tilts`), at all samples in one walk each.
 
 A range of tilts is free if the body, widened by half the range times the distance from the contact, is missed at the
 middle. Where the middle itself is blocked, the point in the way forbids an arc; where only the widened body is, the
@@ -8,7 +8,7 @@ range is halved. Ranges narrower than `narrowest` stay undecided.
 import numpy as np
 
 from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
-from plan_cutters.kernels.hit import BODY, _swept_hit, stand, tree_hit, triangle_hit
+from plan_cutters.kernels.hit import BODY, _half_width, _swept_hit, stand, tree_hit, triangle_hit
 from plan_cutters.kernels.jit import kernel
 from plan_cutters.kernels.search import remove
 
@@ -259,15 +259,6 @@ def _passes(corner, cf, sf, cl, sl, radius, shrunk, low, high, first, second):  
 
 
 @kernel
-def _reach_along(box, i, x, y, z):  # type: ignore[no-untyped-def]
-    return (
-        box[i, 12] * abs(x * box[i, 3] + y * box[i, 4] + z * box[i, 5])
-        + box[i, 13] * abs(x * box[i, 6] + y * box[i, 7] + z * box[i, 8])
-        + box[i, 14] * abs(x * box[i, 9] + y * box[i, 10] + z * box[i, 11])
-    )
-
-
-@kernel
 def _box_passes(box, i, p, n, f, t, gap, count, radius, shrunk, low, high):  # type: ignore[no-untyped-def]
     """True only if no point of box i enters the body at any tilt of any gap, by one side for each gap."""
     dx, dy, dz = box[i, 0] - p[0], box[i, 1] - p[1], box[i, 2] - p[2]
@@ -277,7 +268,7 @@ def _box_passes(box, i, p, n, f, t, gap, count, radius, shrunk, low, high):  # t
     diagonal = box[i, 15]
     if abs(y) >= shrunk + diagonal:
         return True
-    if abs(y) > shrunk and abs(y) - _reach_along(box, i, t[0], t[1], t[2]) >= shrunk:
+    if abs(y) > shrunk and abs(y) - _half_width(box, i, t[0], t[1], t[2]) >= shrunk:
         return True
     mx, my, mz = box[i, 9], box[i, 10], box[i, 11]
     mf = mx * f[0] + my * f[1] + mz * f[2]
@@ -294,12 +285,12 @@ def _box_passes(box, i, p, n, f, t, gap, count, radius, shrunk, low, high):  # t
         if _above(mf, mt, mn, top_plane, c, s, gap[g, _CL], gap[g, _SL], radius, shrunk):
             continue
         ax, ay, az = c * n[0] + s * f[0], c * n[1] + s * f[1], c * n[2] + s * f[2]
-        top = height + _reach_along(box, i, ax, ay, az) if height <= low else np.inf
+        top = height + _half_width(box, i, ax, ay, az) if height <= low else np.inf
         if top <= 0.0:
             continue
         bx, by, bz = c * f[0] - s * n[0], c * f[1] - s * n[1], c * f[2] - s * n[2]
         across = c * x - s * z
-        if top <= low and across + _reach_along(box, i, bx, by, bz) <= 0.0:
+        if top <= low and across + _half_width(box, i, bx, by, bz) <= 0.0:
             continue
         across += radius
         if across < 0.0:
@@ -309,7 +300,7 @@ def _box_passes(box, i, p, n, f, t, gap, count, radius, shrunk, low, high):  # t
                     continue
                 ux, uy = across / distance, y / distance
                 if (
-                    distance - _reach_along(box, i, ux * bx + uy * t[0], ux * by + uy * t[1], ux * bz + uy * t[2])
+                    distance - _half_width(box, i, ux * bx + uy * t[0], ux * by + uy * t[1], ux * bz + uy * t[2])
                     >= shrunk
                 ):
                     continue
@@ -317,7 +308,7 @@ def _box_passes(box, i, p, n, f, t, gap, count, radius, shrunk, low, high):  # t
         height = c * z + s * x
         if height - diagonal >= high:
             continue
-        if height < diagonal and (height < 0.0 or height < _reach_along(
+        if height < diagonal and (height < 0.0 or height < _half_width(
             box, i, c * n[0] + s * f[0], c * n[1] + s * f[1], c * n[2] + s * f[2]
         )):  # fmt: skip
             return False
@@ -330,7 +321,7 @@ def _box_passes(box, i, p, n, f, t, gap, count, radius, shrunk, low, high):  # t
                 bx, by, bz = c * f[0] - s * n[0], c * f[1] - s * n[1], c * f[2] - s * n[2]
                 ux, uy = across / distance, y / distance
                 if (
-                    distance - _reach_along(box, i, ux * bx + uy * t[0], ux * by + uy * t[1], ux * bz + uy * t[2])
+                    distance - _half_width(box, i, ux * bx + uy * t[0], ux * by + uy * t[1], ux * bz + uy * t[2])
                     >= shrunk
                 ):
                     continue
@@ -407,12 +398,20 @@ def _cut_gaps(  # type: ignore[no-untyped-def]
         shift, trimmed = narrowest, False
         while shift <= 2.0 * narrowest and not trimmed:
             c, s = np.cos(a + shift), np.sin(a + shift)
-            if a + shift < b and _passes(corner, c, s, cb, sb, radius, shrunk, low, high, first, second):
+            if (
+                gap[g, _UF] + shift <= 3.0 * narrowest
+                and a + shift < b
+                and _passes(corner, c, s, cb, sb, radius, shrunk, low, high, first, second)
+            ):
                 gap[g, 0], gap[g, 2], gap[g, 3], gap[g, _UF] = a + shift, c, s, gap[g, _UF] + shift
                 trimmed = True
                 continue
             c, s = np.cos(b - shift), np.sin(b - shift)
-            if b - shift > a and _passes(corner, ca, sa, c, s, radius, shrunk, low, high, first, second):
+            if (
+                gap[g, _UL] + shift <= 3.0 * narrowest
+                and b - shift > a
+                and _passes(corner, ca, sa, c, s, radius, shrunk, low, high, first, second)
+            ):
                 gap[g, 1], gap[g, 4], gap[g, 5], gap[g, _UL] = b - shift, c, s, gap[g, _UL] + shift
                 trimmed = True
                 continue
