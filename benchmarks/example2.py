@@ -20,6 +20,7 @@ from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Machine, plan
 from plan_cutters.access import access
 from plan_cutters.classify import CONVEX, regions
+from plan_cutters.conditions import Conditions
 from plan_cutters.decompose import decompose
 from plan_cutters.obstacles import Obstacles
 from plan_cutters.posture import PostureRange
@@ -36,18 +37,19 @@ def seconds(*words: str) -> float:
     return time.perf_counter() - began
 
 
+def given(obstacles: Obstacles, postures: PostureRange) -> Conditions:
+    return Conditions(Machine(), np.array([0.0, 0.0, 1.0]), postures, obstacles, TOLERANCE, jobs=2)
+
+
 def existence(result: Any, obstacles: Obstacles, cutter: Cutter) -> tuple[float, float, int]:
     """Best wall and processor seconds of dummy tests and search, and samples not reached."""
     samples, best = result.samples, [np.inf, np.inf]
     region = regions(samples, result.surface_class)
-    how: dict[str, Any] = {
-        "machine": Machine(), "setup": np.array([0.0, 0.0, 1.0]), "postures": PostureRange(), "obstacles": obstacles,
-        "tolerance": TOLERANCE, "jobs": 2,
-    }  # fmt: skip
+    conditions = given(obstacles, PostureRange())
     for _ in range(BEST_OF):
         wall, processor = time.perf_counter(), time.process_time()
-        free = decompose(samples, result.surface_class == CONVEX, region, cutter, **how).free
-        reach = access(samples, free, cutter, **how)
+        free = decompose(samples, result.surface_class == CONVEX, region, cutter, conditions).free
+        reach = access(samples, free, cutter, conditions)
         best = [min(best[0], time.perf_counter() - wall), min(best[1], time.process_time() - processor)]
     return best[0], best[1], int((~reach.reached).sum())
 
@@ -55,10 +57,7 @@ def existence(result: Any, obstacles: Obstacles, cutter: Cutter) -> tuple[float,
 def all_maps(result: Any, obstacles: Obstacles, cutter: Cutter) -> None:
     """Posture maps of all samples at 72 rotations."""
     wall, processor = time.perf_counter(), time.process_time()
-    maps = posture_maps(
-        result.samples, cutter, machine=Machine(), setup=np.array([0.0, 0.0, 1.0]),
-        postures=PostureRange(step=np.radians(5)), obstacles=obstacles, tolerance=TOLERANCE, jobs=2,
-    )  # fmt: skip
+    maps = posture_maps(result.samples, cutter, given(obstacles, PostureRange(step=np.radians(5))))
     wide = np.degrees(maps.undecided)
     print(f"posture maps, {wide.shape[1]} rotations: {time.perf_counter() - wall:.1f} s "
           f"(processor {time.process_time() - processor:.1f}), {len(maps.free)} intervals")  # fmt: skip

@@ -36,6 +36,7 @@ def one(grid: int, chord: float) -> dict[str, float]:
     from plan_cutters import Cutter
     from plan_cutters.access import access
     from plan_cutters.classify import CONVEX, classify, regions
+    from plan_cutters.conditions import Conditions
     from plan_cutters.decompose import decompose
     from plan_cutters.machine import Machine
     from plan_cutters.obstacles import Obstacles
@@ -49,13 +50,11 @@ def one(grid: int, chord: float) -> dict[str, float]:
         kind = classify(samples, float(np.linalg.norm(part.size)))
         region = regions(samples, kind)
         before.append(peak())
-        shared = {
-            "machine": Machine(), "setup": np.array([0.0, 0.0, 1.0]), "postures": PostureRange(),
-            "obstacles": obstacles, "tolerance": max(TOLERANCE, 4 * obstacles.triangles.chord_error), "jobs": JOBS,
-        }  # fmt: skip
+        tolerance = max(TOLERANCE, 4 * obstacles.triangles.chord_error)
+        conditions = Conditions(Machine(), np.array([0.0, 0.0, 1.0]), PostureRange(), obstacles, tolerance, JOBS)
         began = time.perf_counter(), time.process_time()
-        free = decompose(samples, kind == CONVEX, region, cutter, **shared).free
-        reach = access(samples, free, cutter, **shared)
+        free = decompose(samples, kind == CONVEX, region, cutter, conditions).free
+        reach = access(samples, free, cutter, conditions)
         return time.perf_counter() - began[0], time.process_time() - began[1], int(reach.reached.sum())
 
     before: list[float] = []

@@ -40,6 +40,7 @@ from cad_io.sample import sample
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter
 from plan_cutters.access import access
+from plan_cutters.conditions import Conditions
 from plan_cutters.faces import select_faces
 from plan_cutters.kernels.maps import free_map
 from plan_cutters.kernels.points import local_gouge_bound
@@ -403,11 +404,8 @@ def existence(samples: SurfaceSamples, obstacles: Obstacles) -> str:
     none = np.zeros(len(samples), bool)
     found = []
     for jobs, clock in CLOCKS.items():
-        reach, seconds = timed(
-            lambda jobs=jobs: access(
-                samples, none, CUTTER, machine=Machine(), setup=np.array([0.0, 0.0, 1.0]), postures=postures,
-                obstacles=obstacles, tolerance=TOLERANCE, jobs=jobs,
-            ), 3, clock)  # fmt: skip
+        conditions = Conditions(Machine(), np.array([0.0, 0.0, 1.0]), postures, obstacles, TOLERANCE, jobs)
+        reach, seconds = timed(lambda given=conditions: access(samples, none, CUTTER, given), 3, clock)
         found.append(f"{len(samples) / seconds:.3g} samples/s on {jobs} thread(s)")
     reached = f"{int(reach.reached.sum())} of {len(samples)} samples reached"
     return f"\nOurs, existence of a posture, 72 rotations: {', '.join(found)}; {reached}."

@@ -14,6 +14,7 @@ from cad_io.sample import sample
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Machine, plan
 from plan_cutters.between import between
+from plan_cutters.conditions import Conditions
 from plan_cutters.obstacles import Obstacles
 
 SAMPLES = Path(__file__).parent.parent / "samples"
@@ -31,8 +32,9 @@ def served(part, cutter, *, budget, tolerance=0.01, chord=None, **how):
         return point, shape.normal, shape.direction_max, shape.curvature
 
     found = between(
-        samples, result.reaches[cutter.id], cutter, geometry, machine=Machine(), setup=UP, postures=result.postures,
-        obstacles=Obstacles(tessellate(whole, chord or 0.2 * tolerance)), tolerance=tolerance, jobs=2, budget=budget,
+        samples, result.reaches[cutter.id], cutter, geometry,
+        Conditions(Machine(), UP, result.postures, Obstacles(tessellate(whole, chord or 0.2 * tolerance)), tolerance, 2),
+        budget=budget,
     )  # fmt: skip
     return found, geometry, whole
 

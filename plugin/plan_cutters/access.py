@@ -1,13 +1,13 @@
 """Is the cutter accessible? The seed's second phase: a posture, or why there is none, at every prone sample."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, SurfaceSamples
+from plan_cutters.conditions import Conditions, Geometry, search_postures
 from plan_cutters.cutter import Cutter
-from plan_cutters.machine import Machine
-from plan_cutters.obstacles import Obstacles
-from plan_cutters.posture import PostureRange
 from plan_cutters.reach import ACCESSIBLE, FREE, INACCESSIBLE, REASONS, UNDECIDED, UNJUDGED, Reach, Witness, blank
 from plan_cutters.threads import Progress, in_chunks
 
@@ -16,13 +16,8 @@ def access(
     samples: SurfaceSamples,
     free: NDArray[np.bool_],
     cutter: Cutter,
+    conditions: Conditions,
     *,
-    machine: Machine,
-    setup: Floats,
-    postures: PostureRange,
-    obstacles: Obstacles,
-    tolerance: float,
-    jobs: int,
     known: Reach | None = None,
     progress: Progress | None = None,
 ) -> Reach:
@@ -33,13 +28,7 @@ def access(
     samples : SurfaceSamples
     free : (n,) bool
         Interference-free samples, as `decompose` gives them.
-    cutter, machine, postures, obstacles
-    setup : (3,) float
-        Unit setup axis.
-    tolerance : float
-        mm.
-    jobs : int
-        Threads.
+    cutter, conditions
     known : Reach, optional
         What follows from other cutters (`nesting.handed`): those samples are not searched again.
     progress : callable, optional
@@ -59,51 +48,22 @@ def access(
         follows = wanted & (known.verdict != UNJUDGED)
         for name in Reach.__slots__:
             getattr(reach, name)[follows] = getattr(known, name)[follows]
-        _first_reasons(geometry, np.flatnonzero(follows & (known.verdict == INACCESSIBLE)), cutter, machine, setup,
-                       postures, jobs, reach)  # fmt: skip
+        _first_reasons(
+            geometry, np.flatnonzero(follows & (known.verdict == INACCESSIBLE)), cutter, conditions, reach.reason
+        )
         wanted &= ~follows
-    _search(geometry, np.flatnonzero(wanted), cutter, machine, setup, postures, obstacles,
-            obstacles.depths(tolerance), jobs, reach, progress)  # fmt: skip
+    search_postures(geometry, np.flatnonzero(wanted), cutter, conditions, conditions.depths, reach, progress)
     return reach
 
 
 def _first_reasons(
-    geometry: tuple[Floats, Floats, Floats, Floats], rows: NDArray[np.int64], cutter: Cutter, machine: Machine,
-    setup: Floats, postures: PostureRange, jobs: int, reach: Reach,
-) -> None:  # fmt: skip
+    geometry: Geometry, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, reason: NDArray[np.uint8]
+) -> None:
     """Where the axis limit or local gouging alone leaves this cutter nothing, that is the reason."""
     from plan_cutters.kernels.search import first_reason
 
-    cosine, sine = np.cos(postures.rotations), np.sin(postures.rotations)
-    low, high = max(0.0, postures.tilt[0]), min(np.pi / 2, postures.tilt[1])
-
-    def work(piece: NDArray[np.int64]) -> None:
-        first_reason(piece, *geometry[1:], cosine, sine, low, high, setup, machine.limit_cos, cutter.radius,
-                     reach.reason)  # fmt: skip
-
-    in_chunks(work, rows, jobs)
-
-
-def _search(
-    geometry: tuple[Floats, Floats, Floats, Floats], rows: NDArray[np.int64], cutter: Cutter, machine: Machine,
-    setup: Floats, postures: PostureRange, obstacles: Obstacles, depths: tuple[float, float], jobs: int,
-    reach: Reach, progress: Progress | None = None,
-) -> None:  # fmt: skip
-    from plan_cutters.kernels.search import search
-
-    rotations = postures.rotations
-    cosine, sine = np.cos(rotations), np.sin(rotations)
-    low, high = max(0.0, postures.tilt[0]), min(np.pi / 2, postures.tilt[1])
-
-    def work(piece: NDArray[np.int64]) -> None:
-        search(
-            piece, *geometry,
-            cosine, sine, low, high, setup, machine.limit_cos,
-            cutter.radius, cutter.length, *depths, *obstacles.tree,
-            reach.verdict, reach.axis, reach.lean, reach.tilt, reach.rotation, reach.reason,
-        )  # fmt: skip
-
-    in_chunks(work, rows, jobs, progress)
+    ranges = conditions.ranges
+    in_chunks(lambda piece: first_reason(piece, *geometry[1:], *ranges, cutter.radius, reason), rows, conditions.jobs)
 
 
 #: Witnesses kept for each face and reason, and samples tried to find them, in all.
@@ -112,18 +72,7 @@ _KEPT, _TRIED, _TRIED_IN_ALL = 2, 6, 60
 _PRECISION = 0.02
 
 
-def witnesses(
-    samples: SurfaceSamples,
-    reach: Reach,
-    cutter: Cutter,
-    *,
-    machine: Machine,
-    setup: Floats,
-    postures: PostureRange,
-    obstacles: Obstacles,
-    tolerance: float,
-    jobs: int,
-) -> tuple[Witness, ...]:
+def witnesses(samples: SurfaceSamples, reach: Reach, cutter: Cutter, conditions: Conditions) -> tuple[Witness, ...]:
     """Samples that are not reached, the deepest tried of each face and reason first."""
     lost = np.flatnonzero((reach.verdict == INACCESSIBLE) | (reach.verdict == UNDECIDED))
     groups: dict[tuple[int, int], list[int]] = {}
@@ -134,12 +83,13 @@ def witnesses(
         [group[i] for i in np.unique(np.linspace(0, len(group) - 1, tries).astype(int))] for group in groups.values()
     ]
     looked: dict[int, Witness] = {}
+    alone = replace(conditions, jobs=1)
 
     def work(rows: NDArray[np.int64]) -> None:
         for row in rows.tolist():
-            looked[row] = _witness(samples, row, reach, cutter, machine, setup, postures, obstacles, tolerance)
+            looked[row] = _witness(samples, row, reach, cutter, alone)
 
-    in_chunks(work, np.array([row for group in picked for row in group], np.int64), jobs, chunk=1)
+    in_chunks(work, np.array([row for group in picked for row in group], np.int64), conditions.jobs, chunk=1)
     found: list[Witness] = []
     for group in picked:
         ranked = sorted((looked[row] for row in group), key=lambda w: (-(w.depth or 0.0), w.sample))
@@ -147,10 +97,7 @@ def witnesses(
     return tuple(found)
 
 
-def _witness(
-    samples: SurfaceSamples, row: int, reach: Reach, cutter: Cutter, machine: Machine, setup: Floats,
-    postures: PostureRange, obstacles: Obstacles, tolerance: float,
-) -> Witness:  # fmt: skip
+def _witness(samples: SurfaceSamples, row: int, reach: Reach, cutter: Cutter, conditions: Conditions) -> Witness:
     """Find the posture with the least depth by halving the depth that is let pass.
 
     Local gouging holds as it does in the search, except where it alone leaves no posture: there it is what is measured.
@@ -162,12 +109,13 @@ def _witness(
     curvature = np.zeros((1, 2)) if reason == "local_gouge" else samples.curvature[one]
     geometry = (samples.point[one], samples.normal[one], samples.direction_max[one], curvature)
     deepest = min(cutter.radius, cutter.length / 2) * (1 - 1e-9)
-    low, high = obstacles.depths(tolerance)[0], deepest
+    obstacles = conditions.obstacles
+    low, high = conditions.depths[0], deepest
     best: Reach | None = None
     while best is None or high - low > _PRECISION * high:
         depth = np.sqrt(low * high) if best else deepest
         trial = blank(1)
-        _search(geometry, first, cutter, machine, setup, postures, obstacles, (depth, depth), 1, trial)
+        search_postures(geometry, first, cutter, conditions, (depth, depth), trial)
         if trial.verdict[0] == ACCESSIBLE:
             best, high = trial, depth
         elif best is None:
@@ -186,7 +134,7 @@ def _witness(
         if hit < 0
         else _deepest(obstacles.tree[0][hit], samples.point[row], samples.normal[row], best, cutter),
         tilt=float(best.tilt[0]),
-        rotation=float(postures.rotations[best.rotation[0]]),
+        rotation=float(conditions.postures.rotations[best.rotation[0]]),
         axis=best.axis[0],
         depth=high,
     )

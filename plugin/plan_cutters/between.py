@@ -13,10 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import FaceGrid, Floats, Ints, SurfaceSamples
+from plan_cutters.conditions import Conditions, search_postures
 from plan_cutters.cutter import Cutter
-from plan_cutters.machine import Machine
-from plan_cutters.obstacles import Obstacles
-from plan_cutters.posture import PostureRange
 from plan_cutters.reach import FREE, Reach, blank
 from plan_cutters.threads import in_chunks
 
@@ -103,13 +101,8 @@ def between(
     reach: Reach,
     cutter: Cutter,
     evaluate: Evaluate,
+    conditions: Conditions,
     *,
-    machine: Machine,
-    setup: Floats,
-    postures: PostureRange,
-    obstacles: Obstacles,
-    tolerance: float,
-    jobs: int,
     budget: int,
 ) -> Between:
     """Find the share of the target area over which a cutter's postures hold.
@@ -119,15 +112,10 @@ def between(
     samples : SurfaceSamples
     reach : Reach
         Of the cutter.
-    cutter, machine, postures, obstacles
+    cutter : Cutter
     evaluate : callable
         Geometry of a face at parameters (n, 2).
-    setup : (3,) float
-        Unit setup axis.
-    tolerance : float
-        mm.
-    jobs : int
-        Threads.
+    conditions : Conditions
     budget : int
         Most contacts to add to the samples.
     """
@@ -136,7 +124,6 @@ def between(
     whole = float(samples.area[judged].sum())
     served, looked, left = 0.0, int(judged.sum()), 0
     found: list[Cells] = []
-    searching = _Search(cutter, machine, setup, postures, obstacles, tolerance, jobs)
     for grid in samples.grids:
         radius, wobble = _cells(samples, grid, tensor)
         by_sample = np.full(len(samples), np.nan)
@@ -156,7 +143,7 @@ def between(
         # A fair share of the budget for each face, by its samples.
         allowed = int(budget * len(rows) / max(1, int(judged.sum())))
         for level in range(_LEVELS + 1):
-            good = searching.served(now, field, _ROOM[min(level, len(_ROOM) - 1)])
+            good = _served(now, field, cutter, conditions, _ROOM[min(level, len(_ROOM) - 1)])
             served += float(now.area[good].sum())
             found.append(
                 Cells(np.full(int(good.sum()), grid.face, np.int32), now.middle[good], now.span[good], now.axis[good])
@@ -189,66 +176,46 @@ class _Field:
     radius: Floats
 
 
-@dataclass(frozen=True, slots=True)
-class _Search:
-    cutter: Cutter
-    machine: Machine
-    setup: Floats
-    postures: PostureRange
-    obstacles: Obstacles
-    tolerance: float
-    jobs: int
+def _served(
+    contacts: _Contacts, field: _Field, cutter: Cutter, conditions: Conditions, rooms: Sequence[float]
+) -> NDArray[np.bool_]:
+    """Contacts whose posture, or another one, serves their cell; postures found on the way are kept."""
+    good = np.zeros(len(contacts), bool)
+    known = np.isfinite(contacts.axis).all(axis=1)
+    _cover(contacts, field, cutter, conditions, np.flatnonzero(known), good)
+    for room in rooms:
+        open_rows = np.flatnonzero(~good & np.isfinite(contacts.point).all(axis=1))
+        # A posture with room to the local gouging bound: the search is told that the surface is more concave.
+        curved = contacts.curvature + room / cutter.radius
+        geometry = (contacts.point, contacts.normal, contacts.direction_max, curved)
+        found, (safe, _) = blank(len(contacts)), conditions.depths
+        search_postures(geometry, open_rows, cutter, conditions, (safe, safe), found)
+        rows = open_rows[found.reached[open_rows]]
+        if len(rows):
+            contacts.axis[rows], contacts.flat[rows] = found.axis[rows], False
+            _cover(contacts, field, cutter, conditions, rows, good)
+    return good
 
-    def served(self, contacts: _Contacts, field: _Field, rooms: Sequence[float]) -> NDArray[np.bool_]:
-        """Contacts whose posture, or another one, serves their cell; postures found on the way are kept."""
-        good = np.zeros(len(contacts), bool)
-        known = np.isfinite(contacts.axis).all(axis=1)
-        self._cover(contacts, field, np.flatnonzero(known), good)
-        for room in rooms:
-            open_rows = np.flatnonzero(~good & np.isfinite(contacts.point).all(axis=1))
-            found = self._postures(contacts, open_rows, room)
-            rows = open_rows[found.reached[open_rows]]
-            if len(rows):
-                contacts.axis[rows], contacts.flat[rows] = found.axis[rows], False
-                self._cover(contacts, field, rows, good)
-        return good
 
-    def _cover(self, contacts: _Contacts, field: _Field, rows: NDArray[np.int64], good: NDArray[np.bool_]) -> None:
-        from plan_cutters.kernels.cover import cover
+def _cover(
+    contacts: _Contacts, field: _Field, cutter: Cutter, conditions: Conditions, rows: NDArray[np.int64],
+    good: NDArray[np.bool_],
+) -> None:  # fmt: skip
+    from plan_cutters.kernels.cover import cover
 
-        samples, grid = field.samples, field.grid
-        tensor = _tensors(contacts.normal, contacts.direction_max, contacts.curvature)
-        safe, _ = self.obstacles.depths(self.tolerance)
-        closed = np.array([grid.closed_u, grid.closed_v])
-        vertex, box, depth = self.obstacles.tree
+    samples, grid, obstacles = field.samples, field.grid, conditions.obstacles
+    tensor = _tensors(contacts.normal, contacts.direction_max, contacts.curvature)
+    safe, _ = conditions.depths
+    closed = np.array([grid.closed_u, grid.closed_v])
+    vertex, box, depth = obstacles.tree
 
-        def work(piece: NDArray[np.int64]) -> None:
-            cover(piece, contacts.point, contacts.normal, tensor, contacts.axis, contacts.flat, contacts.patch,
-                  contacts.home, grid.index, closed, samples.point, samples.normal, field.tensor, field.wobble, field.radius,
-                  grid.face, self.cutter.radius, self.cutter.length, safe, self.obstacles.triangles.chord_error,
-                  vertex, self.obstacles.faces, box, depth, good)  # fmt: skip
+    def work(piece: NDArray[np.int64]) -> None:
+        cover(piece, contacts.point, contacts.normal, tensor, contacts.axis, contacts.flat, contacts.patch,
+              contacts.home, grid.index, closed, samples.point, samples.normal, field.tensor, field.wobble, field.radius,
+              grid.face, cutter.radius, cutter.length, safe, obstacles.triangles.chord_error, vertex, obstacles.faces,
+              box, depth, good)  # fmt: skip
 
-        in_chunks(work, rows, self.jobs)
-
-    def _postures(self, contacts: _Contacts, rows: NDArray[np.int64], room: float) -> Reach:
-        """Postures with room to the local gouging bound: the search believes the surface to be more concave."""
-        from plan_cutters.kernels.search import search
-
-        found = blank(len(contacts))
-        rotations = self.postures.rotations
-        cosine, sine = np.cos(rotations), np.sin(rotations)
-        low, high = max(0.0, self.postures.tilt[0]), min(np.pi / 2, self.postures.tilt[1])
-        curved = contacts.curvature + room / self.cutter.radius
-        depths = self.obstacles.depths(self.tolerance)
-
-        def work(piece: NDArray[np.int64]) -> None:
-            search(piece, contacts.point, contacts.normal, contacts.direction_max, curved, cosine, sine, low, high,
-                   self.setup, self.machine.limit_cos, self.cutter.radius, self.cutter.length, depths[0], depths[0],
-                   *self.obstacles.tree, found.verdict, found.axis, found.lean, found.tilt, found.rotation,
-                   found.reason)  # fmt: skip
-
-        in_chunks(work, rows, self.jobs)
-        return found
+    in_chunks(work, rows, conditions.jobs)
 
 
 def _quarters(contacts: _Contacts, face: int, evaluate: Evaluate) -> _Contacts:

@@ -8,10 +8,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from cad_io.arrays import SurfaceSamples
+from plan_cutters.conditions import Conditions
 from plan_cutters.cutter import Cutter
-from plan_cutters.machine import Machine
-from plan_cutters.obstacles import Obstacles
-from plan_cutters.posture import PostureRange
 from plan_cutters.threads import in_chunks
 
 
@@ -36,13 +34,7 @@ def decompose(
     convex: NDArray[np.bool_],
     region: NDArray[np.int32],
     cutter: Cutter,
-    *,
-    machine: Machine,
-    setup: NDArray[np.float64],
-    postures: PostureRange,
-    obstacles: Obstacles,
-    tolerance: float,
-    jobs: int,
+    conditions: Conditions,
 ) -> Decomposition:
     """Test each convex sample with the dummy cutter, and compare with the seed's march over boundaries.
 
@@ -52,25 +44,19 @@ def decompose(
     convex : (n,) bool
     region : (n,) int32
         As `classify.regions` gives it.
-    cutter, machine, postures, obstacles
-    setup : (3,) float
-        Unit setup axis.
-    tolerance : float
-        mm.
-    jobs : int
-        Threads.
+    cutter, conditions
     """
     from plan_cutters.kernels.search import dummy_free
 
     free = np.zeros(len(samples), bool)
-    if postures.upright:
-        allowed = convex & (samples.normal @ setup >= machine.limit_cos)
-        safe, _ = obstacles.depths(tolerance)
+    allowed = convex & conditions.upright(samples.normal)
+    safe, _ = conditions.depths
+    tree = conditions.obstacles.tree
 
-        def work(rows: NDArray[np.int64]) -> None:
-            dummy_free(rows, samples.point, samples.normal, cutter.radius, cutter.length, safe, *obstacles.tree, free)
+    def work(rows: NDArray[np.int64]) -> None:
+        dummy_free(rows, samples.point, samples.normal, cutter.radius, cutter.length, safe, *tree, free)
 
-        in_chunks(work, np.flatnonzero(allowed), jobs)
+    in_chunks(work, np.flatnonzero(allowed), conditions.jobs)
     marched = _march(samples, convex, region, free)
     return Decomposition(free, int((marched[convex] != free[convex]).sum()))
 

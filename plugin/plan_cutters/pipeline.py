@@ -21,6 +21,7 @@ from plan_cutters import __version__
 from plan_cutters.access import access, witnesses
 from plan_cutters.between import Evaluate, between
 from plan_cutters.classify import CONCAVE, CONVEX, SADDLE, classify, regions
+from plan_cutters.conditions import Conditions
 from plan_cutters.cutter import Cutter
 from plan_cutters.decompose import decompose
 from plan_cutters.errors import OptionError, UnjudgeableError
@@ -258,29 +259,26 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
         tolerance = max(options.tolerance, triangles.chord_error / _CHORD_SHARE)
     with clock.stage("compile"):
         _warm(samples, cutters[0], setup, options, obstacles)
-    entries: list[CutterEntry] = []
+    conditions = Conditions(options.machine, setup, options.postures, obstacles, tolerance, options.jobs)
+    by_id: dict[str, CutterEntry] = {}
     reaches: dict[str, Reach] = {}
-    shared: dict[str, Any] = {
-        "machine": options.machine, "setup": setup, "postures": options.postures,
-        "obstacles": obstacles, "tolerance": tolerance,
-    }  # fmt: skip
     for cutter in order(cutters):
         with clock.stage(cutter.id) as tell:
             began = time.perf_counter()
-            decomposition = decompose(samples, surface_class == CONVEX, region, cutter, jobs=options.jobs, **shared)
+            decomposition = decompose(samples, surface_class == CONVEX, region, cutter, conditions)
             known = handed(cutter, {c: reaches[c.id] for c in cutters if c.id in reaches}, len(samples))
-            reach = access(samples, decomposition.free, cutter, jobs=options.jobs, known=known, progress=tell, **shared)
+            reach = access(samples, decomposition.free, cutter, conditions, known=known, progress=tell)
             seconds = time.perf_counter() - began
-            found = witnesses(samples, reach, cutter, jobs=options.jobs, **shared)
+            found = witnesses(samples, reach, cutter, conditions)
         reaches[cutter.id] = reach
-        entries.append(_cutter_entry(cutter, samples, reach, found, decomposition.march_differs, seconds))
-    entries.sort(key=lambda e: [c.id for c in cutters].index(e.id))
+        by_id[cutter.id] = _cutter_entry(cutter, samples, reach, found, decomposition.march_differs, seconds)
+    entries = [by_id[c.id] for c in cutters]
     selected, selection = _select(entries)
     if selected and options.area_budget:
         with clock.stage("area"):
             chosen = next(c for c in cutters if c.id == selected)
-            served = between(samples, reaches[selected], chosen, _geometry(whole, orientation), jobs=options.jobs,
-                             budget=options.area_budget, **shared)  # fmt: skip
+            served = between(samples, reaches[selected], chosen, _geometry(whole, orientation), conditions,
+                             budget=options.area_budget)  # fmt: skip
         area = AreaEntry(share=served.share, feasible=served.share == 1, contacts=served.contacts, left=served.left)
         entries = [e.model_copy(update={"area": area}) if e.id == selected else e for e in entries]
     document = Plan(
@@ -331,7 +329,7 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
     if options.posture_maps:
         with clock.stage("maps") as tell:
             shown = next(c for c in cutters if c.id == result.shown)
-            result = replace(result, maps=all_posture_maps(samples, shown, jobs=options.jobs, progress=tell, **shared))
+            result = replace(result, maps=all_posture_maps(samples, shown, conditions, progress=tell))
     return result
 
 

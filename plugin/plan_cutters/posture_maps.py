@@ -6,10 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, SurfaceSamples
+from plan_cutters.conditions import Conditions
 from plan_cutters.cutter import Cutter
-from plan_cutters.machine import Machine
-from plan_cutters.obstacles import Obstacles
-from plan_cutters.posture import PostureRange
 from plan_cutters.threads import Progress, in_chunks
 
 #: Ends are certified to this, rad; where that cannot be, the band left is counted as undecided.
@@ -41,38 +39,21 @@ class PostureMaps:
 
 
 def posture_maps(
-    samples: SurfaceSamples,
-    cutter: Cutter,
-    *,
-    machine: Machine,
-    setup: Floats,
-    postures: PostureRange,
-    obstacles: Obstacles,
-    tolerance: float,
-    jobs: int,
-    progress: Progress | None = None,
+    samples: SurfaceSamples, cutter: Cutter, conditions: Conditions, *, progress: Progress | None = None
 ) -> PostureMaps:
     """Find the free tilts of all judged samples; the others have none.
 
     Parameters
     ----------
     samples : SurfaceSamples
-    cutter, machine, postures, obstacles
-    setup : (3,) float
-        Unit setup axis.
-    tolerance : float
-        mm.
-    jobs : int
-        Threads.
+    cutter, conditions
     progress : callable, optional
         Told how many pieces of the work are done, of how many.
     """
     from plan_cutters.kernels.maps import free_map
 
-    rotations = postures.rotations
-    cosine, sine = np.cos(rotations), np.sin(rotations)
-    low, high = max(0.0, postures.tilt[0]), min(np.pi / 2, postures.tilt[1])
-    safe, _ = obstacles.depths(tolerance)
+    rotations, ranges, tree = conditions.postures.rotations, conditions.ranges, conditions.obstacles.tree
+    safe, _ = conditions.depths
     n, k = len(samples), len(rotations)
     count = np.zeros((n, k), np.int32)
     undecided = np.zeros((n, k), np.float32)
@@ -82,13 +63,12 @@ def posture_maps(
         # Room for the most intervals only while a piece is worked on: memory grows with what is found.
         part = np.empty((len(rows), k, _ROOM, 2))
         mine, unsure = np.empty((len(rows), k), np.int32), np.empty((len(rows), k))
-        free_map(rows, samples.point, samples.normal, samples.direction_max, samples.curvature, cosine, sine, low, high,
-                 setup, machine.limit_cos, cutter.radius, cutter.length, safe, NARROWEST, *obstacles.tree, _ROOM, part,
-                 mine, unsure)  # fmt: skip
+        free_map(rows, samples.point, samples.normal, samples.direction_max, samples.curvature, *ranges, cutter.radius,
+                 cutter.length, safe, NARROWEST, *tree, _ROOM, part, mine, unsure)  # fmt: skip
         count[rows], undecided[rows] = mine, unsure
         free[int(rows[0])] = part[np.arange(_ROOM) < mine[..., None]]
 
-    in_chunks(work, np.flatnonzero(samples.unjudged < 0), jobs, progress)
+    in_chunks(work, np.flatnonzero(samples.unjudged < 0), conditions.jobs, progress)
     pieces = [free[first] for first in sorted(free)]
     offset = np.concatenate([[0], np.cumsum(count.ravel(), dtype=np.int64)])
     return PostureMaps(rotations, offset, np.concatenate([np.zeros((0, 2)), *pieces]), undecided)

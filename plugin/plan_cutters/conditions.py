@@ -1,0 +1,90 @@
+"""What every stage judges a cutter under, and the search for a posture that several of them ask for."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from plan_cutters.cutter import Cutter
+from plan_cutters.machine import Machine
+from plan_cutters.obstacles import Obstacles
+from plan_cutters.posture import PostureRange
+from plan_cutters.reach import Reach
+from plan_cutters.threads import Progress, in_chunks
+
+#: Points, normals, larger principal directions (n, 3) and curvatures (n, 2), as in SurfaceSamples.
+Geometry = tuple[Floats, Floats, Floats, Floats]
+
+
+@dataclass(frozen=True, slots=True)
+class Conditions:
+    """The same for all cutters of a plan.
+
+    Attributes
+    ----------
+    machine : Machine
+    setup : (3,) float
+        Unit setup axis.
+    postures : PostureRange
+    obstacles : Obstacles
+    tolerance : float
+        Gouge tolerance that is kept, mm.
+    jobs : int
+        Threads.
+    """
+
+    machine: Machine
+    setup: Floats
+    postures: PostureRange
+    obstacles: Obstacles
+    tolerance: float
+    jobs: int
+
+    @property
+    def depths(self) -> tuple[float, float]:
+        """Depths, mm, up to which a triangle does not matter, and beyond which it certainly does."""
+        return self.obstacles.depths(self.tolerance)
+
+    @property
+    def ranges(self) -> tuple[Floats, Floats, float, float, Floats, float]:
+        """What kernels take of postures and machine: cosines and sines of the rotations, tilts from and to, axis limit."""
+        rotations, (low, high) = self.postures.rotations, self.postures.tilt
+        return (np.cos(rotations), np.sin(rotations), max(0.0, low), min(np.pi / 2, high), self.setup,
+                self.machine.limit_cos)  # fmt: skip
+
+    def upright(self, normal: Floats) -> NDArray[np.bool_]:
+        """At which normals (n, 3) the machine can hold the axis along the normal, and tilt 0 was asked for."""
+        return np.asarray(self.postures.upright & (normal @ self.setup >= self.machine.limit_cos))
+
+
+def search_postures(
+    geometry: Geometry, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, depths: tuple[float, float],
+    reach: Reach, progress: Progress | None = None,
+) -> None:  # fmt: skip
+    """Search a posture for contacts, neighbours in sequence, and write what is found into `reach`.
+
+    Parameters
+    ----------
+    geometry : tuple of arrays
+    rows : (m,) int64
+        Contacts to decide.
+    cutter : Cutter
+    conditions : Conditions
+    depths : tuple of float
+        As `Conditions.depths`, mm.
+    reach : Reach
+    progress : callable, optional
+        Told how many pieces of the work are done, of how many.
+    """
+    from plan_cutters.kernels.search import search
+
+    ranges, tree = conditions.ranges, conditions.obstacles.tree
+
+    def work(piece: NDArray[np.int64]) -> None:
+        search(
+            piece, *geometry, *ranges, cutter.radius, cutter.length, *depths, *tree,
+            reach.verdict, reach.axis, reach.lean, reach.tilt, reach.rotation, reach.reason,
+        )  # fmt: skip
+
+    in_chunks(work, rows, conditions.jobs, progress)
