@@ -9,7 +9,7 @@ the axis, for the directions in which the contact wanders and the cutter turns a
 import numpy as np
 
 from plan_cutters.kernels.hit import BODY, HIGH, LOW, OFFSET, RADIUS, A, P, X, Y, _cut, _half_width
-from plan_cutters.kernels.jit import kernel
+from plan_cutters.kernels.jit import entry, kernel
 
 #: Largest angle (rad) between normals within `reach`: up to it, the surface is a graph over its tangent planes.
 _MOST_TURN = 0.5
@@ -287,7 +287,7 @@ def _zone(  # type: ignore[no-untyped-def]
     return full if most[0, 6] > 0.0 else -1.0
 
 
-@kernel
+@entry
 def cover(  # type: ignore[no-untyped-def]
     rows, point, normal, tensor, axis, free, patch, home, index, closed,
     node_point, node_normal, node_tensor, node_wobble, node_radius, face,

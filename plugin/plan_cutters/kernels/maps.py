@@ -9,13 +9,13 @@ import numpy as np
 
 from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
 from plan_cutters.kernels.hit import BODY, _half_width, _swept_hit, stand, tree_hit, triangle_hit
-from plan_cutters.kernels.jit import kernel
+from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.search import remove
 
 OPEN, FORBIDDEN, UNSURE = 0, 1, 2
 
 
-@kernel
+@entry
 def free_tilts(p, n, f, low, high, radius, length, depth_allowed, narrowest, vertex, box, depth, room):  # type: ignore[no-untyped-def]
     """Split a range of tilts into free, forbidden and undecided parts.
 
@@ -83,6 +83,9 @@ def free_tilts(p, n, f, low, high, radius, length, depth_allowed, narrowest, ver
 
 #: Triangles that cut a gap at the last rotations, tried first.
 _KNOWN = 12
+#: Boxes kept as seen from one contact.
+_SEEN = 1 << 13
+_QUEUE = 1 << 14
 #: Gaps that one rotation may fall into.
 _GAPS = 16
 #: By which an arc is widened, so that its ends are out of it, rad.
@@ -227,6 +230,137 @@ def _plane_passes(corner, cf, sf, cl, sl, radius, shrunk):  # type: ignore[no-un
 
 
 @kernel
+def _see(view, slot, box, vertex, depth, node, p, e1, e2, n):  # type: ignore[no-untyped-def]
+    """Write box `node` as seen from the contact into a slot of the view."""
+    x, y, z = box[node, 0] - p[0], box[node, 1] - p[1], box[node, 2] - p[2]
+    view[slot, 0] = x * e1[0] + y * e1[1] + z * e1[2]
+    view[slot, 1] = x * e2[0] + y * e2[1] + z * e2[2]
+    view[slot, 2] = x * n[0] + y * n[1] + z * n[2]
+    top = view[slot, 2]
+    for k in range(3):
+        ux, uy, uz, half = box[node, 3 + 3 * k], box[node, 4 + 3 * k], box[node, 5 + 3 * k], box[node, 12 + k]
+        view[slot, 3 + k] = half * (ux * e1[0] + uy * e1[1] + uz * e1[2])
+        view[slot, 6 + k] = half * (ux * e2[0] + uy * e2[1] + uz * e2[2])
+        view[slot, 9 + k] = half * (ux * n[0] + uy * n[1] + uz * n[2])
+        top += abs(view[slot, 9 + k])
+    view[slot, 12], view[slot, 13] = top, box[node, 15]
+    level, first = 0, 0
+    while 2 * first + 1 <= node:
+        level, first = level + 1, 2 * first + 1
+    i = (len(vertex) * (2 * (node - first) + 1)) >> (level + 1)
+    x, y, z = vertex[i, 0, 0] - p[0], vertex[i, 0, 1] - p[1], vertex[i, 0, 2] - p[2]
+    view[slot, 14] = x * e1[0] + y * e1[1] + z * e1[2]
+    view[slot, 15] = x * e2[0] + y * e2[1] + z * e2[2]
+    view[slot, 16] = x * n[0] + y * n[1] + z * n[2]
+    return top
+
+
+@kernel
+def _box_passes(view, i, cosine, sine, gap, count, radius, shrunk, low, high):  # type: ignore[no-untyped-def]
+    """True only if no point of a seen box enters the body at any tilt of any gap."""
+    y = cosine * view[i, 1] - sine * view[i, 0]
+    if abs(y) >= shrunk + view[i, 13]:
+        return True
+    t0 = cosine * view[i, 6] - sine * view[i, 3]
+    t1 = cosine * view[i, 7] - sine * view[i, 4]
+    t2 = cosine * view[i, 8] - sine * view[i, 5]
+    nearest = abs(y) - abs(t0) - abs(t1) - abs(t2)
+    if nearest >= shrunk:
+        return True
+    x, z = cosine * view[i, 0] + sine * view[i, 1], view[i, 2]
+    f0 = cosine * view[i, 3] + sine * view[i, 6]
+    f1 = cosine * view[i, 4] + sine * view[i, 7]
+    f2 = cosine * view[i, 5] + sine * view[i, 8]
+    z0, z1, z2 = view[i, 9], view[i, 10], view[i, 11]
+    long = abs(f0) + abs(f1) + abs(f2)
+    back = x - long < 0.0
+    # The rim's distance from the line of turning grows with |y|; its tangent at y0 bounds it from below.
+    y0 = max(-0.98 * shrunk, min(0.98 * shrunk, y))
+    q = np.sqrt(shrunk * shrunk - y0 * y0)
+    slope = y0 / q
+    room = radius - q + slope * (y - y0)
+    for g in range(count):
+        ca, sa, cb, sb = gap[g, _CF], gap[g, _SF], gap[g, _CL], gap[g, _SL]
+        top = ca * z + sa * x + abs(ca * z0 + sa * f0) + abs(ca * z1 + sa * f1) + abs(ca * z2 + sa * f2)
+        if top <= low * min(1.0, ca * min(ca + sa, cb + sb)):
+            continue
+        front = sb * z - cb * x
+        k0, k1, k2 = sb * z0 - cb * f0, sb * z1 - cb * f1, sb * z2 - cb * f2
+        front += abs(k0 - slope * t0) + abs(k1 - slope * t1) + abs(k2 - slope * t2)
+        if front <= room:
+            if not back or top <= low:
+                continue
+            if cb * z + sb * x >= abs(cb * z0 + sb * f0) + abs(cb * z1 + sb * f1) + abs(cb * z2 + sb * f2):
+                continue
+        d = sa * slope
+        if z + abs(z0 - d * t0) + abs(z1 - d * t1) + abs(z2 - d * t2) <= ca * low + sa * room:
+            d = sb * slope
+            if z + abs(z0 - d * t0) + abs(z1 - d * t1) + abs(z2 - d * t2) <= cb * low + sb * room:
+                continue
+        if cb * z + sb * x - abs(cb * z0 + sb * f0) - abs(cb * z1 + sb * f1) - abs(cb * z2 + sb * f2) >= high:
+            continue
+        k0, k1, k2 = sa * z0 - ca * f0, sa * z1 - ca * f1, sa * z2 - ca * f2
+        behind = sa * z - ca * x - abs(k0 + slope * t0) - abs(k1 + slope * t1) - abs(k2 + slope * t2)
+        if behind >= 2.0 * radius - room:
+            continue
+        return False
+    return True
+
+
+@kernel
+def _cuts(x, y, z, gap, count, radius, shrunk, low, high):  # type: ignore[no-untyped-def]
+    """Whether a point is in the body at some tilt of some gap."""
+    square = shrunk * shrunk - y * y
+    if square <= 0.0 or z <= low:
+        return False
+    room = radius - np.sqrt(square)
+    if x * x + z * z <= room * room + low * low:
+        return False
+    for g in range(count):
+        top = gap[g, _CF] * z + gap[g, _SF] * x
+        if top <= 0.0 or (top <= low and gap[g, _CF] * x <= gap[g, _SF] * z):
+            continue
+        bottom = gap[g, _CL] * z + gap[g, _SL] * x
+        if bottom >= high or (bottom >= 0.0 and gap[g, _SL] * z - gap[g, _CL] * x <= room):
+            continue
+        return True
+    return False
+
+
+@kernel
+def _surely_passes(corner, count, ca, sa, cb, sb, radius, shrunk, low, high):  # type: ignore[no-untyped-def]
+    """`_box_passes` for a polygon of rows (x, z, y) and one gap."""
+    y = 0.0
+    for k in range(count):
+        y += corner[k, 2]
+    y0 = max(-0.98 * shrunk, min(0.98 * shrunk, y / count))
+    q = np.sqrt(shrunk * shrunk - y0 * y0)
+    slope = y0 / q
+    room = radius - q - slope * y0
+    top, front, rim_a, rim_b, bottom, behind = -np.inf, -np.inf, -np.inf, -np.inf, np.inf, np.inf
+    least, most, x_least = np.inf, -np.inf, np.inf
+    for k in range(count):
+        x, z, y = corner[k, 0], corner[k, 1], corner[k, 2]
+        top = max(top, ca * z + sa * x)
+        front = max(front, sb * z - cb * x - slope * y)
+        rim_a = max(rim_a, z - sa * slope * y)
+        rim_b = max(rim_b, z - sb * slope * y)
+        bottom = min(bottom, cb * z + sb * x)
+        behind = min(behind, sa * z - ca * x + slope * y)
+        least, most = min(least, y), max(most, y)
+        x_least = min(x_least, x)
+    if least >= shrunk or most <= -shrunk or bottom >= high:
+        return True
+    if top <= low * min(1.0, ca * min(ca + sa, cb + sb)):
+        return True
+    if front <= room and (x_least >= 0.0 or top <= low or bottom >= 0.0):
+        return True
+    if rim_a <= ca * low + sa * room and rim_b <= cb * low + sb * room:
+        return True
+    return behind >= 2.0 * radius - room
+
+
+@kernel
 def _passes(corner, cf, sf, cl, sl, radius, shrunk, low, high, first, second):  # type: ignore[no-untyped-def]
     """Whether a triangle, rows (x, z, y) from the contact, stays out of the body at all tilts of a gap.
 
@@ -235,98 +369,25 @@ def _passes(corner, cf, sf, cl, sl, radius, shrunk, low, high, first, second):  
     contact, or above its top where the gap ends was so before. Each point must be one of these; the rest of the triangle
     is cut off in turn. Next to the contact, where no such side is to be had, its plane decides.
     """
-    level = low
-    for i in range(3):
-        # Ahead of the contact, what is below the bottom may yet rise in front of it.
-        if cf * corner[i, 0] - sf * corner[i, 1] > 0.0:
-            level = 0.0
-    count = _clip(corner, 3, first, sf, cf, level)
+    if _surely_passes(corner, 3, cf, sf, cl, sl, radius, shrunk, low, high):
+        return True
+    count = _clip(corner, 3, first, sf, cf, low * min(1.0, cf * min(cf + sf, cl + sl)))
     if count == 0:
         return True
-    side = _side(first, count, cf, sf, radius, shrunk)
-    if side == -1 or side == 2:
-        return True
-    if _plane_passes(corner, cf, sf, cl, sl, radius, shrunk):
+    if _surely_passes(first, count, cf, sf, cl, sl, radius, shrunk, low, high):
         return True
     lower = _clip(first, count, second, -sl, -cl, 0.0)
-    if lower > 0 and not _never(second, lower, radius, shrunk):
-        return False
-    count = _clip(first, count, second, sl, cl, 0.0)
-    if count == 0:
-        return True
-    count = _clip(second, count, first, -sl, -cl, -high)
-    return count == 0 or _side(first, count, cl, sl, radius, shrunk) > 0
-
-
-@kernel
-def _box_passes(box, i, p, n, f, t, gap, count, radius, shrunk, low, high):  # type: ignore[no-untyped-def]
-    """True only if no point of box i enters the body at any tilt of any gap, by one side for each gap."""
-    dx, dy, dz = box[i, 0] - p[0], box[i, 1] - p[1], box[i, 2] - p[2]
-    x = dx * f[0] + dy * f[1] + dz * f[2]
-    y = dx * t[0] + dy * t[1] + dz * t[2]
-    z = dx * n[0] + dy * n[1] + dz * n[2]
-    diagonal = box[i, 15]
-    if abs(y) >= shrunk + diagonal:
-        return True
-    if abs(y) > shrunk and abs(y) - _half_width(box, i, t[0], t[1], t[2]) >= shrunk:
-        return True
-    mx, my, mz = box[i, 9], box[i, 10], box[i, 11]
-    mf = mx * f[0] + my * f[1] + mz * f[2]
-    mt = mx * t[0] + my * t[1] + mz * t[2]
-    mn = mx * n[0] + my * n[1] + mz * n[2]
-    if mn < 0.0:
-        mf, mt, mn = -mf, -mt, -mn
-    top_plane = mf * x + mt * y + mn * z + box[i, 14]
-    for g in range(count):
-        c, s = gap[g, _CF], gap[g, _SF]
-        height = c * z + s * x
-        if height + diagonal <= 0.0:
-            continue
-        if _above(mf, mt, mn, top_plane, c, s, gap[g, _CL], gap[g, _SL], radius, shrunk):
-            continue
-        ax, ay, az = c * n[0] + s * f[0], c * n[1] + s * f[1], c * n[2] + s * f[2]
-        top = height + _half_width(box, i, ax, ay, az) if height <= low else np.inf
-        if top <= 0.0:
-            continue
-        bx, by, bz = c * f[0] - s * n[0], c * f[1] - s * n[1], c * f[2] - s * n[2]
-        across = c * x - s * z
-        if top <= low and across + _half_width(box, i, bx, by, bz) <= 0.0:
-            continue
-        across += radius
-        if across < 0.0:
-            distance = np.sqrt(across * across + y * y)
-            if distance >= shrunk:
-                if distance - diagonal >= shrunk:
-                    continue
-                ux, uy = across / distance, y / distance
-                if (
-                    distance - _half_width(box, i, ux * bx + uy * t[0], ux * by + uy * t[1], ux * bz + uy * t[2])
-                    >= shrunk
-                ):
-                    continue
-        c, s = gap[g, _CL], gap[g, _SL]
-        height = c * z + s * x
-        if height - diagonal >= high:
-            continue
-        if height < diagonal and (height < 0.0 or height < _half_width(
-            box, i, c * n[0] + s * f[0], c * n[1] + s * f[1], c * n[2] + s * f[2]
-        )):  # fmt: skip
-            return False
-        across = c * x - s * z + radius
-        if across > 0.0:
-            distance = np.sqrt(across * across + y * y)
-            if distance >= shrunk:
-                if distance - diagonal >= shrunk:
-                    continue
-                bx, by, bz = c * f[0] - s * n[0], c * f[1] - s * n[1], c * f[2] - s * n[2]
-                ux, uy = across / distance, y / distance
-                if (
-                    distance - _half_width(box, i, ux * bx + uy * t[0], ux * by + uy * t[1], ux * bz + uy * t[2])
-                    >= shrunk
-                ):
-                    continue
-        return False
-    return True
+    good = lower == 0 or _surely_passes(second, lower, cf, sf, cl, sl, radius, shrunk, low, high)
+    if not good:
+        good = _never(second, lower, radius, shrunk)
+    if good:
+        upper = _clip(first, count, second, sl, cl, 0.0)
+        if upper == 0 or _surely_passes(second, upper, cf, sf, cl, sl, radius, shrunk, low, high):
+            return True
+        if _side(second, upper, cl, sl, radius, shrunk) > 0:
+            return True
+    side = _side(first, count, cf, sf, radius, shrunk)
+    return side == -1 or side == 2 or _plane_passes(corner, cf, sf, cl, sl, radius, shrunk)
 
 
 @kernel
@@ -356,76 +417,138 @@ def _first_in_the_way(vertex, i, p, n, f, t, a, b, sign, narrowest, radius, shru
 
 
 @kernel
+def _take(gap, count, left, right):  # type: ignore[no-untyped-def]
+    """Take an arc that a point forbids out of the gaps; (count of gaps, whether any was cut)."""
+    left, right = left - _HAIR, right + _HAIR
+    g, cut = 0, False
+    if right - left <= 2.0 * _HAIR:
+        return count, cut
+    while g < count:
+        a, b = gap[g, _FIRST], gap[g, _LAST]
+        if right <= a or left >= b:
+            g += 1
+            continue
+        cut = True
+        if left <= a and right >= b:
+            count -= 1
+            for k in range(_COLUMNS):
+                gap[g, k] = gap[count, k]
+            continue
+        if left > a and right < b:
+            if count == _GAPS:
+                # No room for both sides: the wider one stays, the other counts as undecided.
+                if left - a >= b - right:
+                    gap[g, _UL] += b - right
+                    right = b
+                else:
+                    gap[g, _UF] += left - a
+                    left = a
+                continue
+            for k in range(_COLUMNS):
+                gap[count, k] = gap[g, k]
+            gap[count, _FIRST], gap[count, _CF], gap[count, _SF], gap[count, _UF] = right, np.cos(right), np.sin(right), 0.0
+            gap[g, _LAST], gap[g, _CL], gap[g, _SL], gap[g, _UL] = left, np.cos(left), np.sin(left), 0.0
+            count += 1
+        elif left <= a:
+            gap[g, _FIRST], gap[g, _CF], gap[g, _SF], gap[g, _UF] = right, np.cos(right), np.sin(right), 0.0
+        else:
+            gap[g, _LAST], gap[g, _CL], gap[g, _SL], gap[g, _UL] = left, np.cos(left), np.sin(left), 0.0
+        g += 1
+    return count, cut
+
+
+@kernel
+def _in_the_way(vertex, i, p, n, f, t, tilt, radius, shrunk, low, high, scratch):  # type: ignore[no-untyped-def]
+    """Whether a triangle reaches into the body at a tilt."""
+    body, polygon, spare, _, _ = scratch
+    stand(body, p, n, f, t, np.cos(tilt), np.sin(tilt), radius, shrunk, low, high)
+    return triangle_hit(vertex, i, body, 0.0, polygon, spare)[0]
+
+
+@kernel
+def _shrink(corner, gap, g, sign, narrowest, radius, shrunk, low, high, first, second):  # type: ignore[no-untyped-def]
+    """By how much a gap must shrink from its first tilt up (`sign` 1) or its last down for a triangle to pass.
+
+    To `narrowest`; (by how much, a little less by which it did not pass); infinity if nothing wider is left.
+    """
+    ca, sa, cb, sb = gap[g, _CF], gap[g, _SF], gap[g, _CL], gap[g, _SL]
+    width = gap[g, _LAST] - gap[g, _FIRST]
+    passed, failed, move = np.inf, 0.0, narrowest
+    while passed - failed > narrowest:
+        if passed < np.inf:
+            move = 0.5 * (passed + failed)
+        elif failed > 0.0:
+            move = min(2.0 * failed, width - narrowest)
+        if move <= failed or move >= width:
+            return np.inf, width
+        end = gap[g, _FIRST] + move if sign > 0.0 else gap[g, _LAST] - move
+        c, s = np.cos(end), np.sin(end)
+        if sign > 0.0:
+            good = _passes(corner, c, s, cb, sb, radius, shrunk, low, high, first, second)
+        else:
+            good = _passes(corner, ca, sa, c, s, radius, shrunk, low, high, first, second)
+        if good:
+            passed = move
+        else:
+            failed = move
+    return passed, failed
+
+
+@kernel
 def _cut_gaps(  # type: ignore[no-untyped-def]
     vertex, i, p, n, f, t, corner, gap, count, narrowest, radius, shrunk, low, high, first, second, scratch
 ):  # fmt: skip
     """Take the tilts at which a triangle is in the way out of the gaps; (count of gaps, whether any was cut)."""
     cut = False
-    g, corners = 0, 0
+    g = 0
+    while g < count:
+        if not _passes(corner, gap[g, _CF], gap[g, _SF], gap[g, _CL], gap[g, _SL], radius, shrunk, low, high, first, second):
+            break
+        g += 1
+    if g == count:
+        return count, False
+    # What its corners alone forbid is known in closed form, and mostly all that it does.
+    for k in range(3):
+        left, right = point_arc(corner[k, 1], corner[k, 0] + radius, corner[k, 2], 0.0, radius, shrunk, low, high)
+        count, taken = _take(gap, count, left, right)
+        cut = cut or taken
+    if not cut:
+        g = max(g, 0)
+    else:
+        g = 0
     while g < count:
         a, b, ca, sa, cb, sb = gap[g, 0], gap[g, 1], gap[g, 2], gap[g, 3], gap[g, 4], gap[g, 5]
         if _passes(corner, ca, sa, cb, sb, radius, shrunk, low, high, first, second):
             g += 1
-            corners = 0
             continue
-        if corners < 3:
-            # What its corners alone forbid is known in closed form, and mostly all that it does.
-            x, z, y = corner[corners, 0], corner[corners, 1], corner[corners, 2]
-            left, right = point_arc(z, x + radius, y, 0.0, radius, shrunk, low, high)
-            corners += 1
-            left, right = left - _HAIR, right + _HAIR
-            if right - left <= 2.0 * _HAIR or right <= a or left >= b:
-                continue
-            cut = True
-            if left <= a and right >= b:
-                count -= 1
-                for k in range(_COLUMNS):
-                    gap[g, k] = gap[count, k]
-                corners = 0
-            elif left <= a:
-                gap[g, 0], gap[g, 2], gap[g, 3], gap[g, _UF] = right, np.cos(right), np.sin(right), 0.0
-            elif right >= b:
-                gap[g, 1], gap[g, 4], gap[g, 5], gap[g, _UL] = left, np.cos(left), np.sin(left), 0.0
-            elif count < _GAPS:
-                for k in range(_COLUMNS):
-                    gap[count, k] = gap[g, k]
-                gap[count, 0], gap[count, 2], gap[count, 3], gap[count, _UF] = right, np.cos(right), np.sin(right), 0.0
-                gap[g, 1], gap[g, 4], gap[g, 5], gap[g, _UL] = left, np.cos(left), np.sin(left), 0.0
-                count += 1
-            continue
-        corners = 0
-        # A side or the middle of the triangle sticks out a little further than its corners.
-        shift, trimmed = narrowest, False
-        while shift <= 2.0 * narrowest and not trimmed:
-            c, s = np.cos(a + shift), np.sin(a + shift)
-            if (
-                gap[g, _UF] + shift <= 3.0 * narrowest
-                and a + shift < b
-                and _passes(corner, c, s, cb, sb, radius, shrunk, low, high, first, second)
-            ):
-                gap[g, 0], gap[g, 2], gap[g, 3], gap[g, _UF] = a + shift, c, s, gap[g, _UF] + shift
-                trimmed = True
-                continue
-            c, s = np.cos(b - shift), np.sin(b - shift)
-            if (
-                gap[g, _UL] + shift <= 3.0 * narrowest
-                and b - shift > a
-                and _passes(corner, ca, sa, c, s, radius, shrunk, low, high, first, second)
-            ):
-                gap[g, 1], gap[g, 4], gap[g, 5], gap[g, _UL] = b - shift, c, s, gap[g, _UL] + shift
-                trimmed = True
-                continue
-            shift *= 2.0
-        if trimmed:
+        # A side or the middle of the triangle sticks out further than its corners: mostly by a little, at one end.
+        up, up_failed = _shrink(corner, gap, g, 1.0, narrowest, radius, shrunk, low, high, first, second)
+        if up <= 2.0 * narrowest and gap[g, _UF] + up <= 3.0 * narrowest:
+            gap[g, _FIRST], gap[g, _CF], gap[g, _SF], gap[g, _UF] = a + up, np.cos(a + up), np.sin(a + up), gap[g, _UF] + up
             cut = True
             g += 1
             continue
-        left = _first_in_the_way(vertex, i, p, n, f, t, a, b, 1.0, narrowest, radius, shrunk, low, high, scratch)
-        if np.isnan(left):
+        down, down_failed = _shrink(corner, gap, g, -1.0, narrowest, radius, shrunk, low, high, first, second)
+        if down <= 2.0 * narrowest and gap[g, _UL] + down <= 3.0 * narrowest:
+            gap[g, _LAST], gap[g, _CL], gap[g, _SL], gap[g, _UL] = b - down, np.cos(b - down), np.sin(b - down), gap[g, _UL] + down
+            cut = True
             g += 1
             continue
-        right = _first_in_the_way(vertex, i, p, n, f, t, left, b, -1.0, narrowest, radius, shrunk, low, high, scratch)
-        right = left if np.isnan(right) else right
+        left, right = max(a, b - down), min(b, a + up)
+        if left > right or not (
+            _in_the_way(vertex, i, p, n, f, t, max(a, b - down_failed), radius, shrunk, low, high, scratch)
+            and _in_the_way(vertex, i, p, n, f, t, min(b, a + up_failed), radius, shrunk, low, high, scratch)
+        ):
+            # Not known to be in the way right up to there: looked at closely.
+            if left > right:
+                left, right = a, b
+            start, end = left, right
+            left = _first_in_the_way(vertex, i, p, n, f, t, start, end, 1.0, narrowest, radius, shrunk, low, high, scratch)
+            if np.isnan(left):
+                g += 1
+                continue
+            right = _first_in_the_way(vertex, i, p, n, f, t, left, end, -1.0, narrowest, radius, shrunk, low, high, scratch)
+            right = left if np.isnan(right) else right
         cut = True
         keep_left, keep_right = left > a, right < b
         off_left = min(narrowest, right - left)
@@ -457,6 +580,35 @@ def _cut_gaps(  # type: ignore[no-untyped-def]
 
 
 @kernel
+def _place(vertex, i, p, f, t, n, corner):  # type: ignore[no-untyped-def]
+    for c in range(3):
+        x, y, z = 0.0, 0.0, 0.0
+        for k in range(3):
+            away = vertex[i, c, k] - p[k]
+            x += away * f[k]
+            y += away * t[k]
+            z += away * n[k]
+        corner[c, 0], corner[c, 1], corner[c, 2] = x, z, y
+
+
+@kernel
+def _shortcut(child, parent, slot):  # type: ignore[no-untyped-def]
+    """Let the box above a seen one lead past it, where at most one of the boxes in it is left."""
+    while parent[slot] >= 0:
+        a, b = child[slot, 0], child[slot, 1]
+        only = b if a == -2 else a
+        if (a != -2 and b != -2) or only == -3:
+            return
+        up = parent[slot]
+        side = 0 if child[up, 0] == slot else 1
+        child[up, side] = only
+        if only >= 0:
+            parent[only] = up
+            return
+        slot = up
+
+
+@entry
 def free_map(  # type: ignore[no-untyped-def]
     rows, point, normal, direction_max, curvature, rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
     radius, length, depth_allowed, narrowest, vertex, box, depth, room, part, count_out, undecided,
@@ -492,9 +644,12 @@ def free_map(  # type: ignore[no-untyped-def]
     """
     t, f, e2 = np.empty(3), np.empty(3), np.empty(3)
     corner, first, second = np.empty((3, 3)), np.empty((8, 3)), np.empty((8, 3))
-    gap, arcs, stack = np.empty((_GAPS, _COLUMNS)), np.empty((8, 2)), np.empty(64, np.int64)
+    gap, arcs = np.empty((_GAPS, _COLUMNS)), np.empty((8, 2))
     scratch = (np.empty(BODY), np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3)), np.empty((64, 2)))
     known, known_count = np.full(_KNOWN, -1), 0
+    view, child, parent = np.empty((_SEEN + 1, 17)), np.empty((_SEEN, 2), np.int64), np.empty(_SEEN, np.int64)
+    node_of = np.empty(_SEEN, np.int64)
+    queue, ahead = np.empty((_QUEUE, 2), np.int64), np.empty((_QUEUE, 2), np.int64)
     low, high, shrunk = depth_allowed, length - depth_allowed, radius - depth_allowed
     triangles, first_leaf = len(vertex), (1 << depth) - 1
     for place in range(len(rows)):
@@ -503,6 +658,9 @@ def free_map(  # type: ignore[no-untyped-def]
         e2[0] = n[1] * e1[2] - n[2] * e1[1]
         e2[1] = n[2] * e1[0] - n[0] * e1[2]
         e2[2] = n[0] * e1[1] - n[1] * e1[0]
+        seen = 1
+        _see(view, 0, box, vertex, depth, 0, p, e1, e2, n)
+        child[0, 0], parent[0] = -1, -1
         for rotation in range(len(rotation_cos)):
             cosine, sine = rotation_cos[rotation], rotation_sin[rotation]
             along_n, along_f = 0.0, 0.0
@@ -522,40 +680,68 @@ def free_map(  # type: ignore[no-untyped-def]
                 a, b = arcs[g, 0], arcs[g, 1]
                 gap[g, 0], gap[g, 1], gap[g, _UF], gap[g, _UL] = a, b, 0.0, 0.0
                 gap[g, 2], gap[g, 3], gap[g, 4], gap[g, 5] = np.cos(a), np.sin(a), np.cos(b), np.sin(b)
-            top = 0 if count == 0 else 1
-            stack[0] = 0
-            trying = min(known_count, _KNOWN)
-            while count > 0 and (trying > 0 or top > 0):
-                if trying > 0:
-                    trying -= 1
-                    begin = known[(known_count - 1 - trying) % _KNOWN]
-                    end = begin + 1
-                else:
-                    top -= 1
-                    node = stack[top]
-                    if _box_passes(box, node, p, n, f, t, gap, count, radius, shrunk, low, high):
+            for turn in range(min(known_count, _KNOWN)):
+                if count == 0:
+                    break
+                i = known[(known_count - 1 - turn) % _KNOWN]
+                _place(vertex, i, p, f, t, n, corner)
+                count, _ = _cut_gaps(vertex, i, p, n, f, t, corner, gap, count, narrowest, radius, shrunk, low, high,
+                                     first, second, scratch)  # fmt: skip
+            waiting = 1
+            queue[0, 0], queue[0, 1] = 0, 0
+            while count > 0 and waiting > 0:
+                coming = 0
+                for w in range(waiting):
+                    if count == 0:
+                        break
+                    slot, node = queue[w, 0], queue[w, 1]
+                    if slot < 0:
+                        slot = _SEEN
+                        _see(view, slot, box, vertex, depth, node, p, e1, e2, n)
+                    if _box_passes(view, slot, cosine, sine, gap, count, radius, shrunk, low, high):
                         continue
-                    if node < first_leaf:
-                        stack[top] = 2 * node + 2
-                        stack[top + 1] = 2 * node + 1
-                        top += 2
+                    if node >= first_leaf:
+                        leaf = node - first_leaf
+                        above = False
+                        for i in range((triangles * leaf) >> depth, (triangles * (leaf + 1)) >> depth):
+                            _place(vertex, i, p, f, t, n, corner)
+                            count, cut = _cut_gaps(vertex, i, p, n, f, t, corner, gap, count, narrowest, radius,
+                                                   shrunk, low, high, first, second, scratch)  # fmt: skip
+                            above = above or max(corner[0, 1], corner[1, 1], corner[2, 1]) > low
+                            if cut:
+                                known[known_count % _KNOWN] = i
+                                known_count += 1
+                        if not above and slot < _SEEN:
+                            child[slot, 0], child[slot, 1] = -2, -2
+                            _shortcut(child, parent, slot)
                         continue
-                    leaf = node - first_leaf
-                    begin, end = (triangles * leaf) >> depth, (triangles * (leaf + 1)) >> depth
-                for i in range(begin, end):
-                    for c in range(3):
-                        x, y, z = 0.0, 0.0, 0.0
-                        for k in range(3):
-                            away = vertex[i, c, k] - p[k]
-                            x += away * f[k]
-                            y += away * t[k]
-                            z += away * n[k]
-                        corner[c, 0], corner[c, 1], corner[c, 2] = x, z, y
-                    count, cut = _cut_gaps(vertex, i, p, n, f, t, corner, gap, count, narrowest, radius, shrunk, low,
-                                           high, first, second, scratch)  # fmt: skip
-                    if cut and end - begin > 1:
-                        known[known_count % _KNOWN] = i
-                        known_count += 1
+                    x, y = view[slot, 14], view[slot, 15]
+                    x, y, z = cosine * x + sine * y, cosine * y - sine * x, view[slot, 16]
+                    if _cuts(x, y, z, gap, count, radius, shrunk, low, high):
+                        left, right = point_arc(z, x + radius, y, 0.0, radius, shrunk, low, high)
+                        count, _ = _take(gap, count, left, right)
+                    if slot < _SEEN and child[slot, 0] == -1:
+                        # Seen from this contact for the first time: what is nowhere above its tangent plane is left out.
+                        for side in range(2):
+                            at = min(seen, _SEEN)
+                            if _see(view, at, box, vertex, depth, 2 * node + 1 + side, p, e1, e2, n) <= low:
+                                child[slot, side] = -2
+                            elif at < _SEEN:
+                                child[slot, side], child[at, 0], parent[at] = at, -1, slot
+                                node_of[at] = 2 * node + 1 + side
+                                seen += 1
+                            else:
+                                child[slot, side] = -3
+                        if child[slot, 0] == -2 or child[slot, 1] == -2:
+                            _shortcut(child, parent, slot)
+                    for side in range(2):
+                        at = child[slot, side] if slot < _SEEN else -3
+                        if at == -2:
+                            continue
+                        ahead[coming, 0], ahead[coming, 1] = at, node_of[at] if at >= 0 else 2 * node + 1 + side
+                        coming += 1
+                queue, ahead = ahead, queue
+                waiting = coming
             written, unsure = 0, 0.0
             for g in range(count):
                 unsure += gap[g, _UF] + gap[g, _UL]

@@ -9,7 +9,7 @@ import numpy as np
 
 from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
 from plan_cutters.kernels.hit import BODY, stand, tree_hit
-from plan_cutters.kernels.jit import kernel
+from plan_cutters.kernels.jit import entry, kernel
 
 # As in `plan_cutters.reach`, which must not load the compiler; a test holds them together.
 INACCESSIBLE, ACCESSIBLE, FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
@@ -138,7 +138,7 @@ def _sweep(  # type: ignore[no-untyped-def]
     return -1, 0.0, hint, known_count
 
 
-@kernel
+@entry
 def search(  # type: ignore[no-untyped-def]
     rows, point, normal, direction_max, curvature,
     rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
@@ -214,7 +214,7 @@ def search(  # type: ignore[no-untyped-def]
                 reason[row] = REAR_GOUGE if tally[REAR_GOUGE] >= tally[SHANK] else SHANK
 
 
-@kernel
+@entry
 def first_reason(  # type: ignore[no-untyped-def]
     rows, normal, direction_max, curvature, rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos, radius,
     reason,
@@ -248,7 +248,7 @@ def first_reason(  # type: ignore[no-untyped-def]
             reason[row] = LOCAL_GOUGE
 
 
-@kernel
+@entry
 def dummy_free(rows, point, normal, radius, length, safe, vertex, box, depth, free):  # type: ignore[no-untyped-def]
     """Test the dummy cutter `(2 radius, length)`, bottom centre on the sample, axis along the normal.
 
@@ -286,7 +286,7 @@ def dummy_free(rows, point, normal, radius, length, safe, vertex, box, depth, fr
             hint = triangle
 
 
-@kernel
+@entry
 def probe(rows, point, normal, axis, lean, radius, length, depths, vertex, box, depth, triangle):  # type: ignore[no-untyped-def]
     """Test given postures: the triangle that reaches deeper than `depths[i]` into the cutter of posture i, or -1.
 

@@ -9,7 +9,7 @@ no pointers are kept. Splitting is at the median of the triangles' centres along
 
 import numpy as np
 
-from plan_cutters.kernels.jit import kernel
+from plan_cutters.kernels.jit import entry, kernel
 
 LEAF = 4
 
@@ -38,7 +38,7 @@ def _select(order, key, lo, hi, nth):  # type: ignore[no-untyped-def]
             return
 
 
-@kernel
+@entry
 def _bound(vertex, order, lo, hi, box):  # type: ignore[no-untyped-def]
     """Bound `order[lo:hi]` by a box whose third side is along the mean normal."""
     mean, first, normal = np.zeros(3), np.zeros(3), np.zeros(3)
@@ -115,7 +115,7 @@ def _bound(vertex, order, lo, hi, box):  # type: ignore[no-untyped-def]
     box[15] = np.sqrt(square) * (1 + 1e-12)
 
 
-@kernel
+@entry
 def build(vertex):  # type: ignore[no-untyped-def]
     """Order triangles and bound them.
 
