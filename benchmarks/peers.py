@@ -42,7 +42,7 @@ from plan_cutters import Cutter
 from plan_cutters.access import access
 from plan_cutters.conditions import Conditions
 from plan_cutters.faces import select_faces
-from plan_cutters.kernels.maps import free_map
+from plan_cutters.kernels.free_map import free_map
 from plan_cutters.kernels.points import local_gouge_bound
 from plan_cutters.kernels.search import probe
 from plan_cutters.machine import Machine
@@ -237,7 +237,7 @@ def maps(samples: SurfaceSamples, rows: NDArray[np.int64], obstacles: Obstacles,
         free_map(
             rows[piece], samples.point, samples.normal, samples.direction_max, samples.curvature,
             np.cos(ROTATIONS), np.sin(ROTATIONS), 0.0, np.pi / 2, np.array([0.0, 0.0, 1.0]), -2.0,
-            CUTTER.radius, CUTTER.length, safe, NARROWEST, *obstacles.tree, ROOM,
+            CUTTER.radius, CUTTER.length, safe, NARROWEST, *obstacles.wide_tree, ROOM,
             found.part[piece], found.filled[piece], found.undecided[piece],
         )  # fmt: skip
 

@@ -29,9 +29,17 @@ class Obstacles:
 
     @cached_property
     def tree(self) -> tuple[Floats, Floats, int]:
-        """(vertex (n, 3, 3) in tree order, box (nodes, 7), depth), as the kernels take it."""
+        """(vertex (n, 3, 3) in tree order, box (nodes, 16), depth), as the kernels take it."""
         order, box, depth = self._built
         return np.ascontiguousarray(self.triangles.vertex[order]), box, depth
+
+    @cached_property
+    def wide_tree(self) -> tuple[Floats, Floats, Ints, int]:
+        """(vertex in tree order, blocks, offset, bottom): the tree as posture maps take it, eight boxes at a time."""
+        from plan_cutters.kernels.free_map import wide_tree
+
+        blocks, offset, bottom = wide_tree(*self.tree)
+        return self.tree[0], blocks, offset, int(bottom)
 
     @cached_property
     def faces(self) -> Ints:

@@ -50,9 +50,9 @@ def posture_maps(
     progress : callable, optional
         Told how many pieces of the work are done, of how many.
     """
-    from plan_cutters.kernels.maps import free_map
+    from plan_cutters.kernels.free_map import free_map
 
-    rotations, ranges, tree = conditions.postures.rotations, conditions.ranges, conditions.obstacles.tree
+    rotations, ranges, tree = conditions.postures.rotations, conditions.ranges, conditions.obstacles.wide_tree
     safe, _ = conditions.depths
     n, k = len(samples), len(rotations)
     count = np.zeros((n, k), np.int32)

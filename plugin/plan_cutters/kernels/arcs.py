@@ -44,7 +44,7 @@ def point_arc(height, px, py, tilt, radius_offset, radius, low, high):  # type: 
         return NOTHING
     r = np.sqrt(square)
     back = radius_offset - px
-    d = np.hypot(back, height)
+    d = np.sqrt(back * back + height * height)
     if d <= low or d <= radius_offset - r:
         return NOTHING
     alpha = np.arctan2(height, back)

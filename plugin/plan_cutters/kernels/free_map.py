@@ -18,14 +18,16 @@ from plan_cutters.kernels.search import remove
 LANES = 8
 #: Blocks of boxes kept as seen from one contact, and blocks that may wait to be looked at.
 _SEEN, _QUEUE = 1 << 11, 1 << 13
+#: Leaves of triangles kept so; one more for others, one for the triangles that cut gaps last and are tried first.
+_LEAVES = 1 << 11
 #: What is known of the boxes in a block below another: not looked at yet, none rises above the tangent plane.
 _UNSEEN, _NONE = -1, -2
-#: Triangles that cut a gap at the last rotations, tried first.
-_KNOWN = 8
 #: Gaps that one rotation may fall into.
 _GAPS = 16
 #: By which an arc is widened, so that its ends are out of it, rad.
 _HAIR = 1e-9
+#: Triangles that reach no farther along the line of turning, in radii, see the rim as one line.
+_FLAT = 0.03
 #: Slabs that what lies next to the contact is cut into.
 _SLABS = 8
 #: Columns of a gap: the tilts between which it lies, their cosines and sines, and how far its ends may be off.
@@ -60,7 +62,10 @@ def _side(polygon, count, cosine, sine, radius, shrunk):  # type: ignore[no-unty
     """
     least, most, area = np.inf, -np.inf, 0.0
     for i in range(count):
-        least, most = min(least, polygon[i, 2]), max(most, polygon[i, 2])
+        x, y = cosine * polygon[i, 0] - sine * polygon[i, 1] + radius, polygon[i, 2]
+        if x * x + y * y < shrunk * shrunk:
+            return 0
+        least, most = min(least, y), max(most, y)
     if least >= shrunk or most <= -shrunk:
         return 2
     best, px = np.inf, 0.0
@@ -102,100 +107,84 @@ def _side(polygon, count, cosine, sine, radius, shrunk):  # type: ignore[no-unty
 def _never(polygon, count, radius, shrunk):  # type: ignore[no-untyped-def]
     """Whether a polygon of rows (x, z, y) is out of reach at every tilt.
 
-    So near the line of turning that the disk, which touches that line at the contact, has curved away. Looked at in
-    slabs, for the room grows with the square of y; the distance from the line is largest on a side.
+    So near the line of turning that the disk, which touches that line at the contact, has curved away. The room grows with
+    the square of y: its tangent bounds it from below, and what is left of it is least at a corner.
     """
-    low, high = np.inf, -np.inf
+    low, high, middle = np.inf, -np.inf, 0.0
     for i in range(count):
-        low, high = min(low, polygon[i, 2]), max(high, polygon[i, 2])
-    wide = (high - low) / _SLABS
-    for slab in range(_SLABS):
-        at = low + slab * wide
-        nearest = 0.0 if at <= 0.0 <= at + wide else min(abs(at), abs(at + wide))
-        if nearest >= shrunk:
-            continue
-        room = radius - np.sqrt(shrunk * shrunk - nearest * nearest)
+        x, z, y = polygon[i, 0], polygon[i, 1], polygon[i, 2]
+        low, high, middle = min(low, y), max(high, y), middle + y / count
+        square = shrunk * shrunk - y * y
+        if square > 0.0:
+            room = radius - np.sqrt(square)
+            if x * x + z * z > room * room:
+                return False
+    pieces = 1 if high - low < 0.1 * shrunk else _SLABS
+    wide = (high - low) / pieces
+    for piece in range(pieces):
+        at = low + piece * wide
+        y0 = max(-0.98 * shrunk, min(0.98 * shrunk, middle if pieces == 1 else at + 0.5 * wide))
+        q = np.sqrt(shrunk * shrunk - y0 * y0)
+        slope = y0 / q
         for i in range(count):
             j = i + 1 if i + 1 < count else 0
             yi, yj = polygon[i, 2], polygon[j, 2]
             if max(yi, yj) < at or min(yi, yj) > at + wide:
                 continue
             first, last = 0.0, 1.0
-            if yi != yj:
+            if pieces > 1 and yi != yj:
                 u, v = (at - yi) / (yj - yi), (at + wide - yi) / (yj - yi)
                 first, last = max(0.0, min(u, v)), min(1.0, max(u, v))
             for part in (first, last):
                 x = polygon[i, 0] + part * (polygon[j, 0] - polygon[i, 0])
                 z = polygon[i, 1] + part * (polygon[j, 1] - polygon[i, 1])
-                if x * x + z * z > room * room:
+                room = radius - q + slope * (yi + part * (yj - yi) - y0)
+                if room < 0.0 or x * x + z * z > room * room:
                     return False
     return True
 
 
 @kernel
-def _above(mf, mt, mn, top, cf, sf, cl, sl, radius, shrunk):  # type: ignore[no-untyped-def]
-    """Whether the body stays above a plane `m . q = top` (q from the contact, m in the directions f, t, n) in a gap.
-
-    The lowest point of the bottom disk along m is at `R u + r sqrt(u^2 + m_t^2)` below the contact, u = m . x_T. Where
-    u is negative that falls as u does, and u falls with growing tilt: what holds where the gap begins holds all over.
-    """
-    if mn < 0.0:
-        return False
-    u = cf * mf - sf * mn
-    if u > 0.0 or cf * mn + sf * mf < 0.0 or cl * mn + sl * mf < 0.0:
-        return False
-    return top < -(radius * u + shrunk * np.sqrt(u * u + mt * mt)) - 1e-9
-
-
-@kernel
-def _plane_passes(corner, cf, sf, cl, sl, radius, shrunk):  # type: ignore[no-untyped-def]
-    """`_above` for the plane of a triangle, rows (x, z, y)."""
-    ax, az, ay = corner[1, 0] - corner[0, 0], corner[1, 1] - corner[0, 1], corner[1, 2] - corner[0, 2]
-    bx, bz, by = corner[2, 0] - corner[0, 0], corner[2, 1] - corner[0, 1], corner[2, 2] - corner[0, 2]
-    mx, my, mz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
-    size = np.sqrt(mx * mx + my * my + mz * mz)
-    if size == 0.0:
-        return False
-    if mz < 0.0:
-        size = -size
-    mx, my, mz = mx / size, my / size, mz / size
-    top = max(mx * corner[0, 0] + my * corner[0, 2] + mz * corner[0, 1],
-              mx * corner[1, 0] + my * corner[1, 2] + mz * corner[1, 1],
-              mx * corner[2, 0] + my * corner[2, 2] + mz * corner[2, 1])  # fmt: skip
-    return _above(mx, my, mz, top, cf, sf, cl, sl, radius, shrunk)
-
-
-@kernel
-def _surely_passes(corner, count, ca, sa, cb, sb, radius, shrunk, low, high):  # type: ignore[no-untyped-def]
-    """`_box_passes` for a polygon of rows (x, z, y) and one gap."""
-    y = 0.0
+def _parts_pass(polygon, count, ca, sa, cb, sb, radius, shrunk, low, high):  # type: ignore[no-untyped-def]
+    """`_boxes_pass` for a polygon, in two parts where need be: what the bottom sweeps over, and what it stays below."""
+    middle = 0.0
     for k in range(count):
-        y += corner[k, 2]
-    y0 = max(-0.98 * shrunk, min(0.98 * shrunk, y / count))
+        middle += polygon[k, 2]
+    y0 = max(-0.98 * shrunk, min(0.98 * shrunk, middle / count))
     q = np.sqrt(shrunk * shrunk - y0 * y0)
     slope = y0 / q
     room = radius - q - slope * y0
-    top, front, rim_a, rim_b, bottom, behind = -np.inf, -np.inf, -np.inf, -np.inf, np.inf, np.inf
-    least, most, x_least = np.inf, -np.inf, np.inf
+    upper, lower, under, never, behind, top = -np.inf, -np.inf, -np.inf, True, np.inf, True
+    k = count - 1
+    x, z, y = polygon[k, 0], polygon[k, 1], polygon[k, 2]
+    last, last_front = cb * z + sb * x, sb * z - cb * x - slope * y - room
     for k in range(count):
-        x, z, y = corner[k, 0], corner[k, 1], corner[k, 2]
-        top = max(top, ca * z + sa * x)
-        front = max(front, sb * z - cb * x - slope * y)
-        rim_a = max(rim_a, z - sa * slope * y)
-        rim_b = max(rim_b, z - sb * slope * y)
-        bottom = min(bottom, cb * z + sb * x)
+        before_x, before_z, before_y = x, z, y
+        x, z, y = polygon[k, 0], polygon[k, 1], polygon[k, 2]
+        height, front = cb * z + sb * x, sb * z - cb * x - slope * y - room
+        below = max(z - sa * (slope * y + room) - ca * low, z - sb * (slope * y + room) - cb * low)
         behind = min(behind, sa * z - ca * x + slope * y)
-        least, most = min(least, y), max(most, y)
-        x_least = min(x_least, x)
-    if least >= shrunk or most <= -shrunk or bottom >= high:
+        top = top and height >= high
+        if height >= 0.0:
+            upper = max(upper, front)
+        if height <= 0.0:
+            lower = max(lower, below)
+            gone = slope * y + room
+            never = never and gone >= 0.0 and x * x + z * z <= gone * gone
+        if (height > 0.0 and last < 0.0) or (height < 0.0 and last > 0.0):
+            # Where the side of the polygon crosses from one part to the other.
+            part = last / (last - height)
+            cx, cz = before_x + part * (x - before_x), before_z + part * (z - before_z)
+            cy = before_y + part * (y - before_y)
+            upper = max(upper, last_front + part * (front - last_front))
+            gone = slope * cy + room
+            lower = max(lower, max(cz - sa * gone - ca * low, cz - sb * gone - cb * low))
+            never = never and gone >= 0.0 and cx * cx + cz * cz <= gone * gone
+        under = max(under, below)
+        last, last_front = height, front
+    if top or under <= 0.0 or behind >= 2.0 * radius - room:
         return True
-    if top <= low * min(1.0, ca * min(ca + sa, cb + sb)):
-        return True
-    if front <= room and (x_least >= 0.0 or top <= low or bottom >= 0.0):
-        return True
-    if rim_a <= ca * low + sa * room and rim_b <= cb * low + sb * room:
-        return True
-    return behind >= 2.0 * radius - room
+    return upper <= 0.0 and (lower <= 0.0 or never)
 
 
 @kernel
@@ -205,27 +194,24 @@ def _passes(corner, cf, sf, cl, sl, radius, shrunk, low, high, first, second):  
     With growing tilt a point of the part turns about the contact down and back in the tool's frame. So one that is
     below the bottom or behind the body where the gap begins stays so; one that is in front of it, and no lower than the
     contact, or above its top where the gap ends was so before. Each point must be one of these; the rest of the triangle
-    is cut off in turn. Next to the contact, where no such side is to be had, its plane decides.
+    is cut off in turn.
     """
-    if _surely_passes(corner, 3, cf, sf, cl, sl, radius, shrunk, low, high):
-        return True
     count = _clip(corner, 3, first, sf, cf, low * min(1.0, cf * min(cf + sf, cl + sl)))
-    if count == 0:
+    if count == 0 or _parts_pass(first, count, cf, sf, cl, sl, radius, shrunk, low, high):
         return True
-    if _surely_passes(first, count, cf, sf, cl, sl, radius, shrunk, low, high):
-        return True
+    least, most = np.inf, -np.inf
+    for k in range(count):
+        least, most = min(least, first[k, 2]), max(most, first[k, 2])
+    if most - least < _FLAT * radius:
+        return False
+    # Too large for one tangent to the rim.
     lower = _clip(first, count, second, -sl, -cl, 0.0)
-    good = lower == 0 or _surely_passes(second, lower, cf, sf, cl, sl, radius, shrunk, low, high)
-    if not good:
-        good = _never(second, lower, radius, shrunk)
-    if good:
+    if lower == 0 or _never(second, lower, radius, shrunk):
         upper = _clip(first, count, second, sl, cl, 0.0)
-        if upper == 0 or _surely_passes(second, upper, cf, sf, cl, sl, radius, shrunk, low, high):
-            return True
-        if _side(second, upper, cl, sl, radius, shrunk) > 0:
-            return True
+        upper = _clip(second, upper, first, -sl, -cl, -high)
+        return upper == 0 or _side(first, upper, cl, sl, radius, shrunk) > 0
     side = _side(first, count, cf, sf, radius, shrunk)
-    return side == -1 or side == 2 or _plane_passes(corner, cf, sf, cl, sl, radius, shrunk)
+    return side == -1 or side == 2
 
 
 @kernel
@@ -234,12 +220,15 @@ def _cuts(x, y, z, gap, count, radius, shrunk, low, high):  # type: ignore[no-un
     square = shrunk * shrunk - y * y
     if square <= 0.0 or z <= low:
         return False
-    room = radius - np.sqrt(square)
-    if x * x + z * z <= room * room + low * low:
+    half = np.sqrt(square)
+    room, far, away = radius - half, radius + half, x * x + z * z
+    if away <= room * room + low * low or away >= far * far + high * high:
         return False
     for g in range(count):
         top = gap[g, _CF] * z + gap[g, _SF] * x
         if top <= 0.0 or (top <= low and gap[g, _CF] * x <= gap[g, _SF] * z):
+            continue
+        if gap[g, _SF] * z - gap[g, _CF] * x >= far:
             continue
         bottom = gap[g, _CL] * z + gap[g, _SL] * x
         if bottom >= high or (bottom >= 0.0 and gap[g, _SL] * z - gap[g, _CL] * x <= room):
@@ -248,40 +237,80 @@ def _cuts(x, y, z, gap, count, radius, shrunk, low, high):  # type: ignore[no-un
     return False
 
 
+@entry
+def wide_tree(vertex, box, depth):  # type: ignore[no-untyped-def]
+    """Arrange every third level of a tree for looking at eight boxes at a time.
+
+    Parameters
+    ----------
+    vertex, box, depth
+        Triangles in tree order and the tree.
+
+    Returns
+    -------
+    blocks : (k, 15, LANES) float64
+        Of the boxes of a block, one a lane: centre, three half sides, a corner of a triangle in it. Level by level; a
+        block holds the boxes three levels below one, the first block those of the first level, lanes left over far below.
+    offset : (levels + 1,) int64
+        First block of each level.
+    bottom : int
+        Level of the tree that the last blocks hold: no box there has more than LANES triangles.
+    """
+    bottom = depth
+    while bottom > 0 and (len(vertex) + (1 << (bottom - 1)) - 1) >> (bottom - 1) <= LANES:
+        bottom -= 1
+    levels = bottom // 3 + 1
+    offset = np.zeros(levels + 1, np.int64)
+    for i in range(levels):
+        offset[i + 1] = offset[i] + (1 if i == 0 else 1 << (bottom % 3 + 3 * (i - 1)))
+    blocks = np.zeros((offset[levels], 15, LANES))
+    for i in range(levels):
+        level = bottom % 3 + 3 * i
+        for j in range(1 << level):
+            block, lane, node = offset[i] + (j >> 3 if i > 0 else 0), j & 7, (1 << level) - 1 + j
+            point = (len(vertex) * (2 * j + 1)) >> (level + 1)
+            for k in range(3):
+                blocks[block, k, lane] = box[node, k]
+                blocks[block, 12 + k, lane] = vertex[point, 0, k]
+                for side in range(3):
+                    blocks[block, 3 + 3 * side + k, lane] = box[node, 12 + side] * box[node, 3 + 3 * side + k]
+    return blocks, offset, bottom
+
+
 @kernel
-def _see(view, block, box, vertex, first, lanes, p, e1, e2, n):  # type: ignore[no-untyped-def]
-    """Write the boxes from node `first` on into a block of the view, as seen from the contact, and a point of each.
+def _see(view, slot, blocks, block, p, e1, e2, n, margin):  # type: ignore[no-untyped-def]
+    """Write a block of boxes into a slot of the view, as seen from the contact.
 
     Rows: centre along e1, e2, n; half sides along e1, along e2, along n; how far up the box goes; the point.
     """
-    level, row = 0, 0
-    while 2 * row + 1 <= first:
-        level, row = level + 1, 2 * row + 1
-    for lane in range(LANES):
-        if lane >= lanes:
-            for k in range(16):
-                view[block, k, lane] = 0.0
-            continue
-        node = first + lane
-        x, y, z = box[node, 0] - p[0], box[node, 1] - p[1], box[node, 2] - p[2]
-        top = x * n[0] + y * n[1] + z * n[2]
-        view[block, 0, lane] = x * e1[0] + y * e1[1] + z * e1[2]
-        view[block, 1, lane] = x * e2[0] + y * e2[1] + z * e2[2]
-        view[block, 2, lane] = top
-        for k in range(3):
-            half = box[node, 12 + k]
-            ux, uy, uz = half * box[node, 3 + 3 * k], half * box[node, 4 + 3 * k], half * box[node, 5 + 3 * k]
-            view[block, 3 + k, lane] = ux * e1[0] + uy * e1[1] + uz * e1[2]
-            view[block, 6 + k, lane] = ux * e2[0] + uy * e2[1] + uz * e2[2]
-            up = ux * n[0] + uy * n[1] + uz * n[2]
-            view[block, 9 + k, lane] = up
-            top += abs(up)
-        view[block, 12, lane] = top
-        i = (len(vertex) * (2 * (node - row) + 1)) >> (level + 1)
-        x, y, z = vertex[i, 0, 0] - p[0], vertex[i, 0, 1] - p[1], vertex[i, 0, 2] - p[2]
-        view[block, 13, lane] = x * e1[0] + y * e1[1] + z * e1[2]
-        view[block, 14, lane] = x * e2[0] + y * e2[1] + z * e2[2]
-        view[block, 15, lane] = x * n[0] + y * n[1] + z * n[2]
+    for lane in range(len(margin)):
+        x, y, z = blocks[block, 0, lane] - p[0], blocks[block, 1, lane] - p[1], blocks[block, 2, lane] - p[2]
+        view[slot, 0, lane] = x * e1[0] + y * e1[1] + z * e1[2]
+        view[slot, 1, lane] = x * e2[0] + y * e2[1] + z * e2[2]
+        height = x * n[0] + y * n[1] + z * n[2]
+        view[slot, 2, lane] = height
+        x, y, z = blocks[block, 3, lane], blocks[block, 4, lane], blocks[block, 5, lane]
+        view[slot, 3, lane] = x * e1[0] + y * e1[1] + z * e1[2]
+        view[slot, 6, lane] = x * e2[0] + y * e2[1] + z * e2[2]
+        up = x * n[0] + y * n[1] + z * n[2]
+        view[slot, 9, lane] = up
+        height += abs(up)
+        x, y, z = blocks[block, 6, lane], blocks[block, 7, lane], blocks[block, 8, lane]
+        view[slot, 4, lane] = x * e1[0] + y * e1[1] + z * e1[2]
+        view[slot, 7, lane] = x * e2[0] + y * e2[1] + z * e2[2]
+        up = x * n[0] + y * n[1] + z * n[2]
+        view[slot, 10, lane] = up
+        height += abs(up)
+        x, y, z = blocks[block, 9, lane], blocks[block, 10, lane], blocks[block, 11, lane]
+        view[slot, 5, lane] = x * e1[0] + y * e1[1] + z * e1[2]
+        view[slot, 8, lane] = x * e2[0] + y * e2[1] + z * e2[2]
+        up = x * n[0] + y * n[1] + z * n[2]
+        view[slot, 11, lane] = up
+        view[slot, 12, lane] = height + abs(up)
+        x, y, z = blocks[block, 12, lane] - p[0], blocks[block, 13, lane] - p[1], blocks[block, 14, lane] - p[2]
+        view[slot, 13, lane] = x * e1[0] + y * e1[1] + z * e1[2]
+        view[slot, 14, lane] = x * e2[0] + y * e2[1] + z * e2[2]
+        view[slot, 15, lane] = x * n[0] + y * n[1] + z * n[2]
 
 
 @kernel
@@ -289,7 +318,7 @@ def _boxes_pass(view, block, cosine, sine, gap, count, radius, shrunk, low, high
     """Write a margin for each box of a block: 0 or more only if none of its points enters the body in any gap.
 
     What parts a box from the body is, as for a point: beside the cylinder; below its bottom where the gap begins; in front
-    of the rim where it ends; below the rim at both; above the top where it ends; behind where it begins.
+    of the rim where it ends; below the rim at both; above the top where it ends; behind where it begins; out of reach.
     """
     for lane in range(len(margin)):
         margin[lane] = np.inf
@@ -323,38 +352,66 @@ def _boxes_pass(view, block, cosine, sine, gap, count, radius, shrunk, low, high
             d = sb * slope
             under = min(under, cb * low + sb * room - z - abs(z0 - d * t0) - abs(z1 - d * t1) - abs(z2 - d * t2))
             ahead = x - abs(f0) - abs(f1) - abs(f2)
-            best = abs(y) - abs(t0) - abs(t1) - abs(t2) - shrunk
-            best = max(best, low - view[block, 12, lane])
+            beside = abs(y) - abs(t0) - abs(t1) - abs(t2)
+            best = max(beside - shrunk, low - view[block, 12, lane])
             best = max(best, level - top)
             best = max(best, min(room - front, max(ahead, max(low - top, bottom))))
             best = max(best, under)
             best = max(best, bottom - high)
             best = max(best, behind - 2.0 * radius + room)
+            away = np.sqrt(x * x + z * z) + 1e-300
+            ux, uz = x / away, z / away
+            away -= abs(ux * f0 + uz * z0) + abs(ux * f1 + uz * z1) + abs(ux * f2 + uz * z2)
+            far = radius + np.sqrt(max(0.0, shrunk * shrunk - max(0.0, beside) ** 2))
+            best = max(best, away - np.sqrt(high * high + far * far))
             margin[lane] = min(margin[lane], best)
 
 
 @kernel
-def _triangles_pass(lanes, begin, p, f, t, n, gap, count, radius, shrunk, low, high, margin, up):  # type: ignore[no-untyped-def]
-    """`_boxes_pass` for the triangles from `begin` on; and how far up each goes."""
+def _see_triangle(seen, lane, vertex, i, p, e1, e2, n):  # type: ignore[no-untyped-def]
+    """Write a triangle into a lane of a leaf, as seen from the contact; how far up it goes."""
+    top = -np.inf
+    for k in range(3):
+        x, y, z = vertex[i, k, 0] - p[0], vertex[i, k, 1] - p[1], vertex[i, k, 2] - p[2]
+        seen[3 * k, lane] = x * e1[0] + y * e1[1] + z * e1[2]
+        seen[3 * k + 1, lane] = x * e2[0] + y * e2[1] + z * e2[2]
+        up = x * n[0] + y * n[1] + z * n[2]
+        seen[3 * k + 2, lane] = up
+        top = max(top, up)
+    return top
+
+
+@kernel
+def _see_leaf(seen, vertex, begin, end, p, e1, e2, n):  # type: ignore[no-untyped-def]
+    """Write triangles into a leaf; how far up they go. A lane without one holds a point far below."""
+    top = -np.inf
+    for lane in range(LANES):
+        if begin + lane < end:
+            top = max(top, _see_triangle(seen, lane, vertex, begin + lane, p, e1, e2, n))
+        else:
+            for k in range(3):
+                seen[3 * k, lane], seen[3 * k + 1, lane], seen[3 * k + 2, lane] = 0.0, 0.0, -1.0
+    return top
+
+
+@kernel
+def _triangles_pass(seen, cosine, sine, gap, count, radius, shrunk, low, high, margin):  # type: ignore[no-untyped-def]
+    """`_boxes_pass` for the triangles of a leaf."""
     for lane in range(len(margin)):
         margin[lane] = np.inf
     for g in range(count):
         ca, sa, cb, sb = gap[g, _CF], gap[g, _SF], gap[g, _CL], gap[g, _SL]
         level = low * min(1.0, ca * min(ca + sa, cb + sb))
         for lane in range(len(margin)):
-            i = begin + lane
-            dx, dy, dz = lanes[0, i] - p[0], lanes[1, i] - p[1], lanes[2, i] - p[2]
-            x0 = dx * f[0] + dy * f[1] + dz * f[2]
-            y0 = dx * t[0] + dy * t[1] + dz * t[2]
-            z0 = dx * n[0] + dy * n[1] + dz * n[2]
-            dx, dy, dz = lanes[3, i] - p[0], lanes[4, i] - p[1], lanes[5, i] - p[2]
-            x1 = dx * f[0] + dy * f[1] + dz * f[2]
-            y1 = dx * t[0] + dy * t[1] + dz * t[2]
-            z1 = dx * n[0] + dy * n[1] + dz * n[2]
-            dx, dy, dz = lanes[6, i] - p[0], lanes[7, i] - p[1], lanes[8, i] - p[2]
-            x2 = dx * f[0] + dy * f[1] + dz * f[2]
-            y2 = dx * t[0] + dy * t[1] + dz * t[2]
-            z2 = dx * n[0] + dy * n[1] + dz * n[2]
+            x0 = cosine * seen[0, lane] + sine * seen[1, lane]
+            y0 = cosine * seen[1, lane] - sine * seen[0, lane]
+            z0 = seen[2, lane]
+            x1 = cosine * seen[3, lane] + sine * seen[4, lane]
+            y1 = cosine * seen[4, lane] - sine * seen[3, lane]
+            z1 = seen[5, lane]
+            x2 = cosine * seen[6, lane] + sine * seen[7, lane]
+            y2 = cosine * seen[7, lane] - sine * seen[6, lane]
+            z2 = seen[8, lane]
             y = max(-0.98 * shrunk, min(0.98 * shrunk, (y0 + y1 + y2) / 3.0))
             q = np.sqrt(shrunk * shrunk - y * y)
             slope = y / q
@@ -370,15 +427,19 @@ def _triangles_pass(lanes, begin, p, f, t, n, gap, count, radius, shrunk, low, h
             under = ca * low + sa * room - max(z0 - d * y0, max(z1 - d * y1, z2 - d * y2))
             d = sb * slope
             under = min(under, cb * low + sb * room - max(z0 - d * y0, max(z1 - d * y1, z2 - d * y2)))
-            best = max(min(y0, min(y1, y2)), -max(y0, max(y1, y2))) - shrunk
-            best = max(best, low - highest)
+            beside = max(min(y0, min(y1, y2)), -max(y0, max(y1, y2)))
+            best = max(beside - shrunk, low - highest)
             best = max(best, level - top)
             best = max(best, min(room - front, max(min(x0, min(x1, x2)), max(low - top, bottom))))
             best = max(best, under)
             best = max(best, bottom - high)
             best = max(best, behind - 2.0 * radius + room)
+            ux, uz = x0 + x1 + x2, z0 + z1 + z2
+            away = np.sqrt(ux * ux + uz * uz) + 1e-300
+            away = min(ux * x0 + uz * z0, min(ux * x1 + uz * z1, ux * x2 + uz * z2)) / away
+            far = radius + np.sqrt(max(0.0, shrunk * shrunk - max(0.0, beside) ** 2))
+            best = max(best, away - np.sqrt(high * high + far * far))
             margin[lane] = min(margin[lane], best)
-            up[lane] = highest
 
 
 @kernel
@@ -387,7 +448,7 @@ def _first_in_the_way(vertex, i, p, n, f, t, a, b, sign, narrowest, radius, shru
 
     A range is clear if the triangle misses the body, widened by what tilting within it can do. Others are halved.
     """
-    body, polygon, spare, pieces, ranges, _ = scratch
+    body, polygon, spare, pieces, ranges = scratch
     ranges[0, 0], ranges[0, 1] = a, b
     top = 1
     while top > 0:
@@ -408,50 +469,84 @@ def _first_in_the_way(vertex, i, p, n, f, t, a, b, sign, narrowest, radius, shru
 
 
 @kernel
+def _begin(gap, g, tilt, unsure):  # type: ignore[no-untyped-def]
+    gap[g, _FIRST], gap[g, _CF], gap[g, _SF], gap[g, _UF] = tilt, np.cos(tilt), np.sin(tilt), unsure
+
+
+@kernel
+def _end(gap, g, tilt, unsure):  # type: ignore[no-untyped-def]
+    gap[g, _LAST], gap[g, _CL], gap[g, _SL], gap[g, _UL] = tilt, np.cos(tilt), np.sin(tilt), unsure
+
+
+@kernel
+def _drop(gap, g, count):  # type: ignore[no-untyped-def]
+    """Take a gap out, its bands with it; the new count."""
+    for k in range(_COLUMNS):
+        gap[g, k] = gap[count - 1, k]
+    return count - 1
+
+
+@kernel
+def _part(gap, g, count, left, right, unsure):  # type: ignore[no-untyped-def]
+    """Take the tilts between `left` and `right`, within a gap, out of it; the new count.
+
+    Its new ends get the band `unsure`. Bands that are cut off stay undecided, as does the narrower part if there is no room
+    for both: they are counted in the row after the last gap.
+    """
+    a, b = gap[g, _FIRST], gap[g, _LAST]
+    if left > a and right < b and count == _GAPS:
+        if left - a >= b - right:
+            gap[_GAPS, _UL] += b - right
+            right = b
+        else:
+            gap[_GAPS, _UF] += left - a
+            left = a
+    if left > a and right < b:
+        for k in range(_COLUMNS):
+            gap[count, k] = gap[g, k]
+        _begin(gap, count, right, unsure)
+        _end(gap, g, left, unsure)
+        return count + 1
+    if right < b:
+        gap[_GAPS, _UF] += gap[g, _UF]
+        _begin(gap, g, right, unsure)
+    elif left > a:
+        gap[_GAPS, _UL] += gap[g, _UL]
+        _end(gap, g, left, unsure)
+    else:
+        gap[_GAPS, _UF] += gap[g, _UF] + gap[g, _UL] + min(b - a, unsure)
+        return _drop(gap, g, count)
+    return count
+
+
+@kernel
 def _take(gap, count, left, right):  # type: ignore[no-untyped-def]
-    """Take an arc that a point forbids out of the gaps; (count of gaps, whether any was cut)."""
+    """Take an arc that a point forbids out of the gaps; the new count."""
     left, right = left - _HAIR, right + _HAIR
-    g, cut = 0, False
     if right - left <= 2.0 * _HAIR:
-        return count, cut
+        return count
+    g = 0
     while g < count:
         a, b = gap[g, _FIRST], gap[g, _LAST]
         if right <= a or left >= b:
             g += 1
             continue
-        cut = True
-        if left <= a and right >= b:
-            count -= 1
-            for k in range(_COLUMNS):
-                gap[g, k] = gap[count, k]
-            continue
-        if left > a and right < b:
-            if count == _GAPS:
-                # No room for both sides: the wider one stays, the other counts as undecided.
-                if left - a >= b - right:
-                    gap[g, _UL] += b - right
-                    right = b
-                else:
-                    gap[g, _UF] += left - a
-                    left = a
-                continue
-            for k in range(_COLUMNS):
-                gap[count, k] = gap[g, k]
-            gap[count, _FIRST], gap[count, _CF], gap[count, _SF], gap[count, _UF] = right, np.cos(right), np.sin(right), 0.0
-            gap[g, _LAST], gap[g, _CL], gap[g, _SL], gap[g, _UL] = left, np.cos(left), np.sin(left), 0.0
-            count += 1
-        elif left <= a:
-            gap[g, _FIRST], gap[g, _CF], gap[g, _SF], gap[g, _UF] = right, np.cos(right), np.sin(right), 0.0
-        else:
-            gap[g, _LAST], gap[g, _CL], gap[g, _SL], gap[g, _UL] = left, np.cos(left), np.sin(left), 0.0
-        g += 1
-    return count, cut
+        # What the arc covers is no longer undecided.
+        if left <= a - gap[g, _UF]:
+            gap[g, _UF] = 0.0
+        if right >= b + gap[g, _UL]:
+            gap[g, _UL] = 0.0
+        before = count
+        count = _part(gap, g, count, max(a, left), min(b, right), 0.0)
+        if count >= before:
+            g += 1
+    return count
 
 
 @kernel
 def _in_the_way(vertex, i, p, n, f, t, tilt, radius, shrunk, low, high, scratch):  # type: ignore[no-untyped-def]
     """Whether a triangle reaches into the body at a tilt."""
-    body, polygon, spare, _, _, _ = scratch
+    body, polygon, spare, _, _ = scratch
     stand(body, p, n, f, t, np.cos(tilt), np.sin(tilt), radius, shrunk, low, high)
     return triangle_hit(vertex, i, body, 0.0, polygon, spare)[0]
 
@@ -492,100 +587,83 @@ def _cut_gaps(  # type: ignore[no-untyped-def]
     """Take the tilts at which a triangle is in the way out of the gaps; (count of gaps, whether any was cut)."""
     cut = False
     g = 0
-    while g < count:
-        if not _passes(corner, gap[g, _CF], gap[g, _SF], gap[g, _CL], gap[g, _SL], radius, shrunk, low, high, first, second):
-            break
-        g += 1
-    if g == count:
-        return count, False
     # What its corners alone forbid is known in closed form, and mostly all that it does.
     for k in range(3):
-        left, right = point_arc(corner[k, 1], corner[k, 0] + radius, corner[k, 2], 0.0, radius, shrunk, low, high)
-        count, taken = _take(gap, count, left, right)
-        cut = cut or taken
-    if not cut:
-        g = max(g, 0)
-    else:
-        g = 0
+        x, z, y = corner[k, 0], corner[k, 1], corner[k, 2]
+        if _cuts(x, y, z, gap, count, radius, shrunk, low, high):
+            left, right = point_arc(z, x + radius, y, 0.0, radius, shrunk, low, high)
+            count = _take(gap, count, left, right)
+            cut = True
+    while g < count and not cut:
+        if not _passes(
+            corner, gap[g, _CF], gap[g, _SF], gap[g, _CL], gap[g, _SL], radius, shrunk, low, high, first, second
+        ):
+            break
+        g += 1
+    if g == count and not cut:
+        return count, False
     while g < count:
         a, b, ca, sa, cb, sb = gap[g, 0], gap[g, 1], gap[g, 2], gap[g, 3], gap[g, 4], gap[g, 5]
         if _passes(corner, ca, sa, cb, sb, radius, shrunk, low, high, first, second):
             g += 1
             continue
         # A side or the middle of the triangle sticks out further than its corners: mostly by a little, at one end.
+        # What was undecided at its ends no longer is where this triangle is in the way.
+        for column, tilt, off in ((_UF, a, -gap[g, _UF]), (_UL, b, gap[g, _UL])):
+            if (
+                off != 0.0
+                and _in_the_way(vertex, i, p, n, f, t, tilt, radius, shrunk, low, high, scratch)
+                and _in_the_way(vertex, i, p, n, f, t, tilt + off, radius, shrunk, low, high, scratch)
+            ):
+                gap[g, column] = 0.0
         up, up_failed = _shrink(corner, gap, g, 1.0, narrowest, radius, shrunk, low, high, first, second)
         if up <= 2.0 * narrowest and gap[g, _UF] + up <= 3.0 * narrowest:
-            gap[g, _FIRST], gap[g, _CF], gap[g, _SF], gap[g, _UF] = a + up, np.cos(a + up), np.sin(a + up), gap[g, _UF] + up
+            _begin(gap, g, a + up, gap[g, _UF] + up)
             cut = True
-            g += 1
             continue
         down, down_failed = _shrink(corner, gap, g, -1.0, narrowest, radius, shrunk, low, high, first, second)
         if down <= 2.0 * narrowest and gap[g, _UL] + down <= 3.0 * narrowest:
-            gap[g, _LAST], gap[g, _CL], gap[g, _SL], gap[g, _UL] = b - down, np.cos(b - down), np.sin(b - down), gap[g, _UL] + down
+            _end(gap, g, b - down, gap[g, _UL] + down)
             cut = True
-            g += 1
             continue
-        left, right = max(a, b - down), min(b, a + up)
+        left, right, unsure = max(a, b - down), min(b, a + up), narrowest
         if left > right or not (
             _in_the_way(vertex, i, p, n, f, t, max(a, b - down_failed), radius, shrunk, low, high, scratch)
             and _in_the_way(vertex, i, p, n, f, t, min(b, a + up_failed), radius, shrunk, low, high, scratch)
         ):
             # Not known to be in the way right up to there: looked at closely.
-            if left > right:
-                left, right = a, b
-            start, end = left, right
-            left = _first_in_the_way(vertex, i, p, n, f, t, start, end, 1.0, narrowest, radius, shrunk, low, high, scratch)
+            start, end = (left, right) if left <= right else (a, b)
+            unsure = 2.0 * narrowest
+            left = _first_in_the_way(
+                vertex, i, p, n, f, t, start, end, 1.0, narrowest, radius, shrunk, low, high, scratch
+            )
             if np.isnan(left):
                 g += 1
                 continue
-            right = _first_in_the_way(vertex, i, p, n, f, t, left, end, -1.0, narrowest, radius, shrunk, low, high, scratch)
+            right = _first_in_the_way(
+                vertex, i, p, n, f, t, left, end, -1.0, narrowest, radius, shrunk, low, high, scratch
+            )
             right = left if np.isnan(right) else right
         cut = True
-        keep_left, keep_right = left > a, right < b
-        off_left = min(narrowest, right - left)
-        off_right = min(narrowest, right - left - off_left) if keep_left else off_left
-        if keep_left and keep_right and count == _GAPS:
-            keep_left = left - a >= b - right
-            keep_right = not keep_left
-        if keep_right:
-            # What lies beyond the obstacle: in place if nothing is left before it, else a gap of its own.
-            at = g
-            if keep_left:
-                at = count
-                count += 1
-            gap[at, 0], gap[at, 1], gap[at, _UL] = right, b, gap[g, _UL]
-            gap[at, 2], gap[at, 3], gap[at, 4], gap[at, 5] = np.cos(right), np.sin(right), cb, sb
-        if keep_left:
-            gap[g, 1], gap[g, 4], gap[g, 5], gap[g, _UL] = left, np.cos(left), np.sin(left), off_left
-            if keep_right:
-                gap[count - 1, _UF] = off_right
-        elif keep_right:
-            gap[g, _UF] = off_right
-        else:
-            count -= 1
-            for k in range(_COLUMNS):
-                gap[g, k] = gap[count, k]
-            continue
-        g += 1
+        before = count
+        count = _part(gap, g, count, left, right, unsure)
+        if count >= before:
+            g += 1
     return count, cut
 
 
 @kernel
-def _place(vertex, i, p, f, t, n, corner):  # type: ignore[no-untyped-def]
-    for c in range(3):
-        x, y, z = 0.0, 0.0, 0.0
-        for k in range(3):
-            away = vertex[i, c, k] - p[k]
-            x += away * f[k]
-            y += away * t[k]
-            z += away * n[k]
-        corner[c, 0], corner[c, 1], corner[c, 2] = x, z, y
+def _turn(seen, lane, cosine, sine, corner):  # type: ignore[no-untyped-def]
+    """Write a triangle of a leaf as rows (x, z, y) at a rotation."""
+    for k in range(3):
+        x, y = seen[3 * k, lane], seen[3 * k + 1, lane]
+        corner[k, 0], corner[k, 1], corner[k, 2] = cosine * x + sine * y, seen[3 * k + 2, lane], cosine * y - sine * x
 
 
 @kernel
 def _forget(below, home, block, lane):  # type: ignore[no-untyped-def]
     """Leave a box out for this contact, and those above it in which nothing else is left."""
-    while True:
+    while block < _SEEN:
         below[block, lane] = _NONE
         for other in range(LANES):
             if below[block, other] != _NONE:
@@ -596,8 +674,8 @@ def _forget(below, home, block, lane):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _new_block(view, below, home, block, first, lanes, low):  # type: ignore[no-untyped-def]
-    """Register a block just seen; whether a box in it rises above the tangent plane."""
+def _rising(view, below, block, lanes, low):  # type: ignore[no-untyped-def]
+    """Mark the boxes of a block just seen that rise above the tangent plane; whether there are any."""
     some = False
     for lane in range(LANES):
         rises = lane < lanes and view[block, 12, lane] > low
@@ -607,97 +685,100 @@ def _new_block(view, below, home, block, first, lanes, low):  # type: ignore[no-
 
 
 @kernel
-def _rotation(  # type: ignore[no-untyped-def]
-    p, e1, e2, n, f, t, cosine, sine, gap, count, radius, shrunk, low, high, narrowest, vertex, lanes, box, bottom_level,
-    seen, known, known_count, view, below, home, node, queue, ahead, margin, up, corner, first, second, scratch,
+def _leaf(  # type: ignore[no-untyped-def]
+    seen, which, vertex, p, n, f, t, cosine, sine, gap, count, radius, shrunk, low, high, narrowest, margin, corner, first,
+    second, scratch,
 ):  # fmt: skip
-    """Take the gaps of one rotation through the tree; (gaps, blocks seen, count of known triangles)."""
-    triangles, leaf = len(vertex), (1 << bottom_level) - 1
-    for turn in range(min(known_count, _KNOWN)):
-        if count == 0:
-            break
-        i = known[(known_count - 1 - turn) % _KNOWN]
-        _place(vertex, i, p, f, t, n, corner)
-        count, _ = _cut_gaps(vertex, i, p, n, f, t, corner, gap, count, narrowest, radius, shrunk, low, high, first,
-                             second, scratch)  # fmt: skip
-    queue[0, 0], queue[0, 1] = 0, node[0]
-    waiting = 1
-    while count > 0 and waiting > 0:
-        coming = 0
-        for w in range(waiting):
-            if count == 0:
-                break
-            block, at = queue[w, 0], queue[w, 1]
-            if block < 0:
-                block = _SEEN
-                _see(view, block, box, vertex, at, LANES, p, e1, e2, n)
-            _boxes_pass(view, block, cosine, sine, gap, count, radius, shrunk, low, high, margin)
-            if at >= leaf:
-                for lane in range(LANES):
-                    if margin[lane] >= 0.0:
-                        continue
-                    begin = (triangles * (at + lane - leaf)) >> bottom_level
-                    end = (triangles * (at + lane - leaf + 1)) >> bottom_level
-                    count, known_count, rises = _leaf(
-                        vertex, lanes, begin, end, p, n, f, t, corner, gap, count, narrowest, radius, shrunk, low, high,
-                        known, known_count, up, first, second, scratch)  # fmt: skip
-                    if not rises and block < _SEEN:
-                        _forget(below, home, block, lane)
-                    if count == 0:
-                        break
-                continue
-            for lane in range(LANES):
-                if margin[lane] >= 0.0 or (block < _SEEN and below[block, lane] == _NONE):
-                    continue
-                x, y, z = view[block, 13, lane], view[block, 14, lane], view[block, 15, lane]
-                x, y = cosine * x + sine * y, cosine * y - sine * x
-                if _cuts(x, y, z, gap, count, radius, shrunk, low, high):
-                    left, right = point_arc(z, x + radius, y, 0.0, radius, shrunk, low, high)
-                    count, _ = _take(gap, count, left, right)
-                next_block, next_node = _UNSEEN, 8 * (at + lane) + 7
-                if block < _SEEN:
-                    next_block = below[block, lane]
-                    if next_block == _UNSEEN and seen < _SEEN:
-                        _see(view, seen, box, vertex, next_node, LANES, p, e1, e2, n)
-                        if not _new_block(view, below, home, seen, next_node, LANES, low):
-                            _forget(below, home, block, lane)
-                            continue
-                        next_block = seen
-                        below[block, lane], home[seen, 0], home[seen, 1], node[seen] = seen, block, lane, next_node
-                        seen += 1
-                ahead[coming, 0], ahead[coming, 1] = next_block, next_node
-                coming += 1
-        queue, ahead = ahead, queue
-        waiting = coming
-    return count, seen, known_count
+    """Take what the triangles of a leaf forbid out of the gaps; (gaps, the lane that cut last or -1)."""
+    _triangles_pass(seen, cosine, sine, gap, count, radius, shrunk, low, high, margin)
+    last = -1
+    for lane in range(LANES):
+        if margin[lane] >= 0.0 or count == 0:
+            continue
+        _turn(seen, lane, cosine, sine, corner)
+        count, cut = _cut_gaps(vertex, which[lane], p, n, f, t, corner, gap, count, narrowest, radius, shrunk, low, high,
+                               first, second, scratch)  # fmt: skip
+        if cut:
+            last = lane
+    return count, last
 
 
 @kernel
-def _leaf(  # type: ignore[no-untyped-def]
-    vertex, lanes, begin, end, p, n, f, t, corner, gap, count, narrowest, radius, shrunk, low, high, known, known_count,
-    up, first, second, scratch,
+def _rotation(  # type: ignore[no-untyped-def]
+    p, e1, e2, n, f, t, cosine, sine, gap, count, radius, shrunk, low, high, narrowest, vertex, blocks, offset, bottom,
+    tally, known, view, leaves, below, home, queue, ahead, margin, inside, which, corner, first, second, scratch,
 ):  # fmt: skip
-    """Take what the triangles from `begin` to `end` forbid out of the gaps; whether one rises above the tangent plane."""
-    passed = scratch[5]
-    _triangles_pass(lanes, begin, p, f, t, n, gap, count, radius, shrunk, low, high, passed, up)
-    rises = False
-    for lane in range(end - begin):
-        rises = rises or up[lane] > low
-        if passed[lane] >= 0.0 or count == 0:
-            continue
-        _place(vertex, begin + lane, p, f, t, n, corner)
-        count, cut = _cut_gaps(vertex, begin + lane, p, n, f, t, corner, gap, count, narrowest, radius, shrunk, low, high,
-                               first, second, scratch)  # fmt: skip
-        if cut:
-            known[known_count % _KNOWN] = begin + lane
-            known_count += 1
-    return count, known_count, rises
+    """Take the gaps of one rotation through the tree, level by level; how many are left."""
+    triangles, levels = len(vertex), len(offset) - 1
+    count, _ = _leaf(leaves[_LEAVES + 1], known, vertex, p, n, f, t, cosine, sine, gap, count, radius, shrunk, low, high,
+                     narrowest, inside, corner, first, second, scratch)  # fmt: skip
+    queue[0, 0], queue[0, 1] = 0, 0
+    waiting = 1
+    for level in range(levels):
+        coming = 0
+        for w in range(waiting):
+            if count == 0:
+                return 0
+            slot, block = queue[w, 0], queue[w, 1]
+            if slot < 0:
+                slot = _SEEN
+                _see(view, slot, blocks, offset[level] + block, p, e1, e2, n, margin)
+                _rising(view, below, slot, LANES, low)
+            _boxes_pass(view, slot, cosine, sine, gap, count, radius, shrunk, low, high, margin)
+            for lane in range(LANES):
+                inner = below[slot, lane]
+                if margin[lane] >= 0.0 or inner == _NONE or count == 0:
+                    continue
+                box = 8 * block + lane
+                if level == levels - 1:
+                    begin, end = (triangles * box) >> bottom, (triangles * (box + 1)) >> bottom
+                    if inner == _UNSEEN:
+                        inner = min(tally[1], _LEAVES)
+                        if _see_leaf(leaves[inner], vertex, begin, end, p, e1, e2, n) <= low:
+                            _forget(below, home, slot, lane)
+                            continue
+                        if inner < _LEAVES:
+                            tally[1] += 1
+                            below[slot, lane] = inner
+                    for k in range(LANES):
+                        which[k] = begin + k
+                    count, cut = _leaf(leaves[inner], which, vertex, p, n, f, t, cosine, sine, gap, count, radius, shrunk,
+                                       low, high, narrowest, inside, corner, first, second, scratch)  # fmt: skip
+                    if cut >= 0:
+                        known[tally[2]] = begin + cut
+                        for k in range(9):
+                            leaves[_LEAVES + 1, k, tally[2]] = leaves[inner, k, cut]
+                        tally[2] = (tally[2] + 1) % LANES
+                    continue
+                x, y, z = view[slot, 13, lane], view[slot, 14, lane], view[slot, 15, lane]
+                x, y = cosine * x + sine * y, cosine * y - sine * x
+                if _cuts(x, y, z, gap, count, radius, shrunk, low, high):
+                    left, right = point_arc(z, x + radius, y, 0.0, radius, shrunk, low, high)
+                    count = _take(gap, count, left, right)
+                if inner == _UNSEEN and tally[0] < _SEEN:
+                    inner = tally[0]
+                    _see(view, inner, blocks, offset[level + 1] + box, p, e1, e2, n, inside)
+                    if not _rising(view, below, inner, LANES, low):
+                        _forget(below, home, slot, lane)
+                        continue
+                    below[slot, lane], home[inner, 0], home[inner, 1] = inner, slot, lane
+                    tally[0] += 1
+                if coming == _QUEUE:
+                    # Too much in the way to be told apart: nothing here is called free.
+                    for g in range(count):
+                        gap[_GAPS, _UF] += gap[g, _LAST] - gap[g, _FIRST]
+                    return 0
+                ahead[coming, 0], ahead[coming, 1] = inner, box
+                coming += 1
+        queue, ahead = ahead, queue
+        waiting = coming
+    return count
 
 
 @kernel
 def _write(gap, count, room, part):  # type: ignore[no-untyped-def]
     """Write the gaps as intervals, ascending; (how many, width of what is undecided at their ends and beyond `room`)."""
-    written, unsure = 0, 0.0
+    written, unsure = 0, gap[_GAPS, _UF] + gap[_GAPS, _UL]
     for g in range(count):
         unsure += gap[g, _UF] + gap[g, _UL]
         if gap[g, _LAST] <= gap[g, _FIRST]:
@@ -717,7 +798,7 @@ def _write(gap, count, room, part):  # type: ignore[no-untyped-def]
 @entry
 def free_map(  # type: ignore[no-untyped-def]
     rows, point, normal, direction_max, curvature, rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
-    radius, length, depth_allowed, narrowest, vertex, box, depth, lanes, room, part, count_out, undecided,
+    radius, length, depth_allowed, narrowest, vertex, blocks, offset, bottom, room, part, count_out, undecided,
 ):  # fmt: skip
     """Free tilts of samples at all rotations, in one walk of the tree each, with certified ends.
 
@@ -735,10 +816,10 @@ def free_map(  # type: ignore[no-untyped-def]
         Cutter, and the depth up to which a triangle does not matter, mm.
     narrowest : float
         Ends are found to this, rad; a passing tilt is kept.
-    vertex, box, depth
-        Triangles in tree order and the tree.
-    lanes : (9, triangles + LANES) float64
-        The triangles once more, corner by corner, coordinate by coordinate; what is behind the last counts for nothing.
+    vertex : (triangles, 3, 3) float64
+        Triangles in tree order.
+    blocks, offset, bottom
+        As `wide_tree` gives them.
     room : int
         Most intervals of one rotation.
     part : (m, k, room, 2) float64, written
@@ -749,27 +830,30 @@ def free_map(  # type: ignore[no-untyped-def]
     """
     t, f, e2 = np.empty(3), np.empty(3), np.empty(3)
     corner, first, second = np.empty((3, 3)), np.empty((8, 3)), np.empty((8, 3))
-    gap, arcs, margin, up = np.empty((_GAPS, _COLUMNS)), np.empty((8, 2)), np.empty(LANES), np.empty(LANES)
-    scratch = (np.empty(BODY), np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3)), np.empty((64, 2)), np.empty(LANES))
-    known, known_count = np.full(_KNOWN, -1), 0
-    view = np.empty((_SEEN + 1, 16, LANES))
-    below, home, node = np.empty((_SEEN, LANES), np.int64), np.empty((_SEEN, 2), np.int64), np.empty(_SEEN, np.int64)
+    gap, arcs = np.empty((_GAPS + 1, _COLUMNS)), np.empty((8, 2))
+    margin, inside, which, known = (
+        np.empty(LANES),
+        np.empty(LANES),
+        np.empty(LANES, np.int64),
+        np.zeros(LANES, np.int64),
+    )
+    scratch = (np.empty(BODY), np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3)), np.empty((64, 2)))
+    view, leaves = np.empty((_SEEN + 1, 16, LANES)), np.empty((_LEAVES + 2, 9, LANES))
+    below, home = np.empty((_SEEN + 1, LANES), np.int64), np.empty((_SEEN, 2), np.int64)
+    tally = np.zeros(3, np.int64)
     queue, ahead = np.empty((_QUEUE, 2), np.int64), np.empty((_QUEUE, 2), np.int64)
     low, high, shrunk = depth_allowed, length - depth_allowed, radius - depth_allowed
-    # The leaves looked at: as many triangles as there are lanes, or half of it.
-    bottom_level = depth
-    while bottom_level > 0 and (len(vertex) + (1 << (bottom_level - 1)) - 1) >> (bottom_level - 1) <= LANES:
-        bottom_level -= 1
-    start = bottom_level % 3
     for place in range(len(rows)):
         row = rows[place]
         p, n, e1 = point[row], normal[row], direction_max[row]
         for k in range(3):
             a, b = (k + 1) % 3, (k + 2) % 3
             e2[k] = n[a] * e1[b] - n[b] * e1[a]
-        node[0], home[0, 0], seen = (1 << start) - 1, -1, 1
-        _see(view, 0, box, vertex, node[0], 1 << start, p, e1, e2, n)
-        some = _new_block(view, below, home, 0, node[0], 1 << start, low)
+        home[0, 0], tally[0], tally[1] = -1, 1, 0
+        _see(view, 0, blocks, 0, p, e1, e2, n, margin)
+        some = _rising(view, below, 0, 1 << (bottom % 3), low)
+        for lane in range(LANES):
+            _see_triangle(leaves[_LEAVES + 1], lane, vertex, known[lane], p, e1, e2, n)
         for rotation in range(len(rotation_cos)):
             cosine, sine = rotation_cos[rotation], rotation_sin[rotation]
             along_n, along_f = 0.0, 0.0
@@ -785,14 +869,14 @@ def free_map(  # type: ignore[no-untyped-def]
             count = axis_arcs(along_n, along_f, limit_cos, tilt_low, tilt_high, arcs)
             if least > 0.0:
                 count = remove(arcs, count, -1.0, least, 0.0)
+            gap[_GAPS, _UF], gap[_GAPS, _UL] = 0.0, 0.0
             for g in range(count):
-                a, b = arcs[g, 0], arcs[g, 1]
-                gap[g, _FIRST], gap[g, _LAST], gap[g, _UF], gap[g, _UL] = a, b, 0.0, 0.0
-                gap[g, _CF], gap[g, _SF], gap[g, _CL], gap[g, _SL] = np.cos(a), np.sin(a), np.cos(b), np.sin(b)
+                _begin(gap, g, arcs[g, 0], 0.0)
+                _end(gap, g, arcs[g, 1], 0.0)
             if some and count > 0:
-                count, seen, known_count = _rotation(
-                    p, e1, e2, n, f, t, cosine, sine, gap, count, radius, shrunk, low, high, narrowest, vertex, lanes, box,
-                    bottom_level, seen, known, known_count, view, below, home, node, queue, ahead, margin, up, corner,
-                    first, second, scratch,
+                count = _rotation(
+                    p, e1, e2, n, f, t, cosine, sine, gap, count, radius, shrunk, low, high, narrowest, vertex,
+                    blocks, offset, bottom, tally, known, view, leaves, below, home, queue, ahead, margin, inside, which,
+                    corner, first, second, scratch,
                 )  # fmt: skip
             count_out[place, rotation], undecided[place, rotation] = _write(gap, count, room, part[place, rotation])
