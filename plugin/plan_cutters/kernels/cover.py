@@ -8,7 +8,8 @@ the axis, for the directions in which the contact wanders and the cutter turns a
 
 import numpy as np
 
-from plan_cutters.kernels.hit import BODY, HIGH, LOW, OFFSET, RADIUS, A, P, X, Y, _cut, _half_width
+from plan_cutters.kernels import hit
+from plan_cutters.kernels.hit import BODY, HALF, HIGH, LOW, OFFSET, RADIUS, A, P, X, Y
 from plan_cutters.kernels.jit import entry, kernel
 
 #: Largest angle (rad) between normals within `reach`: up to it, the surface is a graph over its tangent planes.
@@ -19,44 +20,6 @@ _REACHES, REACH = 17, 10.0
 _RINGS = 40
 #: Steps along the lean that the patch is cut into: finer ones where fewer do not do.
 _STEPS = (2, 6, 18)
-
-
-@kernel
-def _apart(box, i, body, half):  # type: ignore[no-untyped-def]
-    """True only if no point of box i lies in the stadium body, `half` the length of its axis along y_T."""
-    dx, dy, dz = box[i, 0] - body[0], box[i, 1] - body[1], box[i, 2] - body[2]
-    height = dx * body[3] + dy * body[4] + dz * body[5]
-    diagonal = box[i, 15]
-    if height + diagonal < body[LOW] or height - diagonal > body[HIGH]:
-        return True
-    if height < body[LOW] or height > body[HIGH]:
-        reach = _half_width(box, i, body[3], body[4], body[5])
-        if height + reach < body[LOW] or height - reach > body[HIGH]:
-            return True
-    across = dx * body[6] + dy * body[7] + dz * body[8] + body[OFFSET]
-    along = dx * body[9] + dy * body[10] + dz * body[11]
-    along -= min(half, max(-half, along))
-    square = across * across + along * along
-    if square > (body[RADIUS] + diagonal) ** 2:
-        return True
-    # A plane across the box's thin side.
-    mx, my, mz = box[i, 9], box[i, 10], box[i, 11]
-    lean = mx * body[3] + my * body[4] + mz * body[5]
-    front = mx * body[6] + my * body[7] + mz * body[8]
-    aside = mx * body[9] + my * body[10] + mz * body[11]
-    middle = 0.5 * (body[LOW] + body[HIGH])
-    apart = abs(mx * dx + my * dy + mz * dz + body[OFFSET] * front - middle * lean)
-    wide = 0.5 * (body[HIGH] - body[LOW]) * abs(lean) + body[RADIUS] * np.sqrt(max(0.0, 1.0 - lean * lean))
-    if apart > wide + half * abs(aside) + box[i, 14] + 1e-9:
-        return True
-    if square <= body[RADIUS] * body[RADIUS]:
-        return False
-    distance = np.sqrt(square)
-    ux, uy = across / distance, along / distance
-    reach = _half_width(
-        box, i, ux * body[6] + uy * body[9], ux * body[7] + uy * body[10], ux * body[8] + uy * body[11]
-    )  # fmt: skip
-    return distance - reach > body[RADIUS]
 
 
 @kernel
@@ -97,7 +60,7 @@ def _shadow_distance(polygon, count, half):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _stadium_hit(vertex, i, body, half, polygon, spare):  # type: ignore[no-untyped-def]
+def _stadium_hit(vertex, i, body, polygon, spare):  # type: ignore[no-untyped-def]
     """Whether triangle i reaches into the stadium body."""
     low, high = body[LOW], body[HIGH]
     least, most = np.inf, -np.inf
@@ -114,13 +77,13 @@ def _stadium_hit(vertex, i, body, half, polygon, spare):  # type: ignore[no-unty
         return False
     source, count = polygon, 3
     if least < low:
-        count = _cut(source, count, spare, low, 1.0)
+        count = hit._cut(source, count, spare, low, 1.0)
         source = spare
     if most > high:
         target = polygon if least < low else spare
-        count = _cut(source, count, target, high, -1.0)
+        count = hit._cut(source, count, target, high, -1.0)
         source = target
-    return count > 0 and _shadow_distance(source, count, half) < body[RADIUS] * body[RADIUS]
+    return count > 0 and _shadow_distance(source, count, body[HALF]) < body[RADIUS] * body[RADIUS]
 
 
 @kernel
@@ -150,7 +113,7 @@ def _near(vertex, triangle_face, i, p, n, f, t, face, near):  # type: ignore[no-
 
 @kernel
 def _free_of_far(  # type: ignore[no-untyped-def]
-    body, half, p, n, f, t, face, near, vertex, triangle_face, box, depth, stack, polygon, spare
+    body, p, n, f, t, face, near, vertex, triangle_face, box, depth, stack, polygon, spare
 ):  # fmt: skip
     """True if no triangle that is not near reaches into the stadium body."""
     count, first, top = len(vertex), (1 << depth) - 1, 1
@@ -158,7 +121,7 @@ def _free_of_far(  # type: ignore[no-untyped-def]
     while top > 0:
         top -= 1
         node = stack[top]
-        if _apart(box, node, body, half):
+        if hit._box_apart(box, node, body, 0.0):
             continue
         if node < first:
             stack[top] = 2 * node + 2
@@ -167,7 +130,7 @@ def _free_of_far(  # type: ignore[no-untyped-def]
             continue
         leaf = node - first
         for i in range((count * leaf) >> depth, (count * (leaf + 1)) >> depth):
-            if _stadium_hit(vertex, i, body, half, polygon, spare) and not _near(
+            if _stadium_hit(vertex, i, body, polygon, spare) and not _near(
                 vertex, triangle_face, i, p, n, f, t, face, near
             ):
                 return False
@@ -333,25 +296,17 @@ def cover(  # type: ignore[no-untyped-def]
         p, n, a, h, flat = point[row], normal[row], axis[row], patch[row], free[row]
         if not h > 0.0:
             continue
-        cosine = a[0] * n[0] + a[1] * n[1] + a[2] * n[2]
-        square = 0.0
+        cosine = hit.dot(a, n)
         for k in range(3):
             f[k] = a[k] - cosine * n[k]
-            square += f[k] * f[k]
-        sine = np.sqrt(square)
+        sine = np.sqrt(hit.dot(f, f))
         if flat or sine < 1e-6:
-            # Any direction across the axis will do.
             sine, cosine = 0.0, 1.0
-            k = 0 if abs(n[0]) < 0.6 else 1
-            for i in range(3):
-                f[i] = -n[k] * n[i]
-            f[k] += 1.0
-            size = np.sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2])
+            hit.perpendicular(n, f)
         else:
-            size = sine
-        for k in range(3):
-            f[k] /= size
-        t[0], t[1], t[2] = n[1] * f[2] - n[2] * f[1], n[2] * f[0] - n[0] * f[2], n[0] * f[1] - n[1] * f[0]
+            for k in range(3):
+                f[k] /= sine
+        hit.cross(n, f, t)
         full = _zone(p, n, f, t, h, home[row], index, closed, node_point, node_normal, node_tensor, node_wobble,
                      node_radius, most)  # fmt: skip
         if full < 0.0:
@@ -408,16 +363,16 @@ def cover(  # type: ignore[no-untyped-def]
         if flat:
             for k in range(3):
                 body[P + k] = p[k]
-            body[OFFSET], body[RADIUS] = 0.0, 2.0 * radius + h - safe
+            body[OFFSET], body[RADIUS], body[HALF] = 0.0, 2.0 * radius + h - safe, 0.0
             body[LOW], body[HIGH] = safe - lift, length - safe + lift
-            covered[row] = _free_of_far(body, 0.0, p, n, f, t, face, near, vertex, triangle_face, box, depth, stack,
+            covered[row] = _free_of_far(body, p, n, f, t, face, near, vertex, triangle_face, box, depth, stack,
                                         polygon, spare)  # fmt: skip
             continue
         grow = 0.5 * radius * psi * psi + lift
         slide = radius * k_ft / sine
         for steps in _STEPS:
             wide = h / steps
-            half = h * abs(1.0 - radius * k_tt / sine) + wide * abs(slide) + radius * beside
+            body[HALF] = h * abs(1.0 - radius * k_tt / sine) + wide * abs(slide) + radius * beside
             good = True
             for step in range(steps):
                 shift = (2 * step + 1 - steps) * wide
@@ -427,7 +382,7 @@ def cover(  # type: ignore[no-untyped-def]
                 body[RADIUS] = radius - safe + grow + wide * cosine
                 body[LOW] = safe - grow - wide * sine
                 body[HIGH] = length - safe + grow + wide * sine
-                if not _free_of_far(body, half, p, n, f, t, face, near, vertex, triangle_face, box, depth, stack,
+                if not _free_of_far(body, p, n, f, t, face, near, vertex, triangle_face, box, depth, stack,
                                     polygon, spare):  # fmt: skip
                     good = False
                     break

@@ -10,7 +10,7 @@ they will be before any triangle is looked at. `docs/between_samples.md` has the
 import numpy as np
 
 from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
-from plan_cutters.kernels.hit import BODY, _swept_hit, stand, triangle_hit
+from plan_cutters.kernels.hit import BODY, _swept_hit, cross, dot, lean_frame, stand, triangle_hit
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.search import remove
 
@@ -846,9 +846,7 @@ def free_map(  # type: ignore[no-untyped-def]
     for place in range(len(rows)):
         row = rows[place]
         p, n, e1 = point[row], normal[row], direction_max[row]
-        for k in range(3):
-            a, b = (k + 1) % 3, (k + 2) % 3
-            e2[k] = n[a] * e1[b] - n[b] * e1[a]
+        cross(n, e1, e2)
         home[0, 0], tally[0], tally[1] = -1, 1, 0
         _see(view, 0, blocks, 0, p, e1, e2, n, margin)
         some = _rising(view, below, 0, 1 << (bottom % 3), low)
@@ -856,17 +854,12 @@ def free_map(  # type: ignore[no-untyped-def]
             _see_triangle(leaves[_LEAVES + 1], lane, vertex, known[lane], p, e1, e2, n)
         for rotation in range(len(rotation_cos)):
             cosine, sine = rotation_cos[rotation], rotation_sin[rotation]
-            along_n, along_f = 0.0, 0.0
-            for k in range(3):
-                f[k] = cosine * e1[k] + sine * e2[k]
-                t[k] = cosine * e2[k] - sine * e1[k]
-                along_n += setup[k] * n[k]
-                along_f += setup[k] * f[k]
+            lean_frame(e1, e2, cosine, sine, f, t)
             count_out[place, rotation], undecided[place, rotation] = 0, 0.0
             least = local_gouge(curvature[row, 0], curvature[row, 1], cosine, sine, radius)
             if np.isnan(least):
                 continue
-            count = axis_arcs(along_n, along_f, limit_cos, tilt_low, tilt_high, arcs)
+            count = axis_arcs(dot(setup, n), dot(setup, f), limit_cos, tilt_low, tilt_high, arcs)
             if least > 0.0:
                 count = remove(arcs, count, -1.0, least, 0.0)
             gap[_GAPS, _UF], gap[_GAPS, _UL] = 0.0, 0.0

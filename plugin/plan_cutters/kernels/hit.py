@@ -1,8 +1,9 @@
 """Does a triangle, or any triangle of a tree, reach into a solid cylinder?
 
-A body is a row of 16 numbers: contact P (3), axis a (3), x_T (3), y_T (3), then the distance from the cylinder's
-axis to P along x_T, its radius, and the two heights between which it is solid, measured from P along a. A cutter
-`(R, L)` shrunk by s is `(R, R - s, s, L - s)`; its dummy `(0, 2R - s, s, L - s)`.
+A body is a row of 17 numbers: contact P (3), axis a (3), x_T (3), y_T (3), then the distance from the cylinder's
+axis to P along x_T, its radius, the two heights between which it is solid, measured from P along a, and by how much it is
+drawn out along y_T to either side (0 for a cylinder). A cutter `(R, L)` shrunk by s is `(R, R - s, s, L - s, 0)`; its dummy
+`(0, 2R - s, s, L - s, 0)`.
 
 The clever part: a triangle cut off at the two heights is a convex polygon, and it meets the cylinder exactly when
 its shadow along the axis comes nearer to the axis than the radius. No subdivision, no trigonometry, no tolerance.
@@ -16,7 +17,38 @@ import numpy as np
 
 from plan_cutters.kernels.jit import kernel
 
-P, A, X, Y, OFFSET, RADIUS, LOW, HIGH, BODY = 0, 3, 6, 9, 12, 13, 14, 15, 16
+P, A, X, Y, OFFSET, RADIUS, LOW, HIGH, HALF, BODY = 0, 3, 6, 9, 12, 13, 14, 15, 16, 17
+
+
+@kernel
+def dot(a, b):  # type: ignore[no-untyped-def]
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@kernel
+def cross(a, b, out):  # type: ignore[no-untyped-def]
+    """Write a x b."""
+    out[0], out[1], out[2] = a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@kernel
+def perpendicular(n, out):  # type: ignore[no-untyped-def]
+    """Write any unit direction across a unit direction."""
+    k = 0 if abs(n[0]) < 0.6 else 1
+    for i in range(3):
+        out[i] = -n[k] * n[i]
+    out[k] += 1.0
+    size = np.sqrt(dot(out, out))
+    for i in range(3):
+        out[i] /= size
+
+
+@kernel
+def lean_frame(e1, e2, cosine, sine, f, t):  # type: ignore[no-untyped-def]
+    """Write the lean direction f at a rotation, and t = n x f."""
+    for k in range(3):
+        f[k] = cosine * e1[k] + sine * e2[k]
+        t[k] = cosine * e2[k] - sine * e1[k]
 
 
 @kernel
@@ -27,7 +59,7 @@ def stand(body, p, n, f, t, tilt_cos, tilt_sin, offset, radius, low, high):  # t
         body[A + k] = tilt_cos * n[k] + tilt_sin * f[k]
         body[X + k] = tilt_cos * f[k] - tilt_sin * n[k]
         body[Y + k] = t[k]
-    body[OFFSET], body[RADIUS], body[LOW], body[HIGH] = offset, radius, low, high
+    body[OFFSET], body[RADIUS], body[LOW], body[HIGH], body[HALF] = offset, radius, low, high, 0.0
 
 
 @kernel
@@ -44,10 +76,11 @@ def _half_width(box, i, x, y, z):  # type: ignore[no-untyped-def]
 def _thin_apart(box, i, body, low, high, radius, dx, dy, dz):  # type: ignore[no-untyped-def]
     """Whether a plane across the box's third side, the thin one, parts it from the body."""
     mx, my, mz = box[i, 9], box[i, 10], box[i, 11]
-    lean = mx * body[3] + my * body[4] + mz * body[5]
+    along = mx * body[3] + my * body[4] + mz * body[5]
     side = mx * body[6] + my * body[7] + mz * body[8]
-    apart = abs(mx * dx + my * dy + mz * dz + body[OFFSET] * side - 0.5 * (low + high) * lean)
-    reach = 0.5 * (high - low) * abs(lean) + radius * np.sqrt(max(0.0, 1.0 - lean * lean))
+    aside = mx * body[9] + my * body[10] + mz * body[11]
+    apart = abs(mx * dx + my * dy + mz * dz + body[OFFSET] * side - 0.5 * (low + high) * along)
+    reach = 0.5 * (high - low) * abs(along) + radius * np.sqrt(max(0.0, 1.0 - along * along)) + body[HALF] * abs(aside)
     return apart > reach + box[i, 14] + 1e-9
 
 
@@ -70,6 +103,7 @@ def _box_apart(box, i, body, rate):  # type: ignore[no-untyped-def]
         if height + reach < low or height - reach > high:
             return True
     along = dx * body[9] + dy * body[10] + dz * body[11]
+    along -= min(body[HALF], max(-body[HALF], along))
     square = across * across + along * along
     radius = body[RADIUS] + grow
     if square <= radius * radius:
@@ -148,7 +182,7 @@ def triangle_hit(vertex, i, body, rate, polygon, spare):  # type: ignore[no-unty
     Parameters
     ----------
     vertex : (n, 3, 3) float64
-    body : (16,) float64
+    body : (17,) float64
     rate : float
     polygon, spare : (8, 3) float64
         Scratch.
@@ -261,7 +295,7 @@ def tree_hit(vertex, box, depth, body, rate, hint, stack, polygon, spare, pieces
         Triangles in tree order.
     box, depth
         The tree, as `tree.build` gives it.
-    body : (16,) float64
+    body : (17,) float64
     rate : float
     hint : int
         Triangle to try first (the last one that was in the way), or -1.

@@ -8,7 +8,7 @@ range is halved. Ranges narrower than `narrowest` stay undecided.
 import numpy as np
 
 from plan_cutters.kernels.arcs import point_arc
-from plan_cutters.kernels.hit import BODY, stand, tree_hit
+from plan_cutters.kernels.hit import BODY, cross, stand, tree_hit
 from plan_cutters.kernels.jit import entry
 
 OPEN, FORBIDDEN, UNSURE = 0, 1, 2
@@ -39,7 +39,7 @@ def free_tilts(p, n, f, low, high, radius, length, depth_allowed, narrowest, ver
         first, last, kind (OPEN, FORBIDDEN, UNSURE); together the range asked for, in no order.
     """
     t = np.empty(3)
-    t[0], t[1], t[2] = n[1] * f[2] - n[2] * f[1], n[2] * f[0] - n[0] * f[2], n[0] * f[1] - n[1] * f[0]
+    cross(n, f, t)
     body = np.empty(BODY)
     stack = np.empty(64, np.int64)
     polygon, spare, pieces = np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3))

@@ -8,7 +8,7 @@ deep) or undecided.
 import numpy as np
 
 from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
-from plan_cutters.kernels.hit import BODY, stand, tree_hit
+from plan_cutters.kernels.hit import BODY, cross, dot, lean_frame, perpendicular, stand, tree_hit
 from plan_cutters.kernels.jit import entry, kernel
 
 # As in `plan_cutters.reach`, which must not load the compiler; a test holds them together.
@@ -83,13 +83,8 @@ def _sweep(  # type: ignore[no-untyped-def]
         step = (turn + 1) // 2 if turn % 2 else -(turn // 2)
         rotation = (first_rotation + step) % rotations
         cosine, sine = rotation_cos[rotation], rotation_sin[rotation]
-        along_n, along_f = 0.0, 0.0
-        for k in range(3):
-            f[k] = cosine * e1[k] + sine * e2[k]
-            t[k] = cosine * e2[k] - sine * e1[k]
-            along_n += setup[k] * n[k]
-            along_f += setup[k] * f[k]
-        count = axis_arcs(along_n, along_f, limit_cos, tilt_low, tilt_high, intervals)
+        lean_frame(e1, e2, cosine, sine, f, t)
+        count = axis_arcs(dot(setup, n), dot(setup, f), limit_cos, tilt_low, tilt_high, intervals)
         for i in range(count):
             tally[AXIS_LIMIT] += intervals[i, 1] - intervals[i, 0] + NARROWEST
         least = local_gouge(kappa_max, kappa_min, cosine, sine, radius)
@@ -181,9 +176,7 @@ def search(  # type: ignore[no-untyped-def]
     last_rotation, last_tilt, hint = 0, -1.0, -1
     for row in rows:
         p, n, e1 = point[row], normal[row], direction_max[row]
-        e2[0] = n[1] * e1[2] - n[2] * e1[1]
-        e2[1] = n[2] * e1[0] - n[0] * e1[2]
-        e2[2] = n[0] * e1[1] - n[1] * e1[0]
+        cross(n, e1, e2)
         rotation, tilt, hint, known_count = _sweep(
             p, n, e1, e2, curvature[row, 0], curvature[row, 1],
             rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
@@ -224,17 +217,15 @@ def first_reason(  # type: ignore[no-untyped-def]
     Parameters are those of `search`; other reasons stay as they are.
     """
     intervals = np.empty((8, 2))
+    f, t, e2 = np.empty(3), np.empty(3), np.empty(3)
     for row in rows:
         n, e1 = normal[row], direction_max[row]
+        cross(n, e1, e2)
         axis_left, gouge_left = False, False
         for rotation in range(len(rotation_cos)):
             cosine, sine = rotation_cos[rotation], rotation_sin[rotation]
-            along_n, along_f = 0.0, 0.0
-            for k in range(3):
-                a, b = (k + 1) % 3, (k + 2) % 3
-                along_n += setup[k] * n[k]
-                along_f += setup[k] * (cosine * e1[k] + sine * (n[a] * e1[b] - n[b] * e1[a]))
-            count = axis_arcs(along_n, along_f, limit_cos, tilt_low, tilt_high, intervals)
+            lean_frame(e1, e2, cosine, sine, f, t)
+            count = axis_arcs(dot(setup, n), dot(setup, f), limit_cos, tilt_low, tilt_high, intervals)
             axis_left = axis_left or count > 0
             least = local_gouge(curvature[row, 0], curvature[row, 1], cosine, sine, radius)
             if not np.isnan(least) and least > 0.0:
@@ -270,15 +261,8 @@ def dummy_free(rows, point, normal, radius, length, safe, vertex, box, depth, fr
     hint = -1
     for row in rows:
         n = normal[row]
-        # Any direction across the axis will do.
-        k = 0 if abs(n[0]) < 0.6 else 1
-        for i in range(3):
-            f[i] = -n[k] * n[i]
-        f[k] += 1.0
-        size = np.sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2])
-        for i in range(3):
-            f[i] /= size
-        t[0], t[1], t[2] = n[1] * f[2] - n[2] * f[1], n[2] * f[0] - n[0] * f[2], n[0] * f[1] - n[1] * f[0]
+        perpendicular(n, f)
+        cross(n, f, t)
         stand(body, point[row], n, f, t, 1.0, 0.0, 0.0, 2.0 * radius - safe, safe, length - safe)
         triangle, _, _, _ = tree_hit(vertex, box, depth, body, 0.0, hint, stack, polygon, spare, pieces)
         free[row] = triangle < 0
@@ -308,10 +292,8 @@ def probe(rows, point, normal, axis, lean, radius, length, depths, vertex, box, 
     hint = -1
     for row in rows:
         n, f, s = normal[row], lean[row], depths[row]
-        cosine = axis[row, 0] * n[0] + axis[row, 1] * n[1] + axis[row, 2] * n[2]
-        sine = axis[row, 0] * f[0] + axis[row, 1] * f[1] + axis[row, 2] * f[2]
-        t[0], t[1], t[2] = n[1] * f[2] - n[2] * f[1], n[2] * f[0] - n[0] * f[2], n[0] * f[1] - n[1] * f[0]
-        stand(body, point[row], n, f, t, cosine, sine, radius, radius - s, s, length - s)
+        cross(n, f, t)
+        stand(body, point[row], n, f, t, dot(axis[row], n), dot(axis[row], f), radius, radius - s, s, length - s)
         triangle[row], _, _, _ = tree_hit(vertex, box, depth, body, 0.0, hint, stack, polygon, spare, pieces)
         if triangle[row] >= 0:
             hint = triangle[row]
