@@ -5,16 +5,15 @@ Making a part costs next to nothing beside reading it: what is known about a fac
 
 from collections.abc import Iterator, Mapping
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from OCP.Bnd import Bnd_Box
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepBndLib import BRepBndLib
-from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_EDGE, TopAbs_EXTERNAL, TopAbs_INTERNAL, TopAbs_SOLID
+from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_SOLID
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Face, TopoDS_Iterator, TopoDS_Shape
+from OCP.TopoDS import TopoDS_Compound, TopoDS_Face, TopoDS_Iterator, TopoDS_Shape
 
 from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats
 from cad_io.assembly import Node
@@ -22,7 +21,7 @@ from cad_io.errors import ReadError
 from cad_io.kernel import edges_of, explore, faces, is_kernel_error, shape_map, translated
 from cad_io.measure import Measure, measure
 from cad_io.recognise import recognise
-from cad_io.sew import Sewn, sew
+from cad_io.sew import Sewn, edge_uses, sew
 from cad_io.trim import Trim, trim_of
 
 #: Sizes that are rather a wrong unit than a part, mm.
@@ -170,16 +169,9 @@ class Part:
 
     @cached_property
     def closed(self) -> bool:
-        # Seams and degenerated edges lie within one face; every other edge must be used once by each of two.
-        uses: dict[int, int] = {}
-        edges = shape_map(self.shape, TopAbs_EDGE)
-        for face in self._faces:
-            for edge in edges_of(face):
-                if edge.Orientation() not in (TopAbs_INTERNAL, TopAbs_EXTERNAL):
-                    index = edges.FindIndex(edge)
-                    uses[index] = uses.get(index, 0) + 1
-        degenerated = {i for i in uses if _is_degenerated(edges.FindKey(i))}
-        return bool(uses) and all(count % 2 == 0 for i, count in uses.items() if i not in degenerated)
+        # A seam is used twice by one face; every other edge must be used once by each of two.
+        uses = edge_uses(self._faces)
+        return bool(uses) and all(len(users) % 2 == 0 for _, users in uses)
 
     @cached_property
     def sewn(self) -> Sewn:
@@ -252,10 +244,6 @@ def unwrapped(shape: TopoDS_Shape) -> TopoDS_Shape:
             return shape
         shape = only
     return shape
-
-
-def _is_degenerated(edge: Any) -> bool:
-    return bool(BRep_Tool.Degenerated_s(TopoDS.Edge_s(edge)))
 
 
 def _box(found: list[TopoDS_Face]) -> tuple[Floats, Floats]:

@@ -13,17 +13,20 @@ from cad_io.orient import orient
 from cad_io.sample import sample
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Machine, plan
-from plan_cutters.between import between
+from plan_cutters.between import _Contacts as Contacts
+from plan_cutters.between import _quarters, between
 from plan_cutters.conditions import Conditions
 from plan_cutters.obstacles import Obstacles
+from plan_cutters.posture import PostureRange
 
 SAMPLES = Path(__file__).parent.parent / "samples"
 UP = np.array([0.0, 0.0, 1.0])
 
 
-def served(part, cutter, *, budget, tolerance=0.01, chord=None, **how):
+def served(part, cutter, *, budget, tolerance=0.01, chord=None, machine="unlimited", **how):
     """What `between` finds after a plan, and the geometry that it is asked of."""
-    result = plan(part, cutters=[cutter], tolerance=tolerance, area_budget=0, **how)
+    machine = Machine.parse(machine)
+    result = plan(part, cutters=[cutter], tolerance=tolerance, area_budget=0, machine=machine, **how)
     whole, samples = result.part, result.samples
     side = orient(whole, towards=UP, flip=False)
 
@@ -33,7 +36,7 @@ def served(part, cutter, *, budget, tolerance=0.01, chord=None, **how):
 
     found = between(
         samples, result.reaches[cutter.id], cutter, geometry,
-        Conditions(Machine(), UP, result.postures, Obstacles(tessellate(whole, chord or 0.2 * tolerance)), tolerance, 2),
+        Conditions(machine, UP, result.postures, Obstacles(tessellate(whole, chord or 0.2 * tolerance)), tolerance, 2),
         budget=budget,
     )  # fmt: skip
     return found, geometry, whole
@@ -135,6 +138,29 @@ def test_leans_too_small_to_know_their_side_serve_no_cell():
         if len(found.cells.face):
             assert deepest(found, geometry, whole, cutter, dense(whole, 0.4), 400, np.random.default_rng(0)) < 0.01
         assert low > 0.4 or found.share == 0
+
+
+def test_axes_between_samples_keep_the_machines_limit():
+    """Quarters of an interference-free cell lean with their own normals, where the machine can."""
+    x, y = np.meshgrid(np.linspace(-20, 20, 9), np.linspace(-20, 20, 9), indexing="ij")
+    part = read_part(shapes.shell(shapes.Patch(np.stack([x, y, -(x**2 + y**2) / 60], axis=-1)).face()))
+    cutter, limit = Cutter.flat(radius=3.0, length=40.0), math.cos(math.radians(10)) - 1e-12
+    found, geometry, _ = served(part, cutter, budget=4000, spacing=6.0, machine="tilt:10")
+    assert len(found.cells.face) > 1000
+    assert (found.cells.axis @ UP >= limit).all()
+
+    # A cell that reaches from within the limit to beyond it.
+    uv = np.array([[0.5, 0.62]])
+    point, normal, direction, curvature = geometry(1, uv)
+    whole = Contacts(point, normal, direction, curvature, normal, np.array([True]), np.ones(1),
+                     np.zeros((1, 2), np.int32), uv, np.full((1, 2), 0.4), np.ones(1))  # fmt: skip
+    plane = Obstacles(tessellate(part, 0.002))
+    conditions = Conditions(Machine.parse("tilt:10"), UP, PostureRange(), plane, 0.01, 1)
+    quarters = _quarters(whole, 1, geometry, conditions)
+    within = quarters.normal @ UP >= limit
+    assert 0 < within.sum() < 4
+    assert (np.isfinite(quarters.axis).all(axis=1) == within).all()
+    assert quarters.axis[within] == pytest.approx(quarters.normal[within])
 
 
 def test_what_a_wall_hides_between_samples_is_not_served():

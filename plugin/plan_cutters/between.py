@@ -156,7 +156,7 @@ def between(
             now = now.of(chosen)
             if not len(now):
                 break
-            now = _quarters(now, grid.face, evaluate)
+            now = _quarters(now, grid.face, evaluate, conditions)
             allowed -= len(now)
             looked += len(now)
     share = served / whole if whole > 0 else 0.0
@@ -218,15 +218,16 @@ def _cover(
     in_chunks(work, rows, conditions.jobs)
 
 
-def _quarters(contacts: _Contacts, face: int, evaluate: Evaluate) -> _Contacts:
+def _quarters(contacts: _Contacts, face: int, evaluate: Evaluate, conditions: Conditions) -> _Contacts:
     """Four contacts for each, in the middle of the quarters of its cell, that start from its posture."""
     step = 0.25 * contacts.span
     signs = np.array([[-1, -1], [-1, 1], [1, -1], [1, 1]])
     uv = (contacts.middle[:, None] + signs * step[:, None]).reshape(-1, 2)
     point, normal, direction, curvature = evaluate(face, uv)
     four = {name: np.repeat(getattr(contacts, name), 4, axis=0) for name in ("axis", "flat", "home")}
-    # An interference-free contact leans nowhere: its quarters do so about their own normals.
-    four["axis"] = np.where(four["flat"][:, None], normal, four["axis"])
+    # An interference-free contact leans nowhere: its quarters do so about their own normals, if the machine can.
+    own = np.where(conditions.upright(normal)[:, None], normal, np.nan)
+    four["axis"] = np.where(four["flat"][:, None], own, four["axis"])
     return _Contacts(point, normal, direction, curvature, middle=uv, span=np.repeat(0.5 * contacts.span, 4, axis=0),
                      patch=np.repeat(0.5 * contacts.patch, 4), area=np.repeat(0.25 * contacts.area, 4), **four)  # fmt: skip
 
