@@ -13,13 +13,14 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 sys.path.append(str(Path(__file__).parent.parent / "tests"))
 import waves
 
-from plan_cutters.kernels import arcs, hit, maps, search, tree
+from plan_cutters.kernels import arcs, cover, free_map, hit, maps, search, tree
 from plan_cutters.kernels.jit import kernel
 
 RADIUS, LENGTH, SAFE, BLOCKED, TURNS = 6.0, 40.0, 0.04, 0.06, 24
@@ -93,6 +94,45 @@ def many_walks(n, vertex, box, depth, bodies, stack, polygon, spare, pieces):  #
     return total
 
 
+@kernel
+def many_blocks(n, view, gap, margin):  # type: ignore[no-untyped-def]
+    total = 0.0
+    for i in range(n):
+        free_map._boxes_pass(view, i % len(view), 0.8, 0.6, gap, 1, RADIUS, RADIUS - SAFE, SAFE, LENGTH - SAFE, margin)
+        total += margin[0]
+    return total
+
+
+@kernel
+def many_leaves(n, leaves, gap, margin):  # type: ignore[no-untyped-def]
+    total = 0.0
+    for i in range(n):
+        seen = leaves[i % len(leaves)]
+        free_map._triangles_pass(seen, 0.8, 0.6, gap, 1, RADIUS, RADIUS - SAFE, SAFE, LENGTH - SAFE, margin)
+        total += margin[0]
+    return total
+
+
+def contacts() -> list[Any]:
+    """What `cover` is asked on a face of a sample part; kept in a file, for the kernel of CAD is not run under valgrind."""
+    kept_in = os.environ.get("COVER_ASKED")
+    if kept_in:
+        with np.load(kept_in) as arrays:
+            return [arrays[f"arr_{i}"][()] for i in range(len(arrays.files))]
+    from cad_io import read_part
+    from plan_cutters import Cutter, plan
+
+    asked: list[tuple[Any, ...]] = []
+    real = cover.cover
+    cover.cover = lambda *arguments: (asked.append(arguments), real(*arguments))
+    try:
+        part = read_part(Path(__file__).parent.parent / "samples" / "pocket_top.step")
+        plan(part, cutters=[Cutter.flat(radius=8, length=90)], spacing=2.0, area_budget=1000, jobs=1)
+    finally:
+        cover.cover = real
+    return list(max(asked, key=lambda arguments: len(arguments[0])))
+
+
 def drivers() -> dict[str, tuple[str, int, Driver]]:
     """Each kernel's name: what one of its calls is counted by, how many of them to time, and a run of n of them."""
     rng = np.random.default_rng(0)
@@ -124,6 +164,24 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
             maps.free_tilts(point[i % n], normal[i % n], lean[i % n], 0.0, RIGHT, RADIUS, LENGTH, SAFE, NARROWEST,
                             vertex, box, depth, 2000)  # fmt: skip
 
+    blocks, offset, bottom = free_map.wide_tree(vertex, box, depth)
+    view, leaves, margin = np.empty((len(blocks), 16, 8)), np.empty((200, 9, 8)), np.empty(8)
+    for i in range(len(blocks)):
+        free_map._see(view, i, blocks, i, point[0], first[0], np.cross(normal[0], first[0]), normal[0], margin)
+    for i in range(len(leaves)):
+        free_map._see_leaf(
+            leaves[i], vertex, 8 * i, 8 * i + 8, point[0], first[0], np.cross(normal[0], first[0]), normal[0]
+        )
+    gap = np.array([[0.2, 1.4, np.cos(0.2), np.sin(0.2), np.cos(1.4), np.sin(1.4), 0, 0]])
+    part, filled, unsure = np.empty((n, TURNS, 8, 2)), np.empty((n, TURNS), np.int32), np.empty((n, TURNS))
+    asked = contacts()
+
+    def all_maps(count: int) -> None:
+        k = -(-count // TURNS)
+        free_map.free_map(
+            np.arange(k), point, normal, first, curvature, cosine, sine, 0.0, RIGHT, UP, -2.0, RADIUS, LENGTH, SAFE,
+            NARROWEST, vertex, blocks, offset, bottom, 8, part, filled, unsure)  # fmt: skip
+
     return {
         "point_arc": ("point", 200_000, lambda k: many_point_arcs(k, at)),
         "local_gouge": ("rotation", 200_000, lambda k: many_local_gouges(k, at)),
@@ -143,6 +201,11 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
             np.arange(k), point, normal, first, curvature, cosine, sine, 0.0, RIGHT, UP, 0.7, RADIUS, LENGTH, SAFE,
             BLOCKED, vertex, box, depth, *out)),
         "free_tilts": ("rotation", 100, maps_of),
+        "wide_tree": ("triangle", 7_200, lambda k: k and free_map.wide_tree(vertex, box, depth)),
+        "_boxes_pass": ("eight boxes", 100_000, lambda k: many_blocks(k, view, gap, margin)),
+        "_triangles_pass": ("eight triangles", 100_000, lambda k: many_leaves(k, leaves, gap, margin)),
+        "free_map": ("rotation", 400 * TURNS, all_maps),
+        "cover": ("contact", len(asked[0]), lambda k: cover.cover(asked[0][:k], *asked[1:])),
     }  # fmt: skip
 
 
@@ -175,8 +238,10 @@ def instructions(names: list[str], counts: list[int]) -> dict[str, float]:
     # Valgrind shows another processor than there is: name one, so that what is compiled before is found again.
     environment = {**os.environ, "NUMBA_CPU_NAME": "haswell", "NUMBA_CPU_FEATURES": "+avx2,+fma,+bmi,+bmi2,+popcnt"}
     me = [sys.executable, __file__, "--marked"]
-    subprocess.run(me, env=environment, check=True)
     with tempfile.TemporaryDirectory() as folder:
+        environment["COVER_ASKED"] = f"{folder}/asked.npz"
+        np.savez(environment["COVER_ASKED"], *contacts())
+        subprocess.run(me, env=environment, check=True)
         tool = ["valgrind", "--tool=callgrind", "--dump-before=getppid", f"--callgrind-out-file={folder}/sums"]
         try:
             subprocess.run([*tool, *me], env=environment, check=True, capture_output=True)

@@ -35,6 +35,11 @@ ENTRIES = {
         "began = time.process_time()\n"
         "plan(b.Face.make_rect(20, 20), cutters=[Cutter.flat(radius=2, length=30)], grid=3, jobs=1)"
     ),
+    "the same with posture maps": (
+        "from plan_cutters import Cutter, plan; import build123d as b\n"
+        "began = time.process_time()\n"
+        "plan(b.Face.make_rect(20, 20), cutters=[Cutter.flat(radius=2, length=30)], grid=3, jobs=1, posture_maps=True)"
+    ),
 }
 
 

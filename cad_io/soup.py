@@ -32,6 +32,8 @@ _INNER = np.array([[2, 2, 2], [4, 1, 1], [1, 4, 1], [1, 1, 4]]) / 6
 _MOST_PIECES = 4
 #: Age from which triangles that are still too far are also split at their longest edge.
 _STUBBORN = 6
+#: Triangles measured at once: what is needed for it on the way is several times what they take themselves.
+_AT_ONCE = 1 << 17
 _MOST_KNOTS = 64  # that are told apart along a surface: some files have them in dense clusters
 _INNER_MANY = np.array([(a, b, 16 - a - b) for a in range(1, 16, 3) for b in range(1, 16 - a, 3)]) / 16
 
@@ -150,6 +152,11 @@ class Soup:
         upper bound both of the surface point's distance from the triangle and of the triangle point's from the surface.
         A triangle that is not within `enough` is measured no further than needed to tell, unless `wholly`.
         """
+        blocks = [np.arange(i, min(i + _AT_ONCE, len(rows.face))) for i in range(0, max(1, len(rows.face)), _AT_ONCE)]
+        found = [self._measured(rows.at(block), enough, wholly) for block in blocks]
+        return np.concatenate([off for off, _ in found]), np.concatenate([marked for _, marked in found])
+
+    def _measured(self, rows: Rows, enough: float, wholly: bool) -> tuple[Floats, Bools]:
         edge_off = self._edge_off(rows, np.inf if wholly else enough)
         off, marked = edge_off.max(axis=1, initial=0.0), (edge_off > enough) | self._wide_edges(rows)
         # Edges near enough: look inside. What is too far there is split at all its edges.

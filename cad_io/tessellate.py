@@ -61,11 +61,13 @@ def tessellate(
         done = _refined(part, meshes, chord / MARGIN, budget)
     missing.update(_uncovered(part, done, chord))
     whole = np.isfinite(done.vertex).all(axis=(1, 2)) & np.isfinite(done.off)
-    missing.update({int(n): "its surface cannot be evaluated everywhere" for n in np.unique(done.face[~whole])})
+    if not whole.all():
+        missing.update({int(n): "its surface cannot be evaluated everywhere" for n in np.unique(done.face[~whole])})
+        done = _Done(*(column[whole] for column in done))
     return Triangles(
-        vertex=done.vertex[whole],
-        face=done.face[whole].astype(np.int32),
-        chord_error=MARGIN * float(done.off[whole].max(initial=0.0)),
+        vertex=done.vertex,
+        face=done.face.astype(np.int32),
+        chord_error=MARGIN * float(done.off.max(initial=0.0)),
         missing=tuple(sorted(missing.items())),
     )
 
@@ -120,7 +122,11 @@ def _refined(part: Part, meshes: Mapping[int, UVMesh], chord: float, budget: int
         new = soup.split(waiting.at(chosen), waiting_marked[chosen])
         waiting, waiting_off, waiting_marked = waiting.at(~chosen), waiting_off[~chosen], waiting_marked[~chosen]
     finished.append(_done(soup, waiting, soup.measured(waiting, chord, wholly=True)[0]))
-    return _Done(*(np.concatenate(columns) for columns in zip(*finished, strict=True)))
+    # Column by column, the pieces let go on the way: here memory is at its most.
+    del soup, new, waiting
+    columns = [list(pieces) for pieces in zip(*finished, strict=True)]
+    finished.clear()
+    return _Done(*(np.concatenate(columns.pop(0)) for _ in _Done._fields))
 
 
 def _affordable(rows: Rows, off: Floats, grow: Indices, left: int) -> NDArray[np.bool_]:

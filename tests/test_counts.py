@@ -11,12 +11,16 @@ import numpy as np
 import pytest
 import waves
 
-from plan_cutters.kernels import arcs, hit, search, tree
+from plan_cutters.kernels import arcs, free_map, hit, search, tree
 
-MODULES = (arcs, hit, search)
+MODULES = (arcs, free_map, hit, search)
 
 #: What the searches below cost together. Lower is better: store what you reach; higher needs a reason in the commit.
 STORED = {"tree_hit": 5430, "_box_apart": 282240, "triangle_hit": 66110, "point_arc": 61440, "remove": 33530}
+#: The same of the posture maps.
+STORED_MAPS = {
+    "_boxes_pass": 1293, "_triangles_pass": 959, "_see": 266, "_cut_gaps": 1018, "_shrink": 516, "_first_in_the_way": 296,
+}  # fmt: skip
 #: One last digit of the input moves one search's counts by up to 2 %, and those of all together by less than 1 %.
 SLACK, NUDGES = 0.03, range(6)
 
@@ -74,3 +78,31 @@ def test_the_search_does_no_more_work_than_it_did():
         assert axis == pytest.approx(plain_axis, abs=1e-9)
     found = {name: calls[name] for name in STORED}
     assert found == pytest.approx(STORED, rel=SLACK), f"counted {found}"
+
+
+def maps(nudge):
+    """Posture maps of 8 samples, 24 rotations, 7,200 triangles: (free intervals, how many, undecided)."""
+    rng = np.random.default_rng(nudge)
+    (point, normal, first, curvature), vertex = waves.samples(14), waves.triangles(61)
+    vertex += 1e-9 * rng.standard_normal(vertex.shape)
+    order, box, depth = tree.build(vertex)
+    vertex = np.ascontiguousarray(vertex[order])
+    rows = np.linspace(0, len(point) - 1, 8).astype(np.int64)
+    turn = 2 * np.pi * np.arange(24) / 24
+    part, count, unsure = np.zeros((8, 24, 8, 2)), np.zeros((8, 24), np.int32), np.zeros((8, 24))
+    free_map.free_map(
+        rows, point, normal, first, curvature, np.cos(turn), np.sin(turn), 0.0, np.pi / 2, np.array([0, 0, 1.0]),
+        np.cos(0.8), 6.0, 40.0, 0.04, np.radians(0.1), vertex, *free_map.wide_tree(vertex, box, depth), 8,
+        part, count, unsure,
+    )  # fmt: skip
+    return part, count, unsure
+
+
+def test_posture_maps_do_no_more_work_than_they_did():
+    with counted() as calls:
+        plain = [maps(nudge) for nudge in NUDGES[:2]]
+    for nudge, found in zip(NUDGES, plain, strict=False):
+        for compiled, interpreted in zip(maps(nudge), found, strict=True):
+            assert compiled == pytest.approx(interpreted, abs=1e-9)
+    found = {name: calls[name] for name in STORED_MAPS}
+    assert found == pytest.approx(STORED_MAPS, rel=SLACK), f"counted {found}"
