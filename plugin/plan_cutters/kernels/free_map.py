@@ -104,6 +104,15 @@ def _side(polygon, count, cosine, sine, radius, shrunk):  # type: ignore[no-unty
 
 
 @kernel
+def _rim(y, radius, shrunk):  # type: ignore[no-untyped-def]
+    """Tangent at y to the rim's distance from the line of turning, as (slope, value at 0): elsewhere the rim is farther."""
+    y = max(-0.98 * shrunk, min(0.98 * shrunk, y))
+    q = np.sqrt(shrunk * shrunk - y * y)
+    slope = y / q
+    return slope, radius - q - slope * y
+
+
+@kernel
 def _never(polygon, count, radius, shrunk):  # type: ignore[no-untyped-def]
     """Whether a polygon of rows (x, z, y) is out of reach at every tilt.
 
@@ -123,9 +132,7 @@ def _never(polygon, count, radius, shrunk):  # type: ignore[no-untyped-def]
     wide = (high - low) / pieces
     for piece in range(pieces):
         at = low + piece * wide
-        y0 = max(-0.98 * shrunk, min(0.98 * shrunk, middle if pieces == 1 else at + 0.5 * wide))
-        q = np.sqrt(shrunk * shrunk - y0 * y0)
-        slope = y0 / q
+        slope, room = _rim(middle if pieces == 1 else at + 0.5 * wide, radius, shrunk)
         for i in range(count):
             j = i + 1 if i + 1 < count else 0
             yi, yj = polygon[i, 2], polygon[j, 2]
@@ -138,8 +145,8 @@ def _never(polygon, count, radius, shrunk):  # type: ignore[no-untyped-def]
             for part in (first, last):
                 x = polygon[i, 0] + part * (polygon[j, 0] - polygon[i, 0])
                 z = polygon[i, 1] + part * (polygon[j, 1] - polygon[i, 1])
-                room = radius - q + slope * (yi + part * (yj - yi) - y0)
-                if room < 0.0 or x * x + z * z > room * room:
+                gone = slope * (yi + part * (yj - yi)) + room
+                if gone < 0.0 or x * x + z * z > gone * gone:
                     return False
     return True
 
@@ -150,10 +157,7 @@ def _parts_pass(polygon, count, ca, sa, cb, sb, radius, shrunk, low, high):  # t
     middle = 0.0
     for k in range(count):
         middle += polygon[k, 2]
-    y0 = max(-0.98 * shrunk, min(0.98 * shrunk, middle / count))
-    q = np.sqrt(shrunk * shrunk - y0 * y0)
-    slope = y0 / q
-    room = radius - q - slope * y0
+    slope, room = _rim(middle / count, radius, shrunk)
     upper, lower, under, never, behind, top = -np.inf, -np.inf, -np.inf, True, np.inf, True
     k = count - 1
     x, z, y = polygon[k, 0], polygon[k, 1], polygon[k, 2]
@@ -336,11 +340,8 @@ def _boxes_pass(view, block, cosine, sine, gap, count, radius, shrunk, low, high
             t1 = cosine * view[block, 7, lane] - sine * view[block, 4, lane]
             t2 = cosine * view[block, 8, lane] - sine * view[block, 5, lane]
             z0, z1, z2 = view[block, 9, lane], view[block, 10, lane], view[block, 11, lane]
-            # The rim's distance from the line of turning grows with |y|; its tangent at y0 bounds it from below.
-            y0 = max(-0.98 * shrunk, min(0.98 * shrunk, y))
-            q = np.sqrt(shrunk * shrunk - y0 * y0)
-            slope = y0 / q
-            room = radius - q + slope * (y - y0)
+            slope, room = _rim(y, radius, shrunk)
+            room += slope * y
             top = ca * z + sa * x + abs(ca * z0 + sa * f0) + abs(ca * z1 + sa * f1) + abs(ca * z2 + sa * f2)
             bottom = cb * z + sb * x - abs(cb * z0 + sb * f0) - abs(cb * z1 + sb * f1) - abs(cb * z2 + sb * f2)
             front = sb * z - cb * x + abs(sb * z0 - cb * f0 - slope * t0)
@@ -412,10 +413,7 @@ def _triangles_pass(seen, cosine, sine, gap, count, radius, shrunk, low, high, m
             x2 = cosine * seen[6, lane] + sine * seen[7, lane]
             y2 = cosine * seen[7, lane] - sine * seen[6, lane]
             z2 = seen[8, lane]
-            y = max(-0.98 * shrunk, min(0.98 * shrunk, (y0 + y1 + y2) / 3.0))
-            q = np.sqrt(shrunk * shrunk - y * y)
-            slope = y / q
-            room = radius - q - slope * y
+            slope, room = _rim((y0 + y1 + y2) / 3.0, radius, shrunk)
             highest = max(z0, max(z1, z2))
             top = max(ca * z0 + sa * x0, max(ca * z1 + sa * x1, ca * z2 + sa * x2))
             bottom = min(cb * z0 + sb * x0, min(cb * z1 + sb * x1, cb * z2 + sb * x2))
