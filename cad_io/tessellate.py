@@ -63,7 +63,7 @@ def tessellate(
     whole = np.isfinite(done.vertex).all(axis=(1, 2)) & np.isfinite(done.off)
     if not whole.all():
         missing.update({int(n): "its surface cannot be evaluated everywhere" for n in np.unique(done.face[~whole])})
-        done = _Done(*(column[whole] for column in done))
+        done = _Done(done.vertex[whole], done.uv[whole], done.face[whole], done.off[whole])
     return Triangles(
         vertex=done.vertex,
         face=done.face.astype(np.int32),
