@@ -584,7 +584,6 @@ def _cut_gaps(  # type: ignore[no-untyped-def]
 ):  # fmt: skip
     """Take the tilts at which a triangle is in the way out of the gaps; (count of gaps, whether any was cut)."""
     cut = False
-    g = 0
     # What its corners alone forbid is known in closed form, and mostly all that it does.
     for k in range(3):
         x, z, y = corner[k, 0], corner[k, 1], corner[k, 2]
@@ -592,16 +591,9 @@ def _cut_gaps(  # type: ignore[no-untyped-def]
             left, right = point_arc(z, x + radius, y, 0.0, radius, shrunk, low, high)
             count = _take(gap, count, left, right)
             cut = True
-    while g < count and not cut:
-        if not _passes(
-            corner, gap[g, _CF], gap[g, _SF], gap[g, _CL], gap[g, _SL], radius, shrunk, low, high, first, second
-        ):
-            break
-        g += 1
-    if g == count and not cut:
-        return count, False
+    g = 0
     while g < count:
-        a, b, ca, sa, cb, sb = gap[g, 0], gap[g, 1], gap[g, 2], gap[g, 3], gap[g, 4], gap[g, 5]
+        a, b, ca, sa, cb, sb = gap[g, _FIRST], gap[g, _LAST], gap[g, _CF], gap[g, _SF], gap[g, _CL], gap[g, _SL]
         if _passes(corner, ca, sa, cb, sb, radius, shrunk, low, high, first, second):
             g += 1
             continue
