@@ -10,7 +10,7 @@ they will be before any triangle is looked at. `docs/between_samples.md` has the
 import numpy as np
 
 from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
-from plan_cutters.kernels.hit import BODY, _swept_hit, cross, dot, lean_frame, stand, triangle_hit
+from plan_cutters.kernels.hit import BODY, _nearest, _swept_hit, cross, dot, lean_frame, stand, triangle_hit
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.search import remove
 
@@ -55,51 +55,21 @@ def _clip(source, count, target, a, b, level):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _side(polygon, count, cosine, sine, radius, shrunk):  # type: ignore[no-untyped-def]
+def _side(polygon, count, cosine, sine, radius, shrunk, turned):  # type: ignore[no-untyped-def]
     """On which side of the cylinder at a tilt the shadow of a polygon of rows (x, z, y) lies: 1 front, -1 back, 0 neither.
 
-    The front is where the contact is. 2: beside it, out of reach at every tilt.
+    The front is where the contact is. 2: beside it, out of reach at every tilt. `turned` is scratch.
     """
-    least, most, area = np.inf, -np.inf, 0.0
+    least, most = np.inf, -np.inf
     for i in range(count):
-        x, y = cosine * polygon[i, 0] - sine * polygon[i, 1] + radius, polygon[i, 2]
-        if x * x + y * y < shrunk * shrunk:
-            return 0
+        x, z, y = polygon[i, 0], polygon[i, 1], polygon[i, 2]
+        turned[i, 0], turned[i, 1], turned[i, 2] = cosine * z + sine * x, cosine * x - sine * z + radius, y
         least, most = min(least, y), max(most, y)
     if least >= shrunk or most <= -shrunk:
         return 2
-    best, px = np.inf, 0.0
-    x0 = cosine * polygon[0, 0] - sine * polygon[0, 1] + radius
-    xi = x0
-    for i in range(count):
-        j = i + 1 if i + 1 < count else 0
-        xj = cosine * polygon[j, 0] - sine * polygon[j, 1] + radius if j else x0
-        yi, yj = polygon[i, 2], polygon[j, 2]
-        ex, ey = xj - xi, yj - yi
-        square = ex * ex + ey * ey
-        part = 0.0
-        if square > 0.0:
-            part = min(1.0, max(0.0, -(xi * ex + yi * ey) / square))
-        x, y = xi + part * ex, yi + part * ey
-        distance = x * x + y * y
-        if distance < best:
-            best, px = distance, x
-        area += xi * yj - xj * yi
-        xi = xj
-    if best < shrunk * shrunk:
+    _, px, _, square = _nearest(turned, count)
+    if square < shrunk * shrunk:
         return 0
-    # Far from every side, the axis may still go through the polygon.
-    if abs(area) > 0.0:
-        inside, xi = True, x0
-        for i in range(count):
-            j = i + 1 if i + 1 < count else 0
-            xj = cosine * polygon[j, 0] - sine * polygon[j, 1] + radius if j else x0
-            if (xi * (polygon[j, 2] - polygon[i, 2]) - polygon[i, 2] * (xj - xi)) * area < 0.0:
-                inside = False
-                break
-            xi = xj
-        if inside:
-            return 0
     return 1 if px >= 0.0 else -1
 
 
@@ -213,8 +183,8 @@ def _passes(corner, cf, sf, cl, sl, radius, shrunk, low, high, first, second):  
     if lower == 0 or _never(second, lower, radius, shrunk):
         upper = _clip(first, count, second, sl, cl, 0.0)
         upper = _clip(second, upper, first, -sl, -cl, -high)
-        return upper == 0 or _side(first, upper, cl, sl, radius, shrunk) > 0
-    side = _side(first, count, cf, sf, radius, shrunk)
+        return upper == 0 or _side(first, upper, cl, sl, radius, shrunk, second) > 0
+    side = _side(first, count, cf, sf, radius, shrunk, second)
     return side == -1 or side == 2
 
 
@@ -293,24 +263,14 @@ def _see(view, slot, blocks, block, p, e1, e2, n, margin):  # type: ignore[no-un
         view[slot, 1, lane] = x * e2[0] + y * e2[1] + z * e2[2]
         height = x * n[0] + y * n[1] + z * n[2]
         view[slot, 2, lane] = height
-        x, y, z = blocks[block, 3, lane], blocks[block, 4, lane], blocks[block, 5, lane]
-        view[slot, 3, lane] = x * e1[0] + y * e1[1] + z * e1[2]
-        view[slot, 6, lane] = x * e2[0] + y * e2[1] + z * e2[2]
-        up = x * n[0] + y * n[1] + z * n[2]
-        view[slot, 9, lane] = up
-        height += abs(up)
-        x, y, z = blocks[block, 6, lane], blocks[block, 7, lane], blocks[block, 8, lane]
-        view[slot, 4, lane] = x * e1[0] + y * e1[1] + z * e1[2]
-        view[slot, 7, lane] = x * e2[0] + y * e2[1] + z * e2[2]
-        up = x * n[0] + y * n[1] + z * n[2]
-        view[slot, 10, lane] = up
-        height += abs(up)
-        x, y, z = blocks[block, 9, lane], blocks[block, 10, lane], blocks[block, 11, lane]
-        view[slot, 5, lane] = x * e1[0] + y * e1[1] + z * e1[2]
-        view[slot, 8, lane] = x * e2[0] + y * e2[1] + z * e2[2]
-        up = x * n[0] + y * n[1] + z * n[2]
-        view[slot, 11, lane] = up
-        view[slot, 12, lane] = height + abs(up)
+        for k in range(3):
+            x, y, z = blocks[block, 3 + 3 * k, lane], blocks[block, 4 + 3 * k, lane], blocks[block, 5 + 3 * k, lane]
+            view[slot, 3 + k, lane] = x * e1[0] + y * e1[1] + z * e1[2]
+            view[slot, 6 + k, lane] = x * e2[0] + y * e2[1] + z * e2[2]
+            up = x * n[0] + y * n[1] + z * n[2]
+            view[slot, 9 + k, lane] = up
+            height += abs(up)
+        view[slot, 12, lane] = height
         x, y, z = blocks[block, 12, lane] - p[0], blocks[block, 13, lane] - p[1], blocks[block, 14, lane] - p[2]
         view[slot, 13, lane] = x * e1[0] + y * e1[1] + z * e1[2]
         view[slot, 14, lane] = x * e2[0] + y * e2[1] + z * e2[2]
@@ -756,7 +716,7 @@ def _rotation(  # type: ignore[no-untyped-def]
                 if coming == _QUEUE:
                     # Too much in the way to be told apart: nothing here is called free.
                     for g in range(count):
-                        gap[_GAPS, _UF] += gap[g, _LAST] - gap[g, _FIRST]
+                        gap[_GAPS, _UF] += gap[g, _LAST] - gap[g, _FIRST] + gap[g, _UF] + gap[g, _UL]
                     return 0
                 ahead[coming, 0], ahead[coming, 1] = inner, box
                 coming += 1

@@ -1,4 +1,4 @@
-"""All free tilts at a rotation, with certified ends: at one point by ranges (`free_tilts`), at all samples in one walk each.
+"""All free tilts at one point and rotation, with certified ends; `free_map` finds those of many samples.
 
 A range of tilts is free if the body, widened by half the range times the distance from the contact, is missed at the
 middle. Where the middle itself is blocked, the point in the way forbids an arc; where only the widened body is, the
