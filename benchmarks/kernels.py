@@ -20,7 +20,7 @@ import numpy as np
 sys.path.append(str(Path(__file__).parent.parent / "tests"))
 import waves
 
-from plan_cutters.kernels import arcs, cover, free_map, hit, maps, search, tree
+from plan_cutters.kernels import arcs, cover, free_map, hit, lanes, maps, search, tree
 from plan_cutters.kernels.jit import kernel
 
 RADIUS, LENGTH, SAFE, BLOCKED, TURNS = 6.0, 40.0, 0.04, 0.06, 24
@@ -98,7 +98,7 @@ def many_walks(n, vertex, box, depth, bodies, stack, polygon, spare, pieces):  #
 def many_blocks(n, view, gap, margin):  # type: ignore[no-untyped-def]
     total = 0.0
     for i in range(n):
-        free_map._boxes_pass(view, i % len(view), 0.8, 0.6, gap, 1, RADIUS, RADIUS - SAFE, SAFE, LENGTH - SAFE, margin)
+        lanes._boxes_pass(view, i % len(view), 0.8, 0.6, gap, 1, RADIUS, RADIUS - SAFE, SAFE, LENGTH - SAFE, margin)
         total += margin[0]
     return total
 
@@ -108,7 +108,7 @@ def many_leaves(n, leaves, gap, margin):  # type: ignore[no-untyped-def]
     total = 0.0
     for i in range(n):
         seen = leaves[i % len(leaves)]
-        free_map._triangles_pass(seen, 0.8, 0.6, gap, 1, RADIUS, RADIUS - SAFE, SAFE, LENGTH - SAFE, margin)
+        lanes._triangles_pass(seen, 0.8, 0.6, gap, 1, RADIUS, RADIUS - SAFE, SAFE, LENGTH - SAFE, margin)
         total += margin[0]
     return total
 
@@ -164,12 +164,12 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
             maps.free_tilts(point[i % n], normal[i % n], lean[i % n], 0.0, RIGHT, RADIUS, LENGTH, SAFE, NARROWEST,
                             vertex, box, depth, 2000)  # fmt: skip
 
-    blocks, offset, bottom = free_map.wide_tree(vertex, box, depth)
+    blocks, offset, bottom = lanes.wide_tree(vertex, box, depth)
     view, leaves, margin = np.empty((len(blocks), 16, 8)), np.empty((200, 9, 8)), np.empty(8)
     for i in range(len(blocks)):
-        free_map._see(view, i, blocks, i, point[0], first[0], np.cross(normal[0], first[0]), normal[0], margin)
+        lanes._see(view, i, blocks, i, point[0], first[0], np.cross(normal[0], first[0]), normal[0], margin)
     for i in range(len(leaves)):
-        free_map._see_leaf(
+        lanes._see_leaf(
             leaves[i], vertex, 8 * i, 8 * i + 8, point[0], first[0], np.cross(normal[0], first[0]), normal[0]
         )
     gap = np.array([[0.2, 1.4, np.cos(0.2), np.sin(0.2), np.cos(1.4), np.sin(1.4), 0, 0]])
@@ -201,7 +201,7 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
             np.arange(k), point, normal, first, curvature, cosine, sine, 0.0, RIGHT, UP, 0.7, RADIUS, LENGTH, SAFE,
             BLOCKED, vertex, box, depth, *out)),
         "free_tilts": ("rotation", 100, maps_of),
-        "wide_tree": ("triangle", 7_200, lambda k: k and free_map.wide_tree(vertex, box, depth)),
+        "wide_tree": ("triangle", 7_200, lambda k: k and lanes.wide_tree(vertex, box, depth)),
         "_boxes_pass": ("eight boxes", 100_000, lambda k: many_blocks(k, view, gap, margin)),
         "_triangles_pass": ("eight triangles", 100_000, lambda k: many_leaves(k, leaves, gap, margin)),
         "free_map": ("rotation", 400 * TURNS, all_maps),

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 import waves
 
-from plan_cutters.kernels import arcs, free_map, hit, search, tree
+from plan_cutters.kernels import arcs, free_map, gaps, hit, lanes, search, tree
 
-MODULES = (arcs, free_map, hit, search)
+MODULES = (arcs, free_map, gaps, hit, lanes, search)
 
 #: What the searches below cost together. Lower is better: store what you reach; higher needs a reason in the commit.
 STORED = {"tree_hit": 5430, "_box_apart": 282240, "triangle_hit": 66110, "point_arc": 61440, "remove": 33530}
@@ -92,7 +92,7 @@ def maps(nudge):
     part, count, unsure = np.zeros((8, 24, 8, 2)), np.zeros((8, 24), np.int32), np.zeros((8, 24))
     free_map.free_map(
         rows, point, normal, first, curvature, np.cos(turn), np.sin(turn), 0.0, np.pi / 2, np.array([0, 0, 1.0]),
-        np.cos(0.8), 6.0, 40.0, 0.04, np.radians(0.1), vertex, *free_map.wide_tree(vertex, box, depth), 8,
+        np.cos(0.8), 6.0, 40.0, 0.04, np.radians(0.1), vertex, *lanes.wide_tree(vertex, box, depth), 8,
         part, count, unsure,
     )  # fmt: skip
     return part, count, unsure

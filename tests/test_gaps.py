@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 import waves
 
-from plan_cutters.kernels import free_map as maps
-from plan_cutters.kernels import tree
+from plan_cutters.kernels import free_map, gaps, lanes, tree
 
 TILTS = 181
 
@@ -47,10 +46,10 @@ def cases(seed, count):
 
 
 def test_boxes_that_pass_never_enter():
-    passed, margin = 0, np.empty(maps.LANES)
+    passed, margin = 0, np.empty(lanes.LANES)
     corners = np.stack(np.meshgrid(*[np.linspace(-1, 1, 5)] * 3), -1).reshape(-1, 3)
     for rng, radius, low, high, first, last, place, size in cases(1, 4000):
-        view = np.zeros((1, 16, maps.LANES))
+        view = np.zeros((1, 16, lanes.LANES))
         sides = np.linalg.qr(rng.standard_normal((3, 3)))[0] * size * 10 ** rng.uniform(-2, 0, 3)
         turn = rng.uniform(0, 2 * np.pi)
         cosine, sine = np.cos(turn), np.sin(turn)
@@ -61,7 +60,7 @@ def test_boxes_that_pass_never_enter():
         for k in range(3):
             view[0, 3 + k], view[0, 6 + k], view[0, 9 + k] = axes[0, k], axes[1, k], axes[2, k]
         view[0, 12] = place[2] + np.abs(sides[2]).sum()
-        maps._boxes_pass(view, 0, cosine, sine, gap_of(first, last), 1, radius, radius - low, low, high, margin)
+        lanes._boxes_pass(view, 0, cosine, sine, gap_of(first, last), 1, radius, radius - low, low, high, margin)
         assert (margin == margin[0]).all()
         if margin[0] >= 0:
             passed += 1
@@ -71,17 +70,17 @@ def test_boxes_that_pass_never_enter():
 
 
 def test_triangles_that_pass_never_enter():
-    passed, closely, margin = 0, 0, np.empty(maps.LANES)
+    passed, closely, margin = 0, 0, np.empty(lanes.LANES)
     first_part, second_part = np.empty((8, 3)), np.empty((8, 3))
     weights = np.array([(i, j, 12 - i - j) for i in range(13) for j in range(13 - i)]) / 12
     for rng, radius, low, high, first, last, place, size in cases(2, 8000):
         triangle = place + size * rng.standard_normal((3, 3)) * 10 ** rng.uniform(-1.5, 0, 3)
-        seen = np.repeat(triangle.reshape(9, 1), maps.LANES, 1)
-        maps._triangles_pass(seen, 1.0, 0.0, gap_of(first, last), 1, radius, radius - low, low, high, margin)
+        seen = np.repeat(triangle.reshape(9, 1), lanes.LANES, 1)
+        lanes._triangles_pass(seen, 1.0, 0.0, gap_of(first, last), 1, radius, radius - low, low, high, margin)
         assert (margin == margin[0]).all()
         corner = np.ascontiguousarray(triangle[:, [0, 2, 1]])
         ends = np.cos(first), np.sin(first), np.cos(last), np.sin(last)
-        close = maps._passes(corner, *ends, radius, radius - low, low, high, first_part, second_part)
+        close = gaps._passes(corner, *ends, radius, radius - low, low, high, first_part, second_part)
         passed, closely = passed + (margin[0] >= 0), closely + close
         if margin[0] >= 0 or close:
             assert deepest(weights @ triangle, first, last, radius, radius - low, low, high) <= 1e-9 * radius
@@ -93,7 +92,7 @@ def test_points_that_cut_are_in_the_cutter_and_others_are_not():
     cutting = 0
     for _, radius, low, high, first, last, place, _ in cases(3, 4000):
         x, y, z = place
-        cuts = maps._cuts(x, y, z, gap_of(first, last), 1, radius, radius - low, low, high)
+        cuts = gaps._cuts(x, y, z, gap_of(first, last), 1, radius, radius - low, low, high)
         depth = deepest(place[None], first, last, radius, radius - low, low, high)
         cutting += cuts
         # Between the tilts looked at, a point may come a little deeper.
@@ -110,12 +109,12 @@ def test_blocks_hold_every_triangle():
         vertex = waves.triangles(size)
         order, box, depth = tree.build(vertex)
         vertex = np.ascontiguousarray(vertex[order])
-        blocks, offset, bottom = maps.wide_tree(vertex, box, depth)
+        blocks, offset, bottom = lanes.wide_tree(vertex, box, depth)
         n = len(vertex)
         assert offset[-1] == len(blocks)
         for j in range(1 << bottom):
             inside = vertex[(n * j) >> bottom : (n * (j + 1)) >> bottom].reshape(-1, 3)
-            assert len(inside) <= 3 * maps.LANES
+            assert len(inside) <= 3 * lanes.LANES
             # The box at the bottom and all those around it, up to the first block.
             at = j
             for level in range(len(offset) - 2, -1, -1):
@@ -139,10 +138,10 @@ def test_more_in_the_way_never_frees_a_tilt(seed):
         ordered = np.ascontiguousarray(kept[order])
         n = len(point)
         part, count, unsure = np.zeros((n, 12, 8, 2)), np.zeros((n, 12), np.int32), np.zeros((n, 12))
-        maps.free_map(
+        free_map.free_map(
             np.arange(n), point, normal, first, curvature, np.cos(turn), np.sin(turn), 0.0, np.pi / 2,
             np.array([0, 0, 1.0]), -2.0, 6.0, 40.0, 0.04, np.radians(0.1), ordered,
-            *maps.wide_tree(ordered, box, depth), 8, part, count, unsure,
+            *lanes.wide_tree(ordered, box, depth), 8, part, count, unsure,
         )  # fmt: skip
         real = np.arange(8) < count[..., None]
         return np.where(real, part[..., 1] - part[..., 0], 0).sum(-1), unsure

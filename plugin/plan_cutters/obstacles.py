@@ -36,7 +36,7 @@ class Obstacles:
     @cached_property
     def wide_tree(self) -> tuple[Floats, Floats, Ints, int]:
         """(vertex in tree order, blocks, offset, bottom): the tree as posture maps take it, eight boxes at a time."""
-        from plan_cutters.kernels.free_map import wide_tree
+        from plan_cutters.kernels.lanes import wide_tree
 
         blocks, offset, bottom = wide_tree(*self.tree)
         return self.tree[0], blocks, offset, int(bottom)

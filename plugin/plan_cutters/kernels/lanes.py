@@ -1,0 +1,209 @@
+"""Eight boxes or triangles at a time, as seen from a contact, against gaps of tilts.
+
+Without a branch, so that the compiler uses the lanes of the processor.
+"""
+
+import numpy as np
+
+from plan_cutters.kernels.gaps import CF, CL, SF, SL, _rim
+from plan_cutters.kernels.jit import entry, kernel
+
+#: Boxes and triangles looked at together.
+LANES = 8
+
+
+@entry
+def wide_tree(vertex, box, depth):  # type: ignore[no-untyped-def]
+    """Arrange every third level of a tree for looking at eight boxes at a time.
+
+    Parameters
+    ----------
+    vertex, box, depth
+        Triangles in tree order and the tree.
+
+    Returns
+    -------
+    blocks : (k, 15, LANES) float64
+        Of the boxes of a block, one a lane: centre, three half sides, a corner of a triangle in it. Level by level; a
+        block holds the boxes three levels below one, the first block those of the first level, lanes left over far below.
+    offset : (levels + 1,) int64
+        First block of each level.
+    bottom : int
+        Level of the tree that the last blocks hold: no box there has more than LANES triangles.
+    """
+    bottom = depth
+    while bottom > 0 and (len(vertex) + (1 << (bottom - 1)) - 1) >> (bottom - 1) <= LANES:
+        bottom -= 1
+    levels = bottom // 3 + 1
+    offset = np.zeros(levels + 1, np.int64)
+    for i in range(levels):
+        offset[i + 1] = offset[i] + (1 if i == 0 else 1 << (bottom % 3 + 3 * (i - 1)))
+    blocks = np.zeros((offset[levels], 15, LANES))
+    for i in range(levels):
+        level = bottom % 3 + 3 * i
+        for j in range(1 << level):
+            block, lane, node = offset[i] + (j >> 3 if i > 0 else 0), j & 7, (1 << level) - 1 + j
+            point = (len(vertex) * (2 * j + 1)) >> (level + 1)
+            for k in range(3):
+                blocks[block, k, lane] = box[node, k]
+                blocks[block, 12 + k, lane] = vertex[point, 0, k]
+                for side in range(3):
+                    blocks[block, 3 + 3 * side + k, lane] = box[node, 12 + side] * box[node, 3 + 3 * side + k]
+    return blocks, offset, bottom
+
+
+@kernel
+def _see(view, slot, blocks, block, p, e1, e2, n, margin):  # type: ignore[no-untyped-def]
+    """Write a block of boxes into a slot of the view, as seen from the contact.
+
+    Rows: centre along e1, e2, n; half sides along e1, along e2, along n; how far up the box goes; the point.
+    """
+    for lane in range(len(margin)):
+        x, y, z = blocks[block, 0, lane] - p[0], blocks[block, 1, lane] - p[1], blocks[block, 2, lane] - p[2]
+        view[slot, 0, lane] = x * e1[0] + y * e1[1] + z * e1[2]
+        view[slot, 1, lane] = x * e2[0] + y * e2[1] + z * e2[2]
+        height = x * n[0] + y * n[1] + z * n[2]
+        view[slot, 2, lane] = height
+        for k in range(3):
+            x, y, z = blocks[block, 3 + 3 * k, lane], blocks[block, 4 + 3 * k, lane], blocks[block, 5 + 3 * k, lane]
+            view[slot, 3 + k, lane] = x * e1[0] + y * e1[1] + z * e1[2]
+            view[slot, 6 + k, lane] = x * e2[0] + y * e2[1] + z * e2[2]
+            up = x * n[0] + y * n[1] + z * n[2]
+            view[slot, 9 + k, lane] = up
+            height += abs(up)
+        view[slot, 12, lane] = height
+        x, y, z = blocks[block, 12, lane] - p[0], blocks[block, 13, lane] - p[1], blocks[block, 14, lane] - p[2]
+        view[slot, 13, lane] = x * e1[0] + y * e1[1] + z * e1[2]
+        view[slot, 14, lane] = x * e2[0] + y * e2[1] + z * e2[2]
+        view[slot, 15, lane] = x * n[0] + y * n[1] + z * n[2]
+
+
+@kernel
+def _boxes_pass(view, block, cosine, sine, gap, count, radius, shrunk, low, high, margin):  # type: ignore[no-untyped-def]
+    """Write a margin for each box of a block: 0 or more only if none of its points enters the body in any gap.
+
+    What parts a box from the body is, as for a point: beside the cylinder; below its bottom where the gap begins; in front
+    of the rim where it ends; below the rim at both; above the top where it ends; behind where it begins; out of reach.
+    """
+    for lane in range(len(margin)):
+        margin[lane] = np.inf
+    for g in range(count):
+        ca, sa, cb, sb = gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL]
+        level = low * min(1.0, ca * min(ca + sa, cb + sb))
+        for lane in range(len(margin)):
+            x = cosine * view[block, 0, lane] + sine * view[block, 1, lane]
+            y = cosine * view[block, 1, lane] - sine * view[block, 0, lane]
+            z = view[block, 2, lane]
+            f0 = cosine * view[block, 3, lane] + sine * view[block, 6, lane]
+            f1 = cosine * view[block, 4, lane] + sine * view[block, 7, lane]
+            f2 = cosine * view[block, 5, lane] + sine * view[block, 8, lane]
+            t0 = cosine * view[block, 6, lane] - sine * view[block, 3, lane]
+            t1 = cosine * view[block, 7, lane] - sine * view[block, 4, lane]
+            t2 = cosine * view[block, 8, lane] - sine * view[block, 5, lane]
+            z0, z1, z2 = view[block, 9, lane], view[block, 10, lane], view[block, 11, lane]
+            slope, room = _rim(y, radius, shrunk)
+            room += slope * y
+            top = ca * z + sa * x + abs(ca * z0 + sa * f0) + abs(ca * z1 + sa * f1) + abs(ca * z2 + sa * f2)
+            bottom = cb * z + sb * x - abs(cb * z0 + sb * f0) - abs(cb * z1 + sb * f1) - abs(cb * z2 + sb * f2)
+            front = sb * z - cb * x + abs(sb * z0 - cb * f0 - slope * t0)
+            front += abs(sb * z1 - cb * f1 - slope * t1) + abs(sb * z2 - cb * f2 - slope * t2)
+            behind = sa * z - ca * x - abs(sa * z0 - ca * f0 + slope * t0)
+            behind -= abs(sa * z1 - ca * f1 + slope * t1) + abs(sa * z2 - ca * f2 + slope * t2)
+            d = sa * slope
+            under = ca * low + sa * room - z - abs(z0 - d * t0) - abs(z1 - d * t1) - abs(z2 - d * t2)
+            d = sb * slope
+            under = min(under, cb * low + sb * room - z - abs(z0 - d * t0) - abs(z1 - d * t1) - abs(z2 - d * t2))
+            ahead = x - abs(f0) - abs(f1) - abs(f2)
+            beside = abs(y) - abs(t0) - abs(t1) - abs(t2)
+            best = max(beside - shrunk, low - view[block, 12, lane])
+            best = max(best, level - top)
+            best = max(best, min(room - front, max(ahead, max(low - top, bottom))))
+            best = max(best, under)
+            best = max(best, bottom - high)
+            best = max(best, behind - 2.0 * radius + room)
+            away = np.sqrt(x * x + z * z) + 1e-300
+            ux, uz = x / away, z / away
+            away -= abs(ux * f0 + uz * z0) + abs(ux * f1 + uz * z1) + abs(ux * f2 + uz * z2)
+            far = radius + np.sqrt(max(0.0, shrunk * shrunk - max(0.0, beside) ** 2))
+            best = max(best, away - np.sqrt(high * high + far * far))
+            margin[lane] = min(margin[lane], best)
+
+
+@kernel
+def _see_triangle(seen, lane, vertex, i, p, e1, e2, n):  # type: ignore[no-untyped-def]
+    """Write a triangle into a lane of a leaf, as seen from the contact; how far up it goes."""
+    top = -np.inf
+    for k in range(3):
+        x, y, z = vertex[i, k, 0] - p[0], vertex[i, k, 1] - p[1], vertex[i, k, 2] - p[2]
+        seen[3 * k, lane] = x * e1[0] + y * e1[1] + z * e1[2]
+        seen[3 * k + 1, lane] = x * e2[0] + y * e2[1] + z * e2[2]
+        up = x * n[0] + y * n[1] + z * n[2]
+        seen[3 * k + 2, lane] = up
+        top = max(top, up)
+    return top
+
+
+@kernel
+def _see_leaf(seen, vertex, begin, end, p, e1, e2, n):  # type: ignore[no-untyped-def]
+    """Write triangles into a leaf; how far up they go. A lane without one holds a point far below."""
+    top = -np.inf
+    for lane in range(LANES):
+        if begin + lane < end:
+            top = max(top, _see_triangle(seen, lane, vertex, begin + lane, p, e1, e2, n))
+        else:
+            for k in range(3):
+                seen[3 * k, lane], seen[3 * k + 1, lane], seen[3 * k + 2, lane] = 0.0, 0.0, -1.0
+    return top
+
+
+@kernel
+def _triangles_pass(seen, cosine, sine, gap, count, radius, shrunk, low, high, margin):  # type: ignore[no-untyped-def]
+    """`_boxes_pass` for the triangles of a leaf."""
+    for lane in range(len(margin)):
+        margin[lane] = np.inf
+    for g in range(count):
+        ca, sa, cb, sb = gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL]
+        level = low * min(1.0, ca * min(ca + sa, cb + sb))
+        for lane in range(len(margin)):
+            x0 = cosine * seen[0, lane] + sine * seen[1, lane]
+            y0 = cosine * seen[1, lane] - sine * seen[0, lane]
+            z0 = seen[2, lane]
+            x1 = cosine * seen[3, lane] + sine * seen[4, lane]
+            y1 = cosine * seen[4, lane] - sine * seen[3, lane]
+            z1 = seen[5, lane]
+            x2 = cosine * seen[6, lane] + sine * seen[7, lane]
+            y2 = cosine * seen[7, lane] - sine * seen[6, lane]
+            z2 = seen[8, lane]
+            slope, room = _rim((y0 + y1 + y2) / 3.0, radius, shrunk)
+            highest = max(z0, max(z1, z2))
+            top = max(ca * z0 + sa * x0, max(ca * z1 + sa * x1, ca * z2 + sa * x2))
+            bottom = min(cb * z0 + sb * x0, min(cb * z1 + sb * x1, cb * z2 + sb * x2))
+            front = max(sb * z0 - cb * x0 - slope * y0,
+                        max(sb * z1 - cb * x1 - slope * y1, sb * z2 - cb * x2 - slope * y2))  # fmt: skip
+            behind = min(sa * z0 - ca * x0 + slope * y0,
+                         min(sa * z1 - ca * x1 + slope * y1, sa * z2 - ca * x2 + slope * y2))  # fmt: skip
+            d = sa * slope
+            under = ca * low + sa * room - max(z0 - d * y0, max(z1 - d * y1, z2 - d * y2))
+            d = sb * slope
+            under = min(under, cb * low + sb * room - max(z0 - d * y0, max(z1 - d * y1, z2 - d * y2)))
+            beside = max(min(y0, min(y1, y2)), -max(y0, max(y1, y2)))
+            best = max(beside - shrunk, low - highest)
+            best = max(best, level - top)
+            best = max(best, min(room - front, max(min(x0, min(x1, x2)), max(low - top, bottom))))
+            best = max(best, under)
+            best = max(best, bottom - high)
+            best = max(best, behind - 2.0 * radius + room)
+            ux, uz = x0 + x1 + x2, z0 + z1 + z2
+            away = np.sqrt(ux * ux + uz * uz) + 1e-300
+            away = min(ux * x0 + uz * z0, min(ux * x1 + uz * z1, ux * x2 + uz * z2)) / away
+            far = radius + np.sqrt(max(0.0, shrunk * shrunk - max(0.0, beside) ** 2))
+            best = max(best, away - np.sqrt(high * high + far * far))
+            margin[lane] = min(margin[lane], best)
+
+
+@kernel
+def _turn(seen, lane, cosine, sine, corner):  # type: ignore[no-untyped-def]
+    """Write a triangle of a leaf as rows (x, z, y) at a rotation."""
+    for k in range(3):
+        x, y = seen[3 * k, lane], seen[3 * k + 1, lane]
+        corner[k, 0], corner[k, 1], corner[k, 2] = cosine * x + sine * y, seen[3 * k + 2, lane], cosine * y - sine * x
