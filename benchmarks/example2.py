@@ -22,7 +22,7 @@ from plan_cutters.access import access
 from plan_cutters.classify import CONVEX, regions
 from plan_cutters.conditions import Conditions
 from plan_cutters.decompose import decompose
-from plan_cutters.obstacles import Obstacles
+from plan_cutters.obstacles import Obstacles, Surroundings
 from plan_cutters.posture import PostureRange
 from plan_cutters.posture_maps import posture_maps
 
@@ -38,7 +38,7 @@ def seconds(*words: str) -> float:
 
 
 def given(obstacles: Obstacles, postures: PostureRange) -> Conditions:
-    return Conditions(Machine(), np.array([0.0, 0.0, 1.0]), postures, obstacles, TOLERANCE, jobs=2)
+    return Conditions(Machine(), np.array([0.0, 0.0, 1.0]), postures, Surroundings.sheet(obstacles), TOLERANCE, jobs=2)
 
 
 def existence(result: Any, obstacles: Obstacles, cutter: Cutter) -> tuple[float, float, int]:

@@ -39,7 +39,7 @@ def one(grid: int, chord: float) -> dict[str, float]:
     from plan_cutters.conditions import Conditions
     from plan_cutters.decompose import decompose
     from plan_cutters.machine import Machine
-    from plan_cutters.obstacles import Obstacles
+    from plan_cutters.obstacles import Obstacles, Surroundings
     from plan_cutters.posture import PostureRange
 
     part, cutter = read_part(PART), Cutter.flat(radius=6, length=80)
@@ -51,7 +51,9 @@ def one(grid: int, chord: float) -> dict[str, float]:
         region = regions(samples, kind)
         before.append(peak())
         tolerance = max(TOLERANCE, 4 * obstacles.triangles.chord_error)
-        conditions = Conditions(Machine(), np.array([0.0, 0.0, 1.0]), PostureRange(), obstacles, tolerance, JOBS)
+        conditions = Conditions(
+            Machine(), np.array([0.0, 0.0, 1.0]), PostureRange(), Surroundings.sheet(obstacles), tolerance, JOBS
+        )
         began = time.perf_counter(), time.process_time()
         free = decompose(samples, kind == CONVEX, region, cutter, conditions).free
         reach = access(samples, free, cutter, conditions)

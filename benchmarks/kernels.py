@@ -20,7 +20,7 @@ import numpy as np
 sys.path.append(str(Path(__file__).parent.parent / "tests"))
 import waves
 
-from plan_cutters.kernels import arcs, cover, free_map, hit, lanes, maps, search, tree
+from plan_cutters.kernels import arcs, cover, free_map, hit, lanes, maps, material, search, tree
 from plan_cutters.kernels.jit import kernel
 
 RADIUS, LENGTH, SAFE, BLOCKED, TURNS = 6.0, 40.0, 0.04, 0.06, 24
@@ -157,6 +157,7 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
     cosine, sine = np.cos(rotations), np.sin(rotations)
     polygon, spare, pieces, stack = np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3)), np.empty(64, np.int64)
     out = (np.empty(n, np.uint8), axis.copy(), lean.copy(), np.empty(n), np.empty(n, np.int32), np.empty(n, np.uint8))
+    solids = material.sheet(vertex, box, depth)
     free, triangle, depths = np.empty(n, np.bool_), np.empty(n, np.int32), np.full(n, SAFE)
 
     def maps_of(count: int) -> None:
@@ -196,10 +197,10 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
         "probe": ("posture", 400, lambda k: search.probe(
             np.arange(k), point, normal, axis, lean, RADIUS, LENGTH, depths, vertex, box, depth, triangle)),
         "dummy_free": ("sample", 400, lambda k: search.dummy_free(
-            np.arange(k), point, normal, RADIUS, LENGTH, SAFE, vertex, box, depth, free)),
+            np.arange(k), point, normal, RADIUS, LENGTH, SAFE, solids, free)),
         "search": ("sample", 400, lambda k: search.search(
             np.arange(k), point, normal, first, curvature, cosine, sine, 0.0, RIGHT, UP, 0.7, RADIUS, LENGTH, SAFE,
-            BLOCKED, vertex, box, depth, *out)),
+            BLOCKED, solids, solids, *out)),
         "free_tilts": ("rotation", 100, maps_of),
         "wide_tree": ("triangle", 7_200, lambda k: k and lanes.wide_tree(vertex, box, depth)),
         "_boxes_pass": ("eight boxes", 100_000, lambda k: many_blocks(k, view, gap, margin)),

@@ -46,7 +46,7 @@ from plan_cutters.kernels.free_map import free_map
 from plan_cutters.kernels.points import local_gouge_bound
 from plan_cutters.kernels.search import probe
 from plan_cutters.machine import Machine
-from plan_cutters.obstacles import Obstacles
+from plan_cutters.obstacles import Obstacles, Surroundings
 from plan_cutters.posture import PostureRange
 from plan_cutters.threads import in_chunks
 
@@ -404,7 +404,9 @@ def existence(samples: SurfaceSamples, obstacles: Obstacles) -> str:
     none = np.zeros(len(samples), bool)
     found = []
     for jobs, clock in CLOCKS.items():
-        conditions = Conditions(Machine(), np.array([0.0, 0.0, 1.0]), postures, obstacles, TOLERANCE, jobs)
+        conditions = Conditions(
+            Machine(), np.array([0.0, 0.0, 1.0]), postures, Surroundings.sheet(obstacles), TOLERANCE, jobs
+        )
         reach, seconds = timed(lambda given=conditions: access(samples, none, CUTTER, given), 3, clock)
         found.append(f"{len(samples) / seconds:.3g} samples/s on {jobs} thread(s)")
     reached = f"{int(reach.reached.sum())} of {len(samples)} samples reached"

@@ -20,9 +20,10 @@ ENTRIES = {
         "from plan_cutters.kernels import search as s; from plan_cutters.kernels.tree import build\n"
         "_, box, depth = build(one); p, c, n = np.zeros((1, 3)), np.zeros((1, 2)), np.zeros(1)\n"
         "i, b = np.zeros(1, np.int32), np.zeros(1, np.uint8)\n"
-        "s.dummy_free(none, p, p, 1.0, 9.0, 0.01, one, box, depth, np.zeros(1, bool))\n"
+        "from plan_cutters.kernels.material import sheet; w = sheet(one, box, depth)\n"
+        "s.dummy_free(none, p, p, 1.0, 9.0, 0.01, w, np.zeros(1, bool))\n"
         "s.probe(none, p, p, p, p, 1.0, 9.0, n, one, box, depth, i)\n"
-        "s.search(none, p, p, p, c, n, n, 0.0, 1.5, np.zeros(3), -2.0, 1.0, 9.0, 0.01, 0.01, one, box, depth,"
+        "s.search(none, p, p, p, c, n, n, 0.0, 1.5, np.zeros(3), -2.0, 1.0, 9.0, 0.01, 0.01, w, w,"
         " b, p, p, n, i, b)"
     ),
     "free_tilts": (

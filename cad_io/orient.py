@@ -22,7 +22,7 @@ WEAK = 0.3
 #: Volumes below this share of area times diagonal are none.
 _FLAT = 1e-6
 #: A shell whose vector area is below this share of its area is nearly closed.
-_NEARLY_CLOSED = 0.05
+NEARLY_CLOSED = 0.05
 
 
 def orient(part: Part, towards: tuple[float, float, float] = (0.0, 0.0, 1.0), flip: bool = False) -> Orientation:
@@ -62,7 +62,7 @@ def _orient_solid(part: Part, members: Sequence[tuple[int, TopoDS_Face]], sign: 
     index = np.array([i for i, _ in members], dtype=int)
     if not len(index):
         return True
-    found = _components([face for _, face in members])
+    found = joined_faces([face for _, face in members])
     closed = all(c.closed for c in found)
     if closed and all(c.relative is not None for c in found):
         disagree = False
@@ -74,15 +74,15 @@ def _orient_solid(part: Part, members: Sequence[tuple[int, TopoDS_Face]], sign: 
             for c in found:
                 flags[c.members] = c.relative * np.sign((flags[c.members] * c.relative).sum() or 1.0)
             said.append("solids whose faces contradict each other were made consistent")
-    volume = _volume(part, index, flags)
-    if volume < 0:
+    enclosed = volume(part, index, flags)
+    if enclosed < 0:
         flags = -flags
         said.append("solids that were inside out were turned")
     sign[index] = flags
     said.append("faces of solids as the solid says")
     if not closed:
         said.append("a solid is not closed, so its side is a guess")
-    return closed and volume != 0
+    return closed and enclosed != 0
 
 
 def _orient_rest(
@@ -92,23 +92,23 @@ def _orient_rest(
     direction = towards / np.linalg.norm(towards)
     sure, guessed, weakest = True, False, 1.0
     joined = part.sewn.faces
-    for c in _components([joined[i + 1] for i in rest]):
+    for c in joined_faces([joined[i + 1] for i in rest]):
         index = np.array(rest)[c.members]
         relative = c.relative if c.relative is not None else np.ones(len(index))
-        volume = _volume(part, index, relative) if c.closed else 0.0
-        if volume:
-            sign[index] = relative * np.sign(volume)
+        enclosed = volume(part, index, relative) if c.closed else 0.0
+        if enclosed:
+            sign[index] = relative * np.sign(enclosed)
             said.append("closed shells outward")
             continue
-        area, vector = _vector(part, index, relative)
+        area, vector = vector_area(part, index, relative)
         if not area:  # no surface, no side
             sign[index] = relative
             continue
         sure = False
         lean = float(vector @ direction) / area
         # A shell that is nearly closed faces no direction; what it nearly encloses tells more than chance.
-        nearly = float(np.linalg.norm(vector)) < _NEARLY_CLOSED * area and (volume := _volume(part, index, relative))
-        side = np.sign(volume) if nearly else (-1.0 if lean < 0 else 1.0)
+        nearly = float(np.linalg.norm(vector)) < NEARLY_CLOSED * area and (enclosed := volume(part, index, relative))
+        side = np.sign(enclosed) if nearly else (-1.0 if lean < 0 else 1.0)
         sign[index] = relative * side * (-1.0 if flip else 1.0)
         if nearly:
             said.append("nearly closed shells outward" + (", flipped" if flip else ""))
@@ -122,14 +122,14 @@ def _orient_rest(
     return sure
 
 
-class _Component:
+class Joined:
     """Faces joined by edges. `relative` (k,): +1 or -1 so that all point to one side by `dS/du x dS/dv`."""
 
     def __init__(self, members: list[int], relative: Floats | None, closed: bool) -> None:
         self.members, self.relative, self.closed = members, relative, closed
 
 
-def _components(shapes: Sequence[TopoDS_Face]) -> list[_Component]:
+def joined_faces(shapes: Sequence[TopoDS_Face]) -> list[Joined]:
     """Split faces into groups joined by shared edges.
 
     Two faces on either side of an edge point to the same side if they run along the edge in opposite directions.
@@ -160,11 +160,11 @@ def _components(shapes: Sequence[TopoDS_Face]) -> list[_Component]:
                     queue.append(j)
                 consistent &= bool(seen[j] == seen[i] * same)
         closed = consistent and not open_faces.intersection(members)
-        found.append(_Component(members, seen[members].copy() if consistent else None, closed))
+        found.append(Joined(members, seen[members].copy() if consistent else None, closed))
     return found
 
 
-def _volume(part: Part, index: Iterable[int], sign: Floats) -> float:
+def volume(part: Part, index: Iterable[int], sign: Floats) -> float:
     """Signed volume of a closed set of faces, mm3; 0 if there is none to speak of."""
     measures = [part.measure(int(i) + 1) for i in index]
     flux = sum(s * m.flux for s, m in zip(sign, measures, strict=True) if m and np.isfinite(m.flux))
@@ -173,7 +173,7 @@ def _volume(part: Part, index: Iterable[int], sign: Floats) -> float:
     return float(flux) / 3 if enough else 0.0
 
 
-def _vector(part: Part, index: Iterable[int], sign: Floats) -> tuple[float, Floats]:
+def vector_area(part: Part, index: Iterable[int], sign: Floats) -> tuple[float, Floats]:
     """Area and vector area of a set of faces, mm2."""
     area, vector = 0.0, np.zeros(3)
     for i, s in zip(index, sign, strict=True):

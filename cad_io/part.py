@@ -29,7 +29,9 @@ LEAST_SIZE, MOST_SIZE = 1.0, 3000.0
 #: Beyond this, mm, a coordinate has too few digits left for any tolerance.
 FARTHEST = 1e9
 #: A face smaller than this share of the squared diagonal has no area.
-_NO_AREA = 1e-12
+_LEAST_AREA = 1e-12
+#: Why such a face is not judged.
+NO_AREA = "has no area"
 
 _KINDS = {
     "Plane": "plane", "Cylinder": "cylinder", "Cone": "cone", "Sphere": "sphere", "Torus": "torus",
@@ -101,7 +103,7 @@ class Part:
         self._measures: dict[int, Measure | None] = {}
         self.solids = shape_map(shape, TopAbs_SOLID).Extent()
         with translated("measuring the part", error=ReadError, file=file):
-            boxes = np.array([_face_box(face, tight=False) for face in self._faces])
+            boxes = np.array([face_box(face, tight=False) for face in self._faces])
             finite = np.isfinite(boxes).all(axis=(1, 2))
             if not finite.any():
                 raise ReadError("no face has a finite size: nothing can be judged", file=file)
@@ -216,8 +218,8 @@ class Part:
             return "its edges have no finite curve on the surface", 0.0
         if not np.isfinite(measured.area):
             return "its surface cannot be evaluated everywhere", 0.0
-        if measured.area <= _NO_AREA * float(np.dot(self.size, self.size)):
-            return "has no area", measured.area
+        if measured.area <= _LEAST_AREA * float(np.dot(self.size, self.size)):
+            return NO_AREA, measured.area
         return None, measured.area
 
 
@@ -252,7 +254,7 @@ def _box(found: list[TopoDS_Face]) -> tuple[Floats, Floats]:
     The kernel's quick box is padded and its tight one is slow, so the tight one is asked only of faces whose padded
     box still sticks out of what is covered, the farthest first.
     """
-    loose = np.array([_face_box(face, tight=False) for face in found])
+    loose = np.array([face_box(face, tight=False) for face in found])
     usable = np.isfinite(loose).all(axis=(1, 2))
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     if not usable.any():
@@ -261,13 +263,14 @@ def _box(found: list[TopoDS_Face]) -> tuple[Floats, Floats]:
                             np.nanmax(loose[usable, 1], axis=0) - loose[:, 1]], axis=1)  # fmt: skip
     for i in np.argsort(np.where(usable, stick.min(axis=1), np.inf), kind="stable")[: usable.sum()]:
         if (loose[i, 0] < low).any() or (loose[i, 1] > high).any():
-            tight = _face_box(found[i], tight=True)
+            tight = face_box(found[i], tight=True)
             tight = tight if np.isfinite(tight).all() else loose[i]
             low, high = np.minimum(low, tight[0]), np.maximum(high, tight[1])
     return low, high
 
 
-def _face_box(face: TopoDS_Face, *, tight: bool) -> Floats:
+def face_box(face: TopoDS_Face, *, tight: bool) -> Floats:
+    """Corners (2, 3) of the box around a face, nan where it has none; not `tight`: quick, and somewhat wider."""
     box = Bnd_Box()
     try:
         if tight:

@@ -16,7 +16,7 @@ from plan_cutters import Cutter, Machine, plan
 from plan_cutters.between import _Contacts as Contacts
 from plan_cutters.between import _quarters, between
 from plan_cutters.conditions import Conditions
-from plan_cutters.obstacles import Obstacles
+from plan_cutters.obstacles import Obstacles, Surroundings
 from plan_cutters.posture import PostureRange
 
 SAMPLES = Path(__file__).parent.parent / "samples"
@@ -34,11 +34,9 @@ def served(part, cutter, *, budget, tolerance=0.01, chord=None, machine="unlimit
         point, shape = evaluate(whole, side, face, uv)
         return point, shape.normal, shape.direction_max, shape.curvature
 
-    found = between(
-        samples, result.reaches[cutter.id], cutter, geometry,
-        Conditions(machine, UP, result.postures, Obstacles(tessellate(whole, chord or 0.2 * tolerance)), tolerance, 2),
-        budget=budget,
-    )  # fmt: skip
+    around = Surroundings.sheet(Obstacles(tessellate(whole, chord or 0.2 * tolerance)))
+    conditions = Conditions(machine, UP, result.postures, around, tolerance, 2)
+    found = between(samples, result.reaches[cutter.id], cutter, geometry, conditions, budget=budget)
     return found, geometry, whole
 
 
@@ -154,7 +152,7 @@ def test_axes_between_samples_keep_the_machines_limit():
     point, normal, direction, curvature = geometry(1, uv)
     whole = Contacts(point, normal, direction, curvature, normal, np.array([True]), np.ones(1),
                      np.zeros((1, 2), np.int32), uv, np.full((1, 2), 0.4), np.ones(1))  # fmt: skip
-    plane = Obstacles(tessellate(part, 0.002))
+    plane = Surroundings.sheet(Obstacles(tessellate(part, 0.002)))
     conditions = Conditions(Machine.parse("tilt:10"), UP, PostureRange(), plane, 0.01, 1)
     quarters = _quarters(whole, 1, geometry, conditions)
     within = quarters.normal @ UP >= limit

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 import waves
 
-from plan_cutters.kernels import arcs, free_map, gaps, hit, lanes, search, tree
+from plan_cutters.kernels import arcs, free_map, gaps, hit, lanes, material, search, tree
 
-MODULES = (arcs, free_map, gaps, hit, lanes, search)
+MODULES = (arcs, free_map, gaps, hit, lanes, material, search)
 
 #: What the searches below cost together. Lower is better: store what you reach; higher needs a reason in the commit.
 STORED = {"tree_hit": 5430, "_box_apart": 282240, "triangle_hit": 66110, "point_arc": 61440, "remove": 33530}
@@ -59,9 +59,10 @@ def work(nudge):
     n, turn = len(geometry[0]), 2 * np.pi * np.arange(24) / 24
     axis, lean = np.zeros((n, 3)), np.zeros((n, 3))
     verdict, tilt, rotation = np.full(n, 255, np.uint8), np.zeros(n), np.full(n, -1, np.int32)
+    solids = material.sheet(np.ascontiguousarray(vertex[order]), box, depth)
     search.search(
         np.arange(n), *geometry, np.cos(turn), np.sin(turn), 0.0, np.pi / 2, np.array([0, 0, 1.0]), np.cos(0.8),
-        6.0, 40.0, 0.04, 0.06, np.ascontiguousarray(vertex[order]), box, depth,
+        6.0, 40.0, 0.04, 0.06, solids, solids,
         verdict, axis, lean, tilt, rotation, np.full(n, 255, np.uint8),
     )  # fmt: skip
     return verdict, axis

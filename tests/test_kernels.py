@@ -10,6 +10,7 @@ from reference import depth_in_cutter, posture, random_frame, triangle_points
 
 from plan_cutters.kernels import hit, maps, search, tree
 from plan_cutters.kernels.arcs import point_arc
+from plan_cutters.kernels.material import sheet
 from plan_cutters.kernels.points import axis_intervals, local_gouge_bound
 
 SCRATCH = (np.empty((8, 3)), np.empty((8, 3)))
@@ -237,7 +238,7 @@ def test_search_agrees_with_a_posture_grid(seed):
            np.zeros(n, np.uint8))  # fmt: skip
     search.search(np.arange(n), point, normal, direction, np.zeros((n, 2)), np.cos(rotations), np.sin(rotations),
                   0.0, math.pi / 2, np.array([0, 0, 1.0]), -2.0, radius, length, s, s,
-                  vertex, box, depth, *out)  # fmt: skip
+                  sheet(vertex, box, depth), sheet(vertex, box, depth), *out)  # fmt: skip
     verdicts = set(out[0].tolist())
     assert verdicts == {search.ACCESSIBLE, search.INACCESSIBLE}
     for i in range(n):

@@ -5,10 +5,23 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, SurfaceSamples
+from cad_io.arrays import Floats, Ints, SurfaceSamples
+from plan_cutters.buried import cover
 from plan_cutters.conditions import Conditions, Geometry, search_postures
 from plan_cutters.cutter import Cutter
-from plan_cutters.reach import ACCESSIBLE, FREE, INACCESSIBLE, REASONS, UNDECIDED, UNJUDGED, Reach, Witness, blank
+from plan_cutters.reach import (
+    ACCESSIBLE,
+    BURIED,
+    FREE,
+    INACCESSIBLE,
+    REASONS,
+    TOLERANCE,
+    UNDECIDED,
+    UNJUDGED,
+    Reach,
+    Witness,
+    blank,
+)
 from plan_cutters.threads import Progress, in_chunks
 
 
@@ -18,6 +31,7 @@ def access(
     cutter: Cutter,
     conditions: Conditions,
     *,
+    buried: Ints | None = None,
     known: Reach | None = None,
     progress: Progress | None = None,
 ) -> Reach:
@@ -29,6 +43,8 @@ def access(
     free : (n,) bool
         Interference-free samples, as `decompose` gives them.
     cutter, conditions
+    buried : (n,) int32, optional
+        The body that each sample lies within, -1 for none (default): none of those within is accessible.
     known : Reach, optional
         What follows from other cutters (`nesting.handed`): those samples are not searched again.
     progress : callable, optional
@@ -37,13 +53,18 @@ def access(
     n = len(samples)
     reach = blank(n)
     judged = samples.unjudged < 0
+    if not conditions.judges(cutter):
+        reach.verdict[judged], reach.reason[judged] = UNDECIDED, TOLERANCE
+        return reach
+    within = np.zeros(n, bool) if buried is None else judged & (buried >= 0)
+    reach.verdict[within], reach.reason[within] = INACCESSIBLE, BURIED
     reach.verdict[free] = FREE
     reach.axis[free] = samples.normal[free]
     reach.lean[free] = samples.direction_max[free]
     reach.tilt[free] = 0.0
     reach.rotation[free] = 0
     geometry = (samples.point, samples.normal, samples.direction_max, samples.curvature)
-    wanted = judged & ~free
+    wanted = judged & ~free & ~within
     if known is not None:
         follows = wanted & (known.verdict != UNJUDGED)
         for name in Reach.__slots__:
@@ -72,8 +93,10 @@ _KEPT, _TRIED, _TRIED_IN_ALL = 2, 6, 60
 _PRECISION = 0.02
 
 
-def witnesses(samples: SurfaceSamples, reach: Reach, cutter: Cutter, conditions: Conditions) -> tuple[Witness, ...]:
-    """Samples that are not reached, the deepest tried of each face and reason first."""
+def witnesses(
+    samples: SurfaceSamples, reach: Reach, cutter: Cutter, conditions: Conditions, *, buried: Ints | None = None
+) -> tuple[Witness, ...]:
+    """Samples that are not reached, the deepest tried of each face and reason first; `buried` as in `access`."""
     lost = np.flatnonzero((reach.verdict == INACCESSIBLE) | (reach.verdict == UNDECIDED))
     groups: dict[tuple[int, int], list[int]] = {}
     for row in lost:
@@ -87,7 +110,12 @@ def witnesses(samples: SurfaceSamples, reach: Reach, cutter: Cutter, conditions:
 
     def work(rows: NDArray[np.int64]) -> None:
         for row in rows.tolist():
-            looked[row] = _witness(samples, row, reach, cutter, alone)
+            covered = -1 if buried is None else int(buried[row])
+            looked[row] = (
+                _witness(samples, row, reach, cutter, alone)
+                if covered < 0
+                else _covered(samples, row, covered, conditions)
+            )
 
     in_chunks(work, np.array([row for group in picked for row in group], np.int64), conditions.jobs, chunk=1)
     found: list[Witness] = []
@@ -105,6 +133,14 @@ def _witness(samples: SurfaceSamples, row: int, reach: Reach, cutter: Cutter, co
     from plan_cutters.kernels.search import probe
 
     reason = REASONS[reach.reason[row]]
+    nothing = Witness(row, reason, None, None, None, None, None, None)
+    if reason == "tolerance":
+        return nothing
+    if reason == "buried":
+        way_out = cover(samples.point[row], samples.normal[row], conditions.around.surely)
+        return (
+            nothing if way_out is None else replace(nothing, obstacle_face=way_out.face, obstacle_point=way_out.point)
+        )
     one, first = slice(row, row + 1), np.zeros(1, np.int64)
     curvature = np.zeros((1, 2)) if reason == "local_gouge" else samples.curvature[one]
     geometry = (samples.point[one], samples.normal[one], samples.direction_max[one], curvature)
@@ -118,8 +154,11 @@ def _witness(samples: SurfaceSamples, row: int, reach: Reach, cutter: Cutter, co
         search_postures(geometry, first, cutter, conditions, (depth, depth), trial)
         if trial.verdict[0] == ACCESSIBLE:
             best, high = trial, depth
+        elif best is None and conditions.around.may_be.solids.cell.size:
+            # Even the axis lies within material: how deep its skin is says at least something.
+            conditions = replace(conditions, around=conditions.around.skins)
         elif best is None:
-            return Witness(row, reason, None, None, None, None, None, None)
+            return nothing
         else:
             low = depth
     triangle = np.full(1, -1, np.int32)
@@ -138,6 +177,14 @@ def _witness(samples: SurfaceSamples, row: int, reach: Reach, cutter: Cutter, co
         axis=best.axis[0],
         depth=high,
     )
+
+
+def _covered(samples: SurfaceSamples, row: int, body: int, conditions: Conditions) -> Witness:
+    """The body that a sample lies within is the witness: where the way out along the normal leaves it."""
+    skin = conditions.around.surely.skin_of(conditions.around.bodies[body])
+    way_out = cover(samples.point[row], samples.normal[row], skin)
+    face, point = (None, None) if way_out is None else (way_out.face, way_out.point)
+    return Witness(row, REASONS[BURIED], face, point, None, None, None, None)
 
 
 def _deepest(triangle: Floats, contact: Floats, normal: Floats, posture: Reach, cutter: Cutter) -> Floats:

@@ -25,6 +25,8 @@ _WILDER = 2.0
 #: Room to the local gouging bound, in sines of tilt, that is asked of other postures, in turn: the smaller a cell, the
 #: less is of use.
 _ROOM = ((0.5,), (0.5, 0.2), (0.5, 0.2), (0.5, 0.2, 0.05))
+#: A lean with a smaller sine has no direction.
+_UPRIGHT = 1e-9
 #: Times that a cell is cut into four, at most.
 _LEVELS = 6
 
@@ -181,10 +183,10 @@ def _served(
 ) -> NDArray[np.bool_]:
     """Contacts whose posture, or another one, serves their cell; postures found on the way are kept."""
     good = np.zeros(len(contacts), bool)
-    known = np.isfinite(contacts.axis).all(axis=1)
+    known = np.isfinite(contacts.axis).all(axis=1) & _whole(contacts)
     _cover(contacts, field, cutter, conditions, np.flatnonzero(known), good)
     for room in rooms:
-        open_rows = np.flatnonzero(~good & np.isfinite(contacts.point).all(axis=1))
+        open_rows = np.flatnonzero(~good & _whole(contacts))
         # A posture with room to the local gouging bound: the search is told that the surface is more concave.
         curved = contacts.curvature + room / cutter.radius
         geometry = (contacts.point, contacts.normal, contacts.direction_max, curved)
@@ -216,6 +218,22 @@ def _cover(
               box, depth, good)  # fmt: skip
 
     in_chunks(work, rows, conditions.jobs)
+    # A cell that is served touches no skin with any of its cutters: within a body are all of them or none.
+    mine = rows[good[rows]]
+    axis, normal = contacts.axis[mine], contacts.normal[mine]
+    upright = (axis * normal).sum(axis=1)
+    across = axis - upright[:, None] * normal
+    sine = np.linalg.norm(across, axis=1)
+    flat = contacts.flat[mine] | (sine < _UPRIGHT)
+    lean = np.where(flat[:, None], contacts.direction_max[mine], across / np.where(flat, 1.0, sine)[:, None])
+    tilt = np.where(flat, 0.0, np.arctan2(sine, upright))
+    good[mine] = ~conditions.obstacles.holds(cutter, contacts.point[mine], normal, lean, tilt)
+
+
+def _whole(contacts: _Contacts) -> NDArray[np.bool_]:
+    """Contacts at which the surface could be evaluated."""
+    columns = (contacts.point, contacts.normal, contacts.direction_max, contacts.curvature)
+    return np.asarray(np.all([np.isfinite(column).all(axis=1) for column in columns], axis=0))
 
 
 def _quarters(contacts: _Contacts, face: int, evaluate: Evaluate, conditions: Conditions) -> _Contacts:

@@ -242,10 +242,16 @@ def _one(part: str, out: Path, options: "Options", given: dict[str, Any]) -> tup
         sys.stdout.flush()
     if not given["quiet"]:
         _summary(document, out, formats)
-    unjudged = document.samples.unjudged or any(f.target and f.unjudged for f in document.faces)
-    if document.selected is None:
-        return NONE_FEASIBLE, ""
-    return (NOT_ALL_JUDGED if unjudged else FEASIBLE), ""
+    return _exit_code(document), ""
+
+
+def _exit_code(plan: "Plan") -> int:
+    if plan.selected is None:
+        # What is missing from the obstacles leaves open whether a cutter that nothing else stops is stopped by it.
+        doubtful = plan.missing and any(c.feasible is None for c in plan.cutters)
+        return NOT_ALL_JUDGED if doubtful else NONE_FEASIBLE
+    unjudged = plan.samples.unjudged or any(f.target and f.unjudged for f in plan.faces)
+    return NOT_ALL_JUDGED if unjudged else FEASIBLE
 
 
 def _summary(plan: "Plan", out: Path, formats: Sequence[str]) -> None:
@@ -280,6 +286,8 @@ def _summary(plan: "Plan", out: Path, formats: Sequence[str]) -> None:
     for face in plan.faces:
         if face.target and face.unjudged:
             console.print(f"Not judged: {face.id} ({face.unjudged}).")
+    for line in _missing(plan):
+        console.print(line)
     for line in _not_reached(plan):
         console.print(line)
 
@@ -293,6 +301,16 @@ def _side(plan: "Plan") -> str:
     if sewing and sewing.open_edges:
         line += f" Open edges: {sewing.open_edges}, {sewing.open_length_mm:.4g} mm long."
     return line
+
+
+def _missing(plan: "Plan") -> list[str]:
+    """Which obstacles are missing, so that no cutter is feasible beyond doubt."""
+    where = {"none": "nothing stands for it", "box": "the box around it stands for it",
+             "triangles": "its own triangles stand for it", "edges": "its edges stand for it"}  # fmt: skip
+    return [
+        f"Missing obstacle: {m.face or m.entity or 'a face of the file'} ({m.why}; {where[m.stand_in]})."
+        for m in plan.missing
+    ]
 
 
 def _percent(share: float) -> str:

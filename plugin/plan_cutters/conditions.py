@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from plan_cutters.cutter import Cutter
 from plan_cutters.machine import Machine
-from plan_cutters.obstacles import Obstacles
+from plan_cutters.obstacles import Obstacles, Surroundings
 from plan_cutters.posture import PostureRange
 from plan_cutters.reach import Reach
 from plan_cutters.threads import Progress, in_chunks
@@ -27,7 +27,8 @@ class Conditions:
     setup : (3,) float
         Unit setup axis.
     postures : PostureRange
-    obstacles : Obstacles
+    around : Surroundings
+        What is, and what may be, in the way.
     tolerance : float
         Gouge tolerance that is kept, mm.
     jobs : int
@@ -37,9 +38,18 @@ class Conditions:
     machine: Machine
     setup: Floats
     postures: PostureRange
-    obstacles: Obstacles
+    around: Surroundings
     tolerance: float
     jobs: int
+
+    @property
+    def obstacles(self) -> Obstacles:
+        """Everything that may be in the way."""
+        return self.around.may_be
+
+    def judges(self, cutter: Cutter) -> bool:
+        """Whether the tolerance that is kept is fine enough to say anything about a cutter."""
+        return cutter.large_enough(self.tolerance)
 
     @property
     def depths(self) -> tuple[float, float]:
@@ -76,14 +86,22 @@ def search_postures(
     reach : Reach
     progress : callable, optional
         Told how many pieces of the work are done, of how many.
+
+    Raises
+    ------
+    ValueError
+        A contact is not a point with a normal and a curvature: nothing can be said of it.
     """
     from plan_cutters.kernels.search import search
 
-    ranges, tree = conditions.ranges, conditions.obstacles.tree
+    if not all(np.isfinite(column[rows]).all() for column in geometry) or not np.isfinite(depths).all():
+        raise ValueError("contacts to search a posture for must be finite")
+    ranges, around = conditions.ranges, conditions.around
+    may_be, surely = around.may_be.solids, around.surely.solids
 
     def work(piece: NDArray[np.int64]) -> None:
         search(
-            piece, *geometry, *ranges, cutter.radius, cutter.length, *depths, *tree,
+            piece, *geometry, *ranges, cutter.radius, cutter.length, *depths, may_be, surely,
             reach.verdict, reach.axis, reach.lean, reach.tilt, reach.rotation, reach.reason,
         )  # fmt: skip
 

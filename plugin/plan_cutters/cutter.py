@@ -73,6 +73,10 @@ class Cutter:
         """
         return self.corner_radius == other.corner_radius and self.radius <= other.radius and self.length <= other.length
 
+    def large_enough(self, tolerance: float) -> bool:
+        """Whether verdicts to a tolerance, mm, say anything about this cutter: it is at least four of it thick and long."""
+        return tolerance < min(self.radius, self.length) / 4
+
     @property
     def id(self) -> str:
         """`R6L80`: the same dimensions, the same id."""

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from cad_io.arrays import SurfaceSamples
+from cad_io.arrays import Ints, SurfaceSamples
 from plan_cutters.conditions import Conditions
 from plan_cutters.cutter import Cutter
 from plan_cutters.threads import in_chunks
@@ -35,6 +35,8 @@ def decompose(
     region: NDArray[np.int32],
     cutter: Cutter,
     conditions: Conditions,
+    *,
+    buried: Ints | None = None,
 ) -> Decomposition:
     """Test each convex sample with the dummy cutter, and compare with the seed's march over boundaries.
 
@@ -45,16 +47,20 @@ def decompose(
     region : (n,) int32
         As `classify.regions` gives it.
     cutter, conditions
+    buried : (n,) int32, optional
+        The body that each sample lies within, -1 for none (default): none of those within is free.
     """
     from plan_cutters.kernels.search import dummy_free
 
     free = np.zeros(len(samples), bool)
     allowed = convex & conditions.upright(samples.normal)
+    if buried is not None:
+        allowed &= buried < 0
     safe, _ = conditions.depths
-    tree = conditions.obstacles.tree
+    solids = conditions.obstacles.solids
 
     def work(rows: NDArray[np.int64]) -> None:
-        dummy_free(rows, samples.point, samples.normal, cutter.radius, cutter.length, safe, *tree, free)
+        dummy_free(rows, samples.point, samples.normal, cutter.radius, cutter.length, safe, solids, free)
 
     in_chunks(work, np.flatnonzero(allowed), conditions.jobs)
     marched = _march(samples, convex, region, free)

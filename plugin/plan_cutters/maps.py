@@ -13,12 +13,11 @@ from cad_io import Part, SurfaceSamples, Triangles, read_part
 from cad_io.arrays import Floats
 from cad_io.orient import orient
 from cad_io.sample import locate
-from cad_io.tessellate import tessellate
 from plan_cutters.cutter import Cutter
 from plan_cutters.errors import OptionError
 from plan_cutters.machine import Machine
-from plan_cutters.obstacles import Obstacles
-from plan_cutters.posture import unit
+from plan_cutters.obstacles import CHORD_ASKED, Obstacles, Surroundings, kept_tolerance, surroundings
+from plan_cutters.posture import lean, unit
 
 #: Width (rad) below which a range of tilts stays undecided: with a tolerance, and for the nominal answer.
 _NARROWEST, _NARROWEST_NOMINAL = 1e-4, 1e-5
@@ -53,10 +52,15 @@ class PostureMap:
         The frame: contact, unit normal out of the material, direction from which rotations count.
     curvature : (2,) float
         kappa_max, kappa_min, 1/mm, concave positive.
+    buried : tuple of (m, 2) float
+        Tilts at which the cutter touches nothing and lies within a body.
     tolerance : float
         The gouge tolerance kept, mm; 0 for the nominal answer.
     certified : bool
-        Whether free tilts are safe for the true surface to the tolerance; the nominal answer is not.
+        Whether free tilts are safe for the true surface to the tolerance; the nominal answer is not, nor is any where
+        `missing` names a face.
+    missing : tuple of str
+        Faces that stand in the way only as a guess or not at all, with the reason; what only they forbid is undecided.
     chord_error : float
         Of the obstacles, mm.
     settled : bool
@@ -70,19 +74,21 @@ class PostureMap:
     rear_gouge: tuple[Floats, ...]
     collision: tuple[Floats, ...]
     axis_limit: tuple[Floats, ...]
+    buried: tuple[Floats, ...]
     point: Floats
     normal: Floats
     direction_max: Floats
     curvature: Floats
     tolerance: float
     certified: bool
+    missing: tuple[str, ...]
     chord_error: float
     settled: bool
 
     def axis(self, i: int, tilt: float) -> Floats:
         """Unit tool axis at `rotations[i]` and a tilt (rad), in part coordinates."""
-        lean = _lean(self.normal, self.direction_max, float(self.rotations[i]))
-        return np.cos(tilt) * self.normal + np.sin(tilt) * lean
+        f = lean(self.normal, self.direction_max, float(self.rotations[i]))
+        return np.cos(tilt) * self.normal + np.sin(tilt) * f
 
 
 def posture_map(
@@ -127,8 +133,10 @@ def posture_map(
     low, high = tilt
     if not -1e-9 <= low <= high <= np.pi / 2 + 1e-9:
         raise OptionError("the tilt range must run upwards within 0 to pi/2")
-    if not 0 <= tolerance < cutter.radius / 4:
-        raise OptionError(f"tolerance {tolerance:g} mm must lie between 0 and a quarter of the radius")
+    if not (tolerance >= 0 and cutter.large_enough(tolerance)):
+        raise OptionError(
+            f"tolerance {tolerance:g} mm must lie between 0 and a quarter of the cutter's radius and length"
+        )
     low, high = max(0.0, low), min(np.pi / 2, high)
     whole = part if isinstance(part, Part) else read_part(part)
     machine = machine or Machine()
@@ -136,17 +144,24 @@ def posture_map(
     turns = np.atleast_1d(np.asarray(rotations, float))
     ask = _Ask(contact, cutter, turns, (low, high), machine, unit(setup, "setup axis"))
     if tolerance > 0:
-        triangles = tessellate(whole, 0.2 * tolerance)
-        tolerance = max(tolerance, 4 * triangles.chord_error)
-        safe, _ = Obstacles(triangles).depths(tolerance)
-        return _map(ask, triangles, safe, _NARROWEST, tolerance)
+        around = surroundings(whole, CHORD_ASKED * tolerance)
+        tolerance = kept_tolerance(tolerance, around.surely.triangles.chord_error)
+        found = _map(ask, around, around.surely.depths(tolerance), _NARROWEST, tolerance)
+        if cutter.large_enough(tolerance):
+            return found
+        # So coarse a tolerance says nothing about so small a cutter.
+        none = tuple(np.zeros((0, 2)) for _ in turns)
+        left = tuple(_complement(forbidden, low, high) for forbidden in found.axis_limit)
+        return replace(found, free=none, undecided=left, rear_gouge=none, collision=none, buried=none, certified=False)
     chord = min(_FIRST_CHORD, 1e-3 * cutter.radius)
     before: PostureMap | None = None
     for _ in range(_ROUNDS):
-        triangles = tessellate(whole, chord)
+        around = surroundings(whole, chord)
+        triangles = around.surely.triangles
         # Twice the chord error: next to the contact, where the true clearance is zero, triangles must not count,
         # local gouging does.
-        now = _map(ask, triangles, 2 * triangles.chord_error + 1e-9, _NARROWEST_NOMINAL, 0.0)
+        nominal = 2 * triangles.chord_error + 1e-9
+        now = _map(ask, around, (nominal, nominal), _NARROWEST_NOMINAL, 0.0)
         if before is not None and _moved(before, now) < _SETTLED:
             return replace(now, settled=True)
         before, chord = now, chord * _FINER
@@ -166,50 +181,68 @@ class _Ask:
     setup: Floats
 
 
-def _lean(normal: Floats, direction_max: Floats, rotation: float) -> Floats:
-    return np.asarray(np.cos(rotation) * direction_max + np.sin(rotation) * np.cross(normal, direction_max))
-
-
-def _map(ask: _Ask, triangles: Triangles, depth_allowed: float, narrowest: float, tolerance: float) -> PostureMap:
+def _map(
+    ask: _Ask, around: Surroundings, depths: tuple[float, float], narrowest: float, tolerance: float
+) -> PostureMap:  # fmt: skip
     from plan_cutters.kernels.maps import FORBIDDEN, OPEN, UNSURE, free_tilts
     from plan_cutters.kernels.points import axis_intervals, local_gouge_bound
 
     contact, cutter, (low, high) = ask.contact, ask.cutter, ask.tilt
     p, n, e1 = contact.point[0], contact.normal[0], contact.direction_max[0]
     kappa_max, kappa_min = contact.curvature[0]
-    whole = Obstacles(triangles)
-    near, far = (Obstacles(t) if len(t) else None for t in _by_attribute(triangles, p, n, cutter.radius))
-    free, undecided, rear, collision, axis = [], [], [], [], []
+    whole = around.may_be
+    near = _rear(whole.triangles, p, n, cutter.radius)
+    free, undecided, rear, collision, axis, buried = [], [], [], [], [], []
     gouge = np.empty(len(ask.rotations))
     for i, rotation in enumerate(ask.rotations):
-        f = _lean(n, e1, float(rotation))
+        f = lean(n, e1, float(rotation))
         gouge[i] = local_gouge_bound(kappa_max, kappa_min, float(rotation), cutter.radius)
         allowed = axis_intervals(float(ask.setup @ n), float(ask.setup @ f), ask.machine.limit_cos, low, high)
         axis.append(_complement(allowed, low, high))
 
-        def parts(obstacles: Obstacles | None, first: float, last: float, f: Floats = f) -> Floats:
+        def parts(
+            obstacles: Obstacles | None, first: float, last: float, f: Floats = f, depth: float = depths[0]
+        ) -> Floats:
             if obstacles is None:
                 return np.array([[first, last, OPEN]])
-            return np.asarray(free_tilts(p, n, f, first, last, cutter.radius, cutter.length, depth_allowed, narrowest,
+            return np.asarray(free_tilts(p, n, f, first, last, cutter.radius, cutter.length, depth, narrowest,
                                          *obstacles.tree, _ROOM))  # fmt: skip
 
-        rear.append(_complement(_merged(parts(near, low, high), OPEN), low, high))
-        collision.append(_complement(_merged(parts(far, low, high), OPEN), low, high))
-        pieces = [np.zeros((0, 3))]
+        rear.append(_complement(_merged(parts(near[0], low, high), OPEN), low, high))
+        collision.append(_complement(_merged(parts(near[1], low, high), OPEN), low, high))
+        pieces, sure = [np.zeros((0, 3))], [np.zeros((0, 3))]
         for first, last in allowed:
             first = max(first, gouge[i]) if not np.isnan(gouge[i]) else np.inf
             if first <= last:
                 pieces.append(parts(whole, first, last))
+                if around.surely is not whole:
+                    sure.append(parts(around.surely, first, last, depth=depths[1]))
         found = np.concatenate(pieces)
-        free.append(_merged(found, OPEN))
-        undecided.append(_merged(found, UNSURE))
+        open_tilts, unsure = _merged(found, OPEN), _merged(found, UNSURE)
+        if around.surely is not whole:
+            # What is not free for all that may be there, but is not surely blocked either.
+            blocked = _merged(np.concatenate(sure), FORBIDDEN)
+            rest = found[found[:, 2] != OPEN].copy()
+            unsure = _minus(_merged(np.column_stack([rest[:, :2], np.full(len(rest), UNSURE)]), UNSURE), blocked)
+        within = np.zeros(len(open_tilts), bool)
+        if len(open_tilts):
+            every = np.ones((len(open_tilts), 1))
+            within = whole.holds(cutter, every * p, every * n, every * f, open_tilts.mean(axis=1))
+        free.append(open_tilts[~within])
+        buried.append(open_tilts[within])
+        undecided.append(unsure)
         assert set(found[:, 2]) <= {OPEN, FORBIDDEN, UNSURE}
     return PostureMap(
         rotations=ask.rotations, free=tuple(free), undecided=tuple(undecided), local_gouge=gouge,
-        rear_gouge=tuple(rear), collision=tuple(collision), axis_limit=tuple(axis), point=p, normal=n,
-        direction_max=e1, curvature=contact.curvature[0], tolerance=tolerance, certified=tolerance > 0,
-        chord_error=triangles.chord_error, settled=tolerance > 0,
+        rear_gouge=tuple(rear), collision=tuple(collision), axis_limit=tuple(axis), buried=tuple(buried), point=p, normal=n,
+        direction_max=e1, curvature=contact.curvature[0], tolerance=tolerance,
+        certified=tolerance > 0 and not around.missing, missing=_named(around),
+        chord_error=whole.triangles.chord_error, settled=tolerance > 0,
     )  # fmt: skip
+
+
+def _named(around: Surroundings) -> tuple[str, ...]:
+    return tuple(f"F{number}: {why}" for number, why, _ in around.missing)
 
 
 def _merged(parts: Floats, kind: int) -> Floats:
@@ -230,6 +263,16 @@ def _complement(intervals: Floats, low: float, high: float) -> Floats:
     return edges[edges[:, 1] > edges[:, 0]]
 
 
+def _minus(intervals: Floats, others: Floats) -> Floats:
+    """Intervals (k, 2) without what sorted others cover."""
+    left = [np.zeros((0, 2))]
+    for first, last in intervals:
+        left.append(
+            _complement(np.clip(others[(others[:, 1] > first) & (others[:, 0] < last)], first, last), first, last)
+        )
+    return np.concatenate(left)
+
+
 def _moved(a: PostureMap, b: PostureMap) -> float:
     """Largest movement of an end between two maps; inf where intervals came or went (slivers aside)."""
     worst = 0.0
@@ -241,8 +284,10 @@ def _moved(a: PostureMap, b: PostureMap) -> float:
     return worst
 
 
-def _by_attribute(triangles: Triangles, p: Floats, n: Floats, radius: float) -> tuple[Triangles, Triangles]:
-    """Share obstacles out: within 2R of the contact and above its tangent plane, and all others.
+def _rear(
+    triangles: Triangles, p: Floats, n: Floats, radius: float
+) -> tuple[Obstacles | None, Obstacles | None]:  # fmt: skip
+    """Share obstacles out: within 2R of the contact and above its tangent plane, and all others; None if there are none.
 
     Triangles across the border are halved until they are small; then their centre decides.
     """
@@ -272,8 +317,9 @@ def _by_attribute(triangles: Triangles, p: Floats, n: Floats, radius: float) -> 
         middle = (a + b) / 2
         vertex = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
 
-    def gather(parts: list[tuple[Floats, Any]]) -> Triangles:
-        return Triangles(np.concatenate([x for x, _ in parts]), np.concatenate([x for _, x in parts]),
+    def gather(parts: list[tuple[Floats, Any]]) -> Obstacles | None:
+        mine = Triangles(np.concatenate([x for x, _ in parts]), np.concatenate([x for _, x in parts]),
                          triangles.chord_error, ())  # fmt: skip
+        return Obstacles(mine) if len(mine) else None
 
     return gather(near), gather(far)

@@ -101,6 +101,18 @@ class FaceEntry(_Frozen):
     unjudged: str | None = Field(description="why the face, or some of its samples, could not be judged")
 
 
+class MissingEntry(_Frozen):
+    """A face that is in the way only as a guess, or not at all: while there is one, no cutter is feasible beyond doubt."""
+
+    face: str | None = Field(description="null: it is only in the file")
+    entity: str | None = Field(description="what the file calls it, where it was lost in reading")
+    name: str
+    why: str
+    stand_in: Literal["triangles", "box", "edges", "none"] = Field(
+        description="what is in the way instead; what only that forbids is undecided"
+    )
+
+
 class Posture(_Frozen):
     tilt: float
     rotation: float
@@ -134,9 +146,13 @@ class CutterEntry(Verdicts):
     radius: float
     corner_radius: float
     length: float
-    feasible: bool | None = Field(description="null: only undecided samples stand in the way")
+    feasible: bool | None = Field(
+        description="null: only undecided samples stand in the way, or it reaches all that could be judged but obstacles are "
+        "missing"
+    )
     march_differs: int = Field(description="convex samples on which the seed's boundary march gives another answer")
-    by_reason: dict[str, int]
+    by_reason: dict[str, int] = Field(description="inaccessible samples by reason")
+    undecided_by_reason: dict[str, int]
     faces: dict[str, Verdicts]
     witnesses: list[WitnessEntry]
     area: AreaEntry | None = Field(default=None, description="of the selected cutter; null where it was not asked for")
@@ -181,6 +197,7 @@ class Plan(_Frozen):
     versions: dict[str, str]
     samples: SampleCounts
     faces: list[FaceEntry]
+    missing: list[MissingEntry]
     reasons: list[str] = Field(description="what `reason_ID` in samples.npz counts in")
     cutters: list[CutterEntry]
     selected: str | None

@@ -1,11 +1,34 @@
-"""Obstacles: triangles in tree order, and how deep one may reach into a cutter."""
+"""Obstacles: triangles in tree order, what they enclose, and how deep one may reach into a cutter."""
 
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
 
+from cad_io import Part
 from cad_io.arrays import Floats, Ints, Triangles
+from cad_io.bodies import Body, bodies
+from cad_io.stand_ins import StandIn, stand_ins
+from cad_io.tessellate import tessellate
+from plan_cutters.cutter import Cutter
+from plan_cutters.errors import UnjudgeableError
+
+if TYPE_CHECKING:
+    from plan_cutters.kernels.material import Solids
+
+#: Cells along the longest side of the grid that tells what is surely outside.
+_CELLS = 64
+#: Share of the tolerance that the obstacles' chord error may take, and what is asked of the tessellation.
+CHORD_SHARE, CHORD_ASKED = 0.25, 0.2
+
+
+def kept_tolerance(asked: float, chord_error: float) -> float:
+    """The gouge tolerance, mm, that can be kept with obstacles of a chord error: what was asked, or more."""
+    return max(asked, chord_error / CHORD_SHARE)
 
 
 @dataclass(frozen=True)
@@ -16,9 +39,28 @@ class Obstacles:
     ----------
     triangles : Triangles
         As tessellated.
+    weight : (n,) int8
+        How often each counts as part of a skin that encloses something; default: nothing is enclosed.
+    open_boxes : (k, 2, 3) float
+        Boxes of skins that are not quite closed: nothing in them is surely outside.
+
+    Raises
+    ------
+    UnjudgeableError
+        There are no triangles, or one has a corner that is no point: nothing could be called safe.
     """
 
     triangles: Triangles
+    weight: NDArray[np.int8] = field(default_factory=lambda: np.zeros(0, np.int8))
+    open_boxes: Floats = field(default_factory=lambda: np.zeros((0, 2, 3)))
+
+    def __post_init__(self) -> None:
+        if not len(self.triangles):
+            raise UnjudgeableError("there is nothing that could be in the way: no face has triangles")
+        if not (np.isfinite(self.triangles.vertex).all() and np.isfinite(self.triangles.chord_error)):
+            raise UnjudgeableError("the part's triangles have corners that are no points: export it again")
+        if not len(self.weight):
+            object.__setattr__(self, "weight", np.zeros(len(self.triangles), np.int8))
 
     @cached_property
     def _built(self) -> tuple[Ints, Floats, int]:
@@ -32,6 +74,36 @@ class Obstacles:
         """(vertex (n, 3, 3) in tree order, box (nodes, 16), depth), as the kernels take it."""
         order, box, depth = self._built
         return np.ascontiguousarray(self.triangles.vertex[order]), box, depth
+
+    @cached_property
+    def solids(self) -> "Solids":
+        """The tree and what its triangles enclose, as the searches take it."""
+        from plan_cutters.kernels.material import Solids, moments, sheet
+
+        vertex, box, depth = self.tree
+        weight = np.ascontiguousarray(self.weight[self._built[0]])
+        if not weight.any():
+            return sheet(vertex, box, depth)
+        return Solids(vertex, box, depth, weight, moments(vertex, weight, depth), *self._cells())
+
+    def _cells(self) -> tuple[NDArray[np.uint8], Floats, float]:
+        """Cells (i, j, k), 1 where one is surely outside; the grid's origin (3,) and the size of a cell, mm."""
+        from plan_cutters.kernels.material import mark_skin
+
+        vertex, grow = self.tree[0], self.triangles.chord_error
+        low, high = vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))
+        grow += 1e-9 * float(np.abs([low, high]).max())
+        size = max(float((high - low).max()) / _CELLS, 4.0 * grow)
+        origin = low - 1.5 * size
+        cell = np.zeros(tuple(np.ceil((high - origin) / size + 1.5).astype(int)), np.uint8)
+        mark_skin(vertex, grow, origin, size, cell)
+        # What is connected with the corner, past every skin, is outside.
+        region, _ = ndimage.label(cell == 0)
+        outside = region == region[0, 0, 0]
+        for box in self.open_boxes:
+            first, last = (np.clip((corner - origin) / size, 0, None).astype(int) for corner in box)
+            outside[first[0] : last[0] + 1, first[1] : last[1] + 1, first[2] : last[2] + 1] = False
+        return outside.astype(np.uint8), origin, size
 
     @cached_property
     def wide_tree(self) -> tuple[Floats, Floats, Ints, int]:
@@ -59,3 +131,126 @@ class Obstacles:
         """
         error = self.triangles.chord_error
         return tolerance - error, tolerance + error
+
+    @cached_property
+    def skin(self) -> "Obstacles":
+        """The same triangles, which enclose nothing."""
+        bare = Obstacles(self.triangles)
+        bare.__dict__.update(_built=self._built, tree=self.tree)
+        return bare
+
+    def skin_of(self, body: Body) -> "Obstacles":
+        """The triangles of one body."""
+        mine = np.isin(self.triangles.face, body.faces)
+        triangles = replace(self.triangles, vertex=self.triangles.vertex[mine], face=self.triangles.face[mine])
+        return Obstacles(triangles, _weight(triangles, [body]))
+
+    def holds(self, cutter: Cutter, contact: Floats, normal: Floats, lean: Floats, tilt: Floats) -> NDArray[np.bool_]:
+        """Whether cutters that touch no skin lie within a body, or may: (n,).
+
+        Parameters
+        ----------
+        cutter : Cutter
+        contact, normal, lean : (n, 3) float
+        tilt : (n,) float
+            rad.
+        """
+        from plan_cutters.kernels.material import MAYBE_INSIDE, windings
+        from plan_cutters.kernels.search import inner_height
+
+        cosine, sine = np.cos(tilt)[:, None], np.sin(tilt)[:, None]
+        height = inner_height(cutter.radius, cutter.length)
+        point = contact + height * (cosine * normal + sine * lean) - cutter.radius * (cosine * lean - sine * normal)
+        out = np.empty(len(point))
+        windings(np.ascontiguousarray(point), self.solids, out)
+        return np.asarray(~(out < MAYBE_INSIDE))
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What is, and what may be, in a cutter's way.
+
+    Attributes
+    ----------
+    may_be : Obstacles
+        Everything that may be in the way: what is missed by it is safe.
+    surely : Obstacles
+        What certainly is: what is hit by it is blocked. The same object where nothing is uncertain.
+    bodies : tuple of Body
+        What encloses something, of the faces that are not left out.
+    missing : tuple of (int, str, str)
+        Faces that stand in the way only as a guess, with the reason and what stands in for each: its own `triangles`, a
+        `box`, or `none` where its place is not known.
+    """
+
+    may_be: Obstacles
+    surely: Obstacles
+    bodies: tuple[Body, ...]
+    missing: tuple[tuple[int, str, StandIn], ...]
+
+    @classmethod
+    def sheet(cls, obstacles: Obstacles) -> "Surroundings":
+        """Obstacles that are surely in the way and enclose nothing."""
+        return cls(obstacles, obstacles, (), ())
+
+    @property
+    def skins(self) -> "Surroundings":
+        """The same without what is enclosed."""
+        return replace(self, may_be=self.may_be.skin, surely=self.surely.skin)
+
+
+def surroundings(part: Part, chord: float, *, ignored: Collection[int] = ()) -> Surroundings:
+    """Gather all that stands in a cutter's way.
+
+    Parameters
+    ----------
+    part : Part
+    chord : float
+        Chord error to ask for, mm.
+    ignored : collection of int
+        Numbers of faces to leave out.
+
+    Raises
+    ------
+    UnjudgeableError
+        No face has triangles.
+    """
+    triangles = tessellate(part, chord, faces=[f.number for f in part.faces if f.number not in ignored])
+    found = tuple(body for whole in bodies(part) if (body := _without(whole, ignored)) is not None)
+    surely = Obstacles(triangles, _weight(triangles, [b for b in found if b.closed]))
+    stand = stand_ins(part, triangles.missing, chord)
+    missing = tuple((n, why, stand.how[n]) for n, why in triangles.missing if stand.how[n] != "edges")
+    everything = _weight(triangles, found)
+    if not len(stand.vertex) and (everything == surely.weight).all():
+        return Surroundings(surely, surely, found, missing)
+    all_triangles = replace(
+        triangles,
+        vertex=np.concatenate([triangles.vertex, stand.vertex]),
+        face=np.concatenate([triangles.face, stand.face]),
+    )
+    open_boxes = [_box(triangles, body) for body in found if not body.closed]
+    may_be = Obstacles(all_triangles, np.concatenate([everything, stand.weight]),
+                       np.array([box for box in open_boxes if np.isfinite(box).all()]).reshape(-1, 2, 3))  # fmt: skip
+    return Surroundings(may_be, surely, found, missing)
+
+
+def _without(body: Body, ignored: Collection[int]) -> Body | None:
+    """A body without the faces that are left out: no longer closed, or nothing."""
+    kept = [(n, s) for n, s in zip(body.faces, body.sign, strict=True) if n not in ignored]
+    if len(kept) == len(body.faces):
+        return body
+    return Body(tuple(n for n, _ in kept), tuple(s for _, s in kept), False) if kept else None
+
+
+def _weight(triangles: Triangles, found: Sequence[Body]) -> NDArray[np.int8]:
+    """Weights (n,) of triangles from the faces and signs of bodies."""
+    by_face = np.zeros(1 + max([int(triangles.face.max(initial=0)), *(max(body.faces) for body in found)]), np.int8)
+    for body in found:
+        np.add.at(by_face, list(body.faces), np.array(body.sign, np.int8))
+    return by_face[triangles.face]
+
+
+def _box(triangles: Triangles, body: Body) -> Floats:
+    """Corners (2, 3) of the box around a body's triangles, infinite if it has none."""
+    mine = triangles.vertex[np.isin(triangles.face, body.faces)]
+    return np.array([mine.min(axis=(0, 1), initial=np.inf), mine.max(axis=(0, 1), initial=-np.inf)])

@@ -79,7 +79,7 @@ class Options:
             raise OptionError(f"jobs {self.jobs} must be at least 1")
         unit(self.setup, "setup axis")
         for cutter in self.judged:
-            if self.tolerance >= min(cutter.radius, cutter.length) / 4:
+            if not cutter.large_enough(self.tolerance):
                 raise OptionError(f"tolerance {self.tolerance:g} mm is too coarse for cutter {cutter.id}")
 
     @property

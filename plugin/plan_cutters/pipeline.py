@@ -16,10 +16,10 @@ from cad_io import Orientation, Part, SurfaceSamples, read_part
 from cad_io.evaluate import evaluate
 from cad_io.orient import orient
 from cad_io.sample import sample
-from cad_io.tessellate import tessellate
 from plan_cutters import __version__
 from plan_cutters.access import access, witnesses
 from plan_cutters.between import Evaluate, between
+from plan_cutters.buried import buried
 from plan_cutters.classify import CONCAVE, CONVEX, SADDLE, classify, regions
 from plan_cutters.conditions import Conditions
 from plan_cutters.cutter import Cutter
@@ -32,6 +32,7 @@ from plan_cutters.model import (
     CutterEntry,
     Effective,
     FaceEntry,
+    MissingEntry,
     OrientationInfo,
     PartInfo,
     Plan,
@@ -44,7 +45,7 @@ from plan_cutters.model import (
     WitnessEntry,
 )  # fmt: skip
 from plan_cutters.nesting import handed, order
-from plan_cutters.obstacles import Obstacles
+from plan_cutters.obstacles import CHORD_ASKED, Surroundings, kept_tolerance, surroundings
 from plan_cutters.options import Options
 from plan_cutters.palette import PALETTE
 from plan_cutters.posture import PostureRange, unit
@@ -59,8 +60,6 @@ Progress = Callable[[str, int, int], None]
 
 #: Samples that a plan may take.
 MOST_SAMPLES = 5_000_000
-#: Share of the tolerance that the obstacles' chord error may take, and what is asked of the tessellation.
-_CHORD_SHARE, _CHORD_ASKED = 0.25, 0.2
 
 
 @dataclass(frozen=True)
@@ -254,24 +253,28 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
             f"no target face can be judged: {'; '.join(sorted(causes)) or 'no samples'}", file=whole.file
         )
     with clock.stage("tessellate"):
-        triangles = tessellate(whole, _CHORD_ASKED * options.tolerance)
-        obstacles = Obstacles(triangles)
-        tolerance = max(options.tolerance, triangles.chord_error / _CHORD_SHARE)
+        around = surroundings(whole, CHORD_ASKED * options.tolerance)
+        triangles = around.surely.triangles
+        tolerance = kept_tolerance(options.tolerance, triangles.chord_error)
     with clock.stage("compile"):
-        _warm(samples, cutters[0], setup, options, obstacles)
-    conditions = Conditions(options.machine, setup, options.postures, obstacles, tolerance, options.jobs)
+        _warm(samples, cutters[0], setup, options, around)
+    conditions = Conditions(options.machine, setup, options.postures, around, tolerance, options.jobs)
+    within = buried(samples, orientation, around.bodies, around.surely, tolerance)
+    missing = _missing(whole, around)
     by_id: dict[str, CutterEntry] = {}
     reaches: dict[str, Reach] = {}
     for cutter in order(cutters):
         with clock.stage(cutter.id) as tell:
             began = time.perf_counter()
-            decomposition = decompose(samples, surface_class == CONVEX, region, cutter, conditions)
+            decomposition = decompose(samples, surface_class == CONVEX, region, cutter, conditions, buried=within)
             known = handed(cutter, {c: reaches[c.id] for c in cutters if c.id in reaches}, len(samples))
-            reach = access(samples, decomposition.free, cutter, conditions, known=known, progress=tell)
+            reach = access(samples, decomposition.free, cutter, conditions, buried=within, known=known, progress=tell)
             seconds = time.perf_counter() - began
-            found = witnesses(samples, reach, cutter, conditions)
+            found = witnesses(samples, reach, cutter, conditions, buried=within)
         reaches[cutter.id] = reach
-        by_id[cutter.id] = _cutter_entry(cutter, samples, reach, found, decomposition.march_differs, seconds)
+        by_id[cutter.id] = _cutter_entry(
+            cutter, samples, reach, found, decomposition.march_differs, seconds, doubtful=bool(missing)
+        )
     entries = [by_id[c.id] for c in cutters]
     selected, selection = _select(entries)
     if selected and options.area_budget:
@@ -298,7 +301,7 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
             rotation_step_deg=float(np.degrees(options.postures.step)),
             tolerance_mm=tolerance,
             chord_error_mm=triangles.chord_error,
-            obstacle_triangles=len(triangles),
+            obstacle_triangles=len(around.may_be.triangles),
             flip=options.flip,
             area_budget=options.area_budget,
             posture_maps=options.posture_maps,
@@ -314,12 +317,13 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
             regions=len(np.unique(region)),
         ),
         faces=_faces(whole, samples, targets),
+        missing=missing,
         reasons=list(REASONS),
         cutters=entries,
         selected=selected,
         selection=selection,
         notes=[
-            *_notes(whole, orientation, options, tolerance, samples, triangles.missing),
+            *_notes(whole, orientation, options, tolerance, samples, around),
             *_area_notes(entries),
         ],
         legend=PALETTE,
@@ -331,6 +335,15 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
             shown = next(c for c in cutters if c.id == result.shown)
             result = replace(result, maps=all_posture_maps(samples, shown, conditions, progress=tell))
     return result
+
+
+def _missing(part: Part, around: Surroundings) -> list[MissingEntry]:
+    """Faces that are in the way only as a guess, or of which nothing is known but that the file has them."""
+    found = [
+        MissingEntry(face=f"F{number}", entity=None, name=part.faces[number - 1].name, why=why, stand_in=how)
+        for number, why, how in around.missing
+    ]
+    return found
 
 
 def _affordable(part: Part, targets: Sequence[int], options: Options) -> None:
@@ -349,17 +362,17 @@ def _affordable(part: Part, targets: Sequence[int], options: Options) -> None:
 
 
 def _warm(
-    samples: SurfaceSamples, cutter: Cutter, setup: NDArray[np.float64], options: Options, obstacles: Obstacles
+    samples: SurfaceSamples, cutter: Cutter, setup: NDArray[np.float64], options: Options, around: Surroundings
 ) -> None:
     """Build the tree and load or compile every kernel, so that stage times are those of the work."""
     from plan_cutters.kernels import search
 
     empty, n = np.zeros(0, np.int64), len(samples)
     search.dummy_free(empty, samples.point, samples.normal, cutter.radius, cutter.length, options.tolerance,
-                      *obstacles.tree, np.zeros(n, bool))  # fmt: skip
+                      around.may_be.solids, np.zeros(n, bool))  # fmt: skip
     search.search(
         empty, samples.point, samples.normal, samples.direction_max, samples.curvature, np.ones(1), np.zeros(1),
-        0.0, 1.0, setup, -2.0, cutter.radius, cutter.length, 0.0, 0.0, *obstacles.tree,
+        0.0, 1.0, setup, -2.0, cutter.radius, cutter.length, 0.0, 0.0, around.may_be.solids, around.surely.solids,
         np.zeros(1, np.uint8), np.zeros((1, 3)), np.zeros((1, 3)), np.zeros(1), np.zeros(1, np.int32),
         np.zeros(1, np.uint8),
     )  # fmt: skip
@@ -389,11 +402,13 @@ def _counts(verdict: NDArray[np.uint8]) -> dict[str, Any]:
 
 
 def _cutter_entry(
-    cutter: Cutter, samples: SurfaceSamples, reach: Reach, found: Sequence[Witness], march_differs: int, seconds: float
-) -> CutterEntry:
+    cutter: Cutter, samples: SurfaceSamples, reach: Reach, found: Sequence[Witness], march_differs: int, seconds: float,
+    *, doubtful: bool,
+) -> CutterEntry:  # fmt: skip
     counts = _counts(reach.verdict)
-    feasible = None if counts["undecided"] and not counts["inaccessible"] else not counts["inaccessible"]
-    lost = reach.verdict == INACCESSIBLE
+    # What is missing from the obstacles can only be in the way of more.
+    feasible = False if counts["inaccessible"] else None if counts["undecided"] or doubtful else True
+    lost, unsure = reach.verdict == INACCESSIBLE, reach.verdict == UNDECIDED
     return CutterEntry(
         id=cutter.id,
         name=cutter.name,
@@ -404,6 +419,7 @@ def _cutter_entry(
         march_differs=march_differs,
         **counts,
         by_reason={name: int((lost & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
+        undecided_by_reason={name: int((unsure & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
         faces={
             f"F{n}": Verdicts(**_counts(reach.verdict[samples.face == n])) for n in np.unique(samples.face).tolist()
         },
@@ -436,11 +452,10 @@ def _select(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:
     if not feasible:
         best = min(entries, key=lambda e: e.inaccessible + e.undecided)
         left = best.inaccessible + best.undecided
-        return None, Selection(
-            rule=RULE,
-            runner_up=None,
-            why=f"no cutter reaches every sample; {best.id} comes nearest, {left} not reached",
-        )
+        why = f"no cutter reaches every sample; {best.id} comes nearest, {left} not reached"
+        if not left:
+            why = f"{best.id} reaches every judged sample, but obstacles are missing: see the notes"
+        return None, Selection(rule=RULE, runner_up=None, why=why)
     first = feasible[0]
     larger = [e.id for e in entries if e.radius > first.radius]
     why = f"{', '.join(larger)} {'is' if len(larger) == 1 else 'are'} larger but not feasible" if larger else (
@@ -501,7 +516,7 @@ def _faces(part: Part, samples: SurfaceSamples, targets: Sequence[int]) -> list[
 
 def _notes(
     part: Part, orientation: Orientation, options: Options, tolerance: float, samples: SurfaceSamples,
-    missing: Sequence[tuple[int, str]],
+    around: Surroundings,
 ) -> list[str]:  # fmt: skip
     notes = [
         "Cutters are flat ends, judged as solid cylinders of their length, without a holder.",
@@ -516,8 +531,24 @@ def _notes(
             f"The tolerance was raised from {options.tolerance:g} to {tolerance:.3g} mm: "
             "the obstacle triangles could not be made to follow the surface more closely."
         )
-    notes += [f"F{number} is not an obstacle: {reason}." for number, reason in missing]
+    notes += _around_notes(part, around)
     return notes
+
+
+def _around_notes(part: Part, around: Surroundings) -> Iterator[str]:
+    """What stands in the way otherwise than the file has it."""
+    skins = {number for body in around.bodies if body.closed for number in body.faces}
+    sheets = [f.id for f in part.faces if f.number not in skins]
+    if sheets and skins:
+        yield (f"{listed(sheets)} enclose{'s' if len(sheets) == 1 else ''} no material: only the surface is in the way, "
+               "not what may lie behind it.")  # fmt: skip
+    elif sheets:
+        yield "No face encloses material: only the surfaces are in the way, not what may lie behind them."
+
+
+def listed(names: Sequence[str], most: int = 8) -> str:
+    """Names in a line, the first ones where there are many."""
+    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
 
 
 def _area_notes(entries: Sequence[CutterEntry]) -> Iterator[str]:

@@ -51,6 +51,12 @@ class PostureRange:
         return self.tilt[0] <= _ROUNDING
 
 
+def lean(normal: Floats, direction_max: Floats, rotation: Floats | float) -> Floats:
+    """Unit lean directions (..., 3) at rotations (...,), rad, about normals (..., 3)."""
+    turn = np.asarray(rotation)[..., None]
+    return np.asarray(np.cos(turn) * direction_max + np.sin(turn) * np.cross(normal, direction_max))
+
+
 def unit(vector: tuple[float, float, float], what: str) -> Floats:
     """The direction of a vector; OptionError if it has none."""
     v = np.asarray(vector, float)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.conditions import Conditions
 from plan_cutters.cutter import Cutter
+from plan_cutters.posture import lean
 from plan_cutters.threads import Progress, in_chunks
 
 #: Ends are certified to this, rad; where that cannot be, the band left is counted as undecided.
@@ -66,9 +67,37 @@ def posture_maps(
         free_map(rows, samples.point, samples.normal, samples.direction_max, samples.curvature, *ranges, cutter.radius,
                  cutter.length, safe, NARROWEST, *tree, _ROOM, part, mine, unsure)  # fmt: skip
         count[rows], undecided[rows] = mine, unsure
+        if conditions.obstacles.solids.cell.size:
+            _leave_bodies(samples, rows, cutter, conditions, part, mine)
+            count[rows] = mine
         free[int(rows[0])] = part[np.arange(_ROOM) < mine[..., None]]
 
     in_chunks(work, np.flatnonzero(samples.unjudged < 0), conditions.jobs, progress)
     pieces = [free[first] for first in sorted(free)]
     offset = np.concatenate([[0], np.cumsum(count.ravel(), dtype=np.int64)])
     return PostureMaps(rotations, offset, np.concatenate([np.zeros((0, 2)), *pieces]), undecided)
+
+
+def _leave_bodies(
+    samples: SurfaceSamples, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, part: Floats,
+    count: NDArray[np.int32],
+) -> None:  # fmt: skip
+    """Take out intervals (m, k, room, 2) in which the cutter lies within a body.
+
+    Between the ends of an interval the cutter touches no skin, so it lies within a body all along or nowhere.
+    """
+    rotations = conditions.postures.rotations
+    at = np.argwhere(np.arange(_ROOM) < count[..., None])
+    row, turn = rows[at[:, 0]], rotations[at[:, 1]]
+    tilt = part[at[:, 0], at[:, 1], at[:, 2]].mean(axis=1)
+    inside = conditions.obstacles.holds(
+        cutter,
+        samples.point[row],
+        samples.normal[row],
+        lean(samples.normal[row], samples.direction_max[row], turn),
+        tilt,
+    )
+    for i, j in np.unique(at[inside, :2], axis=0).tolist():
+        mine = (at[:, 0] == i) & (at[:, 1] == j)
+        kept = part[i, j, : count[i, j]][~inside[mine]]
+        part[i, j, : len(kept)], count[i, j] = kept, len(kept)

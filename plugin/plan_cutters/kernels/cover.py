@@ -63,7 +63,7 @@ def _shadow_distance(polygon, count, half):  # type: ignore[no-untyped-def]
 def _stadium_hit(vertex, i, body, polygon, spare):  # type: ignore[no-untyped-def]
     """Whether triangle i reaches into the stadium body."""
     low, high = body[LOW], body[HIGH]
-    least, most = np.inf, -np.inf
+    least, most, total = np.inf, -np.inf, 0.0
     for corner in range(3):
         dx = vertex[i, corner, 0] - body[0]
         dy = vertex[i, corner, 1] - body[1]
@@ -73,6 +73,11 @@ def _stadium_hit(vertex, i, body, polygon, spare):  # type: ignore[no-untyped-de
         polygon[corner, 1] = dx * body[6] + dy * body[7] + dz * body[8] + body[OFFSET]
         polygon[corner, 2] = dx * body[9] + dy * body[10] + dz * body[11]
         least, most = min(least, height), max(most, height)
+        total += height + polygon[corner, 1] + polygon[corner, 2]
+    # What is no number is in the way.
+    total += low + high
+    if total - total != 0.0:
+        return True
     if most <= low or least >= high:
         return False
     source, count = polygon, 3
@@ -83,7 +88,7 @@ def _stadium_hit(vertex, i, body, polygon, spare):  # type: ignore[no-untyped-de
         target = polygon if least < low else spare
         count = hit._cut(source, count, target, high, -1.0)
         source = target
-    return count > 0 and _shadow_distance(source, count, body[HALF]) < body[RADIUS] * body[RADIUS]
+    return count > 0 and not _shadow_distance(source, count, body[HALF]) >= body[RADIUS] * body[RADIUS]
 
 
 @kernel
@@ -98,10 +103,10 @@ def _near(vertex, triangle_face, i, p, n, f, t, face, near):  # type: ignore[no-
     for corner in range(3):
         dx, dy, dz = vertex[i, corner, 0] - p[0], vertex[i, corner, 1] - p[1], vertex[i, corner, 2] - p[2]
         height = dx * n[0] + dy * n[1] + dz * n[2]
-        if dx * dx + dy * dy + dz * dz > near[0] * near[0] or abs(height) > near[1]:
+        if not (dx * dx + dy * dy + dz * dz <= near[0] * near[0] and abs(height) <= near[1]):
             return False
         x, y = dx * f[0] + dy * f[1] + dz * f[2], dx * t[0] + dy * t[1] + dz * t[2]
-        if height > 0.5 * (near[2] * x * x + near[3] * y * y) + near[4] * abs(x * y) + near[5]:
+        if not height <= 0.5 * (near[2] * x * x + near[3] * y * y) + near[4] * abs(x * y) + near[5]:
             return False
     v = vertex[i]
     ax, ay, az = v[1, 0] - v[0, 0], v[1, 1] - v[0, 1], v[1, 2] - v[0, 2]

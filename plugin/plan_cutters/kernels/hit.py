@@ -177,7 +177,7 @@ def _nearest(polygon, count):  # type: ignore[no-untyped-def]
 
 @kernel
 def triangle_hit(vertex, i, body, rate, polygon, spare):  # type: ignore[no-untyped-def]
-    """Whether triangle i reaches into the body, and a point of it that does.
+    """Whether triangle i reaches into the body, and a point of it that does. A number that is none counts as a hit.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ def triangle_hit(vertex, i, body, rate, polygon, spare):  # type: ignore[no-unty
         With `rate` 0, a point of the triangle in the body, in the tool's frame from the cylinder's axis.
     """
     low, high, radius = body[LOW], body[HIGH], body[RADIUS]
-    grow, least, most = 0.0, np.inf, -np.inf
+    grow, least, most, total = 0.0, np.inf, -np.inf, 0.0
     for corner in range(3):
         dx = vertex[i, corner, 0] - body[0]
         dy = vertex[i, corner, 1] - body[1]
@@ -207,7 +207,12 @@ def triangle_hit(vertex, i, body, rate, polygon, spare):  # type: ignore[no-unty
         if rate > 0.0:
             grow = max(grow, rate * np.sqrt(height * height + across * across))
         least, most = min(least, height), max(most, height)
+        total += height + polygon[corner, 1] + polygon[corner, 2]
     low, high, radius = low - grow, high + grow, radius + grow
+    # What is no number is in the way: comparisons below would let it pass.
+    total += low + high + radius
+    if total - total != 0.0:
+        return True, 0.0, 0.0, 0.0
     if most <= low or least >= high or radius <= 0.0 or high <= low:
         return False, 0.0, 0.0, 0.0
     source, count = polygon, 3

@@ -1,24 +1,35 @@
-"""One decorator, one cache folder: everything the kernels know of the compiler.
+"""Two decorators, one cache folder: everything the kernels know of the compiler.
 
 The compiler's own cache looks at one file at a time and misses edits in a module that a kernel calls, so the
-folder's name carries a hash of every kernel source.
+folder's name carries a hash of every kernel source. The compiler asks for the folder when a function is decorated: it is
+set for that moment alone, so that neither the host's own compiled functions nor the environment of its processes change,
+whoever imports the compiler first.
 """
 
+import functools
 import hashlib
 import os
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numba
 
-def _cache_dir() -> str:
+VERSION: str = numba.__version__
+
+
+@functools.cache
+def cache_folder() -> str:
+    """Folder of the machine code of just these sources; made if need be."""
     digest = hashlib.sha256()
     for source in sorted(Path(__file__).parent.glob("*.py")):
         digest.update(source.read_bytes())
     name = f"kernels-{digest.hexdigest()[:16]}"
-    home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    for root in (home / "plan-cutters", Path(tempfile.gettempdir()) / f"plan-cutters-{os.getuid()}"):
+    asked, home = os.environ.get("NUMBA_CACHE_DIR"), Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    first = Path(asked) if asked else home
+    for root in (first / "plan-cutters", Path(tempfile.gettempdir()) / f"plan-cutters-{os.getuid()}"):
         folder = root / name
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -29,16 +40,20 @@ def _cache_dir() -> str:
     return tempfile.mkdtemp(prefix="plan-cutters-")
 
 
-os.environ.setdefault("NUMBA_CACHE_DIR", _cache_dir())
-
-import numba  # noqa: E402  (the cache folder is read at import)
-
-VERSION: str = numba.__version__
+@contextmanager
+def _our_cache() -> Iterator[None]:
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = cache_folder()
+    try:
+        yield
+    finally:
+        numba.config.CACHE_DIR = before
 
 
 def entry(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile on first call, keep the result on disk, release the GIL: what Python calls, and what makes arrays."""
-    return numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+    with _our_cache():
+        return numba.njit(cache=True, nogil=True, error_model="numpy")(function)
 
 
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -47,4 +62,5 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     Without the counting of references, two atomic instructions for every array at every call, of which a third of all
     time went. Arrays are kept alive by the entry.
     """
-    return numba.njit(cache=True, nogil=True, error_model="numpy", _nrt=False)(function)
+    with _our_cache():
+        return numba.njit(cache=True, nogil=True, error_model="numpy", _nrt=False)(function)

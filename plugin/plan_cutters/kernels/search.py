@@ -2,18 +2,20 @@
 
 A found posture is safe: no triangle reaches deeper into the cutter than `safe`. Where none is found, the same search
 at the depth `blocked` decides whether the sample is inaccessible (everything is forbidden by what certainly lies too
-deep) or undecided.
+deep) or undecided. A cutter that touches nothing may still lie within a body: then so does every posture that it can be
+turned to without touching a skin.
 """
 
 import numpy as np
 
 from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
-from plan_cutters.kernels.hit import BODY, cross, dot, lean_frame, perpendicular, stand, tree_hit
+from plan_cutters.kernels.hit import BODY, OFFSET, A, P, X, cross, dot, lean_frame, perpendicular, stand, tree_hit
 from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, winding
 
 # As in `plan_cutters.reach`, which must not load the compiler; a test holds them together.
 INACCESSIBLE, ACCESSIBLE, FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
-AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, SHANK = 0, 1, 2, 3
+AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, SHANK, BURIED, ATTRIBUTES = 0, 1, 2, 3, 4, 5
 
 #: Gaps narrower than this are not searched: no machine holds a tilt to 0.01 deg. rad.
 NARROWEST = 1.7e-4
@@ -21,6 +23,8 @@ NARROWEST = 1.7e-4
 _ROOM = 256
 #: Obstacle points remembered from probe to probe.
 _KNOWN = 16
+#: By how much a posture within a body is turned to find the others there, at first, rad.
+_TURN = 0.2
 
 
 @kernel
@@ -55,27 +59,69 @@ def remove(intervals, count, first, last, narrowest):  # type: ignore[no-untyped
 
 
 @kernel
-def _forbid(intervals, count, first, last, x, y, z, radius, tally):  # type: ignore[no-untyped-def]
-    """Take an obstacle point's arc out and book what it takes on the point's attribute; the new count."""
+def _forbid(intervals, count, first, last, attribute, tally):  # type: ignore[no-untyped-def]
+    """Take an arc out and book what it takes on an attribute; the new count."""
     before = 0.0
     for i in range(count):
         before += intervals[i, 1] - intervals[i, 0]
     count = remove(intervals, count, first, last, NARROWEST)
     for i in range(count):
         before -= intervals[i, 1] - intervals[i, 0]
-    tally[REAR_GOUGE if x * x + y * y + z * z <= 4.0 * radius * radius else SHANK] += before
+    tally[attribute] += before
     return count
+
+
+@kernel
+def _attribute(x, y, z, radius):  # type: ignore[no-untyped-def]
+    """What an obstacle point that far from the contact is in the way of."""
+    return REAR_GOUGE if x * x + y * y + z * z <= 4.0 * radius * radius else SHANK
+
+
+@kernel
+def inner_height(radius, length):  # type: ignore[no-untyped-def]
+    """Height of the point of the cutter's axis that is asked for whether the cutter lies within a body.
+
+    As near to the spindle as it can be while no other point of the cutter is farther from its outside.
+    """
+    return max(0.5 * length, length - radius)
+
+
+@kernel
+def _inside(body, height, solids, stack):  # type: ignore[no-untyped-def]
+    """Winding number of the bodies about the point of a body's axis at a height over the contact."""
+    x = body[P] + height * body[A] - body[OFFSET] * body[X]
+    y = body[P + 1] + height * body[A + 1] - body[OFFSET] * body[X + 1]
+    z = body[P + 2] + height * body[A + 2] - body[OFFSET] * body[X + 2]
+    return winding(x, y, z, solids, stack)
+
+
+@kernel
+def _turned(p, n, f, t, tilt, radius, shrunk, low, high, solids, body, stack, polygon, spare, pieces):  # type: ignore[no-untyped-def]
+    """How far a posture that touches nothing can be tilted either way and still surely touch nothing, rad."""
+    half = _TURN
+    while half > 0.5 * NARROWEST:
+        stand(body, p, n, f, t, np.cos(tilt), np.sin(tilt), radius, shrunk, low, high)
+        hit, _, _, _ = tree_hit(solids.vertex, solids.box, solids.depth, body, half, -1, stack, polygon, spare, pieces)
+        if hit < 0:
+            return half
+        half *= 0.5
+    # No narrower: what is left is the probe's own neighbourhood, as for every other obstacle.
+    return 0.5 * NARROWEST
 
 
 @kernel
 def _sweep(  # type: ignore[no-untyped-def]
     p, n, e1, e2, kappa_max, kappa_min,
     rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
-    radius, length, depth_allowed, vertex, box, depth,
+    radius, length, depth_allowed, solids, inside,
     first_rotation, first_tilt, hint, known, known_count,
     intervals, f, t, body, stack, polygon, spare, pieces, tally,
 ):  # fmt: skip
-    """Search all rotations of one sample; (rotation index or -1, tilt, last triangle in the way, count of known points)."""
+    """Search all rotations of one sample; (rotation index or -1, tilt, last triangle in the way, count of known points).
+
+    A posture with a winding number of `inside` or more, or none, is not taken.
+    """
+    vertex, box, depth = solids.vertex, solids.box, solids.depth
     rotations = len(rotation_cos)
     tally[:] = 0.0
     low, high, shrunk = depth_allowed, length - depth_allowed, radius - depth_allowed
@@ -103,7 +149,7 @@ def _sweep(  # type: ignore[no-untyped-def]
                 z += (known[i, k] - p[k]) * n[k]
             first, last = point_arc(z, x + radius, y, 0.0, radius, shrunk, low, high)
             if first <= last:
-                count = _forbid(intervals, count, first, last, x, y, z, radius, tally)
+                count = _forbid(intervals, count, first, last, _attribute(x, y, z, radius), tally)
                 if count == 0:
                     break
         wish = first_tilt
@@ -119,14 +165,18 @@ def _sweep(  # type: ignore[no-untyped-def]
             stand(body, p, n, f, t, np.cos(tilt), np.sin(tilt), radius, shrunk, low, high)
             triangle, height, px, py = tree_hit(vertex, box, depth, body, 0.0, hint, stack, polygon, spare, pieces)
             if triangle < 0:
-                return rotation, tilt, hint, known_count
+                if _inside(body, inner_height(radius, length), solids, stack) < inside:
+                    return rotation, tilt, hint, known_count
+                half = _turned(p, n, f, t, tilt, radius, shrunk, low, high, solids, body, stack, polygon, spare, pieces)
+                count = _forbid(intervals, count, tilt - half, tilt + half, BURIED, tally)
+                continue
             hint = triangle
             first, last = point_arc(height, px, py, tilt, radius, shrunk, low, high)
             # At the edge of the body the arc may be no wider than rounding: take the probe's own neighbourhood too.
             first, last = min(first, tilt - 0.5 * NARROWEST), max(last, tilt + 0.5 * NARROWEST)
             back, cosine_tilt, sine_tilt = px - radius, np.cos(tilt), np.sin(tilt)
             x, z = cosine_tilt * back + sine_tilt * height, cosine_tilt * height - sine_tilt * back
-            count = _forbid(intervals, count, first, last, x, py, z, radius, tally)
+            count = _forbid(intervals, count, first, last, _attribute(x, py, z, radius), tally)
             for k in range(3):
                 known[known_count % len(known), k] = p[k] + x * f[k] + py * t[k] + z * n[k]
             known_count += 1
@@ -137,7 +187,7 @@ def _sweep(  # type: ignore[no-untyped-def]
 def search(  # type: ignore[no-untyped-def]
     rows, point, normal, direction_max, curvature,
     rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
-    radius, length, safe, blocked, vertex, box, depth,
+    radius, length, safe, blocked, may_be, surely,
     verdict, axis, lean, tilt_out, rotation_out, reason,
 ):  # fmt: skip
     """Decide the samples `rows`, one after the other, each starting from the posture of the one before.
@@ -160,8 +210,8 @@ def search(  # type: ignore[no-untyped-def]
         Flat-end cutter, mm.
     safe, blocked : float
         Depths (mm) up to which a triangle does not matter, and beyond which it certainly does.
-    vertex, box, depth
-        Triangles in tree order and the tree.
+    may_be, surely : Solids
+        All that may be in the way, for calling a posture safe; what certainly is, for calling it blocked.
     verdict, reason : (n,) uint8, written
     axis, lean : (n, 3) float64, written
     tilt_out, rotation_out : (n,) float64, int32, written
@@ -171,16 +221,19 @@ def search(  # type: ignore[no-untyped-def]
     body = np.empty(BODY)
     stack = np.empty(64, np.int64)
     polygon, spare, pieces = np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3))
-    tally = np.empty(4)
+    tally = np.empty(ATTRIBUTES)
     known, known_count = np.empty((_KNOWN, 3)), 0
     last_rotation, last_tilt, hint = 0, -1.0, -1
+    # What is only perhaps in the way must not count as surely in it: then the two are remembered apart.
+    shared = len(may_be.vertex) == len(surely.vertex)
+    sure_known, sure_count, sure_hint = np.empty((_KNOWN, 3)), 0, -1
     for row in rows:
         p, n, e1 = point[row], normal[row], direction_max[row]
         cross(n, e1, e2)
         rotation, tilt, hint, known_count = _sweep(
             p, n, e1, e2, curvature[row, 0], curvature[row, 1],
             rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
-            radius, length, safe, vertex, box, depth, last_rotation, last_tilt, hint, known, known_count,
+            radius, length, safe, may_be, MAYBE_INSIDE, last_rotation, last_tilt, hint, known, known_count,
             intervals, f, t, body, stack, polygon, spare, pieces, tally,
         )  # fmt: skip
         if rotation >= 0:
@@ -192,19 +245,26 @@ def search(  # type: ignore[no-untyped-def]
                 lean[row, k] = rotation_cos[rotation] * e1[k] + rotation_sin[rotation] * e2[k]
                 axis[row, k] = cosine * n[k] + sine * lean[row, k]
         else:
-            rotation, tilt, hint, known_count = _sweep(
+            if shared:
+                sure_known[:], sure_count, sure_hint = known, known_count, hint
+            rotation, tilt, sure_hint, sure_count = _sweep(
                 p, n, e1, e2, curvature[row, 0], curvature[row, 1],
                 rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
-                radius, length, blocked, vertex, box, depth, last_rotation, last_tilt, hint, known, known_count,
+                radius, length, blocked, surely, SURELY_INSIDE, last_rotation, last_tilt, sure_hint, sure_known, sure_count,
                 intervals, f, t, body, stack, polygon, spare, pieces, tally,
             )  # fmt: skip
+            if shared:
+                known[:], known_count, hint = sure_known, sure_count, sure_hint
             verdict[row] = UNDECIDED if rotation >= 0 else INACCESSIBLE
             if tally[AXIS_LIMIT] == 0.0:
                 reason[row] = AXIS_LIMIT
             elif tally[LOCAL_GOUGE] == 0.0:
                 reason[row] = LOCAL_GOUGE
             else:
-                reason[row] = REAR_GOUGE if tally[REAR_GOUGE] >= tally[SHANK] else SHANK
+                reason[row] = REAR_GOUGE
+                for attribute in (SHANK, BURIED):
+                    if tally[attribute] > tally[reason[row]]:
+                        reason[row] = attribute
 
 
 @entry
@@ -240,7 +300,7 @@ def first_reason(  # type: ignore[no-untyped-def]
 
 
 @entry
-def dummy_free(rows, point, normal, radius, length, safe, vertex, box, depth, free):  # type: ignore[no-untyped-def]
+def dummy_free(rows, point, normal, radius, length, safe, solids, free):  # type: ignore[no-untyped-def]
     """Test the dummy cutter `(2 radius, length)`, bottom centre on the sample, axis along the normal.
 
     Parameters
@@ -249,11 +309,12 @@ def dummy_free(rows, point, normal, radius, length, safe, vertex, box, depth, fr
     point, normal : (n, 3) float64
     radius, length, safe : float
         The flat-end cutter, mm, and the depth up to which a triangle does not matter.
-    vertex, box, depth
-        Triangles in tree order and the tree.
+    solids : Solids
+        All that may be in the way.
     free : (n,) bool, written
-        True where nothing reaches deeper than `safe` into the dummy.
+        True where nothing reaches deeper than `safe` into the dummy, and the dummy lies in no body.
     """
+    vertex, box, depth = solids.vertex, solids.box, solids.depth
     body = np.empty(BODY)
     f, t = np.empty(3), np.empty(3)
     stack = np.empty(64, np.int64)
@@ -265,7 +326,7 @@ def dummy_free(rows, point, normal, radius, length, safe, vertex, box, depth, fr
         cross(n, f, t)
         stand(body, point[row], n, f, t, 1.0, 0.0, 0.0, 2.0 * radius - safe, safe, length - safe)
         triangle, _, _, _ = tree_hit(vertex, box, depth, body, 0.0, hint, stack, polygon, spare, pieces)
-        free[row] = triangle < 0
+        free[row] = triangle < 0 and _inside(body, inner_height(radius, length), solids, stack) < MAYBE_INSIDE
         if triangle >= 0:
             hint = triangle
 

@@ -1,0 +1,147 @@
+"""What stands in for a face that could not be turned into triangles close to its surface: it is there all the same.
+
+A face that holds only triangles stands with them, any other one with the box around it. A face without area is no wider
+than its own edges: these stand for it, as triangles without area.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+from OCP.BRep import BRep_Tool
+from OCP.BRepAdaptor import BRepAdaptor_Curve
+from OCP.GCPnts import GCPnts_TangentialDeflection
+from OCP.TopLoc import TopLoc_Location
+
+from cad_io.arrays import Floats, Ints
+from cad_io.kernel import edges_of, is_kernel_error
+from cad_io.part import NO_AREA, Part, face_box
+
+_CORNERS = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)])
+#: Nodes each way to estimate the area of a face that is said to have none; the share of the part's squared diagonal up to
+#: which that is believed.
+_GRID, _SLIVER = 64, 1e-9
+_SIDES = trimesh.creation.box().faces  # corners in the same order as _CORNERS, outward
+
+
+StandIn = Literal["triangles", "box", "edges", "none"]
+
+
+@dataclass(frozen=True, slots=True)
+class StandIns:
+    """Triangles in place of faces.
+
+    Attributes
+    ----------
+    vertex : (t, 3, 3) float
+        Corners, mm.
+    face : (t,) int32
+        Face number.
+    weight : (t,) int8
+        1 where the triangle is part of a skin that encloses something and its corners run counter-clockwise seen from
+        outside, -1 where they run clockwise, 0 where nothing is known to be enclosed.
+    how : dict
+        Face number -> `triangles`, `box`, `edges`, or `none` where its place is not known.
+    """
+
+    vertex: Floats
+    face: Ints
+    weight: NDArray[np.int8]
+    how: dict[int, StandIn]
+
+
+def stand_ins(part: Part, missing: Sequence[tuple[int, str]], chord: float) -> StandIns:
+    """Stand-ins for the faces that `Triangles.missing` lists.
+
+    Parameters
+    ----------
+    part : Part
+    missing : sequence of (int, str)
+        Face numbers, with the reason.
+    chord : float
+        Distance of edges' polygons from the edges, mm.
+    """
+    vertex: list[Floats] = []
+    owner: list[Ints] = []
+    weight: list[NDArray[np.int8]] = []
+    how: dict[int, StandIn] = {}
+    own: dict[int, Floats] = {}
+    for number, reason in missing:
+        made, sign = np.zeros((0, 3, 3)), 0
+        if reason == NO_AREA and len(edges := _edges(part, number, chord)):
+            how[number], made = "edges", edges
+        elif (found := _own_triangles(part, number)) is not None:
+            how[number], own[number] = "triangles", found
+        elif np.isfinite(box := face_box(part.face(number), tight=False)).all():
+            how[number], sign = "box", 1
+            made = (box[0] + _CORNERS * (box[1] - box[0]))[_SIDES]
+        else:
+            how[number] = "none"
+        vertex.append(made)
+        owner.append(np.full(len(made), number, np.int32))
+        weight.append(np.full(len(made), sign, np.int8))
+    if own:
+        vertex.append(np.concatenate(list(own.values())))
+        owner.append(np.repeat(np.array(list(own), np.int32), [len(mine) for mine in own.values()]))
+        weight.append(_enclosing(vertex[-1]))
+    return StandIns(
+        np.concatenate([np.zeros((0, 3, 3)), *vertex]), np.concatenate([np.zeros(0, np.int32), *owner]),
+        np.concatenate([np.zeros(0, np.int8), *weight]), how,
+    )  # fmt: skip
+
+
+def _own_triangles(part: Part, number: int) -> Floats | None:
+    """Triangles (t, 3, 3) that a face without a surface carries."""
+    place = TopLoc_Location()
+    mesh = BRep_Tool.Triangulation_s(part.face(number), place)
+    if mesh is None or not mesh.NbTriangles():
+        return None
+    move = place.Transformation()
+    node = np.array([mesh.Node(i + 1).Transformed(move).Coord() for i in range(mesh.NbNodes())])
+    corner = np.array([mesh.Triangle(i + 1).Get() for i in range(mesh.NbTriangles())]) - 1
+    found = np.asarray(node[corner])
+    return found if np.isfinite(found).all() else None
+
+
+def _enclosing(vertex: Floats) -> NDArray[np.int8]:
+    """Weights (t,) of triangles that may close up to skins, each in whatever sense its file has it."""
+    mesh = trimesh.Trimesh(vertex.reshape(-1, 3), np.arange(3 * len(vertex)).reshape(-1, 3), process=False)
+    mesh.merge_vertices()
+    weight = np.zeros(len(vertex), np.int8)
+    for rows in trimesh.graph.connected_components(mesh.face_adjacency, min_len=4, nodes=np.arange(len(vertex))):
+        skin = mesh.submesh([rows], append=True, repair=False)
+        turned = skin.copy()
+        trimesh.repair.fix_normals(turned)
+        if turned.is_watertight and turned.is_winding_consistent:
+            weight[rows] = np.where((turned.faces == skin.faces).all(axis=1), 1, -1)
+    return weight
+
+
+def _edges(part: Part, number: int, chord: float) -> Floats:
+    """Edges of a face as triangles (t, 3, 3) without area; none where they may not tell where the face is."""
+    trim, pieces = part.trim(number), [np.zeros((0, 3, 3))]
+    if trim is None:
+        return pieces[0]
+    # An area may be zero because one part of the border runs the wrong way round: here none is counted as negative.
+    u0, u1, v0, v1 = trim.box
+    grid = np.linspace(0.0, 1.0, _GRID)
+    share = trim.inside_grid(u0 + grid * (u1 - u0), v0 + grid * (v1 - v0), beside=False).mean()
+    if share * (u1 - u0) * (v1 - v0) * trim.scale.prod() > _SLIVER * float(np.dot(part.size, part.size)):
+        return pieces[0]
+    for edge in edges_of(part.face(number)):
+        if BRep_Tool.Degenerated_s(edge):
+            continue
+        try:
+            points = GCPnts_TangentialDeflection(BRepAdaptor_Curve(edge), 0.2, chord)
+            line = np.array([points.Value(i + 1).Coord() for i in range(points.NbPoints())])
+        except Exception as thrown:
+            if not is_kernel_error(thrown):
+                raise
+            return pieces[0]
+        if not np.isfinite(line).all():
+            return pieces[0]
+        pieces.append(np.stack([line[:-1], line[1:], line[1:]], axis=1))
+    return np.concatenate(pieces)
