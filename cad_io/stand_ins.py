@@ -15,6 +15,8 @@ from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.GCPnts import GCPnts_TangentialDeflection
 from OCP.TopLoc import TopLoc_Location
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import breadth_first_order, connected_components
 
 from cad_io.arrays import Floats, Ints
 from cad_io.kernel import edges_of, is_kernel_error
@@ -107,16 +109,32 @@ def _own_triangles(part: Part, number: int) -> Floats | None:
 
 
 def _enclosing(vertex: Floats) -> NDArray[np.int8]:
-    """Weights (t,) of triangles that may close up to skins, each in whatever sense its file has it."""
+    """Weights (t,) of triangles that may close up to skins, each turned in whatever sense its file has it."""
     mesh = trimesh.Trimesh(vertex.reshape(-1, 3), np.arange(3 * len(vertex)).reshape(-1, 3), process=False)
     mesh.merge_vertices()
-    weight = np.zeros(len(vertex), np.int8)
-    for rows in trimesh.graph.connected_components(mesh.face_adjacency, min_len=4, nodes=np.arange(len(vertex))):
-        skin = mesh.submesh([rows], append=True, repair=False)
-        turned = skin.copy()
-        trimesh.repair.fix_normals(turned)
-        if turned.is_watertight and turned.is_winding_consistent:
-            weight[rows] = np.where((turned.faces == skin.faces).all(axis=1), 1, -1)
+    count, corner = len(vertex), mesh.faces
+    weight = np.zeros(count, np.int8)
+    # Directed edges; two triangles agree if they run along their common edge in opposite directions.
+    tail, head = corner.ravel(), np.roll(corner, -1, axis=1).ravel()
+    key = np.minimum(tail, head) * np.int64(len(mesh.vertices)) + np.maximum(tail, head)
+    order = np.argsort(key, kind="stable")
+    _, start, uses = np.unique(key[order], return_index=True, return_counts=True)
+    first, second = order[start[uses == 2]], order[start[uses == 2] + 1]
+    agree = np.where(tail[first] == tail[second], -1, 1)
+    graph = coo_array((np.ones(len(first), np.int8), (first // 3, second // 3)), shape=(count, count)).tocsr()
+    graph = (graph + graph.T).tocsr()
+    way = dict(zip(zip((first // 3).tolist(), (second // 3).tolist(), strict=True), agree.tolist(), strict=True))
+    skin_of = connected_components(graph, directed=False)[1]
+    loose = np.bincount(skin_of[order[np.repeat(start[uses != 2], uses[uses != 2])] // 3], minlength=skin_of.max() + 1)
+    for skin in np.flatnonzero(loose == 0).tolist():
+        reached, before = breadth_first_order(graph, int(np.argmax(skin_of == skin)), directed=False)
+        for here in reached.tolist():
+            back = int(before[here])
+            weight[here] = 1 if back < 0 else weight[back] * way.get((back, here), way.get((here, back), 0))
+        a, b, c = (vertex[reached, k] for k in range(3))
+        volume = float((np.einsum("ij,ij->i", a, np.cross(b, c)) * weight[reached]).sum())
+        consistent = (weight[first // 3] == weight[second // 3] * agree)[skin_of[first // 3] == skin].all()
+        weight[reached] = weight[reached] * int(np.sign(volume)) if consistent else 0
     return weight
 
 

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 #: Cells along the longest side of the grid that tells what is surely outside.
 _CELLS = 64
+#: Triangles of a loose face that are looked at to tell whether it lies on a body, about.
+_LOOKED_AT = 50
 #: Share of the tolerance that the obstacles' chord error may take, and what is asked of the tessellation.
 CHORD_SHARE, CHORD_ASKED = 0.25, 0.2
 
@@ -181,12 +183,15 @@ class Surroundings:
     missing : tuple of (int, str, str)
         Faces that stand in the way only as a guess, with the reason and what stands in for each: its own `triangles`, a
         `box`, or `none` where its place is not known.
+    on_bodies : tuple of int
+        Faces of no body that lie on the faces of one, as construction geometry does.
     """
 
     may_be: Obstacles
     surely: Obstacles
     bodies: tuple[Body, ...]
     missing: tuple[tuple[int, str, StandIn], ...]
+    on_bodies: tuple[int, ...] = ()
 
     @classmethod
     def sheet(cls, obstacles: Obstacles) -> "Surroundings":
@@ -220,9 +225,10 @@ def surroundings(part: Part, chord: float, *, ignored: Collection[int] = ()) -> 
     surely = Obstacles(triangles, _weight(triangles, [b for b in found if b.closed]))
     stand = stand_ins(part, triangles.missing, chord)
     missing = tuple((n, why, stand.how[n]) for n, why in triangles.missing if stand.how[n] != "edges")
+    lying = _on_bodies(surely, found)
     everything = _weight(triangles, found)
     if not len(stand.vertex) and (everything == surely.weight).all():
-        return Surroundings(surely, surely, found, missing)
+        return Surroundings(surely, surely, found, missing, lying)
     all_triangles = replace(
         triangles,
         vertex=np.concatenate([triangles.vertex, stand.vertex]),
@@ -231,7 +237,29 @@ def surroundings(part: Part, chord: float, *, ignored: Collection[int] = ()) -> 
     open_boxes = [_box(triangles, body) for body in found if not body.closed]
     may_be = Obstacles(all_triangles, np.concatenate([everything, stand.weight]),
                        np.array([box for box in open_boxes if np.isfinite(box).all()]).reshape(-1, 2, 3))  # fmt: skip
-    return Surroundings(may_be, surely, found, missing)
+    return Surroundings(may_be, surely, found, missing, lying)
+
+
+def _on_bodies(surely: Obstacles, found: Sequence[Body]) -> tuple[int, ...]:
+    """Numbers of faces of no body, most of whose triangles' middles lie on the skin of one."""
+    from plan_cutters.kernels.material import near_skin
+
+    triangles = surely.triangles
+    own = {number for body in found for number in body.faces}
+    if not surely.weight.any():
+        return ()
+    close = 2.0 * triangles.chord_error + 1e-9 * float(np.abs(triangles.vertex).max())
+    lying = []
+    for number in np.unique(triangles.face).tolist():
+        if number in own:
+            continue
+        middle = triangles.vertex[triangles.face == number].mean(axis=1)
+        middle = np.ascontiguousarray(middle[:: 1 + len(middle) // _LOOKED_AT])
+        near = np.zeros(len(middle), bool)
+        near_skin(middle, close, surely.solids, near)
+        if near.mean() > 0.5:
+            lying.append(number)
+    return tuple(lying)
 
 
 def _without(body: Body, ignored: Collection[int]) -> Body | None:

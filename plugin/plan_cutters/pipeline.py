@@ -285,7 +285,7 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
         area = AreaEntry(share=served.share, feasible=served.share == 1, contacts=served.contacts, left=served.left)
         entries = [e.model_copy(update={"area": area}) if e.id == selected else e for e in entries]
     document = Plan(
-        part=_part_info(whole, orientation),
+        part=_part_info(whole, orientation, around),
         effective=Effective(
             cutters=[c.id for c in cutters],
             cutter_source="given" if options.cutters else "built-in",
@@ -464,7 +464,12 @@ def _select(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:
     return first.id, Selection(rule=RULE, runner_up=feasible[1].id if len(feasible) > 1 else None, why=why)
 
 
-def _part_info(part: Part, orientation: Orientation) -> PartInfo:
+def _part_info(part: Part, orientation: Orientation, around: Surroundings) -> PartInfo:
+    warnings = list(part.warnings)
+    if around.on_bodies:
+        names = listed([f"F{number}" for number in around.on_bodies])
+        warnings.append(f"{names} lie on faces of solids, as construction geometry does, and are judged and in the way like "
+                        "all others: --ignore leaves them out")  # fmt: skip
     return PartInfo(
         file=Path(part.file).name if part.file else None,
         sha256=part.sha256,
@@ -473,7 +478,7 @@ def _part_info(part: Part, orientation: Orientation) -> PartInfo:
         faces=len(part.faces),
         orientation=OrientationInfo(method=orientation.method, confident=orientation.confident),
         sewing=_sewing(part),
-        warnings=list(part.warnings),
+        warnings=warnings,
     )
 
 

@@ -192,6 +192,45 @@ def _square_to_triangle(v, x, y, z):  # type: ignore[no-untyped-def]
     return best
 
 
+@kernel
+def _touches(x, y, z, clear, solids, stack):  # type: ignore[no-untyped-def]
+    """Whether a skin that encloses something comes within `clear` of a point; so does what is no number."""
+    vertex, box, depth, weight, moment = solids.vertex, solids.box, solids.depth, solids.weight, solids.moment
+    n, first, top = len(vertex), (1 << depth) - 1, 1
+    stack[0] = 0
+    while top > 0:
+        top -= 1
+        node = stack[top]
+        if moment[node, _AREA] <= 0.0:
+            continue
+        # Distance from the node's oriented box.
+        dx, dy, dz = x - box[node, 0], y - box[node, 1], z - box[node, 2]
+        square = 0.0
+        for k in range(3):
+            along = dx * box[node, 3 + 3 * k] + dy * box[node, 4 + 3 * k] + dz * box[node, 5 + 3 * k]
+            square += max(0.0, abs(along) - box[node, 12 + k]) ** 2
+        if square > clear * clear:
+            continue
+        if node < first:
+            stack[top] = 2 * node + 2
+            stack[top + 1] = 2 * node + 1
+            top += 2
+            continue
+        leaf = node - first
+        for t in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
+            if weight[t] != 0 and not _square_to_triangle(vertex[t], x, y, z) > clear * clear:
+                return True
+    return False
+
+
+@entry
+def near_skin(points, clear, solids, near):  # type: ignore[no-untyped-def]
+    """Write for points (n, 3) whether a skin that encloses something comes within `clear`, mm."""
+    stack = np.empty(64, np.int64)
+    for row in range(len(points)):
+        near[row] = _touches(points[row, 0], points[row, 1], points[row, 2], clear, solids, stack)
+
+
 @entry
 def far_inside(points, clear, solids, inside):  # type: ignore[no-untyped-def]
     """Write for points (n, 3) whether a ball of radius `clear`, mm, about each lies wholly inside bodies.
@@ -199,39 +238,9 @@ def far_inside(points, clear, solids, inside):  # type: ignore[no-untyped-def]
     Only skins that enclose something count: the ball may reach through other surfaces.
     """
     stack = np.empty(64, np.int64)
-    vertex, box, depth, weight, moment = solids.vertex, solids.box, solids.depth, solids.weight, solids.moment
-    n, first = len(vertex), (1 << depth) - 1
     for row in range(len(points)):
         x, y, z = points[row, 0], points[row, 1], points[row, 2]
-        inside[row] = False
-        if not winding(x, y, z, solids, stack) >= SURELY_INSIDE:
-            continue
-        inside[row] = True
-        stack[0], top = 0, 1
-        while top > 0:
-            top -= 1
-            node = stack[top]
-            if moment[node, _AREA] <= 0.0:
-                continue
-            # Distance from the node's oriented box.
-            dx, dy, dz = x - box[node, 0], y - box[node, 1], z - box[node, 2]
-            square = 0.0
-            for k in range(3):
-                along = dx * box[node, 3 + 3 * k] + dy * box[node, 4 + 3 * k] + dz * box[node, 5 + 3 * k]
-                square += max(0.0, abs(along) - box[node, 12 + k]) ** 2
-            if square > clear * clear:
-                continue
-            if node < first:
-                stack[top] = 2 * node + 2
-                stack[top + 1] = 2 * node + 1
-                top += 2
-                continue
-            leaf = node - first
-            for t in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
-                if weight[t] != 0 and not _square_to_triangle(vertex[t], x, y, z) > clear * clear:
-                    inside[row] = False
-                    top = 0
-                    break
+        inside[row] = winding(x, y, z, solids, stack) >= SURELY_INSIDE and not _touches(x, y, z, clear, solids, stack)
 
 
 @kernel

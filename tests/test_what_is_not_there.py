@@ -1,0 +1,510 @@
+"""Nothing unseen counts as air: material that no triangle shows, obstacles that are missing, numbers that are none."""
+
+import json
+import math
+import os
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapes
+from cad_parts import ball, box, compound, cut
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from OCP.BRep import BRep_Builder
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
+from OCP.BRepTools import BRepTools
+from OCP.gp import gp_Trsf, gp_Vec
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Shell
+from reference import random_frame
+from test_cli import run
+from test_triangles import triangulated
+
+from cad_io import read_part
+from cad_io.arrays import Triangles
+from cad_io.bodies import bodies
+from cad_io.kernel import faces as faces_of
+from plan_cutters import Cutter, plan, posture_map
+from plan_cutters.conditions import Conditions, search_postures
+from plan_cutters.errors import UnjudgeableError
+from plan_cutters.kernels import maps, search, tree
+from plan_cutters.kernels.material import far_inside, sheet, windings
+from plan_cutters.machine import Machine
+from plan_cutters.obstacles import Obstacles, Surroundings, surroundings
+from plan_cutters.posture import PostureRange
+from plan_cutters.reach import ACCESSIBLE, REASONS, blank
+
+SMALL = Cutter.flat(radius=2, length=30)
+
+
+def judged(shape, *, cutter=SMALL, faces="all", grid=5, **more):
+    return plan(shape, cutters=[cutter], faces=faces, grid=grid, area_budget=0, jobs=2, **more)
+
+
+def reached(result):
+    return result.reaches[result.cutters[0].id].reached
+
+
+def wavy(size=60.0):
+    x, y = np.meshgrid(np.linspace(0, size, 8), np.linspace(0, size, 8), indexing="ij")
+    z = 20 + 0.8 * np.sin(x / 9) * np.cos(y / 11)
+    return shapes.Patch(np.stack([x, y, z], -1)).face()
+
+
+def wavy_block(size=60.0):
+    """A block whose top is a B-spline surface."""
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
+
+    return BRepPrimAPI_MakePrism(wavy(size), gp_Vec(0, 0, -15)).Shape()
+
+
+# --- material -----------------------------------------------------------------------------------------------------------
+
+
+def stacked():
+    """A block, and another one standing on the middle of its top."""
+    return compound(box(40, 40, 20), box(20, 20, 60, at=(10, 10, 20)))
+
+
+def test_nothing_is_reached_under_a_block_that_stands_on_another():
+    result = judged(stacked(), grid=9)
+    at, hit = result.samples.point, reached(result)
+    top = (result.samples.face == 6) & (np.abs(at[:, 2] - 20) < 1e-6)
+    under = top & (np.abs(at[:, :2] - 20) < 10 - 1e-6).all(axis=1)
+    assert under.sum() == 9
+    assert not hit[under].any()
+    clear = top & ~(np.abs(at[:, :2] - 20) <= 10 + 1e-6).all(axis=1)
+    assert hit[clear].all()
+    # The bottom of the upper block lies on the lower one.
+    assert not hit[result.samples.face == 11].any()
+    entry = result.cutters[0]
+    assert entry.feasible is False
+    assert entry.by_reason["buried"] >= 9
+    witness = next(w for w in entry.witnesses if w.face == "F6" and w.reason == "buried")
+    assert (witness.obstacle_face, witness.obstacle_point[2]) == ("F12", pytest.approx(80.0))
+
+
+@pytest.mark.parametrize("radius", [0.5, 2.0, 20.0])
+def test_no_cutter_reaches_the_wall_of_a_void(radius):
+    hollow = cut(box(100, 100, 100), box(80, 80, 80, at=(10, 10, 10)))
+    cutter = Cutter.flat(radius=radius, length=30)
+    result = judged(hollow, cutter=cutter)
+    inner = np.abs(result.samples.point - 50).max(axis=1) < 45
+    assert inner.sum() == 6 * 25
+    assert not reached(result)[inner].any()
+    assert reached(result)[~inner].any()
+    assert (result.reaches[cutter.id].reason[inner] == REASONS.index("buried")).all()
+
+
+def test_a_clamp_on_a_wavy_top_covers_what_is_under_it():
+    clamp = box(20, 20, 40, at=(20, 20, 15))
+    result = plan(compound(wavy_block(), clamp), cutters=[SMALL], spacing=1.5, area_budget=0)
+    at = result.samples.point
+    top = at[:, 2] > 15
+    under = top & (np.abs(at[:, :2] - 30) < 9.95).all(axis=1)
+    assert under.sum() > 150
+    assert not reached(result)[under].any()
+    away = top & (np.abs(at[:, :2] - 30) > 15).any(axis=1)
+    assert reached(result)[away].mean() > 0.5
+    assert result.selected is None
+
+
+def test_touching_overlapping_and_repeated_bodies():
+    apart = judged(box(40, 40, 20))
+    for shape in (
+        compound(box(40, 40, 20), box(40, 40, 20)),
+        compound(box(40, 40, 20), box(40, 20, 10, at=(0, 10, 5))),
+    ):
+        result = judged(shape)
+        mine = result.samples.face <= 6
+        # The same body twice, and one within it, cover nothing of its outside.
+        assert (reached(result)[mine] == reached(apart)).all()
+    inner = judged(compound(box(40, 40, 20), box(30, 30, 10, at=(5, 5, 5))))
+    assert not reached(inner)[inner.samples.face > 6].any()
+    # Side by side: the wall between is not reached from either side, but for its rim.
+    beside = judged(compound(box(40, 40, 20), box(40, 40, 20, at=(40, 0, 0))))
+    wall = (np.abs(beside.samples.point[:, 0] - 40) < 1e-9) & (
+        np.abs(beside.samples.point[:, 1:] - (20, 10)) < (19, 9)
+    ).all(axis=1)
+    assert wall.sum() == 18
+    assert not reached(beside)[wall].any()
+    # Fused, there is no such wall.
+    fused = BRepAlgoAPI_Fuse(box(40, 40, 20), box(40, 40, 20, at=(40, 0, 0))).Shape()
+    assert reached(judged(fused)).all()
+
+
+def test_nested_shells_are_all_closed_off():
+    """A block with a void in which another block with a void floats."""
+    outer = cut(box(100, 100, 100), box(80, 80, 80, at=(10, 10, 10)))
+    inner = cut(box(40, 40, 40, at=(30, 30, 30)), box(20, 20, 20, at=(40, 40, 40)))
+    part = read_part(compound(outer, inner))
+    assert sorted(len(b.faces) for b in bodies(part)) == [6, 6, 6, 6]
+    result = judged(part, cutter=Cutter.flat(radius=0.5, length=5))
+    outside = (np.abs(result.samples.point - 50) > 49.9).any(axis=1)
+    assert reached(result)[outside].all()
+    assert not reached(result)[~outside].any()
+    assert (~outside).sum() == 3 * 150
+
+
+def test_a_block_that_is_turned_inside_out_or_mirrored_still_covers():
+    mirror = gp_Trsf()
+    mirror.SetScaleFactor(-1.0)
+    for upper in (box(20, 20, 60, at=(10, 10, 20)).Reversed(),
+                  box(20, 20, 60, at=(-30, -30, -80)).Moved(TopLoc_Location(mirror), False)):  # fmt: skip
+        result = judged(compound(box(40, 40, 20), upper), grid=9)
+        at = result.samples.point
+        under = (np.abs(at[:, 2] - 20) < 1e-6) & (np.abs(at[:, :2] - 20) < 9).all(axis=1) & (result.samples.face == 6)
+        assert under.any()
+        assert not reached(result)[under].any()
+
+
+def test_maps_leave_bodies_out():
+    result = judged(stacked(), grid=9, posture_maps=True, rotation_step=math.pi / 6)
+    k = len(result.maps.rotations)
+    found = np.add.reduceat(np.append(np.diff(result.maps.offset), 0), np.arange(0, k * len(result.samples), k))
+    lost = result.reaches[SMALL.id].verdict == 0
+    assert lost.any()
+    assert (found[lost] == 0).all()
+    assert (found[reached(result)] > 0).all()
+    part = read_part(stacked())
+    turns = np.radians([0.0, 40.0, 200.0])
+    # 15 mm deep under the upper block, which the cutter does not leave anywhere.
+    inside = posture_map(part, point=(20, 20, 20), cutter=Cutter.flat(radius=2, length=8), rotations=turns)
+    outside = posture_map(part, point=(5, 5, 20), cutter=Cutter.flat(radius=2, length=8), rotations=turns)
+    assert all(len(tilts) == 0 for tilts in inside.free)
+    assert all(len(tilts) for tilts in outside.free)
+    assert any(len(tilts) for tilts in inside.buried)
+    assert not any(len(tilts) for tilts in outside.buried)
+
+
+def test_at_the_foot_of_a_wall_only_postures_outside_it_count():
+    """At the foot of the upper block's side, a cutter small enough lies wholly within the block at some postures."""
+    part = read_part(compound(box(80, 80, 20), box(40, 40, 60, at=(20, 20, 20))))
+    cutter = Cutter.flat(radius=2, length=12)
+    # Contact on the edge between the two, in the middle of the side at x = 20; the wall is towards +x.
+    found = posture_map(part, point=(20, 40, 20), cutter=cutter, rotations=np.arange(24) * math.pi / 12)
+    points = np.array([1.0, 3.0, 6.0, 11.0])
+    seen = 0
+    for i in range(24):
+        for tilt in np.concatenate([np.linspace(*ends, 7) for ends in found.free[i]] or [[]]):
+            axis = found.axis(i, tilt)
+            lean = found.axis(i, math.pi / 2)
+            middle = found.point - 2 * (math.cos(tilt) * lean - math.sin(tilt) * found.normal) + points[:, None] * axis
+            # Not one point of the cutter's axis is in the wall by more than the tolerance.
+            assert not ((middle[:, 0] > 20.011) & (middle[:, 2] > 20.011)).any()
+            seen += 1
+    assert seen > 10
+    assert sum(len(tilts) for tilts in found.buried) > 0
+
+
+def test_loose_surfaces_are_said_to_enclose_nothing():
+    lid = shapes.plane((0, 40), (0, 40), origin=(0, 0, 60))
+    result = judged(compound(box(40, 40, 20), lid))
+    assert any("F7 encloses no material" in note for note in result.plan.notes)
+    assert bodies(read_part(lid)) == ()
+
+
+def test_surfaces_that_lie_on_a_solid_are_named():
+    on_top = shapes.plane((5, 30), (5, 30), origin=(0, 0, 20))
+    above = shapes.plane((5, 30), (5, 30), origin=(0, 0, 21))
+    result = judged(compound(box(40, 40, 20), on_top, above))
+    (warning,) = [w for w in result.plan.part.warnings if "construction geometry" in w]
+    assert warning.startswith("F7 ")
+    assert "--ignore" in warning
+    # It hides nothing: both sides of it are seen as before.
+    alone = judged(compound(box(40, 40, 20), above))
+    assert (reached(result)[result.samples.face <= 6] == reached(alone)[alone.samples.face <= 6]).all()
+
+
+def test_a_solid_with_a_hole_in_its_skin_encloses_perhaps():
+    """A body that lost a face is no longer closed: what may lie within it is undecided, never reached."""
+    upper, builder, open_shell = box(20, 20, 60, at=(10, 10, 20)), BRep_Builder(), TopoDS_Shell()
+    builder.MakeShell(open_shell)
+    for face in faces_of(upper)[:5]:  # without its top
+        builder.Add(open_shell, face)
+    from OCP.TopoDS import TopoDS_Solid
+
+    solid = TopoDS_Solid()
+    builder.MakeSolid(solid)
+    builder.Add(solid, open_shell)
+    result = judged(compound(box(40, 40, 20), solid), grid=9, cutter=Cutter.flat(radius=2, length=10))
+    at = result.samples.point
+    under = (np.abs(at[:, 2] - 20) < 1e-6) & (np.abs(at[:, :2] - 20) < 9).all(axis=1) & (result.samples.face == 6)
+    assert under.any()
+    assert not reached(result)[under].any()
+    assert [b.closed for b in bodies(result.part)].count(False) == 1
+
+
+# --- the numbers behind it ------------------------------------------------------------------------------------------------
+
+
+def solids_of(shape, chord=0.05):
+    return surroundings(read_part(shape), chord)
+
+
+def exact_winding(points, triangles, weight):
+    """Sum of solid angles over 4 pi, triangle by triangle, by another formula (Oosterom by complex numbers)."""
+    total = np.zeros(len(points))
+    for v, w in zip(triangles, weight, strict=True):
+        a, b, c = (v[k] - points for k in range(3))
+        la, lb, lc = (np.linalg.norm(x, axis=1) for x in (a, b, c))
+        top = np.einsum("ij,ij->i", a, np.cross(b, c))
+        low = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (c * a).sum(1) * lb
+        total += w * np.angle(low + 1j * top) * 2
+    return total / (4 * np.pi)
+
+
+def test_winding_numbers_are_those_of_the_sum():
+    around = solids_of(
+        compound(
+            ball(10), box(8, 8, 30, at=(3, -4, -5)), cut(box(60, 60, 20, at=(-30, -30, -30)), ball(5, at=(0, 0, -20)))
+        )
+    )
+    assert around.may_be is around.surely
+    rng = np.random.default_rng(5)
+    points = rng.uniform(-35, 35, (400, 3))
+    found = np.empty(400)
+    windings(points, around.surely.solids, found)
+    exact = exact_winding(points, around.surely.triangles.vertex, around.surely.weight)
+    known = np.round(exact)
+    assert np.abs(exact - known).max() < 0.02
+    assert {0, 1, 2} <= set(known.astype(int).tolist())
+    assert np.abs(found - known).max() < 0.1
+    # What the cells say for sure is so.
+    cells_off = around.surely.solids._replace(cell=np.zeros_like(around.surely.solids.cell))
+    without = np.empty(400)
+    windings(points, cells_off, without)
+    assert np.abs(without - known).max() < 0.1
+    assert (found == 0).sum() > (without == 0).sum()
+
+
+def test_void_and_material_count_alike():
+    hollow = solids_of(cut(box(100, 100, 100), box(80, 80, 80, at=(10, 10, 10))))
+    found = np.empty(3)
+    windings(np.array([[50.0, 50, 50], [5, 50, 50], [-5, 50, 50]]), hollow.surely.solids, found)
+    assert found == pytest.approx([2, 1, 0], abs=0.05)
+
+
+@given(st.integers(0, 10_000))
+@settings(max_examples=30, deadline=None)
+def test_a_ball_far_inside_is_inside(seed):
+    """Against the distance from a sphere's and a box's skin in closed form."""
+    rng = np.random.default_rng(seed)
+    points = rng.uniform(-12, 12, (60, 3))
+    around = _ball_solids()
+    clear = float(rng.uniform(0.2, 4))
+    found = np.zeros(60, bool)
+    far_inside(points, clear, around.surely.solids, found)
+    depth = 10 - np.linalg.norm(points, axis=1)
+    error = around.surely.triangles.chord_error
+    sure = np.abs(depth - clear) > error + 1e-9
+    assert (found == (depth > clear))[sure].all()
+
+
+def _ball_solids(cache=[]):  # noqa: B006 (made once)
+    if not cache:
+        cache.append(solids_of(ball(10)))
+    return cache[0]
+
+
+# --- obstacles that are missing -------------------------------------------------------------------------------------------
+
+
+def lidded(gap=3.0):
+    """A plate under a larger lid of triangles."""
+    return compound(box(40, 40, 10), triangulated(box(80, 80, 2, at=(-20, -20, 10 + gap))))
+
+
+def test_a_lid_of_triangles_is_in_the_way_but_not_for_sure():
+    real = judged(compound(box(40, 40, 10), box(80, 80, 2, at=(-20, -20, 13))), faces="6", grid=4)
+    meshed = judged(lidded(), faces="6", grid=4)
+    assert not reached(real).any()
+    assert not reached(meshed).any()
+    entry = meshed.cutters[0]
+    assert (entry.undecided, entry.feasible, meshed.selected) == (16, None, None)
+    assert {(m.face, m.stand_in) for m in meshed.plan.missing} == {(f"F{n}", "triangles") for n in range(7, 13)}
+    point = posture_map(meshed.part, point=(20, 20, 10), cutter=SMALL, rotations=[0.0])
+    assert not point.certified
+    assert len(point.free[0]) == 0
+    assert len(point.undecided[0])
+    assert len(point.missing) == 6
+
+
+def test_what_is_missing_far_away_leaves_the_verdict_in_doubt(tmp_path):
+    path = tmp_path / "part.brep"
+    BRepTools.Write_s(lidded(gap=500.0), str(path))
+    done = run(str(path), "--faces", "6", "--grid", "4", "--cutter", "R2L30", "--area-budget", "0", "-o", str(tmp_path / "out"),
+               "--formats", "json", cwd=tmp_path)  # fmt: skip
+    assert done.returncode == 4
+    assert "Missing obstacle: F7 (" in done.stderr
+    document = json.loads((tmp_path / "out" / "plan.json").read_text())
+    assert [c["feasible"] for c in document["cutters"]] == [None]
+    assert document["selected"] is None
+    assert document["cutters"][0]["interference_free"] == 16
+
+
+def test_a_cutter_within_a_box_of_triangles_is_not_free():
+    """A skin of triangles that closes up encloses: the cutter does not fit through, but fits within."""
+    hood = triangulated(box(80, 80, 60, at=(-20, -20, 9)))
+    result = judged(compound(box(40, 40, 10), hood), faces="6", grid=4, cutter=Cutter.flat(radius=2, length=10))
+    assert not reached(result).any()
+
+
+def test_a_face_that_cannot_be_meshed_stands_as_its_box(monkeypatch):
+    from cad_io import mesh, tessellate
+
+    original = mesh.uv_meshes
+
+    def refuses(part, numbers, *more):
+        return {n: found for n, found in original(part, numbers, *more).items() if n != 7}
+
+    monkeypatch.setattr(tessellate, "uv_meshes", refuses)
+    # The lower face of a lid 3 mm above the plate.
+    lid = shapes.plane((-20, 60), (-20, 60), origin=(0, 0, 13))
+    result = judged(compound(box(40, 40, 10), lid), faces="6", grid=4)
+    assert result.cutters[0].undecided == 16
+    assert [(m.face, m.stand_in) for m in result.plan.missing] == [("F7", "box")]
+
+
+def test_a_face_without_area_hides_nothing_and_leaves_no_doubt():
+    sliver = shapes.plane((0, 30), (0, 1e-12), origin=(0, 0, 30))
+    result = judged(compound(box(40, 40, 10), sliver), faces="6", grid=4)
+    assert result.part.faces[6].unjudged == "has no area"
+    assert result.plan.missing == []
+    # It is in the way all the same, as a line.
+    assert result.around_faces if hasattr(result, "around_faces") else True
+    found = surroundings(result.part, 0.002)
+    assert 7 in found.may_be.triangles.face
+    assert 7 not in found.surely.triangles.face
+
+
+# --- tolerance -------------------------------------------------------------------------------------------------------------
+
+
+def test_a_tolerance_that_was_raised_is_held_against_the_cutter(monkeypatch):
+    from cad_io import tessellate
+
+    original = tessellate._refined
+    monkeypatch.setattr(tessellate, "_refined", lambda part, meshes, chord, budget: original(part, meshes, chord, 40))
+    part, thin = read_part(ball(50)), Cutter.flat(radius=0.5, length=20)
+    result = plan(part, cutters=[thin, Cutter.flat(radius=20, length=200)], faces="all", grid=6, area_budget=0)
+    assert result.plan.effective.tolerance_mm > 4 * 0.5
+    entry = next(c for c in result.cutters if c.id == thin.id)
+    assert (entry.interference_free, entry.accessible, entry.inaccessible) == (0, 0, 0)
+    assert entry.undecided_by_reason["tolerance"] == entry.undecided > 0
+    assert entry.feasible is None
+    found = posture_map(part, point=(0, 0, 50), cutter=thin, rotations=[0.0])
+    assert not found.certified
+    assert len(found.free[0]) == 0
+    assert found.undecided[0] == pytest.approx(np.array([[0, math.pi / 2]]))
+
+
+# --- numbers that are none --------------------------------------------------------------------------------------------------
+
+
+def scene():
+    rng = np.random.default_rng(3)
+    vertex = np.ascontiguousarray(rng.uniform(-2, 2, (300, 1, 3)) + rng.normal(0, 0.3, (300, 3, 3)) + (0, 0, 4))
+    order, boxes, depth = tree.build(vertex)
+    normal, direction = random_frame(rng)
+    return sheet(np.ascontiguousarray(vertex[order]), boxes, depth), normal, direction
+
+
+def spoilt(array):
+    """The array with each of its numbers replaced by nan in turn."""
+    for i in range(array.size):
+        bad = np.array(array, float)
+        bad.reshape(-1)[i] = np.nan
+        yield bad
+
+
+def test_kernels_take_what_is_no_number_for_a_hit():
+    solids, n, e1 = scene()
+    far = sheet(solids.vertex + 1e6, solids.box + np.array([1e6] * 3 + [0.0] * 13), solids.depth)
+    one, p = np.zeros(1, np.int64), np.zeros(3)
+    turn = np.zeros(1)
+    tried = 0
+    for point, normal, lean in [
+        *((x, n, e1) for x in spoilt(p)), *((p, x, e1) for x in spoilt(n)), *((p, n, x) for x in spoilt(e1)),
+    ]:  # fmt: skip
+        free = np.ones(1, bool)
+        search.dummy_free(one, point[None], normal[None], 2.0, 20.0, 0.01, far, free)
+        if lean is e1:
+            assert not free[0]
+        triangle = np.full(1, -1, np.int32)
+        search.probe(
+            one, point[None], normal[None], normal[None], lean[None], 2.0, 20.0, np.array([0.01]), *far[:3], triangle
+        )
+        assert triangle[0] >= 0
+        parts = maps.free_tilts(point, normal, lean, 0.0, 1.5, 2.0, 20.0, 0.01, 1e-3, *far[:3], 2000)
+        assert not (parts[:, 2] == maps.OPEN).any()
+        out = blank(1)
+        search.search(one, point[None], normal[None], lean[None], np.zeros((1, 2)), np.ones(1), turn, 0.0, 1.5,
+                      np.array([0, 0, 1.0]), -2.0, 2.0, 20.0, 0.01, 0.02, far, far, out.verdict, out.axis, out.lean, out.tilt,
+                      out.rotation, out.reason)  # fmt: skip
+        assert out.verdict[0] != ACCESSIBLE
+        tried += 1
+    assert tried == 9
+    # The same calls with good numbers find the way clear: what was seen above is the nan.
+    free = np.zeros(1, bool)
+    search.dummy_free(one, p[None], n[None], 2.0, 20.0, 0.01, far, free)
+    assert free[0]
+
+
+def test_the_door_refuses_what_is_no_number():
+    solids, n, e1 = scene()
+    good = Triangles(solids.vertex, np.ones(len(solids.vertex), np.int32), 0.001, ())
+    with pytest.raises(UnjudgeableError):
+        Obstacles(replace(good, vertex=good.vertex[:0], face=good.face[:0]))
+    bad = good.vertex.copy()
+    bad[7, 1, 2] = np.nan
+    with pytest.raises(UnjudgeableError):
+        Obstacles(replace(good, vertex=bad))
+    with pytest.raises(UnjudgeableError):
+        Obstacles(replace(good, chord_error=math.nan))
+    conditions = Conditions(
+        Machine(), np.array([0, 0, 1.0]), PostureRange(), Surroundings.sheet(Obstacles(good)), 0.01, 1
+    )
+    geometry = (np.zeros((1, 3)), n[None], e1[None], np.zeros((1, 2)))
+    for which in range(4):
+        broken = list(geometry)
+        broken[which] = next(spoilt(geometry[which]))
+        with pytest.raises(ValueError, match="finite"):
+            search_postures(tuple(broken), np.zeros(1, np.int64), SMALL, conditions, conditions.depths, blank(1))
+    search_postures(geometry, np.zeros(1, np.int64), SMALL, conditions, conditions.depths, blank(1))
+
+
+# --- the compiler's cache ----------------------------------------------------------------------------------------------------
+
+_WHERE = """
+import os, sys
+environment = dict(os.environ)
+{first}
+{second}
+import numba
+from plan_cutters.kernels import arcs, jit
+mine = numba.njit(cache=True)(len)
+assert dict(os.environ) == environment, "the environment was changed"
+folders = {{f._cache._impl.locator.get_cache_path() for f in (arcs.point_arc, arcs.local_gouge)}}
+assert len(folders) == 1
+print(folders.pop())
+print(numba.config.CACHE_DIR)
+"""
+
+
+@pytest.mark.parametrize("first", ["import numba", "import plan_cutters.kernels.arcs"])
+def test_machine_code_of_other_sources_is_never_run(first, tmp_path):
+    """Whoever imports the compiler first, ours lies in the folder of just these sources, and the host's elsewhere."""
+    text = _WHERE.replace("mine = numba.njit(cache=True)(len)\n", "").format(
+        first=first, second="import plan_cutters.kernels.arcs"
+    )
+    environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
+    environment |= {"XDG_CACHE_HOME": str(tmp_path), "PYTHONPATH": os.pathsep.join(sys.path)}
+    done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, env=environment, check=False)
+    assert done.returncode == 0, done.stderr
+    ours, theirs = done.stdout.splitlines()[:2] if done.stdout.count("\n") > 1 else (done.stdout.strip(), "")
+    assert ours.startswith(str(tmp_path / "plan-cutters" / "kernels-"))
+    assert theirs == ""
