@@ -68,6 +68,17 @@ class Conditions:
         return np.asarray(self.postures.upright & (normal @ self.setup >= self.machine.limit_cos))
 
 
+def require_finite(geometry: Geometry, rows: NDArray[np.int64]) -> None:
+    """Refuse contacts that are no points with a normal, a direction and curvatures: kernels say nothing of them.
+
+    Raises
+    ------
+    ValueError
+    """
+    if not all(np.isfinite(column[rows]).all() for column in geometry):
+        raise ValueError("contacts to search a posture for must be finite")
+
+
 def search_postures(
     geometry: Geometry, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, depths: tuple[float, float],
     reach: Reach, progress: Progress | None = None,
@@ -94,8 +105,7 @@ def search_postures(
     """
     from plan_cutters.kernels.search import search
 
-    if not all(np.isfinite(column[rows]).all() for column in geometry) or not np.isfinite(depths).all():
-        raise ValueError("contacts to search a posture for must be finite")
+    require_finite(geometry, rows)
     ranges, around = conditions.ranges, conditions.around
     may_be, surely = around.may_be.solids, around.surely.solids
 

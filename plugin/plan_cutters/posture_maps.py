@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, SurfaceSamples
-from plan_cutters.conditions import Conditions
+from plan_cutters.conditions import Conditions, require_finite
 from plan_cutters.cutter import Cutter
 from plan_cutters.posture import lean
 from plan_cutters.threads import Progress, in_chunks
@@ -72,7 +72,9 @@ def posture_maps(
             count[rows] = mine
         free[int(rows[0])] = part[np.arange(_ROOM) < mine[..., None]]
 
-    in_chunks(work, np.flatnonzero(samples.unjudged < 0), conditions.jobs, progress)
+    judged = np.flatnonzero(samples.unjudged < 0)
+    require_finite((samples.point, samples.normal, samples.direction_max, samples.curvature), judged)
+    in_chunks(work, judged, conditions.jobs, progress)
     pieces = [free[first] for first in sorted(free)]
     offset = np.concatenate([[0], np.cumsum(count.ravel(), dtype=np.int64)])
     return PostureMaps(rotations, offset, np.concatenate([np.zeros((0, 2)), *pieces]), undecided)
