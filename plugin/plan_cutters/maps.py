@@ -5,6 +5,7 @@ The seed's Fig. 7, with a list of intervals at each rotation in place of one pai
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -14,11 +15,13 @@ from cad_io.arrays import Floats
 from cad_io.orient import orient
 from cad_io.sample import locate
 from cad_io.tessellate import tessellate
+from plan_cutters.checks import flag, number, numbers, radians
 from plan_cutters.cutter import Cutter
 from plan_cutters.errors import OptionError
+from plan_cutters.faces import ignored_faces
 from plan_cutters.machine import Machine
 from plan_cutters.obstacles import Obstacles
-from plan_cutters.posture import unit
+from plan_cutters.posture import PostureRange, unit
 
 #: Width (rad) below which a range of tilts stays undecided: with a tolerance, and for the nominal answer.
 _NARROWEST, _NARROWEST_NOMINAL = 1e-4, 1e-5
@@ -89,13 +92,14 @@ def posture_map(
     part: Any,
     *,
     point: Sequence[float],
-    cutter: Cutter,
+    cutter: Cutter | str,
     rotations: Sequence[float] | Floats,
     tilt: tuple[float, float] = (0.0, np.pi / 2),
-    machine: Machine | None = None,
+    machine: Machine | str | None = None,
     setup: tuple[float, float, float] = (0.0, 0.0, 1.0),
     tolerance: float = 0.01,
     flip: bool = False,
+    ignore: Any = (),
 ) -> PostureMap:
     """Find the free tilt intervals of a cutter at a point of a part.
 
@@ -104,46 +108,52 @@ def posture_map(
     part : Part, path, TopoDS_Shape, CadQuery or build123d object
     point : (3,) float
         mm; projected to the nearest face.
-    cutter : Cutter
+    cutter : Cutter or str
+        A text as `R6L80`.
     rotations : sequence of float
-        rad, from the direction of the largest curvature.
+        rad, from the direction of the largest curvature; at most a full turn either way.
     tilt : tuple of float
         Range, rad, within 0 to pi/2.
-    machine : Machine, optional
-        Default: no axis limit.
+    machine : Machine or str, optional
+        A text as `tilt:60` (degrees). Default: no axis limit.
     setup : tuple of float
     tolerance : float
         Gouge tolerance, mm. 0: the nominal answer, obstacles refined until the ends settle; not certified.
     flip : bool
         Take the other side of open shells and loose faces.
+    ignore : str, list of str or objects
+        Faces that are no obstacles, as for `plan`; the point is not projected to them.
 
     Raises
     ------
     CadIoError
         The part cannot be read; the point is farther than 1e-3 mm from it.
     OptionError
-        A range or tolerance has no meaning.
+        A range or tolerance has no meaning, or a value is of the wrong kind.
     """
-    low, high = tilt
-    if not -1e-9 <= low <= high <= np.pi / 2 + 1e-9:
-        raise OptionError("the tilt range must run upwards within 0 to pi/2")
+    cutter, machine = Cutter.of(cutter), Machine.of(machine)
+    place, axis, flip = numbers(point, "point", 3), unit(setup, "setup axis"), flag(flip, "flip")
+    each = (rotations,) if isinstance(rotations, Real) else rotations
+    turns = [radians(turn, "rotation", 2 * np.pi) for turn in numbers(each, "rotations")]
+    low, high = PostureRange(tilt=tilt).tilt
+    tolerance = number(tolerance, "tolerance")
     if not 0 <= tolerance < cutter.radius / 4:
         raise OptionError(f"tolerance {tolerance:g} mm must lie between 0 and a quarter of the radius")
     low, high = max(0.0, low), min(np.pi / 2, high)
     whole = part if isinstance(part, Part) else read_part(part)
-    machine = machine or Machine()
-    contact = locate(whole, orient(whole, towards=setup, flip=flip), point)
-    turns = np.atleast_1d(np.asarray(rotations, float))
-    ask = _Ask(contact, cutter, turns, (low, high), machine, unit(setup, "setup axis"))
+    ignored = ignored_faces(whole, ignore)
+    contact = locate(whole, orient(whole, towards=setup, flip=flip), place, ignore=ignored)
+    ask = _Ask(contact, cutter, np.array(turns), (low, high), machine, axis)
+    solid = [f.number for f in whole.faces if f.number not in ignored]
     if tolerance > 0:
-        triangles = tessellate(whole, 0.2 * tolerance)
+        triangles = tessellate(whole, 0.2 * tolerance, faces=solid)
         tolerance = max(tolerance, 4 * triangles.chord_error)
         safe, _ = Obstacles(triangles).depths(tolerance)
         return _map(ask, triangles, safe, _NARROWEST, tolerance)
     chord = min(_FIRST_CHORD, 1e-3 * cutter.radius)
     before: PostureMap | None = None
     for _ in range(_ROUNDS):
-        triangles = tessellate(whole, chord)
+        triangles = tessellate(whole, chord, faces=solid)
         # Twice the chord error: next to the contact, where the true clearance is zero, triangles must not count,
         # local gouging does.
         now = _map(ask, triangles, 2 * triangles.chord_error + 1e-9, _NARROWEST_NOMINAL, 0.0)
