@@ -126,7 +126,7 @@ def face_numbers(part: Part, given: Any) -> tuple[int, ...]:
             )
         found.add(number)
     if not found:
-        raise ReadError(f"a {type(given).__name__} holds no faces: give faces of the part")
+        raise ReadError(f"no faces in a value of type {type(given).__name__}: give faces of the part")
     return tuple(sorted(found))
 
 
@@ -150,14 +150,14 @@ def _gather(source: Any, held: _Held) -> None:
     elif isinstance(source, list | tuple):
         for i, each in enumerate(source, 1):
             if not (_is_host(each) or isinstance(each, list | tuple)):
-                raise ReadError(f"item {i} of the list is a {type(each).__name__}, not a shape")
+                raise ReadError(f"item {i} of the list is of type {type(each).__name__}, which is no shape")
             _gather(each, held)
     elif callable(getattr(source, "vals", None)):
         _workplane(source, held)
     elif not _is_host(source):
         raise ReadError(
-            f"a {type(source).__name__} is not a part: give a path, a kernel shape, a CadQuery or a build123d object, "
-            "or a list of shapes"
+            f"no part can be made of a value of type {type(source).__name__}: give a path, a kernel shape, a CadQuery or a "
+            "build123d object, or a list of shapes"
         )
     elif hasattr(source, "part") and not _has_shape(source):
         _gather(source.part, held)
@@ -236,28 +236,28 @@ def _assembly(source: Any) -> _Item:
     return _Item(compound([item.shape for item in inner]).Located(place), name, colour, inner)
 
 
-def _item(source: Any, held: _Held) -> _Item:
-    """A shape with its label and, of a build123d compound, its children."""
-    shape = _wrapped(source)
-    inner: tuple[_Item, ...] = ()
+def _item(source: Any, held: _Held, shape: TopoDS_Shape | None = None) -> _Item:
+    """A shape with its label and, of a build123d compound, its children.
+
+    What counts is the compound's own shape; a copy's children have shapes of their own, which stand in none. `shape` is
+    where the source stands in the compound around it.
+    """
+    shape = _wrapped(source) if shape is None else shape
     children = getattr(source, "children", ())
+    inner: tuple[_Item, ...] = ()
     if children and isinstance(children, tuple | list):
         stand = _relative(shape)
-        inner = tuple(_item(child, held) for child in children)
-        alike = len(stand) == len(inner) and all(
-            _face_count(s) == _face_count(i.shape) for s, i in zip(stand, inner, strict=True)
-        )
-        if not alike:
+        if [_face_count(s) for s in stand] == [_face_count(_wrapped(child)) for child in children]:
+            pairs = list(zip(children, stand, strict=True))
+            moved = [c for c, s in pairs if not _same_place(_wrapped(c).Location(), s.Location())]
+            held.warnings += [
+                f"{_label(child) or 'a child'} was moved after its compound was made: it is planned where it stood then"
+                for child in moved
+            ]
+            inner = tuple(_item(child, held, s) for child, s in pairs)
+        else:
             held.warnings.append(f"the children of {_label(source) or 'a compound'} are not what its shape holds: "
                                  "their names are left out")  # fmt: skip
-            inner = ()
-        else:
-            moved = [i.name or "a child" for s, i in zip(stand, inner, strict=True)
-                     if not _same_place(s.Location(), i.shape.Location())]  # fmt: skip
-            if moved:
-                held.warnings.append(f"{', '.join(moved)} was moved after its compound was made: it is planned where "
-                                     "it stood then")  # fmt: skip
-            inner = tuple(_Item(s, i.name, i.colour, i.inner) for s, i in zip(stand, inner, strict=True))
     return _Item(shape, _label(source), _colour(source), inner)
 
 
@@ -361,7 +361,7 @@ def _shapes(source: Any) -> list[TopoDS_Shape]:
     if callable(getattr(source, "vals", None)):
         return [_wrapped(value) for value in source.vals() if _has_shape(value)]
     if not _is_host(source):
-        raise ReadError(f"a {type(source).__name__} is no face of the part")
+        raise ReadError(f"a value of type {type(source).__name__} is no face of the part")
     return [_wrapped(source)]
 
 

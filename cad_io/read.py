@@ -8,7 +8,7 @@ from numbers import Real
 from typing import Any
 
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
-from OCP.gp import gp_Pnt, gp_Trsf
+from OCP.gp import gp_Pnt, gp_Trsf, gp_Vec
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shape
 
@@ -25,6 +25,8 @@ from cad_io.units import in_mm
 
 #: Seconds that a guarded reading may take.
 TIMEOUT = 120.0
+#: As good as no limit, s.
+_LONGEST = 1e8
 
 
 def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, timeout: float = TIMEOUT) -> Part:
@@ -61,7 +63,7 @@ def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, ti
     if not isinstance(guarded, bool):
         raise ReadError(f"guarded must be True or False, not a {type(guarded).__name__}")
     if not isinstance(timeout, Real) or isinstance(timeout, bool) or math.isnan(timeout):
-        raise ReadError(f"timeout must be a number of seconds, not {timeout!r:.40}")
+        raise ReadError(f"timeout must be a number of seconds, not a {type(timeout).__name__}")
     if isinstance(source, Part):
         if unit is not None:
             raise ReadError("the part has been read already: give the unit when it is read", file=source.file)
@@ -74,7 +76,9 @@ def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, ti
         Part(**found)  # which asks the kernel more, better here than outside
         return found
 
-    return Part(**in_copy(find, timeout, os.fspath(source) if isinstance(source, str | os.PathLike) else None))
+    return Part(
+        **in_copy(find, min(timeout, _LONGEST), os.fspath(source) if isinstance(source, str | os.PathLike) else None)
+    )
 
 
 def _find(source: Any, unit: str | None) -> Found:
@@ -131,7 +135,7 @@ def _scaled_node(node: Node, unit: str | None) -> Node:
     if unit is None or unit == "mm":
         return node
     move = node.place.Transformation()
-    move.SetTranslationPart(move.TranslationPart() * in_mm(unit))
+    move.SetTranslationPart(gp_Vec(move.TranslationPart() * in_mm(unit)))
     return replace(
         node, place=TopLoc_Location(move), children=tuple(_scaled_node(child, unit) for child in node.children)
     )

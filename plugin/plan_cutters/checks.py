@@ -31,8 +31,8 @@ def number(value: Any, what: str, *, error: type[OptionError] = OptionError) -> 
 
 
 def whole(value: Any, what: str) -> int:
-    """A whole number."""
-    if not isinstance(value, Integral) or isinstance(value, bool):
+    """A whole number that a computer counts with."""
+    if not isinstance(value, Integral) or isinstance(value, bool) or abs(int(value)) >= 1 << 63:
         raise OptionError(f"{what} must be a whole number, not {shown(value)}")
     return int(value)
 
@@ -69,15 +69,23 @@ def pair(value: Any, what: str) -> tuple[float, float]:
     return low, high
 
 
-def radians(angle: float, what: str, most: float) -> float:
-    """An angle no larger than `most`: what is larger was meant in degrees."""
+def choice(value: Any, what: str) -> None:
+    """What may be words or objects; which objects, only the part can tell."""
+    if isinstance(value, bool | float | complex | bytes | Mapping | Set):
+        raise OptionError(f"{what} must be words or faces of the part, not {shown(value)}")
+
+
+def radians(angle: float, what: str, most: float, *, error: type[OptionError] = OptionError) -> float:
+    """An angle from -`most` to `most`: what is larger was meant in degrees."""
     if abs(angle) > most + _ROUNDING:
-        raise OptionError(f"{what} {angle:g} lies beyond {most:.4g}: angles are radians; math.radians({angle:g})?")
-    return angle
+        raise error(f"{what} {angle:g} lies beyond {most:.4g}: angles are radians; math.radians({angle:g})?")
+    return min(max(angle, -most), most)
 
 
 def shown(value: Any) -> str:
     """A value in an error, on one line: itself where that is short, else its type."""
-    if value is None or isinstance(value, str | bool | Real):
-        return " ".join(reprlib.repr(value).split())
-    return f"a {type(value).__name__}"
+    if isinstance(value, Real) and not isinstance(value, int):
+        return f"{float(value):g}"
+    if value is None or isinstance(value, str | int):
+        return " ".join(reprlib.repr(str(value) if isinstance(value, str) else value).split())
+    return f"a value of type {type(value).__name__}"

@@ -7,6 +7,7 @@ from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 from cad_io.arrays import FaceInfo
+from plan_cutters.checks import choice
 from plan_cutters.errors import OptionError
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ def choose(part: "Part", faces: Any, ignore: Any) -> Chosen:
     notes = []
     if asked == "sculptured" and _none_sculptured(part.faces[n - 1] for n in targets):
         notes.append(
-            f"No face that can be judged is sculptured: all {len(targets)} are targets; --faces chooses among them."
+            f"No face that can be judged is sculptured: all are targets ({len(targets)}); --faces chooses among them."
         )
     if ignored:
         notes.append(
@@ -214,15 +215,13 @@ def _word(part: "Part", given: Any, option: str) -> str:
     """A choice as text: objects as the numbers of their faces."""
     from cad_io.errors import CadIoError
     from cad_io.objects import face_numbers
-    from plan_cutters.checks import shown
 
     if isinstance(given, str):
         return given
     many = given if isinstance(given, Sequence) and not isinstance(given, bytes) else (given,)
     if many and all(isinstance(each, Integral) and not isinstance(each, bool) for each in many):
         return ",".join(f"F{n}" for n in sorted({int(n) for n in many}))
-    if isinstance(given, dict | set | bytes | float | bool | complex):
-        raise OptionError(f"{option}: give a text or faces of the part, not {shown(given)}")
+    choice(given, option)
     try:
         return ",".join(f"F{n}" for n in face_numbers(part, given))
     except CadIoError as error:

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from plan_cutters.checks import number, shown
+from plan_cutters.checks import number, radians, shown
 from plan_cutters.errors import MachineError
 
 
@@ -28,8 +28,9 @@ class Machine:
         if self.tilt_limit is None:
             return
         limit = number(self.tilt_limit, "tilt limit", error=MachineError)
-        if not 0 <= limit <= math.pi:
-            raise MachineError(f"tilt limit {limit:g} must lie between 0 and pi, in radians; math.radians({limit:g})?")
+        limit = radians(limit, "tilt limit", math.pi, error=MachineError)
+        if limit < 0:
+            raise MachineError(f"tilt limit {limit:g} must not be negative")
         object.__setattr__(self, "tilt_limit", limit)
 
     @classmethod

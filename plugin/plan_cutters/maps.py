@@ -142,7 +142,7 @@ def posture_map(
     low, high = max(0.0, low), min(np.pi / 2, high)
     whole = part if isinstance(part, Part) else read_part(part)
     ignored = ignored_faces(whole, ignore)
-    contact = locate(whole, orient(whole, towards=setup, flip=flip), place, ignore=ignored)
+    contact = locate(whole, orient(whole, towards=_three(axis), flip=flip), place, ignore=ignored)
     ask = _Ask(contact, cutter, np.array(turns), (low, high), machine, axis)
     solid = [f.number for f in whole.faces if f.number not in ignored]
     if tolerance > 0:
@@ -164,6 +164,10 @@ def posture_map(
             break
     assert before is not None
     return before
+
+
+def _three(v: Floats) -> tuple[float, float, float]:
+    return float(v[0]), float(v[1]), float(v[2])
 
 
 @dataclass(frozen=True, slots=True)

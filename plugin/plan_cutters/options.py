@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cad_io.units import UNITS
-from plan_cutters.checks import flag, number, numbers, shown, whole
+from plan_cutters.checks import choice, flag, number, shown, whole
 from plan_cutters.cutter import Cutter, builtin
 from plan_cutters.errors import OptionError
 from plan_cutters.machine import Machine
@@ -24,7 +24,7 @@ class Options:
     machine : Machine
         May be given as a text such as `tilt:60`.
     setup : tuple of float
-        Direction of the part along the machine's spindle at zero angles.
+        Direction of the part along the machine's spindle at zero angles; kept with length 1.
     faces : str or objects, optional
         Target faces, as `faces.select_faces` reads it, or as numbers, or as objects of the kernel or a CAD host. Default:
         the faces picked on the object that the part was made from; where none were, `sculptured`.
@@ -85,7 +85,6 @@ class Options:
             raise OptionError(f"area budget {self.area_budget} must not be negative")
         if self.jobs < 1:
             raise OptionError(f"jobs {self.jobs} must be at least 1")
-        unit(self.setup, "setup axis")
         for cutter in self.judged:
             if self.tolerance >= min(cutter.radius, cutter.length) / 4:
                 raise OptionError(f"tolerance {self.tolerance:g} mm is too coarse for cutter {cutter.id}")
@@ -98,9 +97,11 @@ class Options:
                 object.__setattr__(self, word, value)
 
         take(cutters=Cutter.each_of(self.cutters), machine=Machine.of(self.machine))
-        take(setup=numbers(self.setup, "setup axis", 3), tolerance=number(self.tolerance, "tolerance"))
+        take(setup=tuple(unit(self.setup, "setup axis").tolist()), tolerance=number(self.tolerance, "tolerance"))
         take(jobs=whole(self.jobs, "jobs"), area_budget=whole(self.area_budget, "area budget"))
         take(flip=flag(self.flip, "flip"), posture_maps=flag(self.posture_maps, "posture_maps"))
+        choice(self.faces, "faces")
+        choice(self.ignore, "ignore")
         if self.grid is not None:
             take(grid=whole(self.grid, "grid"))
         if self.spacing is not None:

@@ -27,11 +27,9 @@ class PostureRange:
     def __post_init__(self) -> None:
         tilt, rotation = pair(self.tilt, "tilt range"), pair(self.rotation, "rotation range")
         step = number(self.step, "rotation step")
-        for value in tilt:
-            radians(value, "tilt", _RIGHT)
-        for value in rotation:
-            radians(value, "rotation", _FULL)
-        radians(step, "rotation step", _FULL)
+        tilt = (radians(tilt[0], "tilt", _RIGHT), radians(tilt[1], "tilt", _RIGHT))
+        rotation = (radians(rotation[0], "rotation", _FULL), radians(rotation[1], "rotation", _FULL))
+        step = radians(step, "rotation step", _FULL)
         _check(tilt, rotation, step, _RIGHT, "rad")
         for word, checked in (("tilt", tilt), ("rotation", rotation), ("step", step)):
             object.__setattr__(self, word, checked)
