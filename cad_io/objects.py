@@ -113,10 +113,13 @@ def face_numbers(part: Part, given: Any) -> tuple[int, ...]:
     """
     known = shape_map(part.shape, TopAbs_FACE)
     found = set()
-    shapes = [shape for each in _each(given) for shape in _shapes(each)]
+    try:
+        shapes = [shape for each in _each(given) for shape in _shapes(each)]
+    except RecursionError:
+        raise ReadError("the list of faces holds itself") from None
     for face in (face for shape in shapes for face in explore(shape, TopAbs_FACE)):
         # The kernel compares how a place was made, not where it is.
-        number = known.FindIndex(face) or next(_in_same_place(part, known, face), 0)
+        number = known.FindIndex(face) or next(_in_same_place(known, face), 0)
         if not number:
             partner = next((n for n in range(1, known.Extent() + 1) if known.FindKey(n).IsPartner(face)), None)
             raise ReadError(
@@ -130,7 +133,7 @@ def face_numbers(part: Part, given: Any) -> tuple[int, ...]:
     return tuple(sorted(found))
 
 
-def _in_same_place(part: Part, known: TopTools_IndexedMapOfShape, face: TopoDS_Shape) -> Iterator[int]:
+def _in_same_place(known: TopTools_IndexedMapOfShape, face: TopoDS_Shape) -> Iterator[int]:
     for number in range(1, known.Extent() + 1):
         other = known.FindKey(number)
         if other.IsPartner(face) and _same_place(other.Location(), face.Location()):

@@ -12,13 +12,13 @@ from OCP.TopLoc import TopLoc_Location
 from cad_io import ReadError, read_part
 from cad_io.assembly import component_of
 from cad_io.kernel import explore, shape_map
-from plan_cutters import OptionError, plan, posture_map
+from plan_cutters import Cutter, OptionError, plan, posture_map
 from plan_cutters.hosts.cadquery import register
 from plan_cutters.palette import rgb
 
 FLOOR = cq.selectors.NearestToPointSelector((0, 0, 0))
 WIDE, NARROW = "R5L60", "R2L60"
-SLOT = {"cutters": [WIDE, NARROW], "spacing": 3.0, "tolerance": 0.05, "area_budget": 0}
+SLOT = {"cutters": [Cutter.parse(WIDE), Cutter.parse(NARROW)], "spacing": 3.0, "tolerance": 0.05, "area_budget": 0}
 
 
 @pytest.fixture(scope="module")
@@ -275,6 +275,8 @@ def test_lists_and_builders_are_parts(slotted, milled):
     endless.append(endless)
     with pytest.raises(ReadError, match="holds itself"):
         read_part(endless)
+    with pytest.raises(OptionError, match="holds itself"):
+        plan(slotted, faces=endless)
 
 
 def test_a_posture_map_sees_the_whole_solid(slotted):
