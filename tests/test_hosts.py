@@ -252,6 +252,7 @@ def test_children_that_were_moved_later_are_warned_of():
     part = read_part(whole)
     assert any(warning.startswith("a was moved") for warning in part.warnings)
     assert part.size == pytest.approx((7, 2, 2))
+    assert read_part(whole.faces()).warnings == part.warnings
 
 
 def test_lists_and_builders_are_parts(slotted, milled):
