@@ -83,8 +83,8 @@ def gather(source: Any, held: Held) -> None:
         _workplane(source, held)
     elif not _is_host(source):
         raise ReadError(
-            f"no part can be made of a value of type {type(source).__name__}: give a path, a kernel shape, a CadQuery or a "
-            "build123d object, or a list of shapes"
+            f"a value of type {type(source).__name__} is not a part: give a path, a kernel shape, a CadQuery or a build123d "
+            "object, or a list of shapes"
         )
     elif hasattr(source, "part") and not _has_shape(source):
         gather(source.part, held)
