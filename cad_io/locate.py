@@ -1,7 +1,7 @@
 """The surface point of a part at a given place."""
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 
 import numpy as np
 from OCP.Bnd import Bnd_Box
@@ -22,7 +22,9 @@ from cad_io.trim import Trim
 _PRECISION = 1e-9  # mm, asked of the projection
 
 
-def locate(part: Part, orientation: Orientation, point: Sequence[float], within: float = 1e-3) -> SurfaceSamples:
+def locate(
+    part: Part, orientation: Orientation, point: Sequence[float], within: float = 1e-3, *, ignore: Container[int] = ()
+) -> SurfaceSamples:
     """The sample nearest to a point.
 
     Parameters
@@ -33,6 +35,8 @@ def locate(part: Part, orientation: Orientation, point: Sequence[float], within:
         Part coordinates, mm.
     within : float
         Farthest that the surface may be, mm. Between faces that are equally near, the lowest number counts.
+    ignore : container of int
+        Numbers of faces that are not looked at.
 
     Returns
     -------
@@ -50,7 +54,7 @@ def locate(part: Part, orientation: Orientation, point: Sequence[float], within:
     target = gp_Pnt(*place.tolist())
     best: tuple[float, int, tuple[float, float]] | None = None
     for info in part.faces:
-        if info.unjudged is not None or not _may_be_near(part, info.number, target, within):
+        if info.number in ignore or info.unjudged is not None or not _may_be_near(part, info.number, target, within):
             continue
         with translated("projecting a point", error=SampleError, file=part.file, face=info.id):
             found = _projected(part, info.number, place, within)

@@ -57,10 +57,12 @@ class Part:
         The products in the file; default one without a name.
     warnings : sequence of str
         What the reader found odd; odd sizes are added here.
+    picked : tuple of int, optional
+        Numbers of the faces that were picked on the object which the part was made from.
 
     Attributes
     ----------
-    shape, file, sha256, layers, tree : as given
+    shape, file, sha256, layers, tree, picked : as given
     faces : tuple of FaceInfo
         Entry i is face number i + 1.
     size : tuple of float
@@ -90,8 +92,9 @@ class Part:
         layers: Mapping[int, tuple[str, ...]] | None = None,
         tree: tuple[Node, ...] = (),
         warnings: tuple[str, ...] = (),
+        picked: tuple[int, ...] = (),
     ) -> None:
-        self.shape, self.file, self.sha256 = shape, file, sha256
+        self.shape, self.file, self.sha256, self.picked = shape, file, sha256, picked
         with translated("looking for faces", error=ReadError, file=file):
             self._faces = faces(shape)
         if not self._faces:

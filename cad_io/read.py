@@ -1,17 +1,23 @@
 """Read a part: STEP, IGES or BREP files, kernel shapes, CadQuery and build123d objects."""
 
 import hashlib
+import math
 import os
+from dataclasses import replace
+from numbers import Real
 from typing import Any
 
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
-from OCP.gp import gp_Pnt, gp_Trsf
+from OCP.gp import gp_Pnt, gp_Trsf, gp_Vec
+from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shape
 
 from cad_io import read_iges, read_step
+from cad_io.assembly import Node
 from cad_io.errors import ReadError
 from cad_io.kernel import silence, translated
-from cad_io.part import Part, as_one, unwrapped
+from cad_io.objects import from_object
+from cad_io.part import Part, unwrapped
 from cad_io.read_guarded import Found
 from cad_io.read_guarded import guarded as in_copy
 from cad_io.sniff import load
@@ -19,6 +25,8 @@ from cad_io.units import in_mm
 
 #: Seconds that a guarded reading may take.
 TIMEOUT = 120.0
+#: As good as no limit, s.
+_LONGEST = 1e8
 
 
 def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, timeout: float = TIMEOUT) -> Part:
@@ -27,8 +35,9 @@ def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, ti
     Parameters
     ----------
     source : path, TopoDS_Shape or object
-        Path of a STEP, IGES or BREP file; a kernel shape; an object with `.wrapped` (CadQuery, build123d) or with
-        `.vals()` (CadQuery Workplane) that gives such.
+        Path of a STEP, IGES or BREP file; a kernel shape; a CadQuery or build123d object, an assembly too; a list of
+        shapes. Faces on a Workplane's stack, and build123d faces that know the shape which they were taken from, are
+        `Part.picked` on that shape. A Part is given back as it is.
     unit : str, optional
         What the numbers in the source are in: one of `um`, `mm`, `cm`, `m`, `km`, `mil`, `in`, `ft`. Default: the unit
         that the file names; mm for BREP files and shapes.
@@ -51,6 +60,14 @@ def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, ti
     silence()
     if unit is not None:
         in_mm(unit)
+    if not isinstance(guarded, bool):
+        raise ReadError(f"guarded must be True or False, not a {type(guarded).__name__}")
+    if not isinstance(timeout, Real) or isinstance(timeout, bool) or math.isnan(timeout):
+        raise ReadError(f"timeout must be a number of seconds, not a {type(timeout).__name__}")
+    if isinstance(source, Part):
+        if unit is not None:
+            raise ReadError("the part has been read already: give the unit when it is read", file=source.file)
+        return source
     if not guarded:
         return Part(**_find(source, unit))
 
@@ -59,14 +76,18 @@ def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, ti
         Part(**found)  # which asks the kernel more, better here than outside
         return found
 
-    return Part(**in_copy(find, timeout, os.fspath(source) if isinstance(source, str | os.PathLike) else None))
+    return Part(
+        **in_copy(find, min(timeout, _LONGEST), os.fspath(source) if isinstance(source, str | os.PathLike) else None)
+    )
 
 
 def _find(source: Any, unit: str | None) -> Found:
     """What the part is made of."""
     if isinstance(source, str | os.PathLike):
         return _read_file(os.fspath(source), unit)
-    return {"shape": _scaled(unwrapped(_kernel_shape(source)), unit)}
+    found = from_object(source)
+    tree = tuple(_scaled_node(node, unit) for node in found["tree"])
+    return found | {"shape": _scaled(found["shape"], unit), "tree": tree}
 
 
 def _read_file(file: str, unit: str | None) -> Found:
@@ -109,19 +130,12 @@ def _scaled(shape: TopoDS_Shape, unit: str | None) -> TopoDS_Shape:
     return BRepBuilderAPI_Transform(shape, scale, True).Shape()
 
 
-def _kernel_shape(source: Any) -> TopoDS_Shape:
-    """The kernel shape in an object, a compound if it holds several."""
-    if isinstance(source, TopoDS_Shape):
-        shape = source
-    elif callable(getattr(source, "vals", None)):
-        found = [_kernel_shape(value) for value in source.vals() if hasattr(value, "wrapped")]
-        shape = as_one(found) if found else TopoDS_Shape()
-    elif hasattr(source, "wrapped"):
-        shape = source.wrapped
-    else:
-        raise ReadError(
-            f"a {type(source).__name__} is not a part: give a path, a kernel shape, a CadQuery or a build123d object"
-        )
-    if not isinstance(shape, TopoDS_Shape) or shape.IsNull():
-        raise ReadError(f"the {type(source).__name__} holds no shape")
-    return shape
+def _scaled_node(node: Node, unit: str | None) -> Node:
+    """An instance whose place is in a unit, in mm."""
+    if unit is None or unit == "mm":
+        return node
+    move = node.place.Transformation()
+    move.SetTranslationPart(gp_Vec(move.TranslationPart() * in_mm(unit)))
+    return replace(
+        node, place=TopLoc_Location(move), children=tuple(_scaled_node(child, unit) for child in node.children)
+    )

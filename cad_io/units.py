@@ -14,6 +14,8 @@ def in_mm(unit: str) -> float:
     ReadError
         No unit is called so.
     """
+    if not isinstance(unit, str):
+        raise ReadError(f"a length unit is one of {', '.join(UNITS)}, not a {type(unit).__name__}")
     if unit not in UNITS:
         raise ReadError(f"no length unit is called {unit!r}: give one of {', '.join(UNITS)}")
     return UNITS[unit]

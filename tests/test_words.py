@@ -105,7 +105,7 @@ def test_all_faces_where_none_is_sculptured():
     assert select_faces(faces()[:1], "sculptured") == (1,)
 
 
-@pytest.mark.parametrize("text", ["5", "0", "2-9", "name:[", "name:hub", "color:#00FF00", "color:red", "F2", ""])
+@pytest.mark.parametrize("text", ["5", "0", "2-9", "name:[", "name:hub", "color:#00FF00", "color:red", "F5", ""])
 def test_face_selections_that_select_nothing(text):
     with pytest.raises(OptionError):
         select_faces(faces(), text)

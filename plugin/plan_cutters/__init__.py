@@ -11,6 +11,8 @@ __version__ = "0.1.0"
 _HOME = {
     "Cutter": "cutter",
     "Machine": "machine",
+    "Options": "options",
+    "PostureRange": "posture",
     "plan": "pipeline",
     "Result": "pipeline",
     "posture_map": "maps",

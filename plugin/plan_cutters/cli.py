@@ -30,13 +30,13 @@ _NOT_BUILT = {
 
 
 class _Range(click.ParamType):
-    """Two numbers of degrees, MIN:MAX, as radians."""
+    """Two numbers of degrees, MIN:MAX."""
 
     name = "MIN:MAX"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, float]:
         try:
-            low, high = (math.radians(float(part)) for part in value.split(":"))
+            low, high = (float(part) for part in value.split(":"))
         except ValueError:
             self.fail(f"{value!r} is not of the form MIN:MAX in degrees, as 0:60", param, ctx)
         return low, high
@@ -85,7 +85,14 @@ class _Vector(click.ParamType):
     "--faces",
     default="sculptured",
     metavar="SELECT",
-    help="`sculptured`, `all`, `3,7-12`, `name:REGEX` or `color:#RRGGBB`; the others are obstacles.  [default: sculptured]",
+    help="`sculptured`, `all`, `F3,7-12`, `component:NAME`, `name:REGEX` or `color:#RRGGBB`, after a `!` all but these; the "
+    "others are obstacles.  [default: sculptured]",
+)
+@click.option(
+    "--ignore",
+    multiple=True,
+    metavar="SELECT",
+    help="Faces that are neither machined nor obstacles, as construction geometry; the same words. Repeatable.",
 )
 @click.option("--fixture", multiple=True, metavar="FILE", hidden=True)
 @click.option("--grid", type=int, metavar="N", help="N x N parameter samples a face.")
@@ -197,9 +204,10 @@ def _options(given: dict[str, Any]) -> "Options":
         machine=Machine.parse(given["machine"]),
         setup=given["setup"],
         faces=given["faces"],
+        ignore=given["ignore"],
         grid=given["grid"],
         spacing=given["spacing"],
-        postures=PostureRange(given["tilt"], given["rotation"], math.radians(given["rotation_step"])),
+        postures=PostureRange.degrees(given["tilt"], given["rotation"], given["rotation_step"]),
         tolerance=given["tolerance"],
         flip=given["flip"],
         area_budget=given["area_budget"],
@@ -261,7 +269,9 @@ def _summary(plan: "Plan", out: Path, formats: Sequence[str]) -> None:
     console = Console(stderr=True, highlight=False, soft_wrap=True, markup=False)
     size = " x ".join(f"{s:.4g}" for s in plan.part.size_mm)
     targets = len(plan.effective.target_faces)
+    ignored = sum(f.ignored for f in plan.faces)
     console.print(f"{plan.part.file or 'part'}: {size} mm, {plan.part.faces} faces, {targets} to machine, "
+                  f"{f'{ignored} ignored, ' if ignored else ''}"
                   f"{plan.samples.count} samples at most {plan.samples.max_gap_mm:.3g} mm apart")  # fmt: skip
     table = Table(box=None, pad_edge=False)
     for column in ("cutter", "feasible", "free", "accessible", "undecided", "inaccessible"):

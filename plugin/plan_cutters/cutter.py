@@ -3,7 +3,9 @@
 import math
 import re
 from dataclasses import dataclass
+from typing import Any
 
+from plan_cutters.checks import items, number, shown
 from plan_cutters.errors import CutterError
 
 _SPEC = re.compile(r"R(?P<radius>-?[0-9.]+)L(?P<length>-?[0-9.]+)(?:rc(?P<corner>-?[0-9.]+))?", re.IGNORECASE)
@@ -33,6 +35,11 @@ class Cutter:
     name: str = ""
 
     def __post_init__(self) -> None:
+        for word in ("radius", "length", "corner_radius"):
+            value = number(getattr(self, word), f"cutter {word.replace('_', ' ')}", error=CutterError)
+            object.__setattr__(self, word, value)
+        if not isinstance(self.name, str):
+            raise CutterError(f"a cutter's name must be a text, not {shown(self.name)}")
         for word, value in (("radius", self.radius), ("length", self.length)):
             if not (math.isfinite(value) and value > 0):
                 raise CutterError(f"cutter {word} must be a positive number of mm, not {value:g}")
@@ -57,6 +64,8 @@ class Cutter:
         CutterError
             The text is not of that form, or no such cutter can exist.
         """
+        if not isinstance(spec, str):
+            raise CutterError(f"{shown(spec)} is no cutter: give a Cutter or a text such as 'R6L80'")
         match = _SPEC.fullmatch(spec.strip())
         try:
             if match:
@@ -64,6 +73,20 @@ class Cutter:
         except ValueError:
             pass
         raise CutterError(f"cutter {spec!r} is not of the form R6L80 (radius 6 mm, length 80 mm)")
+
+    @classmethod
+    def of(cls, given: Any) -> "Cutter":
+        """A cutter, or what `parse` makes of a text."""
+        return given if isinstance(given, cls) else cls.parse(given)
+
+    @classmethod
+    def each_of(cls, given: Any) -> tuple["Cutter", ...]:
+        """One cutter or text, or a list of such; None is an empty list."""
+        if given is None:
+            return ()
+        if isinstance(given, str | cls):
+            return (cls.of(given),)
+        return tuple(cls.of(each) for each in items(given, "cutters", "cutters", error=CutterError))
 
     def inside(self, other: "Cutter") -> bool:
         """True if, touching the same contact with the same axis, this cutter lies within the other.

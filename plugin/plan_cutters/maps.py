@@ -5,6 +5,7 @@ The seed's Fig. 7, with a list of intervals at each rotation in place of one pai
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -13,11 +14,13 @@ from cad_io import Part, SurfaceSamples, Triangles, read_part
 from cad_io.arrays import Floats
 from cad_io.orient import orient
 from cad_io.sample import locate
+from plan_cutters.checks import flag, number, numbers, radians
 from plan_cutters.cutter import Cutter
 from plan_cutters.errors import OptionError
+from plan_cutters.faces import ignored_faces
 from plan_cutters.machine import Machine
 from plan_cutters.obstacles import CHORD_ASKED, Obstacles, Surroundings, kept_tolerance, surroundings
-from plan_cutters.posture import lean, unit
+from plan_cutters.posture import PostureRange, lean, unit
 
 #: Width (rad) below which a range of tilts stays undecided: with a tolerance, and for the nominal answer.
 _NARROWEST, _NARROWEST_NOMINAL = 1e-4, 1e-5
@@ -95,13 +98,14 @@ def posture_map(
     part: Any,
     *,
     point: Sequence[float],
-    cutter: Cutter,
+    cutter: Cutter | str,
     rotations: Sequence[float] | Floats,
     tilt: tuple[float, float] = (0.0, np.pi / 2),
-    machine: Machine | None = None,
+    machine: Machine | str | None = None,
     setup: tuple[float, float, float] = (0.0, 0.0, 1.0),
     tolerance: float = 0.01,
     flip: bool = False,
+    ignore: Any = (),
 ) -> PostureMap:
     """Find the free tilt intervals of a cutter at a point of a part.
 
@@ -110,41 +114,46 @@ def posture_map(
     part : Part, path, TopoDS_Shape, CadQuery or build123d object
     point : (3,) float
         mm; projected to the nearest face.
-    cutter : Cutter
+    cutter : Cutter or str
+        A text as `R6L80`.
     rotations : sequence of float
-        rad, from the direction of the largest curvature.
+        rad, from the direction of the largest curvature; at most a full turn either way.
     tilt : tuple of float
         Range, rad, within 0 to pi/2.
-    machine : Machine, optional
-        Default: no axis limit.
+    machine : Machine or str, optional
+        A text as `tilt:60` (degrees). Default: no axis limit.
     setup : tuple of float
     tolerance : float
         Gouge tolerance, mm. 0: the nominal answer, obstacles refined until the ends settle; not certified.
     flip : bool
         Take the other side of open shells and loose faces.
+    ignore : str, list of str or objects
+        Faces that are no obstacles, as for `plan`; the point is not projected to them.
 
     Raises
     ------
     CadIoError
         The part cannot be read; the point is farther than 1e-3 mm from it.
     OptionError
-        A range or tolerance has no meaning.
+        A range or tolerance has no meaning, or a value is of the wrong kind.
     """
-    low, high = tilt
-    if not -1e-9 <= low <= high <= np.pi / 2 + 1e-9:
-        raise OptionError("the tilt range must run upwards within 0 to pi/2")
+    cutter, machine = Cutter.of(cutter), Machine.of(machine)
+    place, axis, flip = numbers(point, "point", 3), unit(setup, "setup axis"), flag(flip, "flip")
+    each = (rotations,) if isinstance(rotations, Real) else rotations
+    turns = [radians(turn, "rotation", 2 * np.pi) for turn in numbers(each, "rotations")]
+    low, high = PostureRange(tilt=tilt).tilt
+    tolerance = number(tolerance, "tolerance")
     if not (tolerance >= 0 and cutter.large_enough(tolerance)):
         raise OptionError(
             f"tolerance {tolerance:g} mm must lie between 0 and a quarter of the cutter's radius and length"
         )
     low, high = max(0.0, low), min(np.pi / 2, high)
     whole = part if isinstance(part, Part) else read_part(part)
-    machine = machine or Machine()
-    contact = locate(whole, orient(whole, towards=setup, flip=flip), point)
-    turns = np.atleast_1d(np.asarray(rotations, float))
-    ask = _Ask(contact, cutter, turns, (low, high), machine, unit(setup, "setup axis"))
+    ignored = ignored_faces(whole, ignore)
+    contact = locate(whole, orient(whole, towards=_three(axis), flip=flip), place, ignore=ignored)
+    ask = _Ask(contact, cutter, np.array(turns), (low, high), machine, axis)
     if tolerance > 0:
-        around = surroundings(whole, CHORD_ASKED * tolerance)
+        around = surroundings(whole, CHORD_ASKED * tolerance, ignored=ignored)
         tolerance = kept_tolerance(tolerance, around.surely.triangles.chord_error)
         found = _map(ask, around, around.surely.depths(tolerance), _NARROWEST, tolerance)
         if cutter.large_enough(tolerance):
@@ -156,7 +165,7 @@ def posture_map(
     chord = min(_FIRST_CHORD, 1e-3 * cutter.radius)
     before: PostureMap | None = None
     for _ in range(_ROUNDS):
-        around = surroundings(whole, chord)
+        around = surroundings(whole, chord, ignored=ignored)
         triangles = around.surely.triangles
         # Twice the chord error: next to the contact, where the true clearance is zero, triangles must not count,
         # local gouging does.
@@ -169,6 +178,10 @@ def posture_map(
             break
     assert before is not None
     return before
+
+
+def _three(v: Floats) -> tuple[float, float, float]:
+    return float(v[0]), float(v[1]), float(v[2])
 
 
 @dataclass(frozen=True, slots=True)

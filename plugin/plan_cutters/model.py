@@ -57,6 +57,7 @@ class Effective(_Frozen):
     machine: str
     setup: Vector
     faces: str
+    ignore: list[str] = Field(default=[], description="faces that are neither targets nor obstacles, as asked for")
     target_faces: list[str]
     grid: int | None = Field(description="samples a side and face; null where sampled by spacing")
     spacing_mm: float | None = Field(description="largest spacing asked for; null where sampled by grid")
@@ -95,6 +96,7 @@ class FaceEntry(_Frozen):
     surface: str = Field(description="kind of the stored surface")
     shape: str = Field(description="what it is in shape: plane, cylinder, cone, sphere, torus or sculptured")
     target: bool
+    ignored: bool = Field(default=False, description="neither a target nor an obstacle")
     area_mm2: float
     component: str = Field(description="names of the instances in the file down to the product that it belongs to")
     samples: int

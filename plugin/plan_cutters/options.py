@@ -3,8 +3,10 @@
 import math
 import os
 from dataclasses import dataclass, field
+from typing import Any
 
 from cad_io.units import UNITS
+from plan_cutters.checks import choice, flag, number, shown, whole
 from plan_cutters.cutter import Cutter, builtin
 from plan_cutters.errors import OptionError
 from plan_cutters.machine import Machine
@@ -18,12 +20,16 @@ class Options:
     Attributes
     ----------
     cutters : tuple of Cutter
-        Empty: the built-in ones.
+        May be given as one cutter or a list, and texts such as `R6L80` for cutters. Empty: the built-in ones.
     machine : Machine
+        May be given as a text such as `tilt:60`.
     setup : tuple of float
-        Direction of the part along the machine's spindle at zero angles.
-    faces : str
-        Target faces, as `faces.select_faces` reads it.
+        Direction of the part along the machine's spindle at zero angles; kept with length 1.
+    faces : str or objects, optional
+        Target faces, as `faces.select_faces` reads it, or as numbers, or as objects of the kernel or a CAD host. Default:
+        the faces picked on the object that the part was made from; where none were, `sculptured`.
+    ignore : str, list of str or objects
+        Faces that are neither targets nor obstacles, in the same words.
     grid : int, optional
         N x N samples a face.
     spacing : float, optional
@@ -51,7 +57,8 @@ class Options:
     cutters: tuple[Cutter, ...] = ()
     machine: Machine = field(default_factory=Machine)
     setup: tuple[float, float, float] = (0.0, 0.0, 1.0)
-    faces: str = "sculptured"
+    faces: Any = None
+    ignore: Any = ()
     grid: int | None = None
     spacing: float | None = None
     postures: PostureRange = field(default_factory=PostureRange)
@@ -63,6 +70,7 @@ class Options:
     unit: str | None = None
 
     def __post_init__(self) -> None:
+        self._check_kinds()
         if self.grid is not None and self.spacing is not None:
             raise OptionError("give a grid or a spacing, not both")
         if self.grid is not None and not 2 <= self.grid <= 5000:
@@ -77,10 +85,31 @@ class Options:
             raise OptionError(f"area budget {self.area_budget} must not be negative")
         if self.jobs < 1:
             raise OptionError(f"jobs {self.jobs} must be at least 1")
-        unit(self.setup, "setup axis")
         for cutter in self.judged:
             if not cutter.large_enough(self.tolerance):
                 raise OptionError(f"tolerance {self.tolerance:g} mm is too coarse for cutter {cutter.id}")
+
+    def _check_kinds(self) -> None:
+        """Every value of the type that its attribute says."""
+
+        def take(**values: Any) -> None:
+            for word, value in values.items():
+                object.__setattr__(self, word, value)
+
+        take(cutters=Cutter.each_of(self.cutters), machine=Machine.of(self.machine))
+        take(setup=tuple(unit(self.setup, "setup axis").tolist()), tolerance=number(self.tolerance, "tolerance"))
+        take(jobs=whole(self.jobs, "jobs"), area_budget=whole(self.area_budget, "area budget"))
+        take(flip=flag(self.flip, "flip"), posture_maps=flag(self.posture_maps, "posture_maps"))
+        choice(self.faces, "faces")
+        choice(self.ignore, "ignore")
+        if self.grid is not None:
+            take(grid=whole(self.grid, "grid"))
+        if self.spacing is not None:
+            take(spacing=number(self.spacing, "spacing"))
+        if self.unit is not None and not isinstance(self.unit, str):
+            raise OptionError(f"unit must be one of {', '.join(UNITS)}, not {shown(self.unit)}")
+        if not isinstance(self.postures, PostureRange):
+            raise OptionError(f"postures must be a PostureRange, not {shown(self.postures)}")
 
     @property
     def judged(self) -> tuple[Cutter, ...]:

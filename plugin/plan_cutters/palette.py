@@ -8,6 +8,7 @@ PALETTE = {
     "inaccessible": "#D55E00",
     "unjudged": "#CC79A7",
     "check": "#BFBFBF",
+    "ignored": "#BFBFBF",
     "mixed": "#E69F00",
 }
 LABELS = tuple(PALETTE)

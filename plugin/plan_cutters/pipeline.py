@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io import Orientation, Part, SurfaceSamples, read_part
+from cad_io.assembly import component_of
 from cad_io.evaluate import evaluate
 from cad_io.orient import orient
 from cad_io.sample import sample
@@ -20,12 +21,13 @@ from plan_cutters import __version__
 from plan_cutters.access import access, witnesses
 from plan_cutters.between import Evaluate, between
 from plan_cutters.buried import buried
+from plan_cutters.checks import shown
 from plan_cutters.classify import CONCAVE, CONVEX, SADDLE, classify, regions
 from plan_cutters.conditions import Conditions
 from plan_cutters.cutter import Cutter
 from plan_cutters.decompose import decompose
 from plan_cutters.errors import OptionError, UnjudgeableError
-from plan_cutters.faces import select_faces
+from plan_cutters.faces import Chosen, choose
 from plan_cutters.machine import Machine
 from plan_cutters.model import (
     AreaEntry,
@@ -136,10 +138,11 @@ class Result:
 def plan(
     part: Any,
     *,
-    cutters: Sequence[Cutter] = (),
-    machine: Machine | None = None,
+    cutters: Sequence[Cutter | str] | Cutter | str = (),
+    machine: Machine | str | None = None,
     setup: tuple[float, float, float] = (0.0, 0.0, 1.0),
-    faces: str = "sculptured",
+    faces: Any = None,
+    ignore: Any = (),
     grid: int | None = None,
     spacing: float | None = None,
     tilt: tuple[float, float] = (0.0, np.pi / 2),
@@ -157,15 +160,19 @@ def plan(
 
     Parameters
     ----------
-    part : Part, path, TopoDS_Shape, CadQuery or build123d object
-    cutters : sequence of Cutter
-        None given: the built-in flat ends.
-    machine : Machine, optional
-        Default: no axis limit.
+    part : Part, path, TopoDS_Shape, CadQuery or build123d object, or a list of shapes
+        An object that holds picked faces stands for the shape that they belong to.
+    cutters : Cutter, str or sequence of these
+        A text as `R6L80`. None given: the built-in flat ends.
+    machine : Machine or str, optional
+        A text as `tilt:60` (degrees). Default: no axis limit.
     setup : tuple of float
         Direction of the part along the machine's spindle at zero angles.
-    faces : str
-        Target faces, as on the command line.
+    faces : str or objects, optional
+        Target faces: words as on the command line, numbers, or the faces themselves (a Workplane, a ShapeList, kernel
+        faces). Default: the faces picked on the part's object; where none were, `sculptured`.
+    ignore : str, list of str or objects
+        Faces that are neither targets nor obstacles, in the same words.
     grid, spacing : int, float, optional
         N x N samples a face, or at most `spacing` mm apart; default from curvature, smallest cutter and a budget.
     tilt, rotation : tuple of float
@@ -199,10 +206,12 @@ def plan(
         An option has no meaning.
     """
     more = {} if jobs is None else {"jobs": jobs}
+    if progress is not None and not callable(progress):
+        raise OptionError(f"progress must be a function of (stage, done, total), not {shown(progress)}")
     options = Options(
-        cutters=tuple(cutters), machine=machine or Machine(), setup=setup, faces=faces, grid=grid, spacing=spacing,
-        postures=PostureRange(tilt, rotation, rotation_step), tolerance=tolerance, flip=flip, unit=unit,
-        area_budget=area_budget, posture_maps=posture_maps, **more,
+        cutters=Cutter.each_of(cutters), machine=Machine.of(machine), setup=setup, faces=faces, ignore=ignore,
+        grid=grid, spacing=spacing, postures=PostureRange(tilt, rotation, rotation_step), tolerance=tolerance, flip=flip,
+        unit=unit, area_budget=area_budget, posture_maps=posture_maps, **more,
     )  # fmt: skip
     return run(part, options, progress=progress)
 
@@ -235,7 +244,8 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
         if isinstance(part, Part) and options.unit is not None:
             raise OptionError("the part has been read already: give the unit to read_part", file=part.file)
         whole = part if isinstance(part, Part) else read_part(part, unit=options.unit)
-    targets = select_faces(whole.faces, options.faces)
+    chosen_faces = choose(whole, options.faces, options.ignore)
+    targets = chosen_faces.targets
     setup = unit(options.setup, "setup axis")
     cutters = ranked(options.judged)
     with clock.stage("sample"):
@@ -253,7 +263,7 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
             f"no target face can be judged: {'; '.join(sorted(causes)) or 'no samples'}", file=whole.file
         )
     with clock.stage("tessellate"):
-        around = surroundings(whole, CHORD_ASKED * options.tolerance)
+        around = surroundings(whole, CHORD_ASKED * options.tolerance, ignored=chosen_faces.ignored)
         triangles = around.surely.triangles
         tolerance = kept_tolerance(options.tolerance, triangles.chord_error)
     with clock.stage("compile"):
@@ -292,7 +302,8 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
             unit=options.unit,
             machine=options.machine.name,
             setup=_vector(setup),
-            faces=options.faces,
+            faces=chosen_faces.asked,
+            ignore=list(chosen_faces.ignore),
             target_faces=[f"F{n}" for n in targets],
             grid=options.grid,
             spacing_mm=max(spacing.values()) if isinstance(spacing, dict) else spacing,
@@ -316,7 +327,7 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
             unjudged=int((samples.unjudged >= 0).sum()),
             regions=len(np.unique(region)),
         ),
-        faces=_faces(whole, samples, targets),
+        faces=_faces(whole, samples, chosen_faces),
         missing=missing,
         reasons=list(REASONS),
         cutters=entries,
@@ -324,6 +335,7 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
         selection=selection,
         notes=[
             *_notes(whole, orientation, options, tolerance, samples, around),
+            *chosen_faces.notes,
             *_area_notes(entries),
         ],
         legend=PALETTE,
@@ -491,10 +503,10 @@ def _sewing(part: Part) -> SewingInfo | None:
     )
 
 
-def _faces(part: Part, samples: SurfaceSamples, targets: Sequence[int]) -> list[FaceEntry]:
+def _faces(part: Part, samples: SurfaceSamples, choice: Chosen) -> list[FaceEntry]:
     empty = dict(samples.empty)
-    chosen = set(targets)
-    component = {number: path for root in part.tree for leaf, path, _ in root.leaves() for number in leaf.faces}
+    chosen, ignored = set(choice.targets), set(choice.ignored)
+    component = component_of(part.tree)
     result = []
     for face in part.faces:
         mine = samples.face == face.number
@@ -510,6 +522,7 @@ def _faces(part: Part, samples: SurfaceSamples, targets: Sequence[int]) -> list[
                 surface=face.surface,
                 shape=face.shape,
                 target=face.number in chosen,
+                ignored=face.number in ignored,
                 area_mm2=face.area,
                 component=component[face.number],
                 samples=int(mine.sum()),
@@ -543,7 +556,8 @@ def _notes(
 def _around_notes(part: Part, around: Surroundings) -> Iterator[str]:
     """What stands in the way otherwise than the file has it."""
     skins = {number for body in around.bodies if body.closed for number in body.faces}
-    sheets = [f.id for f in part.faces if f.number not in skins]
+    present = set(np.unique(around.may_be.triangles.face).tolist())
+    sheets = [f.id for f in part.faces if f.number in present - skins]
     if sheets and skins:
         yield (f"{listed(sheets)} enclose{'s' if len(sheets) == 1 else ''} no material: only the surface is in the way, "
                "not what may lie behind it.")  # fmt: skip

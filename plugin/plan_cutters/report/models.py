@@ -50,12 +50,12 @@ def split_result(result: Any) -> Any:
         code[verdict] = label
     label = code[result.reaches[result.shown].verdict]
     grids = {g.face: g for g in samples.grids}
-    check = LABELS.index("check")
+    check, ignored = LABELS.index("check"), LABELS.index("ignored")
     labels = []
     for face in result.plan.faces:
         number = int(face.id[1:])
         if not face.target:
-            labels.append(_whole(number, check))
+            labels.append(_whole(number, ignored if face.ignored else check))
         elif number in grids:
             labels.append(_grid_labels(grids[number], label))
         elif (mine := samples.face == number).any():
@@ -85,12 +85,12 @@ def rungs(split: Any) -> dict[str, SplitEntry]:
 
 
 def _styles(result: Any) -> Callable[[Any], Style]:
-    """Name and colour of a piece: a target face has the colour of its verdict, a check face keeps its own."""
+    """Name and colour of a piece: a target face has the colour of its verdict, others keep their own."""
     faces = result.part.faces
 
     def style(piece: Any) -> Style:
         info, verdict = faces[piece.face - 1], _verdict(piece)
-        own = info.colour if piece.label == LABELS.index("check") else None
+        own = info.colour if verdict in ("check", "ignored") else None
         return Style(f"F{piece.face}_{verdict} {info.name}".strip(), own or rgb(verdict))
 
     return style
@@ -120,6 +120,7 @@ def write_glb(result: Any, split: Any, path: Path, *, merged: bool = False) -> N
             "layers": list(result.part.layers.get(face, ())),
             "surface": entry.surface,
             "target": entry.target,
+            "ignored": entry.ignored,
             "cutter": shown.id,
             "verdicts": counts.model_dump() if counts else {},
             "reasons": reasons,

@@ -1,0 +1,91 @@
+"""Is an argument the kind of thing that it must be? What is not ends in an error that says what was given.
+
+`True` is not taken for 1, nor `"6"` for 6, nor a table for a list: each is rather a mistake than a wish.
+"""
+
+import math
+import reprlib
+from collections.abc import Iterable, Mapping, Set
+from numbers import Integral, Real
+from typing import Any
+
+import numpy as np
+
+from plan_cutters.errors import OptionError
+
+#: Added to limits of angles, for what is left when degrees were turned into single-precision radians.
+_ROUNDING = 1e-6
+
+
+def number(value: Any, what: str, *, error: type[OptionError] = OptionError) -> float:
+    """A real number, infinite ones too; `error` for anything else and for NaN."""
+    if not isinstance(value, Real) or isinstance(value, bool):
+        raise error(f"{what} must be a number, not {shown(value)}")
+    try:
+        found = float(value)
+    except OverflowError:
+        found = math.inf
+    if math.isnan(found):
+        raise error(f"{what} must be a number, not nan")
+    return found
+
+
+def whole(value: Any, what: str) -> int:
+    """A whole number that a computer counts with."""
+    if not isinstance(value, Integral) or isinstance(value, bool) or abs(int(value)) >= 1 << 63:
+        raise OptionError(f"{what} must be a whole number, not {shown(value)}")
+    return int(value)
+
+
+def flag(value: Any, what: str) -> bool:
+    """True or False (numpy's too)."""
+    if not isinstance(value, bool | np.bool_):
+        raise OptionError(f"{what} must be True or False, not {shown(value)}")
+    return bool(value)
+
+
+def items(value: Any, what: str, of: str, *, error: type[OptionError] = OptionError) -> list[Any]:
+    """The items of a list, a tuple, an array or anything else that gives its items in order."""
+    try:
+        if not isinstance(value, Iterable) or isinstance(value, str | bytes | Mapping | Set):
+            raise TypeError
+        return list(value)
+    except TypeError:
+        raise error(f"{what} must be a list of {of}, not {shown(value)}") from None
+
+
+def numbers(value: Any, what: str, count: int | None = None) -> tuple[float, ...]:
+    """Real numbers, `count` of them if that is given."""
+    of = "numbers" if count is None else f"{count} numbers"
+    found = tuple(number(each, what) for each in items(value, what, of))
+    if count is not None and len(found) != count:
+        raise OptionError(f"{what} must be a list of {of}, not of {len(found)}")
+    return found
+
+
+def pair(value: Any, what: str) -> tuple[float, float]:
+    """Two real numbers, as a range has them."""
+    low, high = numbers(value, what, 2)
+    return low, high
+
+
+def choice(value: Any, what: str) -> None:
+    """What may be words or objects; which objects, only the part can tell."""
+    if isinstance(value, bool | float | complex | bytes | Mapping | Set):
+        raise OptionError(f"{what} must be words or faces of the part, not {shown(value)}")
+
+
+def radians(angle: float, what: str, most: float, *, error: type[OptionError] = OptionError) -> float:
+    """An angle from -`most` to `most`: what is larger was meant in degrees."""
+    if abs(angle) > most + _ROUNDING:
+        raise error(f"{what} {angle:g} lies beyond {most:.4g}: angles are radians; math.radians({angle:g})?")
+    return min(max(angle, -most), most)
+
+
+def shown(value: Any) -> str:
+    """A value in an error, on one line: itself where that is short, else its type."""
+    if isinstance(value, Real) and not isinstance(value, int):
+        return f"{float(value):g}"
+    if value is None or isinstance(value, str | int):
+        return " ".join(reprlib.repr(str(value) if isinstance(value, str) else value).split())
+    return f"a value of type {type(value).__name__}"
