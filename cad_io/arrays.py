@@ -147,11 +147,13 @@ class Triangles:
     Attributes
     ----------
     vertex : (t, 3, 3) float
-        Corners, mm.
+        Corners a, b, c, mm, ordered so that `(b - a) x (c - a)` has the side of `dS/du x dS/dv` of the face's surface
+        (counter-clockwise in the parameter plane). Where that area is zero, either order may be found.
     face : (t,) int32
         Face number.
     chord_error : float
-        Largest measured distance between a triangle and the surface that it stands for, mm.
+        Largest measured distance between a triangle and the surface that it stands for, mm. Each point of the face, up
+        to its true border, has a triangle within it.
     missing : tuple of (int, str)
         Faces without triangles, with the reason.
     """
