@@ -137,24 +137,24 @@ def exact_points(part: Part, number: int, count: int, rng: np.random.Generator) 
 
 
 def truly_inside(part: Part, number: int, uv: Floats) -> Any:
-    """Which points lie in a face or on its border: even-odd against FINE chords a curve, or next to one of them."""
-    if not len(uv):
-        return np.zeros(0, bool)
-    face = TopoDS.Face_s(part.face(number).Oriented(TopAbs_FORWARD))
-    scale = part.trim(number).scale
-    crossings, beside = np.zeros(len(uv), int), np.zeros(len(uv), bool)
-    for edge in border_edges(face):
+    """Which points lie on a border curve, or on the face's side of the curve that is nearest to them."""
+    face, trim = TopoDS.Face_s(part.face(number).Oriented(TopAbs_FORWARD)), part.trim(number)
+    nearest, inner = np.full(len(uv), np.inf), np.zeros(len(uv), bool)
+    for edge in border_edges(face) if len(uv) else ():
         curve = BRepAdaptor_Curve2d(edge, face)
         t = np.linspace(curve.FirstParameter(), curve.LastParameter(), FINE + 1)
-        line = np.array([curve.Value(x).Coord() for x in t.tolist()])
-        for k, point in enumerate(uv):
-            below = line[:, 1] <= point[1]
-            here = np.flatnonzero(below[1:] != below[:-1])
-            p, q = line[here], line[here + 1]
-            u = p[:, 0] + (point[1] - p[:, 1]) / (q[:, 1] - p[:, 1]) * (q[:, 0] - p[:, 0])
-            crossings[k] += int((u < point[0]).sum())
-            beside[k] |= np.linalg.norm((line - point) * scale, axis=1).min() < 1e-9
-    return beside | (crossings % 2 == 1)
+        line = np.array([curve.Value(x).Coord() for x in t.tolist()]) * trim.scale
+        line = line if edge.Orientation() == TopAbs_FORWARD else line[::-1]
+        start, along = line[:-1], np.diff(line, axis=0)
+        for k, point in enumerate(uv * trim.scale):
+            share = np.clip(((point - start) * along).sum(1) / np.maximum((along**2).sum(1), 1e-300), 0, 1)
+            away = point - start - share[:, None] * along
+            off = np.linalg.norm(away, axis=1)
+            i = int(off.argmin())
+            if off[i] < nearest[k]:
+                nearest[k] = off[i]
+                inner[k] = off[i] < 1e-9 or along[i, 0] * away[i, 1] > along[i, 1] * away[i, 0]
+    return inner
 
 
 def violations(part: Part, triangles: Triangles, count: int, seed: int = 0) -> Iterator[tuple[int, int, float, Any]]:

@@ -135,7 +135,7 @@ def _on_grid(part: Part, number: int, trim: Trim, lines: Lines, inside: NDArray[
         pairs.append(_linked(index[-1], index[0]))
     if lines.closed_v:
         pairs.append(_linked(index[:, -1], index[:, 0]))
-    face_grid = FaceGrid(number, lines.u, lines.v, index, lines.closed_u, lines.closed_v)
+    face_grid = FaceGrid(number, lines.u, lines.v, index, lines.closed_u, lines.closed_v, lines.span)
     return _FaceSamples(number, derivatives, uv, weight, np.concatenate(pairs), face_grid)
 
 

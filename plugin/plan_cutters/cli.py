@@ -256,7 +256,7 @@ def _summary(plan: "Plan", out: Path, formats: Sequence[str]) -> None:
     size = " x ".join(f"{s:.4g}" for s in plan.part.size_mm)
     targets = len(plan.effective.target_faces)
     console.print(f"{plan.part.file or 'part'}: {size} mm, {plan.part.faces} faces, {targets} to machine, "
-                  f"{plan.samples.count} samples at most {plan.samples.max_gap_mm:.3g} mm apart")  # fmt: skip
+                  f"{plan.samples.count} samples, gaps up to {plan.samples.max_gap_mm:.3g} mm")  # fmt: skip
     table = Table(box=None, pad_edge=False)
     for column in ("cutter", "feasible", "free", "accessible", "undecided", "inaccessible"):
         table.add_column(column, justify="left" if column in ("cutter", "feasible") else "right")
