@@ -24,6 +24,7 @@ from cad_io.part import Part, as_one
 
 #: How far a border curve may pass a mesh's nodes, mm.
 _ON = 1e-7
+_SAME = 1e-13  # of a parameter: what differs by less need not be measured
 
 
 class BorderCurve(NamedTuple):
@@ -73,7 +74,7 @@ def _taken(part: Part, number: int) -> UVMesh | None:
     corner = np.array([mesh.Triangle(i).Get() for i in range(1, mesh.NbTriangles() + 1)], dtype=np.int32) - 1
     corner = upright(uv, corner)
     forward = TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
-    border = []
+    border, on_curve = [], []
     for edge in edges_of(forward):
         if edge.Orientation() not in (TopAbs_FORWARD, TopAbs_REVERSED):
             continue
@@ -84,14 +85,16 @@ def _taken(part: Part, number: int) -> UVMesh | None:
         nodes = np.array([polygon.Node(i) for i in count], dtype=np.int32) - 1
         parameter = np.array([polygon.Parameter(i) for i in count])
         # A seam has two curves, and the mesher does not always give each its own polygon: take the one that fits.
-        curves = [BRepAdaptor_Curve2d(use, forward) for use in (edge, TopoDS.Edge_s(edge.Reversed()))]
+        uses = (edge, TopoDS.Edge_s(edge.Reversed())) if BRep_Tool.IsClosed_s(edge, forward) else (edge,)
+        curves = [BRepAdaptor_Curve2d(use, forward) for use in uses]
         there = [np.array([curve.Value(t).Coord() for t in parameter.tolist()]) for curve in curves]
         best = int(np.argmin([np.abs(on - uv[nodes]).max() for on in there]))
         border.append(BorderCurve(nodes, parameter, curves[best]))
-    return _bordered(UVMesh(uv, corner, tuple(border)), part.adaptor(number))
+        on_curve.append(there[best])
+    return _bordered(UVMesh(uv, corner, tuple(border)), on_curve, part.adaptor(number))
 
 
-def _bordered(mesh: UVMesh, adaptor: BRepAdaptor_Surface) -> UVMesh:
+def _bordered(mesh: UVMesh, on_curve: Sequence[Floats], adaptor: BRepAdaptor_Surface) -> UVMesh:
     """The mesh, and triangles from its outline to the border curves where these pass its nodes.
 
     The mesher has one node for all edges that end in a vertex, however far apart their curves end (0.01 mm was found
@@ -100,10 +103,11 @@ def _bordered(mesh: UVMesh, adaptor: BRepAdaptor_Surface) -> UVMesh:
     uv, corner, border = [mesh.uv], [mesh.corner], []
     count = len(mesh.uv)
     ends: dict[int, list[int]] = {}
-    for nodes, parameter, curve in mesh.border:
-        there = np.array([curve.Value(t).Coord() for t in parameter.tolist()])
-        off = values(adaptor, *there.T) - values(adaptor, *mesh.uv[nodes].T)
-        passed = np.flatnonzero(np.linalg.norm(off, axis=1) > _ON)
+    for (nodes, parameter, curve), there in zip(mesh.border, on_curve, strict=True):
+        here = mesh.uv[nodes]
+        passed = np.flatnonzero((np.abs(there - here) > _SAME * np.maximum(1.0, np.abs(here))).any(axis=1))
+        off = values(adaptor, *there[passed].T) - values(adaptor, *here[passed].T)
+        passed = passed[np.linalg.norm(off, axis=1) > _ON]
         own = nodes.copy()
         own[passed] = count + np.arange(len(passed))
         count += len(passed)
