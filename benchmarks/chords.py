@@ -25,8 +25,6 @@ from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS
 from scipy.spatial import cKDTree
 
-sys.path[:0] = [str(Path(__file__).resolve().parents[1] / folder) for folder in ("plugin", "", "tests")]
-
 from cad_io import Part, read_part
 from cad_io.arrays import Floats, Triangles
 from cad_io.tessellate import tessellate
@@ -186,6 +184,7 @@ def main() -> int:
     if given.files:
         parts = ((path.name, lambda path=path: read_part(path)) for path in given.files)
     else:
+        sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))
         from moulds import MOULDS
 
         parts = ((name, lambda make=make: read_part(make())) for name, make in MOULDS.items())

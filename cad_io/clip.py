@@ -35,6 +35,10 @@ class Clipped(NamedTuple):
     high: Floats
     whole: Bools
 
+    def at(self, rows: Indices | Bools) -> "Clipped":
+        """Some of the tiles."""
+        return Clipped(self.area[rows], self.middle[rows], self.low[rows], self.high[rows], self.whole[rows])
+
 
 def clipped(trim: Trim, u: Floats, v: Floats, tile: Indices) -> Clipped:
     """What of tiles lies in a trim.

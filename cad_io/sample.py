@@ -6,14 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from cad_io.arrays import FaceGrid, Floats, Ints, Orientation, SurfaceSamples
 from cad_io.curvature import curvature
 from cad_io.errors import SampleError
+from cad_io.gap import border_gap
 from cad_io.grid_lines import Lines, spaced, uniform
 from cad_io.joints import smooth_joints
-from cad_io.kernel import second_derivatives, translated, values
+from cad_io.kernel import second_derivatives, translated
 from cad_io.locate import locate
 from cad_io.mesh import uv_meshes
 from cad_io.part import Part
@@ -25,8 +25,6 @@ __all__ = ["locate", "sample"]
 REASONS = ("the surface has no normal or curvature there",)
 _DOUBLINGS = 4  # of a grid that misses a thin face
 _CORRECTIONS = 4  # of a spacing that the probes underrated
-_STEPS, _FEW = 20_000, 200  # along the border, at most, to measure its distance from many samples, or from one
-_STRAIGHT = 0.98  # cosine of the angle between segments of the border from which on they make a corner
 _LEAST_SHARE = 0.125  # of its cell that a sample on the trim stands for
 
 
@@ -173,7 +171,11 @@ def _together(
     face = np.repeat(np.array([f.number for f in taken], np.int32), np.diff(start))
     within = [f.pairs + s for f, s in zip(taken, start[:-1], strict=True)]
     gaps = [_gap(point, pairs) for pairs in within]
-    to_border = [_to_border(part, f, gap) for f, gap in zip(taken, gaps, strict=True)]
+    to_border = [
+        border_gap(part, f.number, f.derivatives[:, 0], gap)
+        for f, gap in zip(taken, gaps, strict=True)
+        if f.grid is None or not _all_along(part.trim(f.number), f.grid)
+    ]
     neighbours = np.concatenate([*within, smooth_joints(part, orientation, point, face, dict(
         zip([f.number for f in taken], gaps, strict=True)))]).astype(np.int32)  # fmt: skip
     bad = np.concatenate([g.bad for g in geometry]) if geometry else np.zeros(0, bool)
@@ -218,26 +220,9 @@ def _gap(point: Floats, pairs: Ints) -> float:
     return float(np.nanmax(np.linalg.norm(point[pairs[:, 0]] - point[pairs[:, 1]], axis=1), initial=0.0))
 
 
-def _to_border(part: Part, found: _FaceSamples, gap: float) -> float:
-    """Largest distance, mm, of the face's border from its nearest sample."""
-    trim, grid, point = part.trim(found.number), found.grid, found.derivatives[:, 0]
-    point = point[np.isfinite(point).all(axis=1)]
-    if trim is None or not len(point) or (grid is not None and trim.rectangular and (grid.index >= 0).all()):
-        return 0.0  # nodes all along the border
-    along = (trim.segments[:, 1] - trim.segments[:, 0]) * trim.scale
-    length = np.linalg.norm(along, axis=1)
-    end = np.cumsum(length)
-    step = max(0.5 * gap, float(end[-1]) / (_STEPS if gap else _FEW))
-    at = np.arange(0.0, end[-1], step)
-    which = np.minimum(np.searchsorted(end, at, "right"), len(end) - 1)
-    share = np.clip((at - end[which] + length[which]) / np.maximum(length[which], 1e-300), 0.0, 1.0)[:, None]
-    # And the corners, which are the farthest: starts of segments that go another way than the one before.
-    before = np.roll(along, 1, axis=0)
-    corner = (along * before).sum(axis=1) < _STRAIGHT * length * np.roll(length, 1)
-    uv = np.concatenate([(1 - share) * trim.segments[which, 0] + share * trim.segments[which, 1], trim.segments[corner, 0]])
-    there = values(part.adaptor(found.number), uv[:, 0], uv[:, 1])
-    there = there[np.isfinite(there).all(axis=1)]
-    return float(cKDTree(point).query(there)[0].max(initial=0.0)) if len(there) else 0.0
+def _all_along(trim: Trim | None, grid: FaceGrid) -> bool:
+    """True if nodes stand all along the border: it is no farther from them than they are from each other."""
+    return trim is not None and trim.rectangular and bool((grid.index >= 0).all())
 
 
 def _linked(first: Ints, second: Ints) -> Ints:

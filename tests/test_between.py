@@ -152,8 +152,9 @@ def test_axes_between_samples_keep_the_machines_limit():
     # A cell that reaches from within the limit to beyond it.
     uv = np.array([[0.5, 0.62]])
     point, normal, direction, curvature = geometry(1, uv)
-    field = Field(whole, orient(whole, towards=UP, flip=False), 1, whole.trim(1), [(np.array([0.3, 0.7]), np.array([0.42, 0.82]))],
-                  np.zeros((1, 1), np.int32), np.zeros(2, bool), point, normal, np.zeros((1, 3, 3)))  # fmt: skip
+    lines = [(np.array([0.3, 0.7]), np.array([0.42, 0.82]))]
+    field = Field(whole, orient(whole, towards=UP, flip=False), 1, whole.trim(1), lines, np.zeros((1, 1), np.int32),
+                  np.zeros(2, bool), point, normal, np.zeros((1, 3, 3)))  # fmt: skip
     cell = Contacts(point, normal, direction, curvature, normal, np.array([True]), np.ones(1), np.zeros((1, 2), np.int32),
                     np.zeros((1, 2), np.int64), uv, np.full((1, 2), 0.4), np.array([True]), np.ones(1), np.ones(1))  # fmt: skip
     plane = Obstacles(tessellate(part, 0.002))

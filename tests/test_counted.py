@@ -36,7 +36,7 @@ from plan_cutters.conditions import Conditions
 from plan_cutters.obstacles import Obstacles
 
 sys.path.append(str(Path(__file__).parent.parent / "benchmarks"))
-from chords import violations  # noqa: E402
+from chords import violations
 
 WIDE = 60.0
 
@@ -111,7 +111,10 @@ def test_the_share_is_that_of_random_points_in_served_cells(make, budget):
 TURNED = {
     "rod, hole across the seam": (MOULDS["rod with a hole across the seam"], {"grid": 61}),
     "ball, hole at the pole": (MOULDS["ball with a hole at the pole"], {"grid": 41}),
-    "ring, hole": (lambda: cut(ring(60, 20), put(rod(8, 200, (0, 0, -100)), 0.5, (0, 1, 0), (76, 4, 0))), {"spacing": 2.5}),
+    "ring, hole": (
+        lambda: cut(ring(60, 20), put(rod(8, 200, (0, 0, -100)), 0.5, (0, 1, 0), (76, 4, 0))),
+        {"spacing": 2.5},
+    ),
 }
 
 
@@ -181,7 +184,9 @@ def test_a_face_without_samples_whose_area_is_known_counts():
         for name in ("point", "normal", "direction_max", "curvature", "uv", "face", "area", "unjudged")
     }, grids=both.grids[:1], empty=((2, "no sample lies inside its border"),))  # fmt: skip
     cutter, reach = Cutter.flat(radius=3, length=40), result.reaches["R3L40"]
-    conditions = Conditions(Machine.parse("unlimited"), UP, result.postures, Obstacles(tessellate(part, 0.002)), 0.01, 1)
+    conditions = Conditions(
+        Machine.parse("unlimited"), UP, result.postures, Obstacles(tessellate(part, 0.002)), 0.01, 1
+    )
     side = orient(part, towards=UP, flip=False)
     assert between(both, reach, cutter, part, side, conditions, budget=0).feasible
     found = between(one, reach, cutter, part, side, conditions, budget=0)

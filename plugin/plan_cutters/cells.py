@@ -16,14 +16,11 @@ from cad_io.evaluate import density, evaluate
 from cad_io.part import Part
 from cad_io.trim import Trim
 from plan_cutters.conditions import Conditions
+from plan_cutters.nodes import WIDER, WILDER, from_neighbours, tensors
 from plan_cutters.reach import FREE, Reach
 
 Indices = NDArray[np.int64]
 
-#: The patch about a node is at least half the way to its diagonal neighbours; some more, for cells that are bent.
-WIDER = 1.1
-#: In a cell, the curvature tensor may differ from its node's this many times as much as half way to the next nodes.
-WILDER = 2.0
 #: Where a box is looked at to tell how large it is, and how curvature changes in it.
 _ROUND = np.array([(0, 0), (0.5, 0), (1, 0), (1, 0.5), (1, 1), (0.5, 1), (0, 1), (0, 0.5)])
 _BESIDE = ((-1, 0), (1, 0), (0, -1), (0, 1), (-1, -1), (-1, 1), (1, -1), (1, 1))
@@ -144,11 +141,11 @@ def laid(
     index[node_u < 0], index[:, node_v < 0] = -1, -1
     field = Field(part, orientation, grid.face, trim, [(u, v)], index, np.array([grid.closed_u, grid.closed_v]),
                   samples.point[rows], samples.normal[rows], tensor)  # fmt: skip
-    _known_at_nodes(field, np.where(grid.index < 0, -1, grid.index - start), grid)
+    field.wobble, field.radius = from_neighbours(field.point, tensor, grid, grid.index - start)
     tile = np.argwhere(np.ones(index.shape, bool))
     clip = clipped(trim, u, v, tile)
     chosen = np.flatnonzero(clip.area > 0)
-    tile, clip = tile[chosen], Clipped(*(column[chosen] for column in clip))
+    tile, clip = tile[chosen], clip.at(chosen)
     area = field.weight(clip)
     area *= part.faces[grid.face - 1].area / max(area.sum(), 1e-300)
     node = index[tile[:, 0], tile[:, 1]]
@@ -194,7 +191,7 @@ def quartered(contacts: Contacts, field: Field, level: int, conditions: Conditio
             column[cut] = found
     kept = np.flatnonzero(clip.area > 0)
     tile, parent, middle, span = tile[kept], parent[kept], middle[kept], span[kept]
-    clip = Clipped(*(column[kept] for column in clip))
+    clip = clip.at(kept)
     weight = field.weight(clip)
     whole = np.bincount(parent, weight, len(contacts))[parent]
     geometry = field.at(clip.middle)
@@ -207,14 +204,6 @@ def quartered(contacts: Contacts, field: Field, level: int, conditions: Conditio
     return Contacts(*geometry, _started(contacts.axis[parent], flat, geometry[1], conditions), flat, patch,
                     contacts.home[parent], tile, middle, span, clip.whole, size,
                     contacts.area[parent] * weight / np.where(whole > 0, whole, 1.0))  # fmt: skip
-
-
-def tensors(normal: Floats, direction_max: Floats, curvature: Floats) -> Floats:
-    """Second fundamental form (n, 3, 3) in part coordinates, 1/mm, concave positive."""
-    across = np.cross(normal, direction_max)
-    high, low = curvature[:, 0, None, None], curvature[:, 1, None, None]
-    e1, e2 = direction_max[:, :, None], across[:, :, None]
-    return np.asarray(high * e1 * e1.transpose(0, 2, 1) + low * e2 * e2.transpose(0, 2, 1))
 
 
 def _tiles(
@@ -269,21 +258,6 @@ def _beside(
     return axis, flat
 
 
-def _known_at_nodes(field: Field, index: NDArray[np.int64], grid: FaceGrid) -> None:
-    """Write radius and wobble of the samples, from their neighbours: nan where no neighbour tells them."""
-    on = index >= 0
-    point = np.where(on[..., None], field.point[index], np.nan)
-    bend = field.tensor[index].reshape(*on.shape, 9)
-    wobble = np.zeros(on.shape)
-    for axis, closed in ((0, grid.closed_u), (1, grid.closed_v)):
-        differs = np.linalg.norm(_next(bend, axis, closed) - bend, axis=2)
-        differs[~(on & (_next(on.astype(float), axis, closed) == 1))] = 0.0
-        wobble += np.maximum(differs, np.roll(differs, 1, axis))
-    field.wobble, field.radius = np.full(len(field.point), np.nan), np.full(len(field.point), np.nan)
-    field.wobble[index[on]] = 0.5 * WILDER * wobble[on]
-    field.radius[index[on]] = _radius(point, grid)[on]
-
-
 def _bare_nodes(field: Field, node: Ints, clip: Clipped) -> None:
     """Fill in what is known of nodes without a neighbour along some line, from the boxes of their cells."""
     alone = np.flatnonzero((node >= 0) & np.isnan(field.radius[node]))
@@ -301,30 +275,9 @@ def _add_nodes(field: Field, strips: Contacts, low: Floats, high: Floats) -> Non
     radius, wobble = field.around(low, high, strips.point, tensor) if len(strips) else (np.zeros(0), np.zeros(0))
     field.index[strips.tile[:, 0], strips.tile[:, 1]] = len(field.point) + np.arange(len(strips))
     strips.patch[:] = radius
-    field.point, field.normal = np.concatenate([field.point, strips.point]), np.concatenate([field.normal, strips.normal])
+    field.point, field.normal = (
+        np.concatenate([field.point, strips.point]),
+        np.concatenate([field.normal, strips.normal]),
+    )
     field.tensor = np.concatenate([field.tensor, tensor])
     field.wobble, field.radius = np.concatenate([field.wobble, wobble]), np.concatenate([field.radius, radius])
-
-
-def _next(field: Floats, axis: int, closed: bool) -> Floats:
-    """Each node's next one along an axis; nan past the end of a grid that is not closed."""
-    moved = np.roll(field, -1, axis)
-    if not closed:
-        moved[(-1,) if axis == 0 else (slice(None), -1)] = np.nan
-    return moved
-
-
-def _radius(point: Floats, grid: FaceGrid) -> Floats:
-    """Half the largest distance to the diagonal neighbours; beyond an end of the face, as on this side of it."""
-    ahead_u, ahead_v = _next(point, 0, grid.closed_u), _next(point, 1, grid.closed_v)
-    sides = []
-    for axis, ahead in ((0, ahead_u), (1, ahead_v)):
-        gap = np.linalg.norm(ahead - point, axis=2)
-        sides.append(np.fmax(gap, np.roll(gap, 1, axis)))
-    straight = np.hypot(*sides)
-    both = _next(ahead_u, 1, grid.closed_v)
-    down = np.linalg.norm(both - point, axis=2)
-    up = np.linalg.norm(ahead_u - ahead_v, axis=2)
-    corners = [down, np.roll(down, (1, 1), (0, 1)), np.roll(up, 1, 0), np.roll(up, 1, 1)]
-    longest = np.fmax(straight, np.fmax.reduce(corners))
-    return np.asarray(0.5 * WIDER * np.where(np.isfinite(straight), longest, np.nan))

@@ -522,10 +522,13 @@ def _area_notes(entries: Sequence[CutterEntry]) -> Iterator[str]:
             yield (
                 f"{entry.id} reaches every judged sample, but not all of the target surface was shown to be served: "
                 f"{entry.area.left} contacts were left when the budget of {entry.area.contacts} ended, no posture serves "
-                "a whole cell there, or a face has no samples. Sample more finely, or give a larger --area-budget."
+                "a whole cell there, or a face has no samples or no closed border. Sample more finely, or give a larger "
+                "--area-budget."
             )
         elif entry.area:
-            what = "all of the target surface whose area is known" if entry.area.left_out else "all of the target surface"
+            what = (
+                "all of the target surface whose area is known" if entry.area.left_out else "all of the target surface"
+            )
             yield f"{entry.id} serves {what}, as far as curvature between grid nodes is known."
         if entry.area and entry.area.left_out:
             yield f"The area of {', '.join(entry.area.left_out)} is not known: it is not in the share that is served."
