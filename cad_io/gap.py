@@ -30,8 +30,8 @@ def border_gap(part: Part, number: int, point: Floats, gap: float) -> float:
     along = (trim.segments[:, 1] - trim.segments[:, 0]) * trim.scale
     length = np.linalg.norm(along, axis=1)
     end = np.cumsum(length)
-    step = max(0.5 * gap, float(end[-1]) / (_STEPS if gap else _FEW))
-    at = np.arange(0.0, end[-1], step)
+    count = end[-1] / (0.5 * gap) if gap else _FEW
+    at = np.linspace(0.0, end[-1], int(np.clip(np.ceil(count), 1, _STEPS)), endpoint=False)
     which = np.minimum(np.searchsorted(end, at, "right"), len(end) - 1)
     share = np.clip((at - end[which] + length[which]) / np.maximum(length[which], 1e-300), 0.0, 1.0)[:, None]
     # Corners are the farthest: starts of segments that go another way than the one before.

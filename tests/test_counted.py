@@ -26,7 +26,9 @@ from test_tessellate import ROUNDING, farthest_from
 from cad_io import read_part
 from cad_io.clip import clipped, inside
 from cad_io.evaluate import density
+from cad_io.gap import border_gap
 from cad_io.kernel import edges_of, first_derivatives
+from cad_io.mesh import folded, upright
 from cad_io.orient import orient
 from cad_io.sample import sample
 from cad_io.tessellate import tessellate
@@ -209,6 +211,16 @@ def test_the_largest_gap_reaches_the_border(make, spacing):
         assert samples.max_gap == pytest.approx(max(step, farthest), rel=0.05)
 
 
+def test_one_sample_is_as_far_from_the_border_as_it_is():
+    part = read_part(rod(5.0, 20.0))
+    disc = next(face.number for face in part.faces if face.surface == "plane")
+    height = part.face(disc)
+    middle = np.array([[0.0, 0.0, edge_points(edges_of(height)[0], 2)[0, 2]]])
+    assert border_gap(part, disc, middle, 0.0) == pytest.approx(5.0)
+    assert border_gap(part, disc, middle + np.array([2.0, 0, 0]), 0.0) == pytest.approx(7.0, rel=1e-3)
+    assert border_gap(part, disc, np.full((1, 3), np.nan), 0.0) == 0.0
+
+
 def edge_points(edge, count):
     """Points of an edge's own curve in space, which the program does not read."""
     if BRep_Tool.Degenerated_s(edge):
@@ -273,6 +285,12 @@ def test_every_point_of_a_repaired_casting_has_a_triangle_within_the_promise(pat
     triangles = tessellate(part, 0.002)
     for number, _, off, uv in violations(part, triangles, 2000):
         assert off <= triangles.chord_error + ROUNDING, (number, uv)
+
+
+def test_folded_triangles_are_turned_over():
+    uv, corner = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (2.0, 0.0)]), np.array([(0, 1, 2), (0, 2, 1), (0, 1, 3)])
+    assert folded(uv[corner]).tolist() == [False, True, False]
+    assert upright(uv, corner).tolist() == [[0, 1, 2], [0, 1, 2], [0, 1, 3]]
 
 
 @pytest.mark.parametrize("make", [*MOULDS.values(), lambda: shapes.torus(20, 5).Moved(TopLoc_Location(mirror()))])
