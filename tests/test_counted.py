@@ -110,6 +110,21 @@ def test_the_share_is_that_of_random_points_in_served_cells(make, budget):
         assert deepest(found, geometry, whole, cutter, dense(whole, 0.5), 300, rng) < 0.02
 
 
+def test_the_share_is_that_of_random_points_of_all_faces():
+    rng, cutter = np.random.default_rng(6), Cutter.flat(radius=1.0, length=200.0)
+    found, geometry, whole = served(MOULDS["mould"](), cutter, budget=4000, spacing=4.0, faces="all", tolerance=0.1)
+    area, hit, spread, each = 0.0, 0.0, 0.0, 300
+    for face in whole.faces:
+        mine = replace(found.cells, **{k: getattr(found.cells, k)[found.cells.face == face.number]
+                                       for k in ("face", "uv", "span", "axis")})  # fmt: skip
+        share = within(mine, random_points(whole, face.number, each, rng)).mean()
+        area, hit = area + face.area, hit + share * face.area
+        spread += max(share * (1 - share), 1 / each) / each * face.area**2
+    assert len(np.unique(found.cells.face)) > 8
+    assert found.share == pytest.approx(hit / area, abs=4 * math.sqrt(spread) / area)
+    assert deepest(found, geometry, whole, cutter, dense(whole, 1.0), 300, rng) < 0.1
+
+
 TURNED = {
     "rod, hole across the seam": (MOULDS["rod with a hole across the seam"], {"grid": 61}),
     "ball, hole at the pole": (MOULDS["ball with a hole at the pole"], {"grid": 41}),

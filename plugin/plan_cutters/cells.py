@@ -137,11 +137,12 @@ def laid(
     start = int(grid.index[grid.index >= 0].min())
     rows = np.arange(start, start + int((grid.index >= 0).sum()))
     tensor = tensors(samples.normal[rows], samples.direction_max[rows], samples.curvature[rows])
-    index = np.where(grid.index < 0, -1, grid.index - start)[np.ix_(node_u, node_v)].astype(np.int32)
+    local = np.where(grid.index < 0, -1, grid.index - start)
+    index = local[np.ix_(node_u, node_v)].astype(np.int32)
     index[node_u < 0], index[:, node_v < 0] = -1, -1
     field = Field(part, orientation, grid.face, trim, [(u, v)], index, np.array([grid.closed_u, grid.closed_v]),
                   samples.point[rows], samples.normal[rows], tensor)  # fmt: skip
-    field.wobble, field.radius = from_neighbours(field.point, tensor, grid, grid.index - start)
+    field.wobble, field.radius = from_neighbours(field.point, tensor, grid, local)
     tile = np.argwhere(np.ones(index.shape, bool))
     clip = clipped(trim, u, v, tile)
     chosen = np.flatnonzero(clip.area > 0)
