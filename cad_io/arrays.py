@@ -82,6 +82,9 @@ class FaceGrid:
         Row of the sample in SurfaceSamples, -1 outside the trim.
     closed_u, closed_v : bool
         The last line's neighbour is the first one (a seam).
+    span : tuple of float
+        Ends of the range that the lines were laid over: u least, u most, v least, v most. A closed range's second end is
+        its first one, a turn later.
     """
 
     face: int
@@ -90,6 +93,7 @@ class FaceGrid:
     index: Ints
     closed_u: bool
     closed_v: bool
+    span: tuple[float, float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +121,8 @@ class SurfaceSamples:
     reasons : tuple of str
     grids : tuple of FaceGrid
     max_gap : float
-        Largest distance between grid neighbours, mm.
+        Largest distance, mm, between grid neighbours and from the border of a sampled face to its nearest sample. Faces
+        in `empty` have no part in it.
     empty : tuple of (int, str)
         Faces that gave no sample, with the reason.
     """
@@ -147,11 +152,13 @@ class Triangles:
     Attributes
     ----------
     vertex : (t, 3, 3) float
-        Corners, mm.
+        Corners a, b, c, mm, ordered so that `(b - a) x (c - a)` has the side of `dS/du x dS/dv` of the face's surface
+        (counter-clockwise in the parameter plane). Where that area is zero, either order may be found.
     face : (t,) int32
         Face number.
     chord_error : float
-        Largest measured distance between a triangle and the surface that it stands for, mm.
+        Largest measured distance between a triangle and the surface that it stands for, mm. Each point of the face, up
+        to its true border, has a triangle within it.
     missing : tuple of (int, str)
         Faces without triangles, with the reason.
     """

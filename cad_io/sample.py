@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import FaceGrid, Floats, Ints, Orientation, SurfaceSamples
 from cad_io.curvature import curvature
 from cad_io.errors import SampleError
+from cad_io.gap import border_gap
 from cad_io.grid_lines import Lines, spaced, uniform
 from cad_io.joints import smooth_joints
 from cad_io.kernel import second_derivatives, translated
@@ -135,7 +136,7 @@ def _on_grid(part: Part, number: int, trim: Trim, lines: Lines, inside: NDArray[
         pairs.append(_linked(index[-1], index[0]))
     if lines.closed_v:
         pairs.append(_linked(index[:, -1], index[:, 0]))
-    face_grid = FaceGrid(number, lines.u, lines.v, index, lines.closed_u, lines.closed_v)
+    face_grid = FaceGrid(number, lines.u, lines.v, index, lines.closed_u, lines.closed_v, lines.span)
     return _FaceSamples(number, derivatives, uv, weight, np.concatenate(pairs), face_grid)
 
 
@@ -170,6 +171,11 @@ def _together(
     face = np.repeat(np.array([f.number for f in taken], np.int32), np.diff(start))
     within = [f.pairs + s for f, s in zip(taken, start[:-1], strict=True)]
     gaps = [_gap(point, pairs) for pairs in within]
+    to_border = [
+        border_gap(part, f.number, f.derivatives[:, 0], gap)
+        for f, gap in zip(taken, gaps, strict=True)
+        if f.grid is None or not _all_along(part.trim(f.number), f.grid)
+    ]
     neighbours = np.concatenate([*within, smooth_joints(part, orientation, point, face, dict(
         zip([f.number for f in taken], gaps, strict=True)))]).astype(np.int32)  # fmt: skip
     bad = np.concatenate([g.bad for g in geometry]) if geometry else np.zeros(0, bool)
@@ -185,7 +191,7 @@ def _together(
         unjudged=np.where(bad, 0, -1).astype(np.int32),
         reasons=REASONS if bad.any() else (),
         grids=tuple(_moved(f.grid, int(s)) for f, s in zip(taken, start[:-1], strict=True) if f.grid is not None),
-        max_gap=max(gaps, default=0.0),
+        max_gap=max(gaps + to_border, default=0.0),
         empty=empty,
     )  # fmt: skip
 
@@ -212,6 +218,11 @@ def _gap(point: Floats, pairs: Ints) -> float:
     if not len(pairs):
         return 0.0
     return float(np.nanmax(np.linalg.norm(point[pairs[:, 0]] - point[pairs[:, 1]], axis=1), initial=0.0))
+
+
+def _all_along(trim: Trim | None, grid: FaceGrid) -> bool:
+    """True if nodes stand all along the border: it is no farther from them than they are from each other."""
+    return trim is not None and trim.rectangular and bool((grid.index >= 0).all())
 
 
 def _linked(first: Ints, second: Ints) -> Ints:

@@ -1,6 +1,7 @@
 """Triangles close to a part's surface, with the distance measured, not wished.
 
-The kernel's mesher gives a start: triangles in each face's parameter plane. Every triangle is then measured against
+The kernel's mesher gives a start: triangles in each face's parameter plane, to which gaps between the mesh and the true
+ends of border curves are added. Every triangle is then measured against
 the true surface at points of its edges and its inside, border edges against the true border curve, and what is too far
 is split there. Neighbours may be split differently: the result is a soup, each of whose triangles is near the surface.
 """
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Triangles
 from cad_io.kernel import translated
-from cad_io.mesh import UVMesh, uv_meshes
+from cad_io.mesh import UVMesh, folded, uv_meshes
 from cad_io.part import Part
 from cad_io.soup import Indices, Rows, Soup
 
@@ -64,6 +65,9 @@ def tessellate(
     if not whole.all():
         missing.update({int(n): "its surface cannot be evaluated everywhere" for n in np.unique(done.face[~whole])})
         done = _Done(done.vertex[whole], done.uv[whole], done.face[whole], done.off[whole])
+    # A middle on a bent border may lie beyond the opposite corner: such a child is folded over.
+    over = folded(done.uv)
+    done.vertex[over] = done.vertex[over][:, [0, 2, 1]]
     return Triangles(
         vertex=done.vertex,
         face=done.face.astype(np.int32),

@@ -13,8 +13,8 @@ from cad_io.orient import orient
 from cad_io.sample import sample
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Machine, plan
-from plan_cutters.between import _Contacts as Contacts
-from plan_cutters.between import _quarters, between
+from plan_cutters.between import between
+from plan_cutters.cells import Contacts, Field, quartered
 from plan_cutters.conditions import Conditions
 from plan_cutters.obstacles import Obstacles, Surroundings
 from plan_cutters.posture import PostureRange
@@ -36,7 +36,7 @@ def served(part, cutter, *, budget, tolerance=0.01, chord=None, machine="unlimit
 
     around = Surroundings.sheet(Obstacles(tessellate(whole, chord or 0.2 * tolerance)))
     conditions = Conditions(machine, UP, result.postures, around, tolerance, 2)
-    found = between(samples, result.reaches[cutter.id], cutter, geometry, conditions, budget=budget)
+    found = between(samples, result.reaches[cutter.id], cutter, whole, side, conditions, budget=budget)
     return found, geometry, whole
 
 
@@ -143,18 +143,21 @@ def test_axes_between_samples_keep_the_machines_limit():
     x, y = np.meshgrid(np.linspace(-20, 20, 9), np.linspace(-20, 20, 9), indexing="ij")
     part = read_part(shapes.shell(shapes.Patch(np.stack([x, y, -(x**2 + y**2) / 60], axis=-1)).face()))
     cutter, limit = Cutter.flat(radius=3.0, length=40.0), math.cos(math.radians(10)) - 1e-12
-    found, geometry, _ = served(part, cutter, budget=4000, spacing=6.0, machine="tilt:10")
+    found, geometry, whole = served(part, cutter, budget=4000, spacing=6.0, machine="tilt:10")
     assert len(found.cells.face) > 1000
     assert (found.cells.axis @ UP >= limit).all()
 
     # A cell that reaches from within the limit to beyond it.
     uv = np.array([[0.5, 0.62]])
     point, normal, direction, curvature = geometry(1, uv)
-    whole = Contacts(point, normal, direction, curvature, normal, np.array([True]), np.ones(1),
-                     np.zeros((1, 2), np.int32), uv, np.full((1, 2), 0.4), np.ones(1))  # fmt: skip
+    lines = [(np.array([0.3, 0.7]), np.array([0.42, 0.82]))]
+    field = Field(whole, orient(whole, towards=UP, flip=False), 1, whole.trim(1), lines, np.zeros((1, 1), np.int32),
+                  np.zeros(2, bool), point, normal, np.zeros((1, 3, 3)))  # fmt: skip
+    cell = Contacts(point, normal, direction, curvature, normal, np.array([True]), np.ones(1), np.zeros((1, 2), np.int32),
+                    np.zeros((1, 2), np.int64), uv, np.full((1, 2), 0.4), np.array([True]), np.ones(1), np.ones(1))  # fmt: skip
     plane = Surroundings.sheet(Obstacles(tessellate(part, 0.002)))
     conditions = Conditions(Machine.parse("tilt:10"), UP, PostureRange(), plane, 0.01, 1)
-    quarters = _quarters(whole, 1, geometry, conditions)
+    quarters = quartered(cell, field, 0, conditions)
     within = quarters.normal @ UP >= limit
     assert 0 < within.sum() < 4
     assert (np.isfinite(quarters.axis).all(axis=1) == within).all()

@@ -272,7 +272,7 @@ def _summary(plan: "Plan", out: Path, formats: Sequence[str]) -> None:
     ignored = sum(f.ignored for f in plan.faces)
     console.print(f"{plan.part.file or 'part'}: {size} mm, {plan.part.faces} faces, {targets} to machine, "
                   f"{f'{ignored} ignored, ' if ignored else ''}"
-                  f"{plan.samples.count} samples at most {plan.samples.max_gap_mm:.3g} mm apart")  # fmt: skip
+                  f"{plan.samples.count} samples, gaps up to {plan.samples.max_gap_mm:.3g} mm")  # fmt: skip
     table = Table(box=None, pad_edge=False)
     for column in ("cutter", "feasible", "free", "accessible", "undecided", "inaccessible"):
         table.add_column(column, justify="left" if column in ("cutter", "feasible") else "right")

@@ -74,7 +74,10 @@ class Effective(_Frozen):
 
 class SampleCounts(_Frozen):
     count: int
-    max_gap_mm: float = Field(description="largest distance between neighbouring samples; verdicts are about samples")
+    max_gap_mm: float = Field(
+        description="largest distance between grid neighbours, and from the border of a sampled face to its nearest "
+        "sample; verdicts are about samples"
+    )
     convex: int
     concave: int
     saddle: int
@@ -134,12 +137,15 @@ class WitnessEntry(_Frozen):
 
 
 class AreaEntry(_Frozen):
-    """How far a cutter's postures, each with its axis kept, serve the surface between the samples."""
+    """How far a cutter's postures, each with its axis kept, serve the surface between the samples and up to its border."""
 
-    share: float = Field(description="of the target area, 0 to 1")
-    feasible: bool = Field(description="all of it, to one part in a million")
+    share: float = Field(
+        description="of the area of the target faces, faces without samples included (these are not served), 0 to 1"
+    )
+    feasible: bool = Field(description="all of it, to one part in a million, and no face is left out")
     contacts: int = Field(description="contacts looked at, samples included")
     left: int = Field(description="contacts whose cells were not shown to be served when the budget ended")
+    left_out: list[str] = Field(default=[], description="target faces whose area is not known: they are not in `share`")
 
 
 class CutterEntry(Verdicts):

@@ -14,12 +14,11 @@ from numpy.typing import NDArray
 
 from cad_io import Orientation, Part, SurfaceSamples, read_part
 from cad_io.assembly import component_of
-from cad_io.evaluate import evaluate
 from cad_io.orient import orient
 from cad_io.sample import sample
 from plan_cutters import __version__
 from plan_cutters.access import access, witnesses
-from plan_cutters.between import Evaluate, between
+from plan_cutters.between import between
 from plan_cutters.buried import buried
 from plan_cutters.checks import shown
 from plan_cutters.classify import CONCAVE, CONVEX, SADDLE, classify, regions
@@ -290,9 +289,10 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
     if selected and options.area_budget:
         with clock.stage("area"):
             chosen = next(c for c in cutters if c.id == selected)
-            served = between(samples, reaches[selected], chosen, _geometry(whole, orientation), conditions,
+            served = between(samples, reaches[selected], chosen, whole, orientation, conditions,
                              budget=options.area_budget)  # fmt: skip
-        area = AreaEntry(share=served.share, feasible=served.share == 1, contacts=served.contacts, left=served.left)
+        area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
+                         left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
         entries = [e.model_copy(update={"area": area}) if e.id == selected else e for e in entries]
     document = Plan(
         part=_part_info(whole, orientation, around),
@@ -388,14 +388,6 @@ def _warm(
         np.zeros(1, np.uint8), np.zeros((1, 3)), np.zeros((1, 3)), np.zeros(1), np.zeros(1, np.int32),
         np.zeros(1, np.uint8),
     )  # fmt: skip
-
-
-def _geometry(part: Part, orientation: Orientation) -> Evaluate:
-    def at(face: int, uv: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
-        point, shape = evaluate(part, orientation, face, uv)
-        return point, shape.normal, shape.direction_max, shape.curvature
-
-    return at
 
 
 def _vector(v: NDArray[np.float64]) -> tuple[float, float, float]:
@@ -538,8 +530,12 @@ def _notes(
 ) -> list[str]:  # fmt: skip
     notes = [
         "Cutters are flat ends, judged as solid cylinders of their length, without a holder.",
-        f"Verdicts are about samples; the largest gap between neighbouring samples is {samples.max_gap:.3g} mm.",
+        f"Verdicts are about samples; grid neighbours, and borders from the nearest sample of their face, are at most "
+        f"{samples.max_gap:.3g} mm apart.",
     ]
+    if samples.empty:
+        names = ", ".join(f"F{number}" for number, _ in samples.empty)
+        notes.append(f"No verdict is about {names}: no sample could be taken there.")
     if options.machine.tilt_limit is None:
         notes.append("No machine was given: any tool axis counts as possible.")
     if not orientation.confident:
@@ -572,14 +568,20 @@ def listed(names: Sequence[str], most: int = 8) -> str:
 
 def _area_notes(entries: Sequence[CutterEntry]) -> Iterator[str]:
     for entry in entries:
-        if entry.area and not entry.area.feasible:
+        if entry.area and entry.area.share < 1:
             yield (
-                f"{entry.id} reaches every sample, but not all of the surface between them was shown to be served: "
-                f"{entry.area.left} contacts were left when the budget of {entry.area.contacts} ended, or no posture "
-                "serves a whole cell there. Sample more finely, or give a larger --area-budget."
+                f"{entry.id} reaches every judged sample, but not all of the target surface was shown to be served: "
+                f"{entry.area.left} contacts were left when the budget of {entry.area.contacts} ended, no posture serves "
+                "a whole cell there, or a face has no samples or no closed border. Sample more finely, or give a larger "
+                "--area-budget."
             )
         elif entry.area:
-            yield f"{entry.id} serves all of the target surface, as far as curvature between grid nodes is known."
+            what = (
+                "all of the target surface whose area is known" if entry.area.left_out else "all of the target surface"
+            )
+            yield f"{entry.id} serves {what}, as far as curvature between grid nodes is known."
+        if entry.area and entry.area.left_out:
+            yield f"The area of {', '.join(entry.area.left_out)} is not known: it is not in the share that is served."
 
 
 def _versions() -> dict[str, str]:
