@@ -15,7 +15,7 @@ from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_SOLID
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Compound, TopoDS_Face, TopoDS_Iterator, TopoDS_Shape
 
-from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats
+from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats, LostFace
 from cad_io.assembly import Node
 from cad_io.errors import ReadError
 from cad_io.kernel import edges_of, explore, faces, is_kernel_error, shape_map, translated
@@ -55,10 +55,14 @@ class Part:
         The products in the file; default one without a name.
     warnings : sequence of str
         What the reader found odd; odd sizes are added here.
+    lost : sequence of LostFace, optional
+        Faces written in the file that are not here, or not as written; faces without a finite size are added here.
 
     Attributes
     ----------
     shape, file, sha256, layers, tree : as given
+    lost : tuple of LostFace
+        Where it is not empty, nothing is known of what stood there: no posture may be called safe.
     faces : tuple of FaceInfo
         Entry i is face number i + 1.
     size : tuple of float
@@ -88,6 +92,7 @@ class Part:
         layers: Mapping[int, tuple[str, ...]] | None = None,
         tree: tuple[Node, ...] = (),
         warnings: tuple[str, ...] = (),
+        lost: tuple[LostFace, ...] = (),
     ) -> None:
         self.shape, self.file, self.sha256 = shape, file, sha256
         with translated("looking for faces", error=ReadError, file=file):
@@ -113,6 +118,12 @@ class Part:
                     file=file,
                 )
         self._names, self._colours, self._said = names or {}, colours or {}, warnings
+        told = {each.face for each in lost}
+        self.lost = (
+            *lost,
+            *(LostFace("", self._names.get(n, ""), "it has no finite size", n)
+              for n in (np.flatnonzero(~finite) + 1).tolist() if n not in told),
+        )  # fmt: skip
 
     def __repr__(self) -> str:
         size = " x ".join(f"{length:.4g}" for length in self.size)

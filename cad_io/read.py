@@ -6,17 +6,20 @@ from typing import Any
 
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
 from OCP.gp import gp_Pnt, gp_Trsf
+from OCP.TopAbs import TopAbs_EDGE
 from OCP.TopoDS import TopoDS_Shape
 
 from cad_io import read_iges, read_step
+from cad_io.arrays import LostFace
 from cad_io.errors import ReadError
-from cad_io.kernel import silence, translated
+from cad_io.kernel import explore, faces, silence, translated
 from cad_io.part import Part, as_one, unwrapped
-from cad_io.read_guarded import Found
+from cad_io.read_guarded import Crashed, Found
 from cad_io.read_guarded import guarded as in_copy
 from cad_io.sniff import load
 from cad_io.units import in_mm
 
+_LOADERS = {"step": read_step.Loaded, "iges": read_iges.Loaded}
 #: Seconds that a guarded reading may take.
 TIMEOUT = 120.0
 
@@ -36,12 +39,13 @@ def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, ti
         Let a copy of the process read, so that a file that crashes or hangs the CAD kernel is a ReadError. Costs a
         little time; needs a system that can fork (not Windows).
     timeout : float
-        Seconds that a guarded reading may take.
+        Seconds that a guarded reading may take. A file with faults that may harm the kernel is made into shapes in a
+        copy of the process in any case.
 
     Returns
     -------
     Part
-        Lengths in mm, one located shape.
+        Lengths in mm, one located shape. What a faulty file has lost is in `lost`.
 
     Raises
     ------
@@ -52,36 +56,50 @@ def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, ti
     if unit is not None:
         in_mm(unit)
     if not guarded:
-        return Part(**_find(source, unit))
+        return Part(**_find(source, unit, timeout))
 
     def find() -> Found:
-        found = _find(source, unit)
+        found = _find(source, unit, timeout)
         Part(**found)  # which asks the kernel more, better here than outside
         return found
 
     return Part(**in_copy(find, timeout, os.fspath(source) if isinstance(source, str | os.PathLike) else None))
 
 
-def _find(source: Any, unit: str | None) -> Found:
+def _find(source: Any, unit: str | None, timeout: float) -> Found:
     """What the part is made of."""
     if isinstance(source, str | os.PathLike):
-        return _read_file(os.fspath(source), unit)
+        return _read_file(os.fspath(source), unit, timeout)
     return {"shape": _scaled(unwrapped(_kernel_shape(source)), unit)}
 
 
-def _read_file(file: str, unit: str | None) -> Found:
+def _read_file(file: str, unit: str | None, timeout: float) -> Found:
     kind, data = load(file)
-    checksum = hashlib.sha256(data).hexdigest()
+    known = {"file": file, "sha256": hashlib.sha256(data).hexdigest()}
     with translated("reading the file", error=ReadError, file=file):
-        if kind == "step":
-            read = read_step.read(file, data, unit)
-        elif kind == "iges":
-            read = read_iges.read(file, data, unit)
-        else:
-            read = read_step.Read(_scaled(_read_brep(file, kind), unit))
+        if kind not in _LOADERS:
+            return known | _found(read_step.Read(_scaled(_read_brep(file, kind), unit)))
+        loaded = _LOADERS[kind](file, data, unit)
+        if not loaded.risky:
+            return known | _found(loaded.transfer())
+    try:
+        return known | in_copy(lambda: _transferred(loaded), timeout, file)
+    except Crashed:
+        return known | in_copy(lambda: _transferred(_LOADERS[kind](file, data, unit, names=False)), timeout, file)
+
+
+def _transferred(loaded: Any) -> Found:
+    with translated("reading the file", error=ReadError, file=loaded.file):
+        return _found(loaded.transfer())
+
+
+def _found(read: read_step.Read) -> Found:
+    edgeless = [n for n, face in enumerate(faces(read.shape), 1) if next(explore(face, TopAbs_EDGE), None) is None]
+    told = {each.face for each in read.lost}
+    read.lost += [LostFace("", read.names.get(n, ""), "it has no edges", n) for n in edgeless if n not in told]
     return {
-        "shape": read.shape, "file": file, "sha256": checksum, "names": read.names, "colours": read.colours,
-        "layers": read.layers, "tree": read.tree, "warnings": tuple(read.warnings),
+        "shape": read.shape, "names": read.names, "colours": read.colours, "layers": read.layers, "tree": read.tree,
+        "warnings": tuple(read.warnings), "lost": tuple(read.lost),
     }  # fmt: skip
 
 
