@@ -1,5 +1,6 @@
 """A time limit for kernel calls: Python cannot interrupt them, but it can end a forked copy of the process."""
 
+import faulthandler
 import os
 import select
 import signal
@@ -36,6 +37,8 @@ def limited(call: Callable[[], bytes], seconds: float) -> bytes:
         raise TimeLimit
     if not hasattr(os, "fork"):
         return call()
+    import resource  # of systems that can fork
+
     deadline = time.monotonic() + seconds
     end, start = os.pipe()
     with warnings.catch_warnings():
@@ -43,6 +46,9 @@ def limited(call: Callable[[], bytes], seconds: float) -> bytes:
         warnings.simplefilter("ignore", DeprecationWarning)
         child = os.fork()
     if child == 0:
+        faulthandler.disable()  # its crash is not this process's to tell
+        # Should this process be killed, the copy comes to an end all the same.
+        resource.setrlimit(resource.RLIMIT_CPU, (int(min(seconds, 1e9)) + 2,) * 2)
         _answer(call, start)
     os.close(start)
     parts: list[bytes] = []

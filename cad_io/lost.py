@@ -291,24 +291,25 @@ class Lost:
     def _places(self) -> Iterator[LostFace]:
         """Instances of products, and bare surfaces, that something harmless to any face has moved or lost."""
         faulty = {fault.number for fault in self.harmless if fault.number and fault.parameter not in _WORDS}
-        structure = False
         told: set[int] = set()
         for number in sorted(faulty):
             users = [self.model.entities[n] for n in self.model.users(number) if n]
             place = next((user for user in users if isinstance(user, _PLACES)), None)
-            surface = any(isinstance(user, StepGeom_Surface) for user in users)
-            structure = structure or any(isinstance(user, StepRepr_NextAssemblyUsageOccurrence) for user in users)
             if place is not None:
                 at = self.model.number(place)
                 if at not in told:
                     told.add(at)
                     yield LostFace(self.ident(at), "", self._cause("it may put a component in the wrong place", [number]))
-            elif surface and any(isinstance(user, StepShape_GeometricSet) for user in users):
+            elif any(isinstance(user, StepGeom_Surface) for user in users) and any(
+                isinstance(user, StepShape_GeometricSet) for user in users
+            ):
                 yield LostFace(self.ident(number), "", self._cause("a surface may not be as written", [number]))
-        for number, entity in self.model.entities.items() if structure else ():
+        for number, entity in self.model.entities.items():
             if isinstance(entity, StepRepr_NextAssemblyUsageOccurrence) and number not in self.results:
-                why = self._cause("a component of the assembly has not been placed", sorted(faulty))
-                yield LostFace(self.ident(number), name_of(entity), why)
+                product = entity.RelatedProductDefinition()
+                if product is None or self.model.number(product) in self.results:
+                    said = text.ToCString() if (text := entity.Name()) is not None else ""
+                    yield LostFace(self.ident(number), said, "a component of the assembly has not been placed")
 
     def _box(self, face: Any, place: TopLoc_Location) -> Any:
         corners = []

@@ -36,7 +36,13 @@ def lost_of_iges(model: Model, faults: Sequence[Fault], shapes: Sequence[TopoDS_
                 felt.setdefault(n, []).append(fault)
     gone = [n for n, entity in model.entities.items() if _is_face(entity) and n not in results]
     lost = [_lost(model, n, "the CAD kernel could not make it", felt.get(n, [])) for n in gone]
-    numbers = {entity: n for n, entity in model.entities_of(list(enumerate(shapes, 1)))} if felt else {}
+    made = model.entities_of(list(enumerate(shapes, 1))) if felt else ()
+    # A face that failed may stand there as its bare surface.
+    numbers = {entity: n for n, entity in made if _is_face(model.entities[entity])}
+    unknown = [n for n in range(1, len(shapes) + 1) if n not in numbers.values()]
+    missed = [n for n, entity in model.entities.items() if _is_face(entity) and n in results and n not in numbers]
+    if len(unknown) == len(missed):
+        numbers.update(zip(missed, unknown, strict=True))
     for entity, told in felt.items():
         if entity in numbers and (why := _altered(model, told, shapes[numbers[entity] - 1])):
             lost.append(_lost(model, entity, why, told, numbers[entity]))

@@ -79,7 +79,7 @@ PATTERNS = {
     # --- what touches no geometry --------------------------------------------------------------------------------
     "name missing": Faulty("drilled", swap(r"ADVANCED_FACE\(''", "ADVANCED_FACE($"), FINE),
     "dimensions of a unit": Faulty("drilled", swap(r"NAMED_UNIT\(\*\)", "NAMED_UNIT($)"), FINE),
-    "dimensions of a unit no entity": Faulty("inch", swap(r"(CONVERSION_BASED_UNIT[^;]*NAMED_UNIT\(|NAMED_UNIT\()#\d+", r"\g<1>5"), WARNED),
+    "dimensions of a unit no entity": Faulty("inch", swap(r"(CONVERSION_BASED_UNIT[^;]*NAMED_UNIT\()\s*#\d+", r"\g<1>5"), WARNED),
     "dimension of the wrong type": Faulty(
         "drilled",
         add("#9001=SHAPE_ASPECT('','',%SHAPE%,.T.);\n#9002=DIMENSIONAL_LOCATION('','',#9001,%FACE%);\n"
@@ -111,7 +111,14 @@ PATTERNS = {
             "#9005=PRESENTATION_STYLE_ASSIGNMENT((#9004));\n#9006=STYLED_ITEM('',(#9005),%FACE%);"),
         WARNED, 14,
     ),
-    "colour out of the world": Faulty("assembly", swap(r"COLOUR_RGB\('[^']*',[^,]*", "COLOUR_RGB('','red'"), WARNED, 14),
+    "colour out of the world": Faulty(
+        "assembly",
+        add("#9002=COLOUR_RGB('','red',0.,7.);\n#9007=FILL_AREA_STYLE_COLOUR('',#9002);\n#9008=FILL_AREA_STYLE('',(#9007));\n"
+            "#9009=SURFACE_STYLE_FILL_AREA(#9008);\n#9003=SURFACE_SIDE_STYLE('',(#9009));\n"
+            "#9004=SURFACE_STYLE_USAGE(.BOTH.,#9003);\n#9005=PRESENTATION_STYLE_ASSIGNMENT((#9004));\n"
+            "#9006=STYLED_ITEM('',(#9005),%FACE%);"),
+        WARNED, 14,
+    ),
     "validation property with a wrong number": Faulty(
         "drilled",
         add("#9001=PROPERTY_DEFINITION('geometric validation property','',%FACE%);\n"
@@ -142,7 +149,7 @@ PATTERNS = {
     "face of no known kind": Faulty("drilled", swap("ADVANCED_FACE", "ADVANCED_FAKE"), LOST, 6),
     "face that no shell takes": Faulty("drilled", swap(r"(CLOSED_SHELL\('',\()#\d+,", r"\1"), LOST, 6),
     "knots that are too many": Faulty("rod", swap(r"(B_SPLINE_SURFACE_WITH_KNOTS\(\()\d+", r"\g<1>9", 0), LOST, 2),
-    "knots out of order": Faulty("rod", swap(r"(B_SPLINE_SURFACE_WITH_KNOTS\([^;]*?\),\()[^,)]*", r"\g<1>99.", 1), LOST, 2),
+    "knots out of order": Faulty("rod", swap(r"(B_SPLINE_SURFACE_WITH_KNOTS\(\([^)]*\),\([^)]*\),\()[^,)]*", r"\g<1>99.", 1), LOST, 2),
     "weight of zero": Faulty("rod", swap(r"(RATIONAL_B_SPLINE_SURFACE\(\(\s*\()[^,)]*", r"\g<1>0.", 1), LOST, 2),
     "edge without a vertex": Faulty("drilled", swap("VERTEX_POINT", "VERTEX_PAINT"), LOST, 4),
     "face with a wrong statement": Faulty("drilled", swap(r"ADVANCED_FACE\('',", "ADVANCED_FACE('',(("), LOST, 6),

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from cad_io import Orientation, Part, SurfaceSamples, read_part
 from cad_io.evaluate import evaluate
 from cad_io.orient import orient
+from cad_io.read import TIMEOUT
 from cad_io.sample import sample
 from cad_io.tessellate import tessellate
 from plan_cutters import __version__
@@ -53,6 +54,7 @@ from plan_cutters.posture_maps import posture_maps as all_posture_maps
 from plan_cutters.reach import ACCESSIBLE, FREE, INACCESSIBLE, REASONS, UNDECIDED, UNJUDGED, Reach, Witness
 from plan_cutters.select_cutters import RULE, ranked
 from plan_cutters.spacing import default_spacing
+from plan_cutters.supervise import report_work
 
 #: Told the stage, how much of it is done, of how much.
 Progress = Callable[[str, int, int], None]
@@ -228,14 +230,16 @@ class _Clock:
         tell(1, 1)
 
 
-def run(part: Any, options: Options, *, progress: Progress | None = None) -> Result:
-    """`plan` with its options gathered."""
+def run(
+    part: Any, options: Options, *, progress: Progress | None = None, read_timeout: float = TIMEOUT
+) -> Result:  # fmt: skip
+    """`plan` with its options gathered; `read_timeout` is the most seconds that a faulty file may take to read."""
     clock = _Clock(progress)
     started = datetime.datetime.now(datetime.UTC)
     with clock.stage("read"):
         if isinstance(part, Part) and options.unit is not None:
             raise OptionError("the part has been read already: give the unit to read_part", file=part.file)
-        whole = part if isinstance(part, Part) else read_part(part, unit=options.unit)
+        whole = part if isinstance(part, Part) else read_part(part, unit=options.unit, timeout=read_timeout)
     targets = select_faces(whole.faces, options.faces)
     setup = unit(options.setup, "setup axis")
     cutters = ranked(options.judged)
@@ -254,7 +258,7 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
             f"no target face can be judged: {'; '.join(sorted(causes)) or 'no samples'}", file=whole.file
         )
     with clock.stage("tessellate"):
-        triangles = tessellate(whole, _CHORD_ASKED * options.tolerance)
+        triangles = tessellate(whole, _CHORD_ASKED * options.tolerance, at=report_work)
         obstacles = Obstacles(triangles)
         tolerance = max(options.tolerance, triangles.chord_error / _CHORD_SHARE)
     with clock.stage("compile"):
