@@ -63,7 +63,7 @@ def _gap(face: TopoDS_Face) -> tuple[float, float]:
 
 
 def _measured(face: TopoDS_Face) -> tuple[float, Floats]:
-    """Largest distance of border curves from the surface, and of their ends from the vertices, mm, and the points (n, 3) of the curves looked at."""
+    """Largest distance of border curves from the surface and of their ends from the vertices, mm; their points (n, 3)."""
     surface, off, seen = BRepAdaptor_Surface(face, False), 0.0, [np.zeros((0, 3))]
     for edge in edges_of(face):
         if BRep_Tool.Degenerated_s(edge) or not _has_curve(edge):

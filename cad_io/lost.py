@@ -250,7 +250,7 @@ class Lost:
 
     def _altered(self, number: int, shape: TopoDS_Face) -> str:
         """How a face differs from what is written; empty where it was no trouble or shows that it is whole."""
-        entity, edges = self.model.entities[number], _edges(self.model.entities[number])
+        edges = _edges(self.model.entities[number])
         count = edge_count(shape)
         if edges and not count:
             return "it came without its edges"
@@ -299,7 +299,9 @@ class Lost:
                 at = self.model.number(place)
                 if at not in told:
                     told.add(at)
-                    yield LostFace(self.ident(at), "", self._cause("it may put a component in the wrong place", [number]))
+                    yield LostFace(
+                        self.ident(at), "", self._cause("it may put a component in the wrong place", [number])
+                    )
             elif any(isinstance(user, StepGeom_Surface) for user in users) and any(
                 isinstance(user, StepShape_GeometricSet) for user in users
             ):

@@ -19,7 +19,10 @@ from cad_io.read_guarded import guarded as in_copy
 from cad_io.sniff import load
 from cad_io.units import in_mm
 
-_LOADERS = {"step": read_step.Loaded, "iges": read_iges.Loaded}
+_LOADERS: dict[str, type[read_step.Loaded] | type[read_iges.Loaded]] = {
+    "step": read_step.Loaded,
+    "iges": read_iges.Loaded,
+}
 #: Seconds that a guarded reading may take.
 TIMEOUT = 120.0
 
@@ -88,7 +91,7 @@ def _read_file(file: str, unit: str | None, timeout: float) -> Found:
         return known | in_copy(lambda: _transferred(_LOADERS[kind](file, data, unit, names=False)), timeout, file)
 
 
-def _transferred(loaded: Any) -> Found:
+def _transferred(loaded: read_step.Loaded | read_iges.Loaded) -> Found:
     with translated("reading the file", error=ReadError, file=loaded.file):
         return _found(loaded.transfer())
 

@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
 from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
-from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Reader
 from OCP.StepBasic import StepBasic_NamedUnit
+from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Reader
 from OCP.STEPConstruct import STEPConstruct_UnitContext
 from OCP.StepData import StepData_Factors
 from OCP.StepGeom import StepGeom_CartesianPoint, StepGeom_Direction

@@ -149,7 +149,7 @@ PATTERNS = {
     "face of no known kind": Faulty("drilled", swap("ADVANCED_FACE", "ADVANCED_FAKE"), LOST, 6),
     "face that no shell takes": Faulty("drilled", swap(r"(CLOSED_SHELL\('',\()#\d+,", r"\1"), LOST, 6),
     "knots that are too many": Faulty("rod", swap(r"(B_SPLINE_SURFACE_WITH_KNOTS\(\()\d+", r"\g<1>9", 0), LOST, 2),
-    "knots out of order": Faulty("rod", swap(r"(B_SPLINE_SURFACE_WITH_KNOTS\(\([^)]*\),\([^)]*\),\()[^,)]*", r"\g<1>99.", 1), LOST, 2),
+    "knots out of order": Faulty("rod", swap(r"(SURFACE_WITH_KNOTS\(\([^)]*\),\([^)]*\),\()[^,)]*", r"\g<1>99."), LOST, 2),
     "weight of zero": Faulty("rod", swap(r"(RATIONAL_B_SPLINE_SURFACE\(\(\s*\()[^,)]*", r"\g<1>0.", 1), LOST, 2),
     "edge without a vertex": Faulty("drilled", swap("VERTEX_POINT", "VERTEX_PAINT"), LOST, 4),
     "face with a wrong statement": Faulty("drilled", swap(r"ADVANCED_FACE\('',", "ADVANCED_FACE('',(("), LOST, 6),
