@@ -46,8 +46,9 @@ Colour = tuple[float, float, float]
 #: Each a pattern that starts with plain text, which is searched for ten times as fast as alternatives.
 _FACES = [re.compile(rb"%s\s*\(" % kind) for kind in (b"ADVANCED_FACE", b"FACE_SURFACE")]
 _IDENTS = re.compile(rb"(?:^|;)\s*(#\d+)\s*=", re.MULTILINE)
-#: Numbers so large that the kernel may crash on them.
-_HUGE = [re.compile(rb"%s\+?\d{3}" % letter) for letter in (b"E", b"e")]
+#: Numbers so large that the kernel may crash on them, by their exponents.
+_HUGE = [re.compile(rb"%s\+?0*[1-9]\d\d" % letter) for letter in (b"E", b"e")]
+_BEFORE = tuple(b"%c" % byte for byte in b"0123456789.")
 #: What shapes are made of, or placed by.
 _SHAPES = (
     StepShape_TopologicalRepresentationItem, StepRepr_ItemDefinedTransformation, StepRepr_RepresentationMap,
@@ -113,7 +114,7 @@ class Loaded:
         self.faults = self.model.faults()
         if any(fault.text.startswith("DATA NOT AVAILABLE") for fault in self.faults):
             raise ReadError("is not valid STEP (syntax): export it again", file=file)
-        self.risky = bool(self.faults) or any(huge.search(data) for huge in _HUGE)
+        self.risky = bool(self.faults) or _has_huge(data)
         self._refuse()
 
     def transfer(self, *, traced: bool = False) -> Read:
@@ -240,6 +241,10 @@ class Loaded:
 def _at(idents: list[str]) -> str:
     known = list(filter(None, idents))
     return f" ({known[0]}{_more(len(known) - 1)})" if known else ""
+
+
+def _has_huge(data: bytes) -> bool:
+    return any(data[at.start() - 1 : at.start()] in _BEFORE for huge in _HUGE for at in huge.finditer(data))
 
 
 def _is_length(entity: Any) -> bool:
