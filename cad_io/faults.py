@@ -6,7 +6,7 @@ back to it. So everything here goes by number, from 1.
 
 import re
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -36,7 +36,9 @@ class Fault:
     @property
     def short(self) -> str:
         """What the kernel says, without its numbering of parameters."""
-        return re.sub(r"^Parameter (?=n\d)|%d ", "", self.text).rstrip(".")
+        text = re.sub(r"^Parameter n\d+\.\d+ \(([\w.]+)\) ?:? ?", r"\1: ", self.text)
+        text = re.sub(r", Ent\.Id\.#-?\d+ Param\.n\d+ \d+ \(Id\.(#\d+)\)", r" to \1", text)
+        return text.replace("%d ", "").rstrip(".")
 
 
 class Model:
@@ -96,14 +98,14 @@ class Model:
         """What the transfer complained of: what it failed in, or what it mended or doubted."""
         return told(self.process.CheckList(fails), fails=fails)
 
-    def entities_of(self, shapes: Sequence[tuple[int, Any]]) -> Iterator[tuple[int, int]]:
-        """Key and entity of shapes, each with a key, that the transfer made from one. Slow: for few."""
-        reader, process = self.work.TransferReader(), self.process
-        if len(shapes) * process.NbMapped() > _MOST_STEPS:
-            return
-        for key, shape in shapes:
-            if number := self.number(reader.EntityFromShapeResult(shape.Located(TopLoc_Location()), 1)):
-                yield key, number
+    def makers(self, shapes: Mapping[int, Any]) -> dict[int, int] | None:
+        """Entities from which the transfer made shapes, by the shapes' keys; None where it would take too long."""
+        reader = self.work.TransferReader()
+        if len(shapes) * self.process.NbMapped() > _MOST_STEPS:
+            return None
+        found = {key: self.number(reader.EntityFromShapeResult(shape.Located(TopLoc_Location()), 1))
+                 for key, shape in shapes.items()}  # fmt: skip
+        return {key: number for key, number in found.items() if number}
 
     def results(self) -> dict[int, str]:
         """Entities that the transfer gave a shape for, and the kind of shape."""

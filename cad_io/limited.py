@@ -37,8 +37,6 @@ def limited(call: Callable[[], bytes], seconds: float) -> bytes:
         raise TimeLimit
     if not hasattr(os, "fork"):
         return call()
-    import resource  # of systems that can fork
-
     deadline = time.monotonic() + seconds
     end, start = os.pipe()
     with warnings.catch_warnings():
@@ -46,10 +44,7 @@ def limited(call: Callable[[], bytes], seconds: float) -> bytes:
         warnings.simplefilter("ignore", DeprecationWarning)
         child = os.fork()
     if child == 0:
-        faulthandler.disable()  # its crash is not this process's to tell
-        # Should this process be killed, the copy comes to an end all the same.
-        resource.setrlimit(resource.RLIMIT_CPU, (int(min(seconds, 1e9)) + 2,) * 2)
-        _answer(call, start)
+        _answer(call, start, seconds)
     os.close(start)
     parts: list[bytes] = []
     try:
@@ -70,10 +65,12 @@ def limited(call: Callable[[], bytes], seconds: float) -> bytes:
     return answer[1:]
 
 
-def _answer(call: Callable[[], bytes], start: int) -> None:
+def _answer(call: Callable[[], bytes], start: int, seconds: float) -> None:
     """The copy's side: write the answer, `+` and the result or `-` and what was raised, and end without clean-up."""
     try:
         try:
+            faulthandler.disable()  # a crash here is told by the other side
+            _end_alone(seconds)
             answer = b"+" + call()
         except Exception as error:
             answer = b"-" + f"{type(error).__name__} {error}".encode()
@@ -81,3 +78,12 @@ def _answer(call: Callable[[], bytes], start: int) -> None:
             pipe.write(answer)
     finally:
         os._exit(0)
+
+
+def _end_alone(seconds: float) -> None:
+    """Come to an end even if the process that watches is killed."""
+    import resource  # of systems that can fork
+
+    soft, hard = resource.getrlimit(resource.RLIMIT_CPU)
+    known = [limit for limit in (soft, hard, int(min(seconds, 1e9)) + 2) if limit != resource.RLIM_INFINITY]
+    resource.setrlimit(resource.RLIMIT_CPU, (min(known), hard))

@@ -36,13 +36,14 @@ def lost_of_iges(model: Model, faults: Sequence[Fault], shapes: Sequence[TopoDS_
                 felt.setdefault(n, []).append(fault)
     gone = [n for n, entity in model.entities.items() if _is_face(entity) and n not in results]
     lost = [_lost(model, n, "the CAD kernel could not make it", felt.get(n, [])) for n in gone]
-    made = model.entities_of(list(enumerate(shapes, 1))) if felt else ()
-    # A face that failed may stand there as its bare surface.
-    numbers = {entity: n for n, entity in made if _is_face(model.entities[entity])}
-    unknown = [n for n in range(1, len(shapes) + 1) if n not in numbers.values()]
-    missed = [n for n, entity in model.entities.items() if _is_face(entity) and n in results and n not in numbers]
-    if len(unknown) == len(missed):
-        numbers.update(zip(missed, unknown, strict=True))
+    numbers: dict[int, int] = {}
+    if felt and (made := model.makers(dict(enumerate(shapes, 1)))) is not None:
+        numbers = {entity: n for n, entity in made.items() if _is_face(model.entities[entity])}
+        # A face that failed may stand there as its bare surface.
+        unknown = [n for n in range(1, len(shapes) + 1) if n not in numbers.values()]
+        missed = [n for n, entity in model.entities.items() if _is_face(entity) and n in results and n not in numbers]
+        if len(unknown) == len(missed):
+            numbers.update(zip(missed, unknown, strict=True))
     for entity, told in felt.items():
         if entity in numbers and (why := _altered(model, told, shapes[numbers[entity] - 1])):
             lost.append(_lost(model, entity, why, told, numbers[entity]))

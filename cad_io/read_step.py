@@ -209,7 +209,8 @@ class Loaded:
                 numbers[int(mark[1:])].append(n)
                 del result.names[n]
         named = {n for ns in numbers.values() for n in ns}
-        for n, number in self.model.entities_of([(n, f) for n, f in enumerate(shapes, 1) if n not in named]):
+        unnamed = {n: face for n, face in enumerate(shapes, 1) if n not in named}
+        for n, number in (self.model.makers(unnamed) or {}).items():
             if is_face(self.model.entities[number]):
                 numbers[number].append(n)
         for number, name in real.items():

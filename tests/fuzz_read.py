@@ -8,6 +8,7 @@ faces that are gone without a word (see `silent`).
 """
 
 import argparse
+import contextlib
 import gc
 import json
 import math
@@ -181,6 +182,7 @@ def _forked(cases: Sequence[Case]) -> tuple[list[int], Outcome | None]:
     pid = os.fork()
     if pid == 0:
         try:
+            os.setsid()  # reading may fork again
             os.close(here)
             os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
             os.environ[supervise.REPORT], os.environ[supervise.MEMORY] = str(there), str(8 << 30)
@@ -212,6 +214,8 @@ def _forked(cases: Sequence[Case]) -> tuple[list[int], Outcome | None]:
     finally:
         os.close(here)
         if open_:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(pid, signal.SIGKILL)
             os.kill(pid, signal.SIGKILL)
         _, status = os.waitpid(pid, 0)
     if len(codes) == len(cases):

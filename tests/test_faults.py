@@ -154,6 +154,14 @@ def test_a_hang_of_the_transfer_is_an_error(whole, tmp_path, monkeypatch):
     assert time.monotonic() - began < 10
 
 
+def test_a_guarded_reading_of_a_faulty_file_gives_the_same(whole, tmp_path):
+    (tmp_path / "part.step").write_text(PATTERNS["surface dangling"].change(whole["drilled"]))
+    plain, guarded = (read_part(tmp_path / "part.step", guarded=word) for word in (False, True))
+    assert plain.lost == guarded.lost != ()
+    assert plain.warnings == guarded.warnings
+    assert plain.faces == guarded.faces
+
+
 def test_numbers_beyond_all_bounds_do_not_end_the_process(whole, tmp_path):
     # Half the time the kernel crashes on them.
     text = re.sub(r"(VERTEX_POINT[^;]*;[^(]*\('',\()[^,]*", r"\g<1>1.E400", whole["drilled"], count=1)

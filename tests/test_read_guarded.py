@@ -16,6 +16,7 @@ from cad_io import Part, ReadError, read, read_part
 from cad_io.arrays import LostFace
 from cad_io.assembly import Node
 from cad_io.kernel import faces
+from cad_io.limited import limited
 
 REAL = real("cadquery_red_cube_blue_cylinder.step", "asitus_bolt-colored-faces.stp", "tigl_D150_wing.igs")
 
@@ -94,6 +95,10 @@ def test_a_crash_and_a_hang_are_errors(tmp_path, monkeypatch):
     with pytest.raises(ReadError, match=r"not read within 0\.5 s"):
         read_part(tmp_path / "part.brep", guarded=True, timeout=0.5)
     assert time.monotonic() - began < 10
+
+
+def test_a_copy_may_make_copies():
+    assert limited(lambda: limited(lambda: b"inner", 1000.0), 5.0) == b"inner"
 
 
 def test_what_crashes_while_measuring_is_an_error_too(monkeypatch):
