@@ -25,6 +25,7 @@ from OCP.StepShape import (
     StepShape_HArray1OfFace,
     StepShape_HArray1OfFaceBound,
     StepShape_Loop,
+    StepShape_SolidModel,
     StepShape_TopologicalRepresentationItem,
 )
 from OCP.TopLoc import TopLoc_Location
@@ -50,6 +51,11 @@ _OTHERS = 40
 def is_face(entity: Any) -> bool:
     """Whether an entity must become a face."""
     return isinstance(entity, StepShape_FaceSurface)
+
+
+def is_whole(entity: Any) -> bool:
+    """Whether an entity puts faces together: a shell or a solid."""
+    return isinstance(entity, StepShape_ConnectedFaceSet | StepShape_SolidModel)
 
 
 def name_of(entity: Any) -> str:
@@ -179,7 +185,10 @@ class Lost:
         self.shapes, self.numbers, self.scale = shapes, numbers, scale
         self.felt, self.harmless = touched(model, faults)
         self.failed, _ = touched(model, model.trouble(fails=True))
-        self.doubted, _ = touched(model, model.trouble(fails=False))
+        doubts = model.trouble(fails=False)
+        self.doubted, _ = touched(model, doubts)
+        # Faces that do not fit together: one of them has lost an edge, or had none.
+        self.split = any(is_whole(model.value(doubt.number)) for doubt in doubts if doubt.number)
         self.results = model.results()
 
     def found(self) -> list[LostFace]:
@@ -255,6 +264,8 @@ class Lost:
         if edges and not count:
             return "it came without its edges"
         felt, failed = self.felt.get(number, []), self.failed.get(number, [])
+        if self.split and count < len({self.model.number(edge) for edge in edges}):
+            return "an edge of it is missing"
         if not (felt or failed or number in self.doubted):
             return ""
         if number in self.mended or any(self._is_loop(fault) for fault in failed):

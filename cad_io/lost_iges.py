@@ -14,9 +14,19 @@ from cad_io.iges_names import name_of
 FACES = (143, 144, 510)
 #: What borders are made of: a face whose border fails comes without it.
 _BORDERS = (102, 141, 142, 508)
+_FACE, _LOOP, _WHOLES = 510, 508, (186, 514)
 
 
-def lost_of_iges(model: Model, faults: Sequence[Fault], shapes: Sequence[TopoDS_Face]) -> list[LostFace]:
+def fell_apart(model: Model) -> bool:
+    """Whether the transfer could not put faces together to the solids and shells that are written."""
+    return any(
+        model.entities[fault.number].TypeNumber() in _WHOLES for fault in model.trouble(fails=False) if fault.number
+    )
+
+
+def lost_of_iges(
+    model: Model, faults: Sequence[Fault], shapes: Sequence[TopoDS_Face], *, split: bool
+) -> list[LostFace]:
     """Faces without a shape, and those that had trouble and cannot show that they are whole.
 
     Parameters
@@ -27,9 +37,13 @@ def lost_of_iges(model: Model, faults: Sequence[Fault], shapes: Sequence[TopoDS_
         Found in it before.
     shapes : sequence of TopoDS_Face
         Faces of the part.
+    split : bool
+        Count the edges of every face, since solids fell apart.
     """
     results = model.results()
-    felt: dict[int, list[Fault]] = {}
+    felt: dict[int, list[Fault]] = {
+        n: [] for n, entity in model.entities.items() if entity.TypeNumber() == _FACE and split
+    }
     for fault in (*faults, *model.trouble(fails=True)):
         for n in model.users(fault.number, _is_face):
             if n and _is_face(model.entities[n]):
@@ -45,19 +59,34 @@ def lost_of_iges(model: Model, faults: Sequence[Fault], shapes: Sequence[TopoDS_
         if len(unknown) == len(missed):
             numbers.update(zip(missed, unknown, strict=True))
     for entity, told in felt.items():
-        if entity in numbers and (why := _altered(model, told, shapes[numbers[entity] - 1])):
+        if entity in numbers and (why := _altered(model, entity, told, shapes[numbers[entity] - 1])):
             lost.append(_lost(model, entity, why, told, numbers[entity]))
-        elif entity not in numbers and entity in results:
+        elif told and entity not in numbers and entity in results:
             lost.append(_lost(model, entity, "it may not be as written", told))
     return lost
 
 
-def _altered(model: Model, felt: Sequence[Fault], shape: TopoDS_Face) -> str:
-    if not edge_count(shape):
+def _altered(model: Model, number: int, felt: Sequence[Fault], shape: TopoDS_Face) -> str:
+    if not (count := edge_count(shape)):
         return "it came without its edges"
+    if count < _edges(model, number):
+        return "an edge of it is missing"
+    if not felt:
+        return ""
     if any(model.entities[fault.number].TypeNumber() in _BORDERS for fault in felt if fault.number):
         return "a bound of it (a hole or the border) may be missing"
     return "its border is open" if open_border(shape) else misfit(shape)
+
+
+def _edges(model: Model, number: int) -> int:
+    """Edges that the loops of a face name; 0 for faces of other kinds."""
+    face, found = model.entities[number], set()
+    for i in range(face.NbLoops() if face.TypeNumber() == _FACE else 0):
+        loop = face.Loop(i + 1)
+        if loop is not None and loop.TypeNumber() == _LOOP:
+            found |= {(model.number(loop.Edge(k)), loop.ListIndex(k)) for k in range(1, loop.NbEdges() + 1)
+                      if loop.EdgeType(k) == 0}  # fmt: skip
+    return len(found)
 
 
 def _lost(model: Model, number: int, why: str, felt: Sequence[Fault], face: int | None = None) -> LostFace:

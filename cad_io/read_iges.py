@@ -14,7 +14,7 @@ from cad_io.errors import ReadError
 from cad_io.faults import Model
 from cad_io.iges_names import add_names, any_names
 from cad_io.kernel import faces, shape_map
-from cad_io.lost_iges import FACES, lost_of_iges
+from cad_io.lost_iges import FACES, fell_apart, lost_of_iges
 from cad_io.part import unwrapped
 from cad_io.read_step import Read, add_attributes
 
@@ -89,8 +89,9 @@ class Loaded:
         kinds = [line[:8].strip() for line in directory[::2]]
         written = sum(kind.isdigit() and int(kind) in FACES for kind in kinds)
         found = shape_map(shape, TopAbs_FACE).Extent()
-        if found < written or self.faults or self.model.trouble(fails=True):
-            result.lost = lost_of_iges(self.model, self.faults, faces(result.shape))
+        split = fell_apart(self.model)
+        if found < written or self.faults or split or self.model.trouble(fails=True):
+            result.lost = lost_of_iges(self.model, self.faults, faces(result.shape), split=split)
             gone = sum(each.face is None for each in result.lost)
             result.lost += [LostFace("", "", "it is written, but could not be read")] * (written - found - gone)
         if self.faults:

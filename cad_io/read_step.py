@@ -37,7 +37,7 @@ from cad_io.assembly import Node
 from cad_io.errors import ReadError
 from cad_io.faults import Model, type_of
 from cad_io.kernel import explore, faces, shape_map
-from cad_io.lost import Lost, is_face, mend, name_of
+from cad_io.lost import Lost, is_face, is_whole, mend, name_of
 from cad_io.part import as_one, unwrapped
 from cad_io.units import in_mm
 
@@ -137,7 +137,7 @@ class Loaded:
         found, written = _distinct_faces(result.shape), sum(len(kind.findall(self.data)) for kind in _FACES)
         if not traced:
             # All is well, or else the file is read again with marks: only then can be told what is lost.
-            if found >= written and not self.model.trouble(fails=True) and not self._open(result.shape):
+            if found >= written and not self.model.trouble(fails=True) and not self._doubtful(result.shape):
                 return result
             return Loaded(self.file, self.data, self.unit).transfer(traced=True)
         shapes = faces(result.shape)
@@ -186,11 +186,13 @@ class Loaded:
         add_attributes(document, result)
         return result
 
-    def _open(self, shape: TopoDS_Shape) -> bool:
-        """Whether the transfer doubted the border of a face, and one is open."""
-        doubted = any(fault.number and isinstance(self.model.value(fault.number), StepShape_TopologicalRepresentationItem)
-                      for fault in self.model.trouble(fails=False))  # fmt: skip
-        return doubted and any(open_border(face) for face in faces(shape))
+    def _doubtful(self, shape: TopoDS_Shape) -> bool:
+        """Whether the transfer doubted how faces fit together, or the border of a face, and one is open."""
+        doubted = [self.model.value(doubt.number) for doubt in self.model.trouble(fails=False) if doubt.number]
+        if any(map(is_whole, doubted)):
+            return True
+        border = any(isinstance(entity, StepShape_TopologicalRepresentationItem) for entity in doubted)
+        return border and any(open_border(face) for face in faces(shape))
 
     def _mark(self) -> dict[int, str]:
         """Give each face entity its number for a name, which the kernel hands on; the real names."""
