@@ -42,6 +42,7 @@ _WORDS = frozenset(
      "preferred_surface_curve_representation")
 )  # fmt: skip
 _PLACES = (StepRepr_ItemDefinedTransformation, StepRepr_MappedItem, StepRepr_RepresentationMap)
+_CRASHES = "the CAD kernel may crash on it"
 _NO_ENDS = "an edge of it has no vertex at its end"
 _NO_BOUND = "a bound of it (a hole or the border) is missing"
 #: Faces without trouble that are looked at to see how closely borders lie on surfaces in a file.
@@ -80,23 +81,29 @@ def touched(model: Model, faults: Iterable[Fault]) -> tuple[dict[int, list[Fault
     return {n: each for n, each in found.items() if each}, harmless
 
 
-def mend(model: Model) -> dict[int, str]:
+def mend(model: Model, faults: Sequence[Fault] = ()) -> dict[int, str]:
     """Take out, before the transfer, what makes the kernel crash or throw away a whole solid.
+
+    Parameters
+    ----------
+    model : Model
+    faults : sequence of Fault
+        Faces that use what has these are taken out, too.
 
     Returns
     -------
     dict
         By number, what is taken from a face: a bound, or the face itself from its shells.
     """
-    bad = {}
+    bad = dict.fromkeys(touched(model, faults)[0], _CRASHES)
     for number, entity in model.entities.items():
-        if is_face(entity):
+        if is_face(entity) and number not in bad:
             if _endless(entity):
                 bad[number] = _NO_ENDS
             elif None in _loops(entity):
                 bad[number] = _NO_BOUND
                 _unbound(entity)
-    whole = {number for number, why in bad.items() if why == _NO_ENDS}
+    whole = {number for number, why in bad.items() if why != _NO_BOUND}
     for shell in model.entities.values() if whole else ():
         if isinstance(shell, StepShape_ConnectedFaceSet) and shell.CfsFaces() is not None:
             inner = [shell.CfsFacesValue(i + 1) for i in range(shell.NbCfsFaces())]

@@ -2,6 +2,8 @@
 
 import hashlib
 import os
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
@@ -19,10 +21,8 @@ from cad_io.read_guarded import guarded as in_copy
 from cad_io.sniff import load
 from cad_io.units import in_mm
 
-_LOADERS: dict[str, type[read_step.Loaded] | type[read_iges.Loaded]] = {
-    "step": read_step.Loaded,
-    "iges": read_iges.Loaded,
-}
+Loaded = read_step.Loaded | read_iges.Loaded
+_LOADERS: dict[str, Callable[..., Loaded]] = {"step": read_step.Loaded, "iges": read_iges.Loaded}
 #: Seconds that a guarded reading may take.
 TIMEOUT = 120.0
 
@@ -85,13 +85,18 @@ def _read_file(file: str, unit: str | None, timeout: float) -> Found:
         loaded = _LOADERS[kind](file, data, unit)
         if not loaded.risky:
             return known | _found(loaded.transfer())
-    try:
-        return known | in_copy(lambda: _transferred(loaded), timeout, file)
-    except Crashed:
-        return known | in_copy(lambda: _transferred(_LOADERS[kind](file, data, unit, names=False)), timeout, file)
+    # A crash costs no more than a copy: try with less and less.
+    again = partial(_LOADERS[kind], file, data, unit, names=False)
+    for reload in (lambda: loaded, again, partial(again, careful=True)):
+        try:
+            return known | in_copy(partial(_transferred, reload), timeout, file)
+        except Crashed as error:
+            crash = error
+    raise crash
 
 
-def _transferred(loaded: read_step.Loaded | read_iges.Loaded) -> Found:
+def _transferred(load_again: Callable[[], Loaded]) -> Found:
+    loaded = load_again()
     with translated("reading the file", error=ReadError, file=loaded.file):
         return _found(loaded.transfer())
 

@@ -35,6 +35,8 @@ class Loaded:
         Length unit to take instead of the file's, one of `units.UNITS`.
     names : bool
         Look for names, colours and levels, too.
+    careful : bool
+        As for STEP; here there is nothing to leave out.
 
     Attributes
     ----------
@@ -47,7 +49,9 @@ class Loaded:
         Cut off, or not IGES.
     """
 
-    def __init__(self, file: str, data: bytes, unit: str | None = None, *, names: bool = True) -> None:
+    def __init__(
+        self, file: str, data: bytes, unit: str | None = None, *, names: bool = True, careful: bool = False
+    ) -> None:  # fmt: skip
         self.file, self.names = file, names
         self.sections: dict[bytes, list[bytes]] = defaultdict(list)
         for line in data.splitlines():

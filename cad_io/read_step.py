@@ -70,6 +70,10 @@ class Read:
     lost: list[LostFace] = field(default_factory=list)
 
 
+class _NothingError(ReadError):
+    """No face came out."""
+
+
 class Loaded:
     """A STEP file whose entities are loaded, but not yet made into shapes.
 
@@ -82,6 +86,8 @@ class Loaded:
         Length unit to take instead of the file's, one of `units.UNITS`.
     names : bool
         Ask the kernel for names, colours and layers, on which it crashes in some faulty files.
+    careful : bool
+        Leave out every face that uses something faulty.
 
     Attributes
     ----------
@@ -94,8 +100,10 @@ class Loaded:
         Cut off, not STEP, or known to hang the transfer.
     """
 
-    def __init__(self, file: str, data: bytes, unit: str | None = None, *, names: bool = True) -> None:
-        self.file, self.data, self.unit = file, data, unit
+    def __init__(
+        self, file: str, data: bytes, unit: str | None = None, *, names: bool = True, careful: bool = False
+    ) -> None:  # fmt: skip
+        self.file, self.data, self.unit, self.names, self.careful = file, data, unit, names, careful
         STEPCAFControl_Controller.Init_s()
         Interface_Static.SetIVal_s("read.stepcaf.subshapes.name", int(names))
         self.reader = STEPCAFControl_Reader()
@@ -132,8 +140,14 @@ class Loaded:
         """
         traced = traced or bool(self.faults)
         real = self._mark() if traced else {}
-        mended = mend(self.model) if traced else {}
-        result = self._shape()
+        mended = mend(self.model, self.faults if self.careful else ()) if traced else {}
+        try:
+            result = self._shape()
+        except _NothingError:
+            if self.careful or not self.faults:
+                raise
+            # One bad vertex can cost a whole solid: without the faces at it, the others may come.
+            return Loaded(self.file, self.data, self.unit, names=self.names, careful=True).transfer()
         found, written = _distinct_faces(result.shape), sum(len(kind.findall(self.data)) for kind in _FACES)
         if not traced:
             # All is well, or else the file is read again with marks: only then can be told what is lost.
@@ -152,7 +166,7 @@ class Loaded:
 
     def _refuse(self) -> None:
         """Points and directions that are no numbers, used by a shape: the transfer would take for ever, or a guess."""
-        for fault in self.faults if self.faults else ():
+        for fault in self.faults:
             entity = self.model.entities.get(fault.number)
             if isinstance(entity, StepGeom_CartesianPoint | StepGeom_Direction) and fault.parameter != "name":
                 users = (self.model.entities[n] for n in self.model.users(fault.number) if n)
@@ -181,7 +195,7 @@ class Loaded:
         done = self.reader.Transfer(document)
         roots = [XCAFDoc_ShapeTool.GetShape_s(label) for label in _each(_roots(document))] if done else []
         if not roots or not any(any(explore(root, TopAbs_FACE)) for root in roots):
-            raise ReadError(f"{nothing}: export it as a solid or surface model", file=self.file)
+            raise _NothingError(f"{nothing}: export it as a solid or surface model", file=self.file)
         result = Read(unwrapped(as_one(roots)))
         add_attributes(document, result)
         return result

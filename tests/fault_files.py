@@ -153,10 +153,13 @@ PATTERNS = {
     "weight of zero": Faulty("rod", swap(r"(RATIONAL_B_SPLINE_SURFACE\(\(\s*\()[^,)]*", r"\g<1>0.", 1), LOST, 2),
     "edge without a vertex": Faulty("drilled", swap("VERTEX_POINT", "VERTEX_PAINT"), LOST, 4),
     "face with a wrong statement": Faulty("drilled", swap(r"ADVANCED_FACE\('',", "ADVANCED_FACE('',(("), LOST, 6),
+    "point of a vertex dangling": Faulty("drilled", swap(r"(VERTEX_POINT\('',#)\d+", r"\g<1>99999"), LOST, 4),
+    "placement of a plane dangling": Faulty("drilled", swap(r"(PLANE\('',#)\d+", r"\g<1>99999"), LOST, 6),
     # --- faces that are altered ----------------------------------------------------------------------------------
     "bound dangling": Faulty("drilled", swap(r"(ADVANCED_FACE\('',\(#)\d+", r"\g<1>99999"), LOST, 7, 1),
     "edge loop missing": Faulty("drilled", drop("EDGE_LOOP"), LOST, 7, 1),
     "use of an edge missing": Faulty("drilled", drop("ORIENTED_EDGE"), LOST, 7, 1),
+    "use of an edge that is none": Faulty("drilled", swap(r"(ORIENTED_EDGE\('',\*,\*,#)\d+", r"\g<1>99999"), LOST, 7, 1),
     "edge that a loop leaves out": Faulty("drilled", swap(r"(EDGE_LOOP\('',\(#\d+),#\d+", r"\1"), LOST, 7, 1),
     "curve of an edge dangling": Faulty("drilled", swap(r"(EDGE_CURVE\('',#\d+,#\d+,#)\d+", r"\g<1>99999"), LOST, 7, 2),
     "circle without a radius": Faulty("drilled", swap(r"(CIRCLE\('',#\d+,)3\.", r"\1'x'"), LOST, 7, 2),
