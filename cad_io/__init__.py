@@ -18,6 +18,7 @@ _HOME = {
     "SurfaceSamples": "arrays",
     "FaceGrid": "arrays",
     "FaceInfo": "arrays",
+    "LostFace": "arrays",
     "Triangles": "arrays",
     "FaceLabels": "arrays",
     "Style": "arrays",

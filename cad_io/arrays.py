@@ -50,6 +50,35 @@ class FaceInfo:
 
 
 @dataclass(frozen=True, slots=True)
+class LostFace:
+    """A face written in a file that is not in the part, or not as written.
+
+    Attributes
+    ----------
+    entity : str
+        As the file names it: `#123` (STEP), `D45` (IGES); empty where that is not known.
+    name : str
+        Name in the file; empty if it has none.
+    why : str
+        What became of it, and the cause where it is known.
+    face : int, optional
+        Its number in the part where it is there, but altered: with a hole or an edge missing, for one.
+    box : ((x, y, z), (x, y, z)), optional
+        Corners, mm, of the box that its known points span, in part coordinates; the face may reach beyond it.
+    """
+
+    entity: str
+    name: str
+    why: str
+    face: int | None = None
+    box: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
+
+    def __str__(self) -> str:
+        known = " ".join(filter(None, (f"F{self.face}" if self.face else "", self.entity, self.name)))
+        return f"{known or 'a face'}: {self.why}"
+
+
+@dataclass(frozen=True, slots=True)
 class Orientation:
     """Which side of each face is out of the material.
 

@@ -39,7 +39,7 @@ def add_names(reader: Any, result: Read) -> None:
     numbers = shape_map(result.shape, TopAbs_FACE)
 
     def found(entity: Any, shape: Any) -> None:
-        if (number := numbers.FindIndex(shape)) and (name := _name(entity)):
+        if (number := numbers.FindIndex(shape)) and (name := name_of(entity)):
             result.names[number] = name
 
     for i in range(1, reader.NbRootsForTransfer() + 1):
@@ -72,7 +72,7 @@ def _inside(entity: Any) -> list[Any]:
     return []
 
 
-def _name(entity: Any) -> str:
+def name_of(entity: Any) -> str:
     """The long name where there is one, else the label of eight letters."""
     for has, get in ((entity.HasName, entity.NameValue), (entity.HasShortLabel, entity.ShortLabel)):
         try:

@@ -1,5 +1,6 @@
 """A time limit for kernel calls: Python cannot interrupt them, but it can end a forked copy of the process."""
 
+import faulthandler
 import os
 import select
 import signal
@@ -43,7 +44,7 @@ def limited(call: Callable[[], bytes], seconds: float) -> bytes:
         warnings.simplefilter("ignore", DeprecationWarning)
         child = os.fork()
     if child == 0:
-        _answer(call, start)
+        _answer(call, start, seconds)
     os.close(start)
     parts: list[bytes] = []
     try:
@@ -64,10 +65,12 @@ def limited(call: Callable[[], bytes], seconds: float) -> bytes:
     return answer[1:]
 
 
-def _answer(call: Callable[[], bytes], start: int) -> None:
+def _answer(call: Callable[[], bytes], start: int, seconds: float) -> None:
     """The copy's side: write the answer, `+` and the result or `-` and what was raised, and end without clean-up."""
     try:
         try:
+            faulthandler.disable()  # a crash here is told by the other side
+            _end_alone(seconds)
             answer = b"+" + call()
         except Exception as error:
             answer = b"-" + f"{type(error).__name__} {error}".encode()
@@ -75,3 +78,12 @@ def _answer(call: Callable[[], bytes], start: int) -> None:
             pipe.write(answer)
     finally:
         os._exit(0)
+
+
+def _end_alone(seconds: float) -> None:
+    """Come to an end even if the process that watches is killed."""
+    import resource  # of systems that can fork
+
+    soft, hard = resource.getrlimit(resource.RLIMIT_CPU)
+    known = [limit for limit in (soft, hard, int(min(seconds, 1e9)) + 2) if limit != resource.RLIM_INFINITY]
+    resource.setrlimit(resource.RLIMIT_CPU, (min(known), hard))

@@ -15,7 +15,7 @@ from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_SOLID
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Compound, TopoDS_Face, TopoDS_Iterator, TopoDS_Shape
 
-from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats
+from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats, LostFace
 from cad_io.assembly import Node
 from cad_io.errors import ReadError
 from cad_io.kernel import edges_of, explore, faces, is_kernel_error, shape_map, translated
@@ -59,10 +59,14 @@ class Part:
         What the reader found odd; odd sizes are added here.
     picked : tuple of int, optional
         Numbers of the faces that were picked on the object which the part was made from.
+    lost : sequence of LostFace, optional
+        Faces written in the file that are not here, or not as written; faces without a finite size are added here.
 
     Attributes
     ----------
     shape, file, sha256, layers, tree, picked : as given
+    lost : tuple of LostFace
+        Where it is not empty, nothing is known of what stood there: no posture may be called safe.
     faces : tuple of FaceInfo
         Entry i is face number i + 1.
     size : tuple of float
@@ -93,6 +97,7 @@ class Part:
         tree: tuple[Node, ...] = (),
         warnings: tuple[str, ...] = (),
         picked: tuple[int, ...] = (),
+        lost: tuple[LostFace, ...] = (),
     ) -> None:
         self.shape, self.file, self.sha256, self.picked = shape, file, sha256, picked
         with translated("looking for faces", error=ReadError, file=file):
@@ -118,6 +123,12 @@ class Part:
                     file=file,
                 )
         self._names, self._colours, self._said = names or {}, colours or {}, warnings
+        told = {each.face for each in lost}
+        self.lost = (
+            *lost,
+            *(LostFace("", self._names.get(n, ""), "it has no finite size", n)
+              for n in (np.flatnonzero(~finite) + 1).tolist() if n not in told),
+        )  # fmt: skip
 
     def __repr__(self) -> str:
         size = " x ".join(f"{length:.4g}" for length in self.size)
@@ -205,6 +216,10 @@ class Part:
             if not (is_kernel_error(thrown) or is_kernel_error(thrown.__cause__ or thrown)):
                 raise
             reason = reason or f"the CAD kernel cannot work with this face ({thrown})"
+        altered = next((each.why for each in self.lost if each.face == number), None)
+        if altered is not None and reason is None:
+            # What it encloses and how large it is would be those of another face.
+            reason, area = f"is not as it was written in the file: {altered}", 0.0
         name, colour = self._names.get(number, ""), self._colours.get(number)
         return FaceInfo(number, name, surface, shape, area, colour, reason)
 

@@ -3,26 +3,32 @@
 import hashlib
 import math
 import os
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from numbers import Real
 from typing import Any
 
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
 from OCP.gp import gp_Pnt, gp_Trsf, gp_Vec
+from OCP.TopAbs import TopAbs_EDGE
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shape
 
 from cad_io import read_iges, read_step
+from cad_io.arrays import LostFace
 from cad_io.assembly import Node
 from cad_io.errors import ReadError
-from cad_io.kernel import silence, translated
+from cad_io.kernel import explore, faces, silence, translated
 from cad_io.objects import from_object
 from cad_io.part import Part, unwrapped
-from cad_io.read_guarded import Found
+from cad_io.read_guarded import Crashed, Found
 from cad_io.read_guarded import guarded as in_copy
 from cad_io.sniff import load
 from cad_io.units import in_mm
 
+Loaded = read_step.Loaded | read_iges.Loaded
+_LOADERS: dict[str, Callable[..., Loaded]] = {"step": read_step.Loaded, "iges": read_iges.Loaded}
 #: Seconds that a guarded reading may take.
 TIMEOUT = 120.0
 #: As good as no limit, s.
@@ -45,12 +51,13 @@ def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, ti
         Let a copy of the process read, so that a file that crashes or hangs the CAD kernel is a ReadError. Costs a
         little time; needs a system that can fork (not Windows).
     timeout : float
-        Seconds that a guarded reading may take.
+        Seconds that a guarded reading may take. A file with faults that may harm the kernel is made into shapes in a
+        copy of the process in any case.
 
     Returns
     -------
     Part
-        Lengths in mm, one located shape.
+        Lengths in mm, one located shape. What a faulty file has lost is in `lost`.
 
     Raises
     ------
@@ -68,41 +75,59 @@ def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, ti
         if unit is not None:
             raise ReadError("the part has been read already: give the unit when it is read", file=source.file)
         return source
+    timeout = min(float(timeout), _LONGEST)
     if not guarded:
-        return Part(**_find(source, unit))
+        return Part(**_find(source, unit, timeout))
 
     def find() -> Found:
-        found = _find(source, unit)
+        found = _find(source, unit, timeout)
         Part(**found)  # which asks the kernel more, better here than outside
         return found
 
-    return Part(
-        **in_copy(find, min(timeout, _LONGEST), os.fspath(source) if isinstance(source, str | os.PathLike) else None)
-    )
+    return Part(**in_copy(find, timeout, os.fspath(source) if isinstance(source, str | os.PathLike) else None))
 
 
-def _find(source: Any, unit: str | None) -> Found:
+def _find(source: Any, unit: str | None, timeout: float) -> Found:
     """What the part is made of."""
     if isinstance(source, str | os.PathLike):
-        return _read_file(os.fspath(source), unit)
+        return _read_file(os.fspath(source), unit, timeout)
     found = from_object(source)
     tree = tuple(_scaled_node(node, unit) for node in found["tree"])
     return found | {"shape": _scaled(found["shape"], unit), "tree": tree}
 
 
-def _read_file(file: str, unit: str | None) -> Found:
+def _read_file(file: str, unit: str | None, timeout: float) -> Found:
     kind, data = load(file)
-    checksum = hashlib.sha256(data).hexdigest()
+    known = {"file": file, "sha256": hashlib.sha256(data).hexdigest()}
     with translated("reading the file", error=ReadError, file=file):
-        if kind == "step":
-            read = read_step.read(file, data, unit)
-        elif kind == "iges":
-            read = read_iges.read(file, data, unit)
-        else:
-            read = read_step.Read(_scaled(_read_brep(file, kind), unit))
+        if kind not in _LOADERS:
+            return known | _found(read_step.Read(_scaled(_read_brep(file, kind), unit)))
+        loaded = _LOADERS[kind](file, data, unit)
+        if not loaded.risky:
+            return known | _found(loaded.transfer())
+    # A crash costs no more than a copy: try with less and less.
+    again = partial(_LOADERS[kind], file, data, unit, names=False)
+    for reload in (lambda: loaded, again, partial(again, careful=True)):
+        try:
+            return known | in_copy(partial(_transferred, reload), timeout, file)
+        except Crashed as error:
+            crash = error
+    raise crash
+
+
+def _transferred(load_again: Callable[[], Loaded]) -> Found:
+    loaded = load_again()
+    with translated("reading the file", error=ReadError, file=loaded.file):
+        return _found(loaded.transfer())
+
+
+def _found(read: read_step.Read) -> Found:
+    edgeless = [n for n, face in enumerate(faces(read.shape), 1) if next(explore(face, TopAbs_EDGE), None) is None]
+    told = {each.face for each in read.lost}
+    read.lost += [LostFace("", read.names.get(n, ""), "it has no edges", n) for n in edgeless if n not in told]
     return {
-        "shape": read.shape, "file": file, "sha256": checksum, "names": read.names, "colours": read.colours,
-        "layers": read.layers, "tree": read.tree, "warnings": tuple(read.warnings),
+        "shape": read.shape, "names": read.names, "colours": read.colours, "layers": read.layers, "tree": read.tree,
+        "warnings": tuple(read.warnings), "lost": tuple(read.lost),
     }  # fmt: skip
 
 

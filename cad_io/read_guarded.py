@@ -20,6 +20,10 @@ from cad_io.limited import ChildDied, TimeLimit, limited
 Found = dict[str, Any]
 
 
+class Crashed(ReadError):
+    """The kernel crashed."""
+
+
 def guarded(find: Callable[[], Found], timeout: float, file: str | None) -> Found:
     """Result of `find()`, which may crash or hang.
 
@@ -35,7 +39,7 @@ def guarded(find: Callable[[], Found], timeout: float, file: str | None) -> Foun
     Raises
     ------
     ReadError
-        What `find` raised, or that it crashed, or did not end in time.
+        What `find` raised, or that it did not end in time; `Crashed` if it crashed.
     """
     try:
         answer = pickle.loads(limited(lambda: _answer(find), timeout))
@@ -43,7 +47,7 @@ def guarded(find: Callable[[], Found], timeout: float, file: str | None) -> Foun
         raise ReadError(f"not read within {timeout:g} s: it may be damaged; give more time or export it again",
                         file=file) from None  # fmt: skip
     except ChildDied as died:
-        raise ReadError(f"the CAD kernel cannot read it ({died}): export it again", file=file) from None
+        raise Crashed(f"the CAD kernel cannot read it ({died}): export it again", file=file) from None
     if "error" in answer:
         cause, where, face = answer["error"]
         raise ReadError(cause, file=where, face=face)

@@ -41,7 +41,7 @@ class StandIns:
     vertex : (t, 3, 3) float
         Corners, mm.
     face : (t,) int32
-        Face number.
+        Face number, 0 for a face that is only in the file.
     weight : (t,) int8
         1 where the triangle is part of a skin that encloses something and its corners run counter-clockwise seen from
         outside, -1 where they run clockwise, 0 where nothing is known to be enclosed.
@@ -56,7 +56,7 @@ class StandIns:
 
 
 def stand_ins(part: Part, missing: Sequence[tuple[int, str]], chord: float) -> StandIns:
-    """Stand-ins for the faces that `Triangles.missing` lists.
+    """Stand-ins for the faces that `Triangles.missing` lists, and boxes for those of `Part.lost` whose place is known.
 
     Parameters
     ----------
@@ -85,6 +85,12 @@ def stand_ins(part: Part, missing: Sequence[tuple[int, str]], chord: float) -> S
         vertex.append(made)
         owner.append(np.full(len(made), number, np.int32))
         weight.append(np.full(len(made), sign, np.int8))
+    for known in (each.box for each in part.lost if each.face is None and each.box is not None):
+        # A face of the file that is not here at all: it stood at least about there.
+        low, high = (np.array(corner) for corner in known)
+        vertex.append((low + _CORNERS * (high - low))[_SIDES])
+        owner.append(np.zeros(len(_SIDES), np.int32))
+        weight.append(np.ones(len(_SIDES), np.int8))
     if own:
         vertex.append(np.concatenate(list(own.values())))
         owner.append(np.repeat(np.array(list(own), np.int32), [len(mine) for mine in own.values()]))

@@ -6,7 +6,7 @@ the true surface at points of its edges and its inside, border edges against the
 is split there. Neighbours may be split differently: the result is a soup, each of whose triangles is near the surface.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -29,8 +29,13 @@ _OLDEST = 24  # no triangle is split more often
 _UNCOVERED = 0.01
 
 
+#: Told who is at work, `kernel` or `own`, and at which face (0: all of them): for who watches the time.
+At = Callable[[str, int], None]
+
+
 def tessellate(
-    part: Part, chord: float, *, budget: int = 2_000_000, faces: Sequence[int] | None = None
+    part: Part, chord: float, *, budget: int = 2_000_000, faces: Sequence[int] | None = None,
+    at: At = lambda who, face: None,
 ) -> Triangles:  # fmt: skip
     """Triangles whose distance from the surface is at most `chord`.
 
@@ -44,6 +49,9 @@ def tessellate(
         Most triangles. Where it binds, the farthest are split first, and `chord_error` says what was reached.
     faces : sequence of int, optional
         Face numbers; default all.
+    at : callable, optional
+        Told who is at work, `kernel` or `own`, and at which face; all are split together, so the one that has the most
+        triangles still too far is named.
 
     Returns
     -------
@@ -57,9 +65,9 @@ def tessellate(
     missing = {n: str(part.faces[n - 1].unjudged) for n in numbers if part.faces[n - 1].unjudged is not None}
     wanted = [n for n in numbers if n not in missing]
     with translated("meshing", file=part.file):
-        meshes = _start(part, wanted, chord, budget)
+        meshes = _start(part, wanted, chord, budget, at)
         missing.update({n: "the kernel's mesher fails on it" for n in wanted if n not in meshes})
-        done = _refined(part, meshes, chord / MARGIN, budget)
+        done = _refined(part, meshes, chord / MARGIN, budget, at)
     missing.update(_uncovered(part, done, chord))
     whole = np.isfinite(done.vertex).all(axis=(1, 2)) & np.isfinite(done.off)
     if not whole.all():
@@ -85,23 +93,25 @@ class _Done(NamedTuple):
     off: Floats
 
 
-def _start(part: Part, wanted: Sequence[int], chord: float, budget: int) -> dict[int, UVMesh]:
+def _start(part: Part, wanted: Sequence[int], chord: float, budget: int, at: At) -> dict[int, UVMesh]:
     """The kernel's triangles; coarser where they would take the whole budget, finer where a face gets none."""
     if not wanted:
         return {}
     size = float(np.linalg.norm(part.size))
     deflection = max(_COARSER * chord, _COARSE * size)
+    at("kernel", 0)
     meshes = uv_meshes(part, wanted, deflection, _ANGLE)
     while sum(len(m.corner) for m in meshes.values()) > budget and deflection < size:
         deflection *= 4
         meshes = uv_meshes(part, wanted, deflection, 2 * _ANGLE)
     for number in wanted:
         if number not in meshes:
+            at("kernel", number)
             meshes.update(uv_meshes(part, [number], 0.1 * chord, 0.2 * _ANGLE))
     return meshes
 
 
-def _refined(part: Part, meshes: Mapping[int, UVMesh], chord: float, budget: int) -> _Done:
+def _refined(part: Part, meshes: Mapping[int, UVMesh], chord: float, budget: int, at: At) -> _Done:
     """Split until every triangle is within `chord` or the budget is spent, the farthest first where it binds."""
     soup = Soup(part)
     new = Rows.joined([soup.add(number, mesh) for number, mesh in meshes.items()])
@@ -110,6 +120,7 @@ def _refined(part: Part, meshes: Mapping[int, UVMesh], chord: float, budget: int
     waiting, waiting_off, waiting_marked = Rows.joined([]), np.zeros(0), np.zeros((0, 3), bool)
     scarce = False
     while len(new.face):
+        at("own", int(np.bincount(new.face).argmax()))
         off, marked = soup.measured(new, chord, wholly=scarce)
         far = np.asarray(marked.any(axis=1))
         finished.append(_done(soup, new.at(~far), off[~far]))

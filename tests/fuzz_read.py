@@ -3,10 +3,12 @@
 A preloaded process forks the command's child, so that kernel and kernels are loaded once, and watches it as the command's
 supervisor does. What that turns into one line (a crash, a stage past its limit) is counted, not blamed. Faults are: a
 traceback or an internal error, an exit code that the command does not have, words on standard output, a refusal that is
-not one line naming the file, a hang where there is no limit, files left behind, and a plan that is wrong: see `wrong`.
+not one line naming the file, a hang where there is no limit, files left behind, a plan that is wrong (see `wrong`), and
+faces that are gone without a word (see `silent`).
 """
 
 import argparse
+import contextlib
 import gc
 import json
 import math
@@ -19,7 +21,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cache, partial
 from pathlib import Path
@@ -29,6 +31,8 @@ import jsonschema
 import numpy as np
 from fuzz_seeds import write_seeds
 
+from cad_io import Part
+from cad_io.altered import edge_count
 from cad_io.kernel import silence
 from plan_cutters import cli, pipeline, supervise
 from plan_cutters.report.to_json import schema
@@ -51,11 +55,26 @@ _STEP_FACES = re.compile(rb"\b(?:ADVANCED_FACE|FACE_SURFACE)\s*\(")
 
 
 class Outcome(NamedTuple):
-    """What became of one file: a class (a fault is in capitals), what was said, and the plan if there is one."""
+    """What became of one file: a class (a fault is in capitals), what was said, plan and part if there are."""
 
     kind: str
     detail: str
     plan: dict[str, Any] | None = None
+    part: dict[str, Any] | None = None
+
+
+def recorded(read: Callable[..., Part]) -> Callable[..., Part]:
+    """Reading that leaves beside the file what the part is like, for `silent`."""
+
+    def reading(source: Any, **more: Any) -> Part:
+        part = read(source, **more)
+        shapes = [part.face(face.number) for face in part.faces]
+        facts = {"lost": [str(each) for each in part.lost], "altered": [each.face for each in part.lost if each.face],
+                 "closed": part.closed, "said": part.warnings, "edges": [edge_count(shape) for shape in shapes]}  # fmt: skip
+        Path(source).with_name("facts").write_text(json.dumps(facts))
+        return part
+
+    return reading
 
 
 def mutated(data: bytes, rng: np.random.Generator) -> bytes:
@@ -111,6 +130,7 @@ class Case:
     file: Path
     whole: dict[str, Any] = field(default_factory=dict)
     models: bool = False
+    part: dict[str, Any] = field(default_factory=dict)
 
     @property
     def folder(self) -> Path:
@@ -162,6 +182,7 @@ def _forked(cases: Sequence[Case]) -> tuple[list[int], Outcome | None]:
     pid = os.fork()
     if pid == 0:
         try:
+            os.setsid()  # reading may fork again
             os.close(here)
             os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
             os.environ[supervise.REPORT], os.environ[supervise.MEMORY] = str(there), str(8 << 30)
@@ -193,6 +214,8 @@ def _forked(cases: Sequence[Case]) -> tuple[list[int], Outcome | None]:
     finally:
         os.close(here)
         if open_:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(pid, signal.SIGKILL)
             os.kill(pid, signal.SIGKILL)
         _, status = os.waitpid(pid, 0)
     if len(codes) == len(cases):
@@ -216,9 +239,13 @@ def _judged(code: int, case: Case) -> Outcome:
             return Outcome("NO PLAN", f"exit {code}: {error}")
         if said:
             return Outcome("TALKS", said)
-        fault = wrong(plan, code, case.file.read_bytes(), case.whole or plan)
-        return Outcome("WRONG PLAN", fault, plan) if fault else Outcome(f"planned {code}", "", plan)
-    if {p.name for p in case.folder.iterdir()} != {case.file.name, "said", "printed"}:
+        text, part = case.file.read_bytes(), json.loads((case.folder / "facts").read_text())
+        if fault := wrong(plan, code, text, case.whole or plan):
+            return Outcome("WRONG PLAN", fault, plan)
+        if fault := silent(part, case.part or part, code, text):
+            return Outcome("SILENT LOSS", fault, plan)
+        return Outcome(f"planned {code}" + (", faces lost" if part["lost"] else ""), "", plan, part)
+    if {p.name for p in case.folder.iterdir()} - {"facts"} != {case.file.name, "said", "printed"}:
         return Outcome("LEFT BEHIND", last)
     if said != last or not said.startswith("plan-cutters: ") or str(case.file) not in said or len(said) > 600:
         return Outcome("UNCLEAR", said)
@@ -251,14 +278,28 @@ def wrong(plan: dict[str, Any], code: int, text: bytes, whole: dict[str, Any]) -
     if code == 0 and (samples["unjudged"] or any(f["target"] and f["unjudged"] for f in plan["faces"])):
         return "exit 0 although something was not judged"
     warned = set(part["warnings"]) - set(whole["part"]["warnings"])
-    written = len(_STEP_FACES.findall(text)) if text.lstrip().startswith(b"ISO-10303") else 0
-    if not warned and written > part["faces"]:
-        return f"{written} faces in the text, {part['faces']} read, no warning"
-    if not warned and part["faces"] < whole["part"]["faces"]:
-        return f"{part['faces']} of {whole['part']['faces']} faces, no warning"
     ratio = max(part["size_mm"]) / max(whole["part"]["size_mm"])
     if not warned and not 1 / PLAUSIBLE < ratio < PLAUSIBLE:
         return f"{ratio:.3g} times as large, no warning"
+    return ""
+
+
+def silent(part: dict[str, Any], whole: dict[str, Any], code: int, text: bytes) -> str:
+    """What is gone from a damaged file's part without a word, given that of the whole file; empty if nothing is.
+
+    A face may go with its statement, since then the file says nothing of it; but a solid that was closed must not open.
+    """
+    if part["lost"]:
+        return "exit 0 although faces are lost" if code == 0 else ""
+    found, before = len(part["edges"]), len(whole["edges"])
+    step = text.lstrip().startswith(b"ISO-10303")
+    written = len(_STEP_FACES.findall(text)) if step else before
+    if found < written:
+        return f"{found} of {written} faces that are written"
+    if found < before and (whole["closed"] and not part["closed"]):
+        return f"{found} of {before} faces, and open now"
+    if not part["said"] and whole["closed"] and not part["closed"] and sum(part["edges"]) < sum(whole["edges"]):
+        return f"{sum(part['edges'])} of {sum(whole['edges'])} edges, and open now"
     return ""
 
 
@@ -270,8 +311,8 @@ def _numbers(value: Any) -> Iterator[float]:
         yield value
 
 
-def sources(folders: list[Path], scratch: Path) -> list[tuple[Path, dict[str, Any]]]:
-    """Small files that can be planned, each with its plan."""
+def sources(folders: list[Path], scratch: Path) -> list[tuple[Path, dict[str, Any], dict[str, Any]]]:
+    """Small files that can be planned, each with its plan and what its part is like."""
     found = sorted(f for d in folders for f in d.glob("*") if f.suffix.lower() in SUFFIXES)
     found = [f for f in found if 0 < f.stat().st_size < LARGEST]
     cases = [_case(scratch / str(i), file.name, file.read_bytes()) for i, file in enumerate(found)]
@@ -279,13 +320,14 @@ def sources(folders: list[Path], scratch: Path) -> list[tuple[Path, dict[str, An
     for file, outcome in zip(found, outcomes, strict=True):
         if not outcome.plan:
             print(f"not used: {file.name}: {outcome.kind} {outcome.detail}", flush=True)
-    return [(file, outcome.plan) for file, outcome in zip(found, outcomes, strict=True) if outcome.plan]
+    each = zip(found, outcomes, strict=True)
+    return [(file, outcome.plan, outcome.part) for file, outcome in each if outcome.plan and outcome.part]
 
 
-def _case(folder: Path, name: str, text: bytes, whole: dict[str, Any] | None = None, models: bool = False) -> Case:
+def _case(folder: Path, name: str, text: bytes, **more: Any) -> Case:
     folder.mkdir(parents=True)
     (folder / name).write_bytes(text)
-    return Case(folder / name, whole or {}, models)
+    return Case(folder / name, **more)
 
 
 def main() -> int:
@@ -299,6 +341,7 @@ def main() -> int:
     # Compile and load everything once, here; the children inherit it.
     silence()
     pipeline.tessellate = partial(pipeline.tessellate, budget=TRIANGLES)
+    pipeline.read_part = recorded(pipeline.read_part)
     pipeline._versions = cache(pipeline._versions)
     outcomes: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as folder:
@@ -316,9 +359,11 @@ def main() -> int:
             for i in numbers:
                 # Each has its own stream, so that one can be made again alone.
                 rng = np.random.default_rng([given.seed, i])
-                source, whole = files[int(rng.integers(len(files)))]
+                source, whole, part = files[int(rng.integers(len(files)))]
                 text = mutated(source.read_bytes(), rng)
-                cases.append(_case(Path(folder) / str(i), source.name, text, whole, models=i % MODELS == 0))
+                cases.append(
+                    _case(Path(folder) / str(i), source.name, text, whole=whole, part=part, models=i % MODELS == 0)
+                )
             for i, case, outcome in zip(numbers, cases, attempt(cases), strict=True):
                 kind = outcome.kind + (" with models" if case.models and outcome.plan else "")
                 outcomes[kind] += 1

@@ -1,6 +1,7 @@
 """Reading in a copy of the process gives the same part, and an error where the kernel crashes or hangs."""
 
 import os
+import pickle
 import signal
 import time
 from dataclasses import replace
@@ -12,8 +13,10 @@ from OCP.BRepTools import BRepTools
 from OCP.TopLoc import TopLoc_Location
 
 from cad_io import Part, ReadError, read, read_part
+from cad_io.arrays import LostFace
 from cad_io.assembly import Node
 from cad_io.kernel import faces
+from cad_io.limited import limited
 
 REAL = real("cadquery_red_cube_blue_cylinder.step", "asitus_bolt-colored-faces.stp", "tigl_D150_wing.igs")
 
@@ -33,7 +36,7 @@ def assert_same(one, other):
     assert [replace(face, area=0.0) for face in one.faces] == [replace(face, area=0.0) for face in other.faces]
     assert [face.area for face in one.faces] == pytest.approx([face.area for face in other.faces], rel=1e-12)
     assert one.size == pytest.approx(other.size, rel=1e-9)
-    assert (one.solids, one.warnings, one.layers) == (other.solids, other.warnings, other.layers)
+    assert (one.solids, one.warnings, one.layers, one.lost) == (other.solids, other.warnings, other.layers, other.lost)
     assert (one.file, one.sha256) == (other.file, other.sha256)
     assert [described(node) for node in one.tree] == [described(node) for node in other.tree]
     for n in range(1, len(one.faces) + 1):
@@ -58,12 +61,19 @@ def test_a_tree_comes_out_with_its_places(monkeypatch):
                    for i, at in enumerate((TopLoc_Location(), place)))  # fmt: skip
     tree = (Node("cart", "", TopLoc_Location(), wheels),)
     found = {"shape": compound(solid, solid.Moved(place)), "tree": tree}
-    monkeypatch.setattr(read, "_find", lambda source, unit: found)
+    monkeypatch.setattr(read, "_find", lambda *_: found)
     part = read_part("any", guarded=True)
     assert [described(node) for node in part.tree] == [described(node) for node in tree]
     # A leaf's faces stand where its place puts them: equal locations, not only equal numbers.
     second = faces(part.shape)[7]
     assert second.Location().IsEqual(part.tree[0].children[1].place)
+
+
+def test_what_is_lost_comes_along(tmp_path):
+    BRepTools.Write_s(box(), str(tmp_path / "part.brep"))
+    lost = LostFace("#7", "lid", "it is gone", 3, ((0.0, 0.0, 0.0), (1.0, 2.0, 3.0)))
+    assert Part(read_part(tmp_path / "part.brep").shape, lost=(lost,)).lost == (lost,)
+    assert pickle.loads(pickle.dumps(lost)) == lost
 
 
 def test_errors_are_those_of_reading(tmp_path):
@@ -85,6 +95,10 @@ def test_a_crash_and_a_hang_are_errors(tmp_path, monkeypatch):
     with pytest.raises(ReadError, match=r"not read within 0\.5 s"):
         read_part(tmp_path / "part.brep", guarded=True, timeout=0.5)
     assert time.monotonic() - began < 10
+
+
+def test_a_copy_may_make_copies():
+    assert limited(lambda: limited(lambda: b"inner", 1000.0), 5.0) == b"inner"
 
 
 def test_what_crashes_while_measuring_is_an_error_too(monkeypatch):

@@ -233,7 +233,7 @@ def _one(part: str, out: Path, options: "Options", given: dict[str, Any]) -> tup
         from plan_cutters.pipeline import run
 
         with _progress(given["quiet"]) as tell:
-            result = run(part, options, progress=tell)
+            result = run(part, options, progress=tell, read_timeout=given["read_timeout"])
             if formats:
                 tell("write", 0, 1)
                 document = write_all(result, out, formats, staging, step_schema=given["step_schema"])

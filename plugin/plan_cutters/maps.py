@@ -249,13 +249,13 @@ def _map(
         rotations=ask.rotations, free=tuple(free), undecided=tuple(undecided), local_gouge=gouge,
         rear_gouge=tuple(rear), collision=tuple(collision), axis_limit=tuple(axis), buried=tuple(buried), point=p, normal=n,
         direction_max=e1, curvature=contact.curvature[0], tolerance=tolerance,
-        certified=tolerance > 0 and not around.missing, missing=_named(around),
+        certified=tolerance > 0 and not around.doubtful, missing=_named(around),
         chord_error=whole.triangles.chord_error, settled=tolerance > 0,
     )  # fmt: skip
 
 
 def _named(around: Surroundings) -> tuple[str, ...]:
-    return tuple(f"F{number}: {why}" for number, why, _ in around.missing)
+    return (*(f"F{number}: {why}" for number, why, _ in around.missing), *(str(each) for each in around.lost))
 
 
 def _merged(parts: Floats, kind: int) -> Floats:

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from cad_io import Part
-from cad_io.arrays import Floats, Ints, Triangles
+from cad_io.arrays import Floats, Ints, LostFace, Triangles
 from cad_io.bodies import Body, bodies
 from cad_io.stand_ins import StandIn, stand_ins
-from cad_io.tessellate import tessellate
+from cad_io.tessellate import At, tessellate
 from plan_cutters.cutter import Cutter
 from plan_cutters.errors import UnjudgeableError
 
@@ -185,6 +185,8 @@ class Surroundings:
         `box`, or `none` where its place is not known.
     on_bodies : tuple of int
         Faces of no body that lie on the faces of one, as construction geometry does.
+    lost : tuple of LostFace
+        Faces of the file that the part does not have; those it has in another form are in `missing`.
     """
 
     may_be: Obstacles
@@ -192,6 +194,12 @@ class Surroundings:
     bodies: tuple[Body, ...]
     missing: tuple[tuple[int, str, StandIn], ...]
     on_bodies: tuple[int, ...] = ()
+    lost: tuple[LostFace, ...] = ()
+
+    @property
+    def doubtful(self) -> bool:
+        """Whether something that may be in the way is not known well enough to call any posture safe beyond doubt."""
+        return bool(self.missing or self.lost)
 
     @classmethod
     def sheet(cls, obstacles: Obstacles) -> "Surroundings":
@@ -204,7 +212,9 @@ class Surroundings:
         return replace(self, may_be=self.may_be.skin, surely=self.surely.skin)
 
 
-def surroundings(part: Part, chord: float, *, ignored: Collection[int] = ()) -> Surroundings:
+def surroundings(
+    part: Part, chord: float, *, ignored: Collection[int] = (), at: At = lambda who, face: None
+) -> Surroundings:
     """Gather all that stands in a cutter's way.
 
     Parameters
@@ -214,21 +224,24 @@ def surroundings(part: Part, chord: float, *, ignored: Collection[int] = ()) -> 
         Chord error to ask for, mm.
     ignored : collection of int
         Numbers of faces to leave out.
+    at : callable, optional
+        Told whose work is under way and at which face, as in `tessellate`.
 
     Raises
     ------
     UnjudgeableError
         No face has triangles.
     """
-    triangles = tessellate(part, chord, faces=[f.number for f in part.faces if f.number not in ignored])
+    triangles = tessellate(part, chord, faces=[f.number for f in part.faces if f.number not in ignored], at=at)
     found = tuple(body for whole in bodies(part) if (body := _without(whole, ignored)) is not None)
     surely = Obstacles(triangles, _weight(triangles, [b for b in found if b.closed]))
     stand = stand_ins(part, triangles.missing, chord)
     missing = tuple((n, why, stand.how[n]) for n, why in triangles.missing if stand.how[n] != "edges")
+    lost = tuple(each for each in part.lost if each.face is None)
     lying = _on_bodies(surely, found)
     everything = _weight(triangles, found)
     if not len(stand.vertex) and (everything == surely.weight).all():
-        return Surroundings(surely, surely, found, missing, lying)
+        return Surroundings(surely, surely, found, missing, lying, lost)
     all_triangles = replace(
         triangles,
         vertex=np.concatenate([triangles.vertex, stand.vertex]),
@@ -237,7 +250,7 @@ def surroundings(part: Part, chord: float, *, ignored: Collection[int] = ()) -> 
     open_boxes = [_box(triangles, body) for body in found if not body.closed]
     may_be = Obstacles(all_triangles, np.concatenate([everything, stand.weight]),
                        np.array([box for box in open_boxes if np.isfinite(box).all()]).reshape(-1, 2, 3))  # fmt: skip
-    return Surroundings(may_be, surely, found, missing, lying)
+    return Surroundings(may_be, surely, found, missing, lying, lost)
 
 
 def _on_bodies(surely: Obstacles, found: Sequence[Body]) -> tuple[int, ...]:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from cad_io import Orientation, Part, SurfaceSamples, read_part
 from cad_io.assembly import component_of
 from cad_io.orient import orient
+from cad_io.read import TIMEOUT
 from cad_io.sample import sample
 from plan_cutters import __version__
 from plan_cutters.access import access, witnesses
@@ -55,6 +56,7 @@ from plan_cutters.posture_maps import posture_maps as all_posture_maps
 from plan_cutters.reach import ACCESSIBLE, FREE, INACCESSIBLE, REASONS, UNDECIDED, UNJUDGED, Reach, Witness
 from plan_cutters.select_cutters import RULE, ranked
 from plan_cutters.spacing import default_spacing
+from plan_cutters.supervise import report_work
 
 #: Told the stage, how much of it is done, of how much.
 Progress = Callable[[str, int, int], None]
@@ -235,14 +237,16 @@ class _Clock:
         tell(1, 1)
 
 
-def run(part: Any, options: Options, *, progress: Progress | None = None) -> Result:
-    """`plan` with its options gathered."""
+def run(
+    part: Any, options: Options, *, progress: Progress | None = None, read_timeout: float = TIMEOUT
+) -> Result:  # fmt: skip
+    """`plan` with its options gathered; `read_timeout` is the most seconds that a faulty file may take to read."""
     clock = _Clock(progress)
     started = datetime.datetime.now(datetime.UTC)
     with clock.stage("read"):
         if isinstance(part, Part) and options.unit is not None:
             raise OptionError("the part has been read already: give the unit to read_part", file=part.file)
-        whole = part if isinstance(part, Part) else read_part(part, unit=options.unit)
+        whole = part if isinstance(part, Part) else read_part(part, unit=options.unit, timeout=read_timeout)
     chosen_faces = choose(whole, options.faces, options.ignore)
     targets = chosen_faces.targets
     setup = unit(options.setup, "setup axis")
@@ -262,7 +266,7 @@ def run(part: Any, options: Options, *, progress: Progress | None = None) -> Res
             f"no target face can be judged: {'; '.join(sorted(causes)) or 'no samples'}", file=whole.file
         )
     with clock.stage("tessellate"):
-        around = surroundings(whole, CHORD_ASKED * options.tolerance, ignored=chosen_faces.ignored)
+        around = surroundings(whole, CHORD_ASKED * options.tolerance, ignored=chosen_faces.ignored, at=report_work)
         triangles = around.surely.triangles
         tolerance = kept_tolerance(options.tolerance, triangles.chord_error)
     with clock.stage("compile"):
@@ -355,6 +359,11 @@ def _missing(part: Part, around: Surroundings) -> list[MissingEntry]:
         MissingEntry(face=f"F{number}", entity=None, name=part.faces[number - 1].name, why=why, stand_in=how)
         for number, why, how in around.missing
     ]
+    found += [
+        MissingEntry(face=None, entity=each.entity or None, name=each.name, why=each.why,
+                     stand_in="none" if each.box is None else "box")
+        for each in around.lost
+    ]  # fmt: skip
     return found
 
 
@@ -444,7 +453,7 @@ def _witness_entry(witness: Witness, samples: SurfaceSamples) -> WitnessEntry:
         point=_vector(samples.point[witness.sample]),
         face=f"F{samples.face[witness.sample]}",
         reason=witness.reason,
-        obstacle_face=None if witness.obstacle_face is None else f"F{witness.obstacle_face}",
+        obstacle_face=None if not witness.obstacle_face else f"F{witness.obstacle_face}",
         obstacle_point=None if witness.obstacle_point is None else _vector(witness.obstacle_point),
         best_posture=posture,
         depth_mm=witness.depth,

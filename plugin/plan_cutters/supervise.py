@@ -4,6 +4,7 @@ The CAD kernel can crash or hang on a bad file, and neither can be caught from i
 to read or too much memory becomes one line and an exit code; what it had begun to write is taken away.
 """
 
+import contextlib
 import math
 import os
 import select
@@ -20,6 +21,7 @@ from pathlib import Path
 REPORT, MEMORY = "PLAN_CUTTERS_REPORT", "PLAN_CUTTERS_MEMORY"
 #: Stages in which the kernel works on what the file says, and how many times the limit of reading each may take.
 LIMITED = {"read": 1.0, "sample": 5.0, "tessellate": 5.0, "write": 5.0}
+_WORK = {"sample": "sampling", "tessellate": "tessellation", "write": "splitting and writing"}
 
 
 class Supervised(Exception):
@@ -55,9 +57,14 @@ def keep_output() -> None:
 
 
 def report(word: str, text: str) -> None:
-    """Tell the parent, if there is one: `stage NAME`, `part FILE`, `staging FOLDER`."""
+    """Tell the parent, if there is one: `stage NAME`, `part FILE`, `staging FOLDER`, `work WHOSE FACE`."""
     if is_child():
         os.write(int(os.environ[REPORT]), f"{word} {text}\n".encode())
+
+
+def report_work(whose: str, face: int) -> None:
+    """Tell the parent whose work goes on in this stage, `kernel` or `own`, and at which face (0: all)."""
+    report("work", f"{whose} F{face}" if face else whose)
 
 
 def default_memory() -> int:
@@ -100,7 +107,7 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int) -> int:
         # Ask once; a child that has not begun, or is deep in the kernel when asked again, has nothing to tidy itself.
         asked.append(number)
         if len(asked) > 1 or watch.stage == "start":
-            child.kill()
+            os.killpg(child.pid, signal.SIGKILL)
         else:
             child.send_signal(signal.SIGINT)
 
@@ -109,29 +116,32 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int) -> int:
         while child.poll() is None:
             watch.listen(0.2)
             if watch.late():
-                child.kill()
-                child.wait()
+                _end(child)
                 watch.clear()
-                what = "not read" if watch.stage == "read" else f"the CAD kernel did not end its '{watch.stage}'"
-                raise Supervised(
-                    f"{watch.part}: {what} within {watch.limit:g} s; the file may be damaged, or give --read-timeout"
-                )
+                raise Supervised(watch.verdict())
         watch.listen(0.0)
     finally:
         os.close(here)
         for number, handler in previous.items():
             signal.signal(number, handler)
         if child.poll() is None:
-            child.kill()
-            child.wait()
+            _end(child)
     if child.returncode >= 0:
         return child.returncode
     watch.clear()
     if asked:
         raise KeyboardInterrupt
     name = signal.Signals(-child.returncode).name
-    raise Supervised(f"{watch.part}: the CAD kernel crashed ({name}, while it was at '{watch.stage}'); "
+    at = " ".join(filter(None, (watch.stage, watch.face)))
+    raise Supervised(f"{watch.part}: the CAD kernel crashed ({name}, while it was at '{at}'); "
                      "the file may be damaged: export it again")  # fmt: skip
+
+
+def _end(child: "subprocess.Popen[bytes]") -> None:
+    """Kill the child and the copies that it has made of itself for the kernel: a session of its own."""
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(child.pid, signal.SIGKILL)
+    child.wait()
 
 
 class _Watch:
@@ -140,6 +150,7 @@ class _Watch:
     def __init__(self, pipe: int, read_timeout: float) -> None:
         self.pipe, self.read_timeout = pipe, read_timeout
         self.part, self.stage, self.since = "part", "start", time.monotonic()
+        self.work = ""
         self.staging: set[str] = set()
         self.rest = b""
 
@@ -153,7 +164,9 @@ class _Watch:
             for line in lines:
                 word, _, text = line.decode(errors="replace").partition(" ")
                 if word == "stage":
-                    self.stage, self.since = text, time.monotonic()
+                    self.stage, self.since, self.work = text, time.monotonic(), ""
+                elif word == "work":
+                    self.work = text
                 elif word == "part":
                     self.part = text
                 elif word == "staging":
@@ -165,6 +178,24 @@ class _Watch:
 
     def late(self) -> bool:
         return time.monotonic() - self.since > self.limit
+
+    @property
+    def face(self) -> str:
+        """The face that is being worked on, `F12`; empty where no one said."""
+        return self.work.partition(" ")[2]
+
+    def verdict(self) -> str:
+        """What took too long, whose work it was and where, and what to try."""
+        where, within = f"{self.part}: {self.face}: " if self.face else f"{self.part}: ", f"within {self.limit:g} s"
+        more = "give more time (--read-timeout)"
+        if self.stage == "read":
+            return f"{where}not read {within}; the file may be damaged, or {more}"
+        if self.work.startswith("own"):
+            return (f"{where}our own {_WORK.get(self.stage, self.stage)} did not end {within}; "
+                    f"try a coarser --tolerance, or {more}")  # fmt: skip
+        fewer = "--faces, " if self.stage == "sample" else ""
+        return (f"{where}the CAD kernel did not end its {_WORK.get(self.stage, self.stage)} {within}; "
+                f"the file may be damaged: export it again, or try {fewer}a coarser --tolerance, or {more}")  # fmt: skip
 
     def clear(self) -> None:
         for folder in self.staging:
