@@ -48,7 +48,7 @@ def label_mesh(face: Any, uv: Floats, point: Floats, triangle: NDArray[np.int64]
     known = np.tile(known[:, :-1] if shut_v else known, (turns_u, turns_v))
     filled = fill(known)
     mixed = _Mixed(filled)
-    corner = np.column_stack([cell_u, cell_v, uv, point])[triangle]
+    corner: Floats = np.column_stack([cell_u, cell_v, uv, point])[triangle]
     done = []
     while len(corner):
         low, high = corner[:, :, :2].min(axis=1), corner[:, :, :2].max(axis=1)
@@ -62,8 +62,8 @@ def label_mesh(face: Any, uv: Floats, point: Floats, triangle: NDArray[np.int64]
         corner = _cut(corner[rows], axis[rows], at)
     found = np.concatenate(done)
     node = np.clip(np.rint(found[:, :, :2].mean(axis=1)), 0, np.array(filled.shape) - 1).astype(int)
-    rows, index = np.unique(found.reshape(-1, found.shape[2]), axis=0, return_inverse=True)
-    return LabelledMesh(rows[:, 2:4], rows[:, 4:], index.reshape(-1, 3), filled[node[:, 0], node[:, 1]])
+    each, index = np.unique(found.reshape(-1, found.shape[2]), axis=0, return_inverse=True)
+    return LabelledMesh(each[:, 2:4], each[:, 4:], index.reshape(-1, 3), filled[node[:, 0], node[:, 1]])
 
 
 class _Mixed:

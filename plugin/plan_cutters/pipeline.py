@@ -114,7 +114,10 @@ class Result:
     def write(
         self, out: str | Path, formats: Sequence[str] = ("json", "step", "glb", "npz"), *, step_schema: str = "ap242"
     ) -> Plan:
-        """Write files into the folder `out`, each whole or not at all.
+        """Write files into the folder `out`, each whole or not at all, the plan and the samples first.
+
+        A model that cannot be written is named in the plan's `not_written`; the other files are there. Files that an
+        earlier run wrote there are removed if its plan lists them as they are.
 
         Parameters
         ----------
@@ -127,7 +130,7 @@ class Result:
         Returns
         -------
         Plan
-            The plan as written, with its `files` and `split`.
+            The plan as written, with its `files`, `split` and `not_written`.
         """
         from plan_cutters.report import write_all
 

@@ -14,16 +14,37 @@ import sys
 import time
 import warnings
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 
 #: Environment variable by which the child knows its number of the pipe to report on, and its memory limit in bytes.
 REPORT, MEMORY = "PLAN_CUTTERS_REPORT", "PLAN_CUTTERS_MEMORY"
+#: Exit code of an interrupted run.
+INTERRUPTED = 130
 #: Stages in which the kernel works on what the file says, and how many times the limit of reading each may take.
 LIMITED = {"read": 1.0, "sample": 5.0, "tessellate": 5.0, "write": 5.0}
 
 
 class Supervised(Exception):
     """The child did not end by itself: `str` says what happened, in words for the user."""
+
+
+class Unfinished(Supervised):
+    """So it was, but the plan was in the output already: what is missing are models.
+
+    Attributes
+    ----------
+    code : int
+        The exit code that the plans so far ask for.
+    out : Path
+        The output.
+    parts : int
+        Parts that were begun.
+    """
+
+    def __init__(self, text: str, code: int, out: Path, parts: int) -> None:
+        super().__init__(text)
+        self.code, self.out, self.parts = code, out, parts
 
 
 def is_child() -> bool:
@@ -55,7 +76,10 @@ def keep_output() -> None:
 
 
 def report(word: str, text: str) -> None:
-    """Tell the parent, if there is one: `stage NAME`, `part FILE`, `staging FOLDER`."""
+    """Tell the parent, if there is one: `part FILE`, `staging FOLDER`, `stage NAME`, `safe CODE FOLDER`, `done CODE`.
+
+    `safe`: the plan of this part is in the folder, models follow; `done`: so are they.
+    """
     if is_child():
         os.write(int(os.environ[REPORT]), f"{word} {text}\n".encode())
 
@@ -109,29 +133,33 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int) -> int:
         while child.poll() is None:
             watch.listen(0.2)
             if watch.late():
-                child.kill()
-                child.wait()
+                _end(child)
                 watch.clear()
                 what = "not read" if watch.stage == "read" else f"the CAD kernel did not end its '{watch.stage}'"
-                raise Supervised(
-                    f"{watch.part}: {what} within {watch.limit:g} s; the file may be damaged, or give --read-timeout"
-                )
+                raise watch.ended(f"{what} within {watch.limit:g} s", "the file may be damaged, or give --read-timeout")
         watch.listen(0.0)
     finally:
         os.close(here)
         for number, handler in previous.items():
             signal.signal(number, handler)
-        if child.poll() is None:
-            child.kill()
-            child.wait()
+        _end(child)
     if child.returncode >= 0:
         return child.returncode
     watch.clear()
-    if asked:
+    if asked and watch.safe is None:
         raise KeyboardInterrupt
+    if asked:
+        raise watch.ended("interrupted", "", interrupted=True)
     name = signal.Signals(-child.returncode).name
-    raise Supervised(f"{watch.part}: the CAD kernel crashed ({name}, while it was at '{watch.stage}'); "
-                     "the file may be damaged: export it again")  # fmt: skip
+    raise watch.ended(f"the CAD kernel crashed ({name}, while it was at '{watch.stage}')",
+                      "the file may be damaged: export it again")  # fmt: skip
+
+
+def _end(child: subprocess.Popen[bytes]) -> None:
+    """Kill the child and the copies of itself that it has made for the kernel."""
+    with suppress(ProcessLookupError, PermissionError):
+        os.killpg(child.pid, signal.SIGKILL)
+    child.wait()
 
 
 class _Watch:
@@ -142,6 +170,8 @@ class _Watch:
         self.part, self.stage, self.since = "part", "start", time.monotonic()
         self.staging: set[str] = set()
         self.rest = b""
+        self.parts, self.code = 0, 0
+        self.safe: tuple[int, Path] | None = None
 
     def listen(self, seconds: float) -> None:
         while select.select([self.pipe], [], [], seconds)[0]:
@@ -155,7 +185,12 @@ class _Watch:
                 if word == "stage":
                     self.stage, self.since = text, time.monotonic()
                 elif word == "part":
-                    self.part = text
+                    self.part, self.parts, self.safe = text, self.parts + 1, None
+                elif word == "safe":
+                    code, _, folder = text.partition(" ")
+                    self.safe = int(code), Path(folder)
+                elif word == "done":
+                    self.code, self.safe = max(self.code, int(text)), None
                 elif word == "staging":
                     self.staging.add(text)
 
@@ -165,6 +200,13 @@ class _Watch:
 
     def late(self) -> bool:
         return time.monotonic() - self.since > self.limit
+
+    def ended(self, what: str, advice: str, *, interrupted: bool = False) -> Supervised:
+        """What to raise when the child is gone."""
+        if self.safe is None:
+            return Supervised(f"{self.part}: {what}; {advice}")
+        code, out = self.safe
+        return Unfinished(what, INTERRUPTED if interrupted else max(self.code, code), out, self.parts)
 
     def clear(self) -> None:
         for folder in self.staging:
