@@ -134,7 +134,7 @@ def _meshes(split: Split, deflection: float | None) -> Iterator[tuple[Piece, _Me
     for piece in (shown for each in split.pieces for shown in _shown(split, each)):
         labels = split.labels.get(piece.face) if piece.label == MIXED else None
         meshes = _mesh(piece.shape, TopoDS.Face_s(copy.ModifiedShape(piece.shape)), labels)
-        for label, mesh in meshes.items():
+        for label, mesh in (meshes or {}).items():
             yield (piece if labels is None else Piece(piece.face, label, piece.shape)), mesh
         if not meshes:
             yield piece, None
@@ -149,12 +149,12 @@ def _diagonal(split: Split) -> float:
     return float(np.sqrt(box.SquareExtent()))
 
 
-def _mesh(face: Any, meshed: Any, labels: FaceLabels | None) -> dict[int, _Mesh]:
-    """Mesh of a face by label, all of it by the label 0 where there are none; empty if the kernel made none."""
+def _mesh(face: Any, meshed: Any, labels: FaceLabels | None) -> dict[int, _Mesh] | None:
+    """Mesh of a face by label, all of it by the label 0 where there are none; None if the kernel made none."""
     location = TopLoc_Location()
     triangulation = BRep_Tool.Triangulation_s(meshed, location)
     if triangulation is None or not triangulation.HasUVNodes():
-        return {}
+        return None
     uv = np.array([triangulation.UVNode(i + 1).Coord() for i in range(triangulation.NbNodes())])
     triangle = np.array([triangulation.Triangle(i + 1).Get() for i in range(triangulation.NbTriangles())]) - 1
     # The mesh's own nodes, not the surface's points: along an edge both faces have the same ones, and no cracks.
