@@ -1,6 +1,10 @@
-"""Cut all faces that can be cut: everything in one go, and only where that fails, less and less at a time."""
+"""Cut all faces that can be cut: everything in one go, and only where that fails, less and less at a time.
 
-import time
+How often is counted in advance (`Effort`): what comes out does not depend on how busy the machine is. What remains of
+time is a guard against calls of the kernel that never end, in processor seconds (`cad_io.limited`). Ended by it, one
+call in two runs might do what it could not in the other only where it takes as long as the guard, minutes.
+"""
+
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Protocol
@@ -10,7 +14,7 @@ from OCP.TopAbs import TopAbs_FACE
 from OCP.TopoDS import TopoDS
 
 from cad_io.components import components, compound
-from cad_io.cut import FUZZY, Cut, Fault, Job, cut
+from cad_io.cut import FUZZY, TOO_LONG, Cut, Fault, Job, cut
 from cad_io.kernel import faces as faces_of
 from cad_io.kernel import shape_map
 
@@ -18,6 +22,36 @@ from cad_io.kernel import shape_map
 FITS = (0.1, 0.05, 0.2)
 #: Into how many parts the spans of a face's surface are cut: a remedy for rough ones.
 DENSITIES = (1, 4, 8)
+
+
+#: Work above which a call gets more than the usual time, in proportion.
+_USUAL = 10_000
+
+
+@dataclass(slots=True)
+class Effort:
+    """What may still be tried on a part: counts, which are the same on any machine.
+
+    Attributes
+    ----------
+    work : int
+        Of the calls after the first of each shape, as `Job.work` counts it.
+    hangs : int
+        Calls that may run into the time limit.
+    """
+
+    work: int = 100_000
+    hangs: int = 2
+
+    def cut(self, jobs: list[Job], seconds: float) -> list[Cut | Fault]:
+        """As `cut`, where there is effort left."""
+        if self.work <= 0 or self.hangs <= 0:
+            return [Fault(TOO_LONG if self.hangs <= 0 else "too many other splits were tried")] * len(jobs)
+        wanted = sum(job.work for job in jobs)
+        self.work -= wanted
+        found = cut(jobs, seconds * max(1.0, wanted / _USUAL))
+        self.hangs -= Fault(TOO_LONG) in found
+        return found
 
 
 class Drawing(Protocol):
@@ -42,7 +76,7 @@ class _Unit:
 
 
 def cut_faces(
-    shape: Any, faces: dict[int, Any], drawings: dict[int, Drawing], seconds: float
+    shape: Any, faces: dict[int, Any], drawings: dict[int, Drawing], seconds: float, effort: Effort
 ) -> tuple[Any, dict[int, list[Any]], dict[int, str]]:
     """Cut faces of a shape along the edges drawn on them.
 
@@ -58,7 +92,9 @@ def cut_faces(
     drawings : dict
         Number -> Drawing, of the faces to cut; drawn.
     seconds : float
-        Limit for the kernel's work.
+        Of processor time, after which a call of the kernel is taken for endless.
+    effort : Effort
+        What may be tried; less afterwards.
 
     Returns
     -------
@@ -69,13 +105,11 @@ def cut_faces(
     failed : dict
         Number -> why a face was not cut.
     """
-    deadline = time.monotonic() + seconds
     units = _units(shape, faces)
     failed: dict[int, str] = {}
 
     def attempt(jobs: list[Job], numbers: list[list[int]]) -> list[Cut | Fault]:
-        # Half of what is left, so that one endless call does not cost all faces their turn.
-        found = cut(jobs, 0.5 * (deadline - time.monotonic()))
+        found = effort.cut(jobs, seconds)
         for i, mine in enumerate(numbers):
             result = found[i]
             if isinstance(result, Cut):

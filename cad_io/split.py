@@ -12,15 +12,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
+from OCP.TopAbs import TopAbs_FACE
 from OCP.TopoDS import TopoDS
 from scipy.ndimage import maximum_filter, minimum_filter
 
 from cad_io.arrays import FaceLabels, Floats, Ints
+from cad_io.components import compound, flat
 from cad_io.contour import LabelGrid, boundaries
-from cad_io.cut_faces import FITS, cut_faces
+from cad_io.cut_faces import FITS, Effort, cut_faces
 from cad_io.errors import CadIoError
 from cad_io.face_grid import label_grid
-from cad_io.kernel import translated
+from cad_io.kernel import shape_map, translated
 from cad_io.surface_edge import surface_edge
 from cad_io.uv_region import inside, interior_point, outline
 
@@ -69,6 +71,8 @@ class Split:
         Face number -> pieces of a copy of such a face, which could be split alone: they stand beside `shape`.
     dropped : dict
         Face number -> how many known nodes were single-node islands and got no piece of their own.
+    labels : dict
+        Face number -> the labels of a face left whole.
     """
 
     shape: Any
@@ -76,6 +80,7 @@ class Split:
     whole: dict[int, str]
     dropped: dict[int, int]
     beside: dict[int, tuple[Piece, ...]] = field(default_factory=dict)
+    labels: dict[int, FaceLabels] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
@@ -135,7 +140,7 @@ class _Work:
         return Piece(number, int(self.known[i[nearest], j[nearest]]), shape)
 
 
-def split(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 60) -> Split:
+def split(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 120) -> Split:
     """Split faces along the boundaries of their labels.
 
     Parameters
@@ -145,7 +150,7 @@ def split(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 60) -> Sp
         At most one a face. The boundary runs between nodes of different label, smooth, within about half a cell. Faces
         not mentioned, or of one label, stay whole.
     seconds : float
-        Limit for the kernel's work, and for that on each face that could not be split in the part.
+        Of processor time, after which a call of the kernel is taken for endless; how many calls are made is counted.
 
     Returns
     -------
@@ -183,11 +188,15 @@ def split(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 60) -> Sp
             whole[number] = reason
         elif drawn.edges:
             work[number] = drawn
+    effort = Effort()
     shape, shapes = part.shape, {number: [face] for number, face in faces.items()}
     if work:
-        shape, shapes, failed = cut_faces(part.shape, faces, dict(work), seconds)
+        shape, shapes, failed = cut_faces(part.shape, faces, dict(work), seconds, effort)
         whole |= failed
-    beside = {n: found for n in sorted(whole.keys() & work.keys()) if (found := _alone(n, work[n], seconds))}
+    # A loose face was tried alone already.
+    loose = shape_map(compound([s for s in flat(part.shape) if s.ShapeType() == TopAbs_FACE]), TopAbs_FACE)
+    again = [n for n in sorted(whole.keys() & work.keys()) if not loose.Contains(faces[n])]
+    beside = {n: found for n in again if (found := _alone(n, work[n], seconds, effort))}
     pieces: list[Piece] = []
     for number in faces:
         shares = _shares(fields[number].label) if number in fields else {}
@@ -196,16 +205,16 @@ def split(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 60) -> Sp
         else:
             label = MIXED if number in whole else max(shares, key=lambda k: shares[k], default=UNKNOWN)
             pieces += [Piece(number, label, piece, shares) for piece in shapes[number]]
-    return Split(shape, tuple(pieces), whole, dropped, beside)
+    return Split(shape, tuple(pieces), whole, dropped, beside, {number: fields[number] for number in sorted(whole)})
 
 
-def _alone(number: int, work: _Work, seconds: float) -> tuple[Piece, ...]:
+def _alone(number: int, work: _Work, seconds: float, effort: Effort) -> tuple[Piece, ...]:
     """Pieces of a copy of a face that could not be cut where it stands; none if it cannot be cut alone either."""
     face = TopoDS.Face_s(BRepBuilderAPI_Copy(work.face, False, False).Shape())
     copy = _Work(face, work.grid, work.known)
     if copy.draw(FITS[0]):
         return ()
-    _, pieces, failed = cut_faces(face, {number: face}, {number: copy}, seconds)
+    _, pieces, failed = cut_faces(face, {number: face}, {number: copy}, seconds, effort)
     return () if failed else tuple(copy.labelled(number, piece) for piece in pieces[number])
 
 

@@ -9,7 +9,7 @@ file to its version. The format asked for here is small: see the glTF 2.0 specif
 
 import json
 import struct
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,12 +23,13 @@ from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
 
-from cad_io.arrays import Floats, Style
+from cad_io.arrays import FaceLabels, Floats, Style
 from cad_io.aside import aside
 from cad_io.components import compound
 from cad_io.errors import WriteError
 from cad_io.kernel import first_derivatives, translated
-from cad_io.split import Piece, Split
+from cad_io.label_mesh import label_mesh
+from cad_io.split import MIXED, Piece, Split
 
 #: Largest angle between neighbouring facets, rad.
 ANGLE = 0.35
@@ -66,6 +67,8 @@ def write_gltf(
 ) -> tuple[int, ...]:
     """Write all pieces as triangles; those `beside` the part in the place of their face.
 
+    Triangles of a face that was left whole are split along the grid of its labels and stand in a node a label.
+
     Parameters
     ----------
     split : Split
@@ -95,18 +98,18 @@ def write_gltf(
     """
     with aside(path) as temporary:
         with translated("meshing", error=WriteError, file=str(path)):
-            pieces = [p for piece in split.pieces for p in _shown(split, piece)]
-            meshes = _meshes(split, pieces, deflection)
-        if not any(meshes):
+            meshes = list(_meshes(split, deflection))
+        if not any(mesh for _, mesh in meshes):
             raise WriteError("the CAD kernel made no triangle of the part", file=str(path))
-        drawn = [_draw(p, mesh, style) if mesh else None for p, mesh in zip(pieces, meshes, strict=True)]
+        pieces = [piece for piece, _ in meshes]
+        drawn = [_draw(piece, mesh, style) if mesh else None for piece, mesh in meshes]
         glb = _Glb()
         if merged:
             _fill_merged(glb, pieces, drawn, extras)
         else:
             _fill(glb, pieces, drawn, style, extras, piece_extras)
         temporary.write_bytes(glb.bytes())
-    return tuple(sorted({p.face for p, mesh in zip(pieces, meshes, strict=True) if mesh is None}))
+    return tuple(sorted({piece.face for piece, mesh in meshes if mesh is None}))
 
 
 def _shown(split: Split, piece: Piece) -> tuple[Piece, ...]:
@@ -120,14 +123,21 @@ def linear(rgb: tuple[float, float, float]) -> list[float]:
     return [round(float(x), 6) for x in light]
 
 
-def _meshes(split: Split, pieces: Sequence[Piece], deflection: float | None) -> list[_Mesh | None]:
+def _meshes(split: Split, deflection: float | None) -> Iterator[tuple[Piece, _Mesh | None]]:
+    """All that is shown; of a face that could not be split, the triangles of each label as a piece."""
     # A copy without triangles: the part is not to carry ours, and finer ones that it carries would change the file.
     whole = compound([split.shape, *(p.shape for beside in split.beside.values() for p in beside)])
     copy = BRepBuilderAPI_Copy(whole, False, False)
     if deflection is None:
         deflection = FINE * _diagonal(split)
     BRepMesh_IncrementalMesh(copy.Shape(), deflection, False, ANGLE, False)
-    return [_mesh(piece.shape, TopoDS.Face_s(copy.ModifiedShape(piece.shape))) for piece in pieces]
+    for piece in (shown for each in split.pieces for shown in _shown(split, each)):
+        labels = split.labels.get(piece.face) if piece.label == MIXED else None
+        meshes = _mesh(piece.shape, TopoDS.Face_s(copy.ModifiedShape(piece.shape)), labels)
+        for label, mesh in (meshes or {}).items():
+            yield (piece if labels is None else Piece(piece.face, label, piece.shape)), mesh
+        if not meshes:
+            yield piece, None
 
 
 def _diagonal(split: Split) -> float:
@@ -139,7 +149,8 @@ def _diagonal(split: Split) -> float:
     return float(np.sqrt(box.SquareExtent()))
 
 
-def _mesh(face: Any, meshed: Any) -> _Mesh | None:
+def _mesh(face: Any, meshed: Any, labels: FaceLabels | None) -> dict[int, _Mesh] | None:
+    """Mesh of a face by label, all of it by the label 0 where there are none; None if the kernel made none."""
     location = TopLoc_Location()
     triangulation = BRep_Tool.Triangulation_s(meshed, location)
     if triangulation is None or not triangulation.HasUVNodes():
@@ -149,7 +160,9 @@ def _mesh(face: Any, meshed: Any) -> _Mesh | None:
     # The mesh's own nodes, not the surface's points: along an edge both faces have the same ones, and no cracks.
     place = location.Transformation()
     nodes = (triangulation.Node(i + 1).Transformed(place).Coord() for i in range(triangulation.NbNodes()))
-    point = np.array(list(nodes))
+    point, label = np.array(list(nodes)), np.zeros(len(triangle), np.int32)
+    if labels is not None:
+        uv, point, triangle, label = label_mesh(face, uv, point, triangle, labels)
     s = first_derivatives(BRepAdaptor_Surface(face, False), uv[:, 0], uv[:, 1])
     normal = np.cross(s[:, 1], s[:, 2])
     if face.Orientation() == TopAbs_REVERSED:
@@ -158,19 +171,20 @@ def _mesh(face: Any, meshed: Any) -> _Mesh | None:
     corner = (point * _METRE).astype(np.float32)[triangle]
     facet = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]).astype(float)
     kept = (facet**2).sum(1) > 0
-    triangle, facet = triangle[kept], facet[kept]
-    if not len(triangle):
-        return None
-    used, triangle = np.unique(triangle, return_inverse=True)
-    point, normal, tangents = point[used], normal[used], s[used, 1:]
+    triangle, facet, label = triangle[kept], facet[kept], label[kept]
+    tangents = s[:, 1:]
     length = np.linalg.norm(normal, axis=1)
     # At a pole the tangents give no normal: there the facets around it do.
     pole = ~(length > 1e-6 * np.linalg.norm(tangents, axis=2).prod(axis=1))
     around = np.zeros_like(point)
-    np.add.at(around, triangle.reshape(-1, 3), facet[:, None] / np.linalg.norm(facet, axis=1)[:, None, None])
+    np.add.at(around, triangle, facet[:, None] / np.linalg.norm(facet, axis=1)[:, None, None])
     normal = np.where(pole[:, None], around, normal / np.where(pole, 1.0, length)[:, None])
-    normal /= np.linalg.norm(normal, axis=1)[:, None]
-    return _Mesh(point, normal, triangle.reshape(-1, 3).astype(np.uint32))
+    meshes = {}
+    for value in np.unique(label).tolist():
+        used, mine = np.unique(triangle[label == value], return_inverse=True)
+        unit = normal[used] / np.linalg.norm(normal[used], axis=1)[:, None]
+        meshes[value] = _Mesh(point[used], unit, mine.reshape(-1, 3).astype(np.uint32))
+    return meshes
 
 
 def _draw(piece: Piece, mesh: _Mesh, style: Callable[[Piece], Style]) -> _Drawn:

@@ -1,6 +1,7 @@
 """A split part as STEP: the input's products, every piece a face with its own name, colour and layers.
 
 The same input gives the same bytes. Two instances of one product differ in their verdicts, so each is a product.
+Solids, shells and sheets are put into products so that FreeCAD shows their colours, too.
 """
 
 import re
@@ -8,10 +9,11 @@ import unicodedata
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.BRep import BRep_Builder, BRep_Tool
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
 from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
@@ -20,7 +22,7 @@ from OCP.STEPControl import STEPControl_AsIs
 from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDocStd import TDocStd_Document
-from OCP.TopAbs import TopAbs_FACE
+from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shell
 from OCP.TopTools import TopTools_IndexedMapOfShape
@@ -29,9 +31,10 @@ from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
 from cad_io.arrays import Style
 from cad_io.aside import aside
 from cad_io.assembly import Node
+from cad_io.canonical import canonical
 from cad_io.components import compound, flat
 from cad_io.errors import WriteError
-from cad_io.kernel import explore, silence, translated
+from cad_io.kernel import explore, faces, shape_map, silence, translated
 from cad_io.split import Piece, Split
 
 #: Of every file: a fixed one, so that the same input gives the same bytes.
@@ -54,7 +57,7 @@ def write_step(
     Parameters
     ----------
     split : Split
-        Its pieces `beside` go into a product of their own.
+        Its pieces `beside` go into shells `F<number> regions` of the face's product.
     path : path-like
         Appears whole or not at all.
     style : callable
@@ -78,7 +81,8 @@ def write_step(
     with aside(path) as temporary, translated("writing STEP", error=WriteError, file=file):
         with _settings(schema, file):
             document = TDocStd_Document(TCollection_ExtendedString("BinXCAF"))
-            _Document(document, style, layers or {}, product, file).fill(split, tree)
+            filled = _Document(document, style, layers or {}, product, file)
+            filled.fill(split, tree)
             writer = STEPCAFControl_Writer()
             writer.SetColorMode(True)
             writer.SetNameMode(True)
@@ -88,9 +92,9 @@ def write_step(
             _head(writer.ChangeWriter().Model(), product)
             if writer.Write(str(temporary)) != IFSelect_RetDone:
                 raise WriteError("the CAD kernel cannot write the file (is the disk full?)", file=file)
-        # What holds only triangles is written as such, not as an advanced face.
-        pieces = [*split.pieces, *(piece for beside in split.beside.values() for piece in beside)]
-        _recount(temporary, sum(BRep_Tool.Surface_s(piece.shape) is not None for piece in pieces), file)
+        text = temporary.read_bytes()
+        _recount(text, filled, file)
+        temporary.write_bytes(canonical(text))
 
 
 @contextmanager
@@ -124,36 +128,35 @@ class _Document:
         self.colours = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
         self.layer_tool = XCAFDoc_DocumentTool.LayerTool_s(document.Main())
         self.style, self.layers, self.product, self.file = style, layers, product, file
+        self.written = TopTools_IndexedMapOfShape()
+        self.faces = self.styles = 0
 
     def fill(self, split: Split, tree: Sequence[Node]) -> None:
-        pieces: dict[int, list[Piece]] = {}
-        for piece in split.pieces:
-            pieces.setdefault(piece.face, []).append(piece)
-        tree = tree or [Node(self.product, "", TopLoc_Location(), faces=tuple(pieces))]
+        tree = tree or [
+            Node(self.product, "", TopLoc_Location(), faces=tuple(dict.fromkeys(p.face for p in split.pieces)))
+        ]
         leaves = [leaf for root in tree for leaf, _, _ in root.leaves()]
         leaf_of = {number: i for i, leaf in enumerate(leaves) for number in leaf.faces}
         owner = TopTools_IndexedMapOfShape()
-        number_of = [piece.face for piece in split.pieces if owner.Add(piece.shape) == owner.Extent()]
-        parts: dict[int, list[Any]] = {}
-        for part in flat(split.shape):
-            first = next(explore(part, TopAbs_FACE), None)
+        found = [piece for piece in split.pieces if owner.Add(piece.shape) == owner.Extent()]
+        mine: dict[int, list[_Body]] = {id(leaf): [] for leaf in leaves}
+        for shape in flat(split.shape):
+            pieces = [found[owner.FindIndex(face) - 1] for face in faces(shape)]
+            numbers = dict.fromkeys(piece.face for piece in pieces)
             # What has no face (curves, points) goes with the first product.
-            at = 0 if first is None else leaf_of[number_of[owner.FindIndex(first) - 1]]
-            parts.setdefault(at, []).append(part)
-        mine = {
-            id(leaf): (parts.get(i, []), [p for n in leaf.faces for p in pieces[n]]) for i, leaf in enumerate(leaves)
-        }
+            at = leaf_of[pieces[0].face] if pieces else 0
+            mine[id(leaves[at])].append(
+                _Body(shape, pieces, {n: split.beside[n] for n in numbers if n in split.beside})
+            )
         for root in tree:
             self.node(root, root.place, mine)
-        for number, beside in split.beside.items():
-            self.leaf(f"F{number} regions", [p.shape for p in beside], beside, TopLoc_Location())
         self.shapes.UpdateAssemblies()
 
-    def node(self, node: Node, place: TopLoc_Location, mine: dict[int, tuple[list[Any], list[Piece]]]) -> Any:
+    def node(self, node: Node, place: TopLoc_Location, mine: dict[int, list["_Body"]]) -> Any:
         """Label of a product; `place` is where it stands in the part. None if nothing of it is left."""
         if not node.children:
-            parts, pieces = mine[id(node)]
-            return self.leaf(node.name, parts, pieces, place) if parts else None
+            bodies = mine[id(node)]
+            return self.leaf(node.name or self.product, bodies, place) if bodies else None
         found = [(child, self.node(child, place.Multiplied(child.place), mine)) for child in node.children]
         label = self.shapes.NewShape()
         _name(label, node.name or self.product)
@@ -162,45 +165,126 @@ class _Document:
                 _name(self.shapes.AddComponent(label, product, child.place), child.instance or child.name)
         return label
 
-    def leaf(self, name: str, parts: Sequence[Any], pieces: Sequence[Piece], place: TopLoc_Location) -> Any:
-        """Label of a product made of parts that stand at `place` in the part."""
+    def leaf(self, name: str, bodies: Sequence["_Body"], place: TopLoc_Location) -> Any:
+        """Label of a product made of bodies that stand at `place` in the part; of several solids, each is a product.
+
+        FreeCAD forgets the colours of faces in a product of several solids.
+        """
+        solids = [body for body in bodies if body.solid]
+        if len(solids) < 2:
+            return self.simple(name, bodies, place)
+        label = self.shapes.NewShape()
+        _name(label, name)
+        rest = [body for body in bodies if not body.solid]
+        for number, group in enumerate([*([body] for body in solids), *([rest] if rest else [])], 1):
+            product = self.simple(f"{name} {number}", group, place)
+            _name(self.shapes.AddComponent(label, product, TopLoc_Location()), f"{name} {number}")
+        return label
+
+    def simple(self, name: str, bodies: Sequence["_Body"], place: TopLoc_Location) -> Any:
+        """Label of a product of at most one solid."""
         back = place.Inverted()
-        label = self.shapes.AddShape(_whole(parts, pieces, back), False)
-        _name(label, name or self.product)
-        for piece in pieces:
-            sub = self.shapes.AddSubShape(label, piece.shape.Moved(back))
+        others, shells = _parted(bodies, self.style)
+        # A fresh compound without a location: in a located shape, or one that is itself a face, faces get no label.
+        whole = compound([s.Moved(back) for s in (*others, *(shell.shape for shell in shells))])
+        copy = BRepBuilderAPI_Copy()
+        again = any(self.written.Contains(face) for face in _unplaced(whole))
+        if again:  # an instance of what is written already: its styles would go to those faces
+            copy.Perform(whole, False, False)
+            whole = copy.Shape()
+        for face in _unplaced(whole):
+            self.written.Add(face)
+        label = self.shapes.AddShape(whole, False)
+        _name(label, name)
+
+        def dress(shape: Any, title: str, rgb: tuple[float, float, float] | None, face: int) -> Any:
+            shape = shape.Moved(back)
+            sub = self.shapes.AddSubShape(label, copy.ModifiedShape(shape) if again else shape)
             if sub.IsNull():
-                raise WriteError("the CAD kernel gives this face no label", file=self.file, face=f"F{piece.face}")
-            title, rgb = self.style(piece)
+                raise WriteError("the CAD kernel gives this face no label", file=self.file, face=f"F{face}")
             _name(sub, title)
-            self.colours.SetColor(sub, Quantity_Color(*rgb, Quantity_TOC_sRGB), XCAFDoc_ColorSurf)
+            if rgb:
+                self.colours.SetColor(sub, Quantity_Color(*rgb, Quantity_TOC_sRGB), XCAFDoc_ColorSurf)
+                self.styles += 1
+            return sub
+
+        for shell in shells:
+            if shell.title:
+                dress(shell.shape, shell.title, shell.rgb, shell.face)
+        for piece in _pieces(bodies):
+            # What holds only triangles is written as such, not as an advanced face.
+            self.faces += BRep_Tool.Surface_s(piece.shape) is not None
+            sub = dress(piece.shape, *self.style(piece), piece.face)
             for layer in self.layers.get(piece.face, ()):
                 self.layer_tool.SetLayer(sub, TCollection_ExtendedString(_ascii(layer)))
         return label
 
 
-def _name(label: Any, name: str) -> None:
-    TDataStd_Name.Set_s(label, TCollection_ExtendedString(_ascii(name)))
+class _Body(NamedTuple):
+    """A solid, a shell, a loose face or a wire; its pieces; and the pieces beside it, by face."""
+
+    shape: Any
+    pieces: list[Piece]
+    beside: dict[int, tuple[Piece, ...]]
+
+    @property
+    def solid(self) -> bool:
+        return bool(shape_map(self.shape, TopAbs_SOLID).Extent())
 
 
-def _whole(parts: Sequence[Any], pieces: Sequence[Piece], back: TopLoc_Location) -> Any:
-    """A fresh compound without a location: in a located shape, or one that is itself a face, faces get no label.
+class _Shell(NamedTuple):
+    """A shell in no solid; with a title it gets a label of its own."""
+
+    shape: Any
+    face: int
+    title: str = ""
+    rgb: tuple[float, float, float] | None = None
+
+
+def _parted(bodies: Sequence[_Body], style: Callable[[Piece], Style]) -> tuple[list[Any], list[_Shell]]:
+    """Shapes of a product that are no sheets, and its shells.
 
     Pieces of a face that stands in no shell get a shell of their own, or readers would see them as separate surfaces.
+    Where several shells stand without a solid, every piece is a shell with the piece's colour: of other shells FreeCAD
+    (0.20) forgets the colours of faces. The kernel writes an edge between two of them twice.
     """
-    loose = TopTools_IndexedMapOfShape()
-    for part in parts:
-        if part.ShapeType() == TopAbs_FACE:
-            loose.Add(part)
-    builder = BRep_Builder()
-    shells: dict[int, Any] = {}
+    others = [b.shape for b in bodies if b.shape.ShapeType() not in (TopAbs_SHELL, TopAbs_FACE)]
+    whole = [b for b in bodies if b.shape.ShapeType() == TopAbs_SHELL]
+    loose: dict[int, list[Piece]] = {}
+    for body in bodies:
+        if body.shape.ShapeType() == TopAbs_FACE:
+            loose.setdefault(body.pieces[0].face, []).extend(body.pieces)
+    beside = {n: pieces for body in bodies for n, pieces in body.beside.items()}
+    if len(whole) + len(loose) + len(beside) > 1 and not any(body.solid for body in bodies):
+        sheets = [p for b in whole for p in b.pieces] + [p for pieces in loose.values() for p in pieces]
+        sheets += [p for pieces in beside.values() for p in pieces]
+        return others, [_Shell(_shell([p]), p.face, *style(p)) for p in sheets]
+    shells = [_Shell(b.shape, b.pieces[0].face) for b in whole if b.pieces]
+    shells += [_Shell(_shell(pieces), n) for n, pieces in loose.items()]
+    shells += [_Shell(_shell(pieces), n, f"F{n} regions") for n, pieces in beside.items()]
+    return others, shells
+
+
+def _shell(pieces: Sequence[Piece]) -> TopoDS_Shell:
+    builder, shell = BRep_Builder(), TopoDS_Shell()
+    builder.MakeShell(shell)
     for piece in pieces:
-        if loose.Contains(piece.shape):
-            if piece.face not in shells:
-                shells[piece.face] = TopoDS_Shell()
-                builder.MakeShell(shells[piece.face])
-            builder.Add(shells[piece.face], piece.shape.Moved(back))
-    return compound([p.Moved(back) for p in parts if p.ShapeType() != TopAbs_FACE] + list(shells.values()))
+        builder.Add(shell, piece.shape)
+    return shell
+
+
+def _pieces(bodies: Sequence[_Body]) -> list[Piece]:
+    """Of a product, each once, also where two bodies share a face."""
+    beside = (p for body in bodies for pieces in body.beside.values() for p in pieces)
+    return list({id(p): p for p in (*(p for body in bodies for p in body.pieces), *beside)}.values())
+
+
+def _unplaced(shape: Any) -> Iterator[Any]:
+    return (face.Located(TopLoc_Location()) for face in explore(shape, TopAbs_FACE))
+
+
+def _name(label: Any, name: str) -> None:
+    TDataStd_Name.Set_s(label, TCollection_ExtendedString(_ascii(name)))
 
 
 def _head(model: Any, product: str) -> None:
@@ -213,13 +297,14 @@ def _head(model: Any, product: str) -> None:
     header.SetAuthorisation(TCollection_HAsciiString(ORIGIN))
 
 
-def _recount(path: Path, asked: int, file: str) -> None:
+def _recount(text: bytes, asked: _Document, file: str) -> None:
     """Count faces and styles in the written text: the kernel is known to lose some in silence."""
-    text = path.read_bytes()
     faces = len(re.findall(rb"=\s*ADVANCED_FACE\s*\(", text))
     styles = len(re.findall(rb"=\s*(?:OVER_RIDING_)?STYLED_ITEM\s*\(", text))
-    if faces < asked or styles < asked:
-        raise WriteError(f"of {asked} faces the CAD kernel wrote {faces}, of them {styles} coloured", file=file)
+    if faces < asked.faces or styles < asked.styles:
+        raise WriteError(
+            f"of {asked.faces} faces the CAD kernel wrote {faces}, of {asked.styles} colours {styles}", file=file
+        )
 
 
 def _ascii(name: str) -> str:

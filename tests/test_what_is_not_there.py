@@ -388,7 +388,9 @@ def test_a_tolerance_that_was_raised_is_held_against_the_cutter(monkeypatch):
     from cad_io import tessellate
 
     original = tessellate._refined
-    monkeypatch.setattr(tessellate, "_refined", lambda part, meshes, chord, budget: original(part, meshes, chord, 40))
+    monkeypatch.setattr(
+        tessellate, "_refined", lambda part, meshes, chord, budget, at: original(part, meshes, chord, 40, at)
+    )
     part, thin = read_part(ball(50)), Cutter.flat(radius=0.5, length=20)
     result = plan(part, cutters=[thin, Cutter.flat(radius=20, length=200)], faces="all", grid=6, area_budget=0)
     assert result.plan.effective.tolerance_mm > 4 * 0.5

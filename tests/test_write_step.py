@@ -1,6 +1,7 @@
 """STEP of split parts: names and colours per piece in two readers, one of them without the CAD kernel; same bytes."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,16 +15,19 @@ from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
 from OCP.STEPCAFControl import STEPCAFControl_Reader
 from OCP.TCollection import TCollection_ExtendedString
 from OCP.TDataStd import TDataStd_Name
-from OCP.TDF import TDF_LabelSequence
+from OCP.TDF import TDF_Label, TDF_LabelSequence
 from OCP.TDocStd import TDocStd_Document
+from OCP.TopAbs import TopAbs_SHELL
 from OCP.TopLoc import TopLoc_Location
 from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
 from split_parts import GREEN, GREY, RED, block, labels, largest_bspline, patch
 
+from cad_io import read_part
 from cad_io.arrays import Style
+from cad_io.assembly import Node
 from cad_io.components import compound
 from cad_io.errors import WriteError
-from cad_io.kernel import faces
+from cad_io.kernel import explore, faces
 from cad_io.part import Part
 from cad_io.split import Split, split
 from cad_io.write_step import write_step
@@ -97,12 +101,19 @@ def read_back(path: Path):
     shapes.GetFreeShapes(roots)
     assert roots.Length() == 1
     shape = shapes.GetShape_s(roots.Value(1))
+    products = []
+    components_of = TDF_LabelSequence()
+    shapes.GetComponents_s(roots.Value(1), components_of)
+    for component in components_of:
+        product = TDF_Label()
+        shapes.GetReferredShape_s(component, product)
+        products.append(product)
     out = []
-    for face in faces(shape):
+    for product, face in [(p, f) for p in products or [roots.Value(1)] for f in faces(shapes.GetShape_s(p))]:
         label, name = shapes.FindShape(face, False), TDataStd_Name()
         children = TDF_LabelSequence()
         if label.IsNull():
-            shapes.GetSubShapes_s(roots.Value(1), children)
+            shapes.GetSubShapes_s(product, children)
             label = next(c for c in children if shapes.GetShape_s(c).IsSame(face))
         assert label.IsAttribute(TDataStd_Name.GetID_s())
         label.FindAttribute(TDataStd_Name.GetID_s(), name)
@@ -141,13 +152,89 @@ def test_settings_of_the_host_are_put_back(halves, tmp_path):
     assert (Interface_Static.CVal_s(names[0]), Interface_Static.IVal_s(names[1])) == before
 
 
-def test_pieces_of_a_loose_face_are_one_shell(tmp_path):
-    part = Part(compound([*faces(BRepPrimAPI_MakeBox(30, 20, 10).Solid())[:1], patch()]))
-    found = split(part, [labels(part, 2, lambda x, y: x > 0.5)])
+def test_pieces_of_one_loose_face_are_one_shell(tmp_path):
+    part = Part(patch())
+    found = split(part, [labels(part, 1, lambda x, y: x > 0.5)])
     write_step(found, tmp_path / "part.step", style, product="part")
     shells = [t for t in parse(tmp_path / "part.step").values() if t.startswith("OPEN_SHELL")]
-    assert sorted(len(references(t)) for t in shells) == [1, 2]
+    assert [len(references(t)) for t in shells] == [2]
     assert same(styled_faces(tmp_path / "part.step"), expected(found))
+
+
+def test_of_several_shells_without_a_solid_every_piece_is_a_shell_with_its_colour(tmp_path):
+    """FreeCAD forgets the colours of faces in them, but not those of shells."""
+    shape = BRepPrimAPI_MakeBox(30, 20, 10).Solid()
+    part = Part(compound([next(explore(shape, TopAbs_SHELL)), patch()]))
+    found = split(part, [labels(part, 7, lambda x, y: x > 0.5)])
+    write_step(found, tmp_path / "part.step", style, product="part")
+    entities = parse(tmp_path / "part.step")
+    assert same(styled_faces(tmp_path / "part.step"), expected(found))
+    coloured = []
+    for text in entities.values():
+        if text.startswith("STYLED_ITEM"):
+            look, item = re.search(r"\((#[^)]*)\)", text.split("(", 1)[1])[1], references(text)[-1]
+            model = entities[item]
+            assert model.startswith("SHELL_BASED_SURFACE_MODEL")
+            (shell,) = references(model)
+            (face,) = references(entities[shell])
+            name = re.search(r"'([^']*)'", entities[face])[1]
+            coloured.append((name, colour(entities, references(look)[0])))
+    assert same(sorted(coloured), expected(found))
+    assert same(read_back(tmp_path / "part.step")[1], expected(found))
+
+
+def test_of_several_solids_each_is_a_product(tmp_path):
+    solid = BRepPrimAPI_MakeCylinder(5, 10).Solid()
+    part = Part(compound([BRepPrimAPI_MakeBox(30, 20, 10).Solid(), patch(), solid]))
+    found = split(part, [labels(part, 7, lambda x, y: x > 0.5)])
+    write_step(found, tmp_path / "part.step", style, product="part")
+    assert same(read_back(tmp_path / "part.step")[1], expected(found))
+    again = read_part(tmp_path / "part.step")
+    (root,) = again.tree
+    assert (root.name, [child.name for child in root.children]) == ("part", ["part 1", "part 2", "part 3"])
+    assert [len(child.faces) for child in root.children] == [6, 3, 2]
+
+
+def test_instances_that_were_not_split_have_colours_of_their_own(tmp_path):
+    """They share their faces, and the kernel would write both colours for the faces of the first."""
+    move = gp_Trsf()
+    move.SetTranslation(gp_Vec(100, 0, 0))
+    place = TopLoc_Location(move)
+    solid = BRepPrimAPI_MakeCylinder(5, 10).Solid()
+    part = Part(compound([solid, solid.Located(place)]))
+    tree = [
+        Node("pair", "", TopLoc_Location(), children=(
+            Node("rod", "left", TopLoc_Location(), faces=(1, 2, 3)), Node("rod", "right", place, faces=(4, 5, 6))
+        ))
+    ]  # fmt: skip
+    found = split(part, [])
+
+    def by_instance(piece):
+        return Style(f"F{piece.face}", RED if piece.face < 4 else GREEN)
+
+    layers = {n: ("left" if n < 4 else "right",) for n in range(1, 7)}
+    write_step(found, tmp_path / "part.step", by_instance, product="part", tree=tree, layers=layers)
+    again = read_part(tmp_path / "part.step")
+    assert [leaf for _, leaf, _ in again.tree[0].leaves()] == ["pair/left", "pair/right"]
+    for face in again.faces:
+        number = int(face.name[1:])
+        assert face.colour == pytest.approx(RED if number < 4 else GREEN, abs=1e-5)
+        assert again.layers[face.number] == ("left" if number < 4 else "right",)
+    assert sorted(f.name for f in again.faces) == [f"F{n}" for n in range(1, 7)]
+
+
+def test_pieces_beside_a_solid_are_a_shell_of_its_product(tmp_path):
+    part = Part(block(1))
+    top = largest_bspline(part)
+    alone = split(Part(part.face(top)), [labels(Part(part.face(top)), 1, lambda x, y: x > 0.5)])
+    beside = tuple(replace(p, face=top) for p in alone.pieces)
+    found = replace(split(part, []), beside={top: beside})
+    write_step(found, tmp_path / "part.step", style, product="part")
+    assert same(styled_faces(tmp_path / "part.step"), sorted([*expected(found), *(tuple(style(p)) for p in beside)]))
+    again = read_part(tmp_path / "part.step")
+    assert (again.solids, len(again.faces), len(again.tree)) == (1, len(part.faces) + 2, 1)
+    shells = [t for t in parse(tmp_path / "part.step").values() if t.startswith("SHELL_BASED_SURFACE_MODEL")]
+    assert [f"'F{top} regions'" in t for t in shells] == [True]
 
 
 def test_a_located_solid_and_a_single_face(tmp_path):

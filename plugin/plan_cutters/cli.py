@@ -11,13 +11,23 @@ import click
 
 from cad_io.units import UNITS
 from plan_cutters import __version__
-from plan_cutters.supervise import Supervised, default_memory, is_child, keep_output, limit_memory, report, supervise
+from plan_cutters.supervise import (
+    INTERRUPTED,
+    Supervised,
+    Unfinished,
+    default_memory,
+    is_child,
+    keep_output,
+    limit_memory,
+    report,
+    supervise,
+)
 
 if TYPE_CHECKING:
     from plan_cutters.model import Plan
     from plan_cutters.options import Options
 
-FEASIBLE, NONE_FEASIBLE, USAGE, UNREADABLE, NOT_ALL_JUDGED, INTERRUPTED = 0, 1, 2, 3, 4, 130
+FEASIBLE, NONE_FEASIBLE, USAGE, UNREADABLE, NOT_ALL_JUDGED = 0, 1, 2, 3, 4
 
 #: Options of the interface that later versions will have: asked for now, they must not be ignored.
 _NOT_BUILT = {
@@ -185,10 +195,13 @@ def command(parts: tuple[str, ...], **given: Any) -> int:
     for part, out in zip(parts, outs, strict=True):
         code, line = _guarded(lambda part=part, out=out: _one(part, out, options, given), given["debug"])
         codes.append(code)
+        report("done", str(code))
         if len(parts) > 1 and not given["quiet"]:
             click.echo(f"{part}: {line}", err=True)
         elif code and line:
             click.echo(line, err=True)
+        if code == INTERRUPTED:
+            break
     return max(codes)
 
 
@@ -219,7 +232,8 @@ def _options(given: dict[str, Any]) -> "Options":
 
 def _one(part: str, out: Path, options: "Options", given: dict[str, Any]) -> tuple[int, str]:
     """Plan one part; exit code and a line about it."""
-    from plan_cutters.report import DEFAULT_FORMATS, Staging, read_formats, write_all
+    from plan_cutters.report import DEFAULT_FORMATS, PLAN, Staging, file_name, read_formats, write_all
+    from plan_cutters.report.to_json import dumps, explain
 
     to_stdout = given["json_out"] == "-"
     # The plan on standard output: files only where they are asked for.
@@ -229,31 +243,38 @@ def _one(part: str, out: Path, options: "Options", given: dict[str, Any]) -> tup
     staging = Staging(out) if formats else None
     if staging:
         report("staging", str(staging.folder))
+    watch = _Onlooker(out, given)
     try:
         from plan_cutters.pipeline import run
 
         with _progress(given["quiet"]) as tell:
             result = run(part, options, progress=tell, read_timeout=given["read_timeout"])
-            if formats:
-                tell("write", 0, 1)
-                document = write_all(result, out, formats, staging, step_schema=given["step_schema"])
-                tell("write", 1, 1)
-            else:
-                document = result.plan
+        document = result.plan
+        if not formats:
+            watch.summarise(document)
+        else:
+            with watch:
+                document = write_all(result, out, formats, staging, step_schema=given["step_schema"], onlooker=watch)
+    except KeyboardInterrupt:
+        if watch.plan is None:
+            raise
+        explain(out / PLAN, "interrupted")
+        return INTERRUPTED, f"plan-cutters: interrupted; the plan is in {out}, not all models are"
     finally:
         if staging:
             staging.discard()
     if to_stdout:
-        from plan_cutters.report.to_json import dumps
-
         sys.stdout.write(dumps(document))
         sys.stdout.flush()
     if not given["quiet"]:
-        _summary(document, out, formats)
-    return _exit_code(document), ""
+        for line in (*_written(document, out, formats), *_not_reached(document)):
+            click.echo(line, err=True)
+    for name, why in document.not_written.items():
+        click.echo(f"plan-cutters: {file_name(name)} was not written: {why}", err=True)
+    return _code(document), ""
 
 
-def _exit_code(plan: "Plan") -> int:
+def _code(plan: "Plan") -> int:
     if plan.selected is None:
         # What is missing from the obstacles leaves open whether a cutter that nothing else stops is stopped by it.
         doubtful = plan.missing and any(c.feasible is None for c in plan.cutters)
@@ -262,7 +283,25 @@ def _exit_code(plan: "Plan") -> int:
     return NOT_ALL_JUDGED if unjudged else FEASIBLE
 
 
-def _summary(plan: "Plan", out: Path, formats: Sequence[str]) -> None:
+def _written(plan: "Plan", out: Path, formats: Sequence[str]) -> list[str]:
+    """What is in the output, and which faces the models show otherwise than split in their place."""
+    from plan_cutters.report import left_over
+
+    lines = []
+    written = [*sorted(f.name for f in plan.files.values()), *(["plan.json"] if "json" in formats else [])]
+    if written:
+        lines.append(f"Written: {', '.join(written)} in {out}")
+    for face, entry in plan.split.items():
+        if entry.rung != "contour":
+            how = "split beside the part" if entry.rung == "beside" else "one piece in the STEP, by samples in the GLB"
+            lines.append(f"Not split in its place: {face} ({entry.why}): {how}.")
+    if formats and (old := left_over(out, plan, formats)):
+        lines.append(f"Left over from an earlier run, or not ours: {', '.join(old)} in {out}")
+    return lines
+
+
+def _summary(plan: "Plan") -> None:
+    """What is found, but not what is not reached: that comes last."""
     from rich.console import Console
     from rich.table import Table
 
@@ -290,15 +329,10 @@ def _summary(plan: "Plan", out: Path, formats: Sequence[str]) -> None:
         console.print(f"Warning: {warning}")
     for note in plan.notes:
         console.print(f"Note: {note}")
-    written = [*sorted(f.name for f in plan.files.values()), *(["plan.json"] if "json" in formats else [])]
-    if written:
-        console.print(f"Written: {', '.join(written)} in {out}")
     for face in plan.faces:
         if face.target and face.unjudged:
             console.print(f"Not judged: {face.id} ({face.unjudged}).")
     for line in _missing(plan):
-        console.print(line)
-    for line in _not_reached(plan):
         console.print(line)
 
 
@@ -347,6 +381,40 @@ def _not_reached(plan: "Plan") -> list[str]:
             f"Not reached by {c.id}: {left} of {plan.samples.count} samples ({reasons or 'none'}{undecided}){where}."
         )
     return lines
+
+
+class _Onlooker:
+    """Shows what is found as soon as it is safe on disk, and tells the parent how far it is."""
+
+    def __init__(self, out: Path, given: dict[str, Any]) -> None:
+        self.out, self.given = out, given
+        self.plan: Plan | None = None
+        self.progress = _progress(given["quiet"])
+        self.tell: Any = None
+
+    def __enter__(self) -> "_Onlooker":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.progress.__exit__()
+
+    def summarise(self, plan: "Plan") -> None:
+        if not self.given["quiet"]:
+            _summary(plan)
+
+    def safe(self, plan: "Plan") -> None:
+        self.plan = plan
+        report("safe", f"{_code(plan)} {self.out.absolute()}")
+        self.summarise(plan)
+
+    def begins(self, what: str) -> None:
+        # Each step has the whole limit of the stage.
+        self.tell = self.tell or self.progress.__enter__()
+        self.tell("write", 0, 1)
+
+    def failed(self, what: str, error: Exception) -> None:
+        if self.given["debug"]:
+            traceback.print_exception(error)
 
 
 class _progress:
@@ -450,4 +518,24 @@ def _watched(words: list[str]) -> int:
     memory = default_memory() if given["memory"] is None else int(given["memory"] * 1e9)
     if memory < 2e9:
         raise click.BadParameter("--memory must be at least 2 GB")
-    return supervise(words, read_timeout=given["read_timeout"], memory=memory)
+    try:
+        return supervise(words, read_timeout=given["read_timeout"], memory=memory)
+    except Unfinished as ended:
+        return _without_models(ended, given)
+
+
+def _without_models(ended: Unfinished, given: dict[str, Any]) -> int:
+    """The plan was safe when the process that made it was ended: say what is missing; its exit code stands."""
+    from plan_cutters.report import PLAN, file_name
+    from plan_cutters.report.to_json import explain
+
+    path = ended.out / PLAN
+    missing = ", ".join(map(file_name, explain(path, str(ended)))) or "a model"
+    click.echo(f"plan-cutters: {missing} in {ended.out}: not written: {ended}", err=True)
+    if given["json_out"] == "-" and path.is_file():
+        click.echo(path.read_text(encoding="utf-8"), nl=False)
+    left = given["parts"][ended.parts :]
+    if left and ended.code != INTERRUPTED:
+        click.echo(f"plan-cutters: not planned: {', '.join(left)}", err=True)
+        return max(ended.code, UNREADABLE)
+    return ended.code

@@ -214,4 +214,5 @@ class Plan(_Frozen):
     legend: dict[str, str] = Field(description="colour of each verdict in the STEP and GLB files, sRGB")
     split: dict[str, SplitEntry] = Field(default={}, description="faces of mixed verdicts: how the models show them")
     files: dict[str, FileEntry] = {}
+    not_written: dict[str, str] = Field(default={}, description="formats asked for whose file is missing, and why")
     run: Run

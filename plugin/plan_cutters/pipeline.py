@@ -116,7 +116,10 @@ class Result:
     def write(
         self, out: str | Path, formats: Sequence[str] = ("json", "step", "glb", "npz"), *, step_schema: str = "ap242"
     ) -> Plan:
-        """Write files into the folder `out`, each whole or not at all.
+        """Write files into the folder `out`, each whole or not at all, the plan and the samples first.
+
+        A model that cannot be written is named in the plan's `not_written`; the other files are there. Files that an
+        earlier run wrote there are removed if its plan lists them as they are.
 
         Parameters
         ----------
@@ -129,7 +132,7 @@ class Result:
         Returns
         -------
         Plan
-            The plan as written, with its `files` and `split`.
+            The plan as written, with its `files`, `split` and `not_written`.
         """
         from plan_cutters.report import write_all
 
@@ -290,14 +293,16 @@ def run(
         )
     entries = [by_id[c.id] for c in cutters]
     selected, selection = _select(entries)
-    if selected and options.area_budget:
+    # Where obstacles are missing, none is selected, but one may reach all that could be judged.
+    best = selected or next((e.id for e in entries if not (e.inaccessible or e.undecided)), None)
+    if best and options.area_budget:
         with clock.stage("area"):
-            chosen = next(c for c in cutters if c.id == selected)
-            served = between(samples, reaches[selected], chosen, whole, orientation, conditions,
+            chosen = next(c for c in cutters if c.id == best)
+            served = between(samples, reaches[best], chosen, whole, orientation, conditions,
                              budget=options.area_budget)  # fmt: skip
         area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
                          left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
-        entries = [e.model_copy(update={"area": area}) if e.id == selected else e for e in entries]
+        entries = [e.model_copy(update={"area": area}) if e.id == best else e for e in entries]
     document = Plan(
         part=_part_info(whole, orientation, around),
         effective=Effective(

@@ -19,6 +19,8 @@ from pathlib import Path
 
 #: Environment variable by which the child knows its number of the pipe to report on, and its memory limit in bytes.
 REPORT, MEMORY = "PLAN_CUTTERS_REPORT", "PLAN_CUTTERS_MEMORY"
+#: Exit code of an interrupted run.
+INTERRUPTED = 130
 #: Stages in which the kernel works on what the file says, and how many times the limit of reading each may take.
 LIMITED = {"read": 1.0, "sample": 5.0, "tessellate": 5.0, "write": 5.0}
 _WORK = {"sample": "sampling", "tessellate": "tessellation", "write": "splitting and writing"}
@@ -26,6 +28,24 @@ _WORK = {"sample": "sampling", "tessellate": "tessellation", "write": "splitting
 
 class Supervised(Exception):
     """The child did not end by itself: `str` says what happened, in words for the user."""
+
+
+class Unfinished(Supervised):
+    """So it was, but the plan was in the output already: what is missing are models.
+
+    Attributes
+    ----------
+    code : int
+        The exit code that the plans so far ask for.
+    out : Path
+        The output.
+    parts : int
+        Parts that were begun.
+    """
+
+    def __init__(self, text: str, code: int, out: Path, parts: int) -> None:
+        super().__init__(text)
+        self.code, self.out, self.parts = code, out, parts
 
 
 def is_child() -> bool:
@@ -57,7 +77,11 @@ def keep_output() -> None:
 
 
 def report(word: str, text: str) -> None:
-    """Tell the parent, if there is one: `stage NAME`, `part FILE`, `staging FOLDER`, `work WHOSE FACE`."""
+    """Tell the parent, if there is one: `part FILE`, `staging FOLDER`, `stage NAME`, `work WHOSE FACE`, `safe CODE FOLDER`,
+    `done CODE`.
+
+    `safe`: the plan of this part is in the folder, models follow; `done`: so are they.
+    """
     if is_child():
         os.write(int(os.environ[REPORT]), f"{word} {text}\n".encode())
 
@@ -118,23 +142,24 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int) -> int:
             if watch.late():
                 _end(child)
                 watch.clear()
-                raise Supervised(watch.verdict())
+                raise watch.ended(*watch.verdict())
         watch.listen(0.0)
     finally:
         os.close(here)
         for number, handler in previous.items():
             signal.signal(number, handler)
-        if child.poll() is None:
-            _end(child)
+        _end(child)
     if child.returncode >= 0:
         return child.returncode
     watch.clear()
-    if asked:
+    if asked and watch.safe is None:
         raise KeyboardInterrupt
+    if asked:
+        raise watch.ended("interrupted", "", interrupted=True)
     name = signal.Signals(-child.returncode).name
     at = " ".join(filter(None, (watch.stage, watch.face)))
-    raise Supervised(f"{watch.part}: the CAD kernel crashed ({name}, while it was at '{at}'); "
-                     "the file may be damaged: export it again")  # fmt: skip
+    raise watch.ended(f"the CAD kernel crashed ({name}, while it was at '{at}')",
+                      "the file may be damaged: export it again")  # fmt: skip
 
 
 def _end(child: "subprocess.Popen[bytes]") -> None:
@@ -153,6 +178,8 @@ class _Watch:
         self.work = ""
         self.staging: set[str] = set()
         self.rest = b""
+        self.parts, self.code = 0, 0
+        self.safe: tuple[int, Path] | None = None
 
     def listen(self, seconds: float) -> None:
         while select.select([self.pipe], [], [], seconds)[0]:
@@ -168,7 +195,12 @@ class _Watch:
                 elif word == "work":
                     self.work = text
                 elif word == "part":
-                    self.part = text
+                    self.part, self.parts, self.safe = text, self.parts + 1, None
+                elif word == "safe":
+                    code, _, folder = text.partition(" ")
+                    self.safe = int(code), Path(folder)
+                elif word == "done":
+                    self.code, self.safe = max(self.code, int(text)), None
                 elif word == "staging":
                     self.staging.add(text)
 
@@ -184,18 +216,25 @@ class _Watch:
         """The face that is being worked on, `F12`; empty where no one said."""
         return self.work.partition(" ")[2]
 
-    def verdict(self) -> str:
-        """What took too long, whose work it was and where, and what to try."""
-        where, within = f"{self.part}: {self.face}: " if self.face else f"{self.part}: ", f"within {self.limit:g} s"
+    def verdict(self) -> tuple[str, str]:
+        """What took too long, whose work it was and where; and what to try."""
+        where, within = f"{self.face}: " if self.face else "", f"within {self.limit:g} s"
         more = "give more time (--read-timeout)"
         if self.stage == "read":
-            return f"{where}not read {within}; the file may be damaged, or {more}"
+            return f"{where}not read {within}", f"the file may be damaged, or {more}"
         if self.work.startswith("own"):
-            return (f"{where}our own {_WORK.get(self.stage, self.stage)} did not end {within}; "
-                    f"try a coarser --tolerance, or {more}")  # fmt: skip
+            own = f"{where}our own {_WORK.get(self.stage, self.stage)} did not end {within}"
+            return own, f"try a coarser --tolerance, or {more}"
         fewer = "--faces, " if self.stage == "sample" else ""
-        return (f"{where}the CAD kernel did not end its {_WORK.get(self.stage, self.stage)} {within}; "
+        return (f"{where}the CAD kernel did not end its {_WORK.get(self.stage, self.stage)} {within}",
                 f"the file may be damaged: export it again, or try {fewer}a coarser --tolerance, or {more}")  # fmt: skip
+
+    def ended(self, what: str, advice: str, *, interrupted: bool = False) -> Supervised:
+        """What to raise when the child is gone."""
+        if self.safe is None:
+            return Supervised(f"{self.part}: {what}; {advice}")
+        code, out = self.safe
+        return Unfinished(what, INTERRUPTED if interrupted else max(self.code, code), out, self.parts)
 
     def clear(self) -> None:
         for folder in self.staging:

@@ -8,6 +8,9 @@ from typing import Any
 from plan_cutters.errors import PlanError
 from plan_cutters.model import Plan
 
+#: Why a file is missing while it is being made: what stays in the plan if the run is ended then.
+PENDING = "the run ended before it was written"
+
 
 def dumps(plan: Plan) -> str:
     """The plan's text; the same plan gives the same bytes."""
@@ -35,6 +38,29 @@ def write_plan(plan: Plan, path: Path) -> None:
     except OSError as error:
         aside.unlink(missing_ok=True)
         raise PlanError(f"cannot write the plan ({error.strerror})", file=str(path)) from None
+
+
+def listed(path: Path) -> dict[str, str]:
+    """Names and checksums of the files that a plan file of any version lists; none if it is no such file."""
+    try:
+        plan = json.loads(path.read_text(encoding="utf-8"))
+        if plan["format"] == "plan-cutters-plan":
+            return {str(entry["name"]): str(entry["sha256"]) for entry in plan["files"].values()}
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):
+        pass
+    return {}
+
+
+def explain(path: Path, cause: str) -> tuple[str, ...]:
+    """Say in a plan file why its pending files were never written; their formats."""
+    try:
+        plan = Plan.model_validate_json(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return ()
+    pending = tuple(name for name, why in plan.not_written.items() if why == PENDING)
+    if pending:
+        write_plan(plan.model_copy(update={"not_written": plan.not_written | dict.fromkeys(pending, cause)}), path)
+    return pending
 
 
 if __name__ == "__main__":
