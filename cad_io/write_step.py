@@ -24,7 +24,7 @@ from OCP.TDataStd import TDataStd_Name
 from OCP.TDocStd import TDocStd_Document
 from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS_Shell
+from OCP.TopoDS import TopoDS, TopoDS_Shell
 from OCP.TopTools import TopTools_IndexedMapOfShape
 from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
 
@@ -205,15 +205,15 @@ class _Document:
             _name(sub, title)
             if rgb:
                 self.colours.SetColor(sub, Quantity_Color(*rgb, Quantity_TOC_sRGB), XCAFDoc_ColorSurf)
-                self.styles += 1
+                # What holds only triangles is written as such, not as an advanced face, and gets no colour.
+                self.styles += _exact(shape)
             return sub
 
         for shell in shells:
             if shell.title:
                 dress(shell.shape, shell.title, shell.rgb, shell.face)
         for piece in _pieces(bodies):
-            # What holds only triangles is written as such, not as an advanced face.
-            self.faces += BRep_Tool.Surface_s(piece.shape) is not None
+            self.faces += _exact(piece.shape)
             sub = dress(piece.shape, *self.style(piece), piece.face)
             for layer in self.layers.get(piece.face, ()):
                 self.layer_tool.SetLayer(sub, TCollection_ExtendedString(_ascii(layer)))
@@ -277,6 +277,11 @@ def _pieces(bodies: Sequence[_Body]) -> list[Piece]:
     """Of a product, each once, also where two bodies share a face."""
     beside = (p for body in bodies for pieces in body.beside.values() for p in pieces)
     return list({id(p): p for p in (*(p for body in bodies for p in body.pieces), *beside)}.values())
+
+
+def _exact(shape: Any) -> bool:
+    """Whether a face, or any face of a shape, has a surface."""
+    return any(BRep_Tool.Surface_s(TopoDS.Face_s(face)) is not None for face in explore(shape, TopAbs_FACE))
 
 
 def _unplaced(shape: Any) -> Iterator[Any]:

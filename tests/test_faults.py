@@ -248,8 +248,8 @@ def test_the_line_says_whose_work_it_was_and_where(told, line):
     watch.listen(0.0)
     os.close(here)
     os.close(there)
-    assert re.search(line, watch.verdict())
-    assert "--read-timeout" in watch.verdict()
+    assert re.search(line, str(watch.ended(*watch.verdict())))
+    assert "--read-timeout" in str(watch.ended(*watch.verdict()))
 
 
 def test_tessellation_tells_where_it_is():

@@ -368,6 +368,8 @@ def _not_reached(plan: "Plan") -> list[str]:
     for c in plan.cutters:
         if c.id == plan.selected:
             break
+        if not c.inaccessible + c.undecided:
+            continue
         reasons = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in c.by_reason.items() if count)
         deepest = max((w for w in c.witnesses if w.depth_mm is not None), key=lambda w: w.depth_mm or 0, default=None)
         where = ""
