@@ -34,7 +34,7 @@ from fuzz_seeds import write_seeds
 from cad_io import Part
 from cad_io.altered import edge_count
 from cad_io.kernel import silence
-from plan_cutters import cli, pipeline, supervise
+from plan_cutters import cli, obstacles, pipeline, supervise
 from plan_cutters.report.to_json import schema
 
 SUFFIXES = {".step", ".stp", ".iges", ".igs"}
@@ -340,7 +340,7 @@ def main() -> int:
     given = words.parse_args()
     # Compile and load everything once, here; the children inherit it.
     silence()
-    pipeline.tessellate = partial(pipeline.tessellate, budget=TRIANGLES)
+    obstacles.tessellate = partial(obstacles.tessellate, budget=TRIANGLES)
     pipeline.read_part = recorded(pipeline.read_part)
     pipeline._versions = cache(pipeline._versions)
     outcomes: Counter[str] = Counter()
