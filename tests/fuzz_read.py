@@ -190,7 +190,7 @@ def _forked(cases: Sequence[Case]) -> tuple[list[int], Outcome | None]:
             supervise.keep_output()
             for case in cases:
                 os.write(there, b"stage start\n")
-                os.write(there, f"done {case.run()}\n".encode())
+                os.write(there, f"ended {case.run()}\n".encode())
         finally:
             os._exit(70)
     os.close(there)
@@ -207,7 +207,7 @@ def _forked(cases: Sequence[Case]) -> tuple[list[int], Outcome | None]:
                 break
             *lines, left = (left + data).split(b"\n")
             for word, _, text in (line.decode(errors="replace").partition(" ") for line in lines):
-                if word == "done":
+                if word == "ended":
                     codes.append(int(text))
                 elif word == "stage":
                     stage, since = text, time.monotonic()
