@@ -342,7 +342,7 @@ def main() -> int:
     silence()
     obstacles.tessellate = partial(obstacles.tessellate, budget=TRIANGLES)
     pipeline.read_part = recorded(pipeline.read_part)
-    pipeline._versions = cache(pipeline._versions)
+    pipeline.versions = cache(pipeline.versions)
     outcomes: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as folder:
         (seeds := Path(folder) / "seeds").mkdir()

@@ -1,7 +1,6 @@
 """The order of the stages: part in, plan out. Nothing else knows it."""
 
 import datetime
-import platform
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -12,12 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io import Orientation, Part, SurfaceSamples, read_part
-from cad_io.assembly import component_of
+from cad_io import Part, SurfaceSamples, read_part
 from cad_io.orient import orient
 from cad_io.read import TIMEOUT
 from cad_io.sample import sample
-from plan_cutters import __version__
 from plan_cutters.access import access, witnesses
 from plan_cutters.between import between
 from plan_cutters.buried import buried
@@ -26,25 +23,28 @@ from plan_cutters.classify import CONCAVE, CONVEX, SADDLE, classify, regions
 from plan_cutters.conditions import Conditions
 from plan_cutters.cutter import Cutter
 from plan_cutters.decompose import decompose
+from plan_cutters.document import (
+    area_notes,
+    cutter_entry,
+    degrees,
+    face_entries,
+    missing_entries,
+    notes,
+    part_info,
+    vector,
+    versions,
+)
 from plan_cutters.errors import OptionError, UnjudgeableError
-from plan_cutters.faces import Chosen, choose
+from plan_cutters.faces import choose
 from plan_cutters.machine import Machine
 from plan_cutters.model import (
     AreaEntry,
     CutterEntry,
     Effective,
-    FaceEntry,
-    MissingEntry,
-    OrientationInfo,
-    PartInfo,
     Plan,
-    Posture,
     Run,
     SampleCounts,
     Selection,
-    SewingInfo,
-    Verdicts,
-    WitnessEntry,
 )  # fmt: skip
 from plan_cutters.nesting import handed, order
 from plan_cutters.obstacles import CHORD_ASKED, Surroundings, kept_tolerance, surroundings
@@ -53,7 +53,7 @@ from plan_cutters.palette import PALETTE
 from plan_cutters.posture import PostureRange, unit
 from plan_cutters.posture_maps import PostureMaps
 from plan_cutters.posture_maps import posture_maps as all_posture_maps
-from plan_cutters.reach import ACCESSIBLE, FREE, INACCESSIBLE, REASONS, UNDECIDED, UNJUDGED, Reach, Witness
+from plan_cutters.reach import REASONS, Reach
 from plan_cutters.select_cutters import RULE, ranked
 from plan_cutters.spacing import default_spacing
 from plan_cutters.supervise import report_work
@@ -275,8 +275,9 @@ def run(
     with clock.stage("compile"):
         _warm(samples, cutters[0], setup, options, around)
     conditions = Conditions(options.machine, setup, options.postures, around, tolerance, options.jobs)
-    within = buried(samples, orientation, around.bodies, around.surely, tolerance)
-    missing = _missing(whole, around)
+    with clock.stage("bodies"):
+        within = buried(samples, orientation, around.bodies, around.surely, tolerance)
+    missing = missing_entries(whole, around)
     by_id: dict[str, CutterEntry] = {}
     reaches: dict[str, Reach] = {}
     for cutter in order(cutters):
@@ -288,7 +289,7 @@ def run(
             seconds = time.perf_counter() - began
             found = witnesses(samples, reach, cutter, conditions, buried=within)
         reaches[cutter.id] = reach
-        by_id[cutter.id] = _cutter_entry(
+        by_id[cutter.id] = cutter_entry(
             cutter, samples, reach, found, decomposition.march_differs, seconds, doubtful=bool(missing)
         )
     entries = [by_id[c.id] for c in cutters]
@@ -304,20 +305,20 @@ def run(
                          left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
         entries = [e.model_copy(update={"area": area}) if e.id == best else e for e in entries]
     document = Plan(
-        part=_part_info(whole, orientation, around),
+        part=part_info(whole, orientation, around),
         effective=Effective(
             cutters=[c.id for c in cutters],
             cutter_source="given" if options.cutters else "built-in",
             unit=options.unit,
             machine=options.machine.name,
-            setup=_vector(setup),
+            setup=vector(setup),
             faces=chosen_faces.asked,
             ignore=list(chosen_faces.ignore),
             target_faces=[f"F{n}" for n in targets],
             grid=options.grid,
             spacing_mm=max(spacing.values()) if isinstance(spacing, dict) else spacing,
-            tilt_deg=_degrees(options.postures.tilt),
-            rotation_deg=_degrees(options.postures.rotation),
+            tilt_deg=degrees(options.postures.tilt),
+            rotation_deg=degrees(options.postures.rotation),
             rotation_step_deg=float(np.degrees(options.postures.step)),
             tolerance_mm=tolerance,
             chord_error_mm=triangles.chord_error,
@@ -326,7 +327,7 @@ def run(
             area_budget=options.area_budget,
             posture_maps=options.posture_maps,
         ),
-        versions=_versions(),
+        versions=versions(),
         samples=SampleCounts(
             count=len(samples),
             max_gap_mm=samples.max_gap,
@@ -336,16 +337,16 @@ def run(
             unjudged=int((samples.unjudged >= 0).sum()),
             regions=len(np.unique(region)),
         ),
-        faces=_faces(whole, samples, chosen_faces),
+        faces=face_entries(whole, samples, chosen_faces),
         missing=missing,
         reasons=list(REASONS),
         cutters=entries,
         selected=selected,
         selection=selection,
         notes=[
-            *_notes(whole, orientation, options, tolerance, samples, around),
+            *notes(whole, orientation, options, tolerance, samples, around),
             *chosen_faces.notes,
-            *_area_notes(entries),
+            *area_notes(entries),
         ],
         legend=PALETTE,
         run=Run(time=started.isoformat(timespec="seconds"), seconds=clock.seconds),
@@ -356,20 +357,6 @@ def run(
             shown = next(c for c in cutters if c.id == result.shown)
             result = replace(result, maps=all_posture_maps(samples, shown, conditions, progress=tell))
     return result
-
-
-def _missing(part: Part, around: Surroundings) -> list[MissingEntry]:
-    """Faces that are in the way only as a guess, or of which nothing is known but that the file has them."""
-    found = [
-        MissingEntry(face=f"F{number}", entity=None, name=part.faces[number - 1].name, why=why, stand_in=how)
-        for number, why, how in around.missing
-    ]
-    found += [
-        MissingEntry(face=None, entity=each.entity or None, name=each.name, why=each.why,
-                     stand_in="none" if each.box is None else "box")
-        for each in around.lost
-    ]  # fmt: skip
-    return found
 
 
 def _affordable(part: Part, targets: Sequence[int], options: Options) -> None:
@@ -404,67 +391,6 @@ def _warm(
     )  # fmt: skip
 
 
-def _vector(v: NDArray[np.float64]) -> tuple[float, float, float]:
-    return float(v[0]), float(v[1]), float(v[2])
-
-
-def _degrees(pair: tuple[float, float]) -> tuple[float, float]:
-    # Rounded to what a person typed: 90, not 90.00000000000001.
-    return round(float(np.degrees(pair[0])), 9), round(float(np.degrees(pair[1])), 9)
-
-
-def _counts(verdict: NDArray[np.uint8]) -> dict[str, Any]:
-    names = {FREE: "interference_free", ACCESSIBLE: "accessible", INACCESSIBLE: "inaccessible",
-             UNDECIDED: "undecided", UNJUDGED: "unjudged"}  # fmt: skip
-    return {name: int((verdict == code).sum()) for code, name in names.items()}
-
-
-def _cutter_entry(
-    cutter: Cutter, samples: SurfaceSamples, reach: Reach, found: Sequence[Witness], march_differs: int, seconds: float,
-    *, doubtful: bool,
-) -> CutterEntry:  # fmt: skip
-    counts = _counts(reach.verdict)
-    # What is missing from the obstacles can only be in the way of more.
-    feasible = False if counts["inaccessible"] else None if counts["undecided"] or doubtful else True
-    lost, unsure = reach.verdict == INACCESSIBLE, reach.verdict == UNDECIDED
-    return CutterEntry(
-        id=cutter.id,
-        name=cutter.name,
-        radius=cutter.radius,
-        corner_radius=cutter.corner_radius,
-        length=cutter.length,
-        feasible=feasible,
-        march_differs=march_differs,
-        **counts,
-        by_reason={name: int((lost & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
-        undecided_by_reason={name: int((unsure & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
-        faces={
-            f"F{n}": Verdicts(**_counts(reach.verdict[samples.face == n])) for n in np.unique(samples.face).tolist()
-        },
-        witnesses=[_witness_entry(w, samples) for w in found],
-        seconds=seconds,
-    )
-
-
-def _witness_entry(witness: Witness, samples: SurfaceSamples) -> WitnessEntry:
-    posture = None
-    if witness.tilt is not None and witness.rotation is not None and witness.axis is not None:
-        posture = Posture(
-            tilt=float(np.degrees(witness.tilt)),
-            rotation=float(np.degrees(witness.rotation)),
-            axis=_vector(witness.axis),
-        )
-    return WitnessEntry(
-        point=_vector(samples.point[witness.sample]),
-        face=f"F{samples.face[witness.sample]}",
-        reason=witness.reason,
-        obstacle_face=None if not witness.obstacle_face else f"F{witness.obstacle_face}",
-        obstacle_point=None if witness.obstacle_point is None else _vector(witness.obstacle_point),
-        best_posture=posture,
-        depth_mm=witness.depth,
-    )
-
-
 def _select(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:
     feasible = [e for e in entries if e.feasible]
     if not feasible:
@@ -480,127 +406,3 @@ def _select(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:
         "no larger cutter was given"
     )  # fmt: skip
     return first.id, Selection(rule=RULE, runner_up=feasible[1].id if len(feasible) > 1 else None, why=why)
-
-
-def _part_info(part: Part, orientation: Orientation, around: Surroundings) -> PartInfo:
-    warnings = list(part.warnings)
-    if around.on_bodies:
-        names = listed([f"F{number}" for number in around.on_bodies])
-        warnings.append(f"{names} lie on faces of solids, as construction geometry does, and are judged and in the way like "
-                        "all others: --ignore leaves them out")  # fmt: skip
-    return PartInfo(
-        file=Path(part.file).name if part.file else None,
-        sha256=part.sha256,
-        size_mm=part.size,
-        solids=part.solids,
-        faces=len(part.faces),
-        orientation=OrientationInfo(method=orientation.method, confident=orientation.confident),
-        sewing=_sewing(part),
-        warnings=warnings,
-    )
-
-
-def _sewing(part: Part) -> SewingInfo | None:
-    sewn = part.sewn
-    if not sewn.faces:
-        return None
-    return SewingInfo(
-        tolerance_mm=sewn.tolerance, tried_mm=sewn.tried, open_edges=sewn.open_edges, open_length_mm=sewn.open_length
-    )
-
-
-def _faces(part: Part, samples: SurfaceSamples, choice: Chosen) -> list[FaceEntry]:
-    empty = dict(samples.empty)
-    chosen, ignored = set(choice.targets), set(choice.ignored)
-    component = component_of(part.tree)
-    result = []
-    for face in part.faces:
-        mine = samples.face == face.number
-        bad = samples.unjudged[mine]
-        bad = bad[bad >= 0]
-        reason = face.unjudged or empty.get(face.number)
-        if reason is None and len(bad):
-            reason = f"{len(bad)} samples: " + "; ".join(samples.reasons[i] for i in np.unique(bad))
-        result.append(
-            FaceEntry(
-                id=face.id,
-                name=face.name,
-                surface=face.surface,
-                shape=face.shape,
-                target=face.number in chosen,
-                ignored=face.number in ignored,
-                area_mm2=face.area,
-                component=component[face.number],
-                samples=int(mine.sum()),
-                unjudged=reason if face.number in chosen else face.unjudged,
-            )
-        )
-    return result
-
-
-def _notes(
-    part: Part, orientation: Orientation, options: Options, tolerance: float, samples: SurfaceSamples,
-    around: Surroundings,
-) -> list[str]:  # fmt: skip
-    notes = [
-        "Cutters are flat ends, judged as solid cylinders of their length, without a holder.",
-        f"Verdicts are about samples; grid neighbours, and borders from the nearest sample of their face, are at most "
-        f"{samples.max_gap:.3g} mm apart.",
-    ]
-    if samples.empty:
-        names = ", ".join(f"F{number}" for number, _ in samples.empty)
-        notes.append(f"No verdict is about {names}: no sample could be taken there.")
-    if options.machine.tilt_limit is None:
-        notes.append("No machine was given: any tool axis counts as possible.")
-    if not orientation.confident:
-        notes.append("Which side is material is a guess; --flip machines the other side.")
-    if tolerance > 1.001 * options.tolerance:
-        notes.append(
-            f"The tolerance was raised from {options.tolerance:g} to {tolerance:.3g} mm: "
-            "the obstacle triangles could not be made to follow the surface more closely."
-        )
-    notes += _around_notes(part, around)
-    return notes
-
-
-def _around_notes(part: Part, around: Surroundings) -> Iterator[str]:
-    """What stands in the way otherwise than the file has it."""
-    skins = {number for body in around.bodies if body.closed for number in body.faces}
-    present = set(np.unique(around.may_be.triangles.face).tolist())
-    sheets = [f.id for f in part.faces if f.number in present - skins]
-    if sheets and skins:
-        yield (f"{listed(sheets)} enclose{'s' if len(sheets) == 1 else ''} no material: only the surface is in the way, "
-               "not what may lie behind it.")  # fmt: skip
-    elif sheets:
-        yield "No face encloses material: only the surfaces are in the way, not what may lie behind them."
-
-
-def listed(names: Sequence[str], most: int = 8) -> str:
-    """Names in a line, the first ones where there are many."""
-    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
-
-
-def _area_notes(entries: Sequence[CutterEntry]) -> Iterator[str]:
-    for entry in entries:
-        if entry.area and entry.area.share < 1:
-            yield (
-                f"{entry.id} reaches every judged sample, but not all of the target surface was shown to be served: "
-                f"{entry.area.left} contacts were left when the budget of {entry.area.contacts} ended, no posture serves "
-                "a whole cell there, or a face has no samples or no closed border. Sample more finely, or give a larger "
-                "--area-budget."
-            )
-        elif entry.area:
-            what = (
-                "all of the target surface whose area is known" if entry.area.left_out else "all of the target surface"
-            )
-            yield f"{entry.id} serves {what}, as far as curvature between grid nodes is known."
-        if entry.area and entry.area.left_out:
-            yield f"The area of {', '.join(entry.area.left_out)} is not known: it is not in the share that is served."
-
-
-def _versions() -> dict[str, str]:
-    from importlib.metadata import version
-
-    names = {"cadquery-ocp": "occt", "numba": "numba", "numpy": "numpy", "scipy": "scipy", "trimesh": "trimesh"}
-    found = {label: version(name) for name, label in names.items()}
-    return {"plan_cutters": __version__, **found, "python": platform.python_version()}
