@@ -233,6 +233,10 @@ def surroundings(
         No face has triangles.
     """
     triangles = tessellate(part, chord, faces=[f.number for f in part.faces if f.number not in ignored], at=at)
+    if not len(triangles):
+        causes = "; ".join(sorted({why for _, why in triangles.missing}))
+        raise UnjudgeableError(f"no face has triangles that could be in the way: {causes or 'all are left out'}",
+                               file=part.file)  # fmt: skip
     found = tuple(body for whole in bodies(part) if (body := _without(whole, ignored)) is not None)
     surely = Obstacles(triangles, _weight(triangles, [b for b in found if b.closed]))
     stand = stand_ins(part, triangles.missing, chord)
