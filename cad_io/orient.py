@@ -13,6 +13,7 @@ from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED
 from OCP.TopoDS import TopoDS, TopoDS_Face
 
 from cad_io.arrays import Floats, Orientation
+from cad_io.cap import cap_of, flux_of
 from cad_io.kernel import explore, shape_map
 from cad_io.part import Part
 from cad_io.sew import edge_uses
@@ -75,7 +76,8 @@ def _orient_solid(part: Part, members: Sequence[tuple[int, TopoDS_Face]], sign: 
                 flags[c.members] = c.relative * np.sign((flags[c.members] * c.relative).sum() or 1.0)
             said.append("solids whose faces contradict each other were made consistent")
     enclosed = volume(part, index, flags)
-    if enclosed < 0:
+    # Of an open skin the flux says nothing: it depends on where it is taken from.
+    if closed and enclosed < 0:
         flags = -flags
         said.append("solids that were inside out were turned")
     sign[index] = flags
@@ -96,6 +98,9 @@ def _orient_rest(
         index = np.array(rest)[c.members]
         relative = c.relative if c.relative is not None else np.ones(len(index))
         enclosed = volume(part, index, relative) if c.closed else 0.0
+        if c.touching:
+            cap = cap_of([joined[i + 1] for i in index.tolist()], relative, float(np.linalg.norm(part.size)))
+            enclosed = volume(part, index, relative, cap)
         if enclosed:
             sign[index] = relative * np.sign(enclosed)
             said.append("closed shells outward")
@@ -123,33 +128,37 @@ def _orient_rest(
 
 
 class Joined:
-    """Faces joined by edges. `relative` (k,): +1 or -1 so that all point to one side by `dS/du x dS/dv`."""
+    """Faces joined by edges.
 
-    def __init__(self, members: list[int], relative: Floats | None, closed: bool) -> None:
-        self.members, self.relative, self.closed = members, relative, closed
+    `relative` (k,): +1 or -1 so that all point to one side by `dS/du x dS/dv`. `touching`: they are not closed, but open
+    only at edges at which more than two faces meet, those of a body that touches this one.
+    """
+
+    def __init__(self, members: list[int], relative: Floats | None, closed: bool, touching: bool = False) -> None:
+        self.members, self.relative, self.closed, self.touching = members, relative, closed, touching
 
 
 def joined_faces(shapes: Sequence[TopoDS_Face]) -> list[Joined]:
-    """Split faces into groups joined by shared edges.
+    """Split faces into groups joined by edges that two of them share.
 
     Two faces on either side of an edge point to the same side if they run along the edge in opposite directions.
-    `relative` is None where the faces of a group cannot be made consistent (a Moebius strip).
+    `relative` is None where the faces of a group cannot be made consistent (a Moebius strip). A group is closed if it
+    runs along each of its edges as often one way as the other; other groups may touch it there.
     """
+    uses = edge_uses(shapes)
     links: dict[int, list[tuple[int, int]]] = defaultdict(list)
-    open_faces: set[int] = set()
-    for _, users in edge_uses(shapes):
-        if len(users) == 2:
+    for _, users in uses:
+        if len(users) == 2 and users[0][0] != users[1][0]:
             (i, way_i), (j, way_j) = users
-            if i != j:
-                links[i].append((j, -way_i * way_j))
-                links[j].append((i, -way_i * way_j))
-        else:
-            open_faces.update(i for i, _ in users)
-    found, seen = [], np.zeros(len(shapes))
+            links[i].append((j, -way_i * way_j))
+            links[j].append((i, -way_i * way_j))
+    members_of: list[list[int]] = []
+    seen, group_of = np.zeros(len(shapes)), np.full(len(shapes), -1)
+    consistent: list[bool] = []
     for first in range(len(shapes)):
         if seen[first]:
             continue
-        seen[first], members, consistent = 1, [first], True
+        seen[first], members, agree = 1, [first], True
         queue = deque(members)
         while queue:
             i = queue.popleft()
@@ -158,16 +167,27 @@ def joined_faces(shapes: Sequence[TopoDS_Face]) -> list[Joined]:
                     seen[j] = seen[i] * same
                     members.append(j)
                     queue.append(j)
-                consistent &= bool(seen[j] == seen[i] * same)
-        closed = consistent and not open_faces.intersection(members)
-        found.append(Joined(members, seen[members].copy() if consistent else None, closed))
-    return found
+                agree &= bool(seen[j] == seen[i] * same)
+        group_of[members] = len(members_of)
+        members_of.append(members)
+        consistent.append(agree)
+    closed, free = list(consistent), [not agree for agree in consistent]
+    for _, users in uses:
+        for group in {int(group_of[i]) for i, _ in users}:
+            if sum(way * seen[i] for i, way in users if group_of[i] == group):
+                closed[group] = False
+                free[group] |= len(users) < 3
+    return [
+        Joined(members, seen[members].copy() if agree else None, shut, not (shut or open_edge) and len(members) > 1)
+        for members, agree, shut, open_edge in zip(members_of, consistent, closed, free, strict=True)
+    ]
 
 
-def volume(part: Part, index: Iterable[int], sign: Floats) -> float:
-    """Signed volume of a closed set of faces, mm3; 0 if there is none to speak of."""
+def volume(part: Part, index: Iterable[int], sign: Floats, cap: Floats | None = None) -> float:
+    """Signed volume of a closed set of faces, mm3, openings closed by a cap (t, 3, 3); 0 if there is none to speak of."""
     measures = [part.measure(int(i) + 1) for i in index]
     flux = sum(s * m.flux for s, m in zip(sign, measures, strict=True) if m and np.isfinite(m.flux))
+    flux += 0.0 if cap is None else flux_of(cap, part.middle)
     area = sum(m.area for m in measures if m and np.isfinite(m.area))
     enough = abs(flux) > 3 * _FLAT * area * float(np.linalg.norm(part.size))
     return float(flux) / 3 if enough else 0.0

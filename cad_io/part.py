@@ -11,6 +11,7 @@ from OCP.Bnd import Bnd_Box
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepBndLib import BRepBndLib
+from OCP.ShapeAnalysis import ShapeAnalysis_ShapeTolerance
 from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_SOLID
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Compound, TopoDS_Face, TopoDS_Iterator, TopoDS_Shape
@@ -170,7 +171,7 @@ class Part:
         if number not in self._measures:
             trim = self.trim(number)
             with translated("measuring a face", file=self.file, face=f"F{number}"):
-                self._measures[number] = None if trim is None else measure(self.adaptor(number), trim, self._middle)
+                self._measures[number] = None if trim is None else measure(self.adaptor(number), trim, self.middle)
         return self._measures[number]
 
     @cached_property
@@ -179,9 +180,15 @@ class Part:
             return _box(self._faces)
 
     @cached_property
-    def _middle(self) -> Floats:
+    def middle(self) -> Floats:
+        """Middle (3,) of the part's box, mm."""
         low, high = self._box
         return 0.5 * (low + high)
+
+    @cached_property
+    def looseness(self) -> float:
+        """Largest distance, mm, by which faces may miss each other along an edge that they share."""
+        return float(ShapeAnalysis_ShapeTolerance().Tolerance(self.shape, 1))
 
     @cached_property
     def closed(self) -> bool:

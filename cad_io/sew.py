@@ -66,19 +66,32 @@ def sew(part: "Part") -> Sewn:
         The kernel failed.
     """
     numbers = _outside_solids(part)
-    now = [part.face(number) for number in numbers]
     with translated("joining faces", file=part.file):
-        left = _open(now)
-        kept = tried = None
-        for tolerance in _ladder(float(np.linalg.norm(part.size))):
-            if not left or len(now) < 2:
-                break
-            tried = tolerance
-            joined = _joined(now, tolerance)
-            still = _open(joined)
-            if sum(still) < (1 - _GAIN) * sum(left):
-                kept, now, left = tolerance, joined, still
+        now, kept, tried, left = join([part.face(number) for number in numbers], float(np.linalg.norm(part.size)))
     return Sewn(dict(zip(numbers, now, strict=True)), kept, tried, len(left), float(sum(left)))
+
+
+def join(
+    shapes: Sequence[TopoDS_Face], diagonal: float
+) -> tuple[list[TopoDS_Face], float | None, float | None, list[float]]:
+    """Faces joined on the ladder of tolerances for a part of a diagonal, mm.
+
+    Returns
+    -------
+    faces, kept, tried, left
+        The faces, sharing edges; as `Sewn.tolerance` and `Sewn.tried`; the length of each edge that is still open, mm.
+    """
+    now = list(shapes)
+    left, kept, tried = _open(now), None, None
+    for tolerance in _ladder(diagonal):
+        if not left or len(now) < 2:
+            break
+        tried = tolerance
+        joined = _joined(now, tolerance)
+        still = _open(joined)
+        if sum(still) < (1 - _GAIN) * sum(left):
+            kept, now, left = tolerance, joined, still
+    return now, kept, tried, left
 
 
 def edge_uses(shapes: Sequence[TopoDS_Face]) -> list[tuple[TopoDS_Edge, list[tuple[int, int]]]]:
@@ -113,7 +126,8 @@ def _ladder(diagonal: float) -> Iterator[float]:
 
 def _joined(shapes: Sequence[TopoDS_Face], tolerance: float) -> list[TopoDS_Face]:
     """The faces after joining edges that coincide; a face that sewing drops stays as it was."""
-    sewing = BRepBuilderAPI_Sewing(tolerance)
+    # More than two faces may share an edge: where two bodies touch, pairing them off would join one with the other.
+    sewing = BRepBuilderAPI_Sewing(tolerance, True, True, True, True)
     for face in shapes:
         sewing.Add(face)
     sewing.Perform()

@@ -17,8 +17,10 @@ from OCP.GCPnts import GCPnts_TangentialDeflection
 from OCP.TopLoc import TopLoc_Location
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import breadth_first_order, connected_components
+from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, Ints
+from cad_io.cap import coned
 from cad_io.kernel import edges_of, is_kernel_error
 from cad_io.part import NO_AREA, Part, face_box
 
@@ -26,6 +28,8 @@ _CORNERS = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)])
 #: Nodes each way to estimate the area of a face that is said to have none; the share of the part's squared diagonal up to
 #: which that is believed.
 _GRID, _SLIVER = 64, 1e-9
+#: Nodes of triangles so near, as a share of their extent, are one.
+_SAME = 1e-5
 _SIDES = trimesh.creation.box().faces  # corners in the same order as _CORNERS, outward
 
 
@@ -94,7 +98,10 @@ def stand_ins(part: Part, missing: Sequence[tuple[int, str]], chord: float) -> S
     if own:
         vertex.append(np.concatenate(list(own.values())))
         owner.append(np.repeat(np.array(list(own), np.int32), [len(mine) for mine in own.values()]))
-        weight.append(_enclosing(vertex[-1]))
+        turned, caps = _enclosing(vertex[-1])
+        vertex.append(caps)
+        owner.append(np.zeros(len(caps), np.int32))
+        weight += [turned, np.ones(len(caps), np.int8)]
     return StandIns(
         np.concatenate([np.zeros((0, 3, 3)), *vertex]), np.concatenate([np.zeros(0, np.int32), *owner]),
         np.concatenate([np.zeros(0, np.int8), *weight]), how,
@@ -114,34 +121,58 @@ def _own_triangles(part: Part, number: int) -> Floats | None:
     return found if np.isfinite(found).all() else None
 
 
-def _enclosing(vertex: Floats) -> NDArray[np.int8]:
-    """Weights (t,) of triangles that may close up to skins, each turned in whatever sense its file has it."""
-    mesh = trimesh.Trimesh(vertex.reshape(-1, 3), np.arange(3 * len(vertex)).reshape(-1, 3), process=False)
-    mesh.merge_vertices()
-    count, corner = len(vertex), mesh.faces
-    weight = np.zeros(count, np.int8)
+def _enclosing(vertex: Floats) -> tuple[NDArray[np.int8], Floats]:
+    """Weights (t,) of triangles that enclose something, and caps (k, 3, 3) of weight 1 that close what is open.
+
+    Nodes that are nearly one are one, triangles that repeat others count once. Triangles are joined along edges that two
+    of them share; each may be turned in whatever sense its file has it.
+    """
+    nodes = vertex.reshape(-1, 3)
+    near = _SAME * float(np.ptp(nodes, axis=0).max())
+    pairs = cKDTree(nodes).query_pairs(near, output_type="ndarray")
+    graph = coo_array((np.ones(len(pairs), np.int8), (pairs[:, 0], pairs[:, 1])), shape=(len(nodes), len(nodes)))
+    corner = connected_components(graph, directed=False)[1].reshape(-1, 3)
+    count, weight = len(vertex), np.zeros(len(vertex), np.int8)
+    _, first_of = np.unique(np.sort(corner, axis=1), axis=0, return_index=True)
+    counted = np.zeros(count, bool)
+    counted[first_of] = True
+    counted &= (corner != np.roll(corner, 1, axis=1)).all(axis=1)
+    use = np.flatnonzero(np.repeat(counted, 3))
     # Directed edges; two triangles agree if they run along their common edge in opposite directions.
     tail, head = corner.ravel(), np.roll(corner, -1, axis=1).ravel()
-    key = np.minimum(tail, head) * np.int64(len(mesh.vertices)) + np.maximum(tail, head)
-    order = np.argsort(key, kind="stable")
+    key = np.minimum(tail, head) * np.int64(len(nodes)) + np.maximum(tail, head)
+    order = use[np.argsort(key[use], kind="stable")]
     _, start, uses = np.unique(key[order], return_index=True, return_counts=True)
-    first, second = order[start[uses == 2]], order[start[uses == 2] + 1]
-    agree = np.where(tail[first] == tail[second], -1, 1)
-    graph = coo_array((np.ones(len(first), np.int8), (first // 3, second // 3)), shape=(count, count)).tocsr()
-    graph = (graph + graph.T).tocsr()
-    way = dict(zip(zip((first // 3).tolist(), (second // 3).tolist(), strict=True), agree.tolist(), strict=True))
-    skin_of = connected_components(graph, directed=False)[1]
-    loose = np.bincount(skin_of[order[np.repeat(start[uses != 2], uses[uses != 2])] // 3], minlength=skin_of.max() + 1)
-    for skin in np.flatnonzero(loose == 0).tolist():
-        reached, before = breadth_first_order(graph, int(np.argmax(skin_of == skin)), directed=False)
-        for here in reached.tolist():
+    one, other = order[start[uses == 2]], order[start[uses == 2] + 1]
+    agree = np.where(tail[one] == tail[other], -1, 1)
+    links = coo_array((np.ones(len(one), np.int8), (one // 3, other // 3)), shape=(count, count)).tocsr()
+    way = dict(zip(zip((one // 3).tolist(), (other // 3).tolist(), strict=True), agree.tolist(), strict=True))
+    skin_of = connected_components(links, directed=False)[1]
+    caps = [np.zeros((0, 3, 3))]
+    for skin in np.unique(skin_of[counted]).tolist():
+        rows, before = breadth_first_order(links, int(np.argmax((skin_of == skin) & counted)), directed=False)
+        for here in rows.tolist():
             back = int(before[here])
             weight[here] = 1 if back < 0 else weight[back] * way.get((back, here), way.get((here, back), 0))
-        a, b, c = (vertex[reached, k] for k in range(3))
-        volume = float((np.einsum("ij,ij->i", a, np.cross(b, c)) * weight[reached]).sum())
-        consistent = (weight[first // 3] == weight[second // 3] * agree)[skin_of[first // 3] == skin].all()
-        weight[reached] = weight[reached] * int(np.sign(volume)) if consistent else 0
-    return weight
+        # How often the skin runs along each of its edges, one way less the other.
+        mine = order[skin_of[order // 3] == skin]
+        edges, which = np.unique(key[mine], return_inverse=True)
+        net = np.bincount(
+            which, weights=weight[mine // 3] * np.where(tail[mine] < head[mine], 1, -1), minlength=len(edges)
+        )
+        open_edges = [(edges[i] // len(nodes), edges[i] % len(nodes), int(net[i])) for i in np.flatnonzero(net)]
+        place = {c: nodes[i] for i, c in enumerate(corner.ravel().tolist())} if open_edges else {}
+        lines = [
+            np.array([place[low], place[high]] if n > 0 else [place[high], place[low]]) for low, high, n in open_edges
+        ]
+        cap = coned(lines, [abs(n) for *_, n in open_edges], near) if lines else np.zeros((0, 3, 3))
+        origin = vertex[rows[0], 0]
+        solid = np.concatenate([vertex[rows] * 1.0, cap]) - origin
+        turn = np.concatenate([weight[rows], np.ones(len(cap))])
+        if (np.einsum("ij,ij->i", solid[:, 0], np.cross(solid[:, 1], solid[:, 2])) * turn).sum() < 0:
+            weight[rows], cap = -weight[rows], cap[:, ::-1]
+        caps.append(cap)
+    return weight, np.concatenate(caps)
 
 
 def _edges(part: Part, number: int, chord: float) -> Floats:

@@ -45,6 +45,8 @@ class Obstacles:
         How often each counts as part of a skin that encloses something; default: nothing is enclosed.
     open_boxes : (k, 2, 3) float
         Boxes of skins that are not quite closed: nothing in them is surely outside.
+    gap : float
+        Widest gap between triangles of neighbouring faces, mm, that is no way out of a body.
 
     Raises
     ------
@@ -55,6 +57,7 @@ class Obstacles:
     triangles: Triangles
     weight: NDArray[np.int8] = field(default_factory=lambda: np.zeros(0, np.int8))
     open_boxes: Floats = field(default_factory=lambda: np.zeros((0, 2, 3)))
+    gap: float = 0.0
 
     def __post_init__(self) -> None:
         if not len(self.triangles):
@@ -92,7 +95,7 @@ class Obstacles:
         """Cells (i, j, k), 1 where one is surely outside; the grid's origin (3,) and the size of a cell, mm."""
         from plan_cutters.kernels.material import mark_skin
 
-        vertex, grow = self.tree[0], self.triangles.chord_error
+        vertex, grow = self.tree[0], self.triangles.chord_error + self.gap
         low, high = vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))
         grow += 1e-9 * float(np.abs([low, high]).max())
         size = max(float((high - low).max()) / _CELLS, 4.0 * grow)
@@ -237,23 +240,25 @@ def surroundings(
         causes = "; ".join(sorted({why for _, why in triangles.missing}))
         raise UnjudgeableError(f"no face has triangles that could be in the way: {causes or 'all are left out'}",
                                file=part.file)  # fmt: skip
-    found = tuple(body for whole in bodies(part) if (body := _without(whole, ignored)) is not None)
-    surely = Obstacles(triangles, _weight(triangles, [b for b in found if b.closed]))
+    found = bodies(part, without=ignored)
+    surely = Obstacles(triangles, _weight(triangles, [b for b in found if b.closed]), gap=part.looseness)
     stand = stand_ins(part, triangles.missing, chord)
     missing = tuple((n, why, stand.how[n]) for n, why in triangles.missing if stand.how[n] != "edges")
     lost = tuple(each for each in part.lost if each.face is None)
     lying = _on_bodies(surely, found)
     everything = _weight(triangles, found)
-    if not len(stand.vertex) and (everything == surely.weight).all():
+    caps = np.concatenate([np.zeros((0, 3, 3)), *(body.cap for body in found)])
+    if not len(stand.vertex) and not len(caps) and (everything == surely.weight).all():
         return Surroundings(surely, surely, found, missing, lying, lost)
     all_triangles = replace(
         triangles,
-        vertex=np.concatenate([triangles.vertex, stand.vertex]),
-        face=np.concatenate([triangles.face, stand.face]),
+        vertex=np.concatenate([triangles.vertex, stand.vertex, caps]),
+        face=np.concatenate([triangles.face, stand.face, np.zeros(len(caps), np.int32)]),
     )
     open_boxes = [_box(triangles, body) for body in found if not body.closed]
-    may_be = Obstacles(all_triangles, np.concatenate([everything, stand.weight]),
-                       np.array([box for box in open_boxes if np.isfinite(box).all()]).reshape(-1, 2, 3))  # fmt: skip
+    may_be = Obstacles(all_triangles, np.concatenate([everything, stand.weight, np.ones(len(caps), np.int8)]),
+                       np.array([box for box in open_boxes if np.isfinite(box).all()]).reshape(-1, 2, 3),
+                       part.looseness)  # fmt: skip
     return Surroundings(may_be, surely, found, missing, lying, lost)
 
 
@@ -277,14 +282,6 @@ def _on_bodies(surely: Obstacles, found: Sequence[Body]) -> tuple[int, ...]:
         if near.mean() > 0.5:
             lying.append(number)
     return tuple(lying)
-
-
-def _without(body: Body, ignored: Collection[int]) -> Body | None:
-    """A body without the faces that are left out: no longer closed, or nothing."""
-    kept = [(n, s) for n, s in zip(body.faces, body.sign, strict=True) if n not in ignored]
-    if len(kept) == len(body.faces):
-        return body
-    return Body(tuple(n for n, _ in kept), tuple(s for _, s in kept), False) if kept else None
 
 
 def _weight(triangles: Triangles, found: Sequence[Body]) -> NDArray[np.int8]:

@@ -154,7 +154,8 @@ def winding(x, y, z, solids, stack):  # type: ignore[no-untyped-def]
         for t in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
             if weight[t] != 0:
                 total += weight[t] * _solid_angle(vertex[t], x, y, z)
-    return total / (4.0 * np.pi)
+    # A skin whose sense could not be told encloses all the same.
+    return abs(total) / (4.0 * np.pi)
 
 
 @entry
