@@ -34,7 +34,7 @@ from cad_io.assembly import Node
 from cad_io.canonical import canonical
 from cad_io.components import compound, flat
 from cad_io.errors import WriteError
-from cad_io.kernel import explore, faces, shape_map, silence, translated
+from cad_io.kernel import edges_of, explore, faces, shape_map, silence, translated
 from cad_io.split import Piece, Split
 
 #: Of every file: a fixed one, so that the same input gives the same bytes.
@@ -280,8 +280,9 @@ def _pieces(bodies: Sequence[_Body]) -> list[Piece]:
 
 
 def _exact(shape: Any) -> bool:
-    """Whether a face, or any face of a shape, has a surface."""
-    return any(BRep_Tool.Surface_s(TopoDS.Face_s(face)) is not None for face in explore(shape, TopAbs_FACE))
+    """Whether a face, or any face of a shape, has a surface and a border: others are not written as advanced faces."""
+    found = (TopoDS.Face_s(face) for face in explore(shape, TopAbs_FACE))
+    return any(BRep_Tool.Surface_s(face) is not None and edges_of(face) for face in found)
 
 
 def _unplaced(shape: Any) -> Iterator[Any]:

@@ -60,6 +60,8 @@ class Between:
         Contacts looked at, samples included.
     left : int
         Contacts whose cells are not served, when the budget or the levels ended, and samples of faces without cells.
+    short : int
+        Those of them for which the budget was spent.
     unknown : tuple of int
         Target faces whose area is not known: none of them is served, and they are not in `share`.
     cells : Cells
@@ -68,6 +70,7 @@ class Between:
     share: float
     contacts: int
     left: int
+    short: int
     unknown: tuple[int, ...]
     cells: Cells
 
@@ -106,7 +109,7 @@ def between(
     areas = {number: part.faces[number - 1].area for number in targets}
     unknown = tuple(number for number, area in areas.items() if not area > 0)
     whole = sum(area for area in areas.values() if area > 0)
-    served, looked, left = 0.0, int((samples.unjudged < 0).sum()), len(samples)
+    served, looked, left, short = 0.0, int((samples.unjudged < 0).sum()), len(samples), 0
     found = [Cells(np.zeros(0, np.int32), np.zeros((0, 2)), np.zeros((0, 2)), np.zeros((0, 3)))]
     for grid in samples.grids:
         trim = part.trim(grid.face)
@@ -119,6 +122,7 @@ def between(
         left -= mine
         chosen = _largest(strips, allowed)
         left += len(strips) - len(chosen)
+        short += len(strips) - len(chosen)
         allowed -= len(chosen)
         looked += len(chosen)
         now = Contacts.joined(now, strips.of(chosen))
@@ -131,6 +135,7 @@ def between(
             now = now.of(~good)
             chosen = _largest(now, allowed // 4 if level < _LEVELS else 0)
             left += len(now) - len(chosen)
+            short += len(now) - len(chosen) if level < _LEVELS else 0
             now = now.of(chosen)
             if not len(now):
                 break
@@ -139,7 +144,7 @@ def between(
             looked += len(now)
     share = served / whole if whole > 0 else 0.0
     columns = ([getattr(cells, name) for cells in found] for name in Cells.__slots__)
-    return Between(float(np.floor(1e6 * min(1.0, share + 1e-9)) / 1e6), looked, left, unknown,
+    return Between(float(np.floor(1e6 * min(1.0, share + 1e-9)) / 1e6), looked, left, short, unknown,
                    Cells(*map(np.concatenate, columns)))  # fmt: skip
 
 

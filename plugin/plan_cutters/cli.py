@@ -35,6 +35,9 @@ _NOT_BUILT = {
     "fixture": "fixtures are not read yet",
     "allowance": "an allowance is not judged yet",
     "holder_clearance": "holders are not judged yet",
+    "holder": "holders are not judged yet",
+    "assume_stickout": "tool library files are not read yet",
+    "skip_bad": "tool library files are not read yet",
     "cluster": "clusters are not used yet; --jobs gives threads on this machine",
 }
 
@@ -126,6 +129,9 @@ class _Vector(click.ParamType):
 @click.option("--tolerance", type=float, default=0.01, metavar="MM", help="Gouge tolerance.  [default: 0.01]")
 @click.option("--allowance", type=float, hidden=True)
 @click.option("--holder-clearance", type=float, hidden=True)
+@click.option("--holder", multiple=True, metavar="FILE", hidden=True)
+@click.option("--assume-stickout", type=float, hidden=True)
+@click.option("--skip-bad", is_flag=True, hidden=True)
 @click.option("-o", "--out", metavar="DIR", help="Folder for the files.  [default: <stem>-plan]")
 @click.option(
     "--formats",
@@ -378,9 +384,13 @@ def _not_reached(plan: "Plan") -> list[str]:
             where = (f"; at ({x:.4g}, {y:.4g}, {z:.4g}) on {deepest.face} the best posture is "
                      f"{deepest.depth_mm:.3g} mm too deep")  # fmt: skip
         left = c.inaccessible + c.undecided
+        worst = sorted(((v.inaccessible + v.undecided, name) for name, v in c.faces.items()), key=lambda x: -x[0])
+        on = ", ".join(f"{name} ({count})" for count, name in worst[:3] if count)
+        more = sum(count > 0 for count, _ in worst) - 3
+        on += f" and {more} more" if more > 0 else ""
         undecided = f", {c.undecided} undecided" if c.undecided else ""
         lines.append(
-            f"Not reached by {c.id}: {left} of {plan.samples.count} samples ({reasons or 'none'}{undecided}){where}."
+            f"Not reached by {c.id}: {left} of {plan.samples.count} samples ({reasons or 'none'}{undecided}), on {on}{where}."
         )
     return lines
 
@@ -467,7 +477,7 @@ def _guarded(work: Any, debug: bool) -> tuple[int, str]:
             traceback.print_exc()
         match error:
             case KeyboardInterrupt():
-                return INTERRUPTED, "plan-cutters: interrupted; nothing was written"
+                return INTERRUPTED, "plan-cutters: interrupted; no file is half-written"
             case Supervised():
                 return UNREADABLE, f"plan-cutters: {error}"
             case MemoryError():

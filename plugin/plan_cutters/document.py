@@ -208,23 +208,27 @@ def listed(names: Sequence[str], most: int = 8) -> str:
     return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
 
 
-def area_notes(entries: Sequence[CutterEntry]) -> Iterator[str]:
-    """How far the area between the samples is served, in words."""
+def area_notes(entries: Sequence[CutterEntry], *, doubtful: bool) -> Iterator[str]:
+    """How far the area between the samples is served, in words; `doubtful`: obstacles are missing."""
+    known = "as far as curvature between grid nodes" + (" and the obstacles are" if doubtful else " is") + " known"
     for entry in entries:
-        if entry.area and entry.area.share < 1:
-            yield (
-                f"{entry.id} reaches every judged sample, but not all of the target surface was shown to be served: "
-                f"{entry.area.left} contacts were left when the budget of {entry.area.contacts} ended, no posture serves "
-                "a whole cell there, or a face has no samples or no closed border. Sample more finely, or give a larger "
-                "--area-budget."
-            )
-        elif entry.area:
-            what = (
-                "all of the target surface whose area is known" if entry.area.left_out else "all of the target surface"
-            )
-            yield f"{entry.id} serves {what}, as far as curvature between grid nodes is known."
-        if entry.area and entry.area.left_out:
-            yield f"The area of {', '.join(entry.area.left_out)} is not known: it is not in the share that is served."
+        area = entry.area
+        if area is None:
+            continue
+        if area.share == 1:
+            what = "all of the target surface whose area is known" if area.left_out else "all of the target surface"
+            yield f"{entry.id} serves {what}, {known}."
+        else:
+            why = [f"no posture was found that serves the finest cells about {area.left - area.short} contacts"]
+            why = why if area.left > area.short else []
+            if area.short:
+                why.append(
+                    f"the budget was spent with {area.short} cells open, so a larger --area-budget may serve more"
+                )
+            yield (f"{entry.id} reaches every judged sample, but not all of the target surface was shown to be served: "
+                   f"{'; '.join(why) or 'some of it has no samples or no closed border'}. Finer samples may help, too.")  # fmt: skip
+        if area.left_out:
+            yield f"The area of {', '.join(area.left_out)} is not known: it is not in the share that is served."
 
 
 def versions() -> dict[str, str]:

@@ -145,6 +145,7 @@ class AreaEntry(_Frozen):
     feasible: bool = Field(description="all of it, to one part in a million, and no face is left out")
     contacts: int = Field(description="contacts looked at, samples included")
     left: int = Field(description="contacts whose cells were not shown to be served when the budget ended")
+    short: int = Field(description="those of them for which the budget was spent")
     left_out: list[str] = Field(default=[], description="target faces whose area is not known: they are not in `share`")
 
 

@@ -301,7 +301,7 @@ def run(
             chosen = next(c for c in cutters if c.id == best)
             served = between(samples, reaches[best], chosen, whole, orientation, conditions,
                              budget=options.area_budget)  # fmt: skip
-        area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
+        area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left, short=served.short,
                          left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
         entries = [e.model_copy(update={"area": area}) if e.id == best else e for e in entries]
     document = Plan(
@@ -346,7 +346,7 @@ def run(
         notes=[
             *notes(whole, orientation, options, tolerance, samples, around),
             *chosen_faces.notes,
-            *area_notes(entries),
+            *area_notes(entries, doubtful=bool(missing)),
         ],
         legend=PALETTE,
         run=Run(time=started.isoformat(timespec="seconds"), seconds=clock.seconds),
