@@ -13,12 +13,14 @@ import shapes
 from cad_parts import ball, box, compound, cut
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from OCP.BRep import BRep_Builder
+from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
 from OCP.BRepTools import BRepTools
-from OCP.gp import gp_Trsf, gp_Vec
+from OCP.gp import gp_Pnt, gp_Trsf, gp_Vec
+from OCP.Poly import Poly_Triangle, Poly_Triangulation
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS_Shell
+from OCP.TopoDS import TopoDS_Face, TopoDS_Shell, TopoDS_Solid
 from reference import random_frame
 from test_cli import run
 from test_triangles import triangulated
@@ -26,6 +28,7 @@ from test_triangles import triangulated
 from cad_io import read_part
 from cad_io.arrays import Triangles
 from cad_io.bodies import bodies
+from cad_io.kernel import edges_of
 from cad_io.kernel import faces as faces_of
 from plan_cutters import Cutter, plan, posture_map
 from plan_cutters.conditions import Conditions, search_postures
@@ -225,8 +228,6 @@ def test_a_solid_with_a_hole_in_its_skin_encloses_perhaps():
     builder.MakeShell(open_shell)
     for face in faces_of(upper)[:5]:  # without its top
         builder.Add(open_shell, face)
-    from OCP.TopoDS import TopoDS_Solid
-
     solid = TopoDS_Solid()
     builder.MakeSolid(solid)
     builder.Add(solid, open_shell)
@@ -236,6 +237,109 @@ def test_a_solid_with_a_hole_in_its_skin_encloses_perhaps():
     assert under.any()
     assert not reached(result)[under].any()
     assert [b.closed for b in bodies(result.part)].count(False) == 1
+
+
+def loose(*solids):
+    """Faces of solids, each by itself: what IGES and surface models hold."""
+    return compound(*(BRepBuilderAPI_Copy(face).Shape() for solid in solids for face in faces_of(solid)))
+
+
+def solid_of(some):
+    """A solid of just these faces."""
+    builder, shell, solid = BRep_Builder(), TopoDS_Shell(), TopoDS_Solid()
+    builder.MakeShell(shell)
+    for face in some:
+        builder.Add(shell, face)
+    builder.MakeSolid(solid)
+    builder.Add(solid, shell)
+    return solid
+
+
+def within(result, low, high):
+    """Rows whose cutter, tolerance taken off, has a point of its axis or of its wall within a box."""
+    cutter = Cutter.parse(result.cutters[0].id)
+    reach, samples = result.reaches[cutter.id], result.samples
+    turn = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+    found = []
+    for i in np.flatnonzero(reach.reached):
+        normal, axis, lean = samples.normal[i], reach.axis[i], reach.lean[i]
+        x_t = (axis @ normal) * lean - (axis @ lean) * normal
+        middle = samples.point[i] - cutter.radius * x_t
+        heights = np.linspace(0.02, cutter.length - 0.02, 9)[:, None, None]
+        ring = np.cos(turn)[:, None] * x_t + np.sin(turn)[:, None] * np.cross(axis, x_t)
+        points = np.concatenate(
+            [middle + heights * axis + r * ring for r in (0.0, 0.5 * cutter.radius, cutter.radius - 0.02)]
+        )
+        if (np.minimum(points - low, np.array(high) - points).min(axis=2) > 0.02).any():
+            found.append(int(i))
+    return found
+
+
+BASE, CLAMP = ((0, 0, 0), (80, 80, 20)), ((30, 0, 20), (50, 80, 60))
+
+
+@pytest.mark.parametrize(
+    ("low", "size"),
+    [((30, 0, 20), (20, 80, 40)), ((0, 0, 20), (20, 20, 60)), ((0, 0, 20), (80, 80, 40)), ((80, 0, 0), (40, 80, 20))],
+    ids=["across, flush on both sides", "flush with a corner", "same footprint", "side by side"],
+)
+def test_bodies_of_loose_faces_that_touch_are_told_apart(low, size):
+    """Joining faces edge to edge must not turn one body inside out because the edges of another lie there."""
+    high = np.add(low, size)
+    result = judged(loose(box(80, 80, 20), box(*size, at=low)), grid=9, cutter=Cutter.flat(radius=2, length=12))
+    assert reached(result).sum() > 300
+    assert within(result, *BASE) == []
+    assert within(result, low, high) == []
+
+
+def test_the_same_loose_block_twice_encloses_once():
+    twice = loose(box(40, 40, 20, at=(0, 0, 20)), box(40, 40, 20, at=(0, 0, 20)))
+    sheet = shapes.plane((0, 60), (0, 60), origin=(0, 0, 20))
+    result = judged(compound(sheet, twice), faces="1", grid=9, cutter=Cutter.flat(radius=2, length=12))
+    assert within(result, (0, 0, 20), (40, 40, 40)) == []
+    assert reached(result).any()
+
+
+@pytest.mark.parametrize("missing", range(6))
+@pytest.mark.parametrize("at", [(10, 10, 100), (40, 10, 100)], ids=["on the part", "beside its middle"])
+def test_a_solid_that_lacks_a_face_lets_no_cutter_in(missing, at):
+    """Wherever the part's middle is, and also where the cutter leans out of the hole."""
+    kept = [face for i, face in enumerate(faces_of(box(20, 20, 30, at=at))) if i != missing]
+    whole = compound(box(80, 40, 100), solid_of(kept))
+    result = judged(whole, faces="6", grid=9, cutter=Cutter.flat(radius=2, length=40))
+    assert within(result, at, np.add(at, (20, 20, 30))) == []
+    assert result.cutters[0].feasible is not True
+    assert reached(result).any()
+
+
+def test_a_solid_whose_faces_share_no_edges_encloses():
+    block = solid_of([BRepBuilderAPI_Copy(face).Shape() for face in faces_of(box(20, 20, 30, at=(10, 10, 20)))])
+    result = judged(compound(box(60, 60, 20), block), faces="6", grid=13, cutter=Cutter.flat(radius=2, length=12))
+    assert within(result, (10, 10, 20), (30, 30, 50)) == []
+    assert reached(result).any()
+
+
+def test_an_ignored_face_of_a_solid_is_no_way_in():
+    part = compound(box(60, 60, 20), box(20, 20, 60, at=(10, 10, 20)))
+    result = judged(part, faces="6", ignore="7", grid=13, cutter=Cutter.flat(radius=2, length=30))
+    assert within(result, (10, 10, 20), (30, 30, 80)) == []
+    gone = judged(part, faces="6", ignore="7-12", grid=13, cutter=Cutter.flat(radius=2, length=30))
+    assert reached(gone).all()
+
+
+@pytest.mark.parametrize("gap", [0.9, 1.5])
+def test_a_gap_that_edges_are_loose_enough_for_is_no_way_in(gap):
+    """The top's plane lies above its border; its edges say so."""
+    clamp = box(20, 20, 40, at=(10, 10, 10))
+    top, builder = faces_of(clamp)[5], BRep_Builder()
+    up = gp_Trsf()
+    up.SetTranslation(gp_Vec(0, 0, gap))
+    builder.UpdateFace(top, BRep_Tool.Surface_s(top).Transformed(up), TopLoc_Location(), 1e-7)
+    for edge in edges_of(top):
+        builder.UpdateEdge(edge, 1.01 * gap)
+    result = judged(compound(box(40, 40, 10), clamp), faces="6", grid=9, cutter=Cutter.flat(radius=3, length=8))
+    assert within(result, (10, 10, 10), (30, 30, 50)) == []
+    assert reached(result).any()
 
 
 # --- the numbers behind it ------------------------------------------------------------------------------------------------
@@ -351,6 +455,37 @@ def test_a_cutter_within_a_box_of_triangles_is_not_free():
     hood = triangulated(box(80, 80, 60, at=(-20, -20, 9)))
     result = judged(compound(box(40, 40, 10), hood), faces="6", grid=4, cutter=Cutter.flat(radius=2, length=10))
     assert not reached(result).any()
+
+
+def hood(shift=0.0, drop=0, twice=False, size=(40, 40, 40), at=(20, 20, 20)):
+    """A box of single triangles, each with nodes of its own, moved at random."""
+    mesh = triangulated(box(*size, at=at))
+    rng = np.random.default_rng(4)
+    made = []
+    for face in faces_of(mesh):
+        old = BRep_Tool.Triangulation_s(face, TopLoc_Location())
+        for k in range(1, old.NbTriangles() + 1):
+            one = Poly_Triangulation(3, 1, False)
+            for j, node in enumerate(old.Triangle(k).Get(), 1):
+                x, y, z = np.add(old.Node(node).Coord(), shift * rng.standard_normal(3))
+                one.SetNode(j, gp_Pnt(x, y, z))
+            one.SetTriangle(1, Poly_Triangle(1, 2, 3))
+            only = TopoDS_Face()
+            BRep_Builder().MakeFace(only, one)
+            made.append(only)
+    made = made[drop:]
+    return compound(*made, *([BRepBuilderAPI_Copy(face).Shape() for face in made] if twice else []))
+
+
+@pytest.mark.parametrize(
+    "more", [{}, {"shift": 1e-7}, {"shift": 1e-5}, {"drop": 1}, {"twice": True}],
+    ids=["exact", "nodes apart", "nodes farther apart", "a triangle missing", "twice"],
+)  # fmt: skip
+def test_no_cutter_is_safe_within_a_hood_of_triangles(more):
+    result = judged(compound(box(80, 80, 20), hood(**more)), faces="6", grid=9, cutter=Cutter.flat(radius=2, length=12))
+    assert within(result, (20, 20, 20), (60, 60, 60)) == []
+    assert reached(result).sum() > 40
+    assert result.cutters[0].inaccessible == 0
 
 
 def test_a_face_that_cannot_be_meshed_stands_as_its_box(monkeypatch):

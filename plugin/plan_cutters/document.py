@@ -225,8 +225,11 @@ def area_notes(entries: Sequence[CutterEntry], *, doubtful: bool) -> Iterator[st
                 why.append(
                     f"the budget was spent with {area.short} cells open, so a larger --area-budget may serve more"
                 )
-            yield (f"{entry.id} reaches every judged sample, but not all of the target surface was shown to be served: "
-                   f"{'; '.join(why) or 'some of it has no samples or no closed border'}. Finer samples may help, too.")  # fmt: skip
+            causes = "; ".join(why) or "some of it has no samples or no closed border"
+            yield (
+                f"{entry.id} reaches every judged sample, but not all of the target surface was shown to be served: "
+                f"{causes}. Finer samples may help, too."
+            )
         if area.left_out:
             yield f"The area of {', '.join(area.left_out)} is not known: it is not in the share that is served."
 

@@ -301,8 +301,8 @@ def run(
             chosen = next(c for c in cutters if c.id == best)
             served = between(samples, reaches[best], chosen, whole, orientation, conditions,
                              budget=options.area_budget)  # fmt: skip
-        area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left, short=served.short,
-                         left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
+        area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
+                         short=served.short, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
         entries = [e.model_copy(update={"area": area}) if e.id == best else e for e in entries]
     document = Plan(
         part=part_info(whole, orientation, around),
