@@ -118,18 +118,24 @@ def _solid_angle(v, x, y, z):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def winding(x, y, z, solids, stack):  # type: ignore[no-untyped-def]
-    """How many bodies a point lies in; 0 as soon as that is sure, nan for a point that is none."""
+def outside(x, y, z, solids):  # type: ignore[no-untyped-def]
+    """Whether a point is surely in no body; one that is none is not."""
     nx, ny, nz = solids.cell.shape
     if nx == 0:
-        return 0.0
+        return True
     i, j, k = x - solids.origin[0], y - solids.origin[1], z - solids.origin[2]
     if i < 0.0 or j < 0.0 or k < 0.0 or i >= nx * solids.size or j >= ny * solids.size or k >= nz * solids.size:
-        return 0.0
+        return True
     if not (i == i and j == j and k == k):
-        return np.nan
+        return False
     row, column, layer = int(i / solids.size), int(j / solids.size), int(k / solids.size)
-    if solids.cell[min(row, nx - 1), min(column, ny - 1), min(layer, nz - 1)] == 1:
+    return solids.cell[min(row, nx - 1), min(column, ny - 1), min(layer, nz - 1)] == 1
+
+
+@kernel
+def winding(x, y, z, solids, stack):  # type: ignore[no-untyped-def]
+    """How many bodies a point lies in; 0 as soon as that is sure, nan for a point that is none."""
+    if outside(x, y, z, solids):
         return 0.0
     vertex, weight, moment, depth = solids.vertex, solids.weight, solids.moment, solids.depth
     n, first, top, total = len(vertex), (1 << depth) - 1, 1, 0.0

@@ -9,9 +9,9 @@ turned to without touching a skin.
 import numpy as np
 
 from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
-from plan_cutters.kernels.hit import BODY, OFFSET, A, P, X, cross, dot, lean_frame, perpendicular, stand, tree_hit
+from plan_cutters.kernels.hit import BODY, HIGH, OFFSET, A, P, X, cross, dot, lean_frame, perpendicular, stand, tree_hit
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, winding
+from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, outside, winding
 
 # As in `plan_cutters.reach`, which must not load the compiler; a test holds them together.
 INACCESSIBLE, ACCESSIBLE, FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
@@ -88,7 +88,16 @@ def inner_height(radius, length):  # type: ignore[no-untyped-def]
 
 @kernel
 def _inside(body, height, solids, stack):  # type: ignore[no-untyped-def]
-    """Winding number of the bodies about the point of a body's axis at a height over the contact."""
+    """Winding number of the bodies about the point of a body's axis at a height over the contact.
+
+    The end of the axis is asked first: where that is surely outside, all of it is.
+    """
+    high = body[HIGH]
+    x = body[P] + high * body[A] - body[OFFSET] * body[X]
+    y = body[P + 1] + high * body[A + 1] - body[OFFSET] * body[X + 1]
+    z = body[P + 2] + high * body[A + 2] - body[OFFSET] * body[X + 2]
+    if outside(x, y, z, solids):
+        return 0.0
     x = body[P] + height * body[A] - body[OFFSET] * body[X]
     y = body[P + 1] + height * body[A + 1] - body[OFFSET] * body[X + 1]
     z = body[P + 2] + height * body[A + 2] - body[OFFSET] * body[X + 2]
