@@ -141,28 +141,18 @@ def _witness(samples: SurfaceSamples, row: int, reach: Reach, cutter: Cutter, co
         return (
             nothing if way_out is None else replace(nothing, obstacle_face=way_out.face, obstacle_point=way_out.point)
         )
-    one, first = slice(row, row + 1), np.zeros(1, np.int64)
-    curvature = np.zeros((1, 2)) if reason == "local_gouge" else samples.curvature[one]
-    geometry = (samples.point[one], samples.normal[one], samples.direction_max[one], curvature)
-    deepest = min(cutter.radius, cutter.length / 2) * (1 - 1e-9)
-    obstacles = conditions.obstacles
-    low, high = conditions.depths[0], deepest
-    best: Reach | None = None
-    while best is None or high - low > _PRECISION * high:
-        depth = np.sqrt(low * high) if best else deepest
-        trial = blank(1)
-        search_postures(geometry, first, cutter, conditions, (depth, depth), trial)
-        if trial.verdict[0] == ACCESSIBLE:
-            best, high = trial, depth
-        elif best is None and conditions.around.may_be.solids.cell.size:
-            # Even the axis lies within material: how deep its skin is says at least something.
-            conditions = replace(conditions, around=conditions.around.skins)
-        elif best is None:
-            return nothing
-        else:
-            low = depth
+    found = _least_depth(samples, row, reason, cutter, replace(conditions, around=conditions.around.skins))
+    if found is None:
+        return nothing
+    obstacles, at = conditions.obstacles, slice(row, row + 1)
+    best = found[0]
+    if obstacles.holds(cutter, samples.point[at], samples.normal[at], best.lean, best.tilt)[0]:
+        # Its axis lies within material: one that does not says more, if there is any.
+        found = _least_depth(samples, row, reason, cutter, conditions) or found
+    best, low, high = found
+    first = np.zeros(1, np.int64)
     triangle = np.full(1, -1, np.int32)
-    probe(first, *geometry[:2], best.axis, best.lean, cutter.radius, cutter.length, np.array([low]),
+    probe(first, samples.point[at], samples.normal[at], best.axis, best.lean, cutter.radius, cutter.length, np.array([low]),
           *obstacles.tree, triangle)  # fmt: skip
     hit = int(triangle[0])
     return Witness(
@@ -177,6 +167,29 @@ def _witness(samples: SurfaceSamples, row: int, reach: Reach, cutter: Cutter, co
         axis=best.axis[0],
         depth=high,
     )
+
+
+def _least_depth(
+    samples: SurfaceSamples, row: int, reason: str, cutter: Cutter, conditions: Conditions
+) -> tuple[Reach, float, float] | None:
+    """The posture of least depth, and depths, mm, between which that lies; None if no posture is left at any."""
+    one, first = slice(row, row + 1), np.zeros(1, np.int64)
+    curvature = np.zeros((1, 2)) if reason == "local_gouge" else samples.curvature[one]
+    geometry = (samples.point[one], samples.normal[one], samples.direction_max[one], curvature)
+    deepest = min(cutter.radius, cutter.length / 2) * (1 - 1e-9)
+    low, high = conditions.depths[0], deepest
+    best: Reach | None = None
+    while best is None or high - low > _PRECISION * high:
+        depth = np.sqrt(low * high) if best else deepest
+        trial = blank(1)
+        search_postures(geometry, first, cutter, conditions, (depth, depth), trial)
+        if trial.verdict[0] == ACCESSIBLE:
+            best, high = trial, depth
+        elif best is None:
+            return None
+        else:
+            low = depth
+    return best, low, high
 
 
 def _covered(samples: SurfaceSamples, row: int, body: int, conditions: Conditions) -> Witness:
