@@ -42,7 +42,7 @@ LARGEST = 30_000  # bytes; larger files only cost time
 READING, REST = 5.0, 15.0  # seconds
 #: A plan as coarse as can be: what is tried is not the search.
 WORDS = ["--cutter", "R3L40", "--faces", "all", "--grid", "3", "--tolerance", "0.5", "--rotation-step", "60",
-         "--jobs", "1", "--quiet"]  # fmt: skip
+         "--jobs", "1", "--area-budget", "500", "--quiet"]  # fmt: skip
 BATCH = 25  # files to a fork
 TRIANGLES = 20_000
 MODELS = 40  # every so many damaged files are written as models, too
