@@ -98,6 +98,10 @@ class Loaded:
             result.lost = lost_of_iges(self.model, self.faults, faces(result.shape), split=split)
             gone = sum(each.face is None for each in result.lost)
             result.lost += [LostFace("", "", "it is written, but could not be read")] * (written - found - gone)
+        unknown = [fault for fault in self.faults if "(entity type)" in fault.text]
+        result.lost += [LostFace("", "", "an entity of no known type stands in the file: it may be a face")] * len(
+            unknown
+        )
         if self.faults:
             result.warnings.append(f"the file has faults{said}")
         return result

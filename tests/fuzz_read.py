@@ -69,8 +69,9 @@ def recorded(read: Callable[..., Part]) -> Callable[..., Part]:
     def reading(source: Any, **more: Any) -> Part:
         part = read(source, **more)
         shapes = [part.face(face.number) for face in part.faces]
+        said = [*part.warnings, *(f.unjudged for f in part.faces if f.unjudged)]
         facts = {"lost": [str(each) for each in part.lost], "altered": [each.face for each in part.lost if each.face],
-                 "closed": part.closed, "said": part.warnings, "edges": [edge_count(shape) for shape in shapes]}  # fmt: skip
+                 "closed": part.closed, "said": said, "edges": [edge_count(shape) for shape in shapes]}  # fmt: skip
         Path(source).with_name("facts").write_text(json.dumps(facts))
         return part
 

@@ -98,7 +98,11 @@ class Obstacles:
         vertex, grow = self.tree[0], self.triangles.chord_error + self.gap
         low, high = vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))
         grow += 1e-9 * float(np.abs([low, high]).max())
-        size = max(float((high - low).max()) / _CELLS, 4.0 * grow)
+        extent = float((high - low).max())
+        if not grow < extent / 8:
+            # Skins so loose leave no cell that is surely outside, but for what is beyond all of them.
+            return np.zeros((1, 1, 1), np.uint8), low - 0.5 * extent, 2.0 * extent + 1e-9
+        size = max(extent / _CELLS, 4.0 * grow)
         origin = low - 1.5 * size
         cell = np.zeros(tuple(np.ceil((high - origin) / size + 1.5).astype(int)), np.uint8)
         mark_skin(vertex, grow, origin, size, cell)
