@@ -9,6 +9,7 @@ from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.buried import cover
 from plan_cutters.conditions import Conditions, Geometry, search_postures
 from plan_cutters.cutter import Cutter
+from plan_cutters.obstacles import Obstacles
 from plan_cutters.reach import (
     ACCESSIBLE,
     BURIED,
@@ -110,12 +111,12 @@ def witnesses(
 
     def work(rows: NDArray[np.int64]) -> None:
         for row in rows.tolist():
-            covered = -1 if buried is None else int(buried[row])
-            looked[row] = (
-                _witness(samples, row, reach, cutter, alone)
-                if covered < 0
-                else _covered(samples, row, covered, conditions)
-            )
+            body = -1 if buried is None else int(buried[row])
+            if body < 0:
+                looked[row] = _witness(samples, row, reach, cutter, alone)
+            else:
+                around = conditions.around
+                looked[row] = _covered(samples, row, around.surely.skin_of(around.bodies[body]))
 
     in_chunks(work, np.array([row for group in picked for row in group], np.int64), conditions.jobs, chunk=1)
     found: list[Witness] = []
@@ -137,10 +138,7 @@ def _witness(samples: SurfaceSamples, row: int, reach: Reach, cutter: Cutter, co
     if reason == "tolerance":
         return nothing
     if reason == "buried":
-        way_out = cover(samples.point[row], samples.normal[row], conditions.around.surely)
-        return (
-            nothing if way_out is None else replace(nothing, obstacle_face=way_out.face, obstacle_point=way_out.point)
-        )
+        return _covered(samples, row, conditions.around.surely)
     found = _least_depth(samples, row, reason, cutter, replace(conditions, around=conditions.around.skins))
     if found is None:
         return nothing
@@ -192,9 +190,8 @@ def _least_depth(
     return best, low, high
 
 
-def _covered(samples: SurfaceSamples, row: int, body: int, conditions: Conditions) -> Witness:
-    """The body that a sample lies within is the witness: where the way out along the normal leaves it."""
-    skin = conditions.around.surely.skin_of(conditions.around.bodies[body])
+def _covered(samples: SurfaceSamples, row: int, skin: Obstacles) -> Witness:
+    """What a sample lies within is the witness: where the way out along the normal leaves it."""
     way_out = cover(samples.point[row], samples.normal[row], skin)
     face, point = (None, None) if way_out is None else (way_out.face, way_out.point)
     return Witness(row, REASONS[BURIED], face, point, None, None, None, None)
