@@ -155,8 +155,8 @@ def test_kernels_and_reach_speak_of_the_same_verdicts():
 
     for name in ("INACCESSIBLE", "ACCESSIBLE", "FREE", "UNDECIDED", "UNJUDGED"):
         assert getattr(search, name) == getattr(reach, name)
-    order = (search.AXIS_LIMIT, search.LOCAL_GOUGE, search.REAR_GOUGE, search.SHANK)
-    assert [reach.REASONS[i] for i in order] == ["axis_limit", "local_gouge", "rear_gouge", "shank"]
+    order = (search.AXIS_LIMIT, search.LOCAL_GOUGE, search.REAR_GOUGE, search.COLLISION)
+    assert [reach.REASONS[i] for i in order] == ["axis_limit", "local_gouge", "rear_gouge", "collision"]
 
 
 def test_local_gouge_bound():

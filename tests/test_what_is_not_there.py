@@ -453,8 +453,12 @@ def test_what_is_missing_far_away_leaves_the_verdict_in_doubt(tmp_path):
 def test_a_cutter_within_a_box_of_triangles_is_not_free():
     """A skin of triangles that closes up encloses: the cutter does not fit through, but fits within."""
     hood = triangulated(box(80, 80, 60, at=(-20, -20, 9)))
-    result = judged(compound(box(40, 40, 10), hood), faces="6", grid=4, cutter=Cutter.flat(radius=2, length=10))
+    cutter = Cutter.flat(radius=2, length=10)
+    result = judged(compound(box(40, 40, 10), hood), faces="6", grid=4, cutter=cutter)
     assert not reached(result).any()
+    one = posture_map(result.part, point=(20, 20, 10), cutter=cutter, rotations=[0.0])
+    assert [len(one.free[0]), len(one.buried[0])] == [0, 0]
+    assert one.undecided[0][0, 0] == 0.0
 
 
 def hood(shift=0.0, drop=0, twice=False, size=(40, 40, 40), at=(20, 20, 20)):

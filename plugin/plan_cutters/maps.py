@@ -237,13 +237,17 @@ def _map(
             blocked = _merged(np.concatenate(sure), FORBIDDEN)
             rest = found[found[:, 2] != OPEN].copy()
             unsure = _minus(_merged(np.column_stack([rest[:, :2], np.full(len(rest), UNSURE)]), UNSURE), blocked)
-        within = np.zeros(len(open_tilts), bool)
+        within, sunk = np.zeros((2, len(open_tilts)), bool)
         if len(open_tilts):
             every = np.ones((len(open_tilts), 1))
-            within = whole.holds(cutter, every * p, every * n, every * f, open_tilts.mean(axis=1))
+            frame = (cutter, every * p, every * n, every * f, open_tilts.mean(axis=1))
+            within = whole.holds(*frame)
+            sunk = within & around.surely.holds(*frame, surely=True)
         free.append(open_tilts[~within])
-        buried.append(open_tilts[within])
-        undecided.append(unsure)
+        buried.append(open_tilts[sunk])
+        # Within what is only perhaps a body.
+        perhaps = open_tilts[within & ~sunk]
+        undecided.append(unsure if not len(perhaps) else _joined(np.concatenate([unsure, perhaps])))
         assert set(found[:, 2]) <= {OPEN, FORBIDDEN, UNSURE}
     return PostureMap(
         rotations=ask.rotations, free=tuple(free), undecided=tuple(undecided), local_gouge=gouge,
@@ -260,7 +264,10 @@ def _named(around: Surroundings) -> tuple[str, ...]:
 
 def _merged(parts: Floats, kind: int) -> Floats:
     """Intervals of one kind, those that touch joined, ascending."""
-    chosen = parts[parts[:, 2] == kind][:, :2]
+    return _joined(parts[parts[:, 2] == kind][:, :2])
+
+
+def _joined(chosen: Floats) -> Floats:
     chosen = chosen[np.argsort(chosen[:, 0], kind="stable")]
     joined: list[list[float]] = []
     for first, last in chosen.tolist():

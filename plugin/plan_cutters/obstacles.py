@@ -154,7 +154,9 @@ class Obstacles:
         triangles = replace(self.triangles, vertex=self.triangles.vertex[mine], face=self.triangles.face[mine])
         return Obstacles(triangles, _weight(triangles, [body]))
 
-    def holds(self, cutter: Cutter, contact: Floats, normal: Floats, lean: Floats, tilt: Floats) -> NDArray[np.bool_]:
+    def holds(
+        self, cutter: Cutter, contact: Floats, normal: Floats, lean: Floats, tilt: Floats, *, surely: bool = False
+    ) -> NDArray[np.bool_]:  # fmt: skip
         """Whether cutters that touch no skin lie within a body, or may: (n,).
 
         Parameters
@@ -163,8 +165,10 @@ class Obstacles:
         contact, normal, lean : (n, 3) float
         tilt : (n,) float
             rad.
+        surely : bool
+            Only those of which it is sure.
         """
-        from plan_cutters.kernels.material import MAYBE_INSIDE, windings
+        from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, windings
         from plan_cutters.kernels.search import inner_height
 
         cosine, sine = np.cos(tilt)[:, None], np.sin(tilt)[:, None]
@@ -172,7 +176,7 @@ class Obstacles:
         point = contact + height * (cosine * normal + sine * lean) - cutter.radius * (cosine * lean - sine * normal)
         out = np.empty(len(point))
         windings(np.ascontiguousarray(point), self.solids, out)
-        return np.asarray(~(out < MAYBE_INSIDE))
+        return np.asarray(out >= SURELY_INSIDE if surely else ~(out < MAYBE_INSIDE))
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ INACCESSIBLE, ACCESSIBLE, FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
 
 #: Why no posture is left, in the order in which the attributes are applied; `Reach.reason` is an index into it.
 #: `buried`: under or within a body; `tolerance`: that is too coarse for the cutter, which is undecided everywhere then.
-REASONS = ("axis_limit", "local_gouge", "rear_gouge", "shank", "buried", "tolerance")
+REASONS = ("axis_limit", "local_gouge", "rear_gouge", "collision", "buried", "tolerance")
 BURIED, TOLERANCE, NO_REASON = 4, 5, 255
 
 Bytes = NDArray[np.uint8]

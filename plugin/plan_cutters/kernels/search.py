@@ -15,7 +15,7 @@ from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, outside, 
 
 # As in `plan_cutters.reach`, which must not load the compiler; a test holds them together.
 INACCESSIBLE, ACCESSIBLE, FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
-AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, SHANK, BURIED, ATTRIBUTES = 0, 1, 2, 3, 4, 5
+AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, COLLISION, BURIED, ATTRIBUTES = 0, 1, 2, 3, 4, 5
 
 #: Gaps narrower than this are not searched: no machine holds a tilt to 0.01 deg. rad.
 NARROWEST = 1.7e-4
@@ -74,7 +74,7 @@ def _forbid(intervals, count, first, last, attribute, tally):  # type: ignore[no
 @kernel
 def _attribute(x, y, z, radius):  # type: ignore[no-untyped-def]
     """What an obstacle point that far from the contact is in the way of."""
-    return REAR_GOUGE if x * x + y * y + z * z <= 4.0 * radius * radius else SHANK
+    return REAR_GOUGE if x * x + y * y + z * z <= 4.0 * radius * radius else COLLISION
 
 
 @kernel
@@ -271,7 +271,7 @@ def search(  # type: ignore[no-untyped-def]
                 reason[row] = LOCAL_GOUGE
             else:
                 reason[row] = REAR_GOUGE
-                for attribute in (SHANK, BURIED):
+                for attribute in (COLLISION, BURIED):
                     if tally[attribute] > tally[reason[row]]:
                         reason[row] = attribute
 
