@@ -30,17 +30,18 @@ def peak() -> float:
 def one(grid: int, chord: float) -> dict[str, float]:
     """One size, in this process."""
     from cad_io import read_part
-    from cad_io.orient import orient
+    from cad_io.part.orient import orient
     from cad_io.sample import sample
     from cad_io.tessellate import tessellate
     from plan_cutters import Cutter
-    from plan_cutters.access import access
-    from plan_cutters.classify import CONVEX, classify, regions
-    from plan_cutters.conditions import Conditions
-    from plan_cutters.decompose import decompose
-    from plan_cutters.machine import Machine
-    from plan_cutters.obstacles import Obstacles, Surroundings
-    from plan_cutters.posture import PostureRange
+    from plan_cutters.domain.machine import Machine
+    from plan_cutters.domain.posture import PostureRange
+    from plan_cutters.scene.conditions import Conditions
+    from plan_cutters.scene.obstacles import Obstacles
+    from plan_cutters.scene.surroundings import Surroundings
+    from plan_cutters.stages.access import access
+    from plan_cutters.stages.classify import CONVEX, classify, regions
+    from plan_cutters.stages.decompose import decompose
 
     part, cutter = read_part(PART), Cutter.flat(radius=6, length=80)
     orientation = orient(part, towards=(0, 0, 1))

@@ -20,7 +20,7 @@ import numpy as np
 sys.path.append(str(Path(__file__).parent.parent / "tests"))
 import waves
 
-from plan_cutters.kernels import arcs, cover, free_map, hit, lanes, maps, material, search, tree
+from plan_cutters.kernels import arcs, cover, free_map, free_tilts, hit, lanes, material, search, tree
 from plan_cutters.kernels.jit import kernel
 
 RADIUS, LENGTH, SAFE, BLOCKED, TURNS = 6.0, 40.0, 0.04, 0.06, 24
@@ -162,7 +162,7 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
 
     def maps_of(count: int) -> None:
         for i in range(count):
-            maps.free_tilts(point[i % n], normal[i % n], lean[i % n], 0.0, RIGHT, RADIUS, LENGTH, SAFE, NARROWEST,
+            free_tilts.free_tilts(point[i % n], normal[i % n], lean[i % n], 0.0, RIGHT, RADIUS, LENGTH, SAFE, NARROWEST,
                             vertex, box, depth, 2000)  # fmt: skip
 
     blocks, offset, bottom = lanes.wide_tree(vertex, box, depth)

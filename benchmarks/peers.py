@@ -35,20 +35,21 @@ from numpy.typing import NDArray
 
 from cad_io import SurfaceSamples, Triangles, read_part
 from cad_io.arrays import Floats
-from cad_io.orient import orient
+from cad_io.part.orient import orient
 from cad_io.sample import sample
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter
-from plan_cutters.access import access
-from plan_cutters.conditions import Conditions
-from plan_cutters.faces import select_faces
+from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.posture import PostureRange
 from plan_cutters.kernels.free_map import free_map
 from plan_cutters.kernels.points import local_gouge_bound
 from plan_cutters.kernels.search import probe
-from plan_cutters.machine import Machine
-from plan_cutters.obstacles import Obstacles, Surroundings
-from plan_cutters.posture import PostureRange
-from plan_cutters.threads import in_chunks
+from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.faces import select_faces
+from plan_cutters.scene.obstacles import Obstacles
+from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.scene.threads import in_chunks
+from plan_cutters.stages.access import access
 
 SAMPLES = Path(__file__).parent.parent / "samples"
 CUTTER, GRID, TOLERANCE, COARSE = Cutter.flat(radius=6, length=80), 201, 0.01, 0.1

@@ -27,7 +27,7 @@ ENTRIES = {
         " b, p, p, n, i, b)"
     ),
     "free_tilts": (
-        "from plan_cutters.kernels.maps import free_tilts; from plan_cutters.kernels.tree import build\n"
+        "from plan_cutters.kernels.free_tilts import free_tilts; from plan_cutters.kernels.tree import build\n"
         "_, box, depth = build(one); z = np.zeros(3)\n"
         "free_tilts(z, z, z, 0.0, 1.5, 1.0, 9.0, 0.01, 0.1, one, box, depth, 9)"
     ),

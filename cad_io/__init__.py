@@ -2,7 +2,7 @@
 
 No machining words here. This package alone imports the CAD kernel (OCP); names are handed on lazily so that
 importing `cad_io` costs nothing until a name is used. Stages are imported from the module of their name, as
-`from cad_io.sample import sample`.
+`from cad_io.sample.on_grids import sample`.
 """
 
 from importlib import import_module

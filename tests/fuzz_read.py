@@ -32,10 +32,12 @@ import numpy as np
 from fuzz_seeds import write_seeds
 
 from cad_io import Part
-from cad_io.altered import edge_count
 from cad_io.kernel import silence
-from plan_cutters import cli, obstacles, pipeline, supervise
+from cad_io.read.altered import edge_count
+from plan_cutters import pipeline
+from plan_cutters.command import cli, codes, supervise
 from plan_cutters.report.to_json import schema
+from plan_cutters.scene import surroundings
 
 SUFFIXES = {".step", ".stp", ".iges", ".igs"}
 LARGEST = 30_000  # bytes; larger files only cost time
@@ -154,7 +156,7 @@ class Case:
         ]
         with (self.folder / "said").open("w") as said, (self.folder / "printed").open("w") as printed:
             sys.stderr, sys.stdout = said, printed
-            code, line = cli._guarded(lambda: (cli._parsed(words), ""), False)
+            code, line = codes.guarded(lambda: (cli._parsed(words), ""), False)
             print(line, file=sys.stderr)
         return code
 
@@ -341,7 +343,7 @@ def main() -> int:
     given = words.parse_args()
     # Compile and load everything once, here; the children inherit it.
     silence()
-    obstacles.tessellate = partial(obstacles.tessellate, budget=TRIANGLES)
+    surroundings.tessellate = partial(surroundings.tessellate, budget=TRIANGLES)
     pipeline.read_part = recorded(pipeline.read_part)
     pipeline.versions = cache(pipeline.versions)
     outcomes: Counter[str] = Counter()

@@ -15,10 +15,10 @@ from test_cli import ROOT, assert_one_line, run
 
 from cad_io import CadIoError, read_part
 from cad_io.arrays import FaceInfo
-from cad_io.assembly import Node
+from cad_io.kernel.assembly import Node
 from plan_cutters import Cutter, Machine, Options, PlanError, PostureRange, plan, posture_map
 from plan_cutters.errors import CutterError, MachineError, OptionError
-from plan_cutters.faces import select_faces
+from plan_cutters.scene.faces import select_faces
 
 NOWHERE = TopLoc_Location()
 RIM, HUB = Node("ring", "rim", NOWHERE, faces=(1, 2)), Node("hub", "hub", NOWHERE, faces=(3,))

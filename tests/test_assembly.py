@@ -14,10 +14,10 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
 
 from cad_io import read_part
-from cad_io.components import compound
 from cad_io.kernel import faces
+from cad_io.kernel.components import compound
 from plan_cutters import Cutter, plan
-from plan_cutters.palette import rgb
+from plan_cutters.document.palette import rgb
 
 SAMPLES = Path(__file__).parent.parent / "samples"
 FACES = 6  # of the mould

@@ -11,8 +11,8 @@ import pytest
 from test_cli import SAMPLES, assert_one_line, leftovers, run
 
 from cad_io import ReadError, read_part
-from cad_io.sniff import load
-from plan_cutters.supervise import _Watch
+from cad_io.read.sniff import load
+from plan_cutters.command.supervise import _Watch
 
 HEADER = (
     b"ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"

@@ -8,16 +8,17 @@ import pytest
 import shapes
 
 from cad_io import read_part
-from cad_io.evaluate import evaluate
-from cad_io.orient import orient
+from cad_io.face.evaluate import evaluate
+from cad_io.part.orient import orient
 from cad_io.sample import sample
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Machine, plan
-from plan_cutters.between import between
-from plan_cutters.cells import Contacts, Field, quartered
-from plan_cutters.conditions import Conditions
-from plan_cutters.obstacles import Obstacles, Surroundings
-from plan_cutters.posture import PostureRange
+from plan_cutters.domain.posture import PostureRange
+from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.obstacles import Obstacles
+from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.stages.between import between
+from plan_cutters.stages.cells import Contacts, Field, quartered
 
 SAMPLES = Path(__file__).parent.parent / "samples"
 UP = np.array([0.0, 0.0, 1.0])

@@ -41,7 +41,8 @@ def test_help_and_version_do_not_load_the_kernel(tmp_path):
     done = run("--help", cwd=tmp_path)
     assert done.returncode == 0
     assert "R6L80" in done.stdout
-    code = "import sys; sys.argv = ['x', '--help']\nfrom plan_cutters.cli import main\ntry: main()\nexcept SystemExit: pass\n"
+    code = "import sys; sys.argv = ['x', '--help']\nfrom plan_cutters.command.cli import main\n"
+    code += "try: main()\nexcept SystemExit: pass\n"
     code += "assert not {'OCP', 'numba', 'scipy', 'numpy', 'pydantic'} & set(sys.modules), sorted(sys.modules)"
     subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=ENV, check=True, capture_output=True)
     assert "0.1.0" in run("--version", cwd=tmp_path).stdout

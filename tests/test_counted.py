@@ -24,18 +24,19 @@ from test_between import UP, deepest, dense, served
 from test_tessellate import ROUNDING, farthest_from
 
 from cad_io import read_part
-from cad_io.clip import clipped, inside
-from cad_io.evaluate import density
-from cad_io.gap import border_gap
+from cad_io.face.clip import clipped, inside
+from cad_io.face.evaluate import density
 from cad_io.kernel import edges_of, first_derivatives
-from cad_io.mesh import folded, upright
-from cad_io.orient import orient
+from cad_io.part.orient import orient
 from cad_io.sample import sample
+from cad_io.sample.gap import border_gap
 from cad_io.tessellate import tessellate
+from cad_io.tessellate.mesh import folded, upright
 from plan_cutters import Cutter, Machine, plan
-from plan_cutters.between import between
-from plan_cutters.conditions import Conditions
-from plan_cutters.obstacles import Obstacles, Surroundings
+from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.obstacles import Obstacles
+from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.stages.between import between
 
 sys.path.append(str(Path(__file__).parent.parent / "benchmarks"))
 from chords import violations

@@ -12,10 +12,11 @@ from OCP.IGESControl import IGESControl_Writer
 from OCP.STEPControl import STEPControl_Reader
 from test_cli import assert_one_line, run
 
-from cad_io import LostFace, Part, ReadError, read, read_part
-from cad_io.altered import misfit, open_border
+from cad_io import LostFace, Part, ReadError, read_part
+from cad_io.read import read
+from cad_io.read.altered import misfit, open_border
 from cad_io.tessellate import tessellate
-from plan_cutters.supervise import _Watch
+from plan_cutters.command.supervise import _Watch
 
 
 @pytest.fixture(scope="module")
@@ -140,14 +141,14 @@ def test_an_assembly_that_has_lost_an_instance_says_so(pattern, whole, tmp_path)
 def test_a_hang_of_the_transfer_is_an_error(whole, tmp_path, monkeypatch):
     (tmp_path / "part.step").write_text(PATTERNS["seam with twice the same curve"].change(whole["cylinder"]))
     parent = os.getpid()
-    real = read.read_step.Loaded.transfer
+    real = read.step.Loaded.transfer
 
     def hangs(self, **more):
         assert os.getpid() != parent, "a file with faults is transferred in a copy of the process"
         time.sleep(60)
         return real(self, **more)
 
-    monkeypatch.setattr(read.read_step.Loaded, "transfer", hangs)
+    monkeypatch.setattr(read.step.Loaded, "transfer", hangs)
     began = time.monotonic()
     with pytest.raises(ReadError, match=r"not read within 0\.5 s"):
         read_part(tmp_path / "part.step", timeout=0.5)

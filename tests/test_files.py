@@ -15,15 +15,15 @@ import trimesh
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder
 from split_parts import block, labels
 
-from cad_io import cut_faces
 from cad_io.arrays import FaceLabels, Style
-from cad_io.canonical import canonical
-from cad_io.cut import Fault
 from cad_io.errors import WriteError
-from cad_io.limited import TimeLimit, limited
+from cad_io.kernel.limited import TimeLimit, limited
 from cad_io.part import Part
-from cad_io.split import MIXED, split
-from cad_io.write_gltf import write_gltf
+from cad_io.split import cut_faces
+from cad_io.split.cut import Fault
+from cad_io.split.pieces import MIXED, split
+from cad_io.write import write_gltf
+from cad_io.write.canonical import canonical
 from plan_cutters import Cutter, plan
 from plan_cutters.report import models
 
@@ -47,12 +47,12 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
 from OCP.gp import gp_Trsf, gp_Vec
 from OCP.TopLoc import TopLoc_Location
 from cad_io.arrays import Style
-from cad_io.assembly import Node
-from cad_io.components import compound
+from cad_io.kernel.assembly import Node
+from cad_io.kernel.components import compound
 from cad_io.part import Part
 from cad_io.split import split
-from cad_io.write_gltf import write_gltf
-from cad_io.write_step import write_step
+from cad_io.write import write_gltf
+from cad_io.write import write_step
 
 def place(k):
     move = gp_Trsf()
@@ -112,7 +112,7 @@ def test_processor_time_is_counted_not_the_clocks():
 
 
 def test_a_copy_that_does_nothing_at_all_is_ended(monkeypatch):
-    monkeypatch.setattr("cad_io.limited._ASLEEP", 2)
+    monkeypatch.setattr("cad_io.kernel.limited._ASLEEP", 2)
     began = time.monotonic()
     with pytest.raises(TimeLimit):
         limited(lambda: time.sleep(60) or b"", 100, processor=True)
@@ -385,11 +385,11 @@ def test_what_is_old_is_named(tmp_path):
 
 
 def test_the_summary_names_faces_that_were_not_split(result, monkeypatch):
-    from plan_cutters.cli import _written
+    from plan_cutters.command.summary import written
 
     monkeypatch.setattr(cut_faces, "cut", lambda jobs, seconds: [Fault("forced")] * len(jobs))
     found = models.split_result(result)
     document = result.plan.model_copy(update={"split": models.rungs(found)})
-    (line,) = [x for x in _written(document, Path("missing"), ()) if "Not split" in x]
+    (line,) = [x for x in written(document, Path("missing"), ()) if "Not split" in x]
     assert f"F{next(iter(found.whole))}" in line
     assert "forced" in line

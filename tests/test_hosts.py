@@ -10,11 +10,11 @@ from OCP.TopAbs import TopAbs_FACE, TopAbs_SOLID
 from OCP.TopLoc import TopLoc_Location
 
 from cad_io import ReadError, read_part
-from cad_io.assembly import component_of
 from cad_io.kernel import explore, shape_map
+from cad_io.kernel.assembly import component_of
 from plan_cutters import Cutter, OptionError, plan, posture_map
+from plan_cutters.document.palette import rgb
 from plan_cutters.hosts.cadquery import register
-from plan_cutters.palette import rgb
 
 FLOOR = cq.selectors.NearestToPointSelector((0, 0, 0))
 WIDE, NARROW = "R5L60", "R2L60"

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from reference import depth_in_cutter, posture, random_frame, triangle_points
 
-from plan_cutters.kernels import hit, maps, search, tree
+from plan_cutters.kernels import free_tilts, hit, search, tree
 from plan_cutters.kernels.arcs import point_arc
 from plan_cutters.kernels.material import sheet
 from plan_cutters.kernels.points import axis_intervals, local_gouge_bound
@@ -151,7 +151,7 @@ def test_axis_arcs_are_where_the_axis_is_within_the_cone(n, f, limit, setup):
 
 
 def test_kernels_and_reach_speak_of_the_same_verdicts():
-    from plan_cutters import reach
+    from plan_cutters.domain import verdicts as reach
 
     for name in ("INACCESSIBLE", "ACCESSIBLE", "FREE", "UNDECIDED", "UNJUDGED"):
         assert getattr(search, name) == getattr(reach, name)
@@ -200,23 +200,23 @@ def test_free_tilts_cover_the_range_and_hold(seed):
     dense = np.concatenate([triangle_points(t, 40) for t in triangles])
     for rotation in rng.uniform(0, 2 * math.pi, 6):
         _, lean = posture(normal, direction, 0.0, rotation)
-        parts = maps.free_tilts(
+        parts = free_tilts.free_tilts(
             contact, normal, lean, 0.0, math.pi / 2, radius, length, s, 1e-4, vertex, box, depth, 5000
         )
         parts = parts[np.argsort(parts[:, 0])]
         assert parts[0, 0] == 0.0
         assert parts[-1, 1] == math.pi / 2
         assert (parts[1:, 0] == parts[:-1, 1]).all()
-        assert (parts[:, 1] - parts[:, 0])[parts[:, 2] == maps.UNSURE].sum() < 0.02
+        assert (parts[:, 1] - parts[:, 0])[parts[:, 2] == free_tilts.UNSURE].sum() < 0.02
         for tilt in rng.uniform(0, math.pi / 2, 40):
             kind = parts[np.searchsorted(parts[:, 0], tilt) - 1, 2]
             axis, _ = posture(normal, direction, tilt, rotation)
             deepest = depth_in_cutter(dense, contact, normal, axis, lean, radius, length).max()
-            if kind == maps.OPEN:
+            if kind == free_tilts.OPEN:
                 assert deepest <= s + 1e-9
             if deepest > s + 1e-9:
-                assert kind != maps.OPEN
-            if kind == maps.FORBIDDEN:
+                assert kind != free_tilts.OPEN
+            if kind == free_tilts.FORBIDDEN:
                 # Some triangle point is too deep; the dense points come within their spacing of it.
                 assert deepest > s - 0.3
 

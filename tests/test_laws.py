@@ -15,7 +15,7 @@ from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 
 from cad_io import read_part
 from plan_cutters import Cutter, Machine, plan
-from plan_cutters.reach import FREE, INACCESSIBLE
+from plan_cutters.domain.verdicts import FREE, INACCESSIBLE
 from plan_cutters.report.to_json import dumps, schema_text
 
 ROOT = Path(__file__).parent.parent

@@ -13,9 +13,9 @@ from OCP.TopoDS import TopoDS_Compound
 from reference import depth_in_cutter, posture, random_frame
 
 from plan_cutters import Cutter, plan
-from plan_cutters.cutter import Cutter as AnyCutter
-from plan_cutters.nesting import handed, order
-from plan_cutters.reach import ACCESSIBLE, FREE, INACCESSIBLE
+from plan_cutters.domain.cutter import Cutter as AnyCutter
+from plan_cutters.domain.nesting import handed, order
+from plan_cutters.domain.verdicts import ACCESSIBLE, FREE, INACCESSIBLE
 
 SAMPLES = Path(__file__).parent.parent / "samples"
 

@@ -12,7 +12,7 @@ from OCP.TopLoc import TopLoc_Location
 
 from cad_io import read_part
 from cad_io.kernel import faces, first_derivatives
-from cad_io.orient import orient
+from cad_io.part.orient import orient
 
 
 def normals(part, orientation):

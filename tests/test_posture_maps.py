@@ -8,7 +8,7 @@ import pytest
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, plan, posture_map
 from plan_cutters.kernels.search import probe
-from plan_cutters.obstacles import Obstacles
+from plan_cutters.scene.obstacles import Obstacles
 
 SAMPLES = Path(__file__).parent.parent / "samples"
 CUTTER = Cutter.flat(radius=5, length=60)

@@ -44,7 +44,7 @@ from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
 from cad_io import Part, ReadError, read_part
 from cad_io.errors import CadIoError
 from cad_io.kernel import faces, translated
-from cad_io.sniff import sniff
+from cad_io.read.sniff import sniff
 
 
 def shapes(part):

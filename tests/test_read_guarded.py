@@ -12,11 +12,12 @@ from cad_parts import box, compound, drilled, moved, real
 from OCP.BRepTools import BRepTools
 from OCP.TopLoc import TopLoc_Location
 
-from cad_io import Part, ReadError, read, read_part
+from cad_io import Part, ReadError, read_part
 from cad_io.arrays import LostFace
-from cad_io.assembly import Node
 from cad_io.kernel import faces
-from cad_io.limited import limited
+from cad_io.kernel.assembly import Node
+from cad_io.kernel.limited import limited
+from cad_io.read import read
 
 REAL = real("cadquery_red_cube_blue_cylinder.step", "asitus_bolt-colored-faces.stp", "tigl_D150_wing.igs")
 

@@ -18,9 +18,9 @@ from scipy.spatial import cKDTree
 from cad_io import read_part
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, plan
+from plan_cutters.domain.verdicts import ACCESSIBLE, FREE
 from plan_cutters.kernels import search
-from plan_cutters.obstacles import Obstacles
-from plan_cutters.reach import ACCESSIBLE, FREE
+from plan_cutters.scene.obstacles import Obstacles
 
 SAMPLES = Path(__file__).parent.parent / "samples"
 

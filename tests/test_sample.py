@@ -35,11 +35,11 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
 
 from cad_io import read_part
-from cad_io.curvature import curvature
 from cad_io.errors import SampleError
+from cad_io.face.curvature import curvature
 from cad_io.kernel import second_derivatives
-from cad_io.orient import orient
-from cad_io.sample import locate, sample
+from cad_io.part.orient import orient
+from cad_io.sample.on_grids import locate, sample
 
 
 def sampled(shape, faces=None, **how):

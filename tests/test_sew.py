@@ -13,9 +13,9 @@ from OCP.TopoDS import TopoDS, TopoDS_Face
 
 from cad_io import read_part
 from cad_io.kernel import explore, faces
-from cad_io.orient import orient
+from cad_io.part.orient import orient
+from cad_io.part.sew import MOST, RUNGS, sew
 from cad_io.sample import sample
-from cad_io.sew import MOST, RUNGS, sew
 
 DIAGONAL = 10 * np.sqrt(3)
 
@@ -71,7 +71,7 @@ def test_the_part_is_not_changed_by_joining():
         ]
 
     before = edges()
-    assert sew(part).open_edges == 0
+    assert sew(part.shape, faces(part.shape), 1.0).open_edges == 0
     assert edges() == before
     assert not part.closed
 

@@ -23,11 +23,11 @@ from reference import (
 from cad_io import read_part
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Machine, plan
+from plan_cutters.domain.verdicts import INACCESSIBLE
 from plan_cutters.kernels import hit, search, tree
 from plan_cutters.kernels.arcs import point_arc
 from plan_cutters.kernels.points import axis_intervals, local_gouge_bound
-from plan_cutters.obstacles import Obstacles
-from plan_cutters.reach import INACCESSIBLE
+from plan_cutters.scene.obstacles import Obstacles
 
 ROUNDING = 1e-13
 RIGHT = math.pi / 2

@@ -24,13 +24,14 @@ from OCP.TopLoc import TopLoc_Location
 from scipy.ndimage import maximum_filter, minimum_filter
 from split_parts import block, face_count, labels, largest_bspline, patch, waves
 
-from cad_io import cut_faces, read_part
-from cad_io.components import compound
-from cad_io.cut import Cut, Fault
+from cad_io import read_part
 from cad_io.kernel import faces
-from cad_io.limited import ChildDied, TimeLimit, limited
+from cad_io.kernel.components import compound
+from cad_io.kernel.limited import ChildDied, TimeLimit, limited
 from cad_io.part import Part
-from cad_io.split import MIXED, UNKNOWN, split
+from cad_io.split import cut_faces
+from cad_io.split.cut import Cut, Fault
+from cad_io.split.pieces import MIXED, UNKNOWN, split
 
 
 def area(face):

@@ -19,7 +19,7 @@ from test_cli import assert_one_line, run
 
 from cad_io import read_part
 from cad_io.kernel import faces
-from cad_io.orient import orient
+from cad_io.part.orient import orient
 
 REASON = "holds only triangles, no surface"
 

@@ -27,18 +27,19 @@ from test_triangles import triangulated
 
 from cad_io import read_part
 from cad_io.arrays import Triangles
-from cad_io.bodies import bodies
 from cad_io.kernel import edges_of
 from cad_io.kernel import faces as faces_of
+from cad_io.part.bodies import bodies
 from plan_cutters import Cutter, plan, posture_map
-from plan_cutters.conditions import Conditions, search_postures
+from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.posture import PostureRange
+from plan_cutters.domain.verdicts import ACCESSIBLE, REASONS, blank
 from plan_cutters.errors import UnjudgeableError
-from plan_cutters.kernels import maps, search, tree
+from plan_cutters.kernels import free_tilts, search, tree
 from plan_cutters.kernels.material import far_inside, sheet, windings
-from plan_cutters.machine import Machine
-from plan_cutters.obstacles import Obstacles, Surroundings, surroundings
-from plan_cutters.posture import PostureRange
-from plan_cutters.reach import ACCESSIBLE, REASONS, blank
+from plan_cutters.scene.conditions import Conditions, search_postures
+from plan_cutters.scene.obstacles import Obstacles
+from plan_cutters.scene.surroundings import Surroundings, surroundings
 
 SMALL = Cutter.flat(radius=2, length=30)
 
@@ -493,14 +494,14 @@ def test_no_cutter_is_safe_within_a_hood_of_triangles(more):
 
 
 def test_a_face_that_cannot_be_meshed_stands_as_its_box(monkeypatch):
-    from cad_io import mesh, tessellate
+    from cad_io.tessellate import mesh, triangles
 
     original = mesh.uv_meshes
 
     def refuses(part, numbers, *more):
         return {n: found for n, found in original(part, numbers, *more).items() if n != 7}
 
-    monkeypatch.setattr(tessellate, "uv_meshes", refuses)
+    monkeypatch.setattr(triangles, "uv_meshes", refuses)
     # The lower face of a lid 3 mm above the plate.
     lid = shapes.plane((-20, 60), (-20, 60), origin=(0, 0, 13))
     result = judged(compound(box(40, 40, 10), lid), faces="6", grid=4)
@@ -514,7 +515,6 @@ def test_a_face_without_area_hides_nothing_and_leaves_no_doubt():
     assert result.part.faces[6].unjudged == "has no area"
     assert result.plan.missing == []
     # It is in the way all the same, as a line.
-    assert result.around_faces if hasattr(result, "around_faces") else True
     found = surroundings(result.part, 0.002)
     assert 7 in found.may_be.triangles.face
     assert 7 not in found.surely.triangles.face
@@ -524,11 +524,11 @@ def test_a_face_without_area_hides_nothing_and_leaves_no_doubt():
 
 
 def test_a_tolerance_that_was_raised_is_held_against_the_cutter(monkeypatch):
-    from cad_io import tessellate
+    from cad_io.tessellate import triangles
 
-    original = tessellate._refined
+    original = triangles._refined
     monkeypatch.setattr(
-        tessellate, "_refined", lambda part, meshes, chord, budget, at: original(part, meshes, chord, 40, at)
+        triangles, "_refined", lambda part, meshes, chord, budget, at: original(part, meshes, chord, 40, at)
     )
     part, thin = read_part(ball(50)), Cutter.flat(radius=0.5, length=20)
     result = plan(part, cutters=[thin, Cutter.flat(radius=20, length=200)], faces="all", grid=6, area_budget=0)
@@ -580,8 +580,8 @@ def test_kernels_take_what_is_no_number_for_a_hit():
             one, point[None], normal[None], normal[None], lean[None], 2.0, 20.0, np.array([0.01]), *far[:3], triangle
         )
         assert triangle[0] >= 0
-        parts = maps.free_tilts(point, normal, lean, 0.0, 1.5, 2.0, 20.0, 0.01, 1e-3, *far[:3], 2000)
-        assert not (parts[:, 2] == maps.OPEN).any()
+        parts = free_tilts.free_tilts(point, normal, lean, 0.0, 1.5, 2.0, 20.0, 0.01, 1e-3, *far[:3], 2000)
+        assert not (parts[:, 2] == free_tilts.OPEN).any()
         out = blank(1)
         search.search(one, point[None], normal[None], lean[None], np.zeros((1, 2)), np.ones(1), turn, 0.0, 1.5,
                       np.array([0, 0, 1.0]), -2.0, 2.0, 20.0, 0.01, 0.02, far, far, out.verdict, out.axis, out.lean, out.tilt,

@@ -7,11 +7,11 @@ import pytest
 
 from cad_io.arrays import FaceInfo
 from plan_cutters import Cutter, CutterError, Machine, MachineError, OptionError
-from plan_cutters.cutter import builtin
-from plan_cutters.faces import select_faces
+from plan_cutters.domain.cutter import builtin
+from plan_cutters.domain.posture import PostureRange
 from plan_cutters.options import Options
-from plan_cutters.posture import PostureRange
-from plan_cutters.select_cutters import ranked
+from plan_cutters.scene.faces import select_faces
+from plan_cutters.stages.select_cutters import ranked
 
 
 def test_a_spec_and_its_cutter_are_the_same():

@@ -9,12 +9,12 @@ import trimesh
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeSphere
 from split_parts import GREEN, GREY, RED, block, labels, largest_bspline
 
-from cad_io import write_gltf as module
 from cad_io.arrays import Style
 from cad_io.errors import WriteError
 from cad_io.part import Part
 from cad_io.split import split
-from cad_io.write_gltf import linear, write_gltf
+from cad_io.write import gltf as module
+from cad_io.write.gltf import linear, write_gltf
 
 COLOURS = {0: RED, 1: GREEN, -1: GREY}
 

@@ -24,13 +24,13 @@ from split_parts import GREEN, GREY, RED, block, labels, largest_bspline, patch
 
 from cad_io import read_part
 from cad_io.arrays import Style
-from cad_io.assembly import Node
-from cad_io.components import compound
 from cad_io.errors import WriteError
 from cad_io.kernel import explore, faces
+from cad_io.kernel.assembly import Node
+from cad_io.kernel.components import compound
 from cad_io.part import Part
-from cad_io.split import Split, split
-from cad_io.write_step import write_step
+from cad_io.split.pieces import Split, split
+from cad_io.write import write_step
 
 COLOURS = {0: RED, 1: GREEN, -1: GREY}
 

@@ -9,15 +9,15 @@ from typing import Any
 __version__ = "0.1.0"
 
 _HOME = {
-    "Cutter": "cutter",
-    "Machine": "machine",
+    "Cutter": "domain.cutter",
+    "Machine": "domain.machine",
     "Options": "options",
-    "PostureRange": "posture",
+    "PostureRange": "domain.posture",
     "plan": "pipeline",
-    "Result": "pipeline",
-    "posture_map": "maps",
-    "PostureMap": "maps",
-    "Plan": "model",
+    "Result": "result",
+    "posture_map": "point",
+    "PostureMap": "stages.posture_map",
+    "Plan": "document.model",
     "PlanError": "errors",
     "CutterError": "errors",
     "MachineError": "errors",

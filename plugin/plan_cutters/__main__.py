@@ -1,3 +1,3 @@
-from plan_cutters.cli import main
+from plan_cutters.command.cli import main
 
 main()

@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from cad_io.units import UNITS
-from plan_cutters.checks import choice, flag, number, shown, whole
-from plan_cutters.cutter import Cutter, builtin
+from plan_cutters.domain.checks import choice, flag, number, shown, whole
+from plan_cutters.domain.cutter import Cutter, builtin
+from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.posture import PostureRange, unit
 from plan_cutters.errors import OptionError
-from plan_cutters.machine import Machine
-from plan_cutters.posture import PostureRange, unit
 
 
 @dataclass(frozen=True, slots=True)

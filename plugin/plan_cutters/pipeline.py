@@ -5,25 +5,17 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io import Part, SurfaceSamples, read_part
-from cad_io.orient import orient
-from cad_io.read import TIMEOUT
+from cad_io.part.orient import orient
+from cad_io.read.read import TIMEOUT
 from cad_io.sample import sample
-from plan_cutters.access import access, witnesses
-from plan_cutters.between import between
-from plan_cutters.buried import buried
-from plan_cutters.checks import shown
-from plan_cutters.classify import CONCAVE, CONVEX, SADDLE, classify, regions
-from plan_cutters.conditions import Conditions
-from plan_cutters.cutter import Cutter
-from plan_cutters.decompose import decompose
-from plan_cutters.document import (
+from cad_io.tessellate.triangles import At
+from plan_cutters.document.build import (
     area_notes,
     cutter_entry,
     degrees,
@@ -34,10 +26,7 @@ from plan_cutters.document import (
     vector,
     versions,
 )
-from plan_cutters.errors import OptionError, UnjudgeableError
-from plan_cutters.faces import choose
-from plan_cutters.machine import Machine
-from plan_cutters.model import (
+from plan_cutters.document.model import (
     AreaEntry,
     CutterEntry,
     Effective,
@@ -46,97 +35,34 @@ from plan_cutters.model import (
     SampleCounts,
     Selection,
 )  # fmt: skip
-from plan_cutters.nesting import handed, order
-from plan_cutters.obstacles import CHORD_ASKED, Surroundings, kept_tolerance, surroundings
+from plan_cutters.document.palette import PALETTE
+from plan_cutters.domain.checks import shown
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.nesting import handed, order
+from plan_cutters.domain.posture import PostureRange, unit
+from plan_cutters.domain.verdicts import REASONS, Reach
+from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.options import Options
-from plan_cutters.palette import PALETTE
-from plan_cutters.posture import PostureRange, unit
-from plan_cutters.posture_maps import PostureMaps
-from plan_cutters.posture_maps import posture_maps as all_posture_maps
-from plan_cutters.reach import REASONS, Reach
-from plan_cutters.select_cutters import RULE, ranked
-from plan_cutters.spacing import default_spacing
-from plan_cutters.supervise import report_work
+from plan_cutters.result import Result
+from plan_cutters.scene.buried import buried
+from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.faces import choose
+from plan_cutters.scene.obstacles import CHORD_ASKED, kept_tolerance
+from plan_cutters.scene.spacing import default_spacing
+from plan_cutters.scene.surroundings import Surroundings, surroundings
+from plan_cutters.stages.access import access, witnesses
+from plan_cutters.stages.between import between
+from plan_cutters.stages.classify import CONCAVE, CONVEX, SADDLE, classify, regions
+from plan_cutters.stages.decompose import decompose
+from plan_cutters.stages.posture_maps import posture_maps as all_posture_maps
+from plan_cutters.stages.select_cutters import RULE, ranked
 
 #: Told the stage, how much of it is done, of how much.
 Progress = Callable[[str, int, int], None]
 
 #: Samples that a plan may take.
 MOST_SAMPLES = 5_000_000
-
-
-@dataclass(frozen=True)
-class Result:
-    """A plan with the arrays behind it.
-
-    Attributes
-    ----------
-    plan : Plan
-        What is written as `plan.json`.
-    part : Part
-    samples : SurfaceSamples
-        Of the target faces.
-    surface_class : (n,) uint8
-    reaches : dict
-        Cutter id -> Reach.
-    postures : PostureRange
-    maps : PostureMaps, optional
-        Every free tilt, for the cutter `shown`, where that was asked for.
-    """
-
-    plan: Plan
-    part: Part
-    samples: SurfaceSamples
-    surface_class: NDArray[np.uint8]
-    reaches: dict[str, Reach]
-    postures: PostureRange
-    maps: PostureMaps | None = None
-
-    @property
-    def cutters(self) -> list[CutterEntry]:
-        """One entry a cutter, from the most wanted down."""
-        return self.plan.cutters
-
-    @property
-    def selected(self) -> str | None:
-        """Id of the cutter to take, or None."""
-        return self.plan.selected
-
-    @property
-    def shown(self) -> str:
-        """Id of the cutter that the models show: the selected, else the one that reaches the most samples."""
-        return self.selected or max(self.cutters, key=lambda c: c.interference_free + c.accessible).id
-
-    def to_json(self, path: str | Path) -> None:
-        """Write the plan alone."""
-        from plan_cutters.report.to_json import write_plan
-
-        write_plan(self.plan, Path(path))
-
-    def write(
-        self, out: str | Path, formats: Sequence[str] = ("json", "step", "glb", "npz"), *, step_schema: str = "ap242"
-    ) -> Plan:
-        """Write files into the folder `out`, each whole or not at all, the plan and the samples first.
-
-        A model that cannot be written is named in the plan's `not_written`; the other files are there. Files that an
-        earlier run wrote there are removed if its plan lists them as they are.
-
-        Parameters
-        ----------
-        out : path-like
-        formats : sequence of str
-            Of `json`, `step`, `glb`, `npz` and `merged` (a GLB of one mesh, for parts of thousands of faces).
-        step_schema : str
-            Application protocol of the STEP file: `ap242`, `ap214` or `ap203`.
-
-        Returns
-        -------
-        Plan
-            The plan as written, with its `files`, `split` and `not_written`.
-        """
-        from plan_cutters.report import write_all
-
-        return write_all(self, Path(out), formats, step_schema=step_schema)
 
 
 def plan(
@@ -241,9 +167,13 @@ class _Clock:
 
 
 def run(
-    part: Any, options: Options, *, progress: Progress | None = None, read_timeout: float = TIMEOUT
+    part: Any, options: Options, *, progress: Progress | None = None, read_timeout: float = TIMEOUT,
+    at: At = lambda whose, face: None,
 ) -> Result:  # fmt: skip
-    """`plan` with its options gathered; `read_timeout` is the most seconds that a faulty file may take to read."""
+    """`plan` with its options gathered.
+
+    `read_timeout` is the most seconds that a faulty file may take to read; `at` is told whose work goes on at which face.
+    """
     clock = _Clock(progress)
     started = datetime.datetime.now(datetime.UTC)
     with clock.stage("read"):
@@ -269,7 +199,7 @@ def run(
             f"no target face can be judged: {'; '.join(sorted(causes)) or 'no samples'}", file=whole.file
         )
     with clock.stage("tessellate"):
-        around = surroundings(whole, CHORD_ASKED * options.tolerance, ignored=chosen_faces.ignored, at=report_work)
+        around = surroundings(whole, CHORD_ASKED * options.tolerance, ignored=chosen_faces.ignored, at=at)
         triangles = around.surely.triangles
         tolerance = kept_tolerance(options.tolerance, triangles.chord_error)
     with clock.stage("compile"):

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from plan_cutters.pipeline import Result
+    from plan_cutters.result import Result
 
 
 def register() -> None:

@@ -13,7 +13,7 @@ from plan_cutters.kernels.hit import BODY, HIGH, OFFSET, A, P, X, cross, dot, le
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, outside, winding
 
-# As in `plan_cutters.reach`, which must not load the compiler; a test holds them together.
+# As in `plan_cutters.domain.verdicts`, which must not load the compiler; a test holds them together.
 INACCESSIBLE, ACCESSIBLE, FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
 AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, COLLISION, BURIED, ATTRIBUTES = 0, 1, 2, 3, 4, 5
 

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import FaceGrid, FaceLabels, Style
 from cad_io.split import split
-from cad_io.write_gltf import write_gltf
-from cad_io.write_step import write_step as write_cad
-from plan_cutters.model import SplitEntry
-from plan_cutters.palette import LABELS, rgb
-from plan_cutters.reach import ACCESSIBLE, FREE, INACCESSIBLE, UNDECIDED, UNJUDGED
+from cad_io.write import write_gltf
+from cad_io.write.step import write_step as write_cad
+from plan_cutters.document.model import SplitEntry
+from plan_cutters.document.palette import LABELS, rgb
+from plan_cutters.domain.verdicts import ACCESSIBLE, FREE, INACCESSIBLE, UNDECIDED, UNJUDGED
 
 _LABEL = {
     FREE: LABELS.index("interference_free"),

@@ -5,8 +5,8 @@ import os
 from pathlib import Path
 from typing import Any
 
+from plan_cutters.document.model import Plan
 from plan_cutters.errors import PlanError
-from plan_cutters.model import Plan
 
 #: Why a file is missing while it is being made: what stays in the plan if the run is ended then.
 PENDING = "the run ended before it was written"

@@ -1,0 +1,92 @@
+"""A face as a region of its surface's parameter plane: outline, area, which points lie in it.
+
+All of it is read off the curves that bound the face in (u, v), as even-odd regions, so seams (which occur twice) and
+degenerated edges need no special care and the order of the edges does not matter.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRepAdaptor import BRepAdaptor_Curve2d
+from OCP.GeomAbs import GeomAbs_CN, GeomAbs_Line
+from OCP.gp import gp_Pnt2d, gp_Vec2d
+from OCP.TColStd import TColStd_Array1OfReal
+from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
+from OCP.TopoDS import TopoDS
+
+from cad_io.arrays import Floats
+from cad_io.face.trim import even_odd
+from cad_io.kernel import edges_of
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)  # exact for polynomial curves up to degree 6
+_CHORDS = 4  # of an interval, in an outline
+_OFF = 1e-7  # of the grid, that rows are moved by
+_ARCS = 8  # intervals that a curve without knots (conic) is cut into
+
+
+def outline(face: Any) -> Floats:
+    """Segments (n, 2, 2) between (u, v) points of the face's boundary, in no order; empty for an unbounded face."""
+    out = []
+    for curve, ends, _ in boundary(face):
+        t = ends
+        if len(ends) > 2 or curve.GetType() != GeomAbs_Line:
+            t = np.append((ends[:-1, None] + np.diff(ends)[:, None] * np.arange(_CHORDS) / _CHORDS).ravel(), ends[-1])
+        uv = np.array([curve.Value(x).Coord() for x in t.tolist()])
+        out.append(np.stack([uv[:-1], uv[1:]], axis=1))
+    return np.concatenate(out) if out else np.empty((0, 2, 2))
+
+
+def uv_area(face: Any) -> float:
+    """Area of the region in (u, v), exact for polynomial boundaries: the integral of u dv around it."""
+    total = 0.0
+    point, tangent = gp_Pnt2d(), gp_Vec2d()
+    for curve, ends, sign in boundary(face):
+        half = 0.5 * np.diff(ends)
+        t = (0.5 * (ends[1:] + ends[:-1]))[:, None] + half[:, None] * _NODES
+        weight = half[:, None] * _WEIGHTS
+        for x, w in zip(t.ravel().tolist(), weight.ravel().tolist(), strict=True):
+            curve.D1(x, point, tangent)
+            total += sign * w * point.X() * tangent.Y()
+    return total
+
+
+def inside(segments: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:
+    """Which nodes of the grid u (nu,) x v (nv,), both increasing, lie in an outline: (nu, nv), by even-odd rows."""
+    # Borders like to run along grid lines, where rounding decides what a row crosses: rows are taken a little off.
+    v = v + _OFF * (v[-1] - v[0])
+    return even_odd(segments, u, v)
+
+
+def interior_point(segments: Floats) -> tuple[float, float]:
+    """A point well inside an outline: the middle of the longest of several chords along u."""
+    low, high = segments[..., 1].min(), segments[..., 1].max()
+    best, middle = -1.0, (float(segments[0, :, 0].mean()), float(segments[0, :, 1].mean()))
+    for share in (0.5, 0.31, 0.69, 0.17, 0.83, 0.07, 0.93):
+        v = low + share * (high - low)
+        p, q = segments[:, 0], segments[:, 1]
+        hit = (p[:, 1] <= v) != (q[:, 1] <= v)
+        p, q = p[hit], q[hit]
+        u = np.sort(p[:, 0] + (v - p[:, 1]) / (q[:, 1] - p[:, 1]) * (q[:, 0] - p[:, 0]))
+        for a, b in zip(u[:-1:2].tolist(), u[1::2].tolist(), strict=True):
+            if b - a > best:
+                best, middle = b - a, (0.5 * (a + b), float(v))
+    return middle
+
+
+def boundary(face: Any) -> list[tuple[Any, Floats, float]]:
+    """Boundary curves in (u, v), the ends (k + 1,) of their smooth intervals, +1 or -1 for their direction."""
+    forward = TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
+    out = []
+    for edge in edges_of(forward):
+        if edge.Orientation() not in (TopAbs_FORWARD, TopAbs_REVERSED):
+            continue
+        curve = BRepAdaptor_Curve2d(edge, forward)
+        count = curve.NbIntervals(GeomAbs_CN)
+        ends = TColStd_Array1OfReal(1, count + 1)
+        curve.Intervals(ends, GeomAbs_CN)
+        t = np.array([ends.Value(i + 1) for i in range(count + 1)])
+        if count == 1 and curve.GetType() != GeomAbs_Line:
+            t = np.linspace(t[0], t[1], _ARCS + 1)
+        out.append((curve, t, 1.0 if edge.Orientation() == TopAbs_FORWARD else -1.0))
+    return out

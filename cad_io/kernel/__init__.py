@@ -1,0 +1,32 @@
+"""The kernel's manners: its calls and their errors, its maps and numbers, compounds, places of products, time limits.
+
+May use: arrays and errors.
+"""
+
+from cad_io.kernel.calls import (
+    edges_of,
+    explore,
+    faces,
+    first_derivatives,
+    interval_ends,
+    is_kernel_error,
+    second_derivatives,
+    shape_map,
+    silence,
+    translated,
+    values,
+)
+
+__all__ = [
+    "edges_of",
+    "explore",
+    "faces",
+    "first_derivatives",
+    "interval_ends",
+    "is_kernel_error",
+    "second_derivatives",
+    "shape_map",
+    "silence",
+    "translated",
+    "values",
+]

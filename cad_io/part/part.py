@@ -1,0 +1,297 @@
+"""A part: the kernel's shape, its faces by number, and what is known about each.
+
+Making a part costs next to nothing beside reading it: what is known about a face is worked out when first asked for.
+"""
+
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+
+import numpy as np
+from OCP.Bnd import Bnd_Box
+from OCP.BRep import BRep_Tool
+from OCP.BRepAdaptor import BRepAdaptor_Surface
+from OCP.BRepBndLib import BRepBndLib
+from OCP.ShapeAnalysis import ShapeAnalysis_ShapeTolerance
+from OCP.TopAbs import TopAbs_SOLID
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
+
+from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats, LostFace
+from cad_io.errors import ReadError
+from cad_io.face.measure import Measure, measure
+from cad_io.face.recognise import recognise
+from cad_io.face.trim import Trim, trim_of
+from cad_io.kernel import edges_of, explore, faces, is_kernel_error, shape_map, translated
+from cad_io.kernel.assembly import Node
+from cad_io.part.sew import Sewn, edge_uses, sew
+
+#: Sizes that are rather a wrong unit than a part, mm.
+LEAST_SIZE, MOST_SIZE = 1.0, 3000.0
+#: Beyond this, mm, a coordinate has too few digits left for any tolerance.
+FARTHEST = 1e9
+#: A face smaller than this share of the squared diagonal has no area.
+_LEAST_AREA = 1e-12
+#: Why such a face is not judged.
+NO_AREA = "has no area"
+
+_KINDS = {
+    "Plane": "plane", "Cylinder": "cylinder", "Cone": "cone", "Sphere": "sphere", "Torus": "torus",
+    "BezierSurface": "bezier", "BSplineSurface": "bspline", "SurfaceOfRevolution": "revolution",
+    "SurfaceOfExtrusion": "extrusion", "OffsetSurface": "offset",
+}  # fmt: skip
+
+
+class Part:
+    """A shape whose faces are numbered from 1 in the order of the kernel's map. Not to be changed once made.
+
+    Parameters
+    ----------
+    shape : TopoDS_Shape
+        One shape, located, lengths in mm.
+    file, sha256 : str, optional
+        Where it was read from, and the checksum of those bytes.
+    names, colours : mapping, optional
+        By face number: names and sRGB colours (0 to 1) found in the file.
+    layers : mapping, optional
+        By face number: the layers that it is on in the file.
+    tree : tuple of Node, optional
+        The products in the file; default one without a name.
+    warnings : sequence of str
+        What the reader found odd; odd sizes are added here.
+    picked : tuple of int, optional
+        Numbers of the faces that were picked on the object which the part was made from.
+    lost : sequence of LostFace, optional
+        Faces written in the file that are not here, or not as written; faces without a finite size are added here.
+
+    Attributes
+    ----------
+    shape, file, sha256, layers, tree, picked : as given
+    lost : tuple of LostFace
+        Where it is not empty, nothing is known of what stood there: no posture may be called safe.
+    faces : tuple of FaceInfo
+        Entry i is face number i + 1.
+    size : tuple of float
+        Extent along x, y, z, mm.
+    solids : int
+        Number of solids.
+    closed : bool
+        Every edge joins two faces: the shape has an inside.
+    sewn : Sewn
+        Faces that stand in no solid, joined where they touch.
+    warnings : tuple of str
+
+    Raises
+    ------
+    ReadError
+        The shape holds no face, or the kernel cannot make sense of it.
+    """
+
+    def __init__(
+        self,
+        shape: TopoDS_Shape,
+        *,
+        file: str | None = None,
+        sha256: str | None = None,
+        names: Mapping[int, str] | None = None,
+        colours: Mapping[int, tuple[float, float, float]] | None = None,
+        layers: Mapping[int, tuple[str, ...]] | None = None,
+        tree: tuple[Node, ...] = (),
+        warnings: tuple[str, ...] = (),
+        picked: tuple[int, ...] = (),
+        lost: tuple[LostFace, ...] = (),
+    ) -> None:
+        self.shape, self.file, self.sha256, self.picked = shape, file, sha256, picked
+        with translated("looking for faces", error=ReadError, file=file):
+            self._faces = faces(shape)
+        if not self._faces:
+            raise ReadError("holds no surface (no faces): export it as a solid or surface model", file=file)
+        self.layers = dict(layers or {})
+        self.tree = tree or (Node("", "", TopLoc_Location(), faces=tuple(range(1, len(self._faces) + 1))),)
+        self._adaptors: dict[int, BRepAdaptor_Surface] = {}
+        self._trims: dict[int, Trim | None] = {}
+        self._measures: dict[int, Measure | None] = {}
+        self.solids = shape_map(shape, TopAbs_SOLID).Extent()
+        with translated("measuring the part", error=ReadError, file=file):
+            boxes = np.array([face_box(face, tight=False) for face in self._faces])
+            finite = np.isfinite(boxes).all(axis=(1, 2))
+            if not finite.any():
+                raise ReadError("no face has a finite size: nothing can be judged", file=file)
+            farthest = float(np.abs(boxes[finite]).max())
+            if farthest > FARTHEST:
+                raise ReadError(
+                    f"reaches {farthest:.3g} mm from the origin, where no tolerance can be kept: its coordinates are "
+                    "damaged, or its unit is wrong; export it again",
+                    file=file,
+                )
+        self._names, self._colours, self._said = names or {}, colours or {}, warnings
+        told = {each.face for each in lost}
+        self.lost = (
+            *lost,
+            *(LostFace("", self._names.get(n, ""), "it has no finite size", n)
+              for n in (np.flatnonzero(~finite) + 1).tolist() if n not in told),
+        )  # fmt: skip
+
+    def __repr__(self) -> str:
+        size = " x ".join(f"{length:.4g}" for length in self.size)
+        return f"Part({self.file or 'shape'}, {len(self._faces)} faces, {size} mm)"
+
+    @cached_property
+    def faces(self) -> tuple[FaceInfo, ...]:
+        return tuple(self._describe(number) for number in range(1, len(self._faces) + 1))
+
+    @cached_property
+    def size(self) -> tuple[float, float, float]:
+        low, high = self._box
+        return tuple((high - low).tolist())
+
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        return (*self._said, *_size_warnings(self.size))
+
+    def face(self, number: int) -> TopoDS_Face:
+        """The kernel's face of a number from 1."""
+        return self._faces[self._checked(number) - 1]
+
+    def adaptor(self, number: int) -> BRepAdaptor_Surface:
+        """Evaluator of a face's whole surface (not restricted to the face), in part coordinates."""
+        if number not in self._adaptors:
+            with translated("opening a surface", file=self.file, face=f"F{number}"):
+                self._adaptors[number] = BRepAdaptor_Surface(self.face(number), False)
+        return self._adaptors[number]
+
+    def trim(self, number: int) -> Trim | None:
+        """Border of a face in its parameter plane; None where it has none."""
+        if number not in self._trims:
+            with translated("reading a border", file=self.file, face=f"F{number}"):
+                self._trims[number] = trim_of(self.face(number), self.adaptor(number))
+        return self._trims[number]
+
+    def measure(self, number: int) -> Measure | None:
+        """Area, vector area and flux about the middle of the part's box; None where the face has no border."""
+        if number not in self._measures:
+            trim = self.trim(number)
+            with translated("measuring a face", file=self.file, face=f"F{number}"):
+                self._measures[number] = None if trim is None else measure(self.adaptor(number), trim, self.middle)
+        return self._measures[number]
+
+    @cached_property
+    def _box(self) -> tuple[Floats, Floats]:
+        with translated("measuring the part", error=ReadError, file=self.file):
+            return _box(self._faces)
+
+    @cached_property
+    def middle(self) -> Floats:
+        """Middle (3,) of the part's box, mm."""
+        low, high = self._box
+        return 0.5 * (low + high)
+
+    @cached_property
+    def looseness(self) -> float:
+        """Largest distance, mm, by which faces may miss each other along an edge that they share."""
+        return float(ShapeAnalysis_ShapeTolerance().Tolerance(self.shape, 1))
+
+    @cached_property
+    def closed(self) -> bool:
+        # A seam is used twice by one face; every other edge must be used once by each of two.
+        uses = edge_uses(self._faces)
+        return bool(uses) and all(len(users) % 2 == 0 for _, users in uses)
+
+    @cached_property
+    def sewn(self) -> Sewn:
+        with translated("joining faces", file=self.file):
+            return sew(self.shape, self._faces, float(np.linalg.norm(self.size)))
+
+    def solid_shapes(self) -> Iterator[TopoDS_Shape]:
+        """Every solid, as it stands in the shape."""
+        return explore(self.shape, TopAbs_SOLID)
+
+    def _checked(self, number: int) -> int:
+        if not 1 <= number <= len(self._faces):
+            raise IndexError(f"face numbers run from 1 to {len(self._faces)}, not {number}")
+        return number
+
+    def _describe(self, number: int) -> FaceInfo:
+        surface, shape, area, reason = "other", "sculptured", 0.0, None
+        try:
+            kind = str(self.adaptor(number).GetType()).rsplit("GeomAbs_", 1)[-1]
+            surface = _KINDS.get(kind, "other")
+            shape = surface if surface in SIMPLE_KINDS else "sculptured"
+            reason, area = self._judgeable(number, surface)
+            trim = self.trim(number)
+            if reason is None and shape == "sculptured" and trim:
+                shape = recognise(self.adaptor(number), trim.box)
+        except Exception as thrown:
+            if not (is_kernel_error(thrown) or is_kernel_error(thrown.__cause__ or thrown)):
+                raise
+            reason = reason or f"the CAD kernel cannot work with this face ({thrown})"
+        altered = next((each.why for each in self.lost if each.face == number), None)
+        if altered is not None and reason is None:
+            # What it encloses and how large it is would be those of another face.
+            reason, area = f"is not as it was written in the file: {altered}", 0.0
+        name, colour = self._names.get(number, ""), self._colours.get(number)
+        return FaceInfo(number, name, surface, shape, area, colour, reason)
+
+    def _judgeable(self, number: int, surface: str) -> tuple[str | None, float]:
+        """Why the face cannot be judged (None if it can), and its area."""
+        if surface == "other":
+            if BRep_Tool.Triangulation_s(self.face(number), TopLoc_Location()) is not None:
+                return "holds only triangles, no surface: export exact geometry (B-rep)", 0.0
+            return "has no surface that can be evaluated", 0.0
+        if not edges_of(self.face(number)):
+            return "has no edges", 0.0
+        measured = self.measure(number)
+        if measured is None:
+            return "its edges have no finite curve on the surface", 0.0
+        if not np.isfinite(measured.area):
+            return "its surface cannot be evaluated everywhere", 0.0
+        if measured.area <= _LEAST_AREA * float(np.dot(self.size, self.size)):
+            return NO_AREA, measured.area
+        return None, measured.area
+
+
+def _box(found: list[TopoDS_Face]) -> tuple[Floats, Floats]:
+    """Tight corners of the box around faces.
+
+    The kernel's quick box is padded and its tight one is slow, so the tight one is asked only of faces whose padded
+    box still sticks out of what is covered, the farthest first.
+    """
+    loose = np.array([face_box(face, tight=False) for face in found])
+    usable = np.isfinite(loose).all(axis=(1, 2))
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    if not usable.any():
+        return low, high
+    stick = np.concatenate([loose[:, 0] - np.nanmin(loose[usable, 0], axis=0),
+                            np.nanmax(loose[usable, 1], axis=0) - loose[:, 1]], axis=1)  # fmt: skip
+    for i in np.argsort(np.where(usable, stick.min(axis=1), np.inf), kind="stable")[: usable.sum()]:
+        if (loose[i, 0] < low).any() or (loose[i, 1] > high).any():
+            tight = face_box(found[i], tight=True)
+            tight = tight if np.isfinite(tight).all() else loose[i]
+            low, high = np.minimum(low, tight[0]), np.maximum(high, tight[1])
+    return low, high
+
+
+def face_box(face: TopoDS_Face, *, tight: bool) -> Floats:
+    """Corners (2, 3) of the box around a face, nan where it has none; not `tight`: quick, and somewhat wider."""
+    box = Bnd_Box()
+    try:
+        if tight:
+            BRepBndLib.AddOptimal_s(face, box, False, False)
+        else:
+            BRepBndLib.Add_s(face, box, False)
+    except Exception as thrown:
+        if not is_kernel_error(thrown):
+            raise
+        return np.full((2, 3), np.nan)
+    if box.IsVoid() or box.IsOpen():
+        return np.full((2, 3), np.nan)
+    box.SetGap(0.0)
+    return np.array([box.CornerMin().Coord(), box.CornerMax().Coord()])
+
+
+def _size_warnings(size: tuple[float, float, float]) -> Iterator[str]:
+    largest = max(size)
+    if not LEAST_SIZE <= largest <= MOST_SIZE:
+        yield (
+            f"the part is {largest:.4g} mm long, outside {LEAST_SIZE:g} to {MOST_SIZE:g} mm: "
+            "if the length unit in the file is wrong, give the right one with --unit (unit= in Python)"
+        )

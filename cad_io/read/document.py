@@ -1,0 +1,146 @@
+"""What STEP and IGES share: the kernel's document of products, names, colours and layers, walked down to numbered faces."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDF import TDF_Label, TDF_LabelSequence
+from OCP.TDocStd import TDocStd_Document
+from OCP.TopAbs import TopAbs_FACE
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Shape
+from OCP.XCAFDoc import XCAFDoc_ColorGen, XCAFDoc_ColorSurf, XCAFDoc_ColorTool, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
+
+from cad_io.arrays import LostFace
+from cad_io.kernel import explore, shape_map
+from cad_io.kernel.assembly import Node
+
+Colour = tuple[float, float, float]
+
+
+@dataclass
+class Read:
+    """What a reader found: one shape, its products, and by face number names, sRGB colours and layers."""
+
+    shape: TopoDS_Shape
+    names: dict[int, str] = field(default_factory=dict)
+    colours: dict[int, Colour] = field(default_factory=dict)
+    layers: dict[int, tuple[str, ...]] = field(default_factory=dict)
+    tree: tuple[Node, ...] = ()
+    warnings: list[str] = field(default_factory=list)
+    lost: list[LostFace] = field(default_factory=list)
+
+
+def add_attributes(document: TDocStd_Document, result: Read) -> None:
+    """Fill in the tree of products, names, colours and layers that a document has for the faces of its shape."""
+    _Walk(result).roots(roots(document))
+
+
+def roots(document: TDocStd_Document) -> TDF_LabelSequence:
+    """Labels of what the document holds and nothing else is part of."""
+    labels = TDF_LabelSequence()
+    XCAFDoc_DocumentTool.ShapeTool_s(document.Main()).GetFreeShapes(labels)
+    return labels
+
+
+def each(labels: TDF_LabelSequence) -> Iterator[TDF_Label]:
+    """The labels of a sequence, which counts from 1."""
+    for i in range(1, labels.Length() + 1):
+        yield labels.Value(i)
+
+
+class _Walk:
+    """Products, names, colours and layers of faces, gathered from the document: the innermost label that has one wins."""
+
+    def __init__(self, result: Read) -> None:
+        self.result, self.map = result, shape_map(result.shape, TopAbs_FACE)
+        self.taken: set[int] = set()
+
+    def roots(self, labels: TDF_LabelSequence) -> None:
+        start = _Inherited(TopLoc_Location())
+        self.result.tree = tuple(self.node(label, start) for label in each(labels))
+
+    def node(self, label: TDF_Label, given: "_Inherited") -> Node:
+        instance, place = "", TopLoc_Location()
+        if XCAFDoc_ShapeTool.IsReference_s(label):
+            instance, place = _name(label), XCAFDoc_ShapeTool.GetLocation_s(label)
+            given = given.at(label, place)
+            product = TDF_Label()
+            XCAFDoc_ShapeTool.GetReferredShape_s(label, product)
+            label = product
+        given = given.at(label)
+        if XCAFDoc_ShapeTool.IsAssembly_s(label):
+            inner = TDF_LabelSequence()
+            XCAFDoc_ShapeTool.GetComponents_s(label, inner, False)
+            return Node(_name(label), instance, place, children=tuple(self.node(one, given) for one in each(inner)))
+        mine = [n for n in self.leaf(label, given) if n not in self.taken]
+        self.taken.update(mine)
+        return Node(_name(label), instance, place, faces=tuple(mine))
+
+    def leaf(self, label: TDF_Label, given: "_Inherited") -> list[int]:
+        """Paint the faces of a product; their numbers."""
+        shape, inner = XCAFDoc_ShapeTool.GetShape_s(label), TDF_LabelSequence()
+        numbers = self.numbers(shape, given.place)
+        self.paint(numbers, given.colour, given.layers)
+        XCAFDoc_ShapeTool.GetSubShapes_s(label, inner)
+        parts = [(sub, XCAFDoc_ShapeTool.GetShape_s(sub)) for sub in each(inner)]
+        parts = [(sub, part) for sub, part in parts if part.ShapeType().value <= TopAbs_FACE.value]
+        # Solids before shells before faces, so that the innermost has the last word.
+        for sub, part in sorted(parts, key=lambda pair: int(pair[1].ShapeType().value)):
+            covered = self.numbers(part, given.place)
+            self.paint(covered, _colour(sub), _layers(sub))
+            if part.ShapeType() == TopAbs_FACE and (name := _name(sub)):
+                self.result.names.update(dict.fromkeys(covered, name))
+        return numbers
+
+    def paint(self, numbers: list[int], colour: Colour | None, layers: tuple[str, ...]) -> None:
+        if colour:
+            self.result.colours.update(dict.fromkeys(numbers, colour))
+        if layers:
+            self.result.layers.update(dict.fromkeys(numbers, layers))
+
+    def numbers(self, shape: TopoDS_Shape, place: TopLoc_Location) -> list[int]:
+        moved = shape.Moved(place)
+        return list(dict.fromkeys(n for face in explore(moved, TopAbs_FACE) if (n := self.map.FindIndex(face))))
+
+
+class _Inherited(NamedTuple):
+    """What the labels around give: an enclosing instance's colour beats the product's own."""
+
+    place: TopLoc_Location
+    colour: Colour | None = None
+    layers: tuple[str, ...] = ()
+
+    def at(self, label: TDF_Label, place: TopLoc_Location | None = None) -> "_Inherited":
+        return _Inherited(
+            self.place.Multiplied(place) if place else self.place,
+            self.colour or _colour(label),
+            self.layers or _layers(label),
+        )
+
+
+def _colour(label: TDF_Label) -> Colour | None:
+    found = Quantity_Color()
+    for kind in (XCAFDoc_ColorSurf, XCAFDoc_ColorGen):
+        if XCAFDoc_ColorTool.GetColor_s(label, kind, found):
+            red, green, blue = found.Values(Quantity_TOC_sRGB)
+            return round(red, 6), round(green, 6), round(blue, 6)
+    return None
+
+
+def _layers(label: TDF_Label) -> tuple[str, ...]:
+    found = TDF_LabelSequence()  # asked for strings, the kernel gives none (OCCT 7.9)
+    XCAFDoc_DocumentTool.LayerTool_s(label).GetLayers(label, found)
+    return tuple(sorted(filter(None, map(_name, each(found)))))
+
+
+def _name(label: TDF_Label) -> str:
+    # Asking for a name that is not there ends the process, so look first.
+    if not label.IsAttribute(TDataStd_Name.GetID_s()):
+        return ""
+    name = TDataStd_Name()
+    label.FindAttribute(TDataStd_Name.GetID_s(), name)
+    text = str(name.Get().ToExtString()).strip()
+    return "" if text == "NONE" else text  # SolidWorks' word for no name

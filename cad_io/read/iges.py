@@ -1,0 +1,128 @@
+"""Read IGES, with guards: the kernel reads a file that was cut off as a success."""
+
+import re
+from collections import defaultdict
+
+from OCP.IFSelect import IFSelect_RetDone
+from OCP.IGESCAFControl import IGESCAFControl_Reader
+from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
+from OCP.TDocStd import TDocStd_Document
+from OCP.TopAbs import TopAbs_FACE
+
+from cad_io.arrays import LostFace
+from cad_io.errors import ReadError
+from cad_io.kernel import faces, shape_map
+from cad_io.kernel.components import unwrapped
+from cad_io.read.document import Read, add_attributes
+from cad_io.read.faults import Model
+from cad_io.read.iges_names import add_names, any_names
+from cad_io.read.lost_iges import FACES, fell_apart, lost_of_iges
+
+#: The standard's numbers of units.
+_FLAGS = {"in": 1, "mm": 2, "ft": 4, "m": 6, "km": 7, "mil": 8, "um": 9, "cm": 10}
+_COUNTS = re.compile(rb"S\s*(\d+)G\s*(\d+)D\s*(\d+)P\s*(\d+)")
+
+
+class Loaded:
+    """An IGES file whose entities are loaded, but not yet made into shapes.
+
+    Parameters
+    ----------
+    file : str
+    data : bytes
+        Its content, for the checks that the kernel does not make.
+    unit : str, optional
+        Length unit to take instead of the file's, one of `units.UNITS`.
+    names : bool
+        Look for names, colours and levels, too.
+    careful : bool
+        As for STEP; here there is nothing to leave out.
+
+    Attributes
+    ----------
+    risky : bool
+        The transfer may crash or hang: to be run in a copy of the process.
+
+    Raises
+    ------
+    ReadError
+        Cut off, or not IGES.
+    """
+
+    def __init__(
+        self, file: str, data: bytes, unit: str | None = None, *, names: bool = True, careful: bool = False
+    ) -> None:  # fmt: skip
+        self.file, self.names = file, names
+        self.sections: dict[bytes, list[bytes]] = defaultdict(list)
+        for line in data.splitlines():
+            self.sections[line[72:73]].append(line)
+        self._refuse()
+        self.reader = IGESCAFControl_Reader()
+        self.reader.SetColorMode(names)
+        self.reader.SetLayerMode(names)
+        self.reader.SetNameMode(False)
+        if self.reader.ReadFile(file) != IFSelect_RetDone:
+            raise ReadError("is not valid IGES: export it again", file=file)
+        if unit is not None:
+            _set_unit(self.reader, unit)
+        self.model = Model(self.reader.WS())
+        self.faults = self.model.faults()
+        self.risky = bool(self.faults)
+
+    def transfer(self) -> Read:
+        """Make the shape.
+
+        Raises
+        ------
+        ReadError
+            It holds no shape that can be read.
+        """
+        said = f" ({self.faults[0].short}, {len(self.faults)} faults)" if self.faults else ""
+        document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
+        self.reader.Transfer(document)
+        shape = self.reader.OneShape()
+        if shape.IsNull():
+            raise ReadError(f"nothing in it could be read{said}: export it again, or as STEP", file=self.file)
+        result = Read(unwrapped(shape))
+        add_attributes(document, result)
+        result.tree = ()  # its roots are surfaces rather than products
+        # Two lines an entity: the first starts with its number.
+        directory = self.sections[b"D"]
+        if self.names and any_names(directory):
+            add_names(self.reader, result)
+        kinds = [line[:8].strip() for line in directory[::2]]
+        written = sum(kind.isdigit() and int(kind) in FACES for kind in kinds)
+        found = shape_map(shape, TopAbs_FACE).Extent()
+        split = fell_apart(self.model)
+        if found < written or self.faults or split or self.model.trouble(fails=True):
+            result.lost = lost_of_iges(self.model, self.faults, faces(result.shape), split=split)
+            gone = sum(each.face is None for each in result.lost)
+            result.lost += [LostFace("", "", "it is written, but could not be read")] * (written - found - gone)
+        unknown = [fault for fault in self.faults if "(entity type)" in fault.text]
+        result.lost += [LostFace("", "", "an entity of no known type stands in the file: it may be a face")] * len(
+            unknown
+        )
+        if self.faults:
+            result.warnings.append(f"the file has faults{said}")
+        return result
+
+    def _refuse(self) -> None:
+        """Files that were cut off, which the kernel reads as a success."""
+        last = self.sections[b"T"]
+        if not last:
+            raise ReadError("is cut off (it has no terminate record): fetch or export it again", file=self.file)
+        counts = _COUNTS.match(last[-1])
+        for section, count in zip((b"S", b"G", b"D", b"P"), counts.groups() if counts else (), strict=False):
+            if (here := len(self.sections[section])) < int(count):
+                raise ReadError(
+                    f"has lost lines ({here} of {int(count)} in section {section.decode()}): fetch it again",
+                    file=self.file,
+                )
+
+
+def _set_unit(reader: IGESCAFControl_Reader, unit: str) -> None:
+    model = reader.WS().Model()
+    section = model.GlobalSection()
+    section.SetUnitFlag(_FLAGS[unit])
+    section.SetUnitName(TCollection_HAsciiString(unit.upper()))
+    model.SetGlobalSection(section)

@@ -1,0 +1,130 @@
+"""Parts made of objects: one shape, its components with names and colours, and the numbers of picked faces."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from OCP.TopAbs import TopAbs_FACE
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Shape
+from OCP.TopTools import TopTools_IndexedMapOfShape
+
+from cad_io.errors import ReadError
+from cad_io.kernel import explore, shape_map
+from cad_io.kernel.assembly import Node
+from cad_io.kernel.components import as_one, unwrapped
+from cad_io.part import Part
+from cad_io.read.hosted import Colour, Held, Item, Mark, each_of, gather, same_place, shapes_of
+
+
+def from_object(source: Any) -> dict[str, Any]:
+    """What `Part` is made of, by the names of its parameters.
+
+    Parameters
+    ----------
+    source : object
+        A kernel shape; an object with `.wrapped` (CadQuery, build123d); a CadQuery Workplane or Assembly; a build123d
+        builder; a list or tuple of such. Faces that know the shape which they were taken from are picked on it.
+
+    Raises
+    ------
+    ReadError
+        It holds no shape, or a picked face whose shape is not known.
+    """
+    held = Held()
+    try:
+        gather(source, held)
+    except RecursionError:
+        raise ReadError("the part holds itself") from None
+    if not held.items:
+        raise ReadError(f"the {type(source).__name__} holds no shape")
+    shape = unwrapped(as_one([item.shape for item in held.items]))
+    walk = _Walk(shape)
+    tree = tuple(walk.node(item, TopLoc_Location(), None, root=True) for item in held.items)
+    walk.mark(held.picked, TopLoc_Location())
+    picked = {walk.map.FindIndex(mark.shape) for mark in held.picked}
+    named = any(item.name or item.inner for item in held.items)
+    return {
+        "shape": shape, "names": walk.names, "colours": walk.colours, "layers": walk.layers,
+        "tree": tree if named else (), "picked": tuple(sorted(picked)), "warnings": tuple(held.warnings),
+    }  # fmt: skip
+
+
+def face_numbers(part: Part, given: Any) -> tuple[int, ...]:
+    """Numbers of faces that are given as objects, ascending.
+
+    Parameters
+    ----------
+    part : Part
+    given : object
+        As for `from_object`; of a shape that is no face, all its faces.
+
+    Raises
+    ------
+    ReadError
+        It holds no face, or one that the part has not, or has in another place.
+    """
+    known = shape_map(part.shape, TopAbs_FACE)
+    found = set()
+    try:
+        shapes = [shape for each in each_of(given) for shape in shapes_of(each)]
+    except RecursionError:
+        raise ReadError("the list of faces holds itself") from None
+    for face in (face for shape in shapes for face in explore(shape, TopAbs_FACE)):
+        # The kernel compares how a place was made, not where it is.
+        number = known.FindIndex(face) or next(_in_same_place(known, face), 0)
+        if not number:
+            partner = next((n for n in range(1, known.Extent() + 1) if known.FindKey(n).IsPartner(face)), None)
+            raise ReadError(
+                "a face given is none of the part's: pick it on the shape that is planned, after its last change"
+                if partner is None
+                else f"a face given is F{partner} of the part, but in another place: pick it on the part as it is placed"
+            )
+        found.add(number)
+    if not found:
+        raise ReadError(f"no faces in a value of type {type(given).__name__}: give faces of the part")
+    return tuple(sorted(found))
+
+
+def _in_same_place(known: TopTools_IndexedMapOfShape, face: TopoDS_Shape) -> Iterator[int]:
+    for number in range(1, known.Extent() + 1):
+        other = known.FindKey(number)
+        if other.IsPartner(face) and same_place(other.Location(), face.Location()):
+            yield number
+
+
+class _Walk:
+    """The tree of components and what is said of faces, by the numbers that they have in the whole shape."""
+
+    def __init__(self, shape: TopoDS_Shape) -> None:
+        self.map = shape_map(shape, TopAbs_FACE)
+        self.names: dict[int, str] = {}
+        self.colours: dict[int, Colour] = {}
+        self.layers: dict[int, tuple[str, ...]] = {}
+        self.taken: set[int] = set()
+
+    def node(self, item: Item, around: TopLoc_Location, colour: Colour | None, *, root: bool = False) -> Node:
+        place, colour = item.shape.Location(), item.colour or colour
+        instance = "" if root else item.name
+        if item.inner:
+            inside = around.Multiplied(place)
+            return Node(item.name, instance, place, children=tuple(self.node(i, inside, colour) for i in item.inner))
+        mine = [n for n in self.numbers(item.shape, around) if n not in self.taken]
+        self.taken.update(mine)
+        if colour:
+            self.colours.update(dict.fromkeys(mine, colour))
+        self.mark(item.marks, around.Multiplied(place))
+        return Node(item.name, instance, place, faces=tuple(mine))
+
+    def mark(self, marks: Sequence[Mark], around: TopLoc_Location) -> None:
+        for mark in marks:
+            numbers = self.numbers(mark.shape, around)
+            if mark.name:
+                self.names.update(dict.fromkeys(numbers, mark.name))
+            if mark.colour:
+                self.colours.update(dict.fromkeys(numbers, mark.colour))
+            if mark.layer:
+                self.layers.update(dict.fromkeys(numbers, (mark.layer,)))
+
+    def numbers(self, shape: TopoDS_Shape, around: TopLoc_Location) -> list[int]:
+        moved = shape.Moved(around)
+        return list(dict.fromkeys(n for face in explore(moved, TopAbs_FACE) if (n := self.map.FindIndex(face))))

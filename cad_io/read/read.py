@@ -1,0 +1,168 @@
+"""Read a part: STEP, IGES or BREP files, kernel shapes, CadQuery and build123d objects."""
+
+import hashlib
+import math
+import os
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from numbers import Real
+from typing import Any
+
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
+from OCP.gp import gp_Pnt, gp_Trsf, gp_Vec
+from OCP.TopAbs import TopAbs_EDGE
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Shape
+
+from cad_io.arrays import LostFace
+from cad_io.errors import ReadError
+from cad_io.kernel import explore, faces, silence, translated
+from cad_io.kernel.assembly import Node
+from cad_io.kernel.components import unwrapped
+from cad_io.part import Part
+from cad_io.read import iges, step
+from cad_io.read.document import Read
+from cad_io.read.guarded import Crashed, Found
+from cad_io.read.guarded import guarded as in_copy
+from cad_io.read.objects import from_object
+from cad_io.read.sniff import load
+from cad_io.units import in_mm
+
+Loaded = step.Loaded | iges.Loaded
+_LOADERS: dict[str, Callable[..., Loaded]] = {"step": step.Loaded, "iges": iges.Loaded}
+#: Seconds that a guarded reading may take.
+TIMEOUT = 120.0
+#: As good as no limit, s.
+_LONGEST = 1e8
+
+
+def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, timeout: float = TIMEOUT) -> Part:
+    """Read a part; faces are numbered from 1 in the order of the kernel's map of the shape read.
+
+    Parameters
+    ----------
+    source : path, TopoDS_Shape or object
+        Path of a STEP, IGES or BREP file; a kernel shape; a CadQuery or build123d object, an assembly too; a list of
+        shapes. Faces on a Workplane's stack, and build123d faces that know the shape which they were taken from, are
+        `Part.picked` on that shape. A Part is given back as it is.
+    unit : str, optional
+        What the numbers in the source are in: one of `um`, `mm`, `cm`, `m`, `km`, `mil`, `in`, `ft`. Default: the unit
+        that the file names; mm for BREP files and shapes.
+    guarded : bool
+        Let a copy of the process read, so that a file that crashes or hangs the CAD kernel is a ReadError. Costs a
+        little time; needs a system that can fork (not Windows).
+    timeout : float
+        Seconds that a guarded reading may take. A file with faults that may harm the kernel is made into shapes in a
+        copy of the process in any case.
+
+    Returns
+    -------
+    Part
+        Lengths in mm, one located shape. What a faulty file has lost is in `lost`.
+
+    Raises
+    ------
+    ReadError
+        In one line: what is wrong and what to try.
+    """
+    silence()
+    if unit is not None:
+        in_mm(unit)
+    if not isinstance(guarded, bool):
+        raise ReadError(f"guarded must be True or False, not a {type(guarded).__name__}")
+    if not isinstance(timeout, Real) or isinstance(timeout, bool) or math.isnan(timeout):
+        raise ReadError(f"timeout must be a number of seconds, not a {type(timeout).__name__}")
+    if isinstance(source, Part):
+        if unit is not None:
+            raise ReadError("the part has been read already: give the unit when it is read", file=source.file)
+        return source
+    timeout = min(float(timeout), _LONGEST)
+    if not guarded:
+        return Part(**_find(source, unit, timeout))
+
+    def find() -> Found:
+        found = _find(source, unit, timeout)
+        Part(**found)  # which asks the kernel more, better here than outside
+        return found
+
+    return Part(**in_copy(find, timeout, os.fspath(source) if isinstance(source, str | os.PathLike) else None))
+
+
+def _find(source: Any, unit: str | None, timeout: float) -> Found:
+    """What the part is made of."""
+    if isinstance(source, str | os.PathLike):
+        return _read_file(os.fspath(source), unit, timeout)
+    found = from_object(source)
+    tree = tuple(_scaled_node(node, unit) for node in found["tree"])
+    return found | {"shape": _scaled(found["shape"], unit), "tree": tree}
+
+
+def _read_file(file: str, unit: str | None, timeout: float) -> Found:
+    kind, data = load(file)
+    known = {"file": file, "sha256": hashlib.sha256(data).hexdigest()}
+    with translated("reading the file", error=ReadError, file=file):
+        if kind not in _LOADERS:
+            return known | _found(Read(_scaled(_read_brep(file, kind), unit)))
+        loaded = _LOADERS[kind](file, data, unit)
+        if not loaded.risky:
+            return known | _found(loaded.transfer())
+    # A crash costs no more than a copy: try with less and less.
+    again = partial(_LOADERS[kind], file, data, unit, names=False)
+    for reload in (lambda: loaded, again, partial(again, careful=True)):
+        try:
+            return known | in_copy(partial(_transferred, reload), timeout, file)
+        except Crashed as error:
+            crash = error
+    raise crash
+
+
+def _transferred(load_again: Callable[[], Loaded]) -> Found:
+    loaded = load_again()
+    with translated("reading the file", error=ReadError, file=loaded.file):
+        return _found(loaded.transfer())
+
+
+def _found(read: Read) -> Found:
+    edgeless = [n for n, face in enumerate(faces(read.shape), 1) if next(explore(face, TopAbs_EDGE), None) is None]
+    told = {each.face for each in read.lost}
+    read.lost += [LostFace("", read.names.get(n, ""), "it has no edges", n) for n in edgeless if n not in told]
+    return {
+        "shape": read.shape, "names": read.names, "colours": read.colours, "layers": read.layers, "tree": read.tree,
+        "warnings": tuple(read.warnings), "lost": tuple(read.lost),
+    }  # fmt: skip
+
+
+def _read_brep(file: str, kind: str) -> TopoDS_Shape:
+    from OCP.BinTools import BinTools
+    from OCP.BRep import BRep_Builder
+    from OCP.BRepTools import BRepTools
+
+    shape = TopoDS_Shape()
+    if kind == "brep":
+        BRepTools.Read_s(shape, file, BRep_Builder())
+    else:
+        BinTools.Read_s(shape, file)
+    if shape.IsNull():
+        raise ReadError("is not a whole BREP file: write it again", file=file)
+    return unwrapped(shape)
+
+
+def _scaled(shape: TopoDS_Shape, unit: str | None) -> TopoDS_Shape:
+    """A shape without a unit of its own, in mm."""
+    if unit is None or unit == "mm":
+        return shape
+    scale = gp_Trsf()
+    scale.SetScale(gp_Pnt(), in_mm(unit))
+    return BRepBuilderAPI_Transform(shape, scale, True).Shape()
+
+
+def _scaled_node(node: Node, unit: str | None) -> Node:
+    """An instance whose place is in a unit, in mm."""
+    if unit is None or unit == "mm":
+        return node
+    move = node.place.Transformation()
+    move.SetTranslationPart(gp_Vec(move.TranslationPart() * in_mm(unit)))
+    return replace(
+        node, place=TopLoc_Location(move), children=tuple(_scaled_node(child, unit) for child in node.children)
+    )

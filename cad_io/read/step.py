@@ -1,0 +1,275 @@
+"""Read STEP through the kernel's document reader: products, names, colours and layers, and what of it got lost.
+
+The reader's return codes mean little: a file with "NaN" in it hangs the transfer, and one with a bad knot loses faces
+without a word. So what is known to hang is refused before the transfer, what may hang is left to a copy of the process
+(`Loaded.risky`), and what became of each face is asked afterwards.
+"""
+
+import re
+from collections import defaultdict
+from collections.abc import Iterator
+from typing import Any
+
+from OCP.IFSelect import IFSelect_RetDone
+from OCP.Interface import Interface_Static
+from OCP.StepBasic import StepBasic_NamedUnit
+from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Reader
+from OCP.STEPConstruct import STEPConstruct_UnitContext
+from OCP.StepData import StepData_Factors
+from OCP.StepGeom import StepGeom_CartesianPoint, StepGeom_Direction
+from OCP.StepRepr import StepRepr_ItemDefinedTransformation, StepRepr_RepresentationMap
+from OCP.StepShape import StepShape_TopologicalRepresentationItem
+from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
+from OCP.TDocStd import TDocStd_Document
+from OCP.TopAbs import TopAbs_FACE
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
+from OCP.TopTools import TopTools_IndexedMapOfShape
+from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
+
+from cad_io.arrays import LostFace
+from cad_io.errors import ReadError
+from cad_io.kernel import explore, faces
+from cad_io.kernel.components import as_one, unwrapped
+from cad_io.read.altered import open_border
+from cad_io.read.document import Read, add_attributes, each, roots
+from cad_io.read.faults import Model, type_of
+from cad_io.read.lost import Lost, is_face, is_whole, mend, name_of
+from cad_io.units import in_mm
+
+#: Each a pattern that starts with plain text, which is searched for ten times as fast as alternatives.
+_FACES = [re.compile(rb"%s\s*\(" % kind) for kind in (b"ADVANCED_FACE", b"FACE_SURFACE")]
+_IDENTS = re.compile(rb"(?:^|;)\s*(#\d+)\s*=", re.MULTILINE)
+#: Numbers so large that the kernel may crash on them, by their exponents.
+_HUGE = [re.compile(rb"%s\+?0*[1-9]\d\d" % letter) for letter in (b"E", b"e")]
+_BEFORE = tuple(b"%c" % byte for byte in b"0123456789.")
+#: What shapes are made of, or placed by.
+_SHAPES = (
+    StepShape_TopologicalRepresentationItem, StepRepr_ItemDefinedTransformation, StepRepr_RepresentationMap,
+)  # fmt: skip
+#: Entities named in one warning.
+_MOST_NAMED = 3
+
+
+class _NothingError(ReadError):
+    """No face came out."""
+
+
+class Loaded:
+    """A STEP file whose entities are loaded, but not yet made into shapes.
+
+    Parameters
+    ----------
+    file : str
+    data : bytes
+        Its content, to count faces in.
+    unit : str, optional
+        Length unit to take instead of the file's, one of `units.UNITS`.
+    names : bool
+        Ask the kernel for names, colours and layers, on which it crashes in some faulty files.
+    careful : bool
+        Leave out every face that uses something faulty.
+
+    Attributes
+    ----------
+    risky : bool
+        The transfer may crash or hang: to be run in a copy of the process.
+
+    Raises
+    ------
+    ReadError
+        Cut off, not STEP, or known to hang the transfer.
+    """
+
+    def __init__(
+        self, file: str, data: bytes, unit: str | None = None, *, names: bool = True, careful: bool = False
+    ) -> None:  # fmt: skip
+        self.file, self.data, self.unit, self.names, self.careful = file, data, unit, names, careful
+        STEPCAFControl_Controller.Init_s()
+        Interface_Static.SetIVal_s("read.stepcaf.subshapes.name", int(names))
+        self.reader = STEPCAFControl_Reader()
+        self.reader.SetColorMode(names)
+        self.reader.SetNameMode(names)
+        self.reader.SetLayerMode(names)
+        if self.reader.ReadFile(file) != IFSelect_RetDone:
+            cut = b"END-ISO-10303-21" not in data[-4096:]
+            raise ReadError(
+                "is cut off (its end is missing): fetch or export it again"
+                if cut
+                else "is not valid STEP (syntax): export it again",
+                file=file,
+            )
+        self.model = Model(self.reader.ChangeReader().WS())
+        self.faults = self.model.faults()
+        if any(fault.text.startswith("DATA NOT AVAILABLE") for fault in self.faults):
+            raise ReadError("is not valid STEP (syntax): export it again", file=file)
+        self.risky = bool(self.faults) or _has_huge(data)
+        self._refuse()
+
+    def transfer(self, *, traced: bool = False) -> Read:
+        """Make the shape.
+
+        Parameters
+        ----------
+        traced : bool
+            Find out which face was which entity, too; a file with faults is traced in any case.
+
+        Raises
+        ------
+        ReadError
+            It holds no face that can be read.
+        """
+        traced = traced or bool(self.faults)
+        real = self._mark() if traced else {}
+        mended = mend(self.model, self.faults if self.careful else ()) if traced else {}
+        try:
+            result = self._shape()
+        except _NothingError:
+            if self.careful or not self.faults:
+                raise
+            # One bad vertex can cost a whole solid: without the faces at it, the others may come.
+            return Loaded(self.file, self.data, self.unit, names=self.names, careful=True).transfer()
+        found, written = _distinct_faces(result.shape), sum(len(kind.findall(self.data)) for kind in _FACES)
+        if not traced:
+            # All is well, or else the file is read again with marks: only then can be told what is lost.
+            if found >= written and not self.model.trouble(fails=True) and not self._doubtful(result.shape):
+                return result
+            return Loaded(self.file, self.data, self.unit).transfer(traced=True)
+        shapes = faces(result.shape)
+        numbers = self._unmark(result, shapes, real)
+        lost = Lost(self.model, self._idents(), self.faults, mended, shapes, numbers, self._scale())
+        result.lost = lost.found()
+        # Faces that the kernel did not even load as such, or that went unseen otherwise.
+        gone = len({each.entity for each in result.lost if each.face is None})
+        result.lost += [LostFace("", "", "it is written, but could not be read")] * max(0, written - found - gone)
+        result.warnings += self._warnings(lost)
+        return result
+
+    def _refuse(self) -> None:
+        """Points and directions that are no numbers, used by a shape: the transfer would take for ever, or a guess."""
+        for fault in self.faults:
+            entity = self.model.entities.get(fault.number)
+            if isinstance(entity, StepGeom_CartesianPoint | StepGeom_Direction) and fault.parameter != "name":
+                users = (self.model.entities[n] for n in self.model.users(fault.number) if n)
+                if any(isinstance(user, _SHAPES) for user in users):
+                    ident = self._idents().get(fault.number, "")
+                    raise ReadError(
+                        f"is faulty STEP: {ident} {type_of(entity)} is no numbers ({fault.short}), which the CAD kernel "
+                        "cannot read to an end; export it again",
+                        file=self.file,
+                    )
+            if self.unit is None and _is_length(entity) and fault.parameter != "dimensions":
+                raise ReadError(
+                    f"has a faulty length unit ({fault.short}): give the right one with --unit (unit= in Python)",
+                    file=self.file,
+                )
+
+    def _shape(self) -> Read:
+        nothing = "holds no shape that can be read"
+        if self.faults:
+            nothing += f" ({self.faults[0].short}{_more(len(self.faults) - 1)})"
+        document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
+        if self.unit is not None:
+            # The kernel divides by the document's unit, in metres: chosen so that numbers come out as if in the unit
+            # wanted.
+            XCAFDoc_DocumentTool.SetLengthUnit_s(document, 1e-3 * _length_unit(self.reader) / in_mm(self.unit))
+        done = self.reader.Transfer(document)
+        shapes = [XCAFDoc_ShapeTool.GetShape_s(label) for label in each(roots(document))] if done else []
+        if not any(any(explore(shape, TopAbs_FACE)) for shape in shapes):
+            raise _NothingError(f"{nothing}: export it as a solid or surface model", file=self.file)
+        result = Read(unwrapped(as_one(shapes)))
+        add_attributes(document, result)
+        return result
+
+    def _doubtful(self, shape: TopoDS_Shape) -> bool:
+        """Whether the transfer doubted how faces fit together, or the border of a face, and one is open."""
+        doubted = [self.model.value(doubt.number) for doubt in self.model.trouble(fails=False) if doubt.number]
+        if any(map(is_whole, doubted)):
+            return True
+        border = any(isinstance(entity, StepShape_TopologicalRepresentationItem) for entity in doubted)
+        return border and any(open_border(face) for face in faces(shape))
+
+    def _mark(self) -> dict[int, str]:
+        """Give each face entity its number for a name, which the kernel hands on; the real names."""
+        real = {}
+        for number, entity in self.model.entities.items():
+            if is_face(entity):
+                real[number] = name_of(entity)
+                entity.SetName(TCollection_HAsciiString(f"@{number}"))
+        return real
+
+    def _unmark(self, result: Read, shapes: list[TopoDS_Face], real: dict[int, str]) -> dict[int, list[int]]:
+        """Put the names back; the numbers that each face entity has got in the part."""
+        numbers: dict[int, list[int]] = defaultdict(list)
+        for n, mark in list(result.names.items()):
+            if mark.startswith("@") and mark[1:].isdigit():
+                numbers[int(mark[1:])].append(n)
+                del result.names[n]
+        named = {n for ns in numbers.values() for n in ns}
+        unnamed = {n: face for n, face in enumerate(shapes, 1) if n not in named}
+        for n, number in (self.model.makers(unnamed) or {}).items():
+            if is_face(self.model.entities[number]):
+                numbers[number].append(n)
+        for number, name in real.items():
+            self.model.entities[number].SetName(TCollection_HAsciiString(name))
+            if name and name != "NONE":
+                result.names.update(dict.fromkeys(numbers.get(number, ()), name))
+        return dict(numbers)
+
+    def _idents(self) -> dict[int, str]:
+        """What the file calls its entities. The kernel knows them, but does not tell."""
+        idents = {i: ident.decode() for i, ident in enumerate(_IDENTS.findall(self.data), 1)}
+        return idents if len(idents) == len(self.model.entities) else {}
+
+    def _scale(self) -> float:
+        return in_mm(self.unit) if self.unit is not None else _length_unit(self.reader)
+
+    def _warnings(self, lost: Lost) -> Iterator[str]:
+        felt = {fault for each in lost.felt.values() for fault in each}
+        groups: dict[str, dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
+        for fault in self.faults:
+            where = "in its text" if not fault.number else "in geometry" if fault in felt else "that touch no face"
+            groups[where][fault.short].append(lost.ident(fault.number))
+        for where, texts in sorted(groups.items()):
+            said = [f"{text}{_at(idents)}" for text, idents in texts.items()]
+            yield (f"the file has faults {where} ({sum(map(len, texts.values()))}): "
+                   f"{'; '.join(said[:_MOST_NAMED])}{_more(len(said) - _MOST_NAMED)}")  # fmt: skip
+
+
+def _at(idents: list[str]) -> str:
+    known = list(filter(None, idents))
+    return f" ({known[0]}{_more(len(known) - 1)})" if known else ""
+
+
+def _has_huge(data: bytes) -> bool:
+    return any(data[at.start() - 1 : at.start()] in _BEFORE for huge in _HUGE for at in huge.finditer(data))
+
+
+def _is_length(entity: Any) -> bool:
+    other = re.search("Angle|Mass|Area|Volume|Time|Temperature|Ratio|Derived", type(entity).__name__)
+    return isinstance(entity, StepBasic_NamedUnit) and not other
+
+
+def _more(count: int) -> str:
+    return f" and {count} more" if count > 0 else ""
+
+
+def _length_unit(reader: STEPCAFControl_Reader) -> float:
+    """Length unit of a loaded file's first geometry, mm."""
+    model = reader.ChangeReader().StepModel()
+    for i in range(1, model.NbEntities() + 1):
+        context = getattr(model.Value(i), "GlobalUnitAssignedContext", None)
+        if context is not None:
+            units = STEPConstruct_UnitContext()
+            units.ComputeFactors(context(), StepData_Factors())
+            if units.LengthDone():
+                return float(units.LengthFactor())
+    return 1.0
+
+
+def _distinct_faces(shape: TopoDS_Shape) -> int:
+    """Faces counted once however often the assembly shows them."""
+    placed_once = TopTools_IndexedMapOfShape()
+    for face in explore(shape, TopAbs_FACE):
+        placed_once.Add(face.Located(TopLoc_Location()))
+    return placed_once.Extent()

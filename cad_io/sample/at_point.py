@@ -1,0 +1,124 @@
+"""The surface point of a part at a given place."""
+
+import itertools
+from collections.abc import Container, Sequence
+
+import numpy as np
+from OCP.Bnd import Bnd_Box
+from OCP.BRep import BRep_Tool
+from OCP.BRepBndLib import BRepBndLib
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeVertex
+from OCP.BRepExtrema import BRepExtrema_DistShapeShape
+from OCP.gp import gp_Pnt
+from OCP.ShapeAnalysis import ShapeAnalysis_Surface
+
+from cad_io.arrays import Floats, Orientation, SurfaceSamples
+from cad_io.errors import SampleError
+from cad_io.face.curvature import curvature
+from cad_io.face.trim import Trim
+from cad_io.kernel import second_derivatives, translated
+from cad_io.part import Part
+
+_PRECISION = 1e-9  # mm, asked of the projection
+
+
+def locate(
+    part: Part, orientation: Orientation, point: Sequence[float], within: float = 1e-3, *, ignore: Container[int] = ()
+) -> SurfaceSamples:
+    """The sample nearest to a point.
+
+    Parameters
+    ----------
+    part : Part
+    orientation : Orientation
+    point : (3,) float
+        Part coordinates, mm.
+    within : float
+        Farthest that the surface may be, mm. Between faces that are equally near, the lowest number counts.
+    ignore : container of int
+        Numbers of faces that are not looked at.
+
+    Returns
+    -------
+    SurfaceSamples
+        Of length 1; its area is 0, for it stands for no part of the face.
+
+    Raises
+    ------
+    SampleError
+        No face is that near, or it has no normal or curvature there.
+    """
+    place = np.asarray(point, float)
+    if place.shape != (3,) or not np.isfinite(place).all():
+        raise SampleError(f"a point has three finite coordinates, not {point}", file=part.file)
+    target = gp_Pnt(*place.tolist())
+    best: tuple[float, int, tuple[float, float]] | None = None
+    for info in part.faces:
+        if info.number in ignore or info.unjudged is not None or not _may_be_near(part, info.number, target, within):
+            continue
+        with translated("projecting a point", error=SampleError, file=part.file, face=info.id):
+            found = _projected(part, info.number, place, within)
+        if found is not None and (best is None or found[0] < best[0] - _PRECISION):
+            best = (found[0], info.number, found[1])
+    if best is None:
+        with translated("measuring a distance", error=SampleError, file=part.file):
+            vertex = BRepBuilderAPI_MakeVertex(target).Vertex()
+            distance = BRepExtrema_DistShapeShape(vertex, part.shape).Value()
+        where = ", ".join(f"{x:g}" for x in place)
+        cause = f"no face within {within:g} mm of ({where}): the nearest is {distance:.4g} mm away"
+        raise SampleError(cause, file=part.file)
+    _, number, uv = best
+    d = second_derivatives(part.adaptor(number), np.array([uv[0]]), np.array([uv[1]]))
+    geometry = curvature(d, float(orientation.sign[number - 1]), float(np.linalg.norm(part.size)))
+    if geometry.bad.any():
+        raise SampleError("the surface has no normal or curvature at this point", file=part.file, face=f"F{number}")
+    return SurfaceSamples(
+        point=d[:, 0], normal=geometry.normal, direction_max=geometry.direction_max, curvature=geometry.curvature,
+        uv=np.array([uv]), face=np.array([number], np.int32), area=np.zeros(1),
+        neighbours=np.zeros((0, 2), np.int32), unjudged=np.full(1, -1, np.int32), reasons=(), grids=(), max_gap=0.0,
+        empty=(),
+    )  # fmt: skip
+
+
+def _may_be_near(part: Part, number: int, target: gp_Pnt, within: float) -> bool:
+    box = Bnd_Box()
+    BRepBndLib.Add_s(part.face(number), box, False)
+    box.Enlarge(within)
+    return not box.IsOut(target)
+
+
+def _projected(part: Part, number: int, place: Floats, within: float) -> tuple[float, tuple[float, float]] | None:
+    """Distance and parameters of the nearest point of a trimmed face; None if it is not within reach."""
+    trim = part.trim(number)
+    if trim is None:
+        return None
+    surface = ShapeAnalysis_Surface(BRep_Tool.Surface_s(part.face(number)))
+    found = surface.ValueOfUV(gp_Pnt(*place.tolist()), _PRECISION)
+    adaptor = part.adaptor(number)
+    # The kernel may answer on another turn of a periodic surface than the face uses.
+    turns_u = _turns(adaptor.IsUPeriodic() and adaptor.UPeriod(), found.X(), trim.box[:2])
+    turns_v = _turns(adaptor.IsVPeriodic() and adaptor.VPeriod(), found.Y(), trim.box[2:])
+    for u, v in itertools.product(turns_u, turns_v):
+        distance = float(np.linalg.norm(np.array(adaptor.Value(u, v).Coord()) - place))
+        if distance <= within and _on_face(trim, u, v, within):
+            return distance, (u, v)
+    return None
+
+
+def _turns(period: float, value: float, bounds: Sequence[float]) -> list[float]:
+    """The value, moved by whole periods into or next to the bounds."""
+    if not period:
+        return [value]
+    first = int(np.floor((bounds[0] - value) / period))
+    turns = (value + k * period for k in range(first, first + 3))
+    return sorted(turns, key=lambda x: max(bounds[0] - x, x - bounds[1], 0.0))
+
+
+def _on_face(trim: Trim, u: float, v: float, within: float) -> bool:
+    """True if (u, v) lies in the trim, or at most `within` mm beside it: a point on an edge is on both its faces."""
+    if trim.inside(np.array([u]), np.array([v]))[0]:
+        return True
+    start, along = trim.segments[:, 0] * trim.scale, (trim.segments[:, 1] - trim.segments[:, 0]) * trim.scale
+    offset = np.array([u, v]) * trim.scale - start
+    share = np.clip((offset * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-300), 0, 1)
+    return bool(np.linalg.norm(offset - share[:, None] * along, axis=1).min() <= within)

@@ -1,0 +1,130 @@
+"""Where to lay the grid lines of a face, in its parameter plane."""
+
+from typing import NamedTuple
+
+import numpy as np
+from OCP.BRepAdaptor import BRepAdaptor_Surface
+from OCP.GeomAbs import GeomAbs_CN
+
+from cad_io.arrays import Floats
+from cad_io.face.trim import Trim
+from cad_io.kernel import first_derivatives, values
+
+#: How far lines stay from a border that is a single point, as a share of the range.
+INWARD = 1e-4
+_ENDLESS = 1e50  # the kernel's infinite parameters are 2e100
+_SAME = 1e-7  # of a range
+_MOST_NODES = 2_000_000
+_LEAST_LINES = 3
+_PROBES = (17, 97)  # least and most probes of speed a direction
+
+
+class Lines(NamedTuple):
+    """Increasing grid lines; closed: the last line's neighbour is the first. `span` is the whole range of each."""
+
+    u: Floats
+    v: Floats
+    closed_u: bool
+    closed_v: bool
+    span: tuple[float, float, float, float]
+
+
+class _Range(NamedTuple):
+    low: float
+    high: float
+    closed: bool
+    point_low: bool
+    point_high: bool
+
+    def lines(self, share: Floats) -> Floats:
+        """Lines at shares (0 to 1) of the range; a seam once, and off borders that are single points."""
+        lines = self.low + (self.high - self.low) * (share[:-1] if self.closed else share)
+        if self.point_low:
+            lines[0] += INWARD * (self.high - self.low)
+        if self.point_high and not self.closed:
+            lines[-1] -= INWARD * (self.high - self.low)
+        return lines
+
+
+def uniform(adaptor: BRepAdaptor_Surface, trim: Trim, count: int) -> Lines:
+    """`count` lines each way, uniform over the surface's own domain, ends included.
+
+    A surface without end in some direction has no domain of its own; there the trim's box serves.
+    """
+    natural = (
+        adaptor.FirstUParameter(), adaptor.LastUParameter(), adaptor.FirstVParameter(), adaptor.LastVParameter(),
+    )  # fmt: skip
+    endless = max(abs(x) for x in natural) > _ENDLESS
+    u, v = _ranges(adaptor, trim, trim.box if endless else natural)
+    share = np.linspace(0.0, 1.0, count)
+    return Lines(u.lines(share), v.lines(share), u.closed, v.closed, (u.low, u.high, v.low, v.high))
+
+
+def spaced(adaptor: BRepAdaptor_Surface, trim: Trim, spacing: float, more: tuple[float, float] = (1.0, 1.0)) -> Lines:
+    """Lines over the trim's box so that neighbours are at most `spacing` mm apart, `more` times as many if asked.
+
+    Lines are laid by the largest speed across them, so the gap holds everywhere as far as the probes saw.
+    """
+    u, v = _ranges(adaptor, trim, trim.box)
+    spans = adaptor.NbUIntervals(GeomAbs_CN), adaptor.NbVIntervals(GeomAbs_CN)
+    n = [int(np.clip(2 * count + 1, *_PROBES)) for count in spans]
+    share_u, share_v = np.linspace(0.0, 1.0, n[0]), np.linspace(0.0, 1.0, n[1])
+    grid_u, grid_v = np.meshgrid(u.low + share_u * (u.high - u.low), v.low + share_v * (v.high - v.low), indexing="ij")
+    d = first_derivatives(adaptor, grid_u.ravel(), grid_v.ravel()).reshape(n[0], n[1], 3, 3)
+    speed = np.nan_to_num(np.linalg.norm(d[:, :, 1:], axis=3))
+    speed_u = speed[..., 0].max(axis=1) * (u.high - u.low)
+    speed_v = speed[..., 1].max(axis=0) * (v.high - v.low)
+    lengths = [_cumulative(speed_u, share_u), _cumulative(speed_v, share_v)]
+    gaps = np.array([max(np.ceil(more[k] * lengths[k][-1] / spacing), _LEAST_LINES - 1) for k in (0, 1)])
+    closed = np.array([u.closed, v.closed])
+    gaps = np.where(closed, np.maximum(gaps, _LEAST_LINES), gaps)
+    gaps = np.maximum(gaps / max(1.0, np.sqrt(gaps.prod() / _MOST_NODES)), 2).astype(int)
+    shares = [
+        np.interp(np.linspace(0.0, length[-1], gap + 1), length, share)
+        for length, gap, share in zip(lengths, gaps, (share_u, share_v), strict=True)
+    ]
+    return Lines(u.lines(shares[0]), v.lines(shares[1]), u.closed, v.closed, (u.low, u.high, v.low, v.high))
+
+
+def _cumulative(speed: Floats, share: Floats) -> Floats:
+    # A floor keeps the inverse defined where the surface stands still (a collapsed border).
+    speed = np.maximum(speed, 1e-6 * max(speed.max(), 1e-300))
+    # The larger of both ends, so that a gap between probes is not underrated.
+    return np.concatenate([[0.0], np.cumsum(np.maximum(speed[1:], speed[:-1]) * np.diff(share))])
+
+
+def _ranges(
+    adaptor: BRepAdaptor_Surface, trim: Trim, bounds: tuple[float, float, float, float]
+) -> tuple[_Range, _Range]:  # fmt: skip
+    u0, u1, v0, v1 = bounds
+    if adaptor.IsUPeriodic():
+        u0, u1 = _shifted(u0, u1, trim.box[0], trim.box[1], adaptor.UPeriod())
+    if adaptor.IsVPeriodic():
+        v0, v1 = _shifted(v0, v1, trim.box[2], trim.box[3], adaptor.VPeriod())
+    closed_u = adaptor.IsUClosed() and _whole(u1 - u0, adaptor.FirstUParameter(), adaptor.LastUParameter())
+    closed_v = adaptor.IsVClosed() and _whole(v1 - v0, adaptor.FirstVParameter(), adaptor.LastVParameter())
+    # A closed border may lie anywhere on its loop, so a few points on it tell whether it is a single point.
+    share = np.array([0.0, 0.13, 0.37, 0.61, 0.89])
+    u, v = u0 + share * (u1 - u0), v0 + share * (v1 - v0)
+    size = float(np.hypot(trim.scale[0] * (u1 - u0), trim.scale[1] * (v1 - v0)))
+
+    def is_point(us: Floats, vs: Floats) -> bool:
+        points = values(adaptor, us, vs)
+        return bool(np.linalg.norm(points - points[0], axis=1).max() < 1e-7 * size)
+
+    return (
+        _Range(u0, u1, closed_u, is_point(np.full(5, u0), v), is_point(np.full(5, u1), v)),
+        _Range(v0, v1, closed_v, is_point(u, np.full(5, v0)), is_point(u, np.full(5, v1))),
+    )
+
+
+def _shifted(low: float, high: float, trim_low: float, trim_high: float, period: float) -> tuple[float, float]:
+    """The range moved so that it covers a trim that lies on another turn."""
+    slack = _SAME * period
+    if trim_low >= low - slack and trim_high <= high + slack:
+        return low, high
+    return trim_low, trim_low + (high - low)
+
+
+def _whole(span: float, first: float, last: float) -> bool:
+    return span >= (last - first) * (1 - _SAME)

@@ -1,0 +1,8 @@
+"""Faces cut along the boundaries of labels on them, and checked.
+
+May use: single faces and the kernel's manners.
+"""
+
+from cad_io.split.pieces import split
+
+__all__ = ["split"]

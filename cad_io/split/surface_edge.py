@@ -1,0 +1,108 @@
+"""An edge that lies on a face, made from a curve in the face's parameter plane."""
+
+from typing import Any
+
+import numpy as np
+from OCP.BRep import BRep_Builder, BRep_Tool
+from OCP.BRepAdaptor import BRepAdaptor_Surface
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeVertex
+from OCP.Geom import Geom_BSplineCurve
+from OCP.Geom2d import Geom2d_BSplineCurve
+from OCP.gp import gp_Pnt, gp_Pnt2d
+from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array1OfPnt2d
+from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
+from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Edge
+from scipy.interpolate import BSpline, make_interp_spline
+
+from cad_io.arrays import Floats
+from cad_io.split.contour import Spline
+
+#: Most that an edge's curve in space may leave its curve on the surface, mm.
+DEVIATION = 1e-4
+_MOST_SITES = 5000
+
+
+def surface_edge(face: Any, spline: Spline) -> Any:
+    """Edge with the given parameter curve on the face's surface and a cubic curve in space of the same parameter.
+
+    The kernel's own builder of curves in space stops silently up to 1 mm off (OCCT 7.9); here the surface is
+    interpolated and sites are added where the error, measured between the sites, is above DEVIATION.
+
+    Parameters
+    ----------
+    face : TopoDS_Face
+    spline : Spline
+        In surface parameters.
+
+    Returns
+    -------
+    TopoDS_Edge
+        In part coordinates; its tolerance is the measured deviation.
+
+    Raises
+    ------
+    ValueError
+        The deviation cannot be reached.
+    """
+    surface = BRepAdaptor_Surface(face, False)
+    curve = BSpline(spline.knots, spline.poles, 3)
+
+    def at(t: Floats) -> Floats:
+        return np.array([surface.Value(u, v).Coord() for u, v in curve(t).tolist()])
+
+    knots = np.unique(spline.knots)
+    sites = np.linspace(knots[0], knots[-1], 9) if len(knots) < 5 else np.union1d(knots, 0.5 * (knots[1:] + knots[:-1]))
+    while True:
+        space = make_interp_spline(sites, at(sites), k=3)
+        gap = np.diff(sites)
+        between = np.stack([sites[:-1] + share * gap for share in (0.25, 0.5, 0.75)])
+        error = np.linalg.norm(space(between.ravel()) - at(between.ravel()), axis=1).reshape(between.shape).max(axis=0)
+        worst = float(error.max())
+        if worst < DEVIATION:
+            break
+        if len(sites) > _MOST_SITES:
+            raise ValueError(f"a curve on the surface stays {worst:.1e} mm off its curve in space")
+        sites = np.union1d(sites, between[1][error >= DEVIATION])
+
+    tolerance = max(1.2 * worst, 1e-7)
+    builder, edge, location = BRep_Builder(), TopoDS_Edge(), TopLoc_Location()
+    basis = BRep_Tool.Surface_s(face, location)
+    builder.MakeEdge(edge, _curve3d(space), tolerance)
+    builder.UpdateEdge(edge, _curve2d(spline), basis, location, tolerance)
+    first, last = (gp_Pnt(*xyz) for xyz in space(np.array([sites[0], sites[-1]])).tolist())
+    start = BRepBuilderAPI_MakeVertex(first).Vertex()
+    # A curve from seam to seam is closed in space alone; two vertices in one place would make the kernel ignore it.
+    stop = start if first.Distance(last) < DEVIATION else BRepBuilderAPI_MakeVertex(last).Vertex()
+    for vertex, orientation in ((start, TopAbs_FORWARD), (stop, TopAbs_REVERSED)):
+        builder.UpdateVertex(vertex, tolerance)
+        builder.Add(edge, vertex.Oriented(orientation))
+    builder.Range(edge, float(sites[0]), float(sites[-1]))
+    builder.SameRange(edge, True)
+    builder.SameParameter(edge, True)
+    return edge
+
+
+def _curve2d(spline: Spline) -> Any:
+    poles = TColgp_Array1OfPnt2d(1, len(spline.poles))
+    for i, pole in enumerate(spline.poles.tolist(), 1):
+        poles.SetValue(i, gp_Pnt2d(*pole))
+    return Geom2d_BSplineCurve(poles, *_knots(spline.knots), 3)
+
+
+def _curve3d(curve: BSpline) -> Any:
+    poles = TColgp_Array1OfPnt(1, len(curve.c))
+    for i, pole in enumerate(curve.c.tolist(), 1):
+        poles.SetValue(i, gp_Pnt(*pole))
+    return Geom_BSplineCurve(poles, *_knots(curve.t), 3)
+
+
+def _knots(flat: Floats) -> tuple[Any, Any]:
+    """Distinct knots and how often each occurs, as the kernel wants them."""
+    value, count = np.unique(flat, return_counts=True)
+    knots, multiplicities = TColStd_Array1OfReal(1, len(value)), TColStd_Array1OfInteger(1, len(value))
+    for i, (x, m) in enumerate(zip(value.tolist(), count.tolist(), strict=True), 1):
+        knots.SetValue(i, x)
+        multiplicities.SetValue(i, m)
+    return knots, multiplicities

@@ -1,0 +1,300 @@
+"""A split part as GLB: metres, Y up, one node a face of the part and below it one a piece, facts in their `extras`.
+
+Colours are linear vertex colours, so that the merged variant (one mesh for all, for parts of thousands of faces, with
+the face number at each vertex as `_FACE`) looks the same.
+
+An own writer, because trimesh (5.2) rounds linear colours to 8 bits, which shows in dark ones, and ties the bytes of a
+file to its version. The format asked for here is small: see the glTF 2.0 specification, sections 3.6 and 4.4.
+"""
+
+import json
+import struct
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRep import BRep_Tool
+from OCP.BRepAdaptor import BRepAdaptor_Surface
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
+from OCP.BRepMesh import BRepMesh_IncrementalMesh
+from OCP.TopAbs import TopAbs_REVERSED
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS
+
+from cad_io.arrays import FaceLabels, Floats, Style
+from cad_io.errors import WriteError
+from cad_io.kernel import first_derivatives, translated
+from cad_io.kernel.components import compound
+from cad_io.split.pieces import MIXED, Piece, Split
+from cad_io.write.aside import aside
+from cad_io.write.label_mesh import label_mesh
+
+#: Largest angle between neighbouring facets, rad.
+ANGLE = 0.35
+#: Default chord error as a share of the part's diagonal.
+FINE = 5e-4
+_METRE = 1e-3
+_COMPONENT = {"float32": 5126, "uint32": 5125, "uint16": 5123}
+_VERTICES, _TRIANGLES = 34962, 34963  # what a buffer view is for
+
+
+class _Mesh(NamedTuple):
+    """Points (n, 3) mm and unit normals (n, 3) in part coordinates; triangles (m, 3) counter-clockwise from outside."""
+
+    point: Floats
+    normal: Floats
+    triangle: NDArray[np.uint32]
+
+
+class _Drawn(NamedTuple):
+    """A piece as vertex attributes: by name, arrays of n vertices; and its triangles (m, 3)."""
+
+    attributes: dict[str, NDArray[Any]]
+    triangle: NDArray[np.uint32]
+
+
+def write_gltf(
+    split: Split,
+    path: str | Path,
+    style: Callable[[Piece], Style],
+    *,
+    extras: Callable[[int], dict[str, Any]],
+    piece_extras: Callable[[Piece], dict[str, Any]],
+    deflection: float | None = None,
+    merged: bool = False,
+) -> tuple[int, ...]:
+    """Write all pieces as triangles; those `beside` the part in the place of their face.
+
+    Triangles of a face that was left whole are split along the grid of its labels and stand in a node a label.
+
+    Parameters
+    ----------
+    split : Split
+    path : path-like
+        Appears whole or not at all.
+    style : callable
+        Name and sRGB colour of a piece; the file has the linear colour that glTF asks for, and looks the same.
+    extras : callable
+        Facts (JSON values) about a face, by number: `extras` of the node `F<number>`.
+    piece_extras : callable
+        Facts about a piece: `extras` of its node, which has the style's name.
+    deflection : float, optional
+        Chord error of the triangles, mm; default FINE times the part's diagonal.
+    merged : bool
+        One node and mesh for everything: `extras` of the node holds a list of the faces' facts, and each vertex its
+        face number as `_FACE`.
+
+    Returns
+    -------
+    tuple of int
+        Numbers of faces of which the kernel could not mesh all pieces; what is missing has a node without a mesh.
+
+    Raises
+    ------
+    WriteError
+        The file cannot be written, or there is no triangle to write.
+    """
+    with aside(path) as temporary:
+        with translated("meshing", error=WriteError, file=str(path)):
+            meshes = list(_meshes(split, deflection))
+        if not any(mesh for _, mesh in meshes):
+            raise WriteError("the CAD kernel made no triangle of the part", file=str(path))
+        pieces = [piece for piece, _ in meshes]
+        drawn = [_draw(piece, mesh, style) if mesh else None for piece, mesh in meshes]
+        glb = _Glb()
+        if merged:
+            _fill_merged(glb, pieces, drawn, extras)
+        else:
+            _fill(glb, pieces, drawn, style, extras, piece_extras)
+        temporary.write_bytes(glb.bytes())
+    return tuple(sorted({piece.face for piece, mesh in meshes if mesh is None}))
+
+
+def _shown(split: Split, piece: Piece) -> tuple[Piece, ...]:
+    return split.beside.get(piece.face, (piece,))
+
+
+def linear(rgb: tuple[float, float, float]) -> list[float]:
+    """Linear light of an sRGB colour (IEC 61966-2-1), 0 to 1."""
+    c = np.asarray(rgb, float)
+    light = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
+    return [round(float(x), 6) for x in light]
+
+
+def _meshes(split: Split, deflection: float | None) -> Iterator[tuple[Piece, _Mesh | None]]:
+    """All that is shown; of a face that could not be split, the triangles of each label as a piece."""
+    # A copy without triangles: the part is not to carry ours, and finer ones that it carries would change the file.
+    whole = compound([split.shape, *(p.shape for beside in split.beside.values() for p in beside)])
+    copy = BRepBuilderAPI_Copy(whole, False, False)
+    if deflection is None:
+        deflection = FINE * _diagonal(split)
+    BRepMesh_IncrementalMesh(copy.Shape(), deflection, False, ANGLE, False)
+    for piece in (shown for each in split.pieces for shown in _shown(split, each)):
+        labels = split.labels.get(piece.face) if piece.label == MIXED else None
+        meshes = _mesh(piece.shape, TopoDS.Face_s(copy.ModifiedShape(piece.shape)), labels)
+        for label, mesh in (meshes or {}).items():
+            yield (piece if labels is None else Piece(piece.face, label, piece.shape)), mesh
+        if not meshes:
+            yield piece, None
+
+
+def _diagonal(split: Split) -> float:
+    from OCP.Bnd import Bnd_Box
+    from OCP.BRepBndLib import BRepBndLib
+
+    box = Bnd_Box()
+    BRepBndLib.Add_s(split.shape, box, False)
+    return float(np.sqrt(box.SquareExtent()))
+
+
+def _mesh(face: Any, meshed: Any, labels: FaceLabels | None) -> dict[int, _Mesh] | None:
+    """Mesh of a face by label, all of it by the label 0 where there are none; None if the kernel made none."""
+    location = TopLoc_Location()
+    triangulation = BRep_Tool.Triangulation_s(meshed, location)
+    if triangulation is None or not triangulation.HasUVNodes():
+        return None
+    uv = np.array([triangulation.UVNode(i + 1).Coord() for i in range(triangulation.NbNodes())])
+    triangle = np.array([triangulation.Triangle(i + 1).Get() for i in range(triangulation.NbTriangles())]) - 1
+    # The mesh's own nodes, not the surface's points: along an edge both faces have the same ones, and no cracks.
+    place = location.Transformation()
+    nodes = (triangulation.Node(i + 1).Transformed(place).Coord() for i in range(triangulation.NbNodes()))
+    point, label = np.array(list(nodes)), np.zeros(len(triangle), np.int32)
+    if labels is not None:
+        uv, point, triangle, label = label_mesh(face, uv, point, triangle, labels)
+    s = first_derivatives(BRepAdaptor_Surface(face, False), uv[:, 0], uv[:, 1])
+    normal = np.cross(s[:, 1], s[:, 2])
+    if face.Orientation() == TopAbs_REVERSED:
+        triangle, normal = triangle[:, ::-1], -normal
+    # Corners that are one point in 32 bits make a triangle without a normal or an inside.
+    corner = (point * _METRE).astype(np.float32)[triangle]
+    facet = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]).astype(float)
+    kept = (facet**2).sum(1) > 0
+    triangle, facet, label = triangle[kept], facet[kept], label[kept]
+    tangents = s[:, 1:]
+    length = np.linalg.norm(normal, axis=1)
+    # At a pole the tangents give no normal: there the facets around it do.
+    pole = ~(length > 1e-6 * np.linalg.norm(tangents, axis=2).prod(axis=1))
+    around = np.zeros_like(point)
+    np.add.at(around, triangle, facet[:, None] / np.linalg.norm(facet, axis=1)[:, None, None])
+    normal = np.where(pole[:, None], around, normal / np.where(pole, 1.0, length)[:, None])
+    meshes = {}
+    for value in np.unique(label).tolist():
+        used, mine = np.unique(triangle[label == value], return_inverse=True)
+        unit = normal[used] / np.linalg.norm(normal[used], axis=1)[:, None]
+        meshes[value] = _Mesh(point[used], unit, mine.reshape(-1, 3).astype(np.uint32))
+    return meshes
+
+
+def _draw(piece: Piece, mesh: _Mesh, style: Callable[[Piece], Style]) -> _Drawn:
+    light = np.round(np.array([*linear(style(piece).rgb), 1.0]) * 65535).astype(np.uint16)
+    attributes: dict[str, NDArray[Any]] = {
+        "POSITION": _y_up(mesh.point * _METRE),
+        "NORMAL": _y_up(mesh.normal),
+        "COLOR_0": np.tile(light, (len(mesh.point), 1)),
+    }
+    return _Drawn(attributes, mesh.triangle)
+
+
+def _fill(
+    glb: "_Glb",
+    pieces: Sequence[Piece],
+    drawn: Sequence[_Drawn | None],
+    style: Callable[[Piece], Style],
+    extras: Callable[[int], dict[str, Any]],
+    piece_extras: Callable[[Piece], dict[str, Any]],
+) -> None:
+    node_of: dict[int, int] = {}
+    root = glb.node({"name": "part"})
+    for piece, mesh in zip(pieces, drawn, strict=True):
+        if piece.face not in node_of:
+            node_of[piece.face] = glb.node({"name": f"F{piece.face}", "extras": extras(piece.face)}, root)
+        name = style(piece).name
+        glb.node({"name": name, "extras": piece_extras(piece), **glb.mesh(name, mesh)}, node_of[piece.face])
+
+
+def _fill_merged(
+    glb: "_Glb", pieces: Sequence[Piece], drawn: Sequence[_Drawn | None], extras: Callable[[int], dict[str, Any]]
+) -> None:
+    shown = [(piece, mesh) for piece, mesh in zip(pieces, drawn, strict=True) if mesh]
+    sizes = [len(mesh.attributes["POSITION"]) for _, mesh in shown]
+    starts = np.cumsum([0, *sizes[:-1]])
+    attributes = {k: np.concatenate([mesh.attributes[k] for _, mesh in shown]) for k in shown[0][1].attributes}
+    attributes["_FACE"] = np.repeat(np.array([piece.face for piece, _ in shown], np.float32), sizes)
+    triangle = np.concatenate([mesh.triangle + np.uint32(a) for a, (_, mesh) in zip(starts, shown, strict=True)])
+    facts = [extras(number) for number in dict.fromkeys(piece.face for piece in pieces)]
+    glb.node({"name": "part", "extras": {"faces": facts}, **glb.mesh("part", _Drawn(attributes, triangle))})
+
+
+class _Glb:
+    """The file as it grows."""
+
+    def __init__(self) -> None:
+        self.data = bytearray()
+        self.views: list[dict[str, Any]] = []
+        self.accessors: list[dict[str, Any]] = []
+        self.nodes: list[dict[str, Any]] = []
+        self.meshes: list[dict[str, Any]] = []
+
+    def node(self, node: dict[str, Any], parent: int | None = None) -> int:
+        if parent is not None:
+            self.nodes[parent].setdefault("children", []).append(len(self.nodes))
+        self.nodes.append(node)
+        return len(self.nodes) - 1
+
+    def mesh(self, name: str, drawn: _Drawn | None) -> dict[str, int]:
+        """The `mesh` of a node; nothing where nothing could be drawn."""
+        if drawn is None:
+            return {}
+        attributes = {key: self._accessor(array, key) for key, array in drawn.attributes.items()}
+        indices = self._accessor(drawn.triangle.reshape(-1))
+        self.meshes.append(
+            {"name": name, "primitives": [{"attributes": attributes, "indices": indices, "material": 0}]}
+        )
+        return {"mesh": len(self.meshes) - 1}
+
+    def _accessor(self, array: NDArray[Any], attribute: str = "") -> int:
+        target = _VERTICES if attribute else _TRIANGLES
+        self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": array.nbytes, "target": target})
+        item: dict[str, Any] = {
+            "bufferView": len(self.views) - 1,
+            "componentType": _COMPONENT[array.dtype.name],
+            "count": len(array),
+            "type": "SCALAR" if array.ndim == 1 else f"VEC{array.shape[1]}",
+        }
+        if attribute == "POSITION":
+            item |= {"min": array.min(axis=0).tolist(), "max": array.max(axis=0).tolist()}
+        if array.dtype == np.uint16:
+            item["normalized"] = True
+        self.accessors.append(item)
+        self.data.extend(array.tobytes())  # every item has a multiple of 4 bytes: every view starts aligned
+        return len(self.accessors) - 1
+
+    def bytes(self) -> bytes:
+        document = {
+            "asset": {"version": "2.0", "generator": "plan-cutters"},
+            "scene": 0,
+            "scenes": [{"nodes": [0]}],
+            "nodes": self.nodes,
+            "meshes": self.meshes,
+            # White: vertex colours are multiplied by it. Open shells are looked at from both sides.
+            "materials": [
+                {"name": "verdicts", "doubleSided": True,
+                 "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.8}}
+            ],
+            "accessors": self.accessors,
+            "bufferViews": self.views,
+            "buffers": [{"byteLength": len(self.data)}],
+        }  # fmt: skip
+        text = json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False).encode()
+        text += b" " * (-len(text) % 4)
+        data = bytes(self.data)
+        chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(data), b"BIN\0") + data
+        return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+
+def _y_up(xyz: Floats) -> NDArray[np.float32]:
+    """Part coordinates (Z up) as glTF's (Y up), in 32 bits."""
+    # Adding zero turns -0.0 into 0.0.
+    return np.ascontiguousarray(np.stack([xyz[:, 0], xyz[:, 2], -xyz[:, 1]], axis=1) + 0.0, np.float32)

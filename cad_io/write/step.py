@@ -1,0 +1,319 @@
+"""A split part as STEP: the input's products, every piece a face with its own name, colour and layers.
+
+The same input gives the same bytes. Two instances of one product differ in their verdicts, so each is a product.
+Solids, shells and sheets are put into products so that FreeCAD shows their colours, too.
+"""
+
+import re
+import unicodedata
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
+from OCP.BRep import BRep_Builder, BRep_Tool
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
+from OCP.IFSelect import IFSelect_RetDone
+from OCP.Interface import Interface_Static
+from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
+from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Writer
+from OCP.STEPControl import STEPControl_AsIs
+from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDocStd import TDocStd_Document
+from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS, TopoDS_Shell
+from OCP.TopTools import TopTools_IndexedMapOfShape
+from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
+
+from cad_io.arrays import Style
+from cad_io.errors import WriteError
+from cad_io.kernel import edges_of, explore, faces, shape_map, silence, translated
+from cad_io.kernel.assembly import Node
+from cad_io.kernel.components import compound, flat
+from cad_io.split.pieces import Piece, Split
+from cad_io.write.aside import aside
+from cad_io.write.canonical import canonical
+
+#: Of every file: a fixed one, so that the same input gives the same bytes.
+TIME_STAMP = "2000-01-01T00:00:00"
+ORIGIN = "plan-cutters"
+
+
+def write_step(
+    split: Split,
+    path: str | Path,
+    style: Callable[[Piece], Style],
+    *,
+    product: str,
+    tree: Sequence[Node] = (),
+    layers: Mapping[int, Sequence[str]] | None = None,
+    schema: str = "AP242DIS",
+) -> None:
+    """Write all pieces, coloured and named, in the products that they belong to.
+
+    Parameters
+    ----------
+    split : Split
+        Its pieces `beside` go into shells `F<number> regions` of the face's product.
+    path : path-like
+        Appears whole or not at all.
+    style : callable
+        Name and colour of a piece. Names become ASCII.
+    product : str
+        Name of products that have none.
+    tree : sequence of Node
+        Products of the part, which hold all its faces; default a single one.
+    layers : mapping, optional
+        Face number -> layers of the face.
+    schema : str
+        The kernel's name of an application protocol: `AP242DIS`, `AP214IS`, `AP203`.
+
+    Raises
+    ------
+    WriteError
+        The file cannot be written, or the kernel lost a face, name or colour on the way.
+    """
+    silence()
+    file = str(path)
+    with aside(path) as temporary, translated("writing STEP", error=WriteError, file=file):
+        with _settings(schema, file):
+            document = TDocStd_Document(TCollection_ExtendedString("BinXCAF"))
+            filled = _Document(document, style, layers or {}, product, file)
+            filled.fill(split, tree)
+            writer = STEPCAFControl_Writer()
+            writer.SetColorMode(True)
+            writer.SetNameMode(True)
+            writer.SetLayerMode(True)
+            if not writer.Transfer(document, STEPControl_AsIs):
+                raise WriteError("the CAD kernel cannot turn the part into STEP", file=file)
+            _head(writer.ChangeWriter().Model(), product)
+            if writer.Write(str(temporary)) != IFSelect_RetDone:
+                raise WriteError("the CAD kernel cannot write the file (is the disk full?)", file=file)
+        text = temporary.read_bytes()
+        _recount(text, filled, file)
+        temporary.write_bytes(canonical(text))
+
+
+@contextmanager
+def _settings(schema: str, file: str) -> Iterator[None]:
+    """The kernel's settings are global: they are put back for the host's own exports."""
+    STEPCAFControl_Controller.Init_s()  # before it, settings are ignored
+    old_schema = Interface_Static.CVal_s("write.step.schema")
+    old_names = Interface_Static.IVal_s("write.stepcaf.subshapes.name")
+    try:
+        if not Interface_Static.SetCVal_s("write.step.schema", schema):
+            raise WriteError(f"no STEP schema is called {schema}", file=file)
+        Interface_Static.SetIVal_s("write.stepcaf.subshapes.name", 1)
+        yield
+    finally:
+        Interface_Static.SetCVal_s("write.step.schema", old_schema)
+        Interface_Static.SetIVal_s("write.stepcaf.subshapes.name", old_names)
+
+
+class _Document:
+    """The kernel's document as it grows."""
+
+    def __init__(
+        self,
+        document: Any,
+        style: Callable[[Piece], Style],
+        layers: Mapping[int, Sequence[str]],
+        product: str,
+        file: str,
+    ) -> None:
+        self.shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+        self.colours = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
+        self.layer_tool = XCAFDoc_DocumentTool.LayerTool_s(document.Main())
+        self.style, self.layers, self.product, self.file = style, layers, product, file
+        self.written = TopTools_IndexedMapOfShape()
+        self.faces = self.styles = 0
+
+    def fill(self, split: Split, tree: Sequence[Node]) -> None:
+        tree = tree or [
+            Node(self.product, "", TopLoc_Location(), faces=tuple(dict.fromkeys(p.face for p in split.pieces)))
+        ]
+        leaves = [leaf for root in tree for leaf, _, _ in root.leaves()]
+        leaf_of = {number: i for i, leaf in enumerate(leaves) for number in leaf.faces}
+        owner = TopTools_IndexedMapOfShape()
+        found = [piece for piece in split.pieces if owner.Add(piece.shape) == owner.Extent()]
+        mine: dict[int, list[_Body]] = {id(leaf): [] for leaf in leaves}
+        for shape in flat(split.shape):
+            pieces = [found[owner.FindIndex(face) - 1] for face in faces(shape)]
+            numbers = dict.fromkeys(piece.face for piece in pieces)
+            # What has no face (curves, points) goes with the first product.
+            at = leaf_of[pieces[0].face] if pieces else 0
+            mine[id(leaves[at])].append(
+                _Body(shape, pieces, {n: split.beside[n] for n in numbers if n in split.beside})
+            )
+        for root in tree:
+            self.node(root, root.place, mine)
+        self.shapes.UpdateAssemblies()
+
+    def node(self, node: Node, place: TopLoc_Location, mine: dict[int, list["_Body"]]) -> Any:
+        """Label of a product; `place` is where it stands in the part. None if nothing of it is left."""
+        if not node.children:
+            bodies = mine[id(node)]
+            return self.leaf(node.name or self.product, bodies, place) if bodies else None
+        found = [(child, self.node(child, place.Multiplied(child.place), mine)) for child in node.children]
+        label = self.shapes.NewShape()
+        _name(label, node.name or self.product)
+        for child, product in found:
+            if product is not None:
+                _name(self.shapes.AddComponent(label, product, child.place), child.instance or child.name)
+        return label
+
+    def leaf(self, name: str, bodies: Sequence["_Body"], place: TopLoc_Location) -> Any:
+        """Label of a product made of bodies that stand at `place` in the part; of several solids, each is a product.
+
+        FreeCAD forgets the colours of faces in a product of several solids.
+        """
+        solids = [body for body in bodies if body.solid]
+        if len(solids) < 2:
+            return self.simple(name, bodies, place)
+        label = self.shapes.NewShape()
+        _name(label, name)
+        rest = [body for body in bodies if not body.solid]
+        for number, group in enumerate([*([body] for body in solids), *([rest] if rest else [])], 1):
+            product = self.simple(f"{name} {number}", group, place)
+            _name(self.shapes.AddComponent(label, product, TopLoc_Location()), f"{name} {number}")
+        return label
+
+    def simple(self, name: str, bodies: Sequence["_Body"], place: TopLoc_Location) -> Any:
+        """Label of a product of at most one solid."""
+        back = place.Inverted()
+        others, shells = _parted(bodies, self.style)
+        # A fresh compound without a location: in a located shape, or one that is itself a face, faces get no label.
+        whole = compound([s.Moved(back) for s in (*others, *(shell.shape for shell in shells))])
+        copy = BRepBuilderAPI_Copy()
+        again = any(self.written.Contains(face) for face in _unplaced(whole))
+        if again:  # an instance of what is written already: its styles would go to those faces
+            copy.Perform(whole, False, False)
+            whole = copy.Shape()
+        for face in _unplaced(whole):
+            self.written.Add(face)
+        label = self.shapes.AddShape(whole, False)
+        _name(label, name)
+
+        def dress(shape: Any, title: str, rgb: tuple[float, float, float] | None, face: int) -> Any:
+            shape = shape.Moved(back)
+            sub = self.shapes.AddSubShape(label, copy.ModifiedShape(shape) if again else shape)
+            if sub.IsNull():
+                raise WriteError("the CAD kernel gives this face no label", file=self.file, face=f"F{face}")
+            _name(sub, title)
+            if rgb:
+                self.colours.SetColor(sub, Quantity_Color(*rgb, Quantity_TOC_sRGB), XCAFDoc_ColorSurf)
+                # What holds only triangles is written as such, not as an advanced face, and gets no colour.
+                self.styles += _exact(shape)
+            return sub
+
+        for shell in shells:
+            if shell.title:
+                dress(shell.shape, shell.title, shell.rgb, shell.face)
+        for piece in _pieces(bodies):
+            self.faces += _exact(piece.shape)
+            sub = dress(piece.shape, *self.style(piece), piece.face)
+            for layer in self.layers.get(piece.face, ()):
+                self.layer_tool.SetLayer(sub, TCollection_ExtendedString(_ascii(layer)))
+        return label
+
+
+class _Body(NamedTuple):
+    """A solid, a shell, a loose face or a wire; its pieces; and the pieces beside it, by face."""
+
+    shape: Any
+    pieces: list[Piece]
+    beside: dict[int, tuple[Piece, ...]]
+
+    @property
+    def solid(self) -> bool:
+        return bool(shape_map(self.shape, TopAbs_SOLID).Extent())
+
+
+class _Shell(NamedTuple):
+    """A shell in no solid; with a title it gets a label of its own."""
+
+    shape: Any
+    face: int
+    title: str = ""
+    rgb: tuple[float, float, float] | None = None
+
+
+def _parted(bodies: Sequence[_Body], style: Callable[[Piece], Style]) -> tuple[list[Any], list[_Shell]]:
+    """Shapes of a product that are no sheets, and its shells.
+
+    Pieces of a face that stands in no shell get a shell of their own, or readers would see them as separate surfaces.
+    Where several shells stand without a solid, every piece is a shell with the piece's colour: of other shells FreeCAD
+    (0.20) forgets the colours of faces. The kernel writes an edge between two of them twice.
+    """
+    others = [b.shape for b in bodies if b.shape.ShapeType() not in (TopAbs_SHELL, TopAbs_FACE)]
+    whole = [b for b in bodies if b.shape.ShapeType() == TopAbs_SHELL]
+    loose: dict[int, list[Piece]] = {}
+    for body in bodies:
+        if body.shape.ShapeType() == TopAbs_FACE:
+            loose.setdefault(body.pieces[0].face, []).extend(body.pieces)
+    beside = {n: pieces for body in bodies for n, pieces in body.beside.items()}
+    if len(whole) + len(loose) + len(beside) > 1 and not any(body.solid for body in bodies):
+        sheets = [p for b in whole for p in b.pieces] + [p for pieces in loose.values() for p in pieces]
+        sheets += [p for pieces in beside.values() for p in pieces]
+        return others, [_Shell(_shell([p]), p.face, *style(p)) for p in sheets]
+    shells = [_Shell(b.shape, b.pieces[0].face) for b in whole if b.pieces]
+    shells += [_Shell(_shell(pieces), n) for n, pieces in loose.items()]
+    shells += [_Shell(_shell(pieces), n, f"F{n} regions") for n, pieces in beside.items()]
+    return others, shells
+
+
+def _shell(pieces: Sequence[Piece]) -> TopoDS_Shell:
+    builder, shell = BRep_Builder(), TopoDS_Shell()
+    builder.MakeShell(shell)
+    for piece in pieces:
+        builder.Add(shell, piece.shape)
+    return shell
+
+
+def _pieces(bodies: Sequence[_Body]) -> list[Piece]:
+    """Of a product, each once, also where two bodies share a face."""
+    beside = (p for body in bodies for pieces in body.beside.values() for p in pieces)
+    return list({id(p): p for p in (*(p for body in bodies for p in body.pieces), *beside)}.values())
+
+
+def _exact(shape: Any) -> bool:
+    """Whether a face, or any face of a shape, has a surface and a border: others are not written as advanced faces."""
+    found = (TopoDS.Face_s(face) for face in explore(shape, TopAbs_FACE))
+    return any(BRep_Tool.Surface_s(face) is not None and edges_of(face) for face in found)
+
+
+def _unplaced(shape: Any) -> Iterator[Any]:
+    return (face.Located(TopLoc_Location()) for face in explore(shape, TopAbs_FACE))
+
+
+def _name(label: Any, name: str) -> None:
+    TDataStd_Name.Set_s(label, TCollection_ExtendedString(_ascii(name)))
+
+
+def _head(model: Any, product: str) -> None:
+    header = APIHeaderSection_MakeHeader(model)
+    header.SetName(TCollection_HAsciiString(f"{_ascii(product)}.step"))
+    header.SetTimeStamp(TCollection_HAsciiString(TIME_STAMP))
+    header.SetAuthorValue(1, TCollection_HAsciiString(ORIGIN))
+    header.SetOrganizationValue(1, TCollection_HAsciiString(ORIGIN))
+    header.SetOriginatingSystem(TCollection_HAsciiString(ORIGIN))
+    header.SetAuthorisation(TCollection_HAsciiString(ORIGIN))
+
+
+def _recount(text: bytes, asked: _Document, file: str) -> None:
+    """Count faces and styles in the written text: the kernel is known to lose some in silence."""
+    faces = len(re.findall(rb"=\s*ADVANCED_FACE\s*\(", text))
+    styles = len(re.findall(rb"=\s*(?:OVER_RIDING_)?STYLED_ITEM\s*\(", text))
+    if faces < asked.faces or styles < asked.styles:
+        raise WriteError(
+            f"of {asked.faces} faces the CAD kernel wrote {faces}, of {asked.styles} colours {styles}", file=file
+        )
+
+
+def _ascii(name: str) -> str:
+    """Accents dropped, other foreign characters as `?`: names stay readable in any viewer."""
+    bare = "".join(c for c in unicodedata.normalize("NFKD", name) if not unicodedata.combining(c))
+    return bare.encode("ascii", "replace").decode()

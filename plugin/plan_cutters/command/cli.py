@@ -1,0 +1,273 @@
+"""The command line: options in, exit code out."""
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
+
+from cad_io.units import UNITS
+from plan_cutters import __version__
+from plan_cutters.command.codes import guarded
+from plan_cutters.command.supervise import (
+    INTERRUPTED,
+    Unfinished,
+    default_memory,
+    is_child,
+    keep_output,
+    limit_memory,
+    report,
+    supervise,
+)
+
+if TYPE_CHECKING:
+    from plan_cutters.options import Options
+
+#: Options of the interface that later versions will have: asked for now, they must not be ignored.
+_NOT_BUILT = {
+    "cutters": "tool library files are not read yet; give each cutter with --cutter R6L80",
+    "fixture": "fixtures are not read yet",
+    "allowance": "an allowance is not judged yet",
+    "holder_clearance": "holders are not judged yet",
+    "holder": "holders are not judged yet",
+    "assume_stickout": "tool library files are not read yet",
+    "skip_bad": "tool library files are not read yet",
+    "cluster": "clusters are not used yet; --jobs gives threads on this machine",
+}
+
+
+class _Range(click.ParamType):
+    """Two numbers of degrees, MIN:MAX."""
+
+    name = "MIN:MAX"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, float]:
+        try:
+            low, high = (float(part) for part in value.split(":"))
+        except ValueError:
+            self.fail(f"{value!r} is not of the form MIN:MAX in degrees, as 0:60", param, ctx)
+        return low, high
+
+
+class _Vector(click.ParamType):
+    """A direction x,y,z."""
+
+    name = "X,Y,Z"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...]:
+        try:
+            x, y, z = (float(part) for part in value.split(","))
+        except ValueError:
+            self.fail(f"{value!r} is not of the form x,y,z, as 0,0,1", param, ctx)
+        return x, y, z
+
+
+@click.command(
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
+    epilog="Exit codes: 0 a cutter finishes every sample; 1 none does; 2 wrong command line; 3 the part cannot be "
+    "read; 4 a cutter would finish all that could be judged, but something could not; 130 interrupted.",
+)
+@click.argument("parts", nargs=-1, required=True, metavar="PART...")
+@click.option("--cutters", multiple=True, metavar="FILE", hidden=True)
+@click.option(
+    "--cutter",
+    multiple=True,
+    metavar="SPEC",
+    help="A flat end as R6L80: radius 6, length 80 mm. Repeatable; default: built-in flat ends, R 1 to 12.",
+)
+@click.option(
+    "--machine",
+    default="unlimited",
+    metavar="NAME",
+    help="`unlimited` or `tilt:DEG`, a limit of the tool axis from the setup axis.  [default: unlimited]",
+)
+@click.option(
+    "--setup",
+    type=_Vector(),
+    default="0,0,1",
+    metavar="X,Y,Z",
+    help="Direction of the part along the machine's spindle.  [default: 0,0,1]",
+)
+@click.option(
+    "--faces",
+    default="sculptured",
+    metavar="SELECT",
+    help="`sculptured`, `all`, `F3,7-12`, `component:NAME`, `name:REGEX` or `color:#RRGGBB`, after a `!` all but these; the "
+    "others are obstacles.  [default: sculptured]",
+)
+@click.option(
+    "--ignore",
+    multiple=True,
+    metavar="SELECT",
+    help="Faces that are neither machined nor obstacles, as construction geometry; the same words. Repeatable.",
+)
+@click.option("--fixture", multiple=True, metavar="FILE", hidden=True)
+@click.option("--grid", type=int, metavar="N", help="N x N parameter samples a face.")
+@click.option(
+    "--spacing",
+    type=float,
+    metavar="MM",
+    help="Samples at most this far apart.  [default: from curvature, the smallest cutter and a budget]",
+)
+@click.option(
+    "--tilt", type=_Range(), default="0:90", metavar="MIN:MAX", help="Tilts to search, degrees.  [default: 0:90]"
+)
+@click.option(
+    "--rotation",
+    type=_Range(),
+    default="0:360",
+    metavar="MIN:MAX",
+    help="Rotations to search, from the direction of the largest curvature, degrees.  [default: 0:360]",
+)
+@click.option("--rotation-step", type=float, default=10.0, metavar="DEG", help="[default: 10]")
+@click.option("--tolerance", type=float, default=0.01, metavar="MM", help="Gouge tolerance.  [default: 0.01]")
+@click.option("--allowance", type=float, hidden=True)
+@click.option("--holder-clearance", type=float, hidden=True)
+@click.option("--holder", multiple=True, metavar="FILE", hidden=True)
+@click.option("--assume-stickout", type=float, hidden=True)
+@click.option("--skip-bad", is_flag=True, hidden=True)
+@click.option("-o", "--out", metavar="DIR", help="Folder for the files.  [default: <stem>-plan]")
+@click.option(
+    "--formats",
+    metavar="LIST",
+    help="Of json,step,glb,npz and merged (a GLB of one mesh, for parts of thousands of faces).  "
+    "[default: json,step,glb,npz]",
+)
+@click.option(
+    "--step-schema",
+    type=click.Choice(["ap242", "ap214", "ap203"]),
+    default="ap242",
+    help="Application protocol of the STEP file.  [default: ap242]",
+)
+@click.option("--json", "json_out", metavar="-", help="With `-`: the plan on standard output, nothing else there.")
+@click.option(
+    "--posture-maps",
+    is_flag=True,
+    help="Also write every sample's free tilt intervals at every rotation (postures.npz), for the cutter shown.",
+)
+@click.option("--jobs", type=int, metavar="N", help="Threads.  [default: all cores]")
+@click.option("--cluster", metavar="ADDRESS", hidden=True)
+@click.option(
+    "--area-budget",
+    type=int,
+    default=100_000,
+    metavar="N",
+    help="Contacts to look at between the samples of the selected cutter; 0: samples alone.  [default: 100000]",
+)
+@click.option("--flip", is_flag=True, help="Machine the other side of open shells and loose faces.")
+@click.option(
+    "--unit",
+    type=click.Choice(list(UNITS)),
+    help="What lengths in the part's file are in, where it says so wrongly.  [default: what it says]",
+)
+@click.option(
+    "--read-timeout",
+    type=float,
+    default=120.0,
+    metavar="S",
+    help="Seconds that reading a part may take; later stages of the CAD kernel five times as long.  [default: 120]",
+)
+@click.option("--memory", type=float, metavar="GB", help="Most memory to use.  [default: 3/4 of the machine's]")
+@click.option("--quiet", is_flag=True, help="No progress and no summary.")
+@click.option("--debug", is_flag=True, help="Show tracebacks.")
+@click.version_option(__version__, prog_name="plan-cutters")
+def command(parts: tuple[str, ...], **given: Any) -> int:
+    """Which cutters can finish the sculptured faces of PART (STEP, IGES, BREP) without gouging or collision?
+
+    Each is judged at samples of the surface: interference-free, accessible, undecided or inaccessible, and why. Writes
+    plan.json, a coloured STEP, a coloured GLB and the samples into a folder.
+    """
+    from plan_cutters.command.one_part import one_part
+    from plan_cutters.errors import OptionError
+
+    for name, why in _NOT_BUILT.items():
+        if given[name] not in (None, (), False):
+            raise OptionError(f"--{name.replace('_', '-')}: {why}")
+    if given["json_out"] not in (None, "-"):
+        raise OptionError("--json takes -, for standard output; --formats json writes plan.json into the folder")
+    if given["out"] is not None and len(parts) > 1:
+        outs = [Path(given["out"]) / f"{Path(p).stem}-plan" for p in parts]
+    else:
+        outs = [Path(given["out"] or f"{Path(p).stem}-plan") for p in parts]
+    if len(set(outs)) < len(outs):
+        raise OptionError("two parts have the same name and would write to the same folder; plan them one by one")
+    options = _options(given)
+    codes = []
+    for part, out in zip(parts, outs, strict=True):
+        code, line = guarded(lambda part=part, out=out: one_part(part, out, options, given), given["debug"])
+        codes.append(code)
+        report("done", str(code))
+        if len(parts) > 1 and not given["quiet"]:
+            click.echo(f"{part}: {line}", err=True)
+        elif code and line:
+            click.echo(line, err=True)
+        if code == INTERRUPTED:
+            break
+    return max(codes)
+
+
+def _options(given: dict[str, Any]) -> "Options":
+    from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.domain.machine import Machine
+    from plan_cutters.domain.posture import PostureRange
+    from plan_cutters.options import Options
+
+    more = {} if given["jobs"] is None else {"jobs": given["jobs"]}
+    return Options(
+        cutters=tuple(Cutter.parse(spec) for spec in given["cutter"]),
+        machine=Machine.parse(given["machine"]),
+        setup=given["setup"],
+        faces=given["faces"],
+        ignore=given["ignore"],
+        grid=given["grid"],
+        spacing=given["spacing"],
+        postures=PostureRange.degrees(given["tilt"], given["rotation"], given["rotation_step"]),
+        tolerance=given["tolerance"],
+        flip=given["flip"],
+        area_budget=given["area_budget"],
+        posture_maps=given["posture_maps"],
+        unit=given["unit"],
+        **more,
+    )
+
+
+def main(args: Sequence[str] | None = None) -> NoReturn:
+    """Entry point of the command: what has a part to read runs in a child process."""
+    words = list(sys.argv[1:] if args is None else args)
+    if is_child():
+        limit_memory()
+        keep_output()
+        code, line = guarded(lambda: (_parsed(words), ""), "--debug" in words)
+    else:
+        code, line = guarded(lambda: (_watched(words), ""), "--debug" in words)
+    if line:
+        click.echo(line, err=True)
+    sys.exit(code)
+
+
+def _parsed(words: list[str]) -> int:
+    try:
+        return int(command.main(words, prog_name="plan-cutters", standalone_mode=False) or 0)
+    except click.Abort:
+        raise KeyboardInterrupt from None
+
+
+def _watched(words: list[str]) -> int:
+    """Look at the words here, so that help and mistakes cost nothing; leave the work to a child."""
+    try:
+        with command.make_context("plan-cutters", list(words)) as context:
+            given = dict(context.params)
+    except click.exceptions.Exit as done:
+        return done.exit_code
+    if not given["read_timeout"] > 0:
+        raise click.BadParameter("--read-timeout must be a positive number of seconds")
+    memory = default_memory() if given["memory"] is None else int(given["memory"] * 1e9)
+    if memory < 2e9:
+        raise click.BadParameter("--memory must be at least 2 GB")
+    try:
+        return supervise(words, read_timeout=given["read_timeout"], memory=memory)
+    except Unfinished as ended:
+        from plan_cutters.command.one_part import without_models
+
+        return without_models(ended, given)

@@ -1,0 +1,115 @@
+"""What is found, in a few lines for people."""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from plan_cutters.document.model import Plan
+
+
+def written(plan: "Plan", out: Path, formats: Sequence[str]) -> list[str]:
+    """What is in the output, and which faces the models show otherwise than split in their place."""
+    from plan_cutters.report import left_over
+
+    lines = []
+    written = [*sorted(f.name for f in plan.files.values()), *(["plan.json"] if "json" in formats else [])]
+    if written:
+        lines.append(f"Written: {', '.join(written)} in {out}")
+    for face, entry in plan.split.items():
+        if entry.rung != "contour":
+            how = "split beside the part" if entry.rung == "beside" else "one piece in the STEP, by samples in the GLB"
+            lines.append(f"Not split in its place: {face} ({entry.why}): {how}.")
+    if formats and (old := left_over(out, plan, formats)):
+        lines.append(f"Left over from an earlier run, or not ours: {', '.join(old)} in {out}")
+    return lines
+
+
+def summary(plan: "Plan") -> None:
+    """What is found, but not what is not reached: that comes last."""
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console(stderr=True, highlight=False, soft_wrap=True, markup=False)
+    size = " x ".join(f"{s:.4g}" for s in plan.part.size_mm)
+    targets = len(plan.effective.target_faces)
+    ignored = sum(f.ignored for f in plan.faces)
+    console.print(f"{plan.part.file or 'part'}: {size} mm, {plan.part.faces} faces, {targets} to machine, "
+                  f"{f'{ignored} ignored, ' if ignored else ''}"
+                  f"{plan.samples.count} samples, gaps up to {plan.samples.max_gap_mm:.3g} mm")  # fmt: skip
+    table = Table(box=None, pad_edge=False)
+    for column in ("cutter", "feasible", "free", "accessible", "undecided", "inaccessible"):
+        table.add_column(column, justify="left" if column in ("cutter", "feasible") else "right")
+    for c in plan.cutters:
+        word = {True: "yes", False: "no", None: "undecided"}[c.feasible]
+        table.add_row(c.id + (" *" if c.id == plan.selected else ""), word, str(c.interference_free),
+                      str(c.accessible), str(c.undecided), str(c.inaccessible))  # fmt: skip
+    console.print(table)
+    console.print(f"Selected: {plan.selected or 'none'} ({plan.selection.why}).")
+    console.print(_side(plan))
+    for area in (c.area for c in plan.cutters if c.area):
+        console.print(f"Between samples: {_percent(area.share)} of the target area is served with the axes found "
+                      f"({area.contacts} contacts looked at).")  # fmt: skip
+    for warning in plan.part.warnings:
+        console.print(f"Warning: {warning}")
+    for note in plan.notes:
+        console.print(f"Note: {note}")
+    for face in plan.faces:
+        if face.target and face.unjudged:
+            console.print(f"Not judged: {face.id} ({face.unjudged}).")
+    for line in _missing(plan):
+        console.print(line)
+
+
+def _side(plan: "Plan") -> str:
+    """How the side of the material was found, how sure that is, and what is open."""
+    found, sewing = plan.part.orientation, plan.part.sewing
+    line = f"Side of the material: {found.method} ({'sure' if found.confident else 'a guess'})."
+    if sewing and sewing.tolerance_mm is not None:
+        line += f" Faces were joined at {sewing.tolerance_mm:.3g} mm."
+    if sewing and sewing.open_edges:
+        line += f" Open edges: {sewing.open_edges}, {sewing.open_length_mm:.4g} mm long."
+    return line
+
+
+def _missing(plan: "Plan") -> list[str]:
+    """Which obstacles are missing, so that no cutter is feasible beyond doubt."""
+    where = {"none": "nothing stands for it", "box": "the box around it stands for it",
+             "triangles": "its own triangles stand for it", "edges": "its edges stand for it"}  # fmt: skip
+    return [
+        f"Missing obstacle: {m.face or m.entity or 'a face of the file'} ({m.why}; {where[m.stand_in]})."
+        for m in plan.missing
+    ]
+
+
+def _percent(share: float) -> str:
+    """Rounded down, so that 100 % is all of it."""
+    return f"{math.floor(1e4 * share) / 100:g} %"
+
+
+def not_reached(plan: "Plan") -> list[str]:
+    """What the larger cutters than the selected (or all) leave, and why."""
+    lines = []
+    for c in plan.cutters:
+        if c.id == plan.selected:
+            break
+        if not c.inaccessible + c.undecided:
+            continue
+        reasons = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in c.by_reason.items() if count)
+        deepest = max((w for w in c.witnesses if w.depth_mm is not None), key=lambda w: w.depth_mm or 0, default=None)
+        where = ""
+        if deepest and deepest.depth_mm is not None:
+            x, y, z = deepest.point
+            where = (f"; at ({x:.4g}, {y:.4g}, {z:.4g}) on {deepest.face} the best posture is "
+                     f"{deepest.depth_mm:.3g} mm too deep")  # fmt: skip
+        left = c.inaccessible + c.undecided
+        worst = sorted(((v.inaccessible + v.undecided, name) for name, v in c.faces.items()), key=lambda x: -x[0])
+        on = ", ".join(f"{name} ({count})" for count, name in worst[:3] if count)
+        more = sum(count > 0 for count, _ in worst) - 3
+        on += f" and {more} more" if more > 0 else ""
+        undecided = f", {c.undecided} undecided" if c.undecided else ""
+        lines.append(
+            f"Not reached by {c.id}: {left} of {plan.samples.count} samples ({reasons or 'none'}{undecided}), on {on}{where}."
+        )
+    return lines

@@ -1,0 +1,243 @@
+"""How results become the plan file: each entry of the model from the arrays behind it."""
+
+import platform
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io import Orientation, Part, SurfaceSamples
+from cad_io.kernel.assembly import component_of
+from plan_cutters import __version__
+from plan_cutters.document.model import (
+    CutterEntry,
+    FaceEntry,
+    MissingEntry,
+    OrientationInfo,
+    PartInfo,
+    Posture,
+    SewingInfo,
+    Verdicts,
+    WitnessEntry,
+)
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.verdicts import ACCESSIBLE, FREE, INACCESSIBLE, REASONS, UNDECIDED, UNJUDGED, Reach, Witness
+from plan_cutters.options import Options
+from plan_cutters.scene.faces import Chosen
+from plan_cutters.scene.surroundings import Surroundings
+
+
+def missing_entries(part: Part, around: Surroundings) -> list[MissingEntry]:
+    """Faces that are in the way only as a guess, or of which nothing is known but that the file has them."""
+    found = [
+        MissingEntry(face=f"F{number}", entity=None, name=part.faces[number - 1].name, why=why, stand_in=how)
+        for number, why, how in around.missing
+    ]
+    found += [
+        MissingEntry(face=None, entity=each.entity or None, name=each.name, why=each.why,
+                     stand_in="none" if each.box is None else "box")
+        for each in around.lost
+    ]  # fmt: skip
+    return found
+
+
+def vector(v: NDArray[np.float64]) -> tuple[float, float, float]:
+    """A direction or point as three plain numbers."""
+    return float(v[0]), float(v[1]), float(v[2])
+
+
+def degrees(pair: tuple[float, float]) -> tuple[float, float]:
+    """A range of radians in degrees."""
+    # Rounded to what a person typed: 90, not 90.00000000000001.
+    return round(float(np.degrees(pair[0])), 9), round(float(np.degrees(pair[1])), 9)
+
+
+def _counts(verdict: NDArray[np.uint8]) -> dict[str, Any]:
+    names = {FREE: "interference_free", ACCESSIBLE: "accessible", INACCESSIBLE: "inaccessible",
+             UNDECIDED: "undecided", UNJUDGED: "unjudged"}  # fmt: skip
+    return {name: int((verdict == code).sum()) for code, name in names.items()}
+
+
+def cutter_entry(
+    cutter: Cutter, samples: SurfaceSamples, reach: Reach, found: Sequence[Witness], march_differs: int, seconds: float,
+    *, doubtful: bool,
+) -> CutterEntry:  # fmt: skip
+    """What a cutter reaches, and why not where it does not; `doubtful`: obstacles are missing."""
+    counts = _counts(reach.verdict)
+    # What is missing from the obstacles can only be in the way of more.
+    feasible = False if counts["inaccessible"] else None if counts["undecided"] or doubtful else True
+    lost, unsure = reach.verdict == INACCESSIBLE, reach.verdict == UNDECIDED
+    return CutterEntry(
+        id=cutter.id,
+        name=cutter.name,
+        radius=cutter.radius,
+        corner_radius=cutter.corner_radius,
+        length=cutter.length,
+        feasible=feasible,
+        march_differs=march_differs,
+        **counts,
+        by_reason={name: int((lost & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
+        undecided_by_reason={name: int((unsure & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
+        faces={
+            f"F{n}": Verdicts(**_counts(reach.verdict[samples.face == n])) for n in np.unique(samples.face).tolist()
+        },
+        witnesses=[_witness_entry(w, samples) for w in found],
+        seconds=seconds,
+    )
+
+
+def _witness_entry(witness: Witness, samples: SurfaceSamples) -> WitnessEntry:
+    posture = None
+    if witness.tilt is not None and witness.rotation is not None and witness.axis is not None:
+        posture = Posture(
+            tilt=float(np.degrees(witness.tilt)),
+            rotation=float(np.degrees(witness.rotation)),
+            axis=vector(witness.axis),
+        )
+    return WitnessEntry(
+        point=vector(samples.point[witness.sample]),
+        face=f"F{samples.face[witness.sample]}",
+        reason=witness.reason,
+        obstacle_face=None if not witness.obstacle_face else f"F{witness.obstacle_face}",
+        obstacle_point=None if witness.obstacle_point is None else vector(witness.obstacle_point),
+        best_posture=posture,
+        depth_mm=witness.depth,
+    )
+
+
+def part_info(part: Part, orientation: Orientation, around: Surroundings) -> PartInfo:
+    """The part, and what is odd about it."""
+    warnings = list(part.warnings)
+    if around.on_bodies:
+        names = listed([f"F{number}" for number in around.on_bodies])
+        warnings.append(f"{names} lie on faces of solids, as construction geometry does, and are judged and in the way like "
+                        "all others: --ignore leaves them out")  # fmt: skip
+    return PartInfo(
+        file=Path(part.file).name if part.file else None,
+        sha256=part.sha256,
+        size_mm=part.size,
+        solids=part.solids,
+        faces=len(part.faces),
+        orientation=OrientationInfo(method=orientation.method, confident=orientation.confident),
+        sewing=_sewing(part),
+        warnings=warnings,
+    )
+
+
+def _sewing(part: Part) -> SewingInfo | None:
+    sewn = part.sewn
+    if not sewn.faces:
+        return None
+    return SewingInfo(
+        tolerance_mm=sewn.tolerance, tried_mm=sewn.tried, open_edges=sewn.open_edges, open_length_mm=sewn.open_length
+    )
+
+
+def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen) -> list[FaceEntry]:
+    """Every face of the part, judged or not."""
+    empty = dict(samples.empty)
+    chosen, ignored = set(choice.targets), set(choice.ignored)
+    component = component_of(part.tree)
+    result = []
+    for face in part.faces:
+        mine = samples.face == face.number
+        bad = samples.unjudged[mine]
+        bad = bad[bad >= 0]
+        reason = face.unjudged or empty.get(face.number)
+        if reason is None and len(bad):
+            reason = f"{len(bad)} samples: " + "; ".join(samples.reasons[i] for i in np.unique(bad))
+        result.append(
+            FaceEntry(
+                id=face.id,
+                name=face.name,
+                surface=face.surface,
+                shape=face.shape,
+                target=face.number in chosen,
+                ignored=face.number in ignored,
+                area_mm2=face.area,
+                component=component[face.number],
+                samples=int(mine.sum()),
+                unjudged=reason if face.number in chosen else face.unjudged,
+            )
+        )
+    return result
+
+
+def notes(
+    part: Part, orientation: Orientation, options: Options, tolerance: float, samples: SurfaceSamples,
+    around: Surroundings,
+) -> list[str]:  # fmt: skip
+    """What the verdicts do not say."""
+    notes = [
+        "Cutters are flat ends, judged as solid cylinders of their length, without a holder.",
+        f"Verdicts are about samples; grid neighbours, and borders from the nearest sample of their face, are at most "
+        f"{samples.max_gap:.3g} mm apart.",
+    ]
+    if samples.empty:
+        names = ", ".join(f"F{number}" for number, _ in samples.empty)
+        notes.append(f"No verdict is about {names}: no sample could be taken there.")
+    if options.machine.tilt_limit is None:
+        notes.append("No machine was given: any tool axis counts as possible.")
+    if not orientation.confident:
+        notes.append("Which side is material is a guess; --flip machines the other side.")
+    if tolerance > 1.001 * options.tolerance:
+        notes.append(
+            f"The tolerance was raised from {options.tolerance:g} to {tolerance:.3g} mm: "
+            "the obstacle triangles could not be made to follow the surface more closely."
+        )
+    notes += _around_notes(part, around)
+    return notes
+
+
+def _around_notes(part: Part, around: Surroundings) -> Iterator[str]:
+    """What stands in the way otherwise than the file has it."""
+    skins = {number for body in around.bodies if body.closed for number in body.faces}
+    present = set(np.unique(around.may_be.triangles.face).tolist())
+    sheets = [f.id for f in part.faces if f.number in present - skins]
+    if sheets and skins:
+        yield (f"{listed(sheets)} enclose{'s' if len(sheets) == 1 else ''} no material: only the surface is in the way, "
+               "not what may lie behind it.")  # fmt: skip
+    elif sheets:
+        yield "No face encloses material: only the surfaces are in the way, not what may lie behind them."
+
+
+def listed(names: Sequence[str], most: int = 8) -> str:
+    """Names in a line, the first ones where there are many."""
+    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
+
+
+def area_notes(entries: Sequence[CutterEntry], *, doubtful: bool) -> Iterator[str]:
+    """How far the area between the samples is served, in words; `doubtful`: obstacles are missing."""
+    known = "as far as curvature between grid nodes" + (" and the obstacles are" if doubtful else " is") + " known"
+    for entry in entries:
+        area = entry.area
+        if area is None:
+            continue
+        if area.share == 1:
+            what = "all of the target surface whose area is known" if area.left_out else "all of the target surface"
+            yield f"{entry.id} serves {what}, {known}."
+        else:
+            why = [f"no posture was found that serves the finest cells about {area.left - area.short} contacts"]
+            why = why if area.left > area.short else []
+            if area.short:
+                why.append(
+                    f"the budget was spent with {area.short} cells open, so a larger --area-budget may serve more"
+                )
+            causes = "; ".join(why) or "some of it has no samples or no closed border"
+            yield (
+                f"{entry.id} reaches every judged sample, but not all of the target surface was shown to be served: "
+                f"{causes}. Finer samples may help, too."
+            )
+        if area.left_out:
+            yield f"The area of {', '.join(area.left_out)} is not known: it is not in the share that is served."
+
+
+def versions() -> dict[str, str]:
+    """Versions of what the plan was made with."""
+    from importlib.metadata import version
+
+    names = {"cadquery-ocp": "occt", "numba": "numba", "numpy": "numpy", "scipy": "scipy", "trimesh": "trimesh"}
+    found = {label: version(name) for name, label in names.items()}
+    return {"plan_cutters": __version__, **found, "python": platform.python_version()}

@@ -1,0 +1,1 @@
+"""Words and numbers of the trade, without loops: cutter, machine, posture, verdicts, nesting. May use: errors."""

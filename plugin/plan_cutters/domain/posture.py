@@ -1,0 +1,92 @@
+"""Postures: the range of tilts and rotations to search."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from cad_io.arrays import Floats
+from plan_cutters.domain.checks import number, numbers, pair, radians
+from plan_cutters.errors import OptionError
+
+_RIGHT, _FULL = math.pi / 2, 2 * math.pi
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class PostureRange:
+    """Tilts from `tilt[0]` to `tilt[1]` at rotations from `rotation[0]` to `rotation[1]`, `step` apart. Radians.
+
+    A full turn does not repeat its first rotation; a part of a turn has both its ends, evenly shared at most `step` apart.
+    """
+
+    tilt: tuple[float, float] = (0.0, _RIGHT)
+    rotation: tuple[float, float] = (0.0, _FULL)
+    step: float = math.radians(10)
+
+    def __post_init__(self) -> None:
+        tilt, rotation = pair(self.tilt, "tilt range"), pair(self.rotation, "rotation range")
+        step = number(self.step, "rotation step")
+        tilt = (radians(tilt[0], "tilt", _RIGHT), radians(tilt[1], "tilt", _RIGHT))
+        rotation = (radians(rotation[0], "rotation", _FULL), radians(rotation[1], "rotation", _FULL))
+        step = radians(step, "rotation step", _FULL)
+        _check(tilt, rotation, step, _RIGHT, "rad")
+        for word, checked in (("tilt", tilt), ("rotation", rotation), ("step", step)):
+            object.__setattr__(self, word, checked)
+
+    @classmethod
+    def degrees(cls, tilt: tuple[float, float], rotation: tuple[float, float], step: float) -> "PostureRange":
+        """The same in degrees; rotations may also count from another turn, as 350:380 does.
+
+        Raises
+        ------
+        OptionError
+            A range has no meaning.
+        """
+        _check(tilt, rotation, step, 90.0, "deg")
+        turns = 0.0 if max(map(abs, rotation)) <= 360 else 360.0 * round(sum(rotation) / 720)
+        low, high, first, last = (math.radians(x) for x in (*tilt, *(x - turns for x in rotation)))
+        return cls((low, high), (first, last), math.radians(step))
+
+    @property
+    def rotations(self) -> Floats:
+        """(k,) rotations, rad."""
+        first, last = self.rotation
+        spans = math.ceil((last - first) / self.step - _ROUNDING)
+        whole = last - first > _FULL - _ROUNDING
+        return np.linspace(first, last, max(spans, 1) if whole else spans + 1, endpoint=not whole)
+
+    @property
+    def upright(self) -> bool:
+        """Whether tilt 0 belongs to it: only then can a sample be interference-free."""
+        return self.tilt[0] <= _ROUNDING
+
+
+def lean(normal: Floats, direction_max: Floats, rotation: Floats | float) -> Floats:
+    """Unit lean directions (..., 3) at rotations (...,), rad, about normals (..., 3)."""
+    turn = np.asarray(rotation)[..., None]
+    return np.asarray(np.cos(turn) * direction_max + np.sin(turn) * np.cross(normal, direction_max))
+
+
+def _check(tilt: tuple[float, float], rotation: tuple[float, float], step: float, right: float, unit: str) -> None:
+    """Whether ranges have a meaning, where a right angle is `right` of a unit."""
+    (low, high), (first, last) = tilt, rotation
+    rounding, full = _ROUNDING * right, 4 * right
+    if not -rounding <= low <= high <= right + rounding:
+        raise OptionError(f"tilt range {low:g}:{high:g} must run upwards within 0:{right:.4g} ({unit})")
+    if not (math.isfinite(first) and first <= last <= first + full + rounding):
+        raise OptionError(f"rotation range {first:g}:{last:g} must run upwards and span at most {full:.4g} {unit}")
+    least = right / 900
+    if not least - rounding <= step <= full + rounding:
+        raise OptionError(f"rotation step {step:g} must lie between {least:.2g} and {full:.4g} {unit}")
+
+
+def unit(vector: tuple[float, float, float], what: str) -> Floats:
+    """The direction of a vector; OptionError if it has none."""
+    v = np.array(numbers(vector, what, 3))
+    largest = float(np.abs(v).max())
+    if not 0.0 < largest < math.inf:
+        raise OptionError(f"{what} must be three numbers x,y,z that are finite and not all zero")
+    # First to the size of 1: squares of very large or small numbers are lost.
+    v = v / largest
+    return np.asarray(v / np.linalg.norm(v))

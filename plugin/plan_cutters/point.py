@@ -1,0 +1,119 @@
+"""The order of the steps for one point: part and point in, posture map out."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from numbers import Real
+from typing import Any
+
+import numpy as np
+
+from cad_io import Part, read_part
+from cad_io.arrays import Floats
+from cad_io.part.orient import orient
+from cad_io.sample import locate
+from plan_cutters.domain.checks import flag, number, numbers, radians
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.posture import PostureRange, unit
+from plan_cutters.errors import OptionError
+from plan_cutters.scene.faces import ignored_faces
+from plan_cutters.scene.obstacles import CHORD_ASKED, kept_tolerance
+from plan_cutters.scene.surroundings import surroundings
+from plan_cutters.stages.posture_map import SETTLED, Ask, PostureMap, complement, moved, posture_map_of
+
+#: Width (rad) below which a range of tilts stays undecided: with a tolerance, and for the nominal answer.
+_NARROWEST, _NARROWEST_NOMINAL = 1e-4, 1e-5
+#: The nominal answer: first chord error (mm), its share kept at each refinement, rounds.
+_FIRST_CHORD, _FINER, _ROUNDS = 2e-3, 0.2, 6
+#: More than this are not refined again.
+_TRIANGLES = 600_000
+
+
+def posture_map(
+    part: Any,
+    *,
+    point: Sequence[float],
+    cutter: Cutter | str,
+    rotations: Sequence[float] | Floats,
+    tilt: tuple[float, float] = (0.0, np.pi / 2),
+    machine: Machine | str | None = None,
+    setup: tuple[float, float, float] = (0.0, 0.0, 1.0),
+    tolerance: float = 0.01,
+    flip: bool = False,
+    ignore: Any = (),
+) -> PostureMap:
+    """Find the free tilt intervals of a cutter at a point of a part.
+
+    Parameters
+    ----------
+    part : Part, path, TopoDS_Shape, CadQuery or build123d object
+    point : (3,) float
+        mm; projected to the nearest face.
+    cutter : Cutter or str
+        A text as `R6L80`.
+    rotations : sequence of float
+        rad, from the direction of the largest curvature; at most a full turn either way.
+    tilt : tuple of float
+        Range, rad, within 0 to pi/2.
+    machine : Machine or str, optional
+        A text as `tilt:60` (degrees). Default: no axis limit.
+    setup : tuple of float
+    tolerance : float
+        Gouge tolerance, mm. 0: the nominal answer, obstacles refined until the ends settle; not certified.
+    flip : bool
+        Take the other side of open shells and loose faces.
+    ignore : str, list of str or objects
+        Faces that are no obstacles, as for `plan`; the point is not projected to them.
+
+    Raises
+    ------
+    CadIoError
+        The part cannot be read; the point is farther than 1e-3 mm from it.
+    OptionError
+        A range or tolerance has no meaning, or a value is of the wrong kind.
+    """
+    cutter, machine = Cutter.of(cutter), Machine.of(machine)
+    place, axis, flip = numbers(point, "point", 3), unit(setup, "setup axis"), flag(flip, "flip")
+    each = (rotations,) if isinstance(rotations, Real) else rotations
+    turns = [radians(turn, "rotation", 2 * np.pi) for turn in numbers(each, "rotations")]
+    low, high = PostureRange(tilt=tilt).tilt
+    tolerance = number(tolerance, "tolerance")
+    if not (tolerance >= 0 and cutter.large_enough(tolerance)):
+        raise OptionError(
+            f"tolerance {tolerance:g} mm must lie between 0 and a quarter of the cutter's radius and length"
+        )
+    low, high = max(0.0, low), min(np.pi / 2, high)
+    whole = part if isinstance(part, Part) else read_part(part)
+    ignored = ignored_faces(whole, ignore)
+    contact = locate(whole, orient(whole, towards=_three(axis), flip=flip), place, ignore=ignored)
+    ask = Ask(contact, cutter, np.array(turns), (low, high), machine, axis)
+    if tolerance > 0:
+        around = surroundings(whole, CHORD_ASKED * tolerance, ignored=ignored)
+        tolerance = kept_tolerance(tolerance, around.surely.triangles.chord_error)
+        found = posture_map_of(ask, around, around.surely.depths(tolerance), _NARROWEST, tolerance)
+        if cutter.large_enough(tolerance):
+            return found
+        # So coarse a tolerance says nothing about so small a cutter.
+        none = tuple(np.zeros((0, 2)) for _ in turns)
+        left = tuple(complement(forbidden, low, high) for forbidden in found.axis_limit)
+        return replace(found, free=none, undecided=left, rear_gouge=none, collision=none, buried=none, certified=False)
+    chord = min(_FIRST_CHORD, 1e-3 * cutter.radius)
+    before: PostureMap | None = None
+    for _ in range(_ROUNDS):
+        around = surroundings(whole, chord, ignored=ignored)
+        triangles = around.surely.triangles
+        # Twice the chord error: next to the contact, where the true clearance is zero, triangles must not count,
+        # local gouging does.
+        nominal = 2 * triangles.chord_error + 1e-9
+        now = posture_map_of(ask, around, (nominal, nominal), _NARROWEST_NOMINAL, 0.0)
+        if before is not None and moved(before, now) < SETTLED:
+            return replace(now, settled=True)
+        before, chord = now, chord * _FINER
+        if len(triangles) > _TRIANGLES:
+            break
+    assert before is not None
+    return before
+
+
+def _three(v: Floats) -> tuple[float, float, float]:
+    return float(v[0]), float(v[1]), float(v[2])

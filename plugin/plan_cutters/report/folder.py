@@ -1,0 +1,244 @@
+"""The output folder: every format of a result, each file whole or not at all, the plan and the arrays before the models."""
+
+import hashlib
+import os
+import shutil
+import tempfile
+import time
+from collections.abc import Callable, Collection, Sequence
+from contextlib import suppress
+from importlib import import_module
+from pathlib import Path
+from typing import Any, Protocol
+
+from cad_io.errors import CadIoError
+from plan_cutters.document.model import FileEntry, Plan
+from plan_cutters.errors import OptionError, PlanError
+
+PLAN = "plan.json"
+#: Format -> (file name, module, function).
+_WRITERS = {
+    "step": ("annotated.step", "models", "write_step"),
+    "glb": ("annotated.glb", "models", "write_glb"),
+    "merged": ("merged.glb", "models", "write_merged"),
+    "npz": ("samples.npz", "to_npz", "write_npz"),
+    "postures": ("postures.npz", "to_npz", "write_postures"),
+}
+#: What the CAD kernel has a part in, the easier ones first.
+_MODELS = ("glb", "merged", "step")
+FORMATS = ("json", *(f for f in _WRITERS if f != "postures"))
+#: What is written unless asked otherwise; `merged` is for parts of thousands of faces.
+DEFAULT_FORMATS = tuple(f for f in FORMATS if f != "merged")
+
+
+def read_formats(text: str) -> tuple[str, ...]:
+    """Read a list such as `json,glb`; OptionError for what is not built in."""
+    wanted = tuple(dict.fromkeys(w.strip() for w in text.split(",") if w.strip()))
+    for word in wanted:
+        if word not in FORMATS:
+            raise OptionError(f"format {word!r} is not built in; give some of {','.join(FORMATS)}")
+    if not wanted:
+        raise OptionError(f"no format given; give some of {','.join(FORMATS)}")
+    return wanted
+
+
+class Staging:
+    """A folder beside the output in which files grow; each appears in the output whole, or not at all.
+
+    Raises
+    ------
+    PlanError
+        At the start if the output can surely not be written: before the work, not after it.
+    """
+
+    def __init__(self, out: Path) -> None:
+        self.out = out
+        try:
+            if out.exists() and not out.is_dir():
+                raise PlanError("the output must be a folder, this is a file; give another with -o", file=str(out))
+            out.absolute().parent.mkdir(parents=True, exist_ok=True)
+            self.folder = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.absolute().parent))
+        except OSError as error:
+            raise _unwritable(out, error) from None
+
+    def __enter__(self) -> "Staging":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.discard()
+
+    def publish(self, name: str) -> None:
+        """Let a file appear in the output."""
+        try:
+            self.out.mkdir(exist_ok=True)
+            os.replace(self.folder / name, self.out / name)
+        except OSError as error:
+            raise _unwritable(self.out, error) from None
+
+    def discard(self) -> None:
+        """Forget what has not appeared in the output."""
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+class Onlooker(Protocol):
+    """Told of the writing as it goes on."""
+
+    def safe(self, plan: Plan) -> None:
+        """The plan and the arrays are in the output; models follow."""
+
+    def begins(self, what: str) -> None:
+        """A step of the models begins."""
+
+    def failed(self, what: str, error: Exception) -> None:
+        """A format was not written; the plan says so, too."""
+
+
+def write_all(
+    result: Any,
+    out: Path,
+    formats: Sequence[str],
+    staging: Staging | None = None,
+    *,
+    step_schema: str = "ap242",
+    onlooker: Onlooker | None = None,
+) -> Plan:
+    """Write the formats asked for into the folder `out`, each file whole or not at all.
+
+    The arrays and the plan come first; the plan is replaced as each model is added. What fails or ends the process in
+    the models, where the CAD kernel works, costs that model: the plan names it in `not_written`.
+
+    Parameters
+    ----------
+    result : Result
+    out : Path
+    formats : sequence of str
+        Of FORMATS.
+    staging : Staging, optional
+        One made before the work began.
+    step_schema : str
+        `ap242`, `ap214` or `ap203`.
+    onlooker : Onlooker, optional
+
+    Returns
+    -------
+    Plan
+        The plan as written.
+
+    Raises
+    ------
+    OptionError
+        An unknown format or schema.
+    PlanError
+        The folder cannot be written to.
+    """
+    read_formats(",".join(formats))
+    from plan_cutters.report.models import SCHEMAS, rungs, split_result
+    from plan_cutters.report.to_json import PENDING, write_plan
+
+    if step_schema not in SCHEMAS:
+        raise OptionError(f"STEP schema {step_schema!r} is not built in; give one of {', '.join(SCHEMAS)}")
+    began = time.perf_counter()
+    models = [name for name in _MODELS if name in formats]
+    arrays = [name for name in ("npz",) if name in formats] + (["postures"] if result.maps else [])
+    with staging or Staging(out) as staging:
+        document: Plan = result.plan
+        files: dict[str, FileEntry] = {}
+        missing = dict.fromkeys(models, PENDING)
+
+        def write(name: str, split: Any, **more: str) -> None:
+            file, module, function = _WRITERS[name]
+            writer: Callable[..., None] = getattr(import_module(f"plan_cutters.report.{module}"), function)
+            writer(result, split, staging.folder / file, **more)
+            files[name] = FileEntry(name=file, sha256=_sha256(staging.folder / file))
+
+        def put() -> Plan:
+            seconds = document.run.seconds | {"write": time.perf_counter() - began}
+            plan = document.model_copy(
+                update={
+                    "files": {name: files[name] for name in _WRITERS if name in files},
+                    "not_written": dict(missing),
+                    "run": document.run.model_copy(update={"seconds": seconds}),
+                }
+            )
+            if "json" in formats:
+                write_plan(plan, staging.folder / PLAN)
+                staging.publish(PLAN)
+            return plan
+
+        try:
+            for name in arrays:
+                write(name, None)
+        except OSError as error:
+            raise _unwritable(out, error) from None
+        _clear(out)
+        for entry in files.values():
+            staging.publish(entry.name)
+        document = put()
+        if onlooker:
+            onlooker.safe(document)
+        split = None
+        for name in models:
+            try:
+                if split is None:
+                    if onlooker:
+                        onlooker.begins("split")
+                    split = split_result(result)
+                    document = document.model_copy(update={"split": rungs(split)})
+                if onlooker:
+                    onlooker.begins(name)
+                write(name, split, **({"schema": step_schema} if name == "step" else {}))
+            except Exception as error:
+                missing[name] = _cause(error)
+                if onlooker:
+                    onlooker.failed(name, error)
+            else:
+                del missing[name]
+                staging.publish(files[name].name)
+            document = put()
+    return document
+
+
+def file_name(name: str) -> str:
+    """Name of the file of a format."""
+    return PLAN if name == "json" else _WRITERS[name][0]
+
+
+def _cause(error: Exception) -> str:
+    """One line on why a file was not written."""
+    if isinstance(error, CadIoError | PlanError):
+        return ": ".join(part for part in (error.face, error.cause) if part)
+    if isinstance(error, MemoryError):
+        return "out of memory"
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror
+    return f"internal error ({type(error).__name__}: {error})"
+
+
+def _clear(out: Path) -> None:
+    """Remove what an earlier run of ours has surely written into the output: the plan there lists it as it is."""
+    from plan_cutters.report.to_json import listed
+
+    for name, checksum in listed(out / PLAN).items():
+        path = out / name
+        if name in _names() and path.is_file() and not path.is_symlink():
+            with suppress(OSError):  # it is named instead
+                if _sha256(path) == checksum:
+                    path.unlink()
+
+
+def left_over(out: Path, plan: Plan, formats: Collection[str]) -> list[str]:
+    """Files in the output that have names of ours, but are not of this plan."""
+    mine = {entry.name for entry in plan.files.values()} | ({PLAN} if "json" in formats else set())
+    return [name for name in (PLAN, *_names()) if name not in mine and (out / name).is_file()]
+
+
+def _names() -> list[str]:
+    return [file for file, _, _ in _WRITERS.values()]
+
+
+def _unwritable(out: Path, error: OSError) -> PlanError:
+    return PlanError(f"cannot write there ({error.strerror}); give another folder with -o", file=str(out))
+
+
+def _sha256(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()

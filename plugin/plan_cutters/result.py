@@ -1,0 +1,88 @@
+"""A plan with the arrays behind it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io import Part, SurfaceSamples
+from plan_cutters.document.model import CutterEntry, Plan
+from plan_cutters.domain.posture import PostureRange
+from plan_cutters.domain.verdicts import Reach
+from plan_cutters.stages.posture_maps import PostureMaps
+
+
+@dataclass(frozen=True)
+class Result:
+    """A plan with the arrays behind it.
+
+    Attributes
+    ----------
+    plan : Plan
+        What is written as `plan.json`.
+    part : Part
+    samples : SurfaceSamples
+        Of the target faces.
+    surface_class : (n,) uint8
+    reaches : dict
+        Cutter id -> Reach.
+    postures : PostureRange
+    maps : PostureMaps, optional
+        Every free tilt, for the cutter `shown`, where that was asked for.
+    """
+
+    plan: Plan
+    part: Part
+    samples: SurfaceSamples
+    surface_class: NDArray[np.uint8]
+    reaches: dict[str, Reach]
+    postures: PostureRange
+    maps: PostureMaps | None = None
+
+    @property
+    def cutters(self) -> list[CutterEntry]:
+        """One entry a cutter, from the most wanted down."""
+        return self.plan.cutters
+
+    @property
+    def selected(self) -> str | None:
+        """Id of the cutter to take, or None."""
+        return self.plan.selected
+
+    @property
+    def shown(self) -> str:
+        """Id of the cutter that the models show: the selected, else the one that reaches the most samples."""
+        return self.selected or max(self.cutters, key=lambda c: c.interference_free + c.accessible).id
+
+    def to_json(self, path: str | Path) -> None:
+        """Write the plan alone."""
+        from plan_cutters.report.to_json import write_plan
+
+        write_plan(self.plan, Path(path))
+
+    def write(
+        self, out: str | Path, formats: Sequence[str] = ("json", "step", "glb", "npz"), *, step_schema: str = "ap242"
+    ) -> Plan:
+        """Write files into the folder `out`, each whole or not at all, the plan and the samples first.
+
+        A model that cannot be written is named in the plan's `not_written`; the other files are there. Files that an
+        earlier run wrote there are removed if its plan lists them as they are.
+
+        Parameters
+        ----------
+        out : path-like
+        formats : sequence of str
+            Of `json`, `step`, `glb`, `npz` and `merged` (a GLB of one mesh, for parts of thousands of faces).
+        step_schema : str
+            Application protocol of the STEP file: `ap242`, `ap214` or `ap203`.
+
+        Returns
+        -------
+        Plan
+            The plan as written, with its `files`, `split` and `not_written`.
+        """
+        from plan_cutters.report import write_all
+
+        return write_all(self, Path(out), formats, step_schema=step_schema)

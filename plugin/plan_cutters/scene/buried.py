@@ -1,0 +1,94 @@
+"""Does a contact lie within material? Under a body that stands on the surface, or on the wall of a void, no posture helps.
+
+At every tilt from 0 to 90 deg the point at a small distance `d` from the contact along the normal lies in the cutter, at its
+edge: `P + d n = P - d sin(tilt) x_T + d cos(tilt) a`. If a ball of radius r about it is all material, the cutter holds points
+of that ball which are deeper in it than r / sqrt(2). So one test a contact settles all its postures.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from cad_io.arrays import Floats, Ints, Orientation, SurfaceSamples
+from cad_io.part.bodies import Body
+from plan_cutters.scene.obstacles import Obstacles
+
+#: Distance of the point from the contact and radius of the ball, in depths beyond which a posture is surely blocked: the
+#: ball is to be free of the skin that the contact lies on, and its radius more than sqrt(2).
+_AWAY, _BALL = 2.0, 1.5
+
+
+@dataclass(frozen=True, slots=True)
+class Cover:
+    """What a buried contact lies under.
+
+    Attributes
+    ----------
+    face : int
+        Number of the face at which the way out along the normal leaves the body.
+    point : (3,) float
+        Where that is, mm.
+    """
+
+    face: int
+    point: Floats
+
+
+def buried(
+    samples: SurfaceSamples, orientation: Orientation, bodies: Sequence[Body], surely: Obstacles, tolerance: float
+) -> Ints:
+    """In which body contacts lie so deep that every posture is blocked.
+
+    Parameters
+    ----------
+    samples : SurfaceSamples
+    orientation : Orientation
+        Side of each face.
+    bodies : sequence of Body
+    surely : Obstacles
+    tolerance : float
+        Gouge tolerance that is kept, mm.
+
+    Returns
+    -------
+    (n,) int32
+        Index into `bodies`, -1 where there is none.
+    """
+    from plan_cutters.kernels.material import far_inside
+
+    _, deep = surely.depths(tolerance)
+    point = samples.point + _AWAY * deep * samples.normal
+    open_rows = (samples.unjudged < 0) & np.isfinite(point).all(axis=1)
+    result = np.full(len(samples), -1, np.int32)
+    for index, body in enumerate(bodies):
+        mine = np.isin(surely.triangles.face, body.faces) if body.closed else np.zeros(0, bool)
+        if not mine.any():
+            continue
+        vertex = surely.triangles.vertex[mine]
+        within = ((point >= vertex.min(axis=(0, 1))) & (point <= vertex.max(axis=(0, 1)))).all(axis=1)
+        # A contact on the outer side of a skin is not within that.
+        outer = [n for n, side in zip(body.faces, body.sign, strict=True) if orientation.sign[n - 1] == side]
+        rows = np.flatnonzero(open_rows & within & (result < 0) & ~np.isin(samples.face, outer))
+        if len(rows):
+            found = np.zeros(len(rows), bool)
+            far_inside(np.ascontiguousarray(point[rows]), _BALL * deep, surely.skin_of(body).solids, found)
+            result[rows[found]] = index
+    return result
+
+
+def cover(point: Floats, normal: Floats, skin: Obstacles) -> Cover | None:
+    """Where the way out of a body along a normal (3,) leads from a contact (3,); None if it meets no skin."""
+    vertex = skin.triangles.vertex
+    a, b, c = vertex[:, 0] - point, vertex[:, 1] - point, vertex[:, 2] - point
+    # Signed volumes tell on which side of each edge the ray passes; the corners' sense does not matter.
+    sides = np.stack([np.cross(q, r) @ normal for q, r in ((a, b), (b, c), (c, a))])
+    area = np.cross(b - a, c - a)
+    with np.errstate(all="ignore"):
+        along = (area * a).sum(axis=1) / (area @ normal)
+    leaving = ((sides >= 0).all(axis=0) | (sides <= 0).all(axis=0)) & (np.sign(area @ normal) * skin.weight > 0)
+    leaving &= np.isfinite(along) & (along > 0)
+    if not leaving.any():
+        return None
+    first = int(np.where(leaving, along, np.inf).argmin())
+    return Cover(int(skin.triangles.face[first]), point + along[first] * normal)

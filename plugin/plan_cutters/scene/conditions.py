@@ -1,0 +1,119 @@
+"""What every stage judges a cutter under, and the search for a posture that several of them ask for."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.posture import PostureRange
+from plan_cutters.domain.verdicts import Reach
+from plan_cutters.scene.obstacles import Obstacles
+from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.scene.threads import Progress, in_chunks
+
+#: Points, normals, larger principal directions (n, 3) and curvatures (n, 2), as in SurfaceSamples.
+Geometry = tuple[Floats, Floats, Floats, Floats]
+
+
+@dataclass(frozen=True, slots=True)
+class Conditions:
+    """The same for all cutters of a plan.
+
+    Attributes
+    ----------
+    machine : Machine
+    setup : (3,) float
+        Unit setup axis.
+    postures : PostureRange
+    around : Surroundings
+        What is, and what may be, in the way.
+    tolerance : float
+        Gouge tolerance that is kept, mm.
+    jobs : int
+        Threads.
+    """
+
+    machine: Machine
+    setup: Floats
+    postures: PostureRange
+    around: Surroundings
+    tolerance: float
+    jobs: int
+
+    @property
+    def obstacles(self) -> Obstacles:
+        """Everything that may be in the way."""
+        return self.around.may_be
+
+    def judges(self, cutter: Cutter) -> bool:
+        """Whether the tolerance that is kept is fine enough to say anything about a cutter."""
+        return cutter.large_enough(self.tolerance)
+
+    @property
+    def depths(self) -> tuple[float, float]:
+        """Depths, mm, up to which a triangle does not matter, and beyond which it certainly does."""
+        return self.obstacles.depths(self.tolerance)
+
+    @property
+    def ranges(self) -> tuple[Floats, Floats, float, float, Floats, float]:
+        """What kernels take of postures and machine: cosines and sines of the rotations, tilts from and to, axis limit."""
+        rotations, (low, high) = self.postures.rotations, self.postures.tilt
+        return (np.cos(rotations), np.sin(rotations), max(0.0, low), min(np.pi / 2, high), self.setup,
+                self.machine.limit_cos)  # fmt: skip
+
+    def upright(self, normal: Floats) -> NDArray[np.bool_]:
+        """At which normals (n, 3) the machine can hold the axis along the normal, and tilt 0 was asked for."""
+        return np.asarray(self.postures.upright & (normal @ self.setup >= self.machine.limit_cos))
+
+
+def require_finite(geometry: Geometry, rows: NDArray[np.int64]) -> None:
+    """Refuse contacts that are no points with a normal, a direction and curvatures: kernels say nothing of them.
+
+    Raises
+    ------
+    ValueError
+    """
+    if not all(np.isfinite(column[rows]).all() for column in geometry):
+        raise ValueError("contacts to search a posture for must be finite")
+
+
+def search_postures(
+    geometry: Geometry, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, depths: tuple[float, float],
+    reach: Reach, progress: Progress | None = None,
+) -> None:  # fmt: skip
+    """Search a posture for contacts, neighbours in sequence, and write what is found into `reach`.
+
+    Parameters
+    ----------
+    geometry : tuple of arrays
+    rows : (m,) int64
+        Contacts to decide.
+    cutter : Cutter
+    conditions : Conditions
+    depths : tuple of float
+        As `Conditions.depths`, mm.
+    reach : Reach
+    progress : callable, optional
+        Told how many pieces of the work are done, of how many.
+
+    Raises
+    ------
+    ValueError
+        A contact is not a point with a normal and a curvature: nothing can be said of it.
+    """
+    from plan_cutters.kernels.search import search
+
+    require_finite(geometry, rows)
+    ranges, around = conditions.ranges, conditions.around
+    may_be, surely = around.may_be.solids, around.surely.solids
+
+    def work(piece: NDArray[np.int64]) -> None:
+        search(
+            piece, *geometry, *ranges, cutter.radius, cutter.length, *depths, may_be, surely,
+            reach.verdict, reach.axis, reach.lean, reach.tilt, reach.rotation, reach.reason,
+        )  # fmt: skip
+
+    in_chunks(work, rows, conditions.jobs, progress)

@@ -1,0 +1,228 @@
+"""Which faces are to be machined and which are left out: the words of `--faces` and `--ignore`, and objects of CAD hosts."""
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from numbers import Integral
+from typing import TYPE_CHECKING, Any
+
+from cad_io.arrays import FaceInfo
+from plan_cutters.domain.checks import choice
+from plan_cutters.errors import OptionError
+
+if TYPE_CHECKING:
+    from cad_io import Part
+    from cad_io.kernel.assembly import Node
+
+_WORDS = "sculptured, all, numbers as F3,7-12, component:NAME, name:REGEX, color:#RRGGBB, or one of them after a ! for all others"
+_RANGE = r"[Ff]?[0-9]+(?:\s*-\s*[Ff]?[0-9]+)?"
+_NUMBERS = re.compile(rf"{_RANGE}(?:\s*,\s*{_RANGE})*")
+#: Digits of a number that are looked at: more than any part has faces.
+_DIGITS = 12
+#: Components that an error lists, and characters of a selection that it repeats.
+_LISTED, _LONGEST = 5, 60
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """What becomes of the faces of a part; those in neither are check faces.
+
+    Attributes
+    ----------
+    targets, ignored : tuple of int
+        Face numbers, ascending.
+    asked : str
+        The words for `targets`.
+    ignore : tuple of str
+        The words for `ignored`.
+    notes : tuple of str
+        What the plan must say of the choice.
+    """
+
+    targets: tuple[int, ...]
+    ignored: tuple[int, ...]
+    asked: str
+    ignore: tuple[str, ...]
+    notes: tuple[str, ...]
+
+
+def choose(part: "Part", faces: Any, ignore: Any) -> Chosen:
+    """Target and ignored faces of a part.
+
+    Parameters
+    ----------
+    part : Part
+    faces : str, objects or None
+        None: the faces picked on the host's object, else `sculptured`.
+    ignore : str, list of str or objects
+        Faces to leave out.
+
+    Raises
+    ------
+    OptionError
+        A choice has no meaning, nothing is left, or a face is asked for by its number and ignored.
+    """
+    left_out = _words(part, ignore, "--ignore")
+    ignored = ignored_faces(part, left_out)
+    asked = _word(part, part.picked or "sculptured" if faces is None else faces, "--faces")
+    targets = select_faces(part.faces, asked, tree=part.tree, ignored=ignored)
+    notes = []
+    if asked == "sculptured" and _none_sculptured(part.faces[n - 1] for n in targets):
+        notes.append(
+            f"No face that can be judged is sculptured: all are targets ({len(targets)}); --faces chooses among them."
+        )
+    if ignored:
+        notes.append(
+            f"{len(ignored)} faces are ignored, neither targets nor obstacles: {_some(f'F{n}' for n in sorted(ignored))}."
+        )
+    return Chosen(targets, tuple(sorted(ignored)), asked, tuple(left_out), tuple(notes))
+
+
+def ignored_faces(part: "Part", ignore: Any) -> frozenset[int]:
+    """Numbers of the faces to leave out, as `choose` reads them."""
+    words = _words(part, ignore, "--ignore")
+    return frozenset().union(*(_selected(part.faces, text, part.tree, "--ignore") for text in words))
+
+
+def select_faces(
+    faces: Sequence[FaceInfo], text: str, *, tree: "Sequence[Node]" = (), ignored: Iterable[int] = ()
+) -> tuple[int, ...]:
+    """Numbers of the target faces, ascending.
+
+    Parameters
+    ----------
+    faces : sequence of FaceInfo
+        All faces of the part.
+    text : str
+        `sculptured` (all where there is none), `all`, numbers as `F3,7-12`, `component:NAME`, `name:REGEX` or
+        `color:#RRGGBB`; after a `!` all faces but these.
+    tree : sequence of Node
+        Components of the part.
+    ignored : iterable of int
+        Faces that cannot be targets.
+
+    Raises
+    ------
+    OptionError
+        The text is not of that form, selects nothing, or names an ignored face by its number.
+    """
+    out = frozenset(ignored)
+    left = [f for f in faces if f.number not in out]
+    if text == "sculptured":
+        chosen = [f.number for f in left if f.shape == "sculptured"]
+        # What has no surface may have been sculptured: it is asked for, but alone it would hide all others.
+        if _none_sculptured(faces[n - 1] for n in chosen):
+            chosen = [f.number for f in left]
+    else:
+        found = _selected(faces, text, tree, "--faces")
+        both = out & found
+        if both and _NUMBERS.fullmatch(text.strip()):
+            raise OptionError(f"--faces {_brief(text)}: F{min(both)} is ignored (--ignore): it cannot be a target")
+        chosen = sorted(found - out)
+    if not chosen:
+        raise OptionError(f"--faces {_brief(text)}: --ignore leaves none of these faces")
+    return tuple(chosen)
+
+
+def _none_sculptured(faces: Iterable[FaceInfo]) -> bool:
+    """None is of a shape that is known to be sculptured."""
+    return all(f.shape != "sculptured" or f.unjudged for f in faces)
+
+
+def _selected(faces: Sequence[FaceInfo], text: str, tree: "Sequence[Node]", option: str) -> set[int]:
+    """Numbers that a text selects: the one grammar of face selections."""
+    where = f"{option} {_brief(text)}"
+    word = text.strip()
+    plain = word.removeprefix("!").strip()
+    every = {f.number for f in faces}
+    if plain == "all":
+        chosen = every
+    elif plain == "sculptured":
+        chosen = {f.number for f in faces if f.shape == "sculptured"}
+    elif plain.startswith("component:"):
+        chosen = _of_component(tree, plain.removeprefix("component:"), where)
+    elif plain.startswith("name:"):
+        try:
+            pattern = re.compile(plain.removeprefix("name:"))
+        except re.error as error:
+            raise OptionError(f"{where}: not a regular expression ({error})") from None
+        chosen = {f.number for f in faces if pattern.search(f.name)}
+    elif match := re.fullmatch(r"colou?r:#([0-9a-fA-F]{6})", plain):
+        wanted = tuple(bytes.fromhex(match[1]))
+        chosen = {f.number for f in faces if f.colour and tuple(round(255 * c) for c in f.colour) == wanted}
+    elif _NUMBERS.fullmatch(plain):
+        chosen = _numbered(plain, len(faces), where)
+    else:
+        raise OptionError(f"{where}: give {_WORDS}")
+    # All but what a mistyped name selects would be everything.
+    found = bool(chosen) or plain == "sculptured"
+    if word != plain:
+        chosen = every - chosen
+    if not (found and chosen):
+        raise OptionError(f"{where} selects no face of this part")
+    return chosen
+
+
+def _numbered(word: str, count: int, where: str) -> set[int]:
+    """Numbers in a list of numbers and ranges, none beyond `count`."""
+    found: set[int] = set()
+    for item in word.split(","):
+        ends = [end.strip().lstrip("Ff").lstrip("0") or "0" for end in item.split("-")]
+        # No more digits than can count: neither a huge number nor a huge range is ever built.
+        first, last = int(ends[0][:_DIGITS]), int(ends[-1][:_DIGITS])
+        for end, number in ((ends[0], first), (ends[-1], last)):
+            if not 1 <= number <= count:
+                raise OptionError(f"{where}: there is no face F{_brief(end)}; the part has F1 to F{count}")
+        if first > last:
+            raise OptionError(f"{where}: {item.strip()} runs backwards")
+        found.update(range(first, last + 1))
+    return found
+
+
+def _of_component(tree: "Sequence[Node]", name: str, where: str) -> set[int]:
+    from cad_io.kernel.assembly import component_of, faces_of
+
+    known = sorted({path for path in component_of(tree).values() if path})
+    found = faces_of(tree, name.strip("/")) if name.strip("/") else set()
+    if not found and known:
+        raise OptionError(f"{where}: no component is called so; the part has {_some(known)}")
+    if not found:
+        raise OptionError(f"{where}: the components of this part have no names")
+    return found
+
+
+def _brief(text: str) -> str:
+    """A text as errors show it: one line, not too long."""
+    line = " ".join(text.split())
+    return line if len(line) <= _LONGEST else f"{line[:_LONGEST]}..."
+
+
+def _some(words: Iterable[str]) -> str:
+    """The first few of a list."""
+    found = list(words)
+    more = f" and {len(found) - _LISTED} more" if len(found) > _LISTED else ""
+    return ", ".join(found[:_LISTED]) + more
+
+
+def _words(part: "Part", given: Any, option: str) -> list[str]:
+    """Each of several choices as text."""
+    if isinstance(given, list | tuple) and all(isinstance(each, str) for each in given):
+        return list(given)
+    return [] if given is None else [_word(part, given, option)]
+
+
+def _word(part: "Part", given: Any, option: str) -> str:
+    """A choice as text: objects as the numbers of their faces."""
+    from cad_io.errors import CadIoError
+    from cad_io.read.objects import face_numbers
+
+    if isinstance(given, str):
+        return given
+    many = given if isinstance(given, Sequence) and not isinstance(given, bytes) else (given,)
+    if many and all(isinstance(each, Integral) and not isinstance(each, bool) for each in many):
+        return ",".join(f"F{n}" for n in sorted({int(n) for n in many}))
+    choice(given, option)
+    try:
+        return ",".join(f"F{n}" for n in face_numbers(part, given))
+    except CadIoError as error:
+        raise OptionError(f"{option}: {error.cause}") from None

@@ -1,0 +1,182 @@
+"""Obstacles: triangles in tree order, what they enclose, and how deep one may reach into a cutter."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from cad_io.arrays import Floats, Ints, Triangles
+from cad_io.part.bodies import Body
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.errors import UnjudgeableError
+
+if TYPE_CHECKING:
+    from plan_cutters.kernels.material import Solids
+
+#: Cells along the longest side of the grid that tells what is surely outside.
+_CELLS = 64
+#: Share of the tolerance that the obstacles' chord error may take, and what is asked of the tessellation.
+CHORD_SHARE, CHORD_ASKED = 0.25, 0.2
+
+
+def kept_tolerance(asked: float, chord_error: float) -> float:
+    """The gouge tolerance, mm, that can be kept with obstacles of a chord error: what was asked, or more."""
+    return max(asked, chord_error / CHORD_SHARE)
+
+
+@dataclass(frozen=True)
+class Obstacles:
+    """Triangles with their bounding tree.
+
+    Attributes
+    ----------
+    triangles : Triangles
+        As tessellated.
+    weight : (n,) int8
+        How often each counts as part of a skin that encloses something; default: nothing is enclosed.
+    open_boxes : (k, 2, 3) float
+        Boxes of skins that are not quite closed: nothing in them is surely outside.
+    gap : float
+        Widest gap between triangles of neighbouring faces, mm, that is no way out of a body.
+
+    Raises
+    ------
+    UnjudgeableError
+        There are no triangles, or one has a corner that is no point: nothing could be called safe.
+    """
+
+    triangles: Triangles
+    weight: NDArray[np.int8] = field(default_factory=lambda: np.zeros(0, np.int8))
+    open_boxes: Floats = field(default_factory=lambda: np.zeros((0, 2, 3)))
+    gap: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not len(self.triangles):
+            raise UnjudgeableError("there is nothing that could be in the way: no face has triangles")
+        if not (np.isfinite(self.triangles.vertex).all() and np.isfinite(self.triangles.chord_error)):
+            raise UnjudgeableError("the part's triangles have corners that are no points: export it again")
+        if not len(self.weight):
+            object.__setattr__(self, "weight", np.zeros(len(self.triangles), np.int8))
+
+    @cached_property
+    def _built(self) -> tuple[Ints, Floats, int]:
+        from plan_cutters.kernels.tree import build
+
+        order, box, depth = build(np.ascontiguousarray(self.triangles.vertex))
+        return order, box, int(depth)
+
+    @cached_property
+    def tree(self) -> tuple[Floats, Floats, int]:
+        """(vertex (n, 3, 3) in tree order, box (nodes, 16), depth), as the kernels take it."""
+        order, box, depth = self._built
+        return np.ascontiguousarray(self.triangles.vertex[order]), box, depth
+
+    @cached_property
+    def solids(self) -> "Solids":
+        """The tree and what its triangles enclose, as the searches take it."""
+        from plan_cutters.kernels.material import Solids, moments, sheet
+
+        vertex, box, depth = self.tree
+        weight = np.ascontiguousarray(self.weight[self._built[0]])
+        if not weight.any():
+            return sheet(vertex, box, depth)
+        return Solids(vertex, box, depth, weight, moments(vertex, weight, depth), *self._cells())
+
+    def _cells(self) -> tuple[NDArray[np.uint8], Floats, float]:
+        """Cells (i, j, k), 1 where one is surely outside; the grid's origin (3,) and the size of a cell, mm."""
+        from plan_cutters.kernels.material import mark_skin
+
+        vertex, grow = self.tree[0], self.triangles.chord_error + self.gap
+        low, high = vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))
+        grow += 1e-9 * float(np.abs([low, high]).max())
+        extent = float((high - low).max())
+        if not grow < extent / 8:
+            # Skins so loose leave no cell that is surely outside, but for what is beyond all of them.
+            return np.zeros((1, 1, 1), np.uint8), low - 0.5 * extent, 2.0 * extent + 1e-9
+        size = max(extent / _CELLS, 4.0 * grow)
+        origin = low - 1.5 * size
+        cell = np.zeros(tuple(np.ceil((high - origin) / size + 1.5).astype(int)), np.uint8)
+        mark_skin(vertex, grow, origin, size, cell)
+        # What is connected with the corner, past every skin, is outside.
+        region, _ = ndimage.label(cell == 0)
+        outside = region == region[0, 0, 0]
+        for box in self.open_boxes:
+            first, last = (np.clip((corner - origin) / size, 0, None).astype(int) for corner in box)
+            outside[first[0] : last[0] + 1, first[1] : last[1] + 1, first[2] : last[2] + 1] = False
+        return outside.astype(np.uint8), origin, size
+
+    @cached_property
+    def wide_tree(self) -> tuple[Floats, Floats, Ints, int]:
+        """(vertex in tree order, blocks, offset, bottom): the tree as posture maps take it, eight boxes at a time."""
+        from plan_cutters.kernels.lanes import wide_tree
+
+        blocks, offset, bottom = wide_tree(*self.tree)
+        return self.tree[0], blocks, offset, int(bottom)
+
+    @cached_property
+    def faces(self) -> Ints:
+        """Face numbers (n,) in tree order."""
+        return np.ascontiguousarray(self.triangles.face[self._built[0]])
+
+    def face(self, triangle: int) -> int:
+        """Face number of a triangle in tree order."""
+        return int(self.faces[triangle])
+
+    def depths(self, tolerance: float) -> tuple[float, float]:
+        """Depths `(safe, blocked)`, mm, that decide for the true surface.
+
+        Every surface point has a triangle point within the chord error and the reverse. So if no triangle reaches
+        deeper than `safe`, no surface point is deeper than the tolerance; a triangle point deeper than `blocked`
+        proves one.
+        """
+        error = self.triangles.chord_error
+        return tolerance - error, tolerance + error
+
+    @cached_property
+    def skin(self) -> "Obstacles":
+        """The same triangles, which enclose nothing."""
+        bare = Obstacles(self.triangles)
+        bare.__dict__.update(_built=self._built, tree=self.tree)
+        return bare
+
+    def skin_of(self, body: Body) -> "Obstacles":
+        """The triangles of one body."""
+        mine = np.isin(self.triangles.face, body.faces)
+        triangles = replace(self.triangles, vertex=self.triangles.vertex[mine], face=self.triangles.face[mine])
+        return Obstacles(triangles, weights(triangles, [body]))
+
+    def holds(
+        self, cutter: Cutter, contact: Floats, normal: Floats, lean: Floats, tilt: Floats, *, surely: bool = False
+    ) -> NDArray[np.bool_]:  # fmt: skip
+        """Whether cutters that touch no skin lie within a body, or may: (n,).
+
+        Parameters
+        ----------
+        cutter : Cutter
+        contact, normal, lean : (n, 3) float
+        tilt : (n,) float
+            rad.
+        surely : bool
+            Only those of which it is sure.
+        """
+        from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, windings
+        from plan_cutters.kernels.search import inner_height
+
+        cosine, sine = np.cos(tilt)[:, None], np.sin(tilt)[:, None]
+        height = inner_height(cutter.radius, cutter.length)
+        point = contact + height * (cosine * normal + sine * lean) - cutter.radius * (cosine * lean - sine * normal)
+        out = np.empty(len(point))
+        windings(np.ascontiguousarray(point), self.solids, out)
+        return np.asarray(out >= SURELY_INSIDE if surely else ~(out < MAYBE_INSIDE))
+
+
+def weights(triangles: Triangles, found: Sequence[Body]) -> NDArray[np.int8]:
+    """Weights (n,) of triangles from the faces and signs of bodies."""
+    by_face = np.zeros(1 + max([int(triangles.face.max(initial=0)), *(max(body.faces) for body in found)]), np.int8)
+    for body in found:
+        np.add.at(by_face, list(body.faces), np.array(body.sign, np.int8))
+    return by_face[triangles.face]

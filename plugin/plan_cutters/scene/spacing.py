@@ -1,0 +1,38 @@
+"""How densely to sample where nobody said: from the curvature, the smallest cutter and a budget."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from cad_io import Orientation, Part
+from cad_io.sample import sample
+from plan_cutters.domain.cutter import Cutter
+
+#: Samples that a default plan may take, in all.
+BUDGET = 40_000
+#: Share of the smallest radius, and turn of the normal (rad), between neighbouring samples.
+_SHARE, _TURN = 0.25, 0.2
+#: Curvature makes the spacing finer by no more than this.
+_FINEST = 4.0
+
+
+def default_spacing(
+    part: Part, orientation: Orientation, faces: Sequence[int], cutters: Sequence[Cutter]
+) -> dict[int, float]:
+    """Spacing of each target face, mm.
+
+    A quarter of the smallest cutter's radius, finer (up to four times) where the surface bends within it, coarser for
+    all faces alike where the budget binds.
+    """
+    base = _SHARE * min(c.radius for c in cutters)
+    scout = sample(part, orientation, grid=9, spacing=None, faces=faces)
+    bend = np.nan_to_num(np.abs(scout.curvature).max(axis=1, initial=0.0))
+    spacing: dict[int, float] = {}
+    for number in faces:
+        here = bend[scout.face == number]
+        # A median: a point at an apex or a crease says nothing about the face.
+        typical = float(np.median(here)) if len(here) else 0.0
+        spacing[number] = min(base, max(base / _FINEST, _TURN / typical if typical else base))
+    wanted = sum(part.faces[number - 1].area / spacing[number] ** 2 for number in faces)
+    coarser = max(1.0, (wanted / BUDGET) ** 0.5)
+    return {number: value * coarser for number, value in spacing.items()}

@@ -1,0 +1,137 @@
+"""What is, and what may be, in a cutter's way: everything that stands around the faces to machine."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cad_io import Part
+from cad_io.arrays import Floats, LostFace, Triangles
+from cad_io.part.bodies import Body, bodies
+from cad_io.tessellate import tessellate
+from cad_io.tessellate.stand_ins import StandIn, stand_ins
+from cad_io.tessellate.triangles import At
+from plan_cutters.errors import UnjudgeableError
+from plan_cutters.scene.obstacles import Obstacles, weights
+
+#: Triangles of a loose face that are looked at to tell whether it lies on a body, about.
+_LOOKED_AT = 50
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """What is, and what may be, in a cutter's way.
+
+    Attributes
+    ----------
+    may_be : Obstacles
+        Everything that may be in the way: what is missed by it is safe.
+    surely : Obstacles
+        What certainly is: what is hit by it is blocked. The same object where nothing is uncertain.
+    bodies : tuple of Body
+        What encloses something, of the faces that are not left out.
+    missing : tuple of (int, str, str)
+        Faces that stand in the way only as a guess, with the reason and what stands in for each: its own `triangles`, a
+        `box`, or `none` where its place is not known.
+    on_bodies : tuple of int
+        Faces of no body that lie on the faces of one, as construction geometry does.
+    lost : tuple of LostFace
+        Faces of the file that the part does not have; those it has in another form are in `missing`.
+    """
+
+    may_be: Obstacles
+    surely: Obstacles
+    bodies: tuple[Body, ...]
+    missing: tuple[tuple[int, str, StandIn], ...]
+    on_bodies: tuple[int, ...] = ()
+    lost: tuple[LostFace, ...] = ()
+
+    @property
+    def doubtful(self) -> bool:
+        """Whether something that may be in the way is not known well enough to call any posture safe beyond doubt."""
+        return bool(self.missing or self.lost)
+
+    @classmethod
+    def sheet(cls, obstacles: Obstacles) -> "Surroundings":
+        """Obstacles that are surely in the way and enclose nothing."""
+        return cls(obstacles, obstacles, (), ())
+
+    @property
+    def skins(self) -> "Surroundings":
+        """The same without what is enclosed."""
+        return replace(self, may_be=self.may_be.skin, surely=self.surely.skin)
+
+
+def surroundings(
+    part: Part, chord: float, *, ignored: Collection[int] = (), at: At = lambda who, face: None
+) -> Surroundings:
+    """Gather all that stands in a cutter's way.
+
+    Parameters
+    ----------
+    part : Part
+    chord : float
+        Chord error to ask for, mm.
+    ignored : collection of int
+        Numbers of faces to leave out.
+    at : callable, optional
+        Told whose work is under way and at which face, as in `tessellate`.
+
+    Raises
+    ------
+    UnjudgeableError
+        No face has triangles.
+    """
+    triangles = tessellate(part, chord, faces=[f.number for f in part.faces if f.number not in ignored], at=at)
+    if not len(triangles):
+        causes = "; ".join(sorted({why for _, why in triangles.missing}))
+        raise UnjudgeableError(f"no face has triangles that could be in the way: {causes or 'all are left out'}",
+                               file=part.file)  # fmt: skip
+    found = bodies(part, without=ignored)
+    surely = Obstacles(triangles, weights(triangles, [b for b in found if b.closed]), gap=part.looseness)
+    stand = stand_ins(part, triangles.missing, chord)
+    missing = tuple((n, why, stand.how[n]) for n, why in triangles.missing if stand.how[n] != "edges")
+    lost = tuple(each for each in part.lost if each.face is None)
+    lying = _on_bodies(surely, found)
+    everything = weights(triangles, found)
+    caps = np.concatenate([np.zeros((0, 3, 3)), *(body.cap for body in found)])
+    if not len(stand.vertex) and not len(caps) and (everything == surely.weight).all():
+        return Surroundings(surely, surely, found, missing, lying, lost)
+    all_triangles = replace(
+        triangles,
+        vertex=np.concatenate([triangles.vertex, stand.vertex, caps]),
+        face=np.concatenate([triangles.face, stand.face, np.zeros(len(caps), np.int32)]),
+    )
+    open_boxes = [_box(triangles, body) for body in found if not body.closed]
+    may_be = Obstacles(all_triangles, np.concatenate([everything, stand.weight, np.ones(len(caps), np.int8)]),
+                       np.array([box for box in open_boxes if np.isfinite(box).all()]).reshape(-1, 2, 3),
+                       part.looseness)  # fmt: skip
+    return Surroundings(may_be, surely, found, missing, lying, lost)
+
+
+def _on_bodies(surely: Obstacles, found: Sequence[Body]) -> tuple[int, ...]:
+    """Numbers of faces of no body, most of whose triangles' middles lie on the skin of one."""
+    from plan_cutters.kernels.material import near_skin
+
+    triangles = surely.triangles
+    own = {number for body in found for number in body.faces}
+    if not surely.weight.any():
+        return ()
+    close = 2.0 * triangles.chord_error + 1e-9 * float(np.abs(triangles.vertex).max())
+    lying = []
+    for number in np.unique(triangles.face).tolist():
+        if number in own:
+            continue
+        middle = triangles.vertex[triangles.face == number].mean(axis=1)
+        middle = np.ascontiguousarray(middle[:: 1 + len(middle) // _LOOKED_AT])
+        near = np.zeros(len(middle), bool)
+        near_skin(middle, close, surely.solids, near)
+        if near.mean() > 0.5:
+            lying.append(number)
+    return tuple(lying)
+
+
+def _box(triangles: Triangles, body: Body) -> Floats:
+    """Corners (2, 3) of the box around a body's triangles, infinite if it has none."""
+    mine = triangles.vertex[np.isin(triangles.face, body.faces)]
+    return np.array([mine.min(axis=(0, 1), initial=np.inf), mine.max(axis=(0, 1), initial=-np.inf)])

@@ -1,0 +1,209 @@
+"""Is the cutter accessible? The seed's second phase: a posture, or why there is none, at every prone sample."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats, Ints, SurfaceSamples
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.verdicts import (
+    ACCESSIBLE,
+    BURIED,
+    FREE,
+    INACCESSIBLE,
+    REASONS,
+    TOLERANCE,
+    UNDECIDED,
+    UNJUDGED,
+    Reach,
+    Witness,
+    blank,
+)
+from plan_cutters.scene.buried import cover
+from plan_cutters.scene.conditions import Conditions, Geometry, search_postures
+from plan_cutters.scene.obstacles import Obstacles
+from plan_cutters.scene.threads import Progress, in_chunks
+
+
+def access(
+    samples: SurfaceSamples,
+    free: NDArray[np.bool_],
+    cutter: Cutter,
+    conditions: Conditions,
+    *,
+    buried: Ints | None = None,
+    known: Reach | None = None,
+    progress: Progress | None = None,
+) -> Reach:
+    """Search a posture for every judged sample that is not interference-free.
+
+    Parameters
+    ----------
+    samples : SurfaceSamples
+    free : (n,) bool
+        Interference-free samples, as `decompose` gives them.
+    cutter, conditions
+    buried : (n,) int32, optional
+        The body that each sample lies within, -1 for none (default): none of those within is accessible.
+    known : Reach, optional
+        What follows from other cutters (`nesting.handed`): those samples are not searched again.
+    progress : callable, optional
+        Told how many pieces of the work are done, of how many.
+    """
+    n = len(samples)
+    reach = blank(n)
+    judged = samples.unjudged < 0
+    if not conditions.judges(cutter):
+        reach.verdict[judged], reach.reason[judged] = UNDECIDED, TOLERANCE
+        return reach
+    within = np.zeros(n, bool) if buried is None else judged & (buried >= 0)
+    reach.verdict[within], reach.reason[within] = INACCESSIBLE, BURIED
+    reach.verdict[free] = FREE
+    reach.axis[free] = samples.normal[free]
+    reach.lean[free] = samples.direction_max[free]
+    reach.tilt[free] = 0.0
+    reach.rotation[free] = 0
+    geometry = (samples.point, samples.normal, samples.direction_max, samples.curvature)
+    wanted = judged & ~free & ~within
+    if known is not None:
+        follows = wanted & (known.verdict != UNJUDGED)
+        for name in Reach.__slots__:
+            getattr(reach, name)[follows] = getattr(known, name)[follows]
+        _first_reasons(
+            geometry, np.flatnonzero(follows & (known.verdict == INACCESSIBLE)), cutter, conditions, reach.reason
+        )
+        wanted &= ~follows
+    search_postures(geometry, np.flatnonzero(wanted), cutter, conditions, conditions.depths, reach, progress)
+    return reach
+
+
+def _first_reasons(
+    geometry: Geometry, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, reason: NDArray[np.uint8]
+) -> None:
+    """Where the axis limit or local gouging alone leaves this cutter nothing, that is the reason."""
+    from plan_cutters.kernels.search import first_reason
+
+    ranges = conditions.ranges
+    in_chunks(lambda piece: first_reason(piece, *geometry[1:], *ranges, cutter.radius, reason), rows, conditions.jobs)
+
+
+#: Witnesses kept for each face and reason, and samples tried to find them, in all.
+_KEPT, _TRIED, _TRIED_IN_ALL = 2, 6, 60
+#: Depths are found to this share of themselves.
+_PRECISION = 0.02
+
+
+def witnesses(
+    samples: SurfaceSamples, reach: Reach, cutter: Cutter, conditions: Conditions, *, buried: Ints | None = None
+) -> tuple[Witness, ...]:
+    """Samples that are not reached, the deepest tried of each face and reason first; `buried` as in `access`."""
+    lost = np.flatnonzero((reach.verdict == INACCESSIBLE) | (reach.verdict == UNDECIDED))
+    groups: dict[tuple[int, int], list[int]] = {}
+    for row in lost:
+        groups.setdefault((int(samples.face[row]), int(reach.reason[row])), []).append(int(row))
+    tries = max(1, min(_TRIED, _TRIED_IN_ALL // max(1, len(groups))))
+    picked = [
+        [group[i] for i in np.unique(np.linspace(0, len(group) - 1, tries).astype(int))] for group in groups.values()
+    ]
+    looked: dict[int, Witness] = {}
+    alone = replace(conditions, jobs=1)
+
+    def work(rows: NDArray[np.int64]) -> None:
+        for row in rows.tolist():
+            body = -1 if buried is None else int(buried[row])
+            if body < 0:
+                looked[row] = _witness(samples, row, reach, cutter, alone)
+            else:
+                around = conditions.around
+                looked[row] = _covered(samples, row, around.surely.skin_of(around.bodies[body]))
+
+    in_chunks(work, np.array([row for group in picked for row in group], np.int64), conditions.jobs, chunk=1)
+    found: list[Witness] = []
+    for group in picked:
+        ranked = sorted((looked[row] for row in group), key=lambda w: (-(w.depth or 0.0), w.sample))
+        found += ranked[:_KEPT]
+    return tuple(found)
+
+
+def _witness(samples: SurfaceSamples, row: int, reach: Reach, cutter: Cutter, conditions: Conditions) -> Witness:
+    """Find the posture with the least depth by halving the depth that is let pass.
+
+    Local gouging holds as it does in the search, except where it alone leaves no posture: there it is what is measured.
+    """
+    from plan_cutters.kernels.search import probe
+
+    reason = REASONS[reach.reason[row]]
+    nothing = Witness(row, reason, None, None, None, None, None, None)
+    if reason == "tolerance":
+        return nothing
+    if reason == "buried":
+        return _covered(samples, row, conditions.around.surely)
+    found = _least_depth(samples, row, reason, cutter, replace(conditions, around=conditions.around.skins))
+    if found is None:
+        return nothing
+    obstacles, at = conditions.obstacles, slice(row, row + 1)
+    best = found[0]
+    if obstacles.holds(cutter, samples.point[at], samples.normal[at], best.lean, best.tilt)[0]:
+        # Its axis lies within material: one that does not says more, if there is any.
+        found = _least_depth(samples, row, reason, cutter, conditions) or found
+    best, low, high = found
+    first = np.zeros(1, np.int64)
+    triangle = np.full(1, -1, np.int32)
+    probe(first, samples.point[at], samples.normal[at], best.axis, best.lean, cutter.radius, cutter.length, np.array([low]),
+          *obstacles.tree, triangle)  # fmt: skip
+    hit = int(triangle[0])
+    return Witness(
+        sample=row,
+        reason=reason,
+        obstacle_face=obstacles.face(hit) if hit >= 0 else None,
+        obstacle_point=None
+        if hit < 0
+        else _deepest(obstacles.tree[0][hit], samples.point[row], samples.normal[row], best, cutter),
+        tilt=float(best.tilt[0]),
+        rotation=float(conditions.postures.rotations[best.rotation[0]]),
+        axis=best.axis[0],
+        depth=high,
+    )
+
+
+def _least_depth(
+    samples: SurfaceSamples, row: int, reason: str, cutter: Cutter, conditions: Conditions
+) -> tuple[Reach, float, float] | None:
+    """The posture of least depth, and depths, mm, between which that lies; None if no posture is left at any."""
+    one, first = slice(row, row + 1), np.zeros(1, np.int64)
+    curvature = np.zeros((1, 2)) if reason == "local_gouge" else samples.curvature[one]
+    geometry = (samples.point[one], samples.normal[one], samples.direction_max[one], curvature)
+    deepest = min(cutter.radius, cutter.length / 2) * (1 - 1e-9)
+    low, high = conditions.depths[0], deepest
+    best: Reach | None = None
+    while best is None or high - low > _PRECISION * high:
+        depth = np.sqrt(low * high) if best else deepest
+        trial = blank(1)
+        search_postures(geometry, first, cutter, conditions, (depth, depth), trial)
+        if trial.verdict[0] == ACCESSIBLE:
+            best, high = trial, depth
+        elif best is None:
+            return None
+        else:
+            low = depth
+    return best, low, high
+
+
+def _covered(samples: SurfaceSamples, row: int, skin: Obstacles) -> Witness:
+    """What a sample lies within is the witness: where the way out along the normal leaves it."""
+    way_out = cover(samples.point[row], samples.normal[row], skin)
+    face, point = (None, None) if way_out is None else (way_out.face, way_out.point)
+    return Witness(row, REASONS[BURIED], face, point, None, None, None, None)
+
+
+def _deepest(triangle: Floats, contact: Floats, normal: Floats, posture: Reach, cutter: Cutter) -> Floats:
+    """The point of a triangle that is deepest in the cutter, of 66."""
+    axis, x_t = posture.axis[0], np.cos(posture.tilt[0]) * posture.lean[0] - np.sin(posture.tilt[0]) * normal
+    share = np.array([(i, j, 10 - i - j) for i in range(11) for j in range(11 - i)]) / 10
+    points = share @ triangle
+    offset = points - (contact - cutter.radius * x_t)
+    height = offset @ axis
+    radial = np.linalg.norm(offset - height[:, None] * axis, axis=1)
+    depth = np.minimum(np.minimum(height, cutter.length - height), cutter.radius - radial)
+    return np.asarray(points[int(depth.argmax())])

@@ -1,0 +1,247 @@
+"""Every free tilt at one point: what the union of all attributes leaves, and what each forbids alone.
+
+The seed's Fig. 7, with a list of intervals at each rotation in place of one pair of numbers.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cad_io import SurfaceSamples, Triangles
+from cad_io.arrays import Floats
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.posture import lean
+from plan_cutters.scene.obstacles import Obstacles
+from plan_cutters.scene.surroundings import Surroundings
+
+#: Ends that move by no more, rad, have settled.
+SETTLED = np.radians(0.01)
+#: Parts that one rotation may fall into before the rest is called undecided.
+_ROOM = 20_000
+#: Pieces of obstacles cut at the border between rear gouging and collision are no larger than this share of R.
+_BORDER = 0.02
+
+
+@dataclass(frozen=True, slots=True)
+class PostureMap:
+    """Free tilts of a cutter at a point.
+
+    Attributes
+    ----------
+    rotations : (k,) float
+        rad, from `direction_max`.
+    free : tuple of (m, 2) float
+        At each rotation, the sorted free tilt intervals, rad.
+    undecided : tuple of (m, 2) float
+        Tilts that are neither called free nor known to be forbidden: the uncertainty of the ends.
+    local_gouge : (k,) float
+        Least tilt that local gouging allows, rad; nan if none.
+    rear_gouge, collision, axis_limit : tuple of (m, 2) float
+        Each attribute alone: forbidden intervals. Obstacles within 2R of the contact and above its tangent plane are
+        rear gouging, all others collision.
+    point, normal, direction_max : (3,) float
+        The frame: contact, unit normal out of the material, direction from which rotations count.
+    curvature : (2,) float
+        kappa_max, kappa_min, 1/mm, concave positive.
+    buried : tuple of (m, 2) float
+        Tilts at which the cutter touches nothing and lies within a body.
+    tolerance : float
+        The gouge tolerance kept, mm; 0 for the nominal answer.
+    certified : bool
+        Whether free tilts are safe for the true surface to the tolerance; the nominal answer is not, nor is any where
+        `missing` names a face.
+    missing : tuple of str
+        Faces that stand in the way only as a guess or not at all, with the reason; what only they forbid is undecided.
+    chord_error : float
+        Of the obstacles, mm.
+    settled : bool
+        For the nominal answer: whether a last refinement moved no end by more than 0.01 deg.
+    """
+
+    rotations: Floats
+    free: tuple[Floats, ...]
+    undecided: tuple[Floats, ...]
+    local_gouge: Floats
+    rear_gouge: tuple[Floats, ...]
+    collision: tuple[Floats, ...]
+    axis_limit: tuple[Floats, ...]
+    buried: tuple[Floats, ...]
+    point: Floats
+    normal: Floats
+    direction_max: Floats
+    curvature: Floats
+    tolerance: float
+    certified: bool
+    missing: tuple[str, ...]
+    chord_error: float
+    settled: bool
+
+    def axis(self, i: int, tilt: float) -> Floats:
+        """Unit tool axis at `rotations[i]` and a tilt (rad), in part coordinates."""
+        f = lean(self.normal, self.direction_max, float(self.rotations[i]))
+        return np.cos(tilt) * self.normal + np.sin(tilt) * f
+
+
+@dataclass(frozen=True, slots=True)
+class Ask:
+    """What a map is asked for: contact, cutter, rotations (k,) and tilts from and to, rad, machine and unit setup axis."""
+
+    contact: SurfaceSamples
+    cutter: Cutter
+    rotations: Floats
+    tilt: tuple[float, float]
+    machine: Machine
+    setup: Floats
+
+
+def posture_map_of(
+    ask: Ask, around: Surroundings, depths: tuple[float, float], narrowest: float, tolerance: float
+) -> PostureMap:  # fmt: skip
+    from plan_cutters.kernels.free_tilts import FORBIDDEN, OPEN, UNSURE, free_tilts
+    from plan_cutters.kernels.points import axis_intervals, local_gouge_bound
+
+    contact, cutter, (low, high) = ask.contact, ask.cutter, ask.tilt
+    p, n, e1 = contact.point[0], contact.normal[0], contact.direction_max[0]
+    kappa_max, kappa_min = contact.curvature[0]
+    whole = around.may_be
+    near = _rear(whole.triangles, p, n, cutter.radius)
+    free, undecided, rear, collision, axis, buried = [], [], [], [], [], []
+    gouge = np.empty(len(ask.rotations))
+    for i, rotation in enumerate(ask.rotations):
+        f = lean(n, e1, float(rotation))
+        gouge[i] = local_gouge_bound(kappa_max, kappa_min, float(rotation), cutter.radius)
+        allowed = axis_intervals(float(ask.setup @ n), float(ask.setup @ f), ask.machine.limit_cos, low, high)
+        axis.append(complement(allowed, low, high))
+
+        def parts(
+            obstacles: Obstacles | None, first: float, last: float, f: Floats = f, depth: float = depths[0]
+        ) -> Floats:
+            if obstacles is None:
+                return np.array([[first, last, OPEN]])
+            return np.asarray(free_tilts(p, n, f, first, last, cutter.radius, cutter.length, depth, narrowest,
+                                         *obstacles.tree, _ROOM))  # fmt: skip
+
+        rear.append(complement(_merged(parts(near[0], low, high), OPEN), low, high))
+        collision.append(complement(_merged(parts(near[1], low, high), OPEN), low, high))
+        pieces, sure = [np.zeros((0, 3))], [np.zeros((0, 3))]
+        for first, last in allowed:
+            first = max(first, gouge[i]) if not np.isnan(gouge[i]) else np.inf
+            if first <= last:
+                pieces.append(parts(whole, first, last))
+                if around.surely is not whole:
+                    sure.append(parts(around.surely, first, last, depth=depths[1]))
+        found = np.concatenate(pieces)
+        open_tilts, unsure = _merged(found, OPEN), _merged(found, UNSURE)
+        if around.surely is not whole:
+            # What is not free for all that may be there, but is not surely blocked either.
+            blocked = _merged(np.concatenate(sure), FORBIDDEN)
+            rest = found[found[:, 2] != OPEN].copy()
+            unsure = _minus(_merged(np.column_stack([rest[:, :2], np.full(len(rest), UNSURE)]), UNSURE), blocked)
+        within, sunk = np.zeros((2, len(open_tilts)), bool)
+        if len(open_tilts):
+            every = np.ones((len(open_tilts), 1))
+            frame = (cutter, every * p, every * n, every * f, open_tilts.mean(axis=1))
+            within = whole.holds(*frame)
+            sunk = within & around.surely.holds(*frame, surely=True)
+        free.append(open_tilts[~within])
+        buried.append(open_tilts[sunk])
+        # Within what is only perhaps a body.
+        perhaps = open_tilts[within & ~sunk]
+        undecided.append(unsure if not len(perhaps) else _joined(np.concatenate([unsure, perhaps])))
+        assert set(found[:, 2]) <= {OPEN, FORBIDDEN, UNSURE}
+    return PostureMap(
+        rotations=ask.rotations, free=tuple(free), undecided=tuple(undecided), local_gouge=gouge,
+        rear_gouge=tuple(rear), collision=tuple(collision), axis_limit=tuple(axis), buried=tuple(buried), point=p, normal=n,
+        direction_max=e1, curvature=contact.curvature[0], tolerance=tolerance,
+        certified=tolerance > 0 and not around.doubtful, missing=_named(around),
+        chord_error=whole.triangles.chord_error, settled=tolerance > 0,
+    )  # fmt: skip
+
+
+def _named(around: Surroundings) -> tuple[str, ...]:
+    return (*(f"F{number}: {why}" for number, why, _ in around.missing), *(str(each) for each in around.lost))
+
+
+def _merged(parts: Floats, kind: int) -> Floats:
+    """Intervals of one kind, those that touch joined, ascending."""
+    return _joined(parts[parts[:, 2] == kind][:, :2])
+
+
+def _joined(chosen: Floats) -> Floats:
+    chosen = chosen[np.argsort(chosen[:, 0], kind="stable")]
+    joined: list[list[float]] = []
+    for first, last in chosen.tolist():
+        if joined and first <= joined[-1][1]:
+            joined[-1][1] = max(joined[-1][1], last)
+        else:
+            joined.append([first, last])
+    return np.array(joined).reshape(-1, 2)
+
+
+def complement(intervals: Floats, low: float, high: float) -> Floats:
+    edges = np.concatenate([[low], intervals.ravel(), [high]]).reshape(-1, 2)
+    return edges[edges[:, 1] > edges[:, 0]]
+
+
+def _minus(intervals: Floats, others: Floats) -> Floats:
+    """Intervals (k, 2) without what sorted others cover."""
+    left = [np.zeros((0, 2))]
+    for first, last in intervals:
+        left.append(
+            complement(np.clip(others[(others[:, 1] > first) & (others[:, 0] < last)], first, last), first, last)
+        )
+    return np.concatenate(left)
+
+
+def moved(a: PostureMap, b: PostureMap) -> float:
+    """Largest movement of an end between two maps; inf where intervals came or went (slivers aside)."""
+    worst = 0.0
+    for x, y in zip(a.free, b.free, strict=True):
+        x, y = (i[(i[:, 1] - i[:, 0]) > SETTLED] for i in (x, y))
+        if len(x) != len(y):
+            return np.inf
+        worst = max(worst, float(np.abs(x - y).max(initial=0.0)))
+    return worst
+
+
+def _rear(
+    triangles: Triangles, p: Floats, n: Floats, radius: float
+) -> tuple[Obstacles | None, Obstacles | None]:  # fmt: skip
+    """Share obstacles out: within 2R of the contact and above its tangent plane, and all others; None if there are none.
+
+    Triangles across the border are halved until they are small; then their centre decides.
+    """
+    reach, smallest = 2 * radius, _BORDER * radius
+    vertex, face = triangles.vertex, triangles.face
+    near: list[tuple[Floats, Any]] = []
+    far: list[tuple[Floats, Any]] = []
+    while len(vertex):
+        offset = vertex - p
+        distance = np.linalg.norm(offset, axis=2)
+        height = offset @ n
+        side = np.linalg.norm(vertex - np.roll(vertex, 1, axis=1), axis=2).max(axis=1)
+        # The nearest point of a triangle is no nearer than its nearest corner less its longest side.
+        outside = (distance.min(axis=1) - side > reach) | (height.max(axis=1) <= 0)
+        inside = (distance.max(axis=1) <= reach) & (height.min(axis=1) > 0)
+        small = ~outside & ~inside & (side <= smallest)
+        centre = offset.mean(axis=1)
+        inside |= small & (np.linalg.norm(centre, axis=1) <= reach) & (centre @ n > 0)
+        outside |= small & ~inside
+        near.append((vertex[inside], face[inside]))
+        far.append((vertex[outside], face[outside]))
+        rest = ~inside & ~outside
+        # Halve the longest side: long thin triangles come out compact.
+        v, face = vertex[rest], np.tile(face[rest], 2)
+        longest = np.linalg.norm(v - np.roll(v, -1, axis=1), axis=2).argmax(axis=1)
+        a, b, c = (v[np.arange(len(v)), (longest + k) % 3] for k in range(3))
+        middle = (a + b) / 2
+        vertex = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+
+    def gather(parts: list[tuple[Floats, Any]]) -> Obstacles | None:
+        mine = Triangles(np.concatenate([x for x, _ in parts]), np.concatenate([x for _, x in parts]),
+                         triangles.chord_error, ())  # fmt: skip
+        return Obstacles(mine) if len(mine) else None
+
+    return gather(near), gather(far)
