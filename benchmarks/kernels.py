@@ -22,8 +22,11 @@ import waves
 
 from plan_cutters.kernels import arcs, cover, free_map, free_tilts, hit, lanes, material, search, tree
 from plan_cutters.kernels.jit import kernel
+from plan_cutters.kernels.rows import Contacts, Found, Frame, Tool
 
 RADIUS, LENGTH, SAFE, BLOCKED, TURNS = 6.0, 40.0, 0.04, 0.06, 24
+CUTTER = RADIUS, LENGTH, SAFE
+TOOL = Tool(RADIUS, RADIUS - SAFE, SAFE, LENGTH - SAFE)
 RIGHT, UP, NARROWEST = np.pi / 2, np.array([0.0, 0, 1]), np.radians(0.1)
 Driver = Callable[[int], object]
 #: Calls of a kernel under callgrind, at most: it takes fifty times as long.
@@ -86,11 +89,11 @@ def many_triangles(n, vertex, which, bodies, polygon, spare):  # type: ignore[no
 
 
 @kernel
-def many_walks(n, vertex, box, depth, bodies, stack, polygon, spare, pieces):  # type: ignore[no-untyped-def]
+def many_walks(n, built, bodies, scratch):  # type: ignore[no-untyped-def]
     total = 0
     for i in range(n):
         body = bodies[i % len(bodies)]
-        total += hit.tree_hit(vertex, box, depth, body, 0.0, -1, stack, polygon, spare, pieces)[0]
+        total += hit.tree_hit(built, body, 0.0, -1, scratch)[0]
     return total
 
 
@@ -98,7 +101,7 @@ def many_walks(n, vertex, box, depth, bodies, stack, polygon, spare, pieces):  #
 def many_blocks(n, view, gap, margin):  # type: ignore[no-untyped-def]
     total = 0.0
     for i in range(n):
-        lanes._boxes_pass(view, i % len(view), 0.8, 0.6, gap, 1, RADIUS, RADIUS - SAFE, SAFE, LENGTH - SAFE, margin)
+        lanes._boxes_pass(view, i % len(view), 0.8, 0.6, gap, 1, TOOL, margin)
         total += margin[0]
     return total
 
@@ -108,7 +111,7 @@ def many_leaves(n, leaves, gap, margin):  # type: ignore[no-untyped-def]
     total = 0.0
     for i in range(n):
         seen = leaves[i % len(leaves)]
-        lanes._triangles_pass(seen, 0.8, 0.6, gap, 1, RADIUS, RADIUS - SAFE, SAFE, LENGTH - SAFE, margin)
+        lanes._triangles_pass(seen, 0.8, 0.6, gap, 1, TOOL, margin)
         total += margin[0]
     return total
 
@@ -137,8 +140,8 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
     """Each kernel's name: what one of its calls is counted by, how many of them to time, and a run of n of them."""
     rng = np.random.default_rng(0)
     (point, normal, first, curvature), loose = waves.samples(20), waves.triangles(61)
-    order, box, depth = tree.build(loose)
-    vertex, n = np.ascontiguousarray(loose[order]), len(point)
+    built, n = waves.tree_of(loose), len(point)
+    vertex, box = built.vertex, built.box
     angle = rng.uniform(0, 2 * np.pi, 997)
     at = np.stack([*rng.normal(0, 6, (2, 997)), rng.uniform(0, 40, 997), rng.uniform(0, RIGHT, 997), np.cos(angle),
                    np.sin(angle)], 1)  # fmt: skip
@@ -150,22 +153,24 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
         lean[i] = np.cos(turn) * first[i] + np.sin(turn) * np.cross(normal[i], first[i])
         axis[i] = np.cos(tilt) * normal[i] + np.sin(tilt) * lean[i]
         left = np.cross(normal[i], lean[i])
-        hit.stand(bodies[i], point[i], normal[i], lean[i], left, np.cos(tilt), np.sin(tilt),
-                  RADIUS, RADIUS - SAFE, SAFE, LENGTH - SAFE)  # fmt: skip
+        hit.stand(bodies[i], Frame(point[i], normal[i], lean[i], left), np.cos(tilt), np.sin(tilt), *TOOL)
         near[i] = rng.choice(np.argsort(np.linalg.norm(centre - point[i], axis=1))[:200])
     rotations = 2 * np.pi * np.arange(TURNS) / TURNS
-    cosine, sine = np.cos(rotations), np.sin(rotations)
-    polygon, spare, pieces, stack = np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3)), np.empty(64, np.int64)
-    out = (np.empty(n, np.uint8), axis.copy(), lean.copy(), np.empty(n), np.empty(n, np.int32), np.empty(n, np.uint8))
-    solids = material.sheet(vertex, box, depth)
+    scratch, contacts = waves.scratch(), Contacts(point, normal, first, curvature)
+    out = Found(
+        np.empty(n, np.uint8), axis.copy(), lean.copy(), np.empty(n), np.empty(n, np.int32), np.empty(n, np.uint8)
+    )
+    solids = material.sheet(built)
     free, triangle, depths = np.empty(n, np.bool_), np.empty(n, np.int32), np.full(n, SAFE)
 
     def maps_of(count: int) -> None:
         for i in range(count):
-            free_tilts.free_tilts(point[i % n], normal[i % n], lean[i % n], 0.0, RIGHT, RADIUS, LENGTH, SAFE, NARROWEST,
-                            vertex, box, depth, 2000)  # fmt: skip
+            free_tilts.free_tilts(
+                point[i % n], normal[i % n], lean[i % n], 0.0, RIGHT, RADIUS, LENGTH, SAFE, NARROWEST, built, 2000
+            )
 
-    blocks, offset, bottom = lanes.wide_tree(vertex, box, depth)
+    wide = lanes.WideTree(*lanes.wide_tree(built))
+    blocks = wide.blocks
     view, leaves, margin = np.empty((len(blocks), 16, 8)), np.empty((200, 9, 8)), np.empty(8)
     for i in range(len(blocks)):
         lanes._see(view, i, blocks, i, point[0], first[0], np.cross(normal[0], first[0]), normal[0], margin)
@@ -179,9 +184,8 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
 
     def all_maps(count: int) -> None:
         k = -(-count // TURNS)
-        free_map.free_map(
-            np.arange(k), point, normal, first, curvature, cosine, sine, 0.0, RIGHT, UP, -2.0, RADIUS, LENGTH, SAFE,
-            NARROWEST, vertex, blocks, offset, bottom, 8, part, filled, unsure)  # fmt: skip
+        turned = waves.ranges(rotations)
+        free_map.free_map(np.arange(k), contacts, turned, *CUTTER, NARROWEST, wide, 8, part, filled, unsure)
 
     return {
         "point_arc": ("point", 200_000, lambda k: many_point_arcs(k, at)),
@@ -189,20 +193,17 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
         "axis_arcs": ("rotation", 200_000, lambda k: many_axis_arcs(k, at, np.empty((3, 2)))),
         "remove": ("arc", 200_000, lambda k: many_removals(k, at, np.empty((16, 2)))),
         "_box_apart": ("node", 200_000, lambda k: many_boxes(k, box, bodies)),
-        "triangle_hit": ("triangle", 100_000, lambda k: many_triangles(k, vertex, near, bodies, polygon, spare)),
-        "tree_hit": (
-            "posture", 4_000, lambda k: many_walks(k, vertex, box, depth, bodies, stack, polygon, spare, pieces)
-        ),
+        "triangle_hit": ("triangle", 100_000, lambda k: many_triangles(k, vertex, near, bodies, scratch.polygon, scratch.spare)),
+        "tree_hit": ("posture", 4_000, lambda k: many_walks(k, built, bodies, scratch)),
         "build": ("triangle", 7_200, lambda k: k and tree.build(loose[:k])),
         "probe": ("posture", 400, lambda k: search.probe(
-            np.arange(k), point, normal, axis, lean, RADIUS, LENGTH, depths, vertex, box, depth, triangle)),
+            np.arange(k), point, normal, axis, lean, RADIUS, LENGTH, depths, built, triangle)),
         "dummy_free": ("sample", 400, lambda k: search.dummy_free(
-            np.arange(k), point, normal, RADIUS, LENGTH, SAFE, solids, free)),
+            np.arange(k), contacts, RADIUS, LENGTH, SAFE, solids, free)),
         "search": ("sample", 400, lambda k: search.search(
-            np.arange(k), point, normal, first, curvature, cosine, sine, 0.0, RIGHT, UP, 0.7, RADIUS, LENGTH, SAFE,
-            BLOCKED, solids, solids, *out)),
+            np.arange(k), contacts, waves.ranges(rotations, 0.7), RADIUS, LENGTH, SAFE, BLOCKED, solids, solids, out)),
         "free_tilts": ("rotation", 100, maps_of),
-        "wide_tree": ("triangle", 7_200, lambda k: k and lanes.wide_tree(vertex, box, depth)),
+        "wide_tree": ("triangle", 7_200, lambda k: k and lanes.wide_tree(built)),
         "_boxes_pass": ("eight boxes", 100_000, lambda k: many_blocks(k, view, gap, margin)),
         "_triangles_pass": ("eight triangles", 100_000, lambda k: many_leaves(k, leaves, gap, margin)),
         "free_map": ("rotation", 400 * TURNS, all_maps),

@@ -43,8 +43,9 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.kernels.free_map import free_map
 from plan_cutters.kernels.points import local_gouge_bound
+from plan_cutters.kernels.rows import Ranges
 from plan_cutters.kernels.search import probe
-from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.conditions import Conditions, contacts_of
 from plan_cutters.scene.faces import select_faces
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
@@ -232,13 +233,12 @@ def maps(samples: SurfaceSamples, rows: NDArray[np.int64], obstacles: Obstacles,
     k, n = len(ROTATIONS), len(rows)
     found = Maps(np.zeros((n, k, ROOM, 2)), np.zeros((n, k), np.int32), np.zeros((n, k)))
     safe, _ = obstacles.depths(TOLERANCE)
+    ranges = Ranges(np.cos(ROTATIONS), np.sin(ROTATIONS), 0.0, np.pi / 2, np.array([0.0, 0.0, 1.0]), -2.0)
 
     def work(places: NDArray[np.int64]) -> None:
         piece = slice(places[0], places[-1] + 1)
         free_map(
-            rows[piece], samples.point, samples.normal, samples.direction_max, samples.curvature,
-            np.cos(ROTATIONS), np.sin(ROTATIONS), 0.0, np.pi / 2, np.array([0.0, 0.0, 1.0]), -2.0,
-            CUTTER.radius, CUTTER.length, safe, NARROWEST, *obstacles.wide_tree, ROOM,
+            rows[piece], contacts_of(samples), ranges, CUTTER.radius, CUTTER.length, safe, NARROWEST, obstacles.wide_tree, ROOM,
             found.part[piece], found.filled[piece], found.undecided[piece],
         )  # fmt: skip
 
@@ -262,7 +262,7 @@ def probes(postures: Postures, obstacles: Obstacles) -> NDArray[np.bool_]:
         CUTTER.radius,
         CUTTER.length,
         np.full(n, safe),
-        *obstacles.tree,
+        obstacles.tree,
         triangle,
     )
     return (triangle < 0) & ~postures.gouging.ravel()

@@ -18,18 +18,19 @@ ENTRIES = {
     "tree.build": "from plan_cutters.kernels.tree import build; build(one)",
     "search, probe, dummy_free": (
         "from plan_cutters.kernels import search as s; from plan_cutters.kernels.tree import build\n"
+        "from plan_cutters.kernels.rows import Contacts, Found, Ranges, Tree\n"
         "_, box, depth = build(one); p, c, n = np.zeros((1, 3)), np.zeros((1, 2)), np.zeros(1)\n"
         "i, b = np.zeros(1, np.int32), np.zeros(1, np.uint8)\n"
-        "from plan_cutters.kernels.material import sheet; w = sheet(one, box, depth)\n"
-        "s.dummy_free(none, p, p, 1.0, 9.0, 0.01, w, np.zeros(1, bool))\n"
-        "s.probe(none, p, p, p, p, 1.0, 9.0, n, one, box, depth, i)\n"
-        "s.search(none, p, p, p, c, n, n, 0.0, 1.5, np.zeros(3), -2.0, 1.0, 9.0, 0.01, 0.01, w, w,"
-        " b, p, p, n, i, b)"
+        "t, a = Tree(one, box, depth), Contacts(p, p, p, c)\n"
+        "from plan_cutters.kernels.material import sheet; w = sheet(t)\n"
+        "s.dummy_free(none, a, 1.0, 9.0, 0.01, w, np.zeros(1, bool))\n"
+        "s.probe(none, p, p, p, p, 1.0, 9.0, n, t, i)\n"
+        "s.search(none, a, Ranges(n, n, 0.0, 1.5, np.zeros(3), -2.0), 1.0, 9.0, 0.01, 0.01, w, w, Found(b, p, p, n, i, b))"
     ),
     "free_tilts": (
         "from plan_cutters.kernels.free_tilts import free_tilts; from plan_cutters.kernels.tree import build\n"
-        "_, box, depth = build(one); z = np.zeros(3)\n"
-        "free_tilts(z, z, z, 0.0, 1.5, 1.0, 9.0, 0.01, 0.1, one, box, depth, 9)"
+        "from plan_cutters.kernels.rows import Tree; _, box, depth = build(one); z = np.zeros(3)\n"
+        "free_tilts(z, z, z, 0.0, 1.5, 1.0, 9.0, 0.01, 0.1, Tree(one, box, depth), 9)"
     ),
     "plan of one plane": (
         "from plan_cutters import Cutter, plan; import build123d as b\n"

@@ -18,7 +18,7 @@ from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.stages.between import between
-from plan_cutters.stages.cells import Contacts, Field, quartered
+from plan_cutters.stages.cells import CellContacts, Field, quartered
 
 SAMPLES = Path(__file__).parent.parent / "samples"
 UP = np.array([0.0, 0.0, 1.0])
@@ -154,7 +154,7 @@ def test_axes_between_samples_keep_the_machines_limit():
     lines = [(np.array([0.3, 0.7]), np.array([0.42, 0.82]))]
     field = Field(whole, orient(whole, towards=UP, flip=False), 1, whole.trim(1), lines, np.zeros((1, 1), np.int32),
                   np.zeros(2, bool), point, normal, np.zeros((1, 3, 3)))  # fmt: skip
-    cell = Contacts(point, normal, direction, curvature, normal, np.array([True]), np.ones(1), np.zeros((1, 2), np.int32),
+    cell = CellContacts(point, normal, direction, curvature, normal, np.array([True]), np.ones(1), np.zeros((1, 2), np.int32),
                     np.zeros((1, 2), np.int64), uv, np.full((1, 2), 0.4), np.array([True]), np.ones(1), np.ones(1))  # fmt: skip
     plane = Surroundings.sheet(Obstacles(tessellate(part, 0.002)))
     conditions = Conditions(Machine.parse("tilt:10"), UP, PostureRange(), plane, 0.01, 1)

@@ -11,9 +11,11 @@ import numpy as np
 import pytest
 import waves
 
-from plan_cutters.kernels import arcs, free_map, gaps, hit, lanes, material, search, tree
+from plan_cutters.domain.verdicts import blank
+from plan_cutters.kernels import arcs, free_map, gaps, hit, lanes, material, passes, search
+from plan_cutters.scene.conditions import found_of
 
-MODULES = (arcs, free_map, gaps, hit, lanes, material, search)
+MODULES = (arcs, free_map, gaps, hit, lanes, material, passes, search)
 
 #: What the searches below cost together. Lower is better: store what you reach; higher needs a reason in the commit.
 STORED = {"tree_hit": 5430, "_box_apart": 282240, "triangle_hit": 66110, "point_arc": 61440, "remove": 33530}
@@ -53,19 +55,14 @@ def counted():
 def work(nudge):
     """The existence search on 14 x 14 samples, 24 rotations, 7,200 triangles: (verdict, axis)."""
     rng = np.random.default_rng(nudge)
-    geometry, vertex = waves.samples(14), waves.triangles(61)
+    contacts, vertex = waves.samples(14), waves.triangles(61)
     vertex += 1e-9 * rng.standard_normal(vertex.shape)
-    order, box, depth = tree.build(vertex)
-    n, turn = len(geometry[0]), 2 * np.pi * np.arange(24) / 24
-    axis, lean = np.zeros((n, 3)), np.zeros((n, 3))
-    verdict, tilt, rotation = np.full(n, 255, np.uint8), np.zeros(n), np.full(n, -1, np.int32)
-    solids = material.sheet(np.ascontiguousarray(vertex[order]), box, depth)
-    search.search(
-        np.arange(n), *geometry, np.cos(turn), np.sin(turn), 0.0, np.pi / 2, np.array([0, 0, 1.0]), np.cos(0.8),
-        6.0, 40.0, 0.04, 0.06, solids, solids,
-        verdict, axis, lean, tilt, rotation, np.full(n, 255, np.uint8),
-    )  # fmt: skip
-    return verdict, axis
+    n, turn = len(contacts.point), 2 * np.pi * np.arange(24) / 24
+    found = found_of(blank(n))
+    found.axis[:] = 0.0
+    solids = material.sheet(waves.tree_of(vertex))
+    search.search(np.arange(n), contacts, waves.ranges(turn, np.cos(0.8)), 6.0, 40.0, 0.04, 0.06, solids, solids, found)
+    return found.verdict, found.axis
 
 
 def test_the_search_does_no_more_work_than_it_did():
@@ -84,18 +81,15 @@ def test_the_search_does_no_more_work_than_it_did():
 def maps(nudge):
     """Posture maps of 8 samples, 24 rotations, 7,200 triangles: (free intervals, how many, undecided)."""
     rng = np.random.default_rng(nudge)
-    (point, normal, first, curvature), vertex = waves.samples(14), waves.triangles(61)
+    contacts, vertex = waves.samples(14), waves.triangles(61)
     vertex += 1e-9 * rng.standard_normal(vertex.shape)
-    order, box, depth = tree.build(vertex)
-    vertex = np.ascontiguousarray(vertex[order])
-    rows = np.linspace(0, len(point) - 1, 8).astype(np.int64)
+    rows = np.linspace(0, len(contacts.point) - 1, 8).astype(np.int64)
     turn = 2 * np.pi * np.arange(24) / 24
+    wide = lanes.WideTree(*lanes.wide_tree(waves.tree_of(vertex)))
     part, count, unsure = np.zeros((8, 24, 8, 2)), np.zeros((8, 24), np.int32), np.zeros((8, 24))
     free_map.free_map(
-        rows, point, normal, first, curvature, np.cos(turn), np.sin(turn), 0.0, np.pi / 2, np.array([0, 0, 1.0]),
-        np.cos(0.8), 6.0, 40.0, 0.04, np.radians(0.1), vertex, *lanes.wide_tree(vertex, box, depth), 8,
-        part, count, unsure,
-    )  # fmt: skip
+        rows, contacts, waves.ranges(turn, np.cos(0.8)), 6.0, 40.0, 0.04, np.radians(0.1), wide, 8, part, count, unsure
+    )
     return part, count, unsure
 
 

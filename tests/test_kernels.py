@@ -4,24 +4,27 @@ import math
 
 import numpy as np
 import pytest
+import waves
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from reference import depth_in_cutter, posture, random_frame, triangle_points
 
+from plan_cutters.domain.verdicts import blank
 from plan_cutters.kernels import free_tilts, hit, search, tree
 from plan_cutters.kernels.arcs import point_arc
 from plan_cutters.kernels.material import sheet
 from plan_cutters.kernels.points import axis_intervals, local_gouge_bound
+from plan_cutters.kernels.rows import Contacts, Frame, Tree
+from plan_cutters.scene.conditions import found_of
 
 SCRATCH = (np.empty((8, 3)), np.empty((8, 3)))
-PIECES = np.empty((64, 3, 3))
 
 
 def body_of(contact, normal, direction, tilt, rotation, radius, length, s):
     axis, lean = posture(normal, direction, tilt, rotation)
     body = np.empty(hit.BODY)
-    hit.stand(body, contact, normal, lean, np.cross(normal, lean), math.cos(tilt), math.sin(tilt),
-              radius, radius - s, s, length - s)  # fmt: skip
+    frame = Frame(contact, normal, lean, np.cross(normal, lean))
+    hit.stand(body, frame, math.cos(tilt), math.sin(tilt), radius, radius - s, s, length - s)
     return body, axis, lean
 
 
@@ -31,7 +34,7 @@ def soup(rng, n, size=3.0, spread=20.0):
 
 def build(triangles):
     order, box, depth = tree.build(np.ascontiguousarray(triangles))
-    return np.ascontiguousarray(triangles[order]), box, depth, order
+    return Tree(np.ascontiguousarray(triangles[order]), box, depth), order
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -67,23 +70,23 @@ def test_triangle_hit_agrees_with_dense_points(seed):
 def test_tree_finds_what_a_loop_over_all_finds(n):
     rng = np.random.default_rng(n)
     triangles = soup(rng, n)
-    vertex, box, depth, order = build(triangles)
+    built, order = build(triangles)
     assert sorted(order) == list(range(n))
-    stack = np.empty(64, np.int64)
+    scratch = waves.scratch()
     for _ in range(200):
         normal, direction = random_frame(rng)
         body, *_ = body_of(rng.normal(0, 10, 3), normal, direction, rng.uniform(0, 1.5), 0.3, 4.0, 30.0, 0.01)
-        alone = [i for i in range(n) if hit.triangle_hit(vertex, i, body, 0.0, *SCRATCH)[0]]
-        found = hit.tree_hit(vertex, box, depth, body, 0.0, -1, stack, *SCRATCH, PIECES)[0]
+        alone = [i for i in range(n) if hit.triangle_hit(built.vertex, i, body, 0.0, *SCRATCH)[0]]
+        found = hit.tree_hit(built, body, 0.0, -1, scratch)[0]
         assert found in alone if alone else found == -1
         # Widened, it may find more, never less.
-        wide = hit.tree_hit(vertex, box, depth, body, 0.05, -1, stack, *SCRATCH, PIECES)[0]
+        wide = hit.tree_hit(built, body, 0.05, -1, scratch)[0]
         assert wide >= 0 or not alone
 
 
 def test_every_box_holds_its_triangles():
     rng = np.random.default_rng(3)
-    vertex, box, depth, _ = build(soup(rng, 777))
+    (vertex, box, depth), _ = build(soup(rng, 777))
     n, first = len(vertex), (1 << depth) - 1
     for node in range(len(box)):
         level = (node + 1).bit_length() - 1
@@ -194,15 +197,13 @@ def test_remove_keeps_the_complement(cuts):
 def test_free_tilts_cover_the_range_and_hold(seed):
     rng = np.random.default_rng(seed)
     triangles = soup(rng, 60, size=2.0, spread=25.0)
-    vertex, box, depth, _ = build(triangles)
+    built, _ = build(triangles)
     normal, direction = random_frame(rng)
     contact, radius, length, s = rng.normal(0, 3, 3), 4.0, 30.0, 0.01
     dense = np.concatenate([triangle_points(t, 40) for t in triangles])
     for rotation in rng.uniform(0, 2 * math.pi, 6):
         _, lean = posture(normal, direction, 0.0, rotation)
-        parts = free_tilts.free_tilts(
-            contact, normal, lean, 0.0, math.pi / 2, radius, length, s, 1e-4, vertex, box, depth, 5000
-        )
+        parts = free_tilts.free_tilts(contact, normal, lean, 0.0, math.pi / 2, radius, length, s, 1e-4, built, 5000)
         parts = parts[np.argsort(parts[:, 0])]
         assert parts[0, 0] == 0.0
         assert parts[-1, 1] == math.pi / 2
@@ -226,7 +227,7 @@ def test_search_agrees_with_a_posture_grid(seed):
     """Where a coarse grid of postures finds a clearly free one, so must the search; what it finds must be free."""
     rng = np.random.default_rng(seed)
     triangles = soup(rng, 150, size=1.5, spread=14.0)
-    vertex, box, depth, _ = build(triangles)
+    solids = sheet(build(triangles)[0])
     dense = np.concatenate([triangle_points(t, 8) for t in triangles])
     n = 12
     frames = [random_frame(rng) for _ in range(n)]
@@ -234,11 +235,9 @@ def test_search_agrees_with_a_posture_grid(seed):
     point = rng.normal(0, 6, (n, 3))
     radius, length, s = 3.0, 30.0, 0.01
     rotations = np.arange(12) * math.pi / 6
-    out = (np.full(n, 9, np.uint8), np.zeros((n, 3)), np.zeros((n, 3)), np.zeros(n), np.zeros(n, np.int32),
-           np.zeros(n, np.uint8))  # fmt: skip
-    search.search(np.arange(n), point, normal, direction, np.zeros((n, 2)), np.cos(rotations), np.sin(rotations),
-                  0.0, math.pi / 2, np.array([0, 0, 1.0]), -2.0, radius, length, s, s,
-                  sheet(vertex, box, depth), sheet(vertex, box, depth), *out)  # fmt: skip
+    out = found_of(blank(n))
+    contacts = Contacts(point, normal, direction, np.zeros((n, 2)))
+    search.search(np.arange(n), contacts, waves.ranges(rotations), radius, length, s, s, solids, solids, out)
     verdicts = set(out[0].tolist())
     assert verdicts == {search.ACCESSIBLE, search.INACCESSIBLE}
     for i in range(n):

@@ -46,7 +46,7 @@ def test_every_tilt_in_a_free_interval_is_safe(found):
     # A hair shallower than what the map was made with: the ends are exact.
     depth = np.full(len(tilt), obstacles.depths(0.01)[0] + 1e-9)
     probe(np.arange(len(tilt)), samples.point[sample], n, axis, lean, CUTTER.radius, CUTTER.length, depth,
-          *obstacles.tree, hit)  # fmt: skip
+          obstacles.tree, hit)  # fmt: skip
     assert len(tilt) > 2000
     assert (hit < 0).all()
 

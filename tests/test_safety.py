@@ -67,7 +67,7 @@ def test_verdicts_equal_those_of_the_exact_surface_outside_the_band(seed):
     for offset in (-3, -2.01, -1, 0, 1, 2.01, 3):
         depths = np.clip(exact + offset * error, 1e-3, 2.0)
         triangle = np.full(n, -1, np.int32)
-        search.probe(np.arange(n), point, normal, axis, lean, radius, length, depths, *obstacles.tree, triangle)
+        search.probe(np.arange(n), point, normal, axis, lean, radius, length, depths, obstacles.tree, triangle)
         assert (triangle[exact > depths + 2 * error] >= 0).all()
         assert (triangle[exact < depths - 2 * error] < 0).all()
 

@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 import shapes
+import waves
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from reference import (
@@ -24,15 +25,15 @@ from cad_io import read_part
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Machine, plan
 from plan_cutters.domain.verdicts import INACCESSIBLE
-from plan_cutters.kernels import hit, search, tree
+from plan_cutters.kernels import hit, search
 from plan_cutters.kernels.arcs import point_arc
 from plan_cutters.kernels.points import axis_intervals, local_gouge_bound
+from plan_cutters.kernels.rows import Frame
 from plan_cutters.scene.obstacles import Obstacles
 
 ROUNDING = 1e-13
 RIGHT = math.pi / 2
 SCRATCH = (np.empty((8, 3)), np.empty((8, 3)))
-PIECES = np.empty((64, 3, 3))
 
 #: Distances from a singular case: on it, an ulp off, and ever further.
 OFF = st.sampled_from([0.0, 1e-16, 1e-14, 1e-10, 1e-8, 1e-5, 1e-2]).flatmap(lambda x: st.sampled_from([x, -x]))
@@ -150,7 +151,8 @@ def test_local_gouging_is_where_the_neighbourhood_is_inside(kappa, rotation, rad
     above, below = bound + 0.02, bound - 0.02
     if above < 1.5:
         assert deepest(above) < 1e-3
-    if 0.01 < below < 1.45:
+    # Near the upright the sine, which decides, hardly changes with the tilt.
+    if 0.01 < below < 1.4:
         assert deepest(below) > 1e-3
 
 
@@ -226,7 +228,9 @@ def stood(rng, tilt, radius, length, s):
     contact = rng.normal(0, 5, 3)
     axis, lean = posture(normal, direction, tilt, 0.3)
     body, left = np.empty(hit.BODY), np.cross(normal, lean)
-    hit.stand(body, contact, normal, lean, left, math.cos(tilt), math.sin(tilt), radius, radius - s, s, length - s)
+    hit.stand(
+        body, Frame(contact, normal, lean, left), math.cos(tilt), math.sin(tilt), radius, radius - s, s, length - s
+    )
     return body, contact, np.stack([math.cos(tilt) * lean - math.sin(tilt) * normal, left, axis])
 
 
@@ -267,9 +271,7 @@ def test_a_miss_with_a_rate_is_a_miss_at_every_tilt_of_the_turn(case, rate, seed
     assume(s < length / 2)
     body, contact, frame = stood(np.random.default_rng(seed), 0.7, radius, length, s)
     triangle = np.ascontiguousarray((contact + (local - [radius, 0, 0]) @ frame)[None])
-    order, box, depth = tree.build(triangle)
-    stack = np.empty(64, np.int64)
-    if hit.tree_hit(triangle[order], box, depth, body, rate, -1, stack, *SCRATCH, PIECES)[0] >= 0:
+    if hit.tree_hit(waves.tree_of(triangle), body, rate, -1, waves.scratch())[0] >= 0:
         return
     allowed = ROUNDING * (radius + length + np.abs(local).max())
     for turn in (-rate, -rate / 2, 0.0, rate / 3, rate):
@@ -293,12 +295,11 @@ def test_the_tree_misses_no_needle_and_no_point(seed):
         corner = np.array([2.0, 3, 0]) + rng.uniform(-9, 9, (n, 3, 1)) * np.array([1e-9, 0, 1.0])
     if kind == 3:
         corner = corner * [1e-7, 1e-7, 1] + 1e-8 * rng.standard_normal((n, 3, 3))
-    order, box, depth = tree.build(np.ascontiguousarray(corner))
-    vertex, stack, hits = np.ascontiguousarray(corner[order]), np.empty(64, np.int64), 0
+    built, scratch, hits = waves.tree_of(corner), waves.scratch(), 0
     for _ in range(300):
         body, _, _ = stood(rng, rng.uniform(0, RIGHT), 3.0, 9.0, 0.01)
-        alone = [i for i in range(n) if hit.triangle_hit(vertex, i, body, 0.0, *SCRATCH)[0]]
-        found = hit.tree_hit(vertex, box, depth, body, 0.0, -1, stack, *SCRATCH, PIECES)[0]
+        alone = [i for i in range(n) if hit.triangle_hit(built.vertex, i, body, 0.0, *SCRATCH)[0]]
+        found = hit.tree_hit(built, body, 0.0, -1, scratch)[0]
         assert found in alone if alone else found == -1
         hits += bool(alone)
     assert 5 < hits < 300
@@ -315,7 +316,7 @@ def test_contact_on_a_sharp_edge():
                 axis, lean = posture(np.array([0.0, 0, 1]), np.array([1.0, 0, 0]), tilt, rotation)
                 body = np.empty(hit.BODY)
                 left = np.cross([0.0, 0, 1], lean)
-                hit.stand(body, np.zeros(3), np.array([0.0, 0, 1]), lean, left, math.cos(tilt), math.sin(tilt),
+                hit.stand(body, Frame(np.zeros(3), np.array([0.0, 0, 1]), lean, left), math.cos(tilt), math.sin(tilt),
                           6.0, 6.0 - 1e-9, 1e-9, 30.0 - 1e-9)  # fmt: skip
                 hits = [hit.triangle_hit(faces, i, body, 0.0, *SCRATCH)[0] for i in range(2)]
                 assert not hits[0], "the face under the cutter"
@@ -350,7 +351,7 @@ def probed(obstacles, postures, radius, length, depth):
     """Which postures no triangle reaches into deeper than `depth`."""
     n = len(postures[0])
     triangle = np.full(n, -2, np.int32)
-    search.probe(np.arange(n), *postures, radius, length, np.full(n, float(depth)), *obstacles.tree, triangle)
+    search.probe(np.arange(n), *postures, radius, length, np.full(n, float(depth)), obstacles.tree, triangle)
     return triangle == -1
 
 
@@ -372,7 +373,7 @@ def test_where_a_posture_does_not_serve_another_cutter():
     hits, one = [], np.full((1, 3, 3), [2.5, 0.0, 40.0])
     for radius in (6.0, 4.0):
         body, up, across, left = np.empty(hit.BODY), np.eye(3)[2], np.eye(3)[0], np.eye(3)[1]
-        hit.stand(body, np.zeros(3), up, across, left, 1.0, 0.0, radius, 8.0, 30.0, 60.0)
+        hit.stand(body, Frame(np.zeros(3), up, across, left), 1.0, 0.0, radius, 8.0, 30.0, 60.0)
         hits.append(hit.triangle_hit(one, 0, body, 0.0, *SCRATCH)[0])
     assert hits == [False, True], "holder"
 

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapes
+import waves
 from cad_parts import ball, box, compound, cut
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -35,9 +36,10 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import ACCESSIBLE, REASONS, blank
 from plan_cutters.errors import UnjudgeableError
-from plan_cutters.kernels import free_tilts, search, tree
+from plan_cutters.kernels import free_tilts, search
 from plan_cutters.kernels.material import far_inside, sheet, windings
-from plan_cutters.scene.conditions import Conditions, search_postures
+from plan_cutters.kernels.rows import Contacts, Tree
+from plan_cutters.scene.conditions import Conditions, found_of, search_postures
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings, surroundings
 
@@ -549,9 +551,8 @@ def test_a_tolerance_that_was_raised_is_held_against_the_cutter(monkeypatch):
 def scene():
     rng = np.random.default_rng(3)
     vertex = np.ascontiguousarray(rng.uniform(-2, 2, (300, 1, 3)) + rng.normal(0, 0.3, (300, 3, 3)) + (0, 0, 4))
-    order, boxes, depth = tree.build(vertex)
     normal, direction = random_frame(rng)
-    return sheet(np.ascontiguousarray(vertex[order]), boxes, depth), normal, direction
+    return waves.tree_of(vertex), normal, direction
 
 
 def spoilt(array):
@@ -563,41 +564,39 @@ def spoilt(array):
 
 
 def test_kernels_take_what_is_no_number_for_a_hit():
-    solids, n, e1 = scene()
-    far = sheet(solids.vertex + 1e6, solids.box + np.array([1e6] * 3 + [0.0] * 13), solids.depth)
-    one, p = np.zeros(1, np.int64), np.zeros(3)
-    turn = np.zeros(1)
+    near, n, e1 = scene()
+    far = sheet(Tree(near.vertex + 1e6, near.box + np.array([1e6] * 3 + [0.0] * 13), near.depth))
+    one, p, straight = np.zeros(1, np.int64), np.zeros(3), np.zeros((1, 2))
     tried = 0
     for point, normal, lean in [
         *((x, n, e1) for x in spoilt(p)), *((p, x, e1) for x in spoilt(n)), *((p, n, x) for x in spoilt(e1)),
     ]:  # fmt: skip
         free = np.ones(1, bool)
-        search.dummy_free(one, point[None], normal[None], 2.0, 20.0, 0.01, far, free)
+        search.dummy_free(one, Contacts(point[None], normal[None], lean[None], straight), 2.0, 20.0, 0.01, far, free)
         if lean is e1:
             assert not free[0]
         triangle = np.full(1, -1, np.int32)
         search.probe(
-            one, point[None], normal[None], normal[None], lean[None], 2.0, 20.0, np.array([0.01]), *far[:3], triangle
+            one, point[None], normal[None], normal[None], lean[None], 2.0, 20.0, np.array([0.01]), far.tree, triangle
         )
         assert triangle[0] >= 0
-        parts = free_tilts.free_tilts(point, normal, lean, 0.0, 1.5, 2.0, 20.0, 0.01, 1e-3, *far[:3], 2000)
+        parts = free_tilts.free_tilts(point, normal, lean, 0.0, 1.5, 2.0, 20.0, 0.01, 1e-3, far.tree, 2000)
         assert not (parts[:, 2] == free_tilts.OPEN).any()
         out = blank(1)
-        search.search(one, point[None], normal[None], lean[None], np.zeros((1, 2)), np.ones(1), turn, 0.0, 1.5,
-                      np.array([0, 0, 1.0]), -2.0, 2.0, 20.0, 0.01, 0.02, far, far, out.verdict, out.axis, out.lean, out.tilt,
-                      out.rotation, out.reason)  # fmt: skip
+        contact = Contacts(point[None], normal[None], lean[None], straight)
+        search.search(one, contact, waves.ranges(np.zeros(1)), 2.0, 20.0, 0.01, 0.02, far, far, found_of(out))
         assert out.verdict[0] != ACCESSIBLE
         tried += 1
     assert tried == 9
     # The same calls with good numbers find the way clear: what was seen above is the nan.
     free = np.zeros(1, bool)
-    search.dummy_free(one, p[None], n[None], 2.0, 20.0, 0.01, far, free)
+    search.dummy_free(one, Contacts(p[None], n[None], e1[None], straight), 2.0, 20.0, 0.01, far, free)
     assert free[0]
 
 
 def test_the_door_refuses_what_is_no_number():
-    solids, n, e1 = scene()
-    good = Triangles(solids.vertex, np.ones(len(solids.vertex), np.int32), 0.001, ())
+    near, n, e1 = scene()
+    good = Triangles(near.vertex, np.ones(len(near.vertex), np.int32), 0.001, ())
     with pytest.raises(UnjudgeableError):
         Obstacles(replace(good, vertex=good.vertex[:0], face=good.face[:0]))
     bad = good.vertex.copy()
@@ -609,13 +608,13 @@ def test_the_door_refuses_what_is_no_number():
     conditions = Conditions(
         Machine(), np.array([0, 0, 1.0]), PostureRange(), Surroundings.sheet(Obstacles(good)), 0.01, 1
     )
-    geometry = (np.zeros((1, 3)), n[None], e1[None], np.zeros((1, 2)))
+    contact = Contacts(np.zeros((1, 3)), n[None], e1[None], np.zeros((1, 2)))
     for which in range(4):
-        broken = list(geometry)
-        broken[which] = next(spoilt(geometry[which]))
+        broken = list(contact)
+        broken[which] = next(spoilt(contact[which]))
         with pytest.raises(ValueError, match="finite"):
-            search_postures(tuple(broken), np.zeros(1, np.int64), SMALL, conditions, conditions.depths, blank(1))
-    search_postures(geometry, np.zeros(1, np.int64), SMALL, conditions, conditions.depths, blank(1))
+            search_postures(Contacts(*broken), np.zeros(1, np.int64), SMALL, conditions, conditions.depths, blank(1))
+    search_postures(contact, np.zeros(1, np.int64), SMALL, conditions, conditions.depths, blank(1))
 
 
 # --- the compiler's cache ----------------------------------------------------------------------------------------------------

@@ -2,11 +2,14 @@
 
 import numpy as np
 
+from plan_cutters.kernels import tree
+from plan_cutters.kernels.rows import Contacts, Ranges, Scratch, Tree
+
 SIZE, WAVES, HEIGHT = 40.0, (0.27, 0.23), 6.0
 
 
 def samples(n):
-    """Points, normals, directions of kappa_max and curvatures of n x n points, (n * n, ...) each.
+    """n x n contacts.
 
     Nothing is alike in x and y, nor from one line to the next: ties would be decided by the last digit of a machine.
     """
@@ -27,11 +30,27 @@ def samples(n):
         curvature[i] = values.real[order]
         along = vectors.real[:, order[0]] @ tangents
         direction[i] = along / np.linalg.norm(along)
-    return np.stack([x, y, z], 1), normal, direction, curvature
+    return Contacts(np.stack([x, y, z], 1), normal, direction, curvature)
 
 
 def triangles(n):
     """The surface as 2 (n - 1)^2 triangles, (m, 3, 3)."""
-    point = samples(n)[0].reshape(n, n, 3)
+    point = samples(n).point.reshape(n, n, 3)
     a, b, c, d = point[:-1, :-1], point[1:, :-1], point[1:, 1:], point[:-1, 1:]
     return np.ascontiguousarray(np.stack([np.stack([a, b, c], 2), np.stack([a, c, d], 2)], 2).reshape(-1, 3, 3))
+
+
+def tree_of(vertex):
+    """Triangles (n, 3, 3) as a tree."""
+    order, box, depth = tree.build(np.ascontiguousarray(vertex))
+    return Tree(np.ascontiguousarray(vertex[order]), box, depth)
+
+
+def ranges(rotations, limit_cos=-2.0, tilt=(0.0, np.pi / 2)):
+    """Postures at rotations (k,), rad, with an axis limit about z."""
+    return Ranges(np.cos(rotations), np.sin(rotations), *tilt, np.array([0, 0, 1.0]), limit_cos)
+
+
+def scratch():
+    """Room for a walk of the tree."""
+    return Scratch(np.empty(64, np.int64), np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3)))

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cad_io import Part, SurfaceSamples, read_part
 from cad_io.part.orient import orient
@@ -41,16 +40,16 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.nesting import handed, order
 from plan_cutters.domain.posture import PostureRange, unit
-from plan_cutters.domain.verdicts import REASONS, Reach
+from plan_cutters.domain.verdicts import REASONS, Reach, blank
 from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.options import Options
 from plan_cutters.result import Result
 from plan_cutters.scene.buried import buried
-from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.conditions import Conditions, contacts_of, found_of
 from plan_cutters.scene.faces import choose
 from plan_cutters.scene.obstacles import CHORD_ASKED, kept_tolerance
 from plan_cutters.scene.spacing import default_spacing
-from plan_cutters.scene.surroundings import Surroundings, surroundings
+from plan_cutters.scene.surroundings import surroundings
 from plan_cutters.stages.access import access, witnesses
 from plan_cutters.stages.between import between
 from plan_cutters.stages.classify import CONCAVE, CONVEX, SADDLE, classify, regions
@@ -203,8 +202,8 @@ def run(
         triangles = around.surely.triangles
         tolerance = kept_tolerance(options.tolerance, triangles.chord_error)
     with clock.stage("compile"):
-        _warm(samples, cutters[0], setup, options, around)
-    conditions = Conditions(options.machine, setup, options.postures, around, tolerance, options.jobs)
+        conditions = Conditions(options.machine, setup, options.postures, around, tolerance, options.jobs)
+        _warm(samples, cutters[0], conditions)
     with clock.stage("bodies"):
         within = buried(samples, orientation, around.bodies, around.surely, tolerance)
     missing = missing_entries(whole, around)
@@ -304,21 +303,15 @@ def _affordable(part: Part, targets: Sequence[int], options: Options) -> None:
         )
 
 
-def _warm(
-    samples: SurfaceSamples, cutter: Cutter, setup: NDArray[np.float64], options: Options, around: Surroundings
-) -> None:
+def _warm(samples: SurfaceSamples, cutter: Cutter, conditions: Conditions) -> None:
     """Build the tree and load or compile every kernel, so that stage times are those of the work."""
     from plan_cutters.kernels import search
 
-    empty, n = np.zeros(0, np.int64), len(samples)
-    search.dummy_free(empty, samples.point, samples.normal, cutter.radius, cutter.length, options.tolerance,
-                      around.may_be.solids, np.zeros(n, bool))  # fmt: skip
-    search.search(
-        empty, samples.point, samples.normal, samples.direction_max, samples.curvature, np.ones(1), np.zeros(1),
-        0.0, 1.0, setup, -2.0, cutter.radius, cutter.length, 0.0, 0.0, around.may_be.solids, around.surely.solids,
-        np.zeros(1, np.uint8), np.zeros((1, 3)), np.zeros((1, 3)), np.zeros(1), np.zeros(1, np.int32),
-        np.zeros(1, np.uint8),
-    )  # fmt: skip
+    none, contacts, found = np.zeros(0, np.int64), contacts_of(samples), found_of(blank(0))
+    search.dummy_free(none, contacts, cutter.radius, cutter.length, conditions.tolerance,
+                      conditions.obstacles.solids, np.zeros(0, bool))  # fmt: skip
+    search.search(none, contacts, conditions.ranges, cutter.radius, cutter.length, *conditions.depths,
+                  conditions.obstacles.solids, conditions.around.surely.solids, found)  # fmt: skip
 
 
 def _select(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:

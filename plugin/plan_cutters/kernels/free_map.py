@@ -5,13 +5,16 @@ the tangent plane is out of reach at every posture and left out for all rotation
 of its points, whose arc is known in closed form: so gaps are nearly what they will be before any triangle is looked at.
 """
 
+from typing import Any, NamedTuple
+
 import numpy as np
 
 from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
-from plan_cutters.kernels.gaps import COLUMNS, FIRST, GAPS, LAST, UF, UL, _begin, _cut_gaps, _cuts, _end, _take
+from plan_cutters.kernels.gaps import COLUMNS, FIRST, GAPS, LAST, UF, UL, Room, _begin, _cut_gaps, _cuts, _end, _take
 from plan_cutters.kernels.hit import BODY, cross, dot, lean_frame
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.lanes import LANES, _boxes_pass, _see, _see_leaf, _see_triangle, _triangles_pass, _turn
+from plan_cutters.kernels.rows import Frame, Scratch, Tool
 from plan_cutters.kernels.search import remove
 
 #: Blocks of boxes kept as seen from one contact, and blocks that may wait to be looked at.
@@ -47,33 +50,50 @@ def _rising(view, below, block, lanes, low):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _leaf(  # type: ignore[no-untyped-def]
-    seen, which, vertex, p, n, f, t, cosine, sine, gap, count, radius, shrunk, low, high, narrowest, margin, corner, first,
-    second, scratch,
-):  # fmt: skip
+def _leaf(seen, which, vertex, frame, turn, gap, count, tool, narrowest, margin, room):  # type: ignore[no-untyped-def]
     """Take what the triangles of a leaf forbid out of the gaps; (gaps, the lane that cut last or -1)."""
-    _triangles_pass(seen, cosine, sine, gap, count, radius, shrunk, low, high, margin)
+    cosine, sine = turn
+    _triangles_pass(seen, cosine, sine, gap, count, tool, margin)
     last = -1
     for lane in range(LANES):
         if margin[lane] >= 0.0 or count == 0:
             continue
-        _turn(seen, lane, cosine, sine, corner)
-        count, cut = _cut_gaps(vertex, which[lane], p, n, f, t, corner, gap, count, narrowest, radius, shrunk, low, high,
-                               first, second, scratch)  # fmt: skip
+        _turn(seen, lane, cosine, sine, room.corner)
+        count, cut = _cut_gaps(vertex, which[lane], frame, gap, count, narrowest, tool, room)
         if cut:
             last = lane
     return count, last
 
 
+class _View(NamedTuple):
+    """What is kept of the tree as seen from one contact, for all rotations: boxes and leaves, what lies below each box, which
+    box each block hangs below, and tallies: blocks and leaves kept, place of the next triangle that is tried first."""
+
+    boxes: Any
+    leaves: Any
+    below: Any
+    home: Any
+    tally: Any
+    known: Any
+    queue: Any
+    ahead: Any
+    margin: Any
+    inside: Any
+    which: Any
+
+
 @kernel
-def _rotation(  # type: ignore[no-untyped-def]
-    p, e1, e2, n, f, t, cosine, sine, gap, count, radius, shrunk, low, high, narrowest, vertex, blocks, offset, bottom,
-    tally, known, view, leaves, below, home, queue, ahead, margin, inside, which, corner, first, second, scratch,
-):  # fmt: skip
-    """Take the gaps of one rotation through the tree, level by level; how many are left."""
+def _rotation(frame, e1, e2, turn, gap, count, tool, narrowest, wide, seen, room):  # type: ignore[no-untyped-def]
+    """Take the gaps of one rotation, its cosine and sine `turn`, through the tree, level by level; how many are left."""
+    p, n = frame.p, frame.n
+    radius, shrunk, low, high = tool
+    cosine, sine = turn
+    vertex, blocks, offset, bottom = wide
+    view, leaves, below, home, tally = seen.boxes, seen.leaves, seen.below, seen.home, seen.tally
+    known, queue, ahead = seen.known, seen.queue, seen.ahead
+    margin, inside, which = seen.margin, seen.inside, seen.which
     triangles, levels = len(vertex), len(offset) - 1
-    count, _ = _leaf(leaves[_LEAVES + 1], known, vertex, p, n, f, t, cosine, sine, gap, count, radius, shrunk, low, high,
-                     narrowest, inside, corner, first, second, scratch)  # fmt: skip
+    count, _ = _leaf(leaves[_LEAVES + 1], known, vertex, frame, turn, gap, count, tool, narrowest, inside, room)
     queue[0, 0], queue[0, 1] = 0, 0
     waiting = 1
     for level in range(levels):
@@ -86,7 +106,7 @@ def _rotation(  # type: ignore[no-untyped-def]
                 slot = _SEEN
                 _see(view, slot, blocks, offset[level] + block, p, e1, e2, n, margin)
                 _rising(view, below, slot, LANES, low)
-            _boxes_pass(view, slot, cosine, sine, gap, count, radius, shrunk, low, high, margin)
+            _boxes_pass(view, slot, cosine, sine, gap, count, tool, margin)
             for lane in range(LANES):
                 inner = below[slot, lane]
                 if margin[lane] >= 0.0 or inner == _NONE or count == 0:
@@ -104,8 +124,9 @@ def _rotation(  # type: ignore[no-untyped-def]
                             below[slot, lane] = inner
                     for k in range(LANES):
                         which[k] = begin + k
-                    count, cut = _leaf(leaves[inner], which, vertex, p, n, f, t, cosine, sine, gap, count, radius, shrunk,
-                                       low, high, narrowest, inside, corner, first, second, scratch)  # fmt: skip
+                    count, cut = _leaf(
+                        leaves[inner], which, vertex, frame, turn, gap, count, tool, narrowest, inside, room
+                    )
                     if cut >= 0:
                         known[tally[2]] = begin + cut
                         for k in range(9):
@@ -114,7 +135,7 @@ def _rotation(  # type: ignore[no-untyped-def]
                     continue
                 x, y, z = view[slot, 13, lane], view[slot, 14, lane], view[slot, 15, lane]
                 x, y = cosine * x + sine * y, cosine * y - sine * x
-                if _cuts(x, y, z, gap, count, radius, shrunk, low, high):
+                if _cuts(x, y, z, gap, count, tool):
                     left, right = point_arc(z, x + radius, y, 0.0, radius, shrunk, low, high)
                     count = _take(gap, count, left, right)
                 if inner == _UNSEEN and tally[0] < _SEEN:
@@ -159,29 +180,20 @@ def _write(gap, count, room, part):  # type: ignore[no-untyped-def]
 
 @entry
 def free_map(  # type: ignore[no-untyped-def]
-    rows, point, normal, direction_max, curvature, rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
-    radius, length, depth_allowed, narrowest, vertex, blocks, offset, bottom, room, part, count_out, undecided,
-):  # fmt: skip
+    rows, contacts, ranges, radius, length, depth_allowed, narrowest, wide, room, part, count_out, undecided
+):
     """Free tilts of samples at all rotations, in one walk of the tree each, with certified ends.
 
     Parameters
     ----------
     rows : (m,) int64
-    point, normal, direction_max : (n, 3) float64
-    curvature : (n, 2) float64
-    rotation_cos, rotation_sin : (k,) float64
-    tilt_low, tilt_high : float
-        rad.
-    setup, limit_cos
-        Unit setup axis, and the cosine of the axis limit about it, -2 for none.
+    contacts : Contacts
+    ranges : Ranges
     radius, length, depth_allowed : float
         Cutter, and the depth up to which a triangle does not matter, mm.
     narrowest : float
         Ends are found to this, rad; a passing tilt is kept.
-    vertex : (triangles, 3, 3) float64
-        Triangles in tree order.
-    blocks, offset, bottom
-        As `wide_tree` gives them.
+    wide : WideTree
     room : int
         Most intervals of one rotation.
     part : (m, k, room, 2) float64, written
@@ -191,37 +203,38 @@ def free_map(  # type: ignore[no-untyped-def]
         Width of the bands at the ends that are neither free nor known to be forbidden, rad in all.
     """
     t, f, e2 = np.empty(3), np.empty(3), np.empty(3)
-    corner, first, second = np.empty((3, 3)), np.empty((8, 3)), np.empty((8, 3))
     gap, arcs = np.empty((GAPS + 1, COLUMNS)), np.empty((8, 2))
-    margin, inside, which, known = (
-        np.empty(LANES),
-        np.empty(LANES),
+    work = Room(
+        np.empty((3, 3)), np.empty((8, 3)), np.empty((8, 3)), np.empty(BODY), np.empty((64, 2)),
+        Scratch(np.empty(0, np.int64), np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3))),
+    )  # fmt: skip
+    view = _View(
+        np.empty((_SEEN + 1, 16, LANES)), np.empty((_LEAVES + 2, 9, LANES)), np.empty((_SEEN + 1, LANES), np.int64),
+        np.empty((_SEEN, 2), np.int64), np.zeros(3, np.int64), np.zeros(LANES, np.int64),
+        np.empty((_QUEUE, 2), np.int64), np.empty((_QUEUE, 2), np.int64), np.empty(LANES), np.empty(LANES),
         np.empty(LANES, np.int64),
-        np.zeros(LANES, np.int64),
-    )
-    scratch = (np.empty(BODY), np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3)), np.empty((64, 2)))
-    view, leaves = np.empty((_SEEN + 1, 16, LANES)), np.empty((_LEAVES + 2, 9, LANES))
-    below, home = np.empty((_SEEN + 1, LANES), np.int64), np.empty((_SEEN, 2), np.int64)
-    tally = np.zeros(3, np.int64)
-    queue, ahead = np.empty((_QUEUE, 2), np.int64), np.empty((_QUEUE, 2), np.int64)
-    low, high, shrunk = depth_allowed, length - depth_allowed, radius - depth_allowed
+    )  # fmt: skip
+    tool = Tool(radius, radius - depth_allowed, depth_allowed, length - depth_allowed)
     for place in range(len(rows)):
         row = rows[place]
-        p, n, e1 = point[row], normal[row], direction_max[row]
+        p, n, e1 = contacts.point[row], contacts.normal[row], contacts.direction_max[row]
         cross(n, e1, e2)
-        home[0, 0], tally[0], tally[1] = -1, 1, 0
-        _see(view, 0, blocks, 0, p, e1, e2, n, margin)
-        some = _rising(view, below, 0, 1 << (bottom % 3), low)
+        frame = Frame(p, n, f, t)
+        view.home[0, 0], view.tally[0], view.tally[1] = -1, 1, 0
+        _see(view.boxes, 0, wide.blocks, 0, p, e1, e2, n, view.margin)
+        some = _rising(view.boxes, view.below, 0, 1 << (wide.bottom % 3), tool.low)
         for lane in range(LANES):
-            _see_triangle(leaves[_LEAVES + 1], lane, vertex, known[lane], p, e1, e2, n)
-        for rotation in range(len(rotation_cos)):
-            cosine, sine = rotation_cos[rotation], rotation_sin[rotation]
+            _see_triangle(view.leaves[_LEAVES + 1], lane, wide.vertex, view.known[lane], p, e1, e2, n)
+        for rotation in range(len(ranges.rotation_cos)):
+            cosine, sine = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
             lean_frame(e1, e2, cosine, sine, f, t)
             count_out[place, rotation], undecided[place, rotation] = 0, 0.0
-            least = local_gouge(curvature[row, 0], curvature[row, 1], cosine, sine, radius)
+            least = local_gouge(contacts.curvature[row, 0], contacts.curvature[row, 1], cosine, sine, radius)
             if np.isnan(least):
                 continue
-            count = axis_arcs(dot(setup, n), dot(setup, f), limit_cos, tilt_low, tilt_high, arcs)
+            count = axis_arcs(
+                dot(ranges.setup, n), dot(ranges.setup, f), ranges.limit_cos, ranges.tilt_low, ranges.tilt_high, arcs
+            )
             if least > 0.0:
                 count = remove(arcs, count, -1.0, least, 0.0)
             gap[GAPS, UF], gap[GAPS, UL] = 0.0, 0.0
@@ -229,9 +242,5 @@ def free_map(  # type: ignore[no-untyped-def]
                 _begin(gap, g, arcs[g, 0], 0.0)
                 _end(gap, g, arcs[g, 1], 0.0)
             if some and count > 0:
-                count = _rotation(
-                    p, e1, e2, n, f, t, cosine, sine, gap, count, radius, shrunk, low, high, narrowest, vertex,
-                    blocks, offset, bottom, tally, known, view, leaves, below, home, queue, ahead, margin, inside, which,
-                    corner, first, second, scratch,
-                )  # fmt: skip
+                count = _rotation(frame, e1, e2, (cosine, sine), gap, count, tool, narrowest, wide, view, work)
             count_out[place, rotation], undecided[place, rotation] = _write(gap, count, room, part[place, rotation])

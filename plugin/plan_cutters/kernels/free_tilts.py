@@ -10,12 +10,13 @@ import numpy as np
 from plan_cutters.kernels.arcs import point_arc
 from plan_cutters.kernels.hit import BODY, cross, stand, tree_hit
 from plan_cutters.kernels.jit import entry
+from plan_cutters.kernels.rows import Frame, Scratch
 
 OPEN, FORBIDDEN, UNSURE = 0, 1, 2
 
 
 @entry
-def free_tilts(p, n, f, low, high, radius, length, depth_allowed, narrowest, vertex, box, depth, room):  # type: ignore[no-untyped-def]
+def free_tilts(p, n, f, low, high, radius, length, depth_allowed, narrowest, tree, room):  # type: ignore[no-untyped-def]
     """Split a range of tilts into free, forbidden and undecided parts.
 
     Parameters
@@ -28,8 +29,7 @@ def free_tilts(p, n, f, low, high, radius, length, depth_allowed, narrowest, ver
         Cutter, and the depth up to which a triangle does not matter, mm.
     narrowest : float
         rad.
-    vertex, box, depth
-        Triangles in tree order and the tree.
+    tree : Tree
     room : int
         Most parts that can be told apart.
 
@@ -40,9 +40,8 @@ def free_tilts(p, n, f, low, high, radius, length, depth_allowed, narrowest, ver
     """
     t = np.empty(3)
     cross(n, f, t)
-    body = np.empty(BODY)
-    stack = np.empty(64, np.int64)
-    polygon, spare, pieces = np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3))
+    frame, body = Frame(p, n, f, t), np.empty(BODY)
+    scratch = Scratch(np.empty(64, np.int64), np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3)))
     parts = np.empty((room + 4, 3))
     pending = np.empty((room + 4, 2))
     pending[0, 0], pending[0, 1] = low, high
@@ -52,14 +51,14 @@ def free_tilts(p, n, f, low, high, radius, length, depth_allowed, narrowest, ver
         top -= 1
         first, last = pending[top, 0], pending[top, 1]
         tilt, half = 0.5 * (first + last), 0.5 * (last - first)
-        stand(body, p, n, f, t, np.cos(tilt), np.sin(tilt), radius, shrunk, bottom, ceiling)
+        stand(body, frame, np.cos(tilt), np.sin(tilt), radius, shrunk, bottom, ceiling)
         # A hair more than half, so that a free range holds at its very ends.
-        triangle, height, px, py = tree_hit(vertex, box, depth, body, half + 1e-12, hint, stack, polygon, spare, pieces)
+        triangle, height, px, py = tree_hit(tree, body, half + 1e-12, hint, scratch)
         kind, cut_first, cut_last = OPEN, first, last
         if triangle >= 0:
             hint = triangle
             kind, cut_first, cut_last = UNSURE, tilt, tilt
-            triangle, height, px, py = tree_hit(vertex, box, depth, body, 0.0, hint, stack, polygon, spare, pieces)
+            triangle, height, px, py = tree_hit(tree, body, 0.0, hint, scratch)
             if triangle >= 0:
                 hint = triangle
                 arc_first, arc_last = point_arc(height, px, py, tilt, radius, shrunk, bottom, ceiling)

@@ -52,8 +52,9 @@ def lean_frame(e1, e2, cosine, sine, f, t):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def stand(body, p, n, f, t, tilt_cos, tilt_sin, offset, radius, low, high):  # type: ignore[no-untyped-def]
-    """Write the body whose axis leans from n towards f by a tilt; t = n x f."""
+def stand(body, frame, tilt_cos, tilt_sin, offset, radius, low, high):  # type: ignore[no-untyped-def]
+    """Write the body whose axis leans from the normal of a frame towards its lean direction by a tilt."""
+    p, n, f, t = frame.p, frame.n, frame.f, frame.t
     for k in range(3):
         body[P + k] = p[k]
         body[A + k] = tilt_cos * n[k] + tilt_sin * f[k]
@@ -247,12 +248,13 @@ def triangle_hit(vertex, i, body, rate, polygon, spare):  # type: ignore[no-unty
 
 
 @kernel
-def _swept_hit(vertex, i, body, rate, polygon, spare, pieces):  # type: ignore[no-untyped-def]
+def _swept_hit(vertex, i, body, rate, scratch):  # type: ignore[no-untyped-def]
     """`triangle_hit` with a rate, for triangles that reach from near the line of turning to far from it.
 
     The widening is that of the farthest corner; where this hits, the longest side is halved until the widening is
     about the same all over the piece.
     """
+    polygon, spare, pieces = scratch.polygon, scratch.spare, scratch.pieces
     for corner in range(3):
         for k in range(3):
             pieces[0, corner, k] = vertex[i, corner, k]
@@ -291,24 +293,18 @@ def _swept_hit(vertex, i, body, rate, polygon, spare, pieces):  # type: ignore[n
 
 
 @kernel
-def tree_hit(vertex, box, depth, body, rate, hint, stack, polygon, spare, pieces):  # type: ignore[no-untyped-def]
+def tree_hit(tree, body, rate, hint, scratch):  # type: ignore[no-untyped-def]
     """First triangle found that reaches into the body, its point with `rate` 0.
 
     Parameters
     ----------
-    vertex : (n, 3, 3) float64
-        Triangles in tree order.
-    box, depth
-        The tree, as `tree.build` gives it.
+    tree : Tree
     body : (17,) float64
     rate : float
     hint : int
         Triangle to try first (the last one that was in the way), or -1.
-    stack : (64,) int64
-    polygon, spare : (8, 3) float64
-        Scratch.
-    pieces : (k, 3, 3) float64
-        Scratch, for `rate` > 0: k of 64 lets a triangle be halved often enough.
+    scratch : Scratch
+        64 pieces let a triangle be halved often enough where `rate` > 0.
 
     Returns
     -------
@@ -317,9 +313,11 @@ def tree_hit(vertex, box, depth, body, rate, hint, stack, polygon, spare, pieces
     height, px, py : float
         Its point, as `triangle_hit` gives it.
     """
+    vertex, box, depth = tree.vertex, tree.box, tree.depth
+    stack, polygon, spare = scratch.stack, scratch.polygon, scratch.spare
     if hint >= 0:
         hit, height, px, py = triangle_hit(vertex, hint, body, rate, polygon, spare)
-        if hit and (rate == 0.0 or _swept_hit(vertex, hint, body, rate, polygon, spare, pieces)):
+        if hit and (rate == 0.0 or _swept_hit(vertex, hint, body, rate, scratch)):
             return hint, height, px, py
     n, first, top = len(vertex), (1 << depth) - 1, 1
     stack[0] = 0
@@ -336,6 +334,6 @@ def tree_hit(vertex, box, depth, body, rate, hint, stack, polygon, spare, pieces
         leaf = node - first
         for i in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
             hit, height, px, py = triangle_hit(vertex, i, body, rate, polygon, spare)
-            if hit and (rate == 0.0 or _swept_hit(vertex, i, body, rate, polygon, spare, pieces)):
+            if hit and (rate == 0.0 or _swept_hit(vertex, i, body, rate, scratch)):
                 return i, height, px, py
     return -1, 0.0, 0.0, 0.0

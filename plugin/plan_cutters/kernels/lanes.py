@@ -3,26 +3,39 @@
 Without a branch, so that the compiler uses the lanes of the processor.
 """
 
+from typing import Any, NamedTuple
+
 import numpy as np
 
-from plan_cutters.kernels.gaps import CF, CL, SF, SL, _rim
+from plan_cutters.kernels.gaps import CF, CL, SF, SL
 from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.passes import _rim
 
 #: Boxes and triangles looked at together.
 LANES = 8
 
 
+class WideTree(NamedTuple):
+    """A tree as `wide_tree` arranges it."""
+
+    vertex: Any
+    blocks: Any
+    offset: Any
+    bottom: int
+
+
 @entry
-def wide_tree(vertex, box, depth):  # type: ignore[no-untyped-def]
+def wide_tree(tree):  # type: ignore[no-untyped-def]
     """Arrange every third level of a tree for looking at eight boxes at a time.
 
     Parameters
     ----------
-    vertex, box, depth
-        Triangles in tree order and the tree.
+    tree : Tree
 
     Returns
     -------
+    vertex : (n, 3, 3) float64
+        As in the tree.
     blocks : (k, 15, LANES) float64
         Of the boxes of a block, one a lane: centre, three half sides, a corner of a triangle in it. Level by level; a
         block holds the boxes three levels below one, the first block those of the first level, lanes left over far below.
@@ -31,6 +44,7 @@ def wide_tree(vertex, box, depth):  # type: ignore[no-untyped-def]
     bottom : int
         Level of the tree that the last blocks hold: no box there has more than LANES triangles.
     """
+    vertex, box, depth = tree
     bottom = depth
     while bottom > 0 and (len(vertex) + (1 << (bottom - 1)) - 1) >> (bottom - 1) <= LANES:
         bottom -= 1
@@ -49,7 +63,7 @@ def wide_tree(vertex, box, depth):  # type: ignore[no-untyped-def]
                 blocks[block, 12 + k, lane] = vertex[point, 0, k]
                 for side in range(3):
                     blocks[block, 3 + 3 * side + k, lane] = box[node, 12 + side] * box[node, 3 + 3 * side + k]
-    return blocks, offset, bottom
+    return vertex, blocks, offset, bottom
 
 
 @kernel
@@ -79,12 +93,13 @@ def _see(view, slot, blocks, block, p, e1, e2, n, margin):  # type: ignore[no-un
 
 
 @kernel
-def _boxes_pass(view, block, cosine, sine, gap, count, radius, shrunk, low, high, margin):  # type: ignore[no-untyped-def]
+def _boxes_pass(view, block, cosine, sine, gap, count, tool, margin):  # type: ignore[no-untyped-def]
     """Write a margin for each box of a block: 0 or more only if none of its points enters the body in any gap.
 
     What parts a box from the body is, as for a point: beside the cylinder; below its bottom where the gap begins; in front
     of the rim where it ends; below the rim at both; above the top where it ends; behind where it begins; out of reach.
     """
+    radius, shrunk, low, high = tool
     for lane in range(len(margin)):
         margin[lane] = np.inf
     for g in range(count):
@@ -157,8 +172,9 @@ def _see_leaf(seen, vertex, begin, end, p, e1, e2, n):  # type: ignore[no-untype
 
 
 @kernel
-def _triangles_pass(seen, cosine, sine, gap, count, radius, shrunk, low, high, margin):  # type: ignore[no-untyped-def]
+def _triangles_pass(seen, cosine, sine, gap, count, tool, margin):  # type: ignore[no-untyped-def]
     """`_boxes_pass` for the triangles of a leaf."""
+    radius, shrunk, low, high = tool
     for lane in range(len(margin)):
         margin[lane] = np.inf
     for g in range(count):

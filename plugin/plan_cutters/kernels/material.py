@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.rows import Tree
 
 #: Winding numbers from which a point is not called outside, and from which it is called inside. For closed skins they are
 #: whole numbers, but for what is left out in the sum: in between lies only what is not quite closed.
@@ -26,15 +27,13 @@ _RADIUS, _VECTOR, _AREA, MOMENTS = 3, 4, 7, 8
 class Solids(NamedTuple):
     """Obstacles as the searches take them.
 
-    vertex (n, 3, 3), box (nodes, 16), depth: triangles in tree order and the tree. weight (n,) int8: how often a triangle
+    tree. weight (n,) int8: how often a triangle
     counts in the winding number, negative where its corners run the other way round. moment (nodes, 8): of the triangles
     below a node. cell (i, j, k) uint8, 1 where a cell is surely outside, with its origin (3,) and size, mm; none where
     nothing encloses anything.
     """
 
-    vertex: Any
-    box: Any
-    depth: int
+    tree: Tree
     weight: Any
     moment: Any
     cell: Any
@@ -42,10 +41,10 @@ class Solids(NamedTuple):
     size: float
 
 
-def sheet(vertex: Any, box: Any, depth: int) -> Solids:
-    """Triangles in tree order that enclose nothing."""
+def sheet(tree: Tree) -> Solids:
+    """Triangles that enclose nothing."""
     none = np.zeros((0, 0, 0), np.uint8)
-    return Solids(vertex, box, depth, np.zeros(len(vertex), np.int8), np.zeros((0, MOMENTS)), none, np.zeros(3), 1.0)
+    return Solids(tree, np.zeros(len(tree.vertex), np.int8), np.zeros((0, MOMENTS)), none, np.zeros(3), 1.0)
 
 
 @entry
@@ -137,7 +136,7 @@ def winding(x, y, z, solids, stack):  # type: ignore[no-untyped-def]
     """How many bodies a point lies in; 0 as soon as that is sure, nan for a point that is none."""
     if outside(x, y, z, solids):
         return 0.0
-    vertex, weight, moment, depth = solids.vertex, solids.weight, solids.moment, solids.depth
+    vertex, depth, weight, moment = solids.tree.vertex, solids.tree.depth, solids.weight, solids.moment
     n, first, top, total = len(vertex), (1 << depth) - 1, 1, 0.0
     stack[0] = 0
     while top > 0:
@@ -202,7 +201,8 @@ def _square_to_triangle(v, x, y, z):  # type: ignore[no-untyped-def]
 @kernel
 def _touches(x, y, z, clear, solids, stack):  # type: ignore[no-untyped-def]
     """Whether a skin that encloses something comes within `clear` of a point; so does what is no number."""
-    vertex, box, depth, weight, moment = solids.vertex, solids.box, solids.depth, solids.weight, solids.moment
+    vertex, box, depth = solids.tree
+    weight, moment = solids.weight, solids.moment
     n, first, top = len(vertex), (1 << depth) - 1, 1
     stack[0] = 0
     while top > 0:

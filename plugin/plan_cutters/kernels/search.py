@@ -6,12 +6,15 @@ deep) or undecided. A cutter that touches nothing may still lie within a body: t
 turned to without touching a skin.
 """
 
+from typing import Any, NamedTuple
+
 import numpy as np
 
 from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
 from plan_cutters.kernels.hit import BODY, HIGH, OFFSET, A, P, X, cross, dot, lean_frame, perpendicular, stand, tree_hit
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, outside, winding
+from plan_cutters.kernels.rows import Frame, Scratch, Tool
 
 # As in `plan_cutters.domain.verdicts`, which must not load the compiler; a test holds them together.
 INACCESSIBLE, ACCESSIBLE, FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
@@ -105,12 +108,12 @@ def _inside(body, height, solids, stack):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _turned(p, n, f, t, tilt, radius, shrunk, low, high, solids, body, stack, polygon, spare, pieces):  # type: ignore[no-untyped-def]
+def _turned(frame, tilt, tool, tree, body, scratch):  # type: ignore[no-untyped-def]
     """How far a posture that touches nothing can be tilted either way and still surely touch nothing, rad."""
     half = _TURN
     while half > 0.5 * NARROWEST:
-        stand(body, p, n, f, t, np.cos(tilt), np.sin(tilt), radius, shrunk, low, high)
-        hit, _, _, _ = tree_hit(solids.vertex, solids.box, solids.depth, body, half, -1, stack, polygon, spare, pieces)
+        stand(body, frame, np.cos(tilt), np.sin(tilt), tool.radius, tool.shrunk, tool.low, tool.high)
+        hit, _, _, _ = tree_hit(tree, body, half, -1, scratch)
         if hit < 0:
             return half
         half *= 0.5
@@ -118,28 +121,52 @@ def _turned(p, n, f, t, tilt, radius, shrunk, low, high, solids, body, stack, po
     return 0.5 * NARROWEST
 
 
+class _Start(NamedTuple):
+    """Where a search begins: the posture of the sample before, the triangle and the points (k, 3) that were last in the way,
+    and how many of these there were in all."""
+
+    rotation: int
+    tilt: float
+    hint: int
+    known: Any
+    known_count: int
+
+
+class _Room(NamedTuple):
+    """Room to work in: intervals (k, 2), lean direction f and t = n x f, e2 = n x direction_max, a body, a tally by attribute."""
+
+    intervals: Any
+    f: Any
+    t: Any
+    e2: Any
+    body: Any
+    tally: Any
+    scratch: Scratch
+
+
 @kernel
-def _sweep(  # type: ignore[no-untyped-def]
-    p, n, e1, e2, kappa_max, kappa_min,
-    rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
-    radius, length, depth_allowed, solids, inside,
-    first_rotation, first_tilt, hint, known, known_count,
-    intervals, f, t, body, stack, polygon, spare, pieces, tally,
-):  # fmt: skip
+def _sweep(contacts, row, ranges, radius, length, depth_allowed, solids, inside, start, room):  # type: ignore[no-untyped-def]
     """Search all rotations of one sample; (rotation index or -1, tilt, last triangle in the way, count of known points).
 
     A posture with a winding number of `inside` or more, or none, is not taken.
     """
-    vertex, box, depth = solids.vertex, solids.box, solids.depth
-    rotations = len(rotation_cos)
+    p, n, e1 = contacts.point[row], contacts.normal[row], contacts.direction_max[row]
+    kappa_max, kappa_min = contacts.curvature[row, 0], contacts.curvature[row, 1]
+    intervals, f, t, body, tally = room.intervals, room.f, room.t, room.body, room.tally
+    hint, known, known_count = start.hint, start.known, start.known_count
+    cross(n, e1, room.e2)
+    frame, rotations = Frame(p, n, f, t), len(ranges.rotation_cos)
     tally[:] = 0.0
     low, high, shrunk = depth_allowed, length - depth_allowed, radius - depth_allowed
+    tool = Tool(radius, shrunk, low, high)
     for turn in range(rotations):
         step = (turn + 1) // 2 if turn % 2 else -(turn // 2)
-        rotation = (first_rotation + step) % rotations
-        cosine, sine = rotation_cos[rotation], rotation_sin[rotation]
-        lean_frame(e1, e2, cosine, sine, f, t)
-        count = axis_arcs(dot(setup, n), dot(setup, f), limit_cos, tilt_low, tilt_high, intervals)
+        rotation = (start.rotation + step) % rotations
+        cosine, sine = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
+        lean_frame(e1, room.e2, cosine, sine, f, t)
+        count = axis_arcs(
+            dot(ranges.setup, n), dot(ranges.setup, f), ranges.limit_cos, ranges.tilt_low, ranges.tilt_high, intervals
+        )
         for i in range(count):
             tally[AXIS_LIMIT] += intervals[i, 1] - intervals[i, 0] + NARROWEST
         least = local_gouge(kappa_max, kappa_min, cosine, sine, radius)
@@ -161,7 +188,7 @@ def _sweep(  # type: ignore[no-untyped-def]
                 count = _forbid(intervals, count, first, last, _attribute(x, y, z, radius), tally)
                 if count == 0:
                     break
-        wish = first_tilt
+        wish = start.tilt
         while count > 0:
             widest, tilt = -1.0, 0.0
             for i in range(count):
@@ -171,12 +198,12 @@ def _sweep(  # type: ignore[no-untyped-def]
                     widest = intervals[i, 1] - intervals[i, 0]
                     tilt = 0.5 * (intervals[i, 0] + intervals[i, 1])
             wish = -1.0
-            stand(body, p, n, f, t, np.cos(tilt), np.sin(tilt), radius, shrunk, low, high)
-            triangle, height, px, py = tree_hit(vertex, box, depth, body, 0.0, hint, stack, polygon, spare, pieces)
+            stand(body, frame, np.cos(tilt), np.sin(tilt), radius, shrunk, low, high)
+            triangle, height, px, py = tree_hit(solids.tree, body, 0.0, hint, room.scratch)
             if triangle < 0:
-                if _inside(body, inner_height(radius, length), solids, stack) < inside:
+                if _inside(body, inner_height(radius, length), solids, room.scratch.stack) < inside:
                     return rotation, tilt, hint, known_count
-                half = _turned(p, n, f, t, tilt, radius, shrunk, low, high, solids, body, stack, polygon, spare, pieces)
+                half = _turned(frame, tilt, tool, solids.tree, body, room.scratch)
                 count = _forbid(intervals, count, tilt - half, tilt + half, BURIED, tally)
                 continue
             hint = triangle
@@ -193,110 +220,96 @@ def _sweep(  # type: ignore[no-untyped-def]
 
 
 @entry
-def search(  # type: ignore[no-untyped-def]
-    rows, point, normal, direction_max, curvature,
-    rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
-    radius, length, safe, blocked, may_be, surely,
-    verdict, axis, lean, tilt_out, rotation_out, reason,
-):  # fmt: skip
+def search(rows, contacts, ranges, radius, length, safe, blocked, may_be, surely, found):  # type: ignore[no-untyped-def]
     """Decide the samples `rows`, one after the other, each starting from the posture of the one before.
 
     Parameters
     ----------
     rows : (m,) int64
         Samples to decide, neighbours in sequence.
-    point, normal, direction_max : (n, 3) float64
-    curvature : (n, 2) float64
-        kappa_max, kappa_min, 1/mm, concave positive.
-    rotation_cos, rotation_sin : (k,) float64
-    tilt_low, tilt_high : float
-        rad.
-    setup : (3,) float64
-        Unit setup axis.
-    limit_cos : float
-        Cosine of the axis limit about it, -2 for none.
+    contacts : Contacts
+    ranges : Ranges
     radius, length : float
         Flat-end cutter, mm.
     safe, blocked : float
         Depths (mm) up to which a triangle does not matter, and beyond which it certainly does.
     may_be, surely : Solids
         All that may be in the way, for calling a posture safe; what certainly is, for calling it blocked.
-    verdict, reason : (n,) uint8, written
-    axis, lean : (n, 3) float64, written
-    tilt_out, rotation_out : (n,) float64, int32, written
+    found : Found, written
     """
-    intervals = np.empty((_ROOM, 2))
-    f, t, e2 = np.empty(3), np.empty(3), np.empty(3)
-    body = np.empty(BODY)
-    stack = np.empty(64, np.int64)
-    polygon, spare, pieces = np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3))
-    tally = np.empty(ATTRIBUTES)
+    room = _Room(
+        np.empty((_ROOM, 2)), np.empty(3), np.empty(3), np.empty(3), np.empty(BODY), np.empty(ATTRIBUTES),
+        Scratch(np.empty(64, np.int64), np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3))),
+    )  # fmt: skip
+    tally = room.tally
     known, known_count = np.empty((_KNOWN, 3)), 0
     last_rotation, last_tilt, hint = 0, -1.0, -1
     # What is only perhaps in the way must not count as surely in it: then the two are remembered apart.
-    shared = len(may_be.vertex) == len(surely.vertex)
+    shared = len(may_be.tree.vertex) == len(surely.tree.vertex)
     sure_known, sure_count, sure_hint = np.empty((_KNOWN, 3)), 0, -1
     for row in rows:
-        p, n, e1 = point[row], normal[row], direction_max[row]
-        cross(n, e1, e2)
         rotation, tilt, hint, known_count = _sweep(
-            p, n, e1, e2, curvature[row, 0], curvature[row, 1],
-            rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
-            radius, length, safe, may_be, MAYBE_INSIDE, last_rotation, last_tilt, hint, known, known_count,
-            intervals, f, t, body, stack, polygon, spare, pieces, tally,
+            contacts, row, ranges, radius, length, safe, may_be, MAYBE_INSIDE,
+            _Start(last_rotation, last_tilt, hint, known, known_count), room,
         )  # fmt: skip
         if rotation >= 0:
-            verdict[row] = ACCESSIBLE
+            found.verdict[row] = ACCESSIBLE
             last_rotation, last_tilt = rotation, tilt
-            tilt_out[row], rotation_out[row] = tilt, rotation
+            found.tilt[row], found.rotation[row] = tilt, rotation
             cosine, sine = np.cos(tilt), np.sin(tilt)
             for k in range(3):
-                lean[row, k] = rotation_cos[rotation] * e1[k] + rotation_sin[rotation] * e2[k]
-                axis[row, k] = cosine * n[k] + sine * lean[row, k]
+                found.lean[row, k] = (
+                    ranges.rotation_cos[rotation] * contacts.direction_max[row, k]
+                    + ranges.rotation_sin[rotation] * room.e2[k]
+                )
+                found.axis[row, k] = cosine * contacts.normal[row, k] + sine * found.lean[row, k]
         else:
             if shared:
                 sure_known[:], sure_count, sure_hint = known, known_count, hint
             rotation, tilt, sure_hint, sure_count = _sweep(
-                p, n, e1, e2, curvature[row, 0], curvature[row, 1],
-                rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos,
-                radius, length, blocked, surely, SURELY_INSIDE, last_rotation, last_tilt, sure_hint, sure_known, sure_count,
-                intervals, f, t, body, stack, polygon, spare, pieces, tally,
+                contacts, row, ranges, radius, length, blocked, surely, SURELY_INSIDE,
+                _Start(last_rotation, last_tilt, sure_hint, sure_known, sure_count), room,
             )  # fmt: skip
             if shared:
                 known[:], known_count, hint = sure_known, sure_count, sure_hint
-            verdict[row] = UNDECIDED if rotation >= 0 else INACCESSIBLE
+            found.verdict[row] = UNDECIDED if rotation >= 0 else INACCESSIBLE
             if tally[AXIS_LIMIT] == 0.0:
-                reason[row] = AXIS_LIMIT
+                found.reason[row] = AXIS_LIMIT
             elif tally[LOCAL_GOUGE] == 0.0:
-                reason[row] = LOCAL_GOUGE
+                found.reason[row] = LOCAL_GOUGE
             else:
-                reason[row] = REAR_GOUGE
+                reason = REAR_GOUGE
                 for attribute in (COLLISION, BURIED):
-                    if tally[attribute] > tally[reason[row]]:
-                        reason[row] = attribute
+                    if tally[attribute] > tally[reason]:
+                        reason = attribute
+                found.reason[row] = reason
 
 
 @entry
-def first_reason(  # type: ignore[no-untyped-def]
-    rows, normal, direction_max, curvature, rotation_cos, rotation_sin, tilt_low, tilt_high, setup, limit_cos, radius,
-    reason,
-):  # fmt: skip
-    """Write AXIS_LIMIT or LOCAL_GOUGE as the reason of samples to which these alone leave no posture.
+def first_reason(rows, contacts, ranges, radius, reason):  # type: ignore[no-untyped-def]
+    """Write AXIS_LIMIT or LOCAL_GOUGE as the reason (n,) of samples to which these alone leave no posture.
 
-    Parameters are those of `search`; other reasons stay as they are.
+    The other parameters are those of `search`; other reasons stay as they are.
     """
     intervals = np.empty((8, 2))
     f, t, e2 = np.empty(3), np.empty(3), np.empty(3)
     for row in rows:
-        n, e1 = normal[row], direction_max[row]
+        n, e1 = contacts.normal[row], contacts.direction_max[row]
         cross(n, e1, e2)
         axis_left, gouge_left = False, False
-        for rotation in range(len(rotation_cos)):
-            cosine, sine = rotation_cos[rotation], rotation_sin[rotation]
+        for rotation in range(len(ranges.rotation_cos)):
+            cosine, sine = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
             lean_frame(e1, e2, cosine, sine, f, t)
-            count = axis_arcs(dot(setup, n), dot(setup, f), limit_cos, tilt_low, tilt_high, intervals)
+            count = axis_arcs(
+                dot(ranges.setup, n),
+                dot(ranges.setup, f),
+                ranges.limit_cos,
+                ranges.tilt_low,
+                ranges.tilt_high,
+                intervals,
+            )
             axis_left = axis_left or count > 0
-            least = local_gouge(curvature[row, 0], curvature[row, 1], cosine, sine, radius)
+            least = local_gouge(contacts.curvature[row, 0], contacts.curvature[row, 1], cosine, sine, radius)
             if not np.isnan(least) and least > 0.0:
                 count = remove(intervals, count, -1.0, least, 0.0)
             if not np.isnan(least) and count > 0:
@@ -309,13 +322,13 @@ def first_reason(  # type: ignore[no-untyped-def]
 
 
 @entry
-def dummy_free(rows, point, normal, radius, length, safe, solids, free):  # type: ignore[no-untyped-def]
+def dummy_free(rows, contacts, radius, length, safe, solids, free):  # type: ignore[no-untyped-def]
     """Test the dummy cutter `(2 radius, length)`, bottom centre on the sample, axis along the normal.
 
     Parameters
     ----------
     rows : (m,) int64
-    point, normal : (n, 3) float64
+    contacts : Contacts
     radius, length, safe : float
         The flat-end cutter, mm, and the depth up to which a triangle does not matter.
     solids : Solids
@@ -323,25 +336,22 @@ def dummy_free(rows, point, normal, radius, length, safe, solids, free):  # type
     free : (n,) bool, written
         True where nothing reaches deeper than `safe` into the dummy, and the dummy lies in no body.
     """
-    vertex, box, depth = solids.vertex, solids.box, solids.depth
-    body = np.empty(BODY)
-    f, t = np.empty(3), np.empty(3)
-    stack = np.empty(64, np.int64)
-    polygon, spare, pieces = np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3))
+    body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
+    scratch = Scratch(np.empty(64, np.int64), np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3)))
     hint = -1
     for row in rows:
-        n = normal[row]
+        n = contacts.normal[row]
         perpendicular(n, f)
         cross(n, f, t)
-        stand(body, point[row], n, f, t, 1.0, 0.0, 0.0, 2.0 * radius - safe, safe, length - safe)
-        triangle, _, _, _ = tree_hit(vertex, box, depth, body, 0.0, hint, stack, polygon, spare, pieces)
-        free[row] = triangle < 0 and _inside(body, inner_height(radius, length), solids, stack) < MAYBE_INSIDE
+        stand(body, Frame(contacts.point[row], n, f, t), 1.0, 0.0, 0.0, 2.0 * radius - safe, safe, length - safe)
+        triangle, _, _, _ = tree_hit(solids.tree, body, 0.0, hint, scratch)
+        free[row] = triangle < 0 and _inside(body, inner_height(radius, length), solids, scratch.stack) < MAYBE_INSIDE
         if triangle >= 0:
             hint = triangle
 
 
 @entry
-def probe(rows, point, normal, axis, lean, radius, length, depths, vertex, box, depth, triangle):  # type: ignore[no-untyped-def]
+def probe(rows, point, normal, axis, lean, radius, length, depths, tree, triangle):  # type: ignore[no-untyped-def]
     """Test given postures: the triangle that reaches deeper than `depths[i]` into the cutter of posture i, or -1.
 
     Parameters
@@ -352,18 +362,16 @@ def probe(rows, point, normal, axis, lean, radius, length, depths, vertex, box, 
         Contact, unit normal, unit tool axis, unit lean direction.
     radius, length : float
     depths : (n,) float64
-    vertex, box, depth
-        Triangles in tree order and the tree.
+    tree : Tree
     triangle : (n,) int32, written
     """
     body, t = np.empty(BODY), np.empty(3)
-    stack = np.empty(64, np.int64)
-    polygon, spare, pieces = np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3))
+    scratch = Scratch(np.empty(64, np.int64), np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3)))
     hint = -1
     for row in rows:
         n, f, s = normal[row], lean[row], depths[row]
         cross(n, f, t)
-        stand(body, point[row], n, f, t, dot(axis[row], n), dot(axis[row], f), radius, radius - s, s, length - s)
-        triangle[row], _, _, _ = tree_hit(vertex, box, depth, body, 0.0, hint, stack, polygon, spare, pieces)
+        stand(body, Frame(point[row], n, f, t), dot(axis[row], n), dot(axis[row], f), radius, radius - s, s, length - s)
+        triangle[row], _, _, _ = tree_hit(tree, body, 0.0, hint, scratch)
         if triangle[row] >= 0:
             hint = triangle[row]

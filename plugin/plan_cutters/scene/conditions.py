@@ -5,17 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats
+from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import Reach
+from plan_cutters.kernels.rows import Contacts, Found, Ranges
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.scene.threads import Progress, in_chunks
-
-#: Points, normals, larger principal directions (n, 3) and curvatures (n, 2), as in SurfaceSamples.
-Geometry = tuple[Floats, Floats, Floats, Floats]
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,37 +56,47 @@ class Conditions:
         return self.obstacles.depths(self.tolerance)
 
     @property
-    def ranges(self) -> tuple[Floats, Floats, float, float, Floats, float]:
-        """What kernels take of postures and machine: cosines and sines of the rotations, tilts from and to, axis limit."""
+    def ranges(self) -> Ranges:
+        """What kernels take of postures and machine."""
         rotations, (low, high) = self.postures.rotations, self.postures.tilt
-        return (np.cos(rotations), np.sin(rotations), max(0.0, low), min(np.pi / 2, high), self.setup,
-                self.machine.limit_cos)  # fmt: skip
+        return Ranges(np.cos(rotations), np.sin(rotations), max(0.0, low), min(np.pi / 2, high), self.setup,
+                      self.machine.limit_cos)  # fmt: skip
 
     def upright(self, normal: Floats) -> NDArray[np.bool_]:
         """At which normals (n, 3) the machine can hold the axis along the normal, and tilt 0 was asked for."""
         return np.asarray(self.postures.upright & (normal @ self.setup >= self.machine.limit_cos))
 
 
-def require_finite(geometry: Geometry, rows: NDArray[np.int64]) -> None:
+def contacts_of(samples: SurfaceSamples) -> Contacts:
+    """Samples as kernels take them."""
+    return Contacts(samples.point, samples.normal, samples.direction_max, samples.curvature)
+
+
+def found_of(reach: Reach) -> Found:
+    """Where kernels write what they find."""
+    return Found(reach.verdict, reach.axis, reach.lean, reach.tilt, reach.rotation, reach.reason)
+
+
+def require_finite(contacts: Contacts, rows: NDArray[np.int64]) -> None:
     """Refuse contacts that are no points with a normal, a direction and curvatures: kernels say nothing of them.
 
     Raises
     ------
     ValueError
     """
-    if not all(np.isfinite(column[rows]).all() for column in geometry):
+    if not all(np.isfinite(column[rows]).all() for column in contacts):
         raise ValueError("contacts to search a posture for must be finite")
 
 
 def search_postures(
-    geometry: Geometry, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, depths: tuple[float, float],
+    contacts: Contacts, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, depths: tuple[float, float],
     reach: Reach, progress: Progress | None = None,
 ) -> None:  # fmt: skip
     """Search a posture for contacts, neighbours in sequence, and write what is found into `reach`.
 
     Parameters
     ----------
-    geometry : tuple of arrays
+    contacts : Contacts
     rows : (m,) int64
         Contacts to decide.
     cutter : Cutter
@@ -106,14 +114,12 @@ def search_postures(
     """
     from plan_cutters.kernels.search import search
 
-    require_finite(geometry, rows)
+    require_finite(contacts, rows)
     ranges, around = conditions.ranges, conditions.around
     may_be, surely = around.may_be.solids, around.surely.solids
+    found = found_of(reach)
 
     def work(piece: NDArray[np.int64]) -> None:
-        search(
-            piece, *geometry, *ranges, cutter.radius, cutter.length, *depths, may_be, surely,
-            reach.verdict, reach.axis, reach.lean, reach.tilt, reach.rotation, reach.reason,
-        )  # fmt: skip
+        search(piece, contacts, ranges, cutter.radius, cutter.length, *depths, may_be, surely, found)
 
     in_chunks(work, rows, conditions.jobs, progress)

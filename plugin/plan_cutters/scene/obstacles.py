@@ -13,8 +13,10 @@ from cad_io.arrays import Floats, Ints, Triangles
 from cad_io.part.bodies import Body
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.errors import UnjudgeableError
+from plan_cutters.kernels.rows import Tree
 
 if TYPE_CHECKING:
+    from plan_cutters.kernels.lanes import WideTree
     from plan_cutters.kernels.material import Solids
 
 #: Cells along the longest side of the grid that tells what is surely outside.
@@ -70,27 +72,26 @@ class Obstacles:
         return order, box, int(depth)
 
     @cached_property
-    def tree(self) -> tuple[Floats, Floats, int]:
-        """(vertex (n, 3, 3) in tree order, box (nodes, 16), depth), as the kernels take it."""
+    def tree(self) -> Tree:
+        """The triangles in tree order, and the tree, as the kernels take it."""
         order, box, depth = self._built
-        return np.ascontiguousarray(self.triangles.vertex[order]), box, depth
+        return Tree(np.ascontiguousarray(self.triangles.vertex[order]), box, depth)
 
     @cached_property
     def solids(self) -> "Solids":
         """The tree and what its triangles enclose, as the searches take it."""
         from plan_cutters.kernels.material import Solids, moments, sheet
 
-        vertex, box, depth = self.tree
         weight = np.ascontiguousarray(self.weight[self._built[0]])
         if not weight.any():
-            return sheet(vertex, box, depth)
-        return Solids(vertex, box, depth, weight, moments(vertex, weight, depth), *self._cells())
+            return sheet(self.tree)
+        return Solids(self.tree, weight, moments(self.tree.vertex, weight, self.tree.depth), *self._cells())
 
     def _cells(self) -> tuple[NDArray[np.uint8], Floats, float]:
         """Cells (i, j, k), 1 where one is surely outside; the grid's origin (3,) and the size of a cell, mm."""
         from plan_cutters.kernels.material import mark_skin
 
-        vertex, grow = self.tree[0], self.triangles.chord_error + self.gap
+        vertex, grow = self.tree.vertex, self.triangles.chord_error + self.gap
         low, high = vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))
         grow += 1e-9 * float(np.abs([low, high]).max())
         extent = float((high - low).max())
@@ -110,12 +111,11 @@ class Obstacles:
         return outside.astype(np.uint8), origin, size
 
     @cached_property
-    def wide_tree(self) -> tuple[Floats, Floats, Ints, int]:
-        """(vertex in tree order, blocks, offset, bottom): the tree as posture maps take it, eight boxes at a time."""
-        from plan_cutters.kernels.lanes import wide_tree
+    def wide_tree(self) -> "WideTree":
+        """The tree as posture maps take it, eight boxes at a time."""
+        from plan_cutters.kernels.lanes import WideTree, wide_tree
 
-        blocks, offset, bottom = wide_tree(*self.tree)
-        return self.tree[0], blocks, offset, int(bottom)
+        return WideTree(*wide_tree(self.tree))
 
     @cached_property
     def faces(self) -> Ints:

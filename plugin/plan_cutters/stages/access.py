@@ -20,8 +20,9 @@ from plan_cutters.domain.verdicts import (
     Witness,
     blank,
 )
+from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.buried import cover
-from plan_cutters.scene.conditions import Conditions, Geometry, search_postures
+from plan_cutters.scene.conditions import Conditions, contacts_of, search_postures
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.threads import Progress, in_chunks
 
@@ -64,28 +65,28 @@ def access(
     reach.lean[free] = samples.direction_max[free]
     reach.tilt[free] = 0.0
     reach.rotation[free] = 0
-    geometry = (samples.point, samples.normal, samples.direction_max, samples.curvature)
+    contacts = contacts_of(samples)
     wanted = judged & ~free & ~within
     if known is not None:
         follows = wanted & (known.verdict != UNJUDGED)
         for name in Reach.__slots__:
             getattr(reach, name)[follows] = getattr(known, name)[follows]
         _first_reasons(
-            geometry, np.flatnonzero(follows & (known.verdict == INACCESSIBLE)), cutter, conditions, reach.reason
+            contacts, np.flatnonzero(follows & (known.verdict == INACCESSIBLE)), cutter, conditions, reach.reason
         )
         wanted &= ~follows
-    search_postures(geometry, np.flatnonzero(wanted), cutter, conditions, conditions.depths, reach, progress)
+    search_postures(contacts, np.flatnonzero(wanted), cutter, conditions, conditions.depths, reach, progress)
     return reach
 
 
 def _first_reasons(
-    geometry: Geometry, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, reason: NDArray[np.uint8]
+    contacts: Contacts, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, reason: NDArray[np.uint8]
 ) -> None:
     """Where the axis limit or local gouging alone leaves this cutter nothing, that is the reason."""
     from plan_cutters.kernels.search import first_reason
 
     ranges = conditions.ranges
-    in_chunks(lambda piece: first_reason(piece, *geometry[1:], *ranges, cutter.radius, reason), rows, conditions.jobs)
+    in_chunks(lambda piece: first_reason(piece, contacts, ranges, cutter.radius, reason), rows, conditions.jobs)
 
 
 #: Witnesses kept for each face and reason, and samples tried to find them, in all.
@@ -151,7 +152,7 @@ def _witness(samples: SurfaceSamples, row: int, reach: Reach, cutter: Cutter, co
     first = np.zeros(1, np.int64)
     triangle = np.full(1, -1, np.int32)
     probe(first, samples.point[at], samples.normal[at], best.axis, best.lean, cutter.radius, cutter.length, np.array([low]),
-          *obstacles.tree, triangle)  # fmt: skip
+          obstacles.tree, triangle)  # fmt: skip
     hit = int(triangle[0])
     return Witness(
         sample=row,
@@ -159,7 +160,7 @@ def _witness(samples: SurfaceSamples, row: int, reach: Reach, cutter: Cutter, co
         obstacle_face=obstacles.face(hit) if hit >= 0 else None,
         obstacle_point=None
         if hit < 0
-        else _deepest(obstacles.tree[0][hit], samples.point[row], samples.normal[row], best, cutter),
+        else _deepest(obstacles.tree.vertex[hit], samples.point[row], samples.normal[row], best, cutter),
         tilt=float(best.tilt[0]),
         rotation=float(conditions.postures.rotations[best.rotation[0]]),
         axis=best.axis[0],
@@ -173,14 +174,14 @@ def _least_depth(
     """The posture of least depth, and depths, mm, between which that lies; None if no posture is left at any."""
     one, first = slice(row, row + 1), np.zeros(1, np.int64)
     curvature = np.zeros((1, 2)) if reason == "local_gouge" else samples.curvature[one]
-    geometry = (samples.point[one], samples.normal[one], samples.direction_max[one], curvature)
+    contact = Contacts(samples.point[one], samples.normal[one], samples.direction_max[one], curvature)
     deepest = min(cutter.radius, cutter.length / 2) * (1 - 1e-9)
     low, high = conditions.depths[0], deepest
     best: Reach | None = None
     while best is None or high - low > _PRECISION * high:
         depth = np.sqrt(low * high) if best else deepest
         trial = blank(1)
-        search_postures(geometry, first, cutter, conditions, (depth, depth), trial)
+        search_postures(contact, first, cutter, conditions, (depth, depth), trial)
         if trial.verdict[0] == ACCESSIBLE:
             best, high = trial, depth
         elif best is None:

@@ -15,9 +15,10 @@ from cad_io.arrays import Floats, Ints, Orientation, SurfaceSamples
 from cad_io.part import Part
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Reach, blank
+from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Conditions, search_postures
 from plan_cutters.scene.threads import in_chunks
-from plan_cutters.stages.cells import Contacts, Field, laid, quartered, tensors
+from plan_cutters.stages.cells import CellContacts, Field, laid, quartered, tensors
 
 #: Room to the local gouging bound, in sines of tilt, that is asked of other postures, in turn: the smaller a cell, the
 #: less is of use.
@@ -125,7 +126,7 @@ def between(
         short += len(strips) - len(chosen)
         allowed -= len(chosen)
         looked += len(chosen)
-        now = Contacts.joined(now, strips.of(chosen))
+        now = CellContacts.joined(now, strips.of(chosen))
         for level in range(_LEVELS + 1):
             good = _served(now, field, cutter, conditions, _ROOM[min(level, len(_ROOM) - 1)])
             served += float(now.area[good].sum())
@@ -148,13 +149,13 @@ def between(
                    Cells(*map(np.concatenate, columns)))  # fmt: skip
 
 
-def _largest(contacts: Contacts, most: int) -> NDArray[np.intp]:
+def _largest(contacts: CellContacts, most: int) -> NDArray[np.intp]:
     """Rows of at most so many contacts, those of the largest cells, in their order."""
     return np.sort(np.argsort(-contacts.area, kind="stable")[: max(0, most)])
 
 
 def _served(
-    contacts: Contacts, field: Field, cutter: Cutter, conditions: Conditions, rooms: Sequence[float]
+    contacts: CellContacts, field: Field, cutter: Cutter, conditions: Conditions, rooms: Sequence[float]
 ) -> NDArray[np.bool_]:
     """Contacts whose posture, or another one, serves their cell; postures found on the way are kept."""
     good = np.zeros(len(contacts), bool)
@@ -164,9 +165,9 @@ def _served(
         open_rows = np.flatnonzero(~good & _whole(contacts))
         # A posture with room to the local gouging bound: the search is told that the surface is more concave.
         curved = contacts.curvature + room / cutter.radius
-        geometry = (contacts.point, contacts.normal, contacts.direction_max, curved)
+        at = Contacts(contacts.point, contacts.normal, contacts.direction_max, curved)
         found, (safe, _) = blank(len(contacts)), conditions.depths
-        search_postures(geometry, open_rows, cutter, conditions, (safe, safe), found)
+        search_postures(at, open_rows, cutter, conditions, (safe, safe), found)
         rows = open_rows[found.reached[open_rows]]
         if len(rows):
             contacts.axis[rows], contacts.flat[rows] = found.axis[rows], False
@@ -175,20 +176,23 @@ def _served(
 
 
 def _cover(
-    contacts: Contacts, field: Field, cutter: Cutter, conditions: Conditions, rows: NDArray[np.int64],
+    contacts: CellContacts, field: Field, cutter: Cutter, conditions: Conditions, rows: NDArray[np.int64],
     good: NDArray[np.bool_],
 ) -> None:  # fmt: skip
-    from plan_cutters.kernels.cover import cover
+    from plan_cutters.kernels.cover import Patches, cover
+    from plan_cutters.kernels.zone import Nodes
 
     tensor = tensors(contacts.normal, contacts.direction_max, contacts.curvature)
     obstacles, (safe, _) = conditions.obstacles, conditions.depths
-    vertex, box, depth = obstacles.tree
+    patches = Patches(
+        contacts.point, contacts.normal, tensor, contacts.axis, contacts.flat, contacts.patch, contacts.home
+    )
+    nodes = Nodes(field.index, field.closed, field.point, field.normal, field.tensor, field.wobble, field.radius)
+    chord = obstacles.triangles.chord_error
 
     def work(piece: NDArray[np.int64]) -> None:
-        cover(piece, contacts.point, contacts.normal, tensor, contacts.axis, contacts.flat, contacts.patch,
-              contacts.home, field.index, field.closed, field.point, field.normal, field.tensor, field.wobble,
-              field.radius, field.number, cutter.radius, cutter.length, safe, obstacles.triangles.chord_error, vertex,
-              obstacles.faces, box, depth, good)  # fmt: skip
+        cover(piece, patches, nodes, field.number, cutter.radius, cutter.length, safe, chord, obstacles.tree,
+              obstacles.faces, good)  # fmt: skip
 
     in_chunks(work, rows, conditions.jobs)
     # A cell that is served touches no skin with any of its cutters: within a body are all of them or none.
@@ -203,7 +207,7 @@ def _cover(
     good[mine] = ~conditions.obstacles.holds(cutter, contacts.point[mine], normal, lean, tilt)
 
 
-def _whole(contacts: Contacts) -> NDArray[np.bool_]:
+def _whole(contacts: CellContacts) -> NDArray[np.bool_]:
     """Contacts at which the surface could be evaluated."""
     columns = (contacts.point, contacts.normal, contacts.direction_max, contacts.curvature)
     return np.asarray(np.all([np.isfinite(column).all(axis=1) for column in columns], axis=0))

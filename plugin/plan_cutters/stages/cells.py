@@ -27,7 +27,7 @@ _BESIDE = ((-1, 0), (1, 0), (0, -1), (0, 1), (-1, -1), (-1, 1), (1, -1), (1, 1))
 
 
 @dataclass(slots=True)
-class Contacts:
+class CellContacts:
     """Contacts on one face, each for a cell.
 
     point, normal, direction_max, curvature : as in SurfaceSamples. axis (n, 3), flat (n,): posture to start from, nan
@@ -52,12 +52,12 @@ class Contacts:
     size: Floats
     area: Floats
 
-    def of(self, rows: NDArray[Any]) -> "Contacts":
-        return Contacts(*(getattr(self, name)[rows] for name in self.__slots__))
+    def of(self, rows: NDArray[Any]) -> "CellContacts":
+        return CellContacts(*(getattr(self, name)[rows] for name in self.__slots__))
 
     @staticmethod
-    def joined(first: "Contacts", second: "Contacts") -> "Contacts":
-        return Contacts(*(np.concatenate([getattr(first, n), getattr(second, n)]) for n in Contacts.__slots__))
+    def joined(first: "CellContacts", second: "CellContacts") -> "CellContacts":
+        return CellContacts(*(np.concatenate([getattr(first, n), getattr(second, n)]) for n in CellContacts.__slots__))
 
     def __len__(self) -> int:
         return len(self.point)
@@ -117,13 +117,13 @@ class Field:
 
 def laid(
     part: Part, orientation: Orientation, samples: SurfaceSamples, grid: FaceGrid, reach: Reach, conditions: Conditions
-) -> tuple[Field, Contacts, Contacts]:
+) -> tuple[Field, CellContacts, CellContacts]:
     """The cells of a face.
 
     Returns
     -------
     field : Field
-    contacts, strips : Contacts
+    contacts, strips : CellContacts
         At the samples, and of tiles whose node lies outside the trim.
     """
     trim = part.trim(grid.face)
@@ -155,7 +155,7 @@ def laid(
     mine = rows[node[judged]]
     middle, span = _rectangles((u, v), tile)
     size = field.radius[node]
-    contacts = Contacts(
+    contacts = CellContacts(
         samples.point[mine], samples.normal[mine], samples.direction_max[mine], samples.curvature[mine],
         reach.axis[mine], reach.verdict[mine] == FREE, size[judged], tile[judged].astype(np.int32), tile[judged],
         middle[judged], span[judged], clip.whole[judged], size[judged], area[judged],
@@ -163,7 +163,7 @@ def laid(
     bare = node < 0
     geometry = field.at(clip.middle[bare])
     axis, flat = _beside(index, tile[bare], rows, reach)
-    strips = Contacts(
+    strips = CellContacts(
         *geometry, _started(axis, flat, geometry[1], conditions), flat, np.zeros(len(flat)),
         tile[bare].astype(np.int32), tile[bare], middle[bare], span[bare], clip.whole[bare], np.full(len(flat), np.nan),
         area[bare],
@@ -172,7 +172,7 @@ def laid(
     return field, contacts, strips
 
 
-def quartered(contacts: Contacts, field: Field, level: int, conditions: Conditions) -> Contacts:
+def quartered(contacts: CellContacts, field: Field, level: int, conditions: Conditions) -> CellContacts:
     """Up to four contacts for each, one in each quarter of its cell that lies in the trim, that start from its posture.
 
     `level` counts the halvings that led to `contacts`.
@@ -202,7 +202,7 @@ def quartered(contacts: Contacts, field: Field, level: int, conditions: Conditio
     if len(boxed):
         patch[boxed] = field.around(clip.low[boxed], clip.high[boxed], geometry[0][boxed], None)[0]
     flat = contacts.flat[parent]
-    return Contacts(*geometry, _started(contacts.axis[parent], flat, geometry[1], conditions), flat, patch,
+    return CellContacts(*geometry, _started(contacts.axis[parent], flat, geometry[1], conditions), flat, patch,
                     contacts.home[parent], tile, middle, span, clip.whole, size,
                     contacts.area[parent] * weight / np.where(whole > 0, whole, 1.0))  # fmt: skip
 
@@ -270,7 +270,7 @@ def _bare_nodes(field: Field, node: Ints, clip: Clipped) -> None:
         np.maximum.at(field.wobble, rows, wobble)
 
 
-def _add_nodes(field: Field, strips: Contacts, low: Floats, high: Floats) -> None:
+def _add_nodes(field: Field, strips: CellContacts, low: Floats, high: Floats) -> None:
     """Make nodes of contacts on their own, and write how far their cells reach."""
     tensor = tensors(strips.normal, strips.direction_max, strips.curvature)
     radius, wobble = field.around(low, high, strips.point, tensor) if len(strips) else (np.zeros(0), np.zeros(0))

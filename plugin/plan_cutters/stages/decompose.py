@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import connected_components
 
 from cad_io.arrays import Ints, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.conditions import Conditions, contacts_of
 from plan_cutters.scene.threads import in_chunks
 
 
@@ -57,10 +57,10 @@ def decompose(
     if buried is not None:
         allowed &= buried < 0
     safe, _ = conditions.depths
-    solids = conditions.obstacles.solids
+    solids, contacts = conditions.obstacles.solids, contacts_of(samples)
 
     def work(rows: NDArray[np.int64]) -> None:
-        dummy_free(rows, samples.point, samples.normal, cutter.radius, cutter.length, safe, solids, free)
+        dummy_free(rows, contacts, cutter.radius, cutter.length, safe, solids, free)
 
     in_chunks(work, np.flatnonzero(allowed), conditions.jobs)
     marched = _march(samples, convex, region, free)

@@ -121,7 +121,7 @@ def posture_map_of(
             if obstacles is None:
                 return np.array([[first, last, OPEN]])
             return np.asarray(free_tilts(p, n, f, first, last, cutter.radius, cutter.length, depth, narrowest,
-                                         *obstacles.tree, _ROOM))  # fmt: skip
+                                         obstacles.tree, _ROOM))  # fmt: skip
 
         rear.append(complement(_merged(parts(near[0], low, high), OPEN), low, high))
         collision.append(complement(_merged(parts(near[1], low, high), OPEN), low, high))

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.posture import lean
-from plan_cutters.scene.conditions import Conditions, require_finite
+from plan_cutters.scene.conditions import Conditions, contacts_of, require_finite
 from plan_cutters.scene.threads import Progress, in_chunks
 
 #: Ends are certified to this, rad; where that cannot be, the band left is counted as undecided.
@@ -55,6 +55,7 @@ def posture_maps(
 
     rotations, ranges, tree = conditions.postures.rotations, conditions.ranges, conditions.obstacles.wide_tree
     safe, _ = conditions.depths
+    contacts = contacts_of(samples)
     n, k = len(samples), len(rotations)
     count = np.zeros((n, k), np.int32)
     undecided = np.zeros((n, k), np.float32)
@@ -64,8 +65,7 @@ def posture_maps(
         # Room for the most intervals only while a piece is worked on: memory grows with what is found.
         part = np.empty((len(rows), k, _ROOM, 2))
         mine, unsure = np.empty((len(rows), k), np.int32), np.empty((len(rows), k))
-        free_map(rows, samples.point, samples.normal, samples.direction_max, samples.curvature, *ranges, cutter.radius,
-                 cutter.length, safe, NARROWEST, *tree, _ROOM, part, mine, unsure)  # fmt: skip
+        free_map(rows, contacts, ranges, cutter.radius, cutter.length, safe, NARROWEST, tree, _ROOM, part, mine, unsure)
         count[rows], undecided[rows] = mine, unsure
         if conditions.obstacles.solids.cell.size:
             _leave_bodies(samples, rows, cutter, conditions, part, mine)
@@ -73,7 +73,7 @@ def posture_maps(
         free[int(rows[0])] = part[np.arange(_ROOM) < mine[..., None]]
 
     judged = np.flatnonzero(samples.unjudged < 0)
-    require_finite((samples.point, samples.normal, samples.direction_max, samples.curvature), judged)
+    require_finite(contacts, judged)
     in_chunks(work, judged, conditions.jobs, progress)
     pieces = [free[first] for first in sorted(free)]
     offset = np.concatenate([[0], np.cumsum(count.ravel(), dtype=np.int64)])

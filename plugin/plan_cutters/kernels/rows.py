@@ -1,0 +1,72 @@
+"""What kernels take together, under one name each: the compiler knows named tuples as it knows single values."""
+
+from typing import Any, NamedTuple
+
+
+class Tree(NamedTuple):
+    """Triangles in tree order, vertex (n, 3, 3), and the tree, box (nodes, 16) and depth, as `tree.build` gives it."""
+
+    vertex: Any
+    box: Any
+    depth: int
+
+
+class Contacts(NamedTuple):
+    """point, normal, direction_max (n, 3): where a cutter may touch, the normal out of the material, and the direction of the
+    larger curvature; curvature (n, 2): kappa_max, kappa_min, 1/mm, concave positive."""
+
+    point: Any
+    normal: Any
+    direction_max: Any
+    curvature: Any
+
+
+class Ranges(NamedTuple):
+    """Which postures there are: cosines and sines (k,) of the rotations, tilts from and to, rad, and the axis limit: the
+    cosine `limit_cos` about the unit axis `setup` (3,), -2 for none."""
+
+    rotation_cos: Any
+    rotation_sin: Any
+    tilt_low: float
+    tilt_high: float
+    setup: Any
+    limit_cos: float
+
+
+class Tool(NamedTuple):
+    """A cutter of a radius that was made smaller by a depth all round: its own radius, the one left, and the heights between
+    which it is solid, mm."""
+
+    radius: float
+    shrunk: float
+    low: float
+    high: float
+
+
+class Frame(NamedTuple):
+    """Contact p, normal n, lean direction f, and t = n x f; each (3,)."""
+
+    p: Any
+    n: Any
+    f: Any
+    t: Any
+
+
+class Scratch(NamedTuple):
+    """Room to work in: stack (64,) int64, polygon and spare (8, 3), pieces (k, 3, 3)."""
+
+    stack: Any
+    polygon: Any
+    spare: Any
+    pieces: Any
+
+
+class Found(NamedTuple):
+    """What a search writes, n of each: verdict, axis, lean, tilt, rotation, reason, as in `domain.verdicts.Reach`."""
+
+    verdict: Any
+    axis: Any
+    lean: Any
+    tilt: Any
+    rotation: Any
+    reason: Any
