@@ -1,5 +1,7 @@
 """Joining loose faces: the first tolerance that closes, what stays open, and samples linked across what was joined."""
 
+import math
+
 import numpy as np
 import pytest
 from cad_parts import box, compound, drilled, loose, patch, real
@@ -71,7 +73,7 @@ def test_the_part_is_not_changed_by_joining():
         ]
 
     before = edges()
-    assert sew(part.shape, faces(part.shape), 1.0).open_edges == 0
+    assert sew(part.shape, faces(part.shape), math.hypot(*part.size)).open_edges == 0
     assert edges() == before
     assert not part.closed
 
