@@ -23,7 +23,7 @@ from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.stages.access import access
-from plan_cutters.stages.classify import CONVEX, regions
+from plan_cutters.stages.classify import CONVEX
 from plan_cutters.stages.decompose import decompose
 from plan_cutters.stages.posture_maps import posture_maps
 
@@ -45,11 +45,10 @@ def given(obstacles: Obstacles, postures: PostureRange) -> Conditions:
 def existence(result: Any, obstacles: Obstacles, cutter: Cutter) -> tuple[float, float, int]:
     """Best wall and processor seconds of dummy tests and search, and samples not reached."""
     samples, best = result.samples, [np.inf, np.inf]
-    region = regions(samples, result.surface_class)
     conditions = given(obstacles, PostureRange())
     for _ in range(BEST_OF):
         wall, processor = time.perf_counter(), time.process_time()
-        free = decompose(samples, result.surface_class == CONVEX, region, cutter, conditions).free
+        free = decompose(samples, result.surface_class == CONVEX, cutter, conditions)
         reach = access(samples, free, cutter, conditions)
         best = [min(best[0], time.perf_counter() - wall), min(best[1], time.process_time() - processor)]
     return best[0], best[1], int((~reach.reached).sum())

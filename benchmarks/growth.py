@@ -40,7 +40,7 @@ def one(grid: int, chord: float) -> dict[str, float]:
     from plan_cutters.scene.obstacles import Obstacles
     from plan_cutters.scene.surroundings import Surroundings
     from plan_cutters.stages.access import access
-    from plan_cutters.stages.classify import CONVEX, classify, regions
+    from plan_cutters.stages.classify import CONVEX, classify
     from plan_cutters.stages.decompose import decompose
 
     part, cutter = read_part(PART), Cutter.flat(radius=6, length=80)
@@ -49,14 +49,13 @@ def one(grid: int, chord: float) -> dict[str, float]:
     def search(grid: int, obstacles: Obstacles) -> tuple[float, float, int]:
         samples = sample(part, orientation, grid=grid, faces=[1])
         kind = classify(samples, float(np.linalg.norm(part.size)))
-        region = regions(samples, kind)
         before.append(peak())
         tolerance = max(TOLERANCE, 4 * obstacles.triangles.chord_error)
         conditions = Conditions(
             Machine(), np.array([0.0, 0.0, 1.0]), PostureRange(), Surroundings.sheet(obstacles), tolerance, JOBS
         )
         began = time.perf_counter(), time.process_time()
-        free = decompose(samples, kind == CONVEX, region, cutter, conditions).free
+        free = decompose(samples, kind == CONVEX, cutter, conditions)
         reach = access(samples, free, cutter, conditions)
         return time.perf_counter() - began[0], time.process_time() - began[1], int(reach.reached.sum())
 

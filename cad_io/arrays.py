@@ -1,7 +1,7 @@
 """The arrays that cross the CAD boundary: mm, part coordinates, radians; frozen, no kernel here."""
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from dataclasses import dataclass, fields
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,8 +9,59 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
+#: Items of a tuple that are printed one by one.
+_LISTED = 4
 #: Shapes that are not sculptured, whatever the file calls them.
 SIMPLE_KINDS = ("plane", "cylinder", "cone", "sphere", "torus")
+
+
+class Record:
+    """Base of frozen records of arrays: equal if all their numbers are (nan to nan), and printed by shape, not in full.
+
+    >>> Orientation(np.ones(3), "a guess", False)
+    Orientation(sign=float64 (3,), method='a guess', confident=False)
+    >>> Orientation(np.ones(3), "a guess", False) == Orientation(np.ones(2), "a guess", False)
+    False
+    """
+
+    __slots__ = ()
+
+    def __eq__(self, other: object) -> bool:
+        if type(self) is not type(other):
+            return NotImplemented
+        return all(_same(getattr(self, name), getattr(other, name)) for name in _names(self))
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{name}={_brief(getattr(self, name))}' for name in _names(self))})"
+
+
+def _names(record: Any) -> list[str]:
+    return [field.name for field in fields(record)]
+
+
+def _same(one: Any, other: Any) -> bool:
+    if isinstance(one, np.ndarray):
+        floating = one.dtype.kind == "f"
+        return (
+            isinstance(other, np.ndarray)
+            and one.dtype == other.dtype
+            and np.array_equal(one, other, equal_nan=floating)
+        )
+    if isinstance(one, tuple):
+        return isinstance(other, tuple) and len(one) == len(other) and all(map(_same, one, other))
+    return bool(one == other)
+
+
+def _brief(value: Any) -> str:
+    if isinstance(value, np.ndarray):
+        return f"{value.dtype} {value.shape}"
+    if isinstance(value, tuple) and (
+        len(value) > _LISTED or any(isinstance(each, np.ndarray | tuple) for each in value)
+    ):
+        return f"{len(value)} {type(value[0]).__name__}" if value else "()"
+    return repr(value)
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,8 +129,8 @@ class LostFace:
         return f"{known or 'a face'}: {self.why}"
 
 
-@dataclass(frozen=True, slots=True)
-class Orientation:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Orientation(Record):
     """Which side of each face is out of the material.
 
     Attributes
@@ -97,8 +148,8 @@ class Orientation:
     confident: bool
 
 
-@dataclass(frozen=True, slots=True)
-class FaceGrid:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class FaceGrid(Record):
     """The parameter grid of one face and which sample sits at each node.
 
     Attributes
@@ -125,8 +176,8 @@ class FaceGrid:
     span: tuple[float, float, float, float]
 
 
-@dataclass(frozen=True, slots=True)
-class SurfaceSamples:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class SurfaceSamples(Record):
     """Sampled points of faces, with the kernel's exact differential geometry.
 
     Attributes
@@ -174,8 +225,8 @@ class SurfaceSamples:
         return len(self.point)
 
 
-@dataclass(frozen=True, slots=True)
-class Triangles:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Triangles(Record):
     """A part's surface as triangles close to it.
 
     Attributes
@@ -201,8 +252,8 @@ class Triangles:
         return len(self.vertex)
 
 
-@dataclass(frozen=True, slots=True)
-class FaceLabels:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class FaceLabels(Record):
     """Labels on a face's parameter grid, along whose boundaries it is to be split.
 
     Attributes

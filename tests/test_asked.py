@@ -234,7 +234,7 @@ FINE = {
     },
     "posture_map": {
         "rotations": "three, a half, minus one, no list, number in list", "machine": "None", "flip": "True",
-        "ignore": "None, no list",
+        "ignore": "None, no list", "tolerance": "None",
     },
     "read_part": {
         "unit": "None", "guarded": "True", "timeout": "three, minus one, a half, huge, inf",
@@ -244,16 +244,14 @@ FINE = {
     "PostureRange": {"tilt": "", "rotation": "", "step": "three, a half"},
     "Options": {
         "cutters": "None, no list", "machine": "None", "setup": "", "grid": "None, three", "spacing": "None, three, a half",
-        "postures": "", "tolerance": "", "jobs": "three", "flip": "True", "area_budget": "three", "posture_maps": "True",
+        "tilt": "", "rotation": "", "rotation_step": "three, a half", "tolerance": "", "jobs": "None, three", "flip": "True",
+        "area_budget": "three", "posture_maps": "True",
         "unit": "None",
     },
 }  # fmt: skip
 PARAMETERS = [
     *(("plan", word) for word in [*FINE["plan"], "part", "setup", "tilt", "rotation", "tolerance"]),
-    *(
-        ("posture_map", word)
-        for word in [*FINE["posture_map"], "part", "point", "cutter", "tilt", "setup", "tolerance"]
-    ),
+    *(("posture_map", word) for word in [*FINE["posture_map"], "part", "point", "cutter", "tilt", "setup"]),
     *(("read_part", word) for word in [*FINE["read_part"], "source"]),
     *((call, word) for call in ("Cutter", "Machine", "PostureRange", "Options") for word in FINE[call]),
 ]

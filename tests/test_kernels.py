@@ -156,7 +156,7 @@ def test_axis_arcs_are_where_the_axis_is_within_the_cone(n, f, limit, setup):
 def test_kernels_and_reach_speak_of_the_same_verdicts():
     from plan_cutters.domain import verdicts as reach
 
-    for name in ("INACCESSIBLE", "ACCESSIBLE", "FREE", "UNDECIDED", "UNJUDGED"):
+    for name in ("INACCESSIBLE", "ACCESSIBLE", "INTERFERENCE_FREE", "UNDECIDED", "UNJUDGED"):
         assert getattr(search, name) == getattr(reach, name)
     order = (search.AXIS_LIMIT, search.LOCAL_GOUGE, search.REAR_GOUGE, search.COLLISION)
     assert [reach.REASONS[i] for i in order] == ["axis_limit", "local_gouge", "rear_gouge", "collision"]

@@ -15,7 +15,7 @@ from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 
 from cad_io import read_part
 from plan_cutters import Cutter, Machine, plan
-from plan_cutters.domain.verdicts import FREE, INACCESSIBLE
+from plan_cutters.domain.verdicts import INACCESSIBLE, INTERFERENCE_FREE
 from plan_cutters.report.to_json import dumps, schema_text
 
 ROOT = Path(__file__).parent.parent
@@ -71,7 +71,7 @@ def test_a_cutter_inside_another_never_has_less(seed, radius, share, shorter):
     if small.id != large.id:
         a, b = result.reaches[large.id], result.reaches[small.id]
         assert not (a.reached & (b.verdict == INACCESSIBLE)).any()
-        assert not ((a.verdict == FREE) & (b.verdict != FREE)).any()
+        assert not ((a.verdict == INTERFERENCE_FREE) & (b.verdict != INTERFERENCE_FREE)).any()
 
 
 @given(seed=st.integers(0, 10_000), x=st.floats(0, 40), height=st.floats(-5, 15))

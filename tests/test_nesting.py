@@ -15,7 +15,7 @@ from reference import depth_in_cutter, posture, random_frame
 from plan_cutters import Cutter, plan
 from plan_cutters.domain.cutter import Cutter as AnyCutter
 from plan_cutters.domain.nesting import handed, order
-from plan_cutters.domain.verdicts import ACCESSIBLE, FREE, INACCESSIBLE
+from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE
 
 SAMPLES = Path(__file__).parent.parent / "samples"
 
@@ -59,7 +59,7 @@ def test_verdicts_are_those_of_each_cutter_alone(alone_and_together):
     differ = 0
     for cutter, mine in zip(cutters, alone, strict=True):
         ours = together.reaches[cutter.id]
-        assert ((ours.verdict == FREE) == (mine.verdict == FREE)).all()
+        assert ((ours.verdict == INTERFERENCE_FREE) == (mine.verdict == INTERFERENCE_FREE)).all()
         assert ours.reached[mine.reached].all(), "handing down took a sample away"
         differ += int((ours.verdict != mine.verdict).sum())
     assert differ <= 0.001 * sum(len(r.verdict) for r in alone)

@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 from cad_io import read_part
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, plan
-from plan_cutters.domain.verdicts import ACCESSIBLE, FREE
+from plan_cutters.domain.verdicts import ACCESSIBLE, INTERFERENCE_FREE
 from plan_cutters.kernels import search
 from plan_cutters.scene.obstacles import Obstacles
 
@@ -99,7 +99,7 @@ def deepest_of_free_postures(name, cutter, count, dense, grid):
     deepest, radius = -np.inf, cutter.radius
     for row in rows:
         normal, axis, lean = samples.normal[row], reach.axis[row], reach.lean[row]
-        if reach.verdict[row] == FREE:
+        if reach.verdict[row] == INTERFERENCE_FREE:
             # Free in every rotation at tilt 0.
             axis, lean = posture(normal, samples.direction_max[row], 0.0, rng.uniform(0, 2 * math.pi))
         else:

@@ -21,7 +21,7 @@ from OCP.TopAbs import TopAbs_FORWARD, TopAbs_IN, TopAbs_ON, TopAbs_REVERSED
 from OCP.TopoDS import TopoDS, TopoDS_Face
 from scipy.optimize import linear_sum_assignment
 
-from cad_io.arrays import Floats
+from cad_io.arrays import Floats, Record
 from cad_io.kernel import edges_of, first_derivatives, interval_ends
 
 Bools = NDArray[np.bool_]
@@ -34,8 +34,8 @@ _CHORDS = 4  # that each span of a parameter curve starts with
 _HALVINGS = 12
 
 
-@dataclass(frozen=True, slots=True)
-class Trim:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Trim(Record):
     """The border of a face in its parameter plane.
 
     Attributes

@@ -5,6 +5,7 @@ Making a part costs next to nothing beside reading it: what is known about a fac
 
 from collections.abc import Iterator, Mapping
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from OCP.Bnd import Bnd_Box
@@ -23,6 +24,7 @@ from cad_io.face.recognise import recognise
 from cad_io.face.trim import Trim, trim_of
 from cad_io.kernel import edges_of, explore, faces, is_kernel_error, shape_map, translated
 from cad_io.kernel.assembly import Node
+from cad_io.part.packing import Found, packed, unpacked
 from cad_io.part.sew import Sewn, edge_uses, sew
 
 #: Sizes that are rather a wrong unit than a part, mm.
@@ -42,7 +44,8 @@ _KINDS = {
 
 
 class Part:
-    """A shape whose faces are numbered from 1 in the order of the kernel's map. Not to be changed once made.
+    """A shape whose faces are numbered from 1 in the order of the kernel's map. Not to be changed once made; it can be
+    pickled.
 
     Parameters
     ----------
@@ -130,6 +133,13 @@ class Part:
             *(LostFace("", self._names.get(n, ""), "it has no finite size", n)
               for n in (np.flatnonzero(~finite) + 1).tolist() if n not in told),
         )  # fmt: skip
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        found = {
+            "shape": self.shape, "file": self.file, "sha256": self.sha256, "names": self._names, "colours": self._colours,
+            "layers": self.layers, "tree": self.tree, "warnings": self._said, "picked": self.picked, "lost": self.lost,
+        }  # fmt: skip
+        return _again, (packed(found),)
 
     def __repr__(self) -> str:
         size = " x ".join(f"{length:.4g}" for length in self.size)
@@ -247,6 +257,11 @@ class Part:
         if measured.area <= _LEAST_AREA * float(np.dot(self.size, self.size)):
             return NO_AREA, measured.area
         return None, measured.area
+
+
+def _again(found: Found) -> Part:
+    """A part that was pickled."""
+    return Part(**unpacked(found))
 
 
 def _box(found: list[TopoDS_Face]) -> tuple[Floats, Floats]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import BSpline, make_interp_spline, splprep
 from scipy.ndimage import distance_transform_edt
 
-from cad_io.arrays import Floats, Ints
+from cad_io.arrays import Floats, Ints, Record
 
 #: Share of its allowed stretch that a crossing keeps from either end, so that curves of two levels stay apart.
 MARGIN = 0.1
@@ -24,8 +24,8 @@ STEPS = 300
 REACH = 2
 
 
-@dataclass(frozen=True, slots=True)
-class LabelGrid:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class LabelGrid(Record):
     """A filled label field ready to be contoured.
 
     Attributes

@@ -19,7 +19,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import breadth_first_order, connected_components
 from scipy.spatial import cKDTree
 
-from cad_io.arrays import Floats, Ints
+from cad_io.arrays import Floats, Ints, Record
 from cad_io.kernel import edges_of, is_kernel_error
 from cad_io.part.cap import coned
 from cad_io.part.part import NO_AREA, Part, face_box
@@ -36,8 +36,8 @@ _SIDES = trimesh.creation.box().faces  # corners in the same order as _CORNERS, 
 StandIn = Literal["triangles", "box", "edges", "none"]
 
 
-@dataclass(frozen=True, slots=True)
-class StandIns:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class StandIns(Record):
     """Triangles in place of faces.
 
     Attributes

@@ -12,6 +12,7 @@ _HOME = {
     "Cutter": "domain.cutter",
     "Machine": "domain.machine",
     "Options": "options",
+    "Scene": "scene.scene",
     "PostureRange": "domain.posture",
     "plan": "pipeline",
     "Result": "result",

@@ -2,7 +2,9 @@
 
 import math
 import os
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from difflib import get_close_matches
 from typing import Any
 
 from cad_io.units import UNITS
@@ -11,6 +13,16 @@ from plan_cutters.domain.cutter import Cutter, builtin
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange, unit
 from plan_cutters.errors import OptionError
+
+#: Gouge tolerances that can be asked for, mm.
+LEAST_TOLERANCE, MOST_TOLERANCE = 1e-4, 10.0
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):  # Linux only
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +38,7 @@ class Options:
     setup : tuple of float
         Direction of the part along the machine's spindle at zero angles; kept with length 1.
     faces : str or objects, optional
-        Target faces, as `faces.select_faces` reads it, or as numbers, or as objects of the kernel or a CAD host. Default:
+        Target faces, in the words of the command line, or as numbers, or as objects of the kernel or a CAD host. Default:
         the faces picked on the object that the part was made from; where none were, `sculptured`.
     ignore : str, list of str or objects
         Faces that are neither targets nor obstacles, in the same words.
@@ -34,11 +46,13 @@ class Options:
         N x N samples a face.
     spacing : float, optional
         Largest distance between samples. Neither: from curvature, smallest cutter and a budget.
-    postures : PostureRange
+    tilt, rotation : tuple of float
+        Posture range: tilts within 0 to pi/2, rotations from the direction of the largest curvature.
+    rotation_step : float
     tolerance : float
         Gouge tolerance.
     jobs : int
-        Threads.
+        Threads. None: as many as there are cores.
     flip : bool
         Machine the other side of open shells and loose faces.
     area_budget : int
@@ -61,9 +75,11 @@ class Options:
     ignore: Any = ()
     grid: int | None = None
     spacing: float | None = None
-    postures: PostureRange = field(default_factory=PostureRange)
+    tilt: tuple[float, float] = (0.0, math.pi / 2)
+    rotation: tuple[float, float] = (0.0, 2 * math.pi)
+    rotation_step: float = math.radians(10)
     tolerance: float = 0.01
-    jobs: int = field(default_factory=lambda: len(os.sched_getaffinity(0)))
+    jobs: int = field(default_factory=cores)
     flip: bool = False
     area_budget: int = 100_000
     posture_maps: bool = False
@@ -77,8 +93,10 @@ class Options:
             raise OptionError(f"grid {self.grid} must lie between 2 and 5000 samples a side")
         if self.spacing is not None and not (math.isfinite(self.spacing) and self.spacing > 0):
             raise OptionError(f"spacing {self.spacing:g} must be a positive number of mm")
-        if not 1e-4 <= self.tolerance <= 10:
-            raise OptionError(f"tolerance {self.tolerance:g} must lie between 0.0001 and 10 mm")
+        if not LEAST_TOLERANCE <= self.tolerance <= MOST_TOLERANCE:
+            raise OptionError(
+                f"tolerance {self.tolerance:g} must lie between {LEAST_TOLERANCE:g} and {MOST_TOLERANCE:g} mm"
+            )
         if self.unit is not None and self.unit not in UNITS:
             raise OptionError(f"unit {self.unit!r} is not one of {', '.join(UNITS)}")
         if self.area_budget < 0:
@@ -98,7 +116,10 @@ class Options:
 
         take(cutters=Cutter.each_of(self.cutters), machine=Machine.of(self.machine))
         take(setup=tuple(unit(self.setup, "setup axis").tolist()), tolerance=number(self.tolerance, "tolerance"))
-        take(jobs=whole(self.jobs, "jobs"), area_budget=whole(self.area_budget, "area budget"))
+        take(
+            jobs=cores() if self.jobs is None else whole(self.jobs, "jobs"),
+            area_budget=whole(self.area_budget, "area budget"),
+        )
         take(flip=flag(self.flip, "flip"), posture_maps=flag(self.posture_maps, "posture_maps"))
         choice(self.faces, "faces")
         choice(self.ignore, "ignore")
@@ -108,8 +129,23 @@ class Options:
             take(spacing=number(self.spacing, "spacing"))
         if self.unit is not None and not isinstance(self.unit, str):
             raise OptionError(f"unit must be one of {', '.join(UNITS)}, not {shown(self.unit)}")
-        if not isinstance(self.postures, PostureRange):
-            raise OptionError(f"postures must be a PostureRange, not {shown(self.postures)}")
+        postures = self.postures
+        take(tilt=postures.tilt, rotation=postures.rotation, rotation_step=postures.step)
+
+    @classmethod
+    def of(cls, words: Mapping[str, Any]) -> "Options":
+        """Options from their names; OptionError for a name that is none."""
+        known = [each.name for each in fields(cls)]
+        for word in words:
+            if word not in known:
+                near = get_close_matches(word, known, 1)
+                raise OptionError(f"no option is called {word}; {f'{near[0]}?' if near else ', '.join(known)}")
+        return cls(**words)
+
+    @property
+    def postures(self) -> PostureRange:
+        """The posture range to search."""
+        return PostureRange(self.tilt, self.rotation, self.rotation_step)
 
     @property
     def judged(self) -> tuple[Cutter, ...]:

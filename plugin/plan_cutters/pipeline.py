@@ -1,61 +1,42 @@
 """The order of the stages: part in, plan out. Nothing else knows it."""
 
 import datetime
+import inspect
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cad_io import Part, SurfaceSamples, read_part
-from cad_io.part.orient import orient
 from cad_io.read.read import TIMEOUT
 from cad_io.sample import sample
 from cad_io.tessellate.triangles import At
-from plan_cutters.document.build import (
-    area_notes,
-    cutter_entry,
-    degrees,
-    face_entries,
-    missing_entries,
-    notes,
-    part_info,
-    vector,
-    versions,
-)
-from plan_cutters.document.model import (
-    AreaEntry,
-    CutterEntry,
-    Effective,
-    Plan,
-    Run,
-    SampleCounts,
-    Selection,
-)  # fmt: skip
-from plan_cutters.document.palette import PALETTE
+from plan_cutters.document.build import cutter_entry
+from plan_cutters.document.model import AreaEntry, CutterEntry
+from plan_cutters.document.plan import plan_of, selection
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.nesting import handed, order
-from plan_cutters.domain.posture import PostureRange, unit
-from plan_cutters.domain.verdicts import REASONS, Reach, blank
+from plan_cutters.domain.verdicts import Reach, blank
 from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.options import Options
 from plan_cutters.result import Result
 from plan_cutters.scene.buried import buried
 from plan_cutters.scene.conditions import Conditions, contacts_of, found_of
 from plan_cutters.scene.faces import choose
-from plan_cutters.scene.obstacles import CHORD_ASKED, kept_tolerance
-from plan_cutters.scene.spacing import default_spacing
-from plan_cutters.scene.surroundings import surroundings
+from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.scene import Scene
+from plan_cutters.scene.spacing import Spacing, default_spacing
 from plan_cutters.stages.access import access, witnesses
 from plan_cutters.stages.between import between
-from plan_cutters.stages.classify import CONCAVE, CONVEX, SADDLE, classify, regions
-from plan_cutters.stages.decompose import decompose
-from plan_cutters.stages.posture_maps import posture_maps as all_posture_maps
-from plan_cutters.stages.select_cutters import RULE, ranked
+from plan_cutters.stages.classify import CONVEX, classify, regions
+from plan_cutters.stages.decompose import decompose, march_differs
+from plan_cutters.stages.posture_maps import posture_maps
+from plan_cutters.stages.select_cutters import ranked
 
 #: Told the stage, how much of it is done, of how much.
 Progress = Callable[[str, int, int], None]
@@ -64,64 +45,18 @@ Progress = Callable[[str, int, int], None]
 MOST_SAMPLES = 5_000_000
 
 
-def plan(
-    part: Any,
-    *,
-    cutters: Sequence[Cutter | str] | Cutter | str = (),
-    machine: Machine | str | None = None,
-    setup: tuple[float, float, float] = (0.0, 0.0, 1.0),
-    faces: Any = None,
-    ignore: Any = (),
-    grid: int | None = None,
-    spacing: float | None = None,
-    tilt: tuple[float, float] = (0.0, np.pi / 2),
-    rotation: tuple[float, float] = (0.0, 2 * np.pi),
-    rotation_step: float = np.pi / 18,
-    tolerance: float = 0.01,
-    jobs: int | None = None,
-    flip: bool = False,
-    area_budget: int = 100_000,
-    posture_maps: bool = False,
-    unit: str | None = None,
-    progress: Progress | None = None,
-) -> Result:
+def plan(part: Any, *, progress: Progress | None = None, **options: Any) -> Result:
     """Judge each cutter on the target faces of a part.
 
     Parameters
     ----------
-    part : Part, path, TopoDS_Shape, CadQuery or build123d object, or a list of shapes
-        An object that holds picked faces stands for the shape that they belong to.
-    cutters : Cutter, str or sequence of these
-        A text as `R6L80`. None given: the built-in flat ends.
-    machine : Machine or str, optional
-        A text as `tilt:60` (degrees). Default: no axis limit.
-    setup : tuple of float
-        Direction of the part along the machine's spindle at zero angles.
-    faces : str or objects, optional
-        Target faces: words as on the command line, numbers, or the faces themselves (a Workplane, a ShapeList, kernel
-        faces). Default: the faces picked on the part's object; where none were, `sculptured`.
-    ignore : str, list of str or objects
-        Faces that are neither targets nor obstacles, in the same words.
-    grid, spacing : int, float, optional
-        N x N samples a face, or at most `spacing` mm apart; default from curvature, smallest cutter and a budget.
-    tilt, rotation : tuple of float
-        Posture range, rad.
-    rotation_step : float
-        rad.
-    tolerance : float
-        Gouge tolerance, mm.
-    jobs : int, optional
-        Threads; default all cores.
-    flip : bool
-        Machine the other side of open shells and loose faces.
-    area_budget : int
-        Most contacts to look at between the samples for the selected cutter; 0: none.
-    posture_maps : bool
-        Find every free tilt of every sample, too: `Result.maps`.
-    unit : str, optional
-        Length unit to take instead of the file's: `um`, `mm`, `cm`, `m`, `km`, `mil`, `in` or `ft`.
+    part : Part, Scene, path, TopoDS_Shape, CadQuery or build123d object, or a list of shapes
+        An object that holds picked faces stands for the shape that they belong to. A Scene brings its setup, flip, ignored
+        faces and tolerance with it.
     progress : callable, optional
         Told (stage, done, total).
+    **options
+        Every attribute of `Options`, by its name: `cutters="R6L80"`, `grid=201`, `machine="tilt:60"`.
 
     Returns
     -------
@@ -133,16 +68,26 @@ def plan(
         The part cannot be read or holds no surface to judge.
     PlanError
         An option has no meaning.
+
+    Examples
+    --------
+    >>> result = plan("samples/v_groove.step", cutters=["R6L80", "R2L30"], grid=9, area_budget=0)
+    >>> result.selected
+    'R2L30'
     """
-    more = {} if jobs is None else {"jobs": jobs}
     if progress is not None and not callable(progress):
         raise OptionError(f"progress must be a function of (stage, done, total), not {shown(progress)}")
-    options = Options(
-        cutters=Cutter.each_of(cutters), machine=Machine.of(machine), setup=setup, faces=faces, ignore=ignore,
-        grid=grid, spacing=spacing, postures=PostureRange(tilt, rotation, rotation_step), tolerance=tolerance, flip=flip,
-        unit=unit, area_budget=area_budget, posture_maps=posture_maps, **more,
-    )  # fmt: skip
-    return run(part, options, progress=progress)
+    given = part.options | options if isinstance(part, Scene) else options
+    return run(part, Options.of(given), progress=progress)
+
+
+_OPTIONS = [
+    inspect.Parameter(each.name, inspect.Parameter.KEYWORD_ONLY, annotation=each.type) for each in fields(Options)
+]
+#: What `help` and editors show: an option is declared once, in `Options`.
+vars(plan)["__signature__"] = inspect.Signature(
+    [*list(inspect.signature(plan).parameters.values())[:2], *_OPTIONS], return_annotation=Result
+)
 
 
 @dataclass
@@ -175,21 +120,40 @@ def run(
     """
     clock = _Clock(progress)
     started = datetime.datetime.now(datetime.UTC)
+    ready = prepare(part, options, clock, read_timeout=read_timeout, at=at)
+    judged: dict[Cutter, Judged] = {}
+    for cutter in order(ready.cutters):
+        with clock.stage(cutter.id) as tell:
+            # In the order of rank, whatever the order of work.
+            earlier = {c: judged[c].reach for c in ready.cutters if c in judged}
+            judged[cutter] = _judged(ready, cutter, earlier, tell)
+    result = assemble(ready, judged, clock, started)
+    if not options.posture_maps:
+        return result
+    with clock.stage("maps") as tell:
+        cutter = next(c for c in ready.cutters if c.id == result.shown)
+        maps = posture_maps(ready.samples, cutter, ready.conditions, progress=tell)
+    document = result.plan.model_copy(update={"run": result.plan.run.model_copy(update={"seconds": clock.seconds})})
+    return replace(result, plan=document, maps=maps)
+
+
+def prepare(
+    part: Any, options: Options, clock: "_Clock | None" = None, *, read_timeout: float = TIMEOUT,
+    at: At = lambda whose, face: None,
+) -> Prepared:  # fmt: skip
+    """Read, sample, classify and surround with obstacles; arguments as for `run`."""
+    clock = clock or _Clock(None)
     with clock.stage("read"):
-        if isinstance(part, Part) and options.unit is not None:
-            raise OptionError("the part has been read already: give the unit to read_part", file=part.file)
-        whole = part if isinstance(part, Part) else read_part(part, unit=options.unit, timeout=read_timeout)
-    chosen_faces = choose(whole, options.faces, options.ignore)
-    targets = chosen_faces.targets
-    setup = unit(options.setup, "setup axis")
-    cutters = ranked(options.judged)
+        scene = _scene(part, options, read_timeout)
+        whole = scene.part
+    chosen = choose(whole, options.faces, scene.ignored, scene.ignore)
+    cutters = tuple(ranked(options.judged))
     with clock.stage("sample"):
-        orientation = orient(whole, towards=options.setup, flip=options.flip)
-        spacing: float | dict[int, float] | None = options.spacing
+        spacing: Spacing = options.spacing
         if options.grid is None and options.spacing is None:
-            spacing = default_spacing(whole, orientation, targets, cutters)
-        _affordable(whole, targets, options)
-        samples = sample(whole, orientation, grid=options.grid, spacing=spacing, faces=targets)
+            spacing = default_spacing(whole, scene.orientation, chosen.targets, cutters)
+        _affordable(whole, chosen.targets, options)
+        samples = sample(whole, scene.orientation, grid=options.grid, spacing=spacing, faces=chosen.targets)
         surface_class = classify(samples, float(np.linalg.norm(whole.size)))
         region = regions(samples, surface_class)
     if not (samples.unjudged < 0).any():
@@ -198,94 +162,100 @@ def run(
             f"no target face can be judged: {'; '.join(sorted(causes)) or 'no samples'}", file=whole.file
         )
     with clock.stage("tessellate"):
-        around = surroundings(whole, CHORD_ASKED * options.tolerance, ignored=chosen_faces.ignored, at=at)
-        triangles = around.surely.triangles
-        tolerance = kept_tolerance(options.tolerance, triangles.chord_error)
+        around = scene.surround(at)
+    conditions = Conditions(
+        options.machine, np.array(scene.setup), options.postures, around, scene.tolerance, options.jobs
+    )
     with clock.stage("compile"):
-        conditions = Conditions(options.machine, setup, options.postures, around, tolerance, options.jobs)
         _warm(samples, cutters[0], conditions)
     with clock.stage("bodies"):
-        within = buried(samples, orientation, around.bodies, around.surely, tolerance)
-    missing = missing_entries(whole, around)
-    by_id: dict[str, CutterEntry] = {}
-    reaches: dict[str, Reach] = {}
-    for cutter in order(cutters):
-        with clock.stage(cutter.id) as tell:
-            began = time.perf_counter()
-            decomposition = decompose(samples, surface_class == CONVEX, region, cutter, conditions, buried=within)
-            known = handed(cutter, {c: reaches[c.id] for c in cutters if c.id in reaches}, len(samples))
-            reach = access(samples, decomposition.free, cutter, conditions, buried=within, known=known, progress=tell)
-            seconds = time.perf_counter() - began
-            found = witnesses(samples, reach, cutter, conditions, buried=within)
-        reaches[cutter.id] = reach
-        by_id[cutter.id] = cutter_entry(
-            cutter, samples, reach, found, decomposition.march_differs, seconds, doubtful=bool(missing)
-        )
-    entries = [by_id[c.id] for c in cutters]
-    selected, selection = _select(entries)
+        within = buried(samples, scene.orientation, around.bodies, around.surely, scene.tolerance)
+    return Prepared(scene, options, chosen, spacing, samples, surface_class, region, within, conditions, cutters)
+
+
+def _scene(part: Any, options: Options, read_timeout: float) -> Scene:
+    read = part.part if isinstance(part, Scene) else part
+    if isinstance(read, Part) and options.unit is not None:
+        raise OptionError("the part has been read already: give the unit to read_part", file=read.file)
+    if not isinstance(read, Part):
+        part = read_part(part, unit=options.unit, timeout=read_timeout)
+    return Scene.of(part, setup=options.setup, flip=options.flip, tolerance=options.tolerance, ignore=options.ignore)
+
+
+def judge(
+    ready: Prepared,
+    cutter: Cutter,
+    rows: NDArray[np.int64] | None = None,
+    known: Reach | None = None,
+    *,
+    progress: Callable[[int, int], None] | None = None,
+) -> Reach:
+    """What a cutter reaches of some samples, or of all; nothing else is looked at or changed.
+
+    Parameters
+    ----------
+    ready : Prepared
+    cutter : Cutter
+    rows : (m,) int64, optional
+        Samples, ascending. However they are cut, each gets the same answer.
+    known : Reach, optional
+        What follows from other cutters (`nesting.handed`), for all samples.
+    progress : callable, optional
+        Told how many pieces of the work are done, of how many.
+
+    Returns
+    -------
+    Reach
+        Of the m samples.
+    """
+    samples, conditions = ready.samples, ready.conditions
+    free = decompose(samples, ready.surface_class == CONVEX, cutter, conditions, buried=ready.buried, rows=rows)
+    reach = access(samples, free, cutter, conditions, buried=ready.buried, known=known, rows=rows, progress=progress)
+    return reach if rows is None else reach.of(rows)
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """What is known of one cutter: what it reaches, and its line in the plan."""
+
+    reach: Reach
+    entry: CutterEntry
+
+
+def _judged(
+    ready: Prepared, cutter: Cutter, earlier: Mapping[Cutter, Reach], tell: Callable[[int, int], None]
+) -> Judged:  # fmt: skip
+    samples, convex = ready.samples, ready.surface_class == CONVEX
+    began = time.perf_counter()
+    reach = judge(ready, cutter, known=handed(cutter, earlier, len(samples)), progress=tell)
+    seconds = time.perf_counter() - began
+    found = witnesses(samples, reach, cutter, ready.conditions, buried=ready.buried)
+    marched = march_differs(samples, convex, ready.region, reach.interference_free)
+    doubtful = ready.conditions.around.doubtful
+    return Judged(reach, cutter_entry(cutter, samples, reach, found, marched, seconds, doubtful=doubtful))
+
+
+def assemble(
+    ready: Prepared, judged: Mapping[Cutter, Judged], clock: "_Clock | None" = None,
+    started: datetime.datetime | None = None,
+) -> Result:  # fmt: skip
+    """The result of all cutters: the choice, the area between the samples for the one chosen, and the plan."""
+    clock = clock or _Clock(None)
+    entries = [judged[c].entry for c in ready.cutters]
+    selected, chosen = selection(entries)
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
     best = selected or next((e.id for e in entries if not (e.inaccessible or e.undecided)), None)
-    if best and options.area_budget:
+    if best and ready.options.area_budget:
         with clock.stage("area"):
-            chosen = next(c for c in cutters if c.id == best)
-            served = between(samples, reaches[best], chosen, whole, orientation, conditions,
-                             budget=options.area_budget)  # fmt: skip
+            cutter = next(c for c in ready.cutters if c.id == best)
+            served = between(ready.samples, judged[cutter].reach, cutter, ready.scene.part, ready.scene.orientation,
+                             ready.conditions, budget=ready.options.area_budget)  # fmt: skip
         area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
                          short=served.short, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
         entries = [e.model_copy(update={"area": area}) if e.id == best else e for e in entries]
-    document = Plan(
-        part=part_info(whole, orientation, around),
-        effective=Effective(
-            cutters=[c.id for c in cutters],
-            cutter_source="given" if options.cutters else "built-in",
-            unit=options.unit,
-            machine=options.machine.name,
-            setup=vector(setup),
-            faces=chosen_faces.asked,
-            ignore=list(chosen_faces.ignore),
-            target_faces=[f"F{n}" for n in targets],
-            grid=options.grid,
-            spacing_mm=max(spacing.values()) if isinstance(spacing, dict) else spacing,
-            tilt_deg=degrees(options.postures.tilt),
-            rotation_deg=degrees(options.postures.rotation),
-            rotation_step_deg=float(np.degrees(options.postures.step)),
-            tolerance_mm=tolerance,
-            chord_error_mm=triangles.chord_error,
-            obstacle_triangles=len(around.may_be.triangles),
-            flip=options.flip,
-            area_budget=options.area_budget,
-            posture_maps=options.posture_maps,
-        ),
-        versions=versions(),
-        samples=SampleCounts(
-            count=len(samples),
-            max_gap_mm=samples.max_gap,
-            convex=int((surface_class == CONVEX).sum()),
-            concave=int((surface_class == CONCAVE).sum()),
-            saddle=int((surface_class == SADDLE).sum()),
-            unjudged=int((samples.unjudged >= 0).sum()),
-            regions=len(np.unique(region)),
-        ),
-        faces=face_entries(whole, samples, chosen_faces),
-        missing=missing,
-        reasons=list(REASONS),
-        cutters=entries,
-        selected=selected,
-        selection=selection,
-        notes=[
-            *notes(whole, orientation, options, tolerance, samples, around),
-            *chosen_faces.notes,
-            *area_notes(entries, doubtful=bool(missing)),
-        ],
-        legend=PALETTE,
-        run=Run(time=started.isoformat(timespec="seconds"), seconds=clock.seconds),
-    )
-    result = Result(document, whole, samples, surface_class, reaches, options.postures)
-    if options.posture_maps:
-        with clock.stage("maps") as tell:
-            shown = next(c for c in cutters if c.id == result.shown)
-            result = replace(result, maps=all_posture_maps(samples, shown, conditions, progress=tell))
-    return result
+    document = plan_of(ready, entries, selected, chosen, started or datetime.datetime.now(datetime.UTC), clock.seconds)
+    reaches = {c.id: judged[c].reach for c in ready.cutters}
+    return Result(document, ready.scene, ready.samples, ready.surface_class, reaches, ready.options.postures)
 
 
 def _affordable(part: Part, targets: Sequence[int], options: Options) -> None:
@@ -312,20 +282,3 @@ def _warm(samples: SurfaceSamples, cutter: Cutter, conditions: Conditions) -> No
                       conditions.obstacles.solids, np.zeros(0, bool))  # fmt: skip
     search.search(none, contacts, conditions.ranges, cutter.radius, cutter.length, *conditions.depths,
                   conditions.obstacles.solids, conditions.around.surely.solids, found)  # fmt: skip
-
-
-def _select(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:
-    feasible = [e for e in entries if e.feasible]
-    if not feasible:
-        best = min(entries, key=lambda e: e.inaccessible + e.undecided)
-        left = best.inaccessible + best.undecided
-        why = f"no cutter reaches every sample; {best.id} comes nearest, {left} not reached"
-        if not left:
-            why = f"{best.id} reaches every judged sample, but obstacles are missing: see the notes"
-        return None, Selection(rule=RULE, runner_up=None, why=why)
-    first = feasible[0]
-    larger = [e.id for e in entries if e.radius > first.radius]
-    why = f"{', '.join(larger)} {'is' if len(larger) == 1 else 'are'} larger but not feasible" if larger else (
-        "no larger cutter was given"
-    )  # fmt: skip
-    return first.id, Selection(rule=RULE, runner_up=feasible[1].id if len(feasible) > 1 else None, why=why)

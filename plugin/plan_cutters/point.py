@@ -7,17 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from cad_io import Part, read_part
 from cad_io.arrays import Floats
-from cad_io.part.orient import orient
 from cad_io.sample import locate
-from plan_cutters.domain.checks import flag, number, numbers, radians
+from plan_cutters.domain.checks import number, numbers, radians
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
-from plan_cutters.domain.posture import PostureRange, unit
+from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import OptionError
-from plan_cutters.scene.faces import ignored_faces
-from plan_cutters.scene.obstacles import CHORD_ASKED, kept_tolerance
+from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.surroundings import surroundings
 from plan_cutters.stages.posture_map import SETTLED, Ask, PostureMap, complement, moved, posture_map_of
 
@@ -37,16 +34,15 @@ def posture_map(
     rotations: Sequence[float] | Floats,
     tilt: tuple[float, float] = (0.0, np.pi / 2),
     machine: Machine | str | None = None,
-    setup: tuple[float, float, float] = (0.0, 0.0, 1.0),
-    tolerance: float = 0.01,
-    flip: bool = False,
-    ignore: Any = (),
+    tolerance: float | None = None,
+    **scene: Any,
 ) -> PostureMap:
     """Find the free tilt intervals of a cutter at a point of a part.
 
     Parameters
     ----------
-    part : Part, path, TopoDS_Shape, CadQuery or build123d object
+    part : Part, Scene, path, TopoDS_Shape, CadQuery or build123d object
+        A Scene is not tessellated again for the next point or cutter.
     point : (3,) float
         mm; projected to the nearest face.
     cutter : Cutter or str
@@ -57,13 +53,11 @@ def posture_map(
         Range, rad, within 0 to pi/2.
     machine : Machine or str, optional
         A text as `tilt:60` (degrees). Default: no axis limit.
-    setup : tuple of float
-    tolerance : float
-        Gouge tolerance, mm. 0: the nominal answer, obstacles refined until the ends settle; not certified.
-    flip : bool
-        Take the other side of open shells and loose faces.
-    ignore : str, list of str or objects
-        Faces that are no obstacles, as for `plan`; the point is not projected to them.
+    tolerance : float, optional
+        Gouge tolerance, mm; default that of the Scene, or 0.01. 0: the nominal answer, obstacles refined until the ends
+        settle; not certified.
+    **scene
+        `setup`, `flip` and `ignore`, as `Scene.of` takes them; the point is not projected to ignored faces.
 
     Raises
     ------
@@ -73,25 +67,21 @@ def posture_map(
         A range or tolerance has no meaning, or a value is of the wrong kind.
     """
     cutter, machine = Cutter.of(cutter), Machine.of(machine)
-    place, axis, flip = numbers(point, "point", 3), unit(setup, "setup axis"), flag(flip, "flip")
+    place = numbers(point, "point", 3)
     each = (rotations,) if isinstance(rotations, Real) else rotations
     turns = [radians(turn, "rotation", 2 * np.pi) for turn in numbers(each, "rotations")]
     low, high = PostureRange(tilt=tilt).tilt
-    tolerance = number(tolerance, "tolerance")
-    if not (tolerance >= 0 and cutter.large_enough(tolerance)):
-        raise OptionError(
-            f"tolerance {tolerance:g} mm must lie between 0 and a quarter of the cutter's radius and length"
-        )
+    wanted = (part.asked if isinstance(part, Scene) else 0.01) if tolerance is None else number(tolerance, "tolerance")
+    if not (wanted >= 0 and cutter.large_enough(wanted)):
+        raise OptionError(f"tolerance {wanted:g} mm must lie between 0 and a quarter of the cutter's radius and length")
     low, high = max(0.0, low), min(np.pi / 2, high)
-    whole = part if isinstance(part, Part) else read_part(part)
-    ignored = ignored_faces(whole, ignore)
-    contact = locate(whole, orient(whole, towards=_three(axis), flip=flip), place, ignore=ignored)
-    ask = Ask(contact, cutter, np.array(turns), (low, high), machine, axis)
-    if tolerance > 0:
-        around = surroundings(whole, CHORD_ASKED * tolerance, ignored=ignored)
-        tolerance = kept_tolerance(tolerance, around.surely.triangles.chord_error)
-        found = posture_map_of(ask, around, around.surely.depths(tolerance), _NARROWEST, tolerance)
-        if cutter.large_enough(tolerance):
+    stage = Scene.of(part, **scene, **({"tolerance": wanted} if wanted > 0 else {}))
+    contact = locate(stage.part, stage.orientation, place, ignore=stage.ignored)
+    ask = Ask(contact, cutter, np.array(turns), (low, high), machine, np.array(stage.setup))
+    if wanted > 0:
+        around, kept = stage.around, stage.tolerance
+        found = posture_map_of(ask, around, around.surely.depths(kept), _NARROWEST, kept)
+        if cutter.large_enough(kept):
             return found
         # So coarse a tolerance says nothing about so small a cutter.
         none = tuple(np.zeros((0, 2)) for _ in turns)
@@ -100,7 +90,7 @@ def posture_map(
     chord = min(_FIRST_CHORD, 1e-3 * cutter.radius)
     before: PostureMap | None = None
     for _ in range(_ROUNDS):
-        around = surroundings(whole, chord, ignored=ignored)
+        around = surroundings(stage.part, chord, ignored=stage.ignored)
         triangles = around.surely.triangles
         # Twice the chord error: next to the contact, where the true clearance is zero, triangles must not count,
         # local gouging does.
@@ -113,7 +103,3 @@ def posture_map(
             break
     assert before is not None
     return before
-
-
-def _three(v: Floats) -> tuple[float, float, float]:
-    return float(v[0]), float(v[1]), float(v[2])

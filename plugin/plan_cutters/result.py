@@ -11,10 +11,11 @@ from cad_io import Part, SurfaceSamples
 from plan_cutters.document.model import CutterEntry, Plan
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import Reach
+from plan_cutters.scene.scene import Scene
 from plan_cutters.stages.posture_maps import PostureMaps
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Result:
     """A plan with the arrays behind it.
 
@@ -22,7 +23,8 @@ class Result:
     ----------
     plan : Plan
         What is written as `plan.json`.
-    part : Part
+    scene : Scene
+        The part, its sides and what is in the way: `posture_map` takes it, and so does another `plan`.
     samples : SurfaceSamples
         Of the target faces.
     surface_class : (n,) uint8
@@ -34,12 +36,21 @@ class Result:
     """
 
     plan: Plan
-    part: Part
+    scene: Scene
     samples: SurfaceSamples
     surface_class: NDArray[np.uint8]
     reaches: dict[str, Reach]
     postures: PostureRange
     maps: PostureMaps | None = None
+
+    def __repr__(self) -> str:
+        return (
+            f"Result({self.part!r}, {len(self.samples)} samples, {len(self.cutters)} cutters, selected {self.selected})"
+        )
+
+    @property
+    def part(self) -> Part:
+        return self.scene.part
 
     @property
     def cutters(self) -> list[CutterEntry]:

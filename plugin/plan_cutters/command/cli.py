@@ -213,6 +213,7 @@ def _options(given: dict[str, Any]) -> "Options":
     from plan_cutters.domain.posture import PostureRange
     from plan_cutters.options import Options
 
+    postures = PostureRange.degrees(given["tilt"], given["rotation"], given["rotation_step"])
     more = {} if given["jobs"] is None else {"jobs": given["jobs"]}
     return Options(
         cutters=tuple(Cutter.parse(spec) for spec in given["cutter"]),
@@ -222,7 +223,9 @@ def _options(given: dict[str, Any]) -> "Options":
         ignore=given["ignore"],
         grid=given["grid"],
         spacing=given["spacing"],
-        postures=PostureRange.degrees(given["tilt"], given["rotation"], given["rotation_step"]),
+        tilt=postures.tilt,
+        rotation=postures.rotation,
+        rotation_step=postures.step,
         tolerance=given["tolerance"],
         flip=given["flip"],
         area_budget=given["area_budget"],

@@ -23,9 +23,19 @@ from plan_cutters.document.model import (
     WitnessEntry,
 )
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.verdicts import ACCESSIBLE, FREE, INACCESSIBLE, REASONS, UNDECIDED, UNJUDGED, Reach, Witness
+from plan_cutters.domain.verdicts import (
+    ACCESSIBLE,
+    INACCESSIBLE,
+    INTERFERENCE_FREE,
+    REASONS,
+    UNDECIDED,
+    UNJUDGED,
+    Reach,
+    Witness,
+)
 from plan_cutters.options import Options
 from plan_cutters.scene.faces import Chosen
+from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.surroundings import Surroundings
 
 
@@ -55,7 +65,7 @@ def degrees(pair: tuple[float, float]) -> tuple[float, float]:
 
 
 def _counts(verdict: NDArray[np.uint8]) -> dict[str, Any]:
-    names = {FREE: "interference_free", ACCESSIBLE: "accessible", INACCESSIBLE: "inaccessible",
+    names = {INTERFERENCE_FREE: "interference_free", ACCESSIBLE: "accessible", INACCESSIBLE: "inaccessible",
              UNDECIDED: "undecided", UNJUDGED: "unjudged"}  # fmt: skip
     return {name: int((verdict == code).sum()) for code, name in names.items()}
 
@@ -165,10 +175,7 @@ def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen) -> list[Fa
     return result
 
 
-def notes(
-    part: Part, orientation: Orientation, options: Options, tolerance: float, samples: SurfaceSamples,
-    around: Surroundings,
-) -> list[str]:  # fmt: skip
+def notes(scene: Scene, options: Options, samples: SurfaceSamples) -> list[str]:
     """What the verdicts do not say."""
     notes = [
         "Cutters are flat ends, judged as solid cylinders of their length, without a holder.",
@@ -180,14 +187,14 @@ def notes(
         notes.append(f"No verdict is about {names}: no sample could be taken there.")
     if options.machine.tilt_limit is None:
         notes.append("No machine was given: any tool axis counts as possible.")
-    if not orientation.confident:
+    if not scene.orientation.confident:
         notes.append("Which side is material is a guess; --flip machines the other side.")
-    if tolerance > 1.001 * options.tolerance:
+    if scene.tolerance > 1.001 * scene.asked:
         notes.append(
-            f"The tolerance was raised from {options.tolerance:g} to {tolerance:.3g} mm: "
+            f"The tolerance was raised from {scene.asked:g} to {scene.tolerance:.3g} mm: "
             "the obstacle triangles could not be made to follow the surface more closely."
         )
-    notes += _around_notes(part, around)
+    notes += _around_notes(scene.part, scene.around)
     return notes
 
 

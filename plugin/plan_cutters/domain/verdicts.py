@@ -5,9 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, Ints
+from cad_io.arrays import Floats, Ints, Record
 
-INACCESSIBLE, ACCESSIBLE, FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
+INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
+#: Classes of a surface at a sample; there is UNJUDGED, too.
+CONVEX, CONCAVE, SADDLE = 0, 1, 2
 
 #: Why no posture is left, in the order in which the attributes are applied; `Reach.reason` is an index into it.
 #: `buried`: under or within a body; `tolerance`: that is too coarse for the cutter, which is undecided everywhere then.
@@ -17,14 +19,14 @@ BURIED, TOLERANCE, NO_REASON = 4, 5, 255
 Bytes = NDArray[np.uint8]
 
 
-@dataclass(frozen=True, slots=True)
-class Reach:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Reach(Record):
     """What one cutter reaches, sample by sample.
 
     Attributes
     ----------
     verdict : (n,) uint8
-        INACCESSIBLE, ACCESSIBLE, FREE (interference-free), UNDECIDED or UNJUDGED.
+        INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED or UNJUDGED.
     axis, lean : (n, 3) float
         Unit tool axis and lean direction of the posture found; nan where there is none.
     tilt : (n,) float
@@ -44,11 +46,21 @@ class Reach:
 
     @property
     def reached(self) -> NDArray[np.bool_]:
-        return (self.verdict == FREE) | (self.verdict == ACCESSIBLE)
+        """Samples (n,) at which a posture is known."""
+        return self.interference_free | (self.verdict == ACCESSIBLE)
+
+    @property
+    def interference_free(self) -> NDArray[np.bool_]:
+        """Samples (n,) at which every rotation serves at tilt 0."""
+        return np.asarray(self.verdict == INTERFERENCE_FREE)
+
+    def of(self, rows: NDArray[np.int64]) -> "Reach":
+        """What is reached of some samples."""
+        return Reach(*(getattr(self, name)[rows] for name in Reach.__slots__))
 
 
-@dataclass(frozen=True, slots=True)
-class Witness:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Witness(Record):
     """A sample that is not reached, and the posture that comes nearest to reaching it.
 
     Attributes

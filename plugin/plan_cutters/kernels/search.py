@@ -17,7 +17,7 @@ from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, outside, 
 from plan_cutters.kernels.rows import Frame, Scratch, Tool
 
 # As in `plan_cutters.domain.verdicts`, which must not load the compiler; a test holds them together.
-INACCESSIBLE, ACCESSIBLE, FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
+INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
 AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, COLLISION, BURIED, ATTRIBUTES = 0, 1, 2, 3, 4, 5
 
 #: Gaps narrower than this are not searched: no machine holds a tilt to 0.01 deg. rad.

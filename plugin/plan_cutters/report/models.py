@@ -17,10 +17,10 @@ from cad_io.write import write_gltf
 from cad_io.write.step import write_step as write_cad
 from plan_cutters.document.model import SplitEntry
 from plan_cutters.document.palette import LABELS, rgb
-from plan_cutters.domain.verdicts import ACCESSIBLE, FREE, INACCESSIBLE, UNDECIDED, UNJUDGED
+from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED
 
 _LABEL = {
-    FREE: LABELS.index("interference_free"),
+    INTERFERENCE_FREE: LABELS.index("interference_free"),
     ACCESSIBLE: LABELS.index("accessible"),
     UNDECIDED: LABELS.index("undecided"),
     INACCESSIBLE: LABELS.index("inaccessible"),

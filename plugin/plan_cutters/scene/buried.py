@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cad_io.arrays import Floats, Ints, Orientation, SurfaceSamples
+from cad_io.arrays import Floats, Ints, Orientation, Record, SurfaceSamples
 from cad_io.part.bodies import Body
 from plan_cutters.scene.obstacles import Obstacles
 
@@ -19,8 +19,8 @@ from plan_cutters.scene.obstacles import Obstacles
 _AWAY, _BALL = 2.0, 1.5
 
 
-@dataclass(frozen=True, slots=True)
-class Cover:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Cover(Record):
     """What a buried contact lies under.
 
     Attributes

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, SurfaceSamples
+from cad_io.arrays import Floats, Record, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange
@@ -16,8 +16,8 @@ from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.scene.threads import Progress, in_chunks
 
 
-@dataclass(frozen=True, slots=True)
-class Conditions:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Conditions(Record):
     """The same for all cutters of a plan.
 
     Attributes

@@ -1,7 +1,7 @@
 """Which faces are to be machined and which are left out: the words of `--faces` and `--ignore`, and objects of CAD hosts."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from numbers import Integral
 from typing import TYPE_CHECKING, Any
@@ -46,7 +46,7 @@ class Chosen:
     notes: tuple[str, ...]
 
 
-def choose(part: "Part", faces: Any, ignore: Any) -> Chosen:
+def choose(part: "Part", faces: Any, ignored: Collection[int], ignore: tuple[str, ...]) -> Chosen:
     """Target and ignored faces of a part.
 
     Parameters
@@ -54,16 +54,16 @@ def choose(part: "Part", faces: Any, ignore: Any) -> Chosen:
     part : Part
     faces : str, objects or None
         None: the faces picked on the host's object, else `sculptured`.
-    ignore : str, list of str or objects
+    ignored : collection of int
         Faces to leave out.
+    ignore : tuple of str
+        The words for these.
 
     Raises
     ------
     OptionError
         A choice has no meaning, nothing is left, or a face is asked for by its number and ignored.
     """
-    left_out = _words(part, ignore, "--ignore")
-    ignored = ignored_faces(part, left_out)
     asked = _word(part, part.picked or "sculptured" if faces is None else faces, "--faces")
     targets = select_faces(part.faces, asked, tree=part.tree, ignored=ignored)
     notes = []
@@ -75,12 +75,17 @@ def choose(part: "Part", faces: Any, ignore: Any) -> Chosen:
         notes.append(
             f"{len(ignored)} faces are ignored, neither targets nor obstacles: {_some(f'F{n}' for n in sorted(ignored))}."
         )
-    return Chosen(targets, tuple(sorted(ignored)), asked, tuple(left_out), tuple(notes))
+    return Chosen(targets, tuple(sorted(ignored)), asked, ignore, tuple(notes))
+
+
+def ignored_words(part: "Part", ignore: Any) -> tuple[str, ...]:
+    """The choice of faces to leave out as words."""
+    return tuple(_words(part, ignore, "--ignore"))
 
 
 def ignored_faces(part: "Part", ignore: Any) -> frozenset[int]:
-    """Numbers of the faces to leave out, as `choose` reads them."""
-    words = _words(part, ignore, "--ignore")
+    """Numbers of the faces to leave out; words, lists of words or objects."""
+    words = ignored_words(part, ignore)
     return frozenset().union(*(_selected(part.faces, text, part.tree, "--ignore") for text in words))
 
 

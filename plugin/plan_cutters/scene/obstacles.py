@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from cad_io.arrays import Floats, Ints, Triangles
+from cad_io.arrays import Floats, Ints, Record, Triangles
 from cad_io.part.bodies import Body
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.errors import UnjudgeableError
@@ -30,8 +30,8 @@ def kept_tolerance(asked: float, chord_error: float) -> float:
     return max(asked, chord_error / CHORD_SHARE)
 
 
-@dataclass(frozen=True)
-class Obstacles:
+@dataclass(frozen=True, eq=False, repr=False)
+class Obstacles(Record):
     """Triangles with their bounding tree.
 
     Attributes

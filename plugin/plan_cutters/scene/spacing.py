@@ -8,6 +8,9 @@ from cad_io import Orientation, Part
 from cad_io.sample import sample
 from plan_cutters.domain.cutter import Cutter
 
+#: Spacing of samples, mm: one, by face number, or none where they are taken on a grid.
+Spacing = float | dict[int, float] | None
+
 #: Samples that a default plan may take, in all.
 BUDGET = 40_000
 #: Share of the smallest radius, and turn of the normal (rad), between neighbouring samples.

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cad_io import Part
-from cad_io.arrays import Floats, LostFace, Triangles
+from cad_io.arrays import Floats, LostFace, Record, Triangles
 from cad_io.part.bodies import Body, bodies
 from cad_io.tessellate import tessellate
 from cad_io.tessellate.stand_ins import StandIn, stand_ins
@@ -18,8 +18,8 @@ from plan_cutters.scene.obstacles import Obstacles, weights
 _LOOKED_AT = 50
 
 
-@dataclass(frozen=True, slots=True)
-class Surroundings:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Surroundings(Record):
     """What is, and what may be, in a cutter's way.
 
     Attributes

@@ -10,8 +10,8 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import (
     ACCESSIBLE,
     BURIED,
-    FREE,
     INACCESSIBLE,
+    INTERFERENCE_FREE,
     REASONS,
     TOLERANCE,
     UNDECIDED,
@@ -29,12 +29,13 @@ from plan_cutters.scene.threads import Progress, in_chunks
 
 def access(
     samples: SurfaceSamples,
-    free: NDArray[np.bool_],
+    interference_free: NDArray[np.bool_],
     cutter: Cutter,
     conditions: Conditions,
     *,
     buried: Ints | None = None,
     known: Reach | None = None,
+    rows: NDArray[np.int64] | None = None,
     progress: Progress | None = None,
 ) -> Reach:
     """Search a posture for every judged sample that is not interference-free.
@@ -42,31 +43,36 @@ def access(
     Parameters
     ----------
     samples : SurfaceSamples
-    free : (n,) bool
-        Interference-free samples, as `decompose` gives them.
+    interference_free : (n,) bool
+        As `decompose` gives them.
     cutter, conditions
     buried : (n,) int32, optional
         The body that each sample lies within, -1 for none (default): none of those within is accessible.
     known : Reach, optional
         What follows from other cutters (`nesting.handed`): those samples are not searched again.
+    rows : (m,) int64, optional
+        The samples to search, all by default; the others stay unjudged.
     progress : callable, optional
         Told how many pieces of the work are done, of how many.
     """
     n = len(samples)
     reach = blank(n)
     judged = samples.unjudged < 0
+    if rows is not None:
+        judged &= np.isin(np.arange(n), rows)
     if not conditions.judges(cutter):
         reach.verdict[judged], reach.reason[judged] = UNDECIDED, TOLERANCE
         return reach
     within = np.zeros(n, bool) if buried is None else judged & (buried >= 0)
     reach.verdict[within], reach.reason[within] = INACCESSIBLE, BURIED
-    reach.verdict[free] = FREE
-    reach.axis[free] = samples.normal[free]
-    reach.lean[free] = samples.direction_max[free]
-    reach.tilt[free] = 0.0
-    reach.rotation[free] = 0
+    upright = judged & interference_free
+    reach.verdict[upright] = INTERFERENCE_FREE
+    reach.axis[upright] = samples.normal[upright]
+    reach.lean[upright] = samples.direction_max[upright]
+    reach.tilt[upright] = 0.0
+    reach.rotation[upright] = 0
     contacts = contacts_of(samples)
-    wanted = judged & ~free & ~within
+    wanted = judged & ~upright & ~within
     if known is not None:
         follows = wanted & (known.verdict != UNJUDGED)
         for name in Reach.__slots__:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, Ints, Orientation, SurfaceSamples
+from cad_io.arrays import Floats, Ints, Orientation, Record, SurfaceSamples
 from cad_io.part import Part
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Reach, blank
@@ -29,8 +29,8 @@ _UPRIGHT = 1e-9
 _LEVELS = 6
 
 
-@dataclass(frozen=True, slots=True)
-class Cells:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Cells(Record):
     """Cells of target faces that are served, each by one tool axis.
 
     Attributes
@@ -49,8 +49,8 @@ class Cells:
     axis: Floats
 
 
-@dataclass(frozen=True, slots=True)
-class Between:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Between(Record):
     """What of the target area is served.
 
     Attributes

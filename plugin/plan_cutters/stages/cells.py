@@ -15,7 +15,7 @@ from cad_io.face.clip import Clipped, clipped
 from cad_io.face.evaluate import density, evaluate
 from cad_io.face.trim import Trim
 from cad_io.part import Part
-from plan_cutters.domain.verdicts import FREE, Reach
+from plan_cutters.domain.verdicts import INTERFERENCE_FREE, Reach
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.stages.nodes import WIDER, WILDER, from_neighbours, tensors
 
@@ -157,7 +157,7 @@ def laid(
     size = field.radius[node]
     contacts = CellContacts(
         samples.point[mine], samples.normal[mine], samples.direction_max[mine], samples.curvature[mine],
-        reach.axis[mine], reach.verdict[mine] == FREE, size[judged], tile[judged].astype(np.int32), tile[judged],
+        reach.axis[mine], reach.verdict[mine] == INTERFERENCE_FREE, size[judged], tile[judged].astype(np.int32), tile[judged],
         middle[judged], span[judged], clip.whole[judged], size[judged], area[judged],
     )  # fmt: skip
     bare = node < 0
@@ -255,7 +255,7 @@ def _beside(
         on = (i >= 0) & (j >= 0) & (i < index.shape[0]) & (j < index.shape[1])
         node = np.where(on, index[np.where(on, i, 0), np.where(on, j, 0)], -1)
         new = np.isnan(axis[:, 0]) & (node >= 0)
-        axis[new], flat[new] = reach.axis[rows[node[new]]], reach.verdict[rows[node[new]]] == FREE
+        axis[new], flat[new] = reach.axis[rows[node[new]]], reach.verdict[rows[node[new]]] == INTERFERENCE_FREE
     return axis, flat
 
 

@@ -6,8 +6,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from cad_io.arrays import Ints, SurfaceSamples
-
-CONVEX, CONCAVE, SADDLE, UNJUDGED = 0, 1, 2, 255
+from plan_cutters.domain.verdicts import CONCAVE, CONVEX, SADDLE, UNJUDGED
 
 #: Curvature times part diagonal below which a curvature is zero: planes and cylinders come out convex, not as noise.
 FLAT = 1e-6

@@ -1,7 +1,5 @@
 """Interference-free or interference-prone? The seed's second step, by the dummy cutter."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
@@ -13,58 +11,50 @@ from plan_cutters.scene.conditions import Conditions, contacts_of
 from plan_cutters.scene.threads import in_chunks
 
 
-@dataclass(frozen=True, slots=True)
-class Decomposition:
-    """Which samples need no posture search.
-
-    Attributes
-    ----------
-    free : (n,) bool
-        Convex samples at which the dummy cutter, the axis limit and the posture range leave tilt 0 in every rotation.
-    march_differs : int
-        Convex samples that the seed's boundary march would have put on the other side.
-    """
-
-    free: NDArray[np.bool_]
-    march_differs: int
-
-
 def decompose(
-    samples: SurfaceSamples,
-    convex: NDArray[np.bool_],
-    region: NDArray[np.int32],
-    cutter: Cutter,
-    conditions: Conditions,
-    *,
-    buried: Ints | None = None,
-) -> Decomposition:
-    """Test each convex sample with the dummy cutter, and compare with the seed's march over boundaries.
+    samples: SurfaceSamples, convex: NDArray[np.bool_], cutter: Cutter, conditions: Conditions,
+    *, buried: Ints | None = None, rows: NDArray[np.int64] | None = None,
+) -> NDArray[np.bool_]:  # fmt: skip
+    """Test convex samples with the dummy cutter: which need no posture search?
 
     Parameters
     ----------
     samples : SurfaceSamples
     convex : (n,) bool
-    region : (n,) int32
-        As `classify.regions` gives it.
     cutter, conditions
     buried : (n,) int32, optional
         The body that each sample lies within, -1 for none (default): none of those within is free.
+    rows : (m,) int64, optional
+        The samples to test, all by default.
+
+    Returns
+    -------
+    (n,) bool
+        Convex samples at which the dummy cutter, the axis limit and the posture range leave tilt 0 in every rotation.
     """
     from plan_cutters.kernels.search import dummy_free
 
-    free = np.zeros(len(samples), bool)
+    interference_free = np.zeros(len(samples), bool)
     allowed = convex & conditions.upright(samples.normal)
     if buried is not None:
         allowed &= buried < 0
+    asked = np.flatnonzero(allowed) if rows is None else rows[allowed[rows]]
     safe, _ = conditions.depths
     solids, contacts = conditions.obstacles.solids, contacts_of(samples)
 
-    def work(rows: NDArray[np.int64]) -> None:
-        dummy_free(rows, contacts, cutter.radius, cutter.length, safe, solids, free)
+    def work(piece: NDArray[np.int64]) -> None:
+        dummy_free(piece, contacts, cutter.radius, cutter.length, safe, solids, interference_free)
 
-    in_chunks(work, np.flatnonzero(allowed), conditions.jobs)
-    marched = _march(samples, convex, region, free)
-    return Decomposition(free, int((marched[convex] != free[convex]).sum()))
+    in_chunks(work, asked, conditions.jobs)
+    return interference_free
+
+
+def march_differs(
+    samples: SurfaceSamples, convex: NDArray[np.bool_], region: Ints, interference_free: NDArray[np.bool_]
+) -> int:  # fmt: skip
+    """Convex samples that the seed's march over boundaries would have put on the other side; `region` as in `regions`."""
+    marched = _march(samples, convex, region, interference_free)
+    return int((marched[convex] != interference_free[convex]).sum())
 
 
 def _march(

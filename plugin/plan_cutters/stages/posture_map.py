@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cad_io import SurfaceSamples, Triangles
-from cad_io.arrays import Floats
+from cad_io.arrays import Floats, Record
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import lean
@@ -24,8 +24,8 @@ _ROOM = 20_000
 _BORDER = 0.02
 
 
-@dataclass(frozen=True, slots=True)
-class PostureMap:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class PostureMap(Record):
     """Free tilts of a cutter at a point.
 
     Attributes
@@ -84,8 +84,8 @@ class PostureMap:
         return np.cos(tilt) * self.normal + np.sin(tilt) * f
 
 
-@dataclass(frozen=True, slots=True)
-class Ask:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Ask(Record):
     """What a map is asked for: contact, cutter, rotations (k,) and tilts from and to, rad, machine and unit setup axis."""
 
     contact: SurfaceSamples

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, SurfaceSamples
+from cad_io.arrays import Floats, Record, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.posture import lean
 from plan_cutters.scene.conditions import Conditions, contacts_of, require_finite
@@ -17,8 +17,8 @@ NARROWEST = np.radians(0.1)
 _ROOM = 8
 
 
-@dataclass(frozen=True, slots=True)
-class PostureMaps:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class PostureMaps(Record):
     """Free tilts of n samples at k rotations.
 
     Attributes

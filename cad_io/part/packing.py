@@ -1,0 +1,52 @@
+"""What a part is made of as plain bytes: to come from another process, or to be kept."""
+
+import io
+from collections.abc import Iterator
+from typing import Any
+
+from OCP.BinTools import BinTools
+from OCP.BRep import BRep_Builder
+from OCP.gp import gp_Pnt
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Shape, TopoDS_Vertex
+
+from cad_io.kernel.assembly import Node
+from cad_io.kernel.components import children, compound
+
+#: What `Part` is made of, by the names of its parameters.
+Found = dict[str, Any]
+
+
+def packed(found: Found) -> Found:
+    """Without kernel objects: the shape as bytes, and behind it one vertex for the place of each node of the tree."""
+    vertex = TopoDS_Vertex()
+    BRep_Builder().MakeVertex(vertex, gp_Pnt(), 1e-7)
+    tree = found.get("tree", ())
+    stream = io.BytesIO()
+    BinTools.Write_s(compound([found["shape"], *(vertex.Located(place) for place in _places(tree))]), stream)
+    return found | {"shape": stream.getvalue(), "tree": [_bare(node) for node in tree]}
+
+
+def unpacked(packed: Found) -> Found:
+    """What `packed` was given, with a shape and locations of its own."""
+    whole = TopoDS_Shape()
+    BinTools.Read_s(whole, io.BytesIO(packed["shape"]))
+    shape, *vertices = children(whole)
+    places = iter([vertex.Location() for vertex in vertices])
+    return packed | {"shape": shape, "tree": tuple(_placed(bare, places) for bare in packed["tree"])}
+
+
+def _places(tree: tuple[Node, ...]) -> Iterator[TopLoc_Location]:
+    for node in tree:
+        yield node.place
+        yield from _places(node.children)
+
+
+def _bare(node: Node) -> tuple[Any, ...]:
+    return node.name, node.instance, [_bare(child) for child in node.children], node.faces
+
+
+def _placed(bare: tuple[Any, ...], places: Iterator[TopLoc_Location]) -> Node:
+    name, instance, inner, numbers = bare
+    place = next(places)
+    return Node(name, instance, place, tuple(_placed(child, places) for child in inner), numbers)

@@ -1,0 +1,88 @@
+"""How everything found becomes one plan."""
+
+import datetime
+from collections.abc import Sequence
+
+import numpy as np
+
+from plan_cutters.document.build import area_notes, degrees, face_entries, missing_entries, notes, part_info, versions
+from plan_cutters.document.model import CutterEntry, Effective, Plan, Run, SampleCounts, Selection
+from plan_cutters.document.palette import PALETTE
+from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE
+from plan_cutters.scene.prepared import Prepared
+
+RULE = "largest radius, then smaller corner radius, then shorter length, then library order, among the feasible"
+
+
+def plan_of(
+    ready: Prepared, entries: Sequence[CutterEntry], selected: str | None, selection: Selection,
+    started: datetime.datetime, seconds: dict[str, float],
+) -> Plan:  # fmt: skip
+    """The plan of a part from the entries of its cutters."""
+    scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
+    part, orientation, around = scene.part, scene.orientation, scene.around
+    return Plan(
+        part=part_info(part, orientation, around),
+        effective=Effective(
+            cutters=[c.id for c in ready.cutters],
+            cutter_source="given" if options.cutters else "built-in",
+            unit=options.unit,
+            machine=options.machine.name,
+            setup=scene.setup,
+            faces=choice.asked,
+            ignore=list(choice.ignore),
+            target_faces=[f"F{n}" for n in choice.targets],
+            grid=options.grid,
+            spacing_mm=max(ready.spacing.values()) if isinstance(ready.spacing, dict) else ready.spacing,
+            tilt_deg=degrees(options.postures.tilt),
+            rotation_deg=degrees(options.postures.rotation),
+            rotation_step_deg=float(np.degrees(options.postures.step)),
+            tolerance_mm=scene.tolerance,
+            chord_error_mm=around.surely.triangles.chord_error,
+            obstacle_triangles=len(around.may_be.triangles),
+            flip=options.flip,
+            area_budget=options.area_budget,
+            posture_maps=options.posture_maps,
+        ),
+        versions=versions(),
+        samples=SampleCounts(
+            count=len(samples),
+            max_gap_mm=samples.max_gap,
+            convex=int((ready.surface_class == CONVEX).sum()),
+            concave=int((ready.surface_class == CONCAVE).sum()),
+            saddle=int((ready.surface_class == SADDLE).sum()),
+            unjudged=int((samples.unjudged >= 0).sum()),
+            regions=len(np.unique(ready.region)),
+        ),
+        faces=face_entries(part, samples, choice),
+        missing=missing_entries(part, around),
+        reasons=list(REASONS),
+        cutters=list(entries),
+        selected=selected,
+        selection=selection,
+        notes=[
+            *notes(scene, options, samples),
+            *choice.notes,
+            *area_notes(entries, doubtful=around.doubtful),
+        ],
+        legend=PALETTE,
+        run=Run(time=started.isoformat(timespec="seconds"), seconds=seconds),
+    )
+
+
+def selection(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:
+    """Which cutter wins, of entries from the most wanted down, and why."""
+    feasible = [e for e in entries if e.feasible]
+    if not feasible:
+        best = min(entries, key=lambda e: e.inaccessible + e.undecided)
+        left = best.inaccessible + best.undecided
+        why = f"no cutter reaches every sample; {best.id} comes nearest, {left} not reached"
+        if not left:
+            why = f"{best.id} reaches every judged sample, but obstacles are missing: see the notes"
+        return None, Selection(rule=RULE, runner_up=None, why=why)
+    first = feasible[0]
+    larger = [e.id for e in entries if e.radius > first.radius]
+    why = f"{', '.join(larger)} {'is' if len(larger) == 1 else 'are'} larger but not feasible" if larger else (
+        "no larger cutter was given"
+    )  # fmt: skip
+    return first.id, Selection(rule=RULE, runner_up=feasible[1].id if len(feasible) > 1 else None, why=why)

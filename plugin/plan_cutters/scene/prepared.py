@@ -1,0 +1,50 @@
+"""A part that is ready to be judged, cutter by cutter."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io import SurfaceSamples
+from cad_io.arrays import Ints, Record
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.options import Options
+from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.faces import Chosen
+from plan_cutters.scene.scene import Scene
+from plan_cutters.scene.spacing import Spacing
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Prepared(Record):
+    """Everything that is needed to judge a cutter.
+
+    Attributes
+    ----------
+    scene : Scene
+    options : Options
+    chosen : Chosen
+        Target and ignored faces.
+    spacing : float, dict or None
+        Of the samples: one, by face number, or none where they were taken on a grid.
+    samples : SurfaceSamples
+    surface_class : (n,) uint8
+    region : (n,) int32
+        Connected samples of one class.
+    buried : (n,) int32
+        The body that each sample lies within, -1 for none.
+    conditions : Conditions
+    cutters : tuple of Cutter
+        From the most wanted down.
+    """
+
+    scene: Scene
+    options: Options
+    chosen: Chosen
+    spacing: Spacing
+    samples: SurfaceSamples
+    surface_class: NDArray[np.uint8]
+    region: Ints
+    buried: Ints
+    conditions: Conditions
+    cutters: tuple[Cutter, ...]

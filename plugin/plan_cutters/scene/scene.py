@@ -1,0 +1,109 @@
+"""A part as it stands to be judged: its faces' sides, what is in the way, and the tolerance that can be kept."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from cad_io import Orientation, Part, read_part
+from cad_io.arrays import Record
+from cad_io.part.orient import orient
+from cad_io.tessellate.triangles import At
+from plan_cutters.domain.checks import flag, number, shown
+from plan_cutters.domain.posture import unit
+from plan_cutters.errors import OptionError
+from plan_cutters.options import MOST_TOLERANCE
+from plan_cutters.scene.faces import ignored_faces, ignored_words
+from plan_cutters.scene.obstacles import CHORD_ASKED, kept_tolerance
+from plan_cutters.scene.surroundings import Surroundings, surroundings
+
+_DEFAULTS: dict[str, Any] = {"setup": (0.0, 0.0, 1.0), "flip": False, "ignore": (), "tolerance": 0.01}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Scene(Record):
+    """One part under one setup, which any number of answers may share: it is tessellated once, when first needed.
+
+    Attributes
+    ----------
+    part : Part
+    orientation : Orientation
+        Which side of each face is out of the material.
+    setup : (float, float, float)
+        Unit direction of the part along the machine's spindle at zero angles.
+    flip : bool
+        The other side of open shells and loose faces is machined.
+    ignore : tuple of str
+        The words for faces that are neither targets nor obstacles.
+    ignored : tuple of int
+        Their numbers, ascending.
+    asked : float
+        The gouge tolerance that was asked for, mm.
+    """
+
+    part: Part
+    orientation: Orientation
+    setup: tuple[float, float, float]
+    flip: bool
+    ignore: tuple[str, ...]
+    ignored: tuple[int, ...]
+    asked: float
+
+    @classmethod
+    def of(cls, part: Any, **options: Any) -> "Scene":
+        """The scene of a part; of a scene, itself.
+
+        Parameters
+        ----------
+        part : Scene, Part, path, TopoDS_Shape, CadQuery or build123d object
+        **options
+            `setup`, `flip`, `ignore` and `tolerance`, as in `Options`; for a Scene, none but its own.
+
+        Raises
+        ------
+        CadIoError
+            The part cannot be read.
+        OptionError
+            A value has no meaning, or is not that of the Scene.
+        """
+        if unknown := sorted(set(options) - set(_DEFAULTS)):
+            raise OptionError(f"a scene has no option {unknown[0]}; it has {', '.join(_DEFAULTS)}")
+        given = _DEFAULTS | options
+        tolerance, flip = number(given["tolerance"], "tolerance"), flag(given["flip"], "flip")
+        if not 0 < tolerance <= MOST_TOLERANCE:
+            raise OptionError(f"tolerance {tolerance:g} must lie between 0 and {MOST_TOLERANCE:g} mm")
+        setup: Any = tuple(unit(given["setup"], "setup axis").tolist())
+        if isinstance(part, Scene):
+            asked = {"setup": setup, "flip": flip, "tolerance": tolerance}
+            asked["ignore"] = ignored_words(part.part, given["ignore"])
+            for word in options:
+                own = part.options[word]
+                if not (np.allclose(own, setup, atol=1e-12) if word == "setup" else own == asked[word]):
+                    raise OptionError(f"the scene was made with {word} {shown(own)}: give another one there")
+            return part
+        whole = part if isinstance(part, Part) else read_part(part)
+        ignored = tuple(sorted(ignored_faces(whole, given["ignore"])))
+        words = ignored_words(whole, given["ignore"])
+        return cls(whole, orient(whole, towards=setup, flip=flip), setup, flip, words, ignored, tolerance)
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """What was asked for, as options of a plan."""
+        return {"setup": self.setup, "flip": self.flip, "ignore": self.ignore, "tolerance": self.asked}
+
+    def surround(self, at: At = lambda whose, face: None) -> Surroundings:
+        """What is, and what may be, in the way; `at` is told whose work goes on at which face, if there is any to do."""
+        if "around" not in self.__dict__:
+            self.__dict__["around"] = surroundings(self.part, CHORD_ASKED * self.asked, ignored=self.ignored, at=at)
+        return self.around
+
+    @cached_property
+    def around(self) -> Surroundings:
+        """What is, and what may be, in the way."""
+        return self.surround()
+
+    @property
+    def tolerance(self) -> float:
+        """The gouge tolerance that is kept, mm: what was asked for or, where the triangles cannot be that close, more."""
+        return kept_tolerance(self.asked, self.around.surely.triangles.chord_error)
