@@ -147,6 +147,7 @@ PATTERNS = {
     "surface that cannot be": Faulty("drilled", swap(r"(CYLINDRICAL_SURFACE\('',#\d+,)3", r"\g<1>-3"), LOST, 6),
     "face missing": Faulty("drilled", drop("ADVANCED_FACE"), LOST, 6),
     "face of no known kind": Faulty("drilled", swap("ADVANCED_FACE", "ADVANCED_FAKE"), LOST, 6),
+    "face whose kind is no word": Faulty("drilled", swap("ADVANCED_FACE", "ADVANCED@FACE"), LOST, 6),
     "face that no shell takes": Faulty("drilled", swap(r"(CLOSED_SHELL\('',\()#\d+,", r"\1"), LOST, 6),
     "knots that are too many": Faulty("rod", swap(r"(B_SPLINE_SURFACE_WITH_KNOTS\(\()\d+", r"\g<1>9", 0), LOST, 2),
     "knots out of order": Faulty("rod", swap(r"(SURFACE_WITH_KNOTS\(\([^)]*\),\([^)]*\),\()[^,)]*", r"\g<1>99."), LOST, 2),

@@ -36,6 +36,7 @@ from cad_io.kernel import silence
 from cad_io.read.altered import edge_count
 from plan_cutters import pipeline
 from plan_cutters.command import cli, codes, supervise
+from plan_cutters.document import plan as plan_module
 from plan_cutters.report.to_json import schema
 from plan_cutters.scene import surroundings
 
@@ -241,11 +242,16 @@ def _judged(code: int, case: Case) -> Outcome:
         except (OSError, ValueError) as error:
             return Outcome("NO PLAN", f"exit {code}: {error}")
         if said:
-            return Outcome("TALKS", said)
+            # What fails of the models is said, and stands in the plan.
+            missing = [
+                line for line in said.splitlines() if not any(why in line for why in plan["not_written"].values())
+            ]
+            if missing:
+                return Outcome("TALKS", said)
         text, part = case.file.read_bytes(), json.loads((case.folder / "facts").read_text())
         if fault := wrong(plan, code, text, case.whole or plan):
             return Outcome("WRONG PLAN", fault, plan)
-        if fault := silent(part, case.part or part, code, text):
+        if fault := silent(part | {"said": part["said"] + plan["part"]["warnings"]}, case.part or part, code, text):
             return Outcome("SILENT LOSS", fault, plan)
         return Outcome(f"planned {code}" + (", faces lost" if part["lost"] else ""), "", plan, part)
     if {p.name for p in case.folder.iterdir()} - {"facts"} != {case.file.name, "said", "printed"}:
@@ -345,7 +351,7 @@ def main() -> int:
     silence()
     surroundings.tessellate = partial(surroundings.tessellate, budget=TRIANGLES)
     pipeline.read_part = recorded(pipeline.read_part)
-    pipeline.versions = cache(pipeline.versions)
+    plan_module.versions = cache(plan_module.versions)
     outcomes: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as folder:
         (seeds := Path(folder) / "seeds").mkdir()

@@ -6,10 +6,10 @@ import re
 import time
 
 import pytest
-from cad_parts import as_nurbs, compound, drilled, rod
+from cad_parts import as_nurbs, ball, compound, drilled, rod
 from fault_files import FINE, LOST, PATTERNS, REFUSED, WARNED, seeds
 from OCP.IGESControl import IGESControl_Writer
-from OCP.STEPControl import STEPControl_Reader
+from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader, STEPControl_Writer
 from test_cli import assert_one_line, run
 
 from cad_io import LostFace, Part, ReadError, read_part
@@ -189,6 +189,18 @@ def test_a_border_that_fits_its_surface_and_one_that_does_not(whole, tmp_path):
     assert [face.number for face in bad.faces if "3 mm" in misfit(bad.face(face.number))] == [
         face.number for face in bad.faces if face.surface == "cylinder"
     ]
+
+
+def test_an_uncertainty_beyond_the_part_is_said(tmp_path):
+    """With it the kernel takes the seam of a sphere for a point: the edge is gone, the solid open."""
+    file = tmp_path / "ball.step"
+    writer = STEPControl_Writer()
+    writer.Transfer(ball(10), STEPControl_AsIs)
+    writer.Write(str(file))
+    assert read_part(file).warnings == ()
+    file.write_text(re.sub(r"LENGTH_MEASURE\([^)]*", "LENGTH_MEASURE(1.E12", file.read_text()))
+    (warning,) = read_part(file).warnings
+    assert "some may be missing" in warning
 
 
 def test_a_face_without_a_size_is_lost():

@@ -4,6 +4,7 @@ Kernel exceptions are not all subclasses of `Standard_Failure` and may have an e
 module that they come from. Values are taken out as arrays at once; `.Coord()` into one list is the quickest way out.
 """
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -20,6 +21,9 @@ from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cad_io.arrays import Floats
 from cad_io.errors import CadIoError
+
+#: Where in memory the kernel had an object: another place in each run.
+_ADDRESS = re.compile(r"0x[0-9a-f]+ : ")
 
 
 def is_kernel_error(error: BaseException) -> bool:
@@ -52,7 +56,7 @@ def translated(
     except Exception as thrown:
         if not is_kernel_error(thrown):
             raise
-        text = " ".join(str(thrown).split())
+        text = _ADDRESS.sub("", " ".join(str(thrown).split()))
         name = type(thrown).__name__
         cause = f"the CAD kernel failed while {doing} ({name}{': ' + text if text else ''})"
         raise error(cause, file=file, face=face) from thrown

@@ -31,6 +31,8 @@ from cad_io.part.sew import Sewn, edge_uses, sew
 LEAST_SIZE, MOST_SIZE = 1.0, 3000.0
 #: Beyond this, mm, a coordinate has too few digits left for any tolerance.
 FARTHEST = 1e9
+#: Edges that are looser than this share of the part's size are rather a fault of the file.
+LOOSEST = 0.1
 #: A face smaller than this share of the squared diagonal has no area.
 _LEAST_AREA = 1e-12
 #: Why such a face is not judged.
@@ -156,7 +158,7 @@ class Part:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        return (*self._said, *_size_warnings(self.size))
+        return (*self._said, *_size_warnings(self.size), *self._loose_warnings())
 
     def face(self, number: int) -> TopoDS_Face:
         """The kernel's face of a number from 1."""
@@ -214,6 +216,13 @@ class Part:
     def solid_shapes(self) -> Iterator[TopoDS_Shape]:
         """Every solid, as it stands in the shape."""
         return explore(self.shape, TopAbs_SOLID)
+
+    def _loose_warnings(self) -> Iterator[str]:
+        if self.looseness > LOOSEST * max(self.size):
+            yield (
+                f"edges are known to no better than {self.looseness:.3g} mm in a part {max(self.size):.4g} mm long, and some "
+                "may be missing: export it again with a smaller uncertainty"
+            )
 
     def _checked(self, number: int) -> int:
         if not 1 <= number <= len(self._faces):

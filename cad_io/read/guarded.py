@@ -4,6 +4,7 @@ import pickle
 from collections.abc import Callable
 
 from cad_io.errors import CadIoError, ReadError
+from cad_io.kernel import translated
 from cad_io.kernel.limited import ChildDied, TimeLimit, limited
 from cad_io.part.packing import Found, packed, unpacked
 
@@ -39,7 +40,8 @@ def guarded(find: Callable[[], Found], timeout: float, file: str | None) -> Foun
     if "error" in answer:
         cause, where, face = answer["error"]
         raise ReadError(cause, file=where, face=face)
-    return unpacked(answer)
+    with translated("taking over what it made of the file", error=ReadError, file=file):
+        return unpacked(answer)
 
 
 def _answer(find: Callable[[], Found]) -> bytes:

@@ -40,6 +40,17 @@ from cad_io.units import in_mm
 #: Each a pattern that starts with plain text, which is searched for ten times as fast as alternatives.
 _FACES = [re.compile(rb"%s\s*\(" % kind) for kind in (b"ADVANCED_FACE", b"FACE_SURFACE")]
 _IDENTS = re.compile(rb"(?:^|;)\s*(#\d+)\s*=", re.MULTILINE)
+#: Shells and the faces that they name; statements, by their number, and what they are.
+_SHELL = re.compile(rb"\b(?:CLOSED_SHELL|OPEN_SHELL|CONNECTED_FACE_SET)\s*\(\s*'[^']*'\s*,\s*\(([^)]*)\)")
+_STATEMENT = re.compile(rb"(?:^|;)\s*(#\d+)\s*=\s*([A-Z_0-9]*)\s*\(", re.MULTILINE)
+_FACE_KINDS = (
+    b"ADVANCED_FACE",
+    b"FACE_SURFACE",
+    b"FACE",
+    b"ORIENTED_FACE",
+    b"SUBFACE",
+    b"",
+)  # none: of several kinds at once
 #: Numbers so large that the kernel may crash on them, by their exponents.
 _HUGE = [re.compile(rb"%s\+?0*[1-9]\d\d" % letter) for letter in (b"E", b"e")]
 _BEFORE = tuple(b"%c" % byte for byte in b"0123456789.")
@@ -140,6 +151,8 @@ class Loaded:
         lost = Lost(self.model, self._idents(), self.faults, mended, shapes, numbers, self._scale())
         result.lost = lost.found()
         # Faces that the kernel did not even load as such, or that went unseen otherwise.
+        nameless = self._no_faces()[sum(each.face is None for each in result.lost) :]
+        result.lost += [LostFace(ident, "", "a shell names it, and no face can be read there") for ident in nameless]
         gone = len({each.entity for each in result.lost if each.face is None})
         result.lost += [LostFace("", "", "it is written, but could not be read")] * max(0, written - found - gone)
         result.warnings += self._warnings(lost)
@@ -215,6 +228,12 @@ class Loaded:
             if name and name != "NONE":
                 result.names.update(dict.fromkeys(numbers.get(number, ()), name))
         return dict(numbers)
+
+    def _no_faces(self) -> list[str]:
+        """What shells in the text name as faces that no statement makes: to the reader, its type is unknown or it is missing."""
+        kinds = dict(_STATEMENT.findall(self.data))
+        named = dict.fromkeys(ident.strip() for shell in _SHELL.findall(self.data) for ident in shell.split(b","))
+        return [ident.decode(errors="replace") for ident in named if kinds.get(ident, b"?") not in _FACE_KINDS]
 
     def _idents(self) -> dict[int, str]:
         """What the file calls its entities. The kernel knows them, but does not tell."""

@@ -73,7 +73,7 @@ def plan(part: Any, *, progress: Progress | None = None, **options: Any) -> Resu
     --------
     >>> result = plan("samples/v_groove.step", cutters=["R6L80", "R2L30"], grid=9, area_budget=0)
     >>> result.selected
-    'R2L30'
+    'R6L80'
     """
     if progress is not None and not callable(progress):
         raise OptionError(f"progress must be a function of (stage, done, total), not {shown(progress)}")

@@ -13,6 +13,7 @@ from plan_cutters.command.codes import guarded
 from plan_cutters.command.supervise import (
     INTERRUPTED,
     Unfinished,
+    can_supervise,
     default_memory,
     is_child,
     keep_output,
@@ -265,6 +266,9 @@ def _watched(words: list[str]) -> int:
         return done.exit_code
     if not given["read_timeout"] > 0:
         raise click.BadParameter("--read-timeout must be a positive number of seconds")
+    if not can_supervise():
+        keep_output()
+        return _parsed(words)
     memory = default_memory() if given["memory"] is None else int(given["memory"] * 1e9)
     if memory < 2e9:
         raise click.BadParameter("--memory must be at least 2 GB")

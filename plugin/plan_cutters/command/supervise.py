@@ -1,7 +1,8 @@
 """One child process does the whole job; this one only watches it.
 
 The CAD kernel can crash or hang on a bad file, and neither can be caught from inside. A child that dies, takes too long
-to read or too much memory becomes one line and an exit code; what it had begun to write is taken away.
+to read or too much memory becomes one line and an exit code; what it had begun to write is taken away. On Windows there is
+no such child: the command does the job itself, and a crash of the kernel ends it.
 """
 
 import contextlib
@@ -48,6 +49,11 @@ class Unfinished(Supervised):
         self.code, self.out, self.parts = code, out, parts
 
 
+def can_supervise() -> bool:
+    """Whether this system lets one process hand a pipe to another and end it with all its copies (not Windows)."""
+    return hasattr(os, "killpg") and hasattr(os, "sysconf")
+
+
 def is_child() -> bool:
     """Whether this process was started by `supervise`."""
     return REPORT in os.environ
@@ -59,7 +65,8 @@ def limit_memory() -> None:
         import resource
 
         limit = int(os.environ[MEMORY])
-        resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+        with contextlib.suppress(ValueError, OSError):  # macOS has no such limit
+            resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
 
 
 def keep_output() -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io import Orientation, Part, SurfaceSamples
+from cad_io import Part, SurfaceSamples
 from cad_io.kernel.assembly import component_of
 from plan_cutters import __version__
 from plan_cutters.document.model import (
@@ -117,9 +117,14 @@ def _witness_entry(witness: Witness, samples: SurfaceSamples) -> WitnessEntry:
     )
 
 
-def part_info(part: Part, orientation: Orientation, around: Surroundings) -> PartInfo:
+def part_info(scene: Scene) -> PartInfo:
     """The part, and what is odd about it."""
+    part, around, orientation = scene.part, scene.around, scene.orientation
     warnings = list(part.warnings)
+    # Without the faces that are left out on purpose there are openings, too.
+    for body in () if scene.ignored else (body for body in around.bodies if not body.closed):
+        warnings.append(f"{listed([f'F{number}' for number in body.faces])} enclose a body with openings: what lies within it is "
+                        "not known for sure; a face or an edge may be missing")  # fmt: skip
     if around.on_bodies:
         names = listed([f"F{number}" for number in around.on_bodies])
         warnings.append(f"{names} lie on faces of solids, as construction geometry does, and are judged and in the way like "

@@ -20,9 +20,9 @@ def plan_of(
 ) -> Plan:  # fmt: skip
     """The plan of a part from the entries of its cutters."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
-    part, orientation, around = scene.part, scene.orientation, scene.around
+    part, around = scene.part, scene.around
     return Plan(
-        part=part_info(part, orientation, around),
+        part=part_info(scene),
         effective=Effective(
             cutters=[c.id for c in ready.cutters],
             cutter_source="given" if options.cutters else "built-in",

@@ -20,6 +20,11 @@ import numba
 VERSION: str = numba.__version__
 
 
+def _user() -> str:
+    """Tells users of one temporary folder apart; on Windows each has one of their own."""
+    return str(os.getuid()) if hasattr(os, "getuid") else "user"
+
+
 @functools.cache
 def cache_folder() -> str:
     """Folder of the machine code of just these sources; made if need be."""
@@ -29,7 +34,7 @@ def cache_folder() -> str:
     name = f"kernels-{digest.hexdigest()[:16]}"
     asked, home = os.environ.get("NUMBA_CACHE_DIR"), Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     first = Path(asked) if asked else home
-    for root in (first / "plan-cutters", Path(tempfile.gettempdir()) / f"plan-cutters-{os.getuid()}"):
+    for root in (first / "plan-cutters", Path(tempfile.gettempdir()) / f"plan-cutters-{_user()}"):
         folder = root / name
         try:
             folder.mkdir(parents=True, exist_ok=True)

@@ -1,0 +1,46 @@
+"""What is Linux only has a fall-back: the same plan on a system without it."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from test_cli import ENV
+
+SAMPLE = Path(__file__).parent.parent / "samples" / "v_groove.step"
+#: What Windows, and in part macOS, has not.
+CODE = """
+import os, sys
+for name in {gone}:
+    delattr(os, name)
+sys.modules["resource"] = None
+from plan_cutters.command.cli import main
+main([{part!r}, "--cutter", "R6L80", "--cutter", "R2L30", "--grid", "9", "--area-budget", "200", "--quiet", "-o", {out!r}])
+"""
+GONE = {
+    "Windows": ["fork", "killpg", "getuid", "sysconf", "sched_getaffinity", "setsid"],
+    "macOS": ["sched_getaffinity"],
+}
+
+
+@pytest.mark.parametrize("system", GONE)
+def test_the_same_plan_where_functions_are_missing(system, tmp_path):
+    plans = []
+    for name, gone in (("all", []), ("without", GONE[system])):
+        out = tmp_path / name
+        code = CODE.format(gone=gone, part=str(SAMPLE), out=str(out))
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=ENV, timeout=300)
+        assert (done.returncode, done.stderr) == (0, "")
+        plans.append(json.loads((out / "plan.json").read_text()) | {"run": None})
+    assert plans[0] == plans[1]
+    assert plans[0]["selected"] == "R6L80"
+
+
+def test_reading_needs_no_copy_of_the_process(monkeypatch):
+    import os
+
+    from cad_io import read_part
+
+    monkeypatch.delattr(os, "fork")
+    assert len(read_part(SAMPLE, guarded=True).faces) == len(read_part(SAMPLE).faces)
