@@ -31,6 +31,7 @@ from plan_cutters.scene.faces import choose
 from plan_cutters.scene.prepared import Prepared
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.spacing import Spacing, default_spacing
+from plan_cutters.scene.threads import with_company
 from plan_cutters.stages.access import access, witnesses
 from plan_cutters.stages.between import between
 from plan_cutters.stages.classify import CONVEX, classify, regions
@@ -197,7 +198,8 @@ def judge(
     ready : Prepared
     cutter : Cutter
     rows : (m,) int64, optional
-        Samples, ascending. However they are cut, each gets the same answer.
+        Samples, ascending. However they are cut, each gets the same answer, bit for bit: what is found for its neighbours
+        is found again.
     known : Reach, optional
         What follows from other cutters (`nesting.handed`), for all samples.
     progress : callable, optional
@@ -209,8 +211,9 @@ def judge(
         Of the m samples.
     """
     samples, conditions = ready.samples, ready.conditions
-    free = decompose(samples, ready.surface_class == CONVEX, cutter, conditions, buried=ready.buried, rows=rows)
-    reach = access(samples, free, cutter, conditions, buried=ready.buried, known=known, rows=rows, progress=progress)
+    whole = None if rows is None else with_company(rows, len(samples))
+    free = decompose(samples, ready.surface_class == CONVEX, cutter, conditions, buried=ready.buried, rows=whole)
+    reach = access(samples, free, cutter, conditions, buried=ready.buried, known=known, rows=whole, progress=progress)
     return reach if rows is None else reach.of(rows)
 
 

@@ -90,7 +90,7 @@ def require_finite(contacts: Contacts, rows: NDArray[np.int64]) -> None:
 
 def search_postures(
     contacts: Contacts, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, depths: tuple[float, float],
-    reach: Reach, progress: Progress | None = None,
+    reach: Reach, progress: Progress | None = None, *, fixed: bool = False,
 ) -> None:  # fmt: skip
     """Search a posture for contacts, neighbours in sequence, and write what is found into `reach`.
 
@@ -104,6 +104,8 @@ def search_postures(
     depths : tuple of float
         As `Conditions.depths`, mm.
     reach : Reach
+    fixed : bool
+        As for `in_chunks`: each contact starts from what was found at the one before it in its piece.
     progress : callable, optional
         Told how many pieces of the work are done, of how many.
 
@@ -122,4 +124,4 @@ def search_postures(
     def work(piece: NDArray[np.int64]) -> None:
         search(piece, contacts, ranges, cutter.radius, cutter.length, *depths, may_be, surely, found)
 
-    in_chunks(work, rows, conditions.jobs, progress)
+    in_chunks(work, rows, conditions.jobs, progress, fixed=fixed)

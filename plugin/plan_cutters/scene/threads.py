@@ -18,12 +18,18 @@ def in_chunks(
     jobs: int,
     progress: Progress | None = None,
     chunk: int = CHUNK,
+    *,
+    fixed: bool = False,
 ) -> None:
     """Call `work` on consecutive pieces of `rows`, `chunk` rows each, `jobs` at a time.
 
+    `fixed`: where pieces end follows from the rows' own numbers, so that a row is in the company of the same ones whatever
+    others are asked for (`with_company`).
+
     An interrupt or an error drops the pieces that have not begun and is raised once those under way end.
     """
-    pieces = [rows[i : i + chunk] for i in range(0, len(rows), chunk)]
+    ends = np.flatnonzero(np.diff(rows // chunk)) + 1 if fixed else np.arange(chunk, len(rows), chunk)
+    pieces = [piece for piece in np.split(rows, ends) if len(piece)]
     with ThreadPoolExecutor(jobs) as pool:
         futures = [pool.submit(work, piece) for piece in pieces]
         try:
@@ -34,3 +40,9 @@ def in_chunks(
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
+
+
+def with_company(rows: NDArray[np.int64], n: int) -> NDArray[np.int64]:
+    """Of n rows, all that are in one fixed piece with some of these."""
+    numbers = np.arange(n, dtype=np.int64)
+    return numbers[np.isin(numbers // CHUNK, rows // CHUNK)]

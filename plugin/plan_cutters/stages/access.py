@@ -51,7 +51,8 @@ def access(
     known : Reach, optional
         What follows from other cutters (`nesting.handed`): those samples are not searched again.
     rows : (m,) int64, optional
-        The samples to search, all by default; the others stay unjudged.
+        The samples to search, all by default; the others stay unjudged. Whole pieces of them (`with_company`), or else
+        other postures may be found for the same sample.
     progress : callable, optional
         Told how many pieces of the work are done, of how many.
     """
@@ -81,7 +82,9 @@ def access(
             contacts, np.flatnonzero(follows & (known.verdict == INACCESSIBLE)), cutter, conditions, reach.reason
         )
         wanted &= ~follows
-    search_postures(contacts, np.flatnonzero(wanted), cutter, conditions, conditions.depths, reach, progress)
+    search_postures(
+        contacts, np.flatnonzero(wanted), cutter, conditions, conditions.depths, reach, progress, fixed=True
+    )
     return reach
 
 
