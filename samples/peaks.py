@@ -103,23 +103,29 @@ def figures(shape: Shape, n: int = 81, mesh: int = 141) -> dict:
     result["cost"] = cost
     if cost > 400:
         return {**result, "cost": cost + 1000}
+    from plan_cutters.domain.verdicts import blank
     from plan_cutters.kernels import search, tree
+    from plan_cutters.kernels.material import sheet
+    from plan_cutters.kernels.rows import Contacts, Ranges, Tree
+    from plan_cutters.scene.conditions import found_of
 
     fine, _ = grid(shape, mesh)
     a, b, c, d = fine[:-1, :-1], fine[1:, :-1], fine[1:, 1:], fine[:-1, 1:]
     triangles = np.concatenate([np.stack(t, 2).reshape(-1, 3, 3) for t in ((a, b, c), (a, c, d))])
     order, box, depth = tree.build(np.ascontiguousarray(triangles))
-    obstacles = (np.ascontiguousarray(triangles[order]), box, depth)
-    p, nn, e1, k = (np.ascontiguousarray(v.reshape(-1, v.shape[-1])) for v in (points, normal, direction, curvature))
-    rotations = np.arange(36) * np.pi / 18
+    obstacles = sheet(Tree(np.ascontiguousarray(triangles[order]), box, depth))
+    contacts = Contacts(
+        *(np.ascontiguousarray(v.reshape(-1, v.shape[-1])) for v in (points, normal, direction, curvature))
+    )
+    n, turn = len(contacts.point), np.arange(36) * np.pi / 18
+    ranges = Ranges(np.cos(turn), np.sin(turn), 0.0, np.pi / 2, np.array([0.0, 0, 1]), -2.0)
     for radius, length in ((6.0, 80.0), (8.0, 90.0)):
-        free = np.zeros(len(p), bool)
-        search.dummy_free(np.flatnonzero(convex.ravel()), p, nn, radius, length, 0.03, *obstacles, free)
-        out = (np.full(len(p), 9, np.uint8), np.zeros_like(p), np.zeros_like(p), np.zeros(len(p)),
-               np.zeros(len(p), np.int32), np.zeros(len(p), np.uint8))  # fmt: skip
-        search.search(np.flatnonzero(~free), p, nn, e1, k, np.cos(rotations), np.sin(rotations), 0.0, np.pi / 2,
-                      np.array([0.0, 0, 1]), -2.0, radius, length, 0.03, 0.05, *obstacles, *out)  # fmt: skip
-        lost = int(np.isin(out[0], (0, 3)).sum())
+        free, reach = np.zeros(n, bool), blank(n)
+        search.dummy_free(np.flatnonzero(convex.ravel()), contacts, radius, length, 0.03, obstacles, free)
+        search.search(
+            np.flatnonzero(~free), contacts, ranges, radius, length, 0.03, 0.05, obstacles, obstacles, found_of(reach)
+        )
+        lost = int(np.isin(reach.verdict, (0, 3)).sum())
         result[f"lost_{radius:g}"] = lost
         if radius == 6:
             result["free"] = 100 * free.sum() / max(1, convex.sum())

@@ -17,7 +17,7 @@ from plan_cutters.scene.conditions import found_of
 
 MODULES = (arcs, free_map, gaps, hit, lanes, material, passes, search)
 
-#: What the searches below cost together. Lower is better: store what you reach; higher needs a reason in the commit.
+#: What the searches below cost together, at most. Lower is better: store what you reach; higher needs a reason in the commit.
 STORED = {"tree_hit": 5430, "_box_apart": 282240, "triangle_hit": 66110, "point_arc": 61440, "remove": 33530}
 #: The same of the posture maps.
 STORED_MAPS = {
@@ -52,6 +52,11 @@ def counted():
             setattr(module, name, function)
 
 
+def assert_no_more(found, stored):
+    """More work fails; less does not, but for what no longer happens at all: then the count has lost its object."""
+    assert all(0 < found[name] <= stored[name] * (1 + SLACK) for name in stored), f"counted {found}"
+
+
 def work(nudge):
     """The existence search on 14 x 14 samples, 24 rotations, 7,200 triangles: (verdict, axis)."""
     rng = np.random.default_rng(nudge)
@@ -75,7 +80,7 @@ def test_the_search_does_no_more_work_than_it_did():
         assert (verdict == plain_verdict).all()
         assert axis == pytest.approx(plain_axis, abs=1e-9)
     found = {name: calls[name] for name in STORED}
-    assert found == pytest.approx(STORED, rel=SLACK), f"counted {found}"
+    assert_no_more(found, STORED)
 
 
 def maps(nudge):
@@ -100,4 +105,4 @@ def test_posture_maps_do_no_more_work_than_they_did():
         for compiled, interpreted in zip(maps(nudge), found, strict=True):
             assert compiled == pytest.approx(interpreted, abs=1e-9)
     found = {name: calls[name] for name in STORED_MAPS}
-    assert found == pytest.approx(STORED_MAPS, rel=SLACK), f"counted {found}"
+    assert_no_more(found, STORED_MAPS)

@@ -8,14 +8,14 @@ import jsonschema
 import numpy as np
 import pytest
 import shapes
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
 from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 
 from cad_io import read_part
-from plan_cutters import Cutter, Machine, plan
-from plan_cutters.domain.verdicts import INACCESSIBLE, INTERFERENCE_FREE
+from plan_cutters import Cutter, Machine, Scene, plan
+from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE
 from plan_cutters.report.to_json import dumps, schema_text
 
 ROOT = Path(__file__).parent.parent
@@ -26,7 +26,7 @@ def patch(seed, height=9.0):
 
 
 def reach(part, cutter, **options):
-    return plan(part, cutters=[cutter], **{"grid": 25, **options})
+    return plan(part, cutters=[cutter], **{"grid": 25, "area_budget": 0, **options})
 
 
 def moved(shape, transformation):
@@ -46,7 +46,7 @@ def test_rigid_motion_changes_nothing(seed):
     here = reach(patch(seed), cutter, machine=machine)
     there = reach(moved(patch(seed), whole), cutter, machine=machine, setup=up)
     a, b = here.reaches[cutter.id].verdict, there.reaches[cutter.id].verdict
-    assert len(set(a.tolist())) > 1
+    assert {INACCESSIBLE, ACCESSIBLE} <= set(a.tolist())
     # The triangulation and the start of each search may differ: what lies on the very edge may turn.
     assert (a != b).mean() < 0.01
     assert there.samples.curvature == pytest.approx(here.samples.curvature, abs=1e-6)
@@ -56,46 +56,53 @@ def test_rigid_motion_changes_nothing(seed):
 def test_scaling_changes_nothing(scale):
     larger = gp_Trsf()
     larger.SetScale(gp_Pnt(0, 0, 0), scale)
-    here = reach(patch(5), Cutter.flat(radius=4, length=30), tolerance=0.02)
-    there = reach(moved(patch(5), larger), Cutter.flat(radius=4 * scale, length=30 * scale), tolerance=0.02 * scale)
+    surface = patch(5, height=14.0)
+    here = reach(surface, Cutter.flat(radius=4, length=30), tolerance=0.02)
+    there = reach(moved(surface, larger), Cutter.flat(radius=4 * scale, length=30 * scale), tolerance=0.02 * scale)
     a, b = (next(iter(r.reaches.values())).verdict for r in (here, there))
+    assert {INACCESSIBLE, ACCESSIBLE} <= set(a.tolist())
     assert (a != b).mean() < 0.01
 
 
-@given(seed=st.integers(0, 10_000), radius=st.floats(2, 6), share=st.floats(0.3, 0.95), shorter=st.floats(0.3, 1.0))
-@settings(max_examples=8, deadline=None)
+@given(seed=st.integers(0, 10_000), radius=st.floats(4, 7), share=st.floats(0.5, 0.95), shorter=st.floats(0.3, 1.0))
+@settings(max_examples=5, deadline=None)
 def test_a_cutter_inside_another_never_has_less(seed, radius, share, shorter):
-    part = read_part(patch(seed))
+    scene = Scene.of(patch(seed, height=18.0), tolerance=0.05)
     large, small = Cutter.flat(radius=radius, length=40), Cutter.flat(radius=radius * share, length=40 * shorter)
-    result = plan(part, cutters=[large, small], grid=17)
-    if small.id != large.id:
-        a, b = result.reaches[large.id], result.reaches[small.id]
-        assert not (a.reached & (b.verdict == INACCESSIBLE)).any()
-        assert not ((a.verdict == INTERFERENCE_FREE) & (b.verdict != INTERFERENCE_FREE)).any()
+    # Each alone: together they hand postures to one another, and the law would hold by itself.
+    (a,), (b,) = (reach(scene, c, grid=15).reaches.values() for c in (large, small))
+    assume(a.reached.any() and (b.verdict == INACCESSIBLE).any() and a.interference_free.any())
+    assert not (a.reached & (b.verdict == INACCESSIBLE)).any()
+    assert not (a.interference_free & ~b.interference_free).any()
 
 
-@given(seed=st.integers(0, 10_000), x=st.floats(0, 40), height=st.floats(-5, 15))
-@settings(max_examples=6, deadline=None)
+@given(seed=st.integers(0, 10_000), x=st.floats(10, 30), height=st.floats(-2, 8))
+@settings(max_examples=5, deadline=None)
 def test_more_obstacles_never_give_more(seed, x, height):
     net = shapes.Patch.random(np.random.default_rng(seed), size=40.0, height=4.0, n=7)
     wall = shapes.plane((-5, 5), (0, 20), (x, 20, height), (1, 0, 0), (0, 1, 0))
     cutter = Cutter.flat(radius=4, length=30)
-    alone = reach(shapes.shell(net.face()), cutter, faces="1", grid=15)
-    walled = reach(shapes.shell(net.face(), wall), cutter, faces="1", grid=15)
+    alone = reach(shapes.shell(net.face()), cutter, faces="1", grid=13, tolerance=0.05)
+    walled = reach(shapes.shell(net.face(), wall), cutter, faces="1", grid=13, tolerance=0.05)
     assert walled.samples.point == pytest.approx(alone.samples.point)
     a, b = alone.reaches[cutter.id], walled.reaches[cutter.id]
+    # The wall is in the way of something, and not of all.
+    assume((a.reached & ~b.reached).any() and b.reached.any())
     assert not (b.reached & (a.verdict == INACCESSIBLE)).any()
+    assert not (b.interference_free & ~a.interference_free).any()
 
 
 def test_refinement_never_turns_safe_into_blocked():
-    part = read_part(patch(11))
+    part = read_part(patch(11, height=14.0))
     cutter = Cutter.flat(radius=4, length=30)
     coarse = plan(part, cutters=[cutter], grid=31, tolerance=0.04).reaches[cutter.id]
     fine = plan(part, cutters=[cutter], grid=31, tolerance=0.03999).reaches[cutter.id]
+    assert min(coarse.reached.sum(), (fine.verdict == INACCESSIBLE).sum()) > 20
     assert ((coarse.reached) & (fine.verdict == INACCESSIBLE)).sum() == 0
     # A wider posture range never gives less.
     narrow = plan(part, cutters=[cutter], grid=31, tilt=(0, math.radians(30))).reaches[cutter.id]
     wide = plan(part, cutters=[cutter], grid=31).reaches[cutter.id]
+    assert 20 < narrow.reached.sum() < wide.reached.sum()
     assert not (narrow.reached & (wide.verdict == INACCESSIBLE)).any()
 
 

@@ -65,6 +65,15 @@ def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, ti
     ------
     ReadError
         In one line: what is wrong and what to try.
+
+    Examples
+    --------
+    >>> part = read_part("samples/v_groove.step")
+    >>> len(part.faces), part.solids, part.lost
+    (3, 0, ())
+    >>> read_part("samples/missing.step")
+    Traceback (most recent call last):
+    cad_io.errors.ReadError: samples/missing.step: no such file
     """
     silence()
     if unit is not None:

@@ -66,6 +66,16 @@ class Options:
     ------
     OptionError
         A value has no meaning.
+
+    Examples
+    --------
+    >>> Options(cutters="R6L80", setup=(0, 0, 5)).setup
+    (0.0, 0.0, 1.0)
+    >>> [cutter.id for cutter in Options().judged][:3]
+    ['R1L20', 'R1.5L25', 'R2L30']
+    >>> Options(grid=1)
+    Traceback (most recent call last):
+    plan_cutters.errors.OptionError: grid 1 must lie between 2 and 5000 samples a side
     """
 
     cutters: tuple[Cutter, ...] = ()

@@ -257,7 +257,7 @@ def assemble(
                          short=served.short, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
         entries = [e.model_copy(update={"area": area}) if e.id == best else e for e in entries]
     document = plan_of(ready, entries, selected, chosen, started or datetime.datetime.now(datetime.UTC), clock.seconds)
-    reaches = {c.id: judged[c].reach for c in ready.cutters}
+    reaches = {cutter.id: each.reach for cutter, each in judged.items()}
     return Result(document, ready.scene, ready.samples, ready.surface_class, reaches, ready.options.postures)
 
 

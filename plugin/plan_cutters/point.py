@@ -65,6 +65,14 @@ def posture_map(
         The part cannot be read; the point is farther than 1e-3 mm from it.
     OptionError
         A range or tolerance has no meaning, or a value is of the wrong kind.
+
+    Examples
+    --------
+    On the bottom line of a groove, across it and along it:
+
+    >>> found = posture_map("samples/v_groove.step", point=(0, 0, 0), cutter="R8L90", rotations=[0.0, np.pi / 2], tolerance=0)
+    >>> [np.degrees(tilts).round(1).tolist() for tilts in found.free]
+    [[[27.6, 61.4]], []]
     """
     cutter, machine = Cutter.of(cutter), Machine.of(machine)
     place = numbers(point, "point", 3)

@@ -63,6 +63,14 @@ class Cutter:
         ------
         CutterError
             The text is not of that form, or no such cutter can exist.
+
+        Examples
+        --------
+        >>> Cutter.parse("r6l80").id
+        'R6L80'
+        >>> Cutter.parse("")
+        Traceback (most recent call last):
+        plan_cutters.errors.CutterError: cutter '' is not of the form R6L80 (radius 6 mm, length 80 mm)
         """
         if not isinstance(spec, str):
             raise CutterError(f"{shown(spec)} is no cutter: give a Cutter or a text such as 'R6L80'")

@@ -41,6 +41,11 @@ class Machine:
         ------
         MachineError
             Anything else.
+
+        Examples
+        --------
+        >>> round(Machine.parse("tilt:60").limit_cos, 9), Machine.parse("unlimited").tilt_limit
+        (0.5, None)
         """
         if not isinstance(text, str):
             raise MachineError(f"{shown(text)} is no machine: give a Machine or a text such as 'tilt:60'")

@@ -18,6 +18,9 @@ class PostureRange:
     """Tilts from `tilt[0]` to `tilt[1]` at rotations from `rotation[0]` to `rotation[1]`, `step` apart. Radians.
 
     A full turn does not repeat its first rotation; a part of a turn has both its ends, evenly shared at most `step` apart.
+
+    >>> len(PostureRange().rotations), len(PostureRange(rotation=(0.0, 0.0)).rotations)
+    (36, 1)
     """
 
     tilt: tuple[float, float] = (0.0, _RIGHT)

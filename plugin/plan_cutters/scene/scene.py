@@ -66,6 +66,15 @@ class Scene(Record):
             The part cannot be read.
         OptionError
             A value has no meaning, or is not that of the Scene.
+
+        Examples
+        --------
+        >>> scene = Scene.of("samples/v_groove.step", tolerance=0.02)
+        >>> scene.tolerance, Scene.of(scene) is scene
+        (0.02, True)
+        >>> Scene.of(scene, tolerance=0.01)
+        Traceback (most recent call last):
+        plan_cutters.errors.OptionError: the scene was made with tolerance 0.02: give another one there
         """
         if unknown := sorted(set(options) - set(_DEFAULTS)):
             raise OptionError(f"a scene has no option {unknown[0]}; it has {', '.join(_DEFAULTS)}")
