@@ -6,17 +6,16 @@ import numpy as np
 
 from cad_io.arrays import Floats, Orientation
 from cad_io.face.curvature import Curvature, curvature
-from cad_io.kernel import first_derivatives, second_derivatives
 
 
 def evaluate(part: Any, orientation: Orientation, face: int, uv: Floats) -> tuple[Floats, Curvature]:
     """Points (n, 3), mm, and differential geometry of a face's surface at parameters (n, 2), inside the trim or not."""
-    derivatives = second_derivatives(part.adaptor(face), uv[:, 0], uv[:, 1])
+    derivatives = part.surface(face).second(uv[:, 0], uv[:, 1])
     sign = float(orientation.sign[face - 1])
     return derivatives[:, 0], curvature(derivatives, sign, float(np.linalg.norm(part.size)))
 
 
 def density(part: Any, face: int, uv: Floats) -> Floats:
     """Area of the surface, mm2, per unit of area in its parameters (n, 2): (n,)."""
-    derivatives = first_derivatives(part.adaptor(face), uv[:, 0], uv[:, 1])
+    derivatives = part.surface(face).first(uv[:, 0], uv[:, 1])
     return np.linalg.norm(np.cross(derivatives[:, 1], derivatives[:, 2]), axis=1)

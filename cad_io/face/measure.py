@@ -12,14 +12,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepGProp import BRepGProp
 from OCP.GeomAbs import GeomAbs_C2, GeomAbs_Cone, GeomAbs_Cylinder, GeomAbs_Plane, GeomAbs_Sphere, GeomAbs_Torus
 from OCP.GProp import GProp_GProps
 
 from cad_io.arrays import Floats
 from cad_io.face.trim import Trim
-from cad_io.kernel import first_derivatives, interval_ends
+from cad_io.kernel import interval_ends
+from cad_io.surface import Surface
 
 #: Nodes along one direction of a cell, tried in turn until what the last two orders add to the densities is below
 #: ACCURACY. Only quadrics and tori are so tame that the fewest nodes can be trusted.
@@ -45,17 +45,17 @@ class Measure(NamedTuple):
     flux: float
 
 
-def measure(adaptor: BRepAdaptor_Surface, trim: Trim, origin: Floats) -> Measure:
+def measure(surface: Surface, trim: Trim, origin: Floats) -> Measure:
     """Integrals over the face; NaN where the surface cannot be evaluated."""
     u0, u1, v0, v1 = trim.box
     if not (u1 > u0 and v1 > v0):
         return Measure(0.0, np.zeros(3), 0.0)
-    breaks_u = _breaks(adaptor.NbUIntervals(GeomAbs_C2), adaptor.UIntervals, u0, u1)
-    breaks_v = _breaks(adaptor.NbVIntervals(GeomAbs_C2), adaptor.VIntervals, v0, v1)
+    breaks_u = _breaks(surface.adaptor.NbUIntervals(GeomAbs_C2), surface.adaptor.UIntervals, u0, u1)
+    breaks_v = _breaks(surface.adaptor.NbVIntervals(GeomAbs_C2), surface.adaptor.VIntervals, v0, v1)
     u, v, step = _border_nodes(_split(_split(trim.segments, 0, breaks_u[1:-1]), 1, breaks_v[1:-1]), breaks_u, breaks_v)
     cells = [(a, b, c, d) for a, b in pairwise(breaks_u.tolist()) for c, d in pairwise(breaks_v.tolist())]
     most = max(_MOST_TABLE // len(cells), _LEAST_TABLE)
-    total = sum((_around(_resolved(adaptor, cell, origin, most), cell, u, v, step) for cell in cells), np.zeros(5))
+    total = sum((_around(_resolved(surface, cell, origin, most), cell, u, v, step) for cell in cells), np.zeros(5))
     # A border that runs the wrong way round makes all of it negative.
     total = total if total[0] >= 0 else -total
     if not trim.closed:
@@ -101,13 +101,11 @@ def _border_nodes(segments: Floats, breaks_u: Floats, breaks_v: Floats) -> tuple
     return nodes[..., 0].ravel(), nodes[..., 1].ravel(), step.ravel()
 
 
-def _resolved(
-    adaptor: BRepAdaptor_Surface, cell: tuple[float, float, float, float], origin: Floats, most: int
-) -> Floats:
+def _resolved(surface: Surface, cell: tuple[float, float, float, float], origin: Floats, most: int) -> Floats:
     """The table of a cell with as many nodes each way as the densities |N| and N need, at most so many in all."""
-    turn = [0, 0] if adaptor.GetType() in _TAME else [1, 1]
+    turn = [0, 0] if surface.adaptor.GetType() in _TAME else [1, 1]
     while True:
-        table = _table(adaptor, cell, origin, _NODES[turn[0]], _NODES[turn[1]])
+        table = _table(surface, cell, origin, _NODES[turn[0]], _NODES[turn[1]])
         size = np.abs(table[..., :4])
         enough = ACCURACY * size.max()
         rough = [axis for axis in (0, 1) if size.take([-2, -1], axis).max() > enough and turn[axis] + 1 < len(_NODES)]
@@ -126,14 +124,12 @@ def _nodes(n: int) -> tuple[Floats, Floats]:
     return nodes, transform
 
 
-def _table(
-    adaptor: BRepAdaptor_Surface, cell: tuple[float, float, float, float], origin: Floats, n: int, m: int
-) -> Floats:
+def _table(surface: Surface, cell: tuple[float, float, float, float], origin: Floats, n: int, m: int) -> Floats:
     """Chebyshev coefficients (n, m, 5) over a cell of |N|, N and (S - origin) . N."""
     u0, u1, v0, v1 = cell
     (x, along_u), (y, along_v) = _nodes(n), _nodes(m)
     u, v = np.meshgrid(u0 + 0.5 * (x + 1) * (u1 - u0), v0 + 0.5 * (y + 1) * (v1 - v0), indexing="ij")
-    d = first_derivatives(adaptor, u.ravel(), v.ravel())
+    d = surface.first(u.ravel(), v.ravel())
     normal = np.cross(d[:, 1], d[:, 2])
     flux = ((d[:, 0] - origin) * normal).sum(axis=1)
     density = np.column_stack([np.linalg.norm(normal, axis=1), normal, flux])

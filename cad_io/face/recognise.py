@@ -5,11 +5,10 @@ left is fitted, and the fit counts only if every point lies within a tolerance o
 """
 
 import numpy as np
-from OCP.BRepAdaptor import BRepAdaptor_Surface
 
 from cad_io.arrays import Floats
 from cad_io.face.curvature import curvature
-from cad_io.kernel import second_derivatives
+from cad_io.surface import Surface
 
 #: Farthest that a point may lie from the simple shape: mm, and as a share of the face's size.
 WITHIN, WITHIN_SHARE = 1e-3, 1e-4
@@ -18,11 +17,11 @@ _NODES = 8
 _WOBBLE = 0.1
 
 
-def recognise(adaptor: BRepAdaptor_Surface, box: tuple[float, float, float, float]) -> str:
+def recognise(surface: Surface, box: tuple[float, float, float, float]) -> str:
     """One of SIMPLE_KINDS or `sculptured`, for the surface over a parameter box."""
     share = (np.arange(_NODES) + 0.5) / _NODES
     u, v = (g.ravel() for g in np.meshgrid(box[0] + share * (box[1] - box[0]), box[2] + share * (box[3] - box[2])))
-    derivatives = second_derivatives(adaptor, u, v)
+    derivatives = surface.second(u, v)
     geometry = curvature(derivatives)
     if geometry.bad.any():
         return "sculptured"

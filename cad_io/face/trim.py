@@ -12,7 +12,7 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
-from OCP.BRepAdaptor import BRepAdaptor_Curve2d, BRepAdaptor_Surface
+from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from OCP.BRepTools import BRepTools
 from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
 from OCP.GeomAbs import GeomAbs_C2, GeomAbs_Line
@@ -22,7 +22,8 @@ from OCP.TopoDS import TopoDS, TopoDS_Face
 from scipy.optimize import linear_sum_assignment
 
 from cad_io.arrays import Floats, Record
-from cad_io.kernel import edges_of, first_derivatives, interval_ends
+from cad_io.kernel import edges_of, interval_ends
+from cad_io.surface import Surface
 
 Bools = NDArray[np.bool_]
 
@@ -128,17 +129,17 @@ class Trim(Record):
         return i, j, self.exact[which] & (distance <= self.tolerance), ~self.exact[which] & (distance <= reach)
 
 
-def trim_of(face: TopoDS_Face, adaptor: BRepAdaptor_Surface) -> Trim | None:
+def trim_of(face: TopoDS_Face, surface: Surface) -> Trim | None:
     """Border of a face, None if it has no edge with a finite parameter curve.
 
     Parameters
     ----------
     face : TopoDS_Face
-    adaptor : BRepAdaptor_Surface
+    surface : Surface
         Of that face, not restricted to it.
     """
     forward = TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
-    scale, size = _scale(forward, adaptor)
+    scale, size = _scale(forward, surface)
     if scale is None:
         return None
     pieces, exact, tolerance, deflection = [], [], ON_LEAST, 0.0
@@ -168,14 +169,14 @@ def trim_of(face: TopoDS_Face, adaptor: BRepAdaptor_Surface) -> Trim | None:
     )  # fmt: skip
 
 
-def _scale(face: TopoDS_Face, adaptor: BRepAdaptor_Surface) -> tuple[Floats, float] | tuple[None, float]:
+def _scale(face: TopoDS_Face, surface: Surface) -> tuple[Floats, float] | tuple[None, float]:
     """Typical mm per unit of u and v, and the face's size in mm, from the kernel's (padded) bounds."""
     u0, u1, v0, v1 = BRepTools.UVBounds_s(face)
     if not (np.isfinite([u0, u1, v0, v1]).all() and u0 < u1 and v0 < v1 and max(-u0, u1, -v0, v1) < 1e50):
         return None, 0.0
     share = np.array([0.2, 0.5, 0.8])
     u, v = (grid.ravel() for grid in np.meshgrid(u0 + share * (u1 - u0), v0 + share * (v1 - v0)))
-    speed = np.linalg.norm(first_derivatives(adaptor, u, v)[:, 1:], axis=2)
+    speed = np.linalg.norm(surface.first(u, v)[:, 1:], axis=2)
     scale = np.nanmean(speed, axis=0) if np.isfinite(speed).any() else np.zeros(2)
     if not (np.isfinite(scale).all() and (scale > 0).all()):
         return None, 0.0

@@ -26,6 +26,7 @@ from cad_io.kernel import edges_of, explore, faces, is_kernel_error, shape_map, 
 from cad_io.kernel.assembly import Node
 from cad_io.part.packing import Found, packed, unpacked
 from cad_io.part.sew import Sewn, edge_uses, sew
+from cad_io.surface import Surface
 
 #: Sizes that are rather a wrong unit than a part, mm.
 LEAST_SIZE, MOST_SIZE = 1.0, 3000.0
@@ -112,7 +113,7 @@ class Part:
             raise ReadError("holds no surface (no faces): export it as a solid or surface model", file=file)
         self.layers = dict(layers or {})
         self.tree = tree or (Node("", "", TopLoc_Location(), faces=tuple(range(1, len(self._faces) + 1))),)
-        self._adaptors: dict[int, BRepAdaptor_Surface] = {}
+        self._surfaces: dict[int, Surface] = {}
         self._trims: dict[int, Trim | None] = {}
         self._measures: dict[int, Measure | None] = {}
         self.solids = shape_map(shape, TopAbs_SOLID).Extent()
@@ -164,18 +165,22 @@ class Part:
         """The kernel's face of a number from 1."""
         return self._faces[self._checked(number) - 1]
 
-    def adaptor(self, number: int) -> BRepAdaptor_Surface:
+    def surface(self, number: int) -> Surface:
         """Evaluator of a face's whole surface (not restricted to the face), in part coordinates."""
-        if number not in self._adaptors:
+        if number not in self._surfaces:
             with translated("opening a surface", file=self.file, face=f"F{number}"):
-                self._adaptors[number] = BRepAdaptor_Surface(self.face(number), False)
-        return self._adaptors[number]
+                self._surfaces[number] = Surface(self.face(number))
+        return self._surfaces[number]
+
+    def adaptor(self, number: int) -> BRepAdaptor_Surface:
+        """The kernel's own evaluator of the same."""
+        return self.surface(number).adaptor
 
     def trim(self, number: int) -> Trim | None:
         """Border of a face in its parameter plane; None where it has none."""
         if number not in self._trims:
             with translated("reading a border", file=self.file, face=f"F{number}"):
-                self._trims[number] = trim_of(self.face(number), self.adaptor(number))
+                self._trims[number] = trim_of(self.face(number), self.surface(number))
         return self._trims[number]
 
     def measure(self, number: int) -> Measure | None:
@@ -183,7 +188,7 @@ class Part:
         if number not in self._measures:
             trim = self.trim(number)
             with translated("measuring a face", file=self.file, face=f"F{number}"):
-                self._measures[number] = None if trim is None else measure(self.adaptor(number), trim, self.middle)
+                self._measures[number] = None if trim is None else measure(self.surface(number), trim, self.middle)
         return self._measures[number]
 
     @cached_property
@@ -238,7 +243,7 @@ class Part:
             reason, area = self._judgeable(number, surface)
             trim = self.trim(number)
             if reason is None and shape == "sculptured" and trim:
-                shape = recognise(self.adaptor(number), trim.box)
+                shape = recognise(self.surface(number), trim.box)
         except Exception as thrown:
             if not (is_kernel_error(thrown) or is_kernel_error(thrown.__cause__ or thrown)):
                 raise

@@ -4,14 +4,15 @@ from collections.abc import Sequence
 
 import numpy as np
 from OCP.BRep import BRep_Tool
-from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d, BRepAdaptor_Surface
+from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d
 from OCP.gp import gp_Pnt
 from OCP.TopAbs import TopAbs_EDGE, TopAbs_WIRE
 from OCP.TopExp import TopExp
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face
 
 from cad_io.arrays import Floats
-from cad_io.kernel import edges_of, explore, is_kernel_error, shape_map, values
+from cad_io.kernel import edges_of, explore, is_kernel_error, shape_map
+from cad_io.surface import Surface
 
 #: Borders this near to the surface, mm, or in shares of the face's size, lie on it.
 _NEAR, _NEAR_SHARE = 1e-2, 1e-4
@@ -64,7 +65,7 @@ def _gap(face: TopoDS_Face) -> tuple[float, float]:
 
 def _measured(face: TopoDS_Face) -> tuple[float, Floats]:
     """Largest distance of border curves from the surface and of their ends from the vertices, mm; their points (n, 3)."""
-    surface, off, seen = BRepAdaptor_Surface(face, False), 0.0, [np.zeros((0, 3))]
+    surface, off, seen = Surface(face), 0.0, [np.zeros((0, 3))]
     for edge in edges_of(face):
         if BRep_Tool.Degenerated_s(edge) or not _has_curve(edge):
             continue
@@ -73,7 +74,7 @@ def _measured(face: TopoDS_Face) -> tuple[float, Floats]:
         parameters = (first + (last - first) * _ALONG).tolist()
         there = np.array([curve.Value(t).Coord() for t in parameters])
         uv = np.array([flat.Value(t).Coord() for t in parameters])
-        distance = np.linalg.norm(values(surface, uv[:, 0], uv[:, 1]) - there, axis=1)
+        distance = np.linalg.norm(surface.values(uv[:, 0], uv[:, 1]) - there, axis=1)
         ends = [TopExp.FirstVertex_s(edge), TopExp.LastVertex_s(edge)]
         beyond = [0.0 if v.IsNull() else BRep_Tool.Pnt_s(v).Distance(gp_Pnt(*there[k]))
                   for v, k in zip(ends, (0, -1), strict=True)]  # fmt: skip

@@ -16,7 +16,7 @@ from cad_io.arrays import Floats, Orientation, SurfaceSamples
 from cad_io.errors import SampleError
 from cad_io.face.curvature import curvature
 from cad_io.face.trim import Trim
-from cad_io.kernel import second_derivatives, translated
+from cad_io.kernel import translated
 from cad_io.part import Part
 
 _PRECISION = 1e-9  # mm, asked of the projection
@@ -68,7 +68,7 @@ def locate(
         cause = f"no face within {within:g} mm of ({where}): the nearest is {distance:.4g} mm away"
         raise SampleError(cause, file=part.file)
     _, number, uv = best
-    d = second_derivatives(part.adaptor(number), np.array([uv[0]]), np.array([uv[1]]))
+    d = part.surface(number).second(np.array([uv[0]]), np.array([uv[1]]))
     geometry = curvature(d, float(orientation.sign[number - 1]), float(np.linalg.norm(part.size)))
     if geometry.bad.any():
         raise SampleError("the surface has no normal or curvature at this point", file=part.file, face=f"F{number}")

@@ -4,7 +4,6 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats
-from cad_io.kernel import values
 from cad_io.part import Part
 
 _STEPS, _FEW = 20_000, 200  # along the border, at most: among many samples, or about one
@@ -39,6 +38,6 @@ def border_gap(part: Part, number: int, point: Floats, gap: float) -> float:
     corner = (along * before).sum(axis=1) < _STRAIGHT * length * np.roll(length, 1)
     between = (1 - share) * trim.segments[which, 0] + share * trim.segments[which, 1]
     uv = np.concatenate([between, trim.segments[corner, 0]])
-    there = values(part.adaptor(number), uv[:, 0], uv[:, 1])
+    there = part.surface(number).values(uv[:, 0], uv[:, 1])
     there = there[np.isfinite(there).all(axis=1)]
     return float(cKDTree(point).query(there)[0].max(initial=0.0)) if len(there) else 0.0

@@ -3,12 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
-from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.GeomAbs import GeomAbs_CN
 
 from cad_io.arrays import Floats
 from cad_io.face.trim import Trim
-from cad_io.kernel import first_derivatives, values
+from cad_io.surface import Surface
 
 #: How far lines stay from a border that is a single point, as a share of the range.
 INWARD = 1e-4
@@ -46,31 +45,32 @@ class _Range(NamedTuple):
         return lines
 
 
-def uniform(adaptor: BRepAdaptor_Surface, trim: Trim, count: int) -> Lines:
+def uniform(surface: Surface, trim: Trim, count: int) -> Lines:
     """`count` lines each way, uniform over the surface's own domain, ends included.
 
     A surface without end in some direction has no domain of its own; there the trim's box serves.
     """
+    adaptor = surface.adaptor
     natural = (
         adaptor.FirstUParameter(), adaptor.LastUParameter(), adaptor.FirstVParameter(), adaptor.LastVParameter(),
     )  # fmt: skip
     endless = max(abs(x) for x in natural) > _ENDLESS
-    u, v = _ranges(adaptor, trim, trim.box if endless else natural)
+    u, v = _ranges(surface, trim, trim.box if endless else natural)
     share = np.linspace(0.0, 1.0, count)
     return Lines(u.lines(share), v.lines(share), u.closed, v.closed, (u.low, u.high, v.low, v.high))
 
 
-def spaced(adaptor: BRepAdaptor_Surface, trim: Trim, spacing: float, more: tuple[float, float] = (1.0, 1.0)) -> Lines:
+def spaced(surface: Surface, trim: Trim, spacing: float, more: tuple[float, float] = (1.0, 1.0)) -> Lines:
     """Lines over the trim's box so that neighbours are at most `spacing` mm apart, `more` times as many if asked.
 
     Lines are laid by the largest speed across them, so the gap holds everywhere as far as the probes saw.
     """
-    u, v = _ranges(adaptor, trim, trim.box)
-    spans = adaptor.NbUIntervals(GeomAbs_CN), adaptor.NbVIntervals(GeomAbs_CN)
+    u, v = _ranges(surface, trim, trim.box)
+    spans = surface.adaptor.NbUIntervals(GeomAbs_CN), surface.adaptor.NbVIntervals(GeomAbs_CN)
     n = [int(np.clip(2 * count + 1, *_PROBES)) for count in spans]
     share_u, share_v = np.linspace(0.0, 1.0, n[0]), np.linspace(0.0, 1.0, n[1])
     grid_u, grid_v = np.meshgrid(u.low + share_u * (u.high - u.low), v.low + share_v * (v.high - v.low), indexing="ij")
-    d = first_derivatives(adaptor, grid_u.ravel(), grid_v.ravel()).reshape(n[0], n[1], 3, 3)
+    d = surface.first(grid_u.ravel(), grid_v.ravel()).reshape(n[0], n[1], 3, 3)
     speed = np.nan_to_num(np.linalg.norm(d[:, :, 1:], axis=3))
     speed_u = speed[..., 0].max(axis=1) * (u.high - u.low)
     speed_v = speed[..., 1].max(axis=0) * (v.high - v.low)
@@ -94,8 +94,9 @@ def _cumulative(speed: Floats, share: Floats) -> Floats:
 
 
 def _ranges(
-    adaptor: BRepAdaptor_Surface, trim: Trim, bounds: tuple[float, float, float, float]
+    surface: Surface, trim: Trim, bounds: tuple[float, float, float, float]
 ) -> tuple[_Range, _Range]:  # fmt: skip
+    adaptor = surface.adaptor
     u0, u1, v0, v1 = bounds
     if adaptor.IsUPeriodic():
         u0, u1 = _shifted(u0, u1, trim.box[0], trim.box[1], adaptor.UPeriod())
@@ -109,7 +110,7 @@ def _ranges(
     size = float(np.hypot(trim.scale[0] * (u1 - u0), trim.scale[1] * (v1 - v0)))
 
     def is_point(us: Floats, vs: Floats) -> bool:
-        points = values(adaptor, us, vs)
+        points = surface.values(us, vs)
         return bool(np.linalg.norm(points - points[0], axis=1).max() < 1e-7 * size)
 
     return (

@@ -7,14 +7,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
-from OCP.BRepAdaptor import BRepAdaptor_Curve2d, BRepAdaptor_Surface
+from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
 from OCP.TopTools import TopTools_IndexedMapOfShape
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, Ints, Orientation
-from cad_io.kernel import edges_of, first_derivatives
+from cad_io.kernel import edges_of
 from cad_io.part import Part
+from cad_io.surface import Surface
 
 #: Normals (out of the material) on both sides of a smooth joint agree within this, rad.
 SMOOTH = np.deg2rad(1.0)
@@ -76,7 +77,7 @@ def smooth_joints(
 class _Curve(NamedTuple):
     """An edge's parameter curve on one of its faces; the range is the edge's own, the same for both faces."""
 
-    adaptor: BRepAdaptor_Surface
+    surface: Surface
     curve: BRepAdaptor_Curve2d
     low: float
     high: float
@@ -85,7 +86,7 @@ class _Curve(NamedTuple):
         """S, Su, Sv (k, 3, 3) at shares of the range."""
         t = self.low + (self.high - self.low) * share
         uv = np.array([self.curve.Value(x).Coord() for x in t.tolist()])
-        return first_derivatives(self.adaptor, uv[:, 0], uv[:, 1])
+        return self.surface.first(uv[:, 0], uv[:, 1])
 
 
 def _joined(part: Part, number: int) -> TopoDS_Face:
@@ -95,7 +96,7 @@ def _joined(part: Part, number: int) -> TopoDS_Face:
 
 def _curve(part: Part, number: int, edge: TopoDS_Edge) -> _Curve:
     low, high = BRep_Tool.Range_s(edge)
-    return _Curve(part.adaptor(number), BRepAdaptor_Curve2d(edge, _joined(part, number)), low, high)
+    return _Curve(part.surface(number), BRepAdaptor_Curve2d(edge, _joined(part, number)), low, high)
 
 
 def _shares(curve: _Curve, reach: float) -> Floats | None:

@@ -11,7 +11,7 @@ from cad_io.arrays import FaceGrid, Floats, Ints, Orientation, SurfaceSamples
 from cad_io.errors import SampleError
 from cad_io.face.curvature import curvature
 from cad_io.face.trim import Trim
-from cad_io.kernel import second_derivatives, translated
+from cad_io.kernel import translated
 from cad_io.part import Part
 from cad_io.sample.at_point import locate
 from cad_io.sample.gap import border_gap
@@ -96,15 +96,15 @@ def sample(
 
 
 def _sample_face(part: Part, number: int, trim: Trim, grid: int | None, step: float | None) -> _FaceSamples | None:
-    adaptor = part.adaptor(number)
+    surface = part.surface(number)
     more = np.ones(2)
     for doubling in range(_DOUBLINGS + 1):
         finer = 2**doubling
         for _ in range(_CORRECTIONS):
             if grid is not None:
-                lines = uniform(adaptor, trim, finer * (grid - 1) + 1)
+                lines = uniform(surface, trim, finer * (grid - 1) + 1)
             else:
-                lines = spaced(adaptor, trim, float(step or 0) / finer, (float(more[0]), float(more[1])))
+                lines = spaced(surface, trim, float(step or 0) / finer, (float(more[0]), float(more[1])))
             inside = trim.inside_grid(lines.u, lines.v)
             if not inside.any():
                 break
@@ -125,7 +125,7 @@ def _on_grid(part: Part, number: int, trim: Trim, lines: Lines, inside: NDArray[
     index = np.full(inside.shape, -1, np.int32)
     index[i, j] = np.arange(len(i))
     uv = np.stack([lines.u[i], lines.v[j]], axis=1)
-    derivatives = second_derivatives(part.adaptor(number), uv[:, 0], uv[:, 1])
+    derivatives = part.surface(number).second(uv[:, 0], uv[:, 1])
     _, width_u = _cells(lines.u, lines.closed_u, *lines.span[:2])
     _, width_v = _cells(lines.v, lines.closed_v, *lines.span[2:])
     weight = _density(derivatives) * width_u[i] * width_v[j]
@@ -148,7 +148,7 @@ def _in_triangles(part: Part, number: int) -> _FaceSamples | None:
         return None
     corners = mesh.uv[mesh.corner]
     uv = corners.mean(axis=1)
-    derivatives = second_derivatives(part.adaptor(number), uv[:, 0], uv[:, 1])
+    derivatives = part.surface(number).second(uv[:, 0], uv[:, 1])
     (a, b) = (corners[:, k] - corners[:, 0] for k in (1, 2))
     weight = _density(derivatives) * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
     # Triangles that share two corners are neighbours.

@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 from OCP.BRep import BRep_Builder, BRep_Tool
-from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeVertex
 from OCP.Geom import Geom_BSplineCurve
 from OCP.Geom2d import Geom2d_BSplineCurve
@@ -18,6 +17,7 @@ from scipy.interpolate import BSpline, make_interp_spline
 
 from cad_io.arrays import Floats
 from cad_io.split.contour import Spline
+from cad_io.surface import Surface
 
 #: Most that an edge's curve in space may leave its curve on the surface, mm.
 DEVIATION = 1e-4
@@ -46,11 +46,11 @@ def surface_edge(face: Any, spline: Spline) -> Any:
     ValueError
         The deviation cannot be reached.
     """
-    surface = BRepAdaptor_Surface(face, False)
+    surface = Surface(face)
     curve = BSpline(spline.knots, spline.poles, 3)
 
     def at(t: Floats) -> Floats:
-        return np.array([surface.Value(u, v).Coord() for u, v in curve(t).tolist()])
+        return surface.values(*curve(t).T)
 
     knots = np.unique(spline.knots)
     sites = np.linspace(knots[0], knots[-1], 9) if len(knots) < 5 else np.union1d(knots, 0.5 * (knots[1:] + knots[:-1]))

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
-from OCP.BRepAdaptor import BRepAdaptor_Curve2d, BRepAdaptor_Surface
+from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.BRepTools import BRepTools
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
@@ -19,9 +19,10 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
 
 from cad_io.arrays import Floats, Ints
-from cad_io.kernel import edges_of, values
+from cad_io.kernel import edges_of
 from cad_io.kernel.components import as_one
 from cad_io.part import Part
+from cad_io.surface import Surface
 
 #: How far a border curve may pass a mesh's nodes, mm.
 _ON = 1e-7
@@ -92,10 +93,10 @@ def _taken(part: Part, number: int) -> UVMesh | None:
         best = int(np.argmin([np.abs(on - uv[nodes]).max() for on in there]))
         border.append(BorderCurve(nodes, parameter, curves[best]))
         on_curve.append(there[best])
-    return _bordered(UVMesh(uv, corner, tuple(border)), on_curve, part.adaptor(number))
+    return _bordered(UVMesh(uv, corner, tuple(border)), on_curve, part.surface(number))
 
 
-def _bordered(mesh: UVMesh, on_curve: Sequence[Floats], adaptor: BRepAdaptor_Surface) -> UVMesh:
+def _bordered(mesh: UVMesh, on_curve: Sequence[Floats], surface: Surface) -> UVMesh:
     """The mesh, and triangles from its outline to the border curves where these pass its nodes.
 
     The mesher has one node for all edges that end in a vertex, however far apart their curves end (0.01 mm was found
@@ -107,7 +108,7 @@ def _bordered(mesh: UVMesh, on_curve: Sequence[Floats], adaptor: BRepAdaptor_Sur
     for (nodes, parameter, curve), there in zip(mesh.border, on_curve, strict=True):
         here = mesh.uv[nodes]
         passed = np.flatnonzero((np.abs(there - here) > _SAME * np.maximum(1.0, np.abs(here))).any(axis=1))
-        off = values(adaptor, *there[passed].T) - values(adaptor, *here[passed].T)
+        off = surface.values(*there[passed].T) - surface.values(*here[passed].T)
         passed = passed[np.linalg.norm(off, axis=1) > _ON]
         own = nodes.copy()
         own[passed] = count + np.arange(len(passed))

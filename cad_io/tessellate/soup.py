@@ -9,7 +9,7 @@ from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from OCP.GeomAbs import GeomAbs_CN
 
 from cad_io.arrays import Floats
-from cad_io.kernel import interval_ends, values
+from cad_io.kernel import interval_ends
 from cad_io.part import Part
 from cad_io.tessellate.mesh import UVMesh
 
@@ -126,7 +126,7 @@ class Soup:
         order = np.argsort(face, kind="stable")
         ends = np.flatnonzero(np.diff(face[order])) + 1
         for rows in np.split(order, ends) if len(order) else ():
-            point[rows] = values(self.part.adaptor(int(face[rows[0]])), uv[rows, 0], uv[rows, 1])
+            point[rows] = self.part.surface(int(face[rows[0]])).values(uv[rows, 0], uv[rows, 1])
         return point
 
     def _on_edges(self, rows: Rows, row: Indices, edge: Indices, share: float) -> tuple[Floats, Floats]:

@@ -16,7 +16,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
-from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.TopAbs import TopAbs_REVERSED
@@ -25,9 +24,10 @@ from OCP.TopoDS import TopoDS
 
 from cad_io.arrays import FaceLabels, Floats, Style
 from cad_io.errors import WriteError
-from cad_io.kernel import first_derivatives, translated
+from cad_io.kernel import translated
 from cad_io.kernel.components import compound
 from cad_io.split.pieces import MIXED, Piece, Split
+from cad_io.surface import Surface
 from cad_io.write.aside import aside
 from cad_io.write.label_mesh import label_mesh
 
@@ -163,7 +163,7 @@ def _mesh(face: Any, meshed: Any, labels: FaceLabels | None) -> dict[int, _Mesh]
     point, label = np.array(list(nodes)), np.zeros(len(triangle), np.int32)
     if labels is not None:
         uv, point, triangle, label = label_mesh(face, uv, point, triangle, labels)
-    s = first_derivatives(BRepAdaptor_Surface(face, False), uv[:, 0], uv[:, 1])
+    s = Surface(face).first(uv[:, 0], uv[:, 1])
     normal = np.cross(s[:, 1], s[:, 2])
     if face.Orientation() == TopAbs_REVERSED:
         triangle, normal = triangle[:, ::-1], -normal

@@ -1,0 +1,200 @@
+"""B-spline surfaces, rational or not, of any degree: values, first and second derivatives at many parameters.
+
+Basis functions and their derivatives by de Boor's triangle (Piegl and Tiller, *The NURBS Book*, A2.2 and A2.3); rational
+surfaces as quotients of these with the weight as a fourth coordinate (the same, A4.4).
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from cad_io.jit import decorators
+
+entry, kernel = decorators(__file__)
+
+#: Highest degree that the CAD kernel knows.
+DEGREE = 25
+
+
+@kernel
+def _span(knot, degree, t):  # type: ignore[no-untyped-def]
+    """The last interval of positive length that begins at or before t, within the range; the end belongs to the last one."""
+    low, high = degree, len(knot) - degree - 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if t >= knot[middle]:
+            low = middle
+        else:
+            high = middle
+    # A knot at the range's end has no interval behind it.
+    while low > degree and knot[low] >= knot[low + 1]:
+        low -= 1
+    return low
+
+
+@kernel
+def _basis(knot, degree, span, t, order, left, right, table, out):  # type: ignore[no-untyped-def]
+    """Write the basis functions that are not zero in a span (degree + 1,), and derivatives up to `order` (2 at most), as rows."""
+    table[0, 0] = 1.0
+    for j in range(1, degree + 1):
+        left[j] = t - knot[span + 1 - j]
+        right[j] = knot[span + j] - t
+        saved = 0.0
+        for r in range(j):
+            # Below the diagonal the distances of knots, above it the functions.
+            table[j, r] = right[r + 1] + left[j - r]
+            term = table[r, j - 1] / table[j, r]
+            table[r, j] = saved + right[r + 1] * term
+            saved = left[j - r] * term
+        table[j, j] = saved
+    for r in range(degree + 1):
+        out[0, r] = table[r, degree]
+        out[1, r], out[2, r] = 0.0, 0.0
+    if order > 0 and degree > 0:
+        for r in range(degree + 1):
+            total = 0.0
+            if r > 0:
+                total += table[r - 1, degree - 1] / table[degree, r - 1]
+            if r < degree:
+                total -= table[r, degree - 1] / table[degree, r]
+            out[1, r] = degree * total
+    if order > 1 and degree > 1:
+        for r in range(degree + 1):
+            # The first derivative's two functions of one degree less, each derived once more.
+            total = 0.0
+            for k in range(2):
+                i = r - 1 + k
+                if i < 0 or i >= degree:
+                    continue
+                inner = 0.0
+                if i > 0:
+                    inner += table[i - 1, degree - 2] / table[degree - 1, i - 1]
+                if i < degree - 1:
+                    inner -= table[i, degree - 2] / table[degree - 1, i]
+                inner *= (degree - 1) / table[degree, i]
+                total += inner if k == 0 else -inner
+            out[2, r] = degree * total
+
+
+@kernel
+def _wrapped(t, first, period):  # type: ignore[no-untyped-def]
+    """A parameter of a periodic surface within its first period, both ends included; of others (period 0) as it is."""
+    if period > 0.0 and (t < first or t > first + period):
+        t -= period * np.floor((t - first) / period)
+    return t
+
+
+class Net(NamedTuple):
+    """A surface: knots with their multiplicities, degrees, periods (0 where there is none), pole (a, b, 4): poles times their
+    weights, and the weights, which differ if `rational`. It ranges from `knot[degree]` to `knot[-degree - 1]`."""
+
+    knot_u: Any
+    knot_v: Any
+    degree_u: int
+    degree_v: int
+    period_u: float
+    period_v: float
+    pole: Any
+    rational: bool
+
+
+class _Room(NamedTuple):
+    """Room to work in: basis functions along u and v, what they are made from, rows summed along v, and what is found."""
+
+    bu: Any
+    bv: Any
+    left: Any
+    right: Any
+    table: Any
+    across: Any
+    found: Any
+    origin: Any
+
+
+@kernel
+def _summed(net, row, column, order, room):  # type: ignore[no-untyped-def]
+    """Sum a patch's poles: S, Su, Sv, Suu, Svv, Suv and their weights into `room.found`, from the patch's first pole.
+
+    What is far from the origin would lose digits of its derivatives.
+    """
+    bu, bv, across, found, origin, pole = room.bu, room.bv, room.across, room.found, room.origin, net.pole
+    top, left, wide = row - net.degree_u, column - net.degree_v, 4 if net.rational else 3
+    for c in range(3):
+        origin[c] = pole[top, left, c] / pole[top, left, 3]
+    for a in range(net.degree_u + 1):
+        for d in range(order + 1):
+            x, y, z, w = 0.0, 0.0, 0.0, 0.0
+            for b in range(net.degree_v + 1):
+                share, weight = bv[d, b], pole[top + a, left + b, 3]
+                x += share * (pole[top + a, left + b, 0] - origin[0] * weight)
+                y += share * (pole[top + a, left + b, 1] - origin[1] * weight)
+                z += share * (pole[top + a, left + b, 2] - origin[2] * weight)
+                w += share * weight
+            across[d, a, 0], across[d, a, 1], across[d, a, 2], across[d, a, 3] = x, y, z, w
+    for k in range(1 if order == 0 else 3 if order == 1 else 6):
+        # How often along u and along v.
+        du = 1 if k == 1 or k == 5 else 2 if k == 3 else 0
+        dv = 1 if k == 2 or k == 5 else 2 if k == 4 else 0
+        for c in range(wide):
+            total = 0.0
+            for a in range(net.degree_u + 1):
+                total += bu[du, a] * across[dv, a, c]
+            found[k, c] = total
+
+
+@kernel
+def _divided(found, origin, order, out):  # type: ignore[no-untyped-def]
+    """Write the quotients of a rational surface by its weight, and their derivatives."""
+    w = found[0, 3]
+    for c in range(3):
+        p = found[0, c] / w
+        out[0, c] = origin[c] + p
+        if order > 0:
+            pu, pv = (found[1, c] - found[1, 3] * p) / w, (found[2, c] - found[2, 3] * p) / w
+            out[1, c], out[2, c] = pu, pv
+            if order > 1:
+                out[3, c] = (found[3, c] - 2.0 * found[1, 3] * pu - found[3, 3] * p) / w
+                out[4, c] = (found[4, c] - 2.0 * found[2, 3] * pv - found[4, 3] * p) / w
+                out[5, c] = (found[5, c] - found[1, 3] * pv - found[2, 3] * pu - found[5, 3] * p) / w
+
+
+@kernel
+def _point(u, v, net, order, room, out):  # type: ignore[no-untyped-def]
+    """Write value and derivatives at one pair of parameters."""
+    s = _wrapped(u, net.knot_u[net.degree_u], net.period_u)
+    t = _wrapped(v, net.knot_v[net.degree_v], net.period_v)
+    if not (s - s == 0.0 and t - t == 0.0):
+        out[:] = np.nan
+        return
+    row, column = _span(net.knot_u, net.degree_u, s), _span(net.knot_v, net.degree_v, t)
+    _basis(net.knot_u, net.degree_u, row, s, order, room.left, room.right, room.table, room.bu)
+    _basis(net.knot_v, net.degree_v, column, t, order, room.left, room.right, room.table, room.bv)
+    _summed(net, row, column, order, room)
+    if net.rational:
+        _divided(room.found, room.origin, order, out)
+        return
+    for k in range(len(out)):
+        for c in range(3):
+            out[k, c] = room.found[k, c] + (room.origin[c] if k == 0 else 0.0)
+
+
+@entry
+def evaluate(u, v, net, order, out):  # type: ignore[no-untyped-def]
+    """Write values and derivatives of a surface.
+
+    Parameters
+    ----------
+    u, v : (n,) float64
+    net : Net
+    order : int
+        0, 1 or 2.
+    out : (n, 1, 3, or 6, 3) float64, written
+        S; Su, Sv; Suu, Svv, Suv. nan where a parameter is none.
+    """
+    wide = DEGREE + 1
+    room = _Room(
+        np.empty((3, wide)), np.empty((3, wide)), np.empty(wide), np.empty(wide), np.empty((wide, wide)),
+        np.empty((3, wide, 4)), np.empty((6, 4)), np.empty(3),
+    )  # fmt: skip
+    for i in range(len(u)):
+        _point(u[i], v[i], net, order, room, out[i])
