@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import reference
 from cad_parts import as_nurbs, ball, compound, cone, drilled, patch, real, ring, rod
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
@@ -12,6 +13,7 @@ from OCP.TColgp import TColgp_Array2OfPnt
 from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal, TColStd_Array2OfReal
 
 from cad_io import read_part
+from cad_io.face.curvature import PARALLEL, UMBILIC, curvature
 from cad_io.kernel import faces, first_derivatives, is_kernel_error, second_derivatives, values
 from cad_io.surface import Surface
 
@@ -182,3 +184,29 @@ def test_what_is_no_parameter_is_no_point():
             found = surface.second(bad, np.array([0.5, 0.5, np.nan]))
         assert np.isnan(found[:, 0]).any(axis=1).all()
         assert surface.second(np.zeros(0), np.zeros(0)).shape == (0, 6, 3)
+
+
+@given(seed=st.integers(0, 10**6), sign=st.sampled_from([1.0, -1.0]), size=st.sampled_from([np.inf, 50.0]))
+@settings(max_examples=40, deadline=None)
+def test_curvature_is_that_of_the_formulas(seed, sign, size):
+    rng = np.random.default_rng(seed)
+    d = rng.normal(0, 1, (200, 6, 3)) * 10.0 ** rng.integers(-3, 4, (200, 6, 1))
+    d[:5, 2] = 2 * d[:5, 1]  # parallel tangents
+    d[5:10, 3:] = 0.0  # flat
+    d[10:15, 1:] = [[1, 0, 0], [0, 1, 0], [0, 0, 0.2], [0, 0, 0.2], [0, 0, 0]]  # umbilics
+    for row, k in zip(range(15, 33), np.ndindex(6, 3), strict=True):
+        d[row][k] = (np.nan, np.inf, -np.inf)[row % 3]
+    normal, kappa, direction, bad = reference.curvature(d, sign, size, PARALLEL, UMBILIC)
+    found = curvature(d, sign, size)
+    assert (found.bad == bad).all()
+    assert bad.sum() > 20
+    assert (~bad).sum() > 150
+    scale = np.abs(kappa[~bad]).max(axis=1, keepdims=True) + 1e-12
+    assert found.normal[~bad] == pytest.approx(normal[~bad], abs=1e-12)
+    assert found.curvature[~bad] / scale == pytest.approx(kappa[~bad] / scale, abs=1e-9)
+    clear = ~bad & (kappa[:, 0] - kappa[:, 1] > 1e-5 * np.abs(kappa).max(axis=1))
+    across = np.linalg.norm(np.cross(found.direction_max[clear], direction[clear]), axis=1)
+    assert across.max() < 1e-6
+    assert found.direction_max[5:15] == pytest.approx(direction[5:15])
+    for column in (found.normal, found.curvature, found.direction_max):
+        assert np.isnan(column[bad]).all()
