@@ -87,10 +87,10 @@ def test_words_for_faces_that_mean_nothing(text, cause):
 
 @pytest.mark.parametrize("text", ["1-9999999999", "!1-9999999999", f"F1-F{'9' * 5000}", f"{'9' * 5000}-1"])
 def test_no_range_is_built_that_the_part_has_not(text):
-    began = time.perf_counter()
+    began = time.process_time()
     with pytest.raises(OptionError, match="no face F9"):
         select_faces(FACES, text)
-    assert time.perf_counter() - began < 0.5
+    assert time.process_time() - began < 0.5
 
 
 def test_components_without_names():

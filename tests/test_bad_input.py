@@ -56,14 +56,14 @@ def bomb(file):
 def test_what_is_no_cad_file_is_not_read_to_its_end(tmp_path, name, make, match):
     make(tmp_path / name)
     tracemalloc.start()
-    began = time.perf_counter()
+    began = time.process_time()
     try:
         with pytest.raises(ReadError, match=match):
             load(str(tmp_path / name))
         assert tracemalloc.get_traced_memory()[1] < 1e6
     finally:
         tracemalloc.stop()
-    assert time.perf_counter() - began < 1
+    assert time.process_time() - began < 1
 
 
 @pytest.mark.parametrize(
@@ -81,11 +81,11 @@ def test_what_is_no_cad_file_is_not_read_to_its_end(tmp_path, name, make, match)
 )  # fmt: skip
 def test_garbage_behind_a_good_start(tmp_path, name, content, match):
     (tmp_path / name).write_bytes(content)
-    began = time.perf_counter()
+    began = time.process_time()
     with pytest.raises(ReadError, match=match) as caught:
         read_part(tmp_path / name)
     assert str(caught.value).startswith(str(tmp_path / name))
-    assert time.perf_counter() - began < 5
+    assert time.process_time() - began < 5
 
 
 @pytest.mark.parametrize("number", ["1.E12", "1.E300", "-1.E99"])

@@ -281,5 +281,5 @@ def test_the_command_names_our_tessellation(whole, tmp_path):
     writer.Transfer(as_nurbs(rod(900.0, 900.0)), STEPControl_AsIs)
     writer.Write(str(tmp_path / "part.step"))
     words = ["part.step", "--cutter", "R3L40", "--faces", "all", "--grid", "3", "--tolerance", "1e-4", "--quiet"]
-    ran = run(*words, "--read-timeout", "0.4", cwd=tmp_path, timeout=60)
+    ran = run(*words, "--read-timeout", "0.8", cwd=tmp_path, timeout=60)
     assert_one_line(ran, 3, "part.step", "our own tessellation")

@@ -145,11 +145,14 @@ def prepare(
     """Read, sample, classify and surround with obstacles; arguments as for `run`."""
     clock = clock or _Clock(None)
     with clock.stage("read"):
-        scene = _scene(part, options, read_timeout)
-        whole = scene.part
-    chosen = choose(whole, options.faces, scene.ignored, scene.ignore)
+        stands = _read(part, options, read_timeout)
     cutters = tuple(ranked(options.judged))
     with clock.stage("sample"):
+        scene = Scene.of(
+            stands, setup=options.setup, flip=options.flip, tolerance=options.tolerance, ignore=options.ignore
+        )
+        whole = scene.part
+        chosen = choose(whole, options.faces, scene.ignored, scene.ignore)
         spacing: Spacing = options.spacing
         if options.grid is None and options.spacing is None:
             spacing = default_spacing(whole, scene.orientation, chosen.targets, cutters)
@@ -174,13 +177,13 @@ def prepare(
     return Prepared(scene, options, chosen, spacing, samples, surface_class, region, within, conditions, cutters)
 
 
-def _scene(part: Any, options: Options, read_timeout: float) -> Scene:
+def _read(part: Any, options: Options, timeout: float) -> Part | Scene:
     read = part.part if isinstance(part, Scene) else part
     if isinstance(read, Part) and options.unit is not None:
         raise OptionError("the part has been read already: give the unit to read_part", file=read.file)
-    if not isinstance(read, Part):
-        part = read_part(part, unit=options.unit, timeout=read_timeout)
-    return Scene.of(part, setup=options.setup, flip=options.flip, tolerance=options.tolerance, ignore=options.ignore)
+    if isinstance(part, Part | Scene):
+        return part
+    return read_part(part, unit=options.unit, timeout=timeout)
 
 
 def judge(

@@ -1,9 +1,9 @@
 """Obstacles: triangles in tree order, what they enclose, and how deep one may reach into a cutter."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,6 +63,10 @@ class Obstacles(Record):
             raise UnjudgeableError("the part's triangles have corners that are no points: export it again")
         if not len(self.weight):
             object.__setattr__(self, "weight", np.zeros(len(self.triangles), np.int8))
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Trees are built again where they are needed.
+        return {each.name: getattr(self, each.name) for each in fields(self)}
 
     @cached_property
     def _built(self) -> tuple[Ints, Floats, int]:

@@ -10,7 +10,7 @@ from cad_io import Orientation, Part, read_part
 from cad_io.arrays import Record
 from cad_io.part.orient import orient
 from cad_io.tessellate.triangles import At
-from plan_cutters.domain.checks import flag, number, shown
+from plan_cutters.domain.checks import flag, number
 from plan_cutters.domain.posture import unit
 from plan_cutters.errors import OptionError
 from plan_cutters.options import MOST_TOLERANCE
@@ -74,7 +74,7 @@ class Scene(Record):
         (0.02, True)
         >>> Scene.of(scene, tolerance=0.01)
         Traceback (most recent call last):
-        plan_cutters.errors.OptionError: the scene was made with tolerance 0.02: give another one there
+        plan_cutters.errors.OptionError: the scene was made with tolerance=0.02: give another one there
         """
         if unknown := sorted(set(options) - set(_DEFAULTS)):
             raise OptionError(f"a scene has no option {unknown[0]}; it has {', '.join(_DEFAULTS)}")
@@ -89,7 +89,7 @@ class Scene(Record):
             for word in options:
                 own = part.options[word]
                 if not (np.allclose(own, setup, atol=1e-12) if word == "setup" else own == asked[word]):
-                    raise OptionError(f"the scene was made with {word} {shown(own)}: give another one there")
+                    raise OptionError(f"the scene was made with {word}={own!r}: give another one there")
             return part
         whole = part if isinstance(part, Part) else read_part(part)
         ignored = tuple(sorted(ignored_faces(whole, given["ignore"])))
