@@ -198,7 +198,7 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
         "build": ("triangle", 7_200, lambda k: k and tree.build(loose[:k])),
         "probe": ("posture", 400, lambda k: search.probe(
             np.arange(k), point, normal, axis, lean, RADIUS, LENGTH, depths, built, triangle)),
-        "dummy_free": ("sample", 400, lambda k: search.dummy_free(
+        "dummy_clear": ("sample", 400, lambda k: search.dummy_clear(
             np.arange(k), contacts, RADIUS, LENGTH, SAFE, solids, free)),
         "search": ("sample", 400, lambda k: search.search(
             np.arange(k), contacts, waves.ranges(rotations, 0.7), RADIUS, LENGTH, SAFE, BLOCKED, solids, solids, out)),

@@ -16,14 +16,14 @@ HEAD = "import time; from pathlib import Path; import numpy as np; one = np.zero
 ENTRIES = {
     "import of the compiler": "import numba",
     "tree.build": "from plan_cutters.kernels.tree import build; build(one)",
-    "search, probe, dummy_free": (
+    "search, probe, dummy_clear": (
         "from plan_cutters.kernels import search as s; from plan_cutters.kernels.tree import build\n"
         "from plan_cutters.kernels.rows import Contacts, Found, Ranges, Tree\n"
         "_, box, depth = build(one); p, c, n = np.zeros((1, 3)), np.zeros((1, 2)), np.zeros(1)\n"
         "i, b = np.zeros(1, np.int32), np.zeros(1, np.uint8)\n"
         "t, a = Tree(one, box, depth), Contacts(p, p, p, c)\n"
         "from plan_cutters.kernels.material import sheet; w = sheet(t)\n"
-        "s.dummy_free(none, a, 1.0, 9.0, 0.01, w, np.zeros(1, bool))\n"
+        "s.dummy_clear(none, a, 1.0, 9.0, 0.01, w, np.zeros(1, bool))\n"
         "s.probe(none, p, p, p, p, 1.0, 9.0, n, t, i)\n"
         "s.search(none, a, Ranges(n, n, 0.0, 1.5, np.zeros(3), -2.0), 1.0, 9.0, 0.01, 0.01, w, w, Found(b, p, p, n, i, b))"
     ),

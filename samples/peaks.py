@@ -121,7 +121,7 @@ def figures(shape: Shape, n: int = 81, mesh: int = 141) -> dict:
     ranges = Ranges(np.cos(turn), np.sin(turn), 0.0, np.pi / 2, np.array([0.0, 0, 1]), -2.0)
     for radius, length in ((6.0, 80.0), (8.0, 90.0)):
         free, reach = np.zeros(n, bool), blank(n)
-        search.dummy_free(np.flatnonzero(convex.ravel()), contacts, radius, length, 0.03, obstacles, free)
+        search.dummy_clear(np.flatnonzero(convex.ravel()), contacts, radius, length, 0.03, obstacles, free)
         search.search(
             np.flatnonzero(~free), contacts, ranges, radius, length, 0.03, 0.05, obstacles, obstacles, found_of(reach)
         )

@@ -194,7 +194,7 @@ def test_kernels_take_what_is_no_number_for_a_hit():
         *((x, n, e1) for x in spoilt(p)), *((p, x, e1) for x in spoilt(n)), *((p, n, x) for x in spoilt(e1)),
     ]:  # fmt: skip
         free = np.ones(1, bool)
-        search.dummy_free(one, Contacts(point[None], normal[None], lean[None], straight), 2.0, 20.0, 0.01, far, free)
+        search.dummy_clear(one, Contacts(point[None], normal[None], lean[None], straight), 2.0, 20.0, 0.01, far, free)
         if lean is e1:
             assert not free[0]
         triangle = np.full(1, -1, np.int32)
@@ -212,7 +212,7 @@ def test_kernels_take_what_is_no_number_for_a_hit():
     assert tried == 9
     # The same calls with good numbers find the way clear: what was seen above is the nan.
     free = np.zeros(1, bool)
-    search.dummy_free(one, Contacts(p[None], n[None], e1[None], straight), 2.0, 20.0, 0.01, far, free)
+    search.dummy_clear(one, Contacts(p[None], n[None], e1[None], straight), 2.0, 20.0, 0.01, far, free)
     assert free[0]
 
 

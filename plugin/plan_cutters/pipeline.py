@@ -284,7 +284,7 @@ def _warm(samples: SurfaceSamples, cutter: Cutter, conditions: Conditions) -> No
     from plan_cutters.kernels import search
 
     none, contacts, found = np.zeros(0, np.int64), contacts_of(samples), found_of(blank(0))
-    search.dummy_free(none, contacts, cutter.radius, cutter.length, conditions.tolerance,
+    search.dummy_clear(none, contacts, cutter.radius, cutter.length, conditions.tolerance,
                       conditions.obstacles.solids, np.zeros(0, bool))  # fmt: skip
     search.search(none, contacts, conditions.ranges, cutter.radius, cutter.length, *conditions.depths,
                   conditions.obstacles.solids, conditions.around.surely.solids, found)  # fmt: skip

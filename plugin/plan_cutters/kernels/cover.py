@@ -1,6 +1,6 @@
 """Does the posture of a sample, its axis kept, also serve the surface around it? The argument is in `docs/between_samples.md`.
 
-Obstacles are shared out by distance from the contact. Within `reach` of it the surface that the contact lies on is
+Obstacles are shared out by distance from the contact. Within `extent` of it the surface that the contact lies on is
 held below a paraboloid by its curvature and a bound on the change of curvature, and the cutter above it: nothing to
 test. Everything else is tested against the cutter moved along with the contact: a stadium instead of a disk across
 the axis, for the directions in which the contact wanders and the cutter turns about its axis.
@@ -14,9 +14,9 @@ from plan_cutters.kernels import hit
 from plan_cutters.kernels.hit import BODY, HALF, HIGH, LOW, OFFSET, RADIUS, A, P, X, Y
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.rows import Frame, Scratch
-from plan_cutters.kernels.zone import _REACHES, REACH, _held, _near, _zone
+from plan_cutters.kernels.zone import _EXTENTS, FARTHEST, _held, _near, _zone
 
-#: Largest angle (rad) between normals within `reach`: up to it, the surface is a graph over its tangent planes.
+#: Largest angle (rad) between normals within `extent`: up to it, the surface is a graph over its tangent planes.
 _MOST_TURN = 0.5
 #: Steps along the lean that the patch is cut into: finer ones where fewer do not do.
 _STEPS = (2, 6, 18)
@@ -154,7 +154,7 @@ def cover(  # type: ignore[no-untyped-def]
     """
     body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
     scratch = Scratch(np.empty(64, np.int64), np.empty((8, 3)), np.empty((8, 3)), np.empty((0, 3, 3)))
-    most, near = np.empty((_REACHES, 7)), np.empty(6)
+    most, near = np.empty((_EXTENTS, 7)), np.empty(6)
     for row in rows:
         covered[row] = False
         p, n, a = patches.point[row], patches.normal[row], patches.axis[row]
@@ -192,9 +192,9 @@ def cover(  # type: ignore[no-untyped-def]
             beside = (2.0 * wobble * h + 0.5 * turn * turn + turn * turn / (sine - turn)) / (sine - turn)
             psi = min(turn / (sine - turn), (abs(k_tt) + abs(k_ft)) * h / sine + beside)
         # The largest distance up to which curvature alone keeps surface and cutter apart.
-        reach = 0.0
-        for step in range(_REACHES):
-            distance = h * (2.0 + (REACH - 2.0) * (step / (_REACHES - 1)) ** 2)
+        extent = 0.0
+        for step in range(_EXTENTS):
+            distance = h * (2.0 + (FARTHEST - 2.0) * (step / (_EXTENTS - 1)) ** 2)
             whole = most[step, 3]
             if distance > full:
                 break
@@ -216,9 +216,9 @@ def cover(  # type: ignore[no-untyped-def]
                              distance, radius):  # fmt: skip
                     break
                 near[2], near[3], near[4] = most[step, 0] + extra, most[step, 1] + extra, most[step, 2]
-            reach = distance
+            extent = distance
             near[1] = 0.6 * whole * distance * distance + chord
-        near[0], near[5] = reach - h - chord, chord + 1e-9
+        near[0], near[5] = extent - h - chord, chord + 1e-9
         if not near[0] > 0.0:
             continue
         for k in range(3):

@@ -81,8 +81,8 @@ def _thin_apart(box, i, body, low, high, radius, dx, dy, dz):  # type: ignore[no
     side = mx * body[6] + my * body[7] + mz * body[8]
     aside = mx * body[9] + my * body[10] + mz * body[11]
     apart = abs(mx * dx + my * dy + mz * dz + body[OFFSET] * side - 0.5 * (low + high) * along)
-    reach = 0.5 * (high - low) * abs(along) + radius * np.sqrt(max(0.0, 1.0 - along * along)) + body[HALF] * abs(aside)
-    return apart > reach + box[i, 14] + 1e-9
+    extent = 0.5 * (high - low) * abs(along) + radius * np.sqrt(max(0.0, 1.0 - along * along)) + body[HALF] * abs(aside)
+    return apart > extent + box[i, 14] + 1e-9
 
 
 @kernel
@@ -100,8 +100,8 @@ def _box_apart(box, i, body, rate):  # type: ignore[no-untyped-def]
     if height + diagonal < low or height - diagonal > high:
         return True
     if height < low or height > high:
-        reach = _half_width(box, i, body[3], body[4], body[5])
-        if height + reach < low or height - reach > high:
+        extent = _half_width(box, i, body[3], body[4], body[5])
+        if height + extent < low or height - extent > high:
             return True
     along = dx * body[9] + dy * body[10] + dz * body[11]
     along -= min(body[HALF], max(-body[HALF], along))
@@ -113,10 +113,10 @@ def _box_apart(box, i, body, rate):  # type: ignore[no-untyped-def]
         return True
     distance = np.sqrt(square)
     ux, uy = across / distance, along / distance
-    reach = _half_width(
+    extent = _half_width(
         box, i, ux * body[6] + uy * body[9], ux * body[7] + uy * body[10], ux * body[8] + uy * body[11]
     )  # fmt: skip
-    return distance - reach > radius or _thin_apart(box, i, body, low, high, radius, dx, dy, dz)
+    return distance - extent > radius or _thin_apart(box, i, body, low, high, radius, dx, dy, dz)
 
 
 @kernel

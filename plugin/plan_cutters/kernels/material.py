@@ -263,8 +263,8 @@ def _apart(v, cx, cy, cz, half):  # type: ignore[no-untyped-def]
     for ex, ey, ez in ((ux, uy, uz), (wx, wy, wz), (ax - qx, ay - qy, az - qz)):
         for x, y, z in ((0.0, ez, -ey), (-ez, 0.0, ex), (ey, -ex, 0.0)):
             a, b, c = x * ax + y * ay + z * az, x * bx + y * by + z * bz, x * qx + y * qy + z * qz
-            reach = half * (abs(x) + abs(y) + abs(z))
-            if min(a, min(b, c)) > reach or max(a, max(b, c)) < -reach:
+            extent = half * (abs(x) + abs(y) + abs(z))
+            if min(a, min(b, c)) > extent or max(a, max(b, c)) < -extent:
                 return True
     return False
 

@@ -322,7 +322,7 @@ def first_reason(rows, contacts, ranges, radius, reason):  # type: ignore[no-unt
 
 
 @entry
-def dummy_free(rows, contacts, radius, length, safe, solids, free):  # type: ignore[no-untyped-def]
+def dummy_clear(rows, contacts, radius, length, safe, solids, clear):  # type: ignore[no-untyped-def]
     """Test the dummy cutter `(2 radius, length)`, bottom centre on the sample, axis along the normal.
 
     Parameters
@@ -333,7 +333,7 @@ def dummy_free(rows, contacts, radius, length, safe, solids, free):  # type: ign
         The flat-end cutter, mm, and the depth up to which a triangle does not matter.
     solids : Solids
         All that may be in the way.
-    free : (n,) bool, written
+    clear : (n,) bool, written
         True where nothing reaches deeper than `safe` into the dummy, and the dummy lies in no body.
     """
     body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
@@ -345,7 +345,7 @@ def dummy_free(rows, contacts, radius, length, safe, solids, free):  # type: ign
         cross(n, f, t)
         stand(body, Frame(contacts.point[row], n, f, t), 1.0, 0.0, 0.0, 2.0 * radius - safe, safe, length - safe)
         triangle, _, _, _ = tree_hit(solids.tree, body, 0.0, hint, scratch)
-        free[row] = triangle < 0 and _inside(body, inner_height(radius, length), solids, scratch.stack) < MAYBE_INSIDE
+        clear[row] = triangle < 0 and _inside(body, inner_height(radius, length), solids, scratch.stack) < MAYBE_INSIDE
         if triangle >= 0:
             hint = triangle
 

@@ -6,8 +6,8 @@ import numpy as np
 
 from plan_cutters.kernels.jit import kernel
 
-#: Distances tried for `reach`, and the largest of them in patch radii.
-_REACHES, REACH = 17, 10.0
+#: Distances tried for `extent`, and the largest of them in patch radii.
+_EXTENTS, FARTHEST = 17, 10.0
 #: Rings of grid nodes looked at around a contact.
 _RINGS = 40
 
@@ -55,8 +55,8 @@ def _near(vertex, triangle_face, i, frame, face, near):  # type: ignore[no-untyp
 
 
 @kernel
-def _held(sine, cosine, turn, k_ff, k_ft, k_tt, reach, radius):  # type: ignore[no-untyped-def]
-    """Whether the paraboloid with these curvatures stays below the flat end within `reach` of the contact.
+def _held(sine, cosine, turn, k_ff, k_ft, k_tt, extent, radius):  # type: ignore[no-untyped-def]
+    """Whether the paraboloid with these curvatures stays below the flat end within `extent` of the contact.
 
     At every tilt within `turn` of the one given by its sine and cosine.
     """
@@ -68,7 +68,7 @@ def _held(sine, cosine, turn, k_ff, k_ft, k_tt, reach, radius):  # type: ignore[
         mix = share * margin
         curve = max(0.0, k_ff + k_ft * k_ft / mix)
         left = least - radius * max(0.0, k_tt + mix)
-        if left >= 0.5 * curve * reach * (cosine + turn) and cosine - turn >= 0.5 * curve * reach * (sine + turn):
+        if left >= 0.5 * curve * extent * (cosine + turn) and cosine - turn >= 0.5 * curve * extent * (sine + turn):
             return True
     return False
 
@@ -84,12 +84,12 @@ def _zone(frame, h, home, nodes, most):  # type: ignore[no-untyped-def]
     """
     p, n, f, t = frame
     index, closed = nodes.index, nodes.closed
-    for k in range(_REACHES):
+    for k in range(_EXTENTS):
         most[k, 0], most[k, 1] = -np.inf, -np.inf
         for c in range(2, 7):
             most[k, c] = 0.0
     rows, columns = index.shape
-    last = _REACHES - 1
+    last = _EXTENTS - 1
     # Square rings of nodes about the home node, until a whole ring is too far.
     ring, full = 0, np.inf
     while True:
@@ -113,7 +113,7 @@ def _zone(frame, h, home, nodes, most):  # type: ignore[no-untyped-def]
                 # The node's cell against a disk about any contact of the patch.
                 away = distance - h - nodes.radius[node] if nodes.radius[node] >= 0.0 else distance - h
                 nearest = min(nearest, away)
-                x = (away / h - 2.0) / (REACH - 2.0)
+                x = (away / h - 2.0) / (FARTHEST - 2.0)
                 if x > 1.0:
                     continue
                 row = 0 if x <= 0.0 else min(last, int(np.ceil(np.sqrt(x) * last)))
@@ -156,12 +156,12 @@ def _zone(frame, h, home, nodes, most):  # type: ignore[no-untyped-def]
                 most[row, 5] = max(most[row, 5], np.sqrt(angle))
                 most[row, 6] = max(most[row, 6], nodes.radius[node])
         ring += 1
-        if nearest > REACH * h:
+        if nearest > FARTHEST * h:
             break
         if ring > _RINGS:
             full = nearest
             break
-    for k in range(1, _REACHES):
+    for k in range(1, _EXTENTS):
         for c in range(7):
             most[k, c] = max(most[k, c], most[k - 1, c])
     return full if most[0, 6] > 0.0 else -1.0

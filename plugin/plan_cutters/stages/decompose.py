@@ -32,7 +32,7 @@ def decompose(
     (n,) bool
         Convex samples at which the dummy cutter, the axis limit and the posture range leave tilt 0 in every rotation.
     """
-    from plan_cutters.kernels.search import dummy_free
+    from plan_cutters.kernels.search import dummy_clear
 
     interference_free = np.zeros(len(samples), bool)
     allowed = convex & conditions.upright(samples.normal)
@@ -43,7 +43,7 @@ def decompose(
     solids, contacts = conditions.obstacles.solids, contacts_of(samples)
 
     def work(piece: NDArray[np.int64]) -> None:
-        dummy_free(piece, contacts, cutter.radius, cutter.length, safe, solids, interference_free)
+        dummy_clear(piece, contacts, cutter.radius, cutter.length, safe, solids, interference_free)
 
     in_chunks(work, asked, conditions.jobs)
     return interference_free

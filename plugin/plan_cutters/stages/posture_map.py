@@ -213,7 +213,7 @@ def _rear(
 
     Triangles across the border are halved until they are small; then their centre decides.
     """
-    reach, smallest = 2 * radius, _BORDER * radius
+    within, smallest = 2 * radius, _BORDER * radius
     vertex, face = triangles.vertex, triangles.face
     near: list[tuple[Floats, Any]] = []
     far: list[tuple[Floats, Any]] = []
@@ -223,11 +223,11 @@ def _rear(
         height = offset @ n
         side = np.linalg.norm(vertex - np.roll(vertex, 1, axis=1), axis=2).max(axis=1)
         # The nearest point of a triangle is no nearer than its nearest corner less its longest side.
-        outside = (distance.min(axis=1) - side > reach) | (height.max(axis=1) <= 0)
-        inside = (distance.max(axis=1) <= reach) & (height.min(axis=1) > 0)
+        outside = (distance.min(axis=1) - side > within) | (height.max(axis=1) <= 0)
+        inside = (distance.max(axis=1) <= within) & (height.min(axis=1) > 0)
         small = ~outside & ~inside & (side <= smallest)
         centre = offset.mean(axis=1)
-        inside |= small & (np.linalg.norm(centre, axis=1) <= reach) & (centre @ n > 0)
+        inside |= small & (np.linalg.norm(centre, axis=1) <= within) & (centre @ n > 0)
         outside |= small & ~inside
         near.append((vertex[inside], face[inside]))
         far.append((vertex[outside], face[outside]))
