@@ -203,14 +203,16 @@ class Soup:
 
     def _crossed(self, uv: Floats, face: Indices) -> Indices:
         """Most knots (t, k), along u or v, that groups (t, k, n, 2) of points of faces (t,) have between them."""
-        low, high = uv.min(axis=2), uv.max(axis=2)
-        crossed = np.zeros(low.shape[:2], np.int64)
-        for number in np.unique(face).tolist():
+        crossed = np.zeros(uv.shape[:2], np.int64)
+        for number in np.flatnonzero(np.bincount(face)).tolist():
+            each = self._knots(number)
+            if not any(map(len, each)):
+                continue
             mine = np.flatnonzero(face == number)
-            for axis, knots in enumerate(self._knots(number)):
-                if len(knots):
-                    between = np.searchsorted(knots, high[mine, :, axis]) - np.searchsorted(knots, low[mine, :, axis])
-                    crossed[mine] = np.maximum(crossed[mine], between)
+            low, high = uv[mine].min(axis=2), uv[mine].max(axis=2)
+            for axis, knots in enumerate(each):
+                between = np.searchsorted(knots, high[..., axis]) - np.searchsorted(knots, low[..., axis])
+                crossed[mine] = np.maximum(crossed[mine], between)
         return crossed
 
     def _knots(self, number: int) -> tuple[Floats, Floats]:
