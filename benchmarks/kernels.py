@@ -6,6 +6,7 @@ callgrind's for code compiled for one named processor, so they differ between ma
 """
 
 import os
+import pickle
 import re
 import subprocess
 import sys
@@ -120,8 +121,7 @@ def contacts() -> list[Any]:
     """What `cover` is asked on a face of a sample part; kept in a file, for the kernel of CAD is not run under valgrind."""
     kept_in = os.environ.get("COVER_ASKED")
     if kept_in:
-        with np.load(kept_in) as arrays:
-            return [arrays[f"arr_{i}"][()] for i in range(len(arrays.files))]
+        return list(pickle.loads(Path(kept_in).read_bytes()))
     from cad_io import read_part
     from plan_cutters import Cutter, plan
 
@@ -156,7 +156,7 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
         hit.stand(bodies[i], Frame(point[i], normal[i], lean[i], left), np.cos(tilt), np.sin(tilt), *TOOL)
         near[i] = rng.choice(np.argsort(np.linalg.norm(centre - point[i], axis=1))[:200])
     rotations = 2 * np.pi * np.arange(TURNS) / TURNS
-    scratch, contacts = waves.scratch(), Contacts(point, normal, first, curvature)
+    scratch, cc_points = waves.scratch(), Contacts(point, normal, first, curvature)
     out = Found(
         np.empty(n, np.uint8), axis.copy(), lean.copy(), np.empty(n), np.empty(n, np.int32), np.empty(n, np.uint8)
     )
@@ -185,7 +185,7 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
     def all_maps(count: int) -> None:
         k = -(-count // TURNS)
         turned = waves.ranges(rotations)
-        free_map.free_map(np.arange(k), contacts, turned, *CUTTER, NARROWEST, wide, 8, part, filled, unsure)
+        free_map.free_map(np.arange(k), cc_points, turned, *CUTTER, NARROWEST, wide, 8, part, filled, unsure)
 
     return {
         "point_arc": ("point", 200_000, lambda k: many_point_arcs(k, at)),
@@ -199,9 +199,9 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
         "probe": ("posture", 400, lambda k: search.probe(
             np.arange(k), point, normal, axis, lean, RADIUS, LENGTH, depths, built, triangle)),
         "dummy_clear": ("sample", 400, lambda k: search.dummy_clear(
-            np.arange(k), contacts, RADIUS, LENGTH, SAFE, solids, free)),
+            np.arange(k), cc_points, RADIUS, LENGTH, SAFE, solids, free)),
         "search": ("sample", 400, lambda k: search.search(
-            np.arange(k), contacts, waves.ranges(rotations, 0.7), RADIUS, LENGTH, SAFE, BLOCKED, solids, solids, out)),
+            np.arange(k), cc_points, waves.ranges(rotations, 0.7), RADIUS, LENGTH, SAFE, BLOCKED, solids, solids, out)),
         "free_tilts": ("rotation", 100, maps_of),
         "wide_tree": ("triangle", 7_200, lambda k: k and lanes.wide_tree(built)),
         "_boxes_pass": ("eight boxes", 100_000, lambda k: many_blocks(k, view, gap, margin)),
@@ -241,8 +241,8 @@ def instructions(names: list[str], counts: list[int]) -> dict[str, float]:
     environment = {**os.environ, "NUMBA_CPU_NAME": "haswell", "NUMBA_CPU_FEATURES": "+avx2,+fma,+bmi,+bmi2,+popcnt"}
     me = [sys.executable, __file__, "--marked"]
     with tempfile.TemporaryDirectory() as folder:
-        environment["COVER_ASKED"] = f"{folder}/asked.npz"
-        np.savez(environment["COVER_ASKED"], *contacts())
+        environment["COVER_ASKED"] = f"{folder}/asked.pickle"
+        Path(environment["COVER_ASKED"]).write_bytes(pickle.dumps(contacts()))
         subprocess.run(me, env=environment, check=True)
         tool = ["valgrind", "--tool=callgrind", "--dump-before=getppid", f"--callgrind-out-file={folder}/sums"]
         try:
