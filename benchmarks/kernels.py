@@ -156,7 +156,7 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
         hit.stand(bodies[i], Frame(point[i], normal[i], lean[i], left), np.cos(tilt), np.sin(tilt), *TOOL)
         near[i] = rng.choice(np.argsort(np.linalg.norm(centre - point[i], axis=1))[:200])
     rotations = 2 * np.pi * np.arange(TURNS) / TURNS
-    scratch, cc_points = waves.scratch(), Contacts(point, normal, first, curvature)
+    scratch, cc_points = hit.scratch(), Contacts(point, normal, first, curvature)
     out = Found(
         np.empty(n, np.uint8), axis.copy(), lean.copy(), np.empty(n), np.empty(n, np.int32), np.empty(n, np.uint8)
     )

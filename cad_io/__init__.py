@@ -1,8 +1,8 @@
 """The CAD boundary: files and kernel shapes in, arrays out; labelled faces in, annotated files out.
 
 No machining words here. This package alone imports the CAD kernel (OCP); names are handed on lazily so that
-importing `cad_io` costs nothing until a name is used. Stages are imported from the module of their name, as
-`from cad_io.sample.on_grids import sample`.
+importing `cad_io` costs nothing until a name is used. Each room hands on its one function, as
+`from cad_io.sample import sample`.
 """
 
 from importlib import import_module

@@ -72,7 +72,7 @@ def test_tree_finds_what_a_loop_over_all_finds(n):
     triangles = soup(rng, n)
     built, order = build(triangles)
     assert sorted(order) == list(range(n))
-    scratch = waves.scratch()
+    scratch = hit.scratch()
     for _ in range(200):
         normal, direction = random_frame(rng)
         body, *_ = body_of(rng.normal(0, 10, 3), normal, direction, rng.uniform(0, 1.5), 0.3, 4.0, 30.0, 0.01)

@@ -271,7 +271,7 @@ def test_a_miss_with_a_rate_is_a_miss_at_every_tilt_of_the_turn(case, rate, seed
     assume(s < length / 2)
     body, contact, frame = stood(np.random.default_rng(seed), 0.7, radius, length, s)
     triangle = np.ascontiguousarray((contact + (local - [radius, 0, 0]) @ frame)[None])
-    if hit.tree_hit(waves.tree_of(triangle), body, rate, -1, waves.scratch())[0] >= 0:
+    if hit.tree_hit(waves.tree_of(triangle), body, rate, -1, hit.scratch())[0] >= 0:
         return
     allowed = ROUNDING * (radius + length + np.abs(local).max())
     for turn in (-rate, -rate / 2, 0.0, rate / 3, rate):
@@ -295,7 +295,7 @@ def test_the_tree_misses_no_needle_and_no_point(seed):
         corner = np.array([2.0, 3, 0]) + rng.uniform(-9, 9, (n, 3, 1)) * np.array([1e-9, 0, 1.0])
     if kind == 3:
         corner = corner * [1e-7, 1e-7, 1] + 1e-8 * rng.standard_normal((n, 3, 3))
-    built, scratch, hits = waves.tree_of(corner), waves.scratch(), 0
+    built, scratch, hits = waves.tree_of(corner), hit.scratch(), 0
     for _ in range(300):
         body, _, _ = stood(rng, rng.uniform(0, RIGHT), 3.0, 9.0, 0.01)
         alone = [i for i in range(n) if hit.triangle_hit(built.vertex, i, body, 0.0, *SCRATCH)[0]]

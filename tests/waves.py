@@ -3,7 +3,7 @@
 import numpy as np
 
 from plan_cutters.kernels import tree
-from plan_cutters.kernels.rows import Contacts, Ranges, Scratch, Tree
+from plan_cutters.kernels.rows import Contacts, Ranges, Tree
 
 SIZE, WAVES, HEIGHT = 40.0, (0.27, 0.23), 6.0
 
@@ -49,8 +49,3 @@ def tree_of(vertex):
 def ranges(rotations, limit_cos=-2.0, tilt=(0.0, np.pi / 2)):
     """Postures at rotations (k,), rad, with an axis limit about z."""
     return Ranges(np.cos(rotations), np.sin(rotations), *tilt, np.array([0, 0, 1.0]), limit_cos)
-
-
-def scratch():
-    """Room for a walk of the tree."""
-    return Scratch(np.empty(64, np.int64), np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3)))

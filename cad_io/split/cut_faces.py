@@ -1,7 +1,7 @@
 """Cut all faces that can be cut: everything in one go, and only where that fails, less and less at a time.
 
 How often is counted in advance (`Effort`): what comes out does not depend on how busy the machine is. What remains of
-time is a guard against calls of the kernel that never end, in processor seconds (`cad_io.limited`). Ended by it, one
+time is a guard against calls of the kernel that never end, in processor seconds (`cad_io.kernel.limited`). Ended by it, one
 call in two runs might do what it could not in the other only where it takes as long as the guard, minutes.
 """
 

@@ -179,18 +179,17 @@ def _point(u, v, net, order, room, out):  # type: ignore[no-untyped-def]
 
 
 @entry
-def evaluate(u, v, net, order, out):  # type: ignore[no-untyped-def]
+def evaluate(u, v, net, out):  # type: ignore[no-untyped-def]
     """Write values and derivatives of a surface.
 
     Parameters
     ----------
     u, v : (n,) float64
     net : Net
-    order : int
-        0, 1 or 2.
     out : (n, 1, 3, or 6, 3) float64, written
-        S; Su, Sv; Suu, Svv, Suv. nan where a parameter is none.
+        S; Su, Sv; Suu, Svv, Suv, as many as there is room for. nan where a parameter is none.
     """
+    order = 0 if out.shape[1] == 1 else 1 if out.shape[1] == 3 else 2
     wide = DEGREE + 1
     room = _Room(
         np.empty((3, wide)), np.empty((3, wide)), np.empty(wide), np.empty(wide), np.empty((wide, wide)),

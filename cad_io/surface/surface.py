@@ -152,6 +152,10 @@ def _bezier(surface: Any) -> Evaluator:
 
 
 def _compiled(surface: Any, knots: list[Floats], periods: list[float]) -> Evaluator:
+    # Here, since the compiler takes its time to load and many a part has no such surface.
+    from cad_io.surface.bspline import Net
+    from cad_io.surface.bspline import evaluate as compiled
+
     rows, columns = surface.NbUPoles(), surface.NbVPoles()
     points = TColgp_Array2OfPnt(1, rows, 1, columns)
     surface.Poles(points)
@@ -163,20 +167,11 @@ def _compiled(surface: Any, knots: list[Floats], periods: list[float]) -> Evalua
         surface.Weights(weights)
         pole[..., 3] = [[weights.Value(i, j) for j in range(1, columns + 1)] for i in range(1, rows + 1)]
         pole[..., :3] *= pole[..., 3:]
-    degree_u, degree_v = surface.UDegree(), surface.VDegree()
+    net = Net(knots[0], knots[1], surface.UDegree(), surface.VDegree(), periods[0], periods[1], pole, rational)
 
     def evaluate(u: Floats, v: Floats, count: int) -> Floats:
-        from cad_io.surface.bspline import Net
-        from cad_io.surface.bspline import evaluate as compiled
-
         out = np.empty((len(u), count, 3))
-        compiled(
-            u,
-            v,
-            Net(knots[0], knots[1], degree_u, degree_v, periods[0], periods[1], pole, rational),
-            {1: 0, 3: 1, 6: 2}[count],
-            out,
-        )
+        compiled(u, v, net, out)
         return out
 
     return evaluate

@@ -5,7 +5,7 @@ import inspect
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -21,7 +21,7 @@ from plan_cutters.document.plan import plan_of, selection
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.nesting import handed, order
-from plan_cutters.domain.verdicts import Reach, blank
+from plan_cutters.domain.verdicts import CONVEX, Reach, blank
 from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.options import Options
 from plan_cutters.result import Result
@@ -34,7 +34,7 @@ from plan_cutters.scene.spacing import Spacing, default_spacing
 from plan_cutters.scene.threads import with_company
 from plan_cutters.stages.access import access, witnesses
 from plan_cutters.stages.between import between
-from plan_cutters.stages.classify import CONVEX, classify, regions
+from plan_cutters.stages.classify import classify, regions
 from plan_cutters.stages.decompose import decompose, march_differs
 from plan_cutters.stages.posture_maps import posture_maps
 from plan_cutters.stages.select_cutters import ranked
@@ -82,9 +82,7 @@ def plan(part: Any, *, progress: Progress | None = None, **options: Any) -> Resu
     return run(part, Options.of(given), progress=progress)
 
 
-_OPTIONS = [
-    inspect.Parameter(each.name, inspect.Parameter.KEYWORD_ONLY, annotation=each.type) for each in fields(Options)
-]
+_OPTIONS = [each.replace(kind=each.KEYWORD_ONLY) for each in inspect.signature(Options).parameters.values()]
 #: What `help` and editors show: an option is declared once, in `Options`.
 vars(plan)["__signature__"] = inspect.Signature(
     [*list(inspect.signature(plan).parameters.values())[:2], *_OPTIONS], return_annotation=Result

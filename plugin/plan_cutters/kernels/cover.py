@@ -13,7 +13,7 @@ import numpy as np
 from plan_cutters.kernels import hit
 from plan_cutters.kernels.hit import BODY, HALF, HIGH, LOW, OFFSET, RADIUS, A, P, X, Y
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.rows import Frame, Scratch
+from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.zone import _EXTENTS, FARTHEST, _held, _near, _zone
 
 #: Largest angle (rad) between normals within `extent`: up to it, the surface is a graph over its tangent planes.
@@ -153,7 +153,7 @@ def cover(  # type: ignore[no-untyped-def]
     covered : (n,) bool, written
     """
     body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
-    scratch = Scratch(np.empty(64, np.int64), np.empty((8, 3)), np.empty((8, 3)), np.empty((0, 3, 3)))
+    scratch = hit.scratch()
     most, near = np.empty((_EXTENTS, 7)), np.empty(6)
     for row in rows:
         covered[row] = False

@@ -11,10 +11,10 @@ import numpy as np
 
 from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
 from plan_cutters.kernels.gaps import COLUMNS, FIRST, GAPS, LAST, UF, UL, Room, _begin, _cut_gaps, _cuts, _end, _take
-from plan_cutters.kernels.hit import BODY, cross, dot, lean_frame
+from plan_cutters.kernels.hit import BODY, cross, dot, lean_frame, scratch
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.lanes import LANES, _boxes_pass, _see, _see_leaf, _see_triangle, _triangles_pass, _turn
-from plan_cutters.kernels.rows import Frame, Scratch, Tool
+from plan_cutters.kernels.rows import Frame, Tool
 from plan_cutters.kernels.search import remove
 
 #: Blocks of boxes kept as seen from one contact, and blocks that may wait to be looked at.
@@ -206,7 +206,7 @@ def free_map(  # type: ignore[no-untyped-def]
     gap, arcs = np.empty((GAPS + 1, COLUMNS)), np.empty((8, 2))
     work = Room(
         np.empty((3, 3)), np.empty((8, 3)), np.empty((8, 3)), np.empty(BODY), np.empty((64, 2)),
-        Scratch(np.empty(0, np.int64), np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3))),
+        scratch(),
     )  # fmt: skip
     view = _View(
         np.empty((_SEEN + 1, 16, LANES)), np.empty((_LEAVES + 2, 9, LANES)), np.empty((_SEEN + 1, LANES), np.int64),

@@ -8,9 +8,9 @@ range is halved. Ranges narrower than `narrowest` stay undecided.
 import numpy as np
 
 from plan_cutters.kernels.arcs import point_arc
-from plan_cutters.kernels.hit import BODY, cross, stand, tree_hit
+from plan_cutters.kernels.hit import BODY, cross, scratch, stand, tree_hit
 from plan_cutters.kernels.jit import entry
-from plan_cutters.kernels.rows import Frame, Scratch
+from plan_cutters.kernels.rows import Frame
 
 OPEN, FORBIDDEN, UNSURE = 0, 1, 2
 
@@ -41,7 +41,7 @@ def free_tilts(p, n, f, low, high, radius, length, depth_allowed, narrowest, tre
     t = np.empty(3)
     cross(n, f, t)
     frame, body = Frame(p, n, f, t), np.empty(BODY)
-    scratch = Scratch(np.empty(64, np.int64), np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3)))
+    walk = scratch()
     parts = np.empty((room + 4, 3))
     pending = np.empty((room + 4, 2))
     pending[0, 0], pending[0, 1] = low, high
@@ -53,12 +53,12 @@ def free_tilts(p, n, f, low, high, radius, length, depth_allowed, narrowest, tre
         tilt, half = 0.5 * (first + last), 0.5 * (last - first)
         stand(body, frame, np.cos(tilt), np.sin(tilt), radius, shrunk, bottom, ceiling)
         # A hair more than half, so that a free range holds at its very ends.
-        triangle, height, px, py = tree_hit(tree, body, half + 1e-12, hint, scratch)
+        triangle, height, px, py = tree_hit(tree, body, half + 1e-12, hint, walk)
         kind, cut_first, cut_last = OPEN, first, last
         if triangle >= 0:
             hint = triangle
             kind, cut_first, cut_last = UNSURE, tilt, tilt
-            triangle, height, px, py = tree_hit(tree, body, 0.0, hint, scratch)
+            triangle, height, px, py = tree_hit(tree, body, 0.0, hint, walk)
             if triangle >= 0:
                 hint = triangle
                 arc_first, arc_last = point_arc(height, px, py, tilt, radius, shrunk, bottom, ceiling)

@@ -15,9 +15,16 @@ the tool about that line, and turning by at most `rate` moves Q by no more than 
 
 import numpy as np
 
-from plan_cutters.kernels.jit import kernel
+from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.rows import Scratch
 
 P, A, X, Y, OFFSET, RADIUS, LOW, HIGH, HALF, BODY = 0, 3, 6, 9, 12, 13, 14, 15, 16, 17
+
+
+@entry
+def scratch():  # type: ignore[no-untyped-def]
+    """Room for walks of a tree."""
+    return Scratch(np.empty(64, np.int64), np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3)))
 
 
 @kernel

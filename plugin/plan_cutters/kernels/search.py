@@ -11,7 +11,21 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
-from plan_cutters.kernels.hit import BODY, HIGH, OFFSET, A, P, X, cross, dot, lean_frame, perpendicular, stand, tree_hit
+from plan_cutters.kernels.hit import (
+    BODY,
+    HIGH,
+    OFFSET,
+    A,
+    P,
+    X,
+    cross,
+    dot,
+    lean_frame,
+    perpendicular,
+    scratch,
+    stand,
+    tree_hit,
+)
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, outside, winding
 from plan_cutters.kernels.rows import Frame, Scratch, Tool
@@ -239,7 +253,7 @@ def search(rows, contacts, ranges, radius, length, safe, blocked, may_be, surely
     """
     room = _Room(
         np.empty((_ROOM, 2)), np.empty(3), np.empty(3), np.empty(3), np.empty(BODY), np.empty(ATTRIBUTES),
-        Scratch(np.empty(64, np.int64), np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3))),
+        scratch(),
     )  # fmt: skip
     tally = room.tally
     known, known_count = np.empty((_KNOWN, 3)), 0
@@ -337,15 +351,15 @@ def dummy_clear(rows, contacts, radius, length, safe, solids, clear):  # type: i
         True where nothing reaches deeper than `safe` into the dummy, and the dummy lies in no body.
     """
     body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
-    scratch = Scratch(np.empty(64, np.int64), np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3)))
+    room = scratch()
     hint = -1
     for row in rows:
         n = contacts.normal[row]
         perpendicular(n, f)
         cross(n, f, t)
         stand(body, Frame(contacts.point[row], n, f, t), 1.0, 0.0, 0.0, 2.0 * radius - safe, safe, length - safe)
-        triangle, _, _, _ = tree_hit(solids.tree, body, 0.0, hint, scratch)
-        clear[row] = triangle < 0 and _inside(body, inner_height(radius, length), solids, scratch.stack) < MAYBE_INSIDE
+        triangle, _, _, _ = tree_hit(solids.tree, body, 0.0, hint, room)
+        clear[row] = triangle < 0 and _inside(body, inner_height(radius, length), solids, room.stack) < MAYBE_INSIDE
         if triangle >= 0:
             hint = triangle
 
@@ -366,12 +380,12 @@ def probe(rows, point, normal, axis, lean, radius, length, depths, tree, triangl
     triangle : (n,) int32, written
     """
     body, t = np.empty(BODY), np.empty(3)
-    scratch = Scratch(np.empty(64, np.int64), np.empty((8, 3)), np.empty((8, 3)), np.empty((64, 3, 3)))
+    room = scratch()
     hint = -1
     for row in rows:
         n, f, s = normal[row], lean[row], depths[row]
         cross(n, f, t)
         stand(body, Frame(point[row], n, f, t), dot(axis[row], n), dot(axis[row], f), radius, radius - s, s, length - s)
-        triangle[row], _, _, _ = tree_hit(tree, body, 0.0, hint, scratch)
+        triangle[row], _, _, _ = tree_hit(tree, body, 0.0, hint, room)
         if triangle[row] >= 0:
             hint = triangle[row]

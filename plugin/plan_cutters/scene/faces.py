@@ -83,9 +83,8 @@ def ignored_words(part: "Part", ignore: Any) -> tuple[str, ...]:
     return tuple(_words(part, ignore, "--ignore"))
 
 
-def ignored_faces(part: "Part", ignore: Any) -> frozenset[int]:
-    """Numbers of the faces to leave out; words, lists of words or objects."""
-    words = ignored_words(part, ignore)
+def ignored_faces(part: "Part", words: Sequence[str]) -> frozenset[int]:
+    """Numbers of the faces to leave out, from their words (`ignored_words`)."""
     return frozenset().union(*(_selected(part.faces, text, part.tree, "--ignore") for text in words))
 
 

@@ -1,7 +1,6 @@
 """A part as it stands to be judged: its faces' sides, what is in the way, and the tolerance that can be kept."""
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -13,12 +12,13 @@ from cad_io.tessellate.triangles import At
 from plan_cutters.domain.checks import flag, number
 from plan_cutters.domain.posture import unit
 from plan_cutters.errors import OptionError
-from plan_cutters.options import MOST_TOLERANCE
+from plan_cutters.options import MOST_TOLERANCE, Options
 from plan_cutters.scene.faces import ignored_faces, ignored_words
 from plan_cutters.scene.obstacles import CHORD_ASKED, kept_tolerance
 from plan_cutters.scene.surroundings import Surroundings, surroundings
 
-_DEFAULTS: dict[str, Any] = {"setup": (0.0, 0.0, 1.0), "flip": False, "ignore": (), "tolerance": 0.01}
+#: The options of a plan that are a scene's.
+_DEFAULTS = {word: getattr(Options(), word) for word in ("setup", "flip", "ignore", "tolerance")}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -84,16 +84,16 @@ class Scene(Record):
             raise OptionError(f"tolerance {tolerance:g} must lie between 0 and {MOST_TOLERANCE:g} mm")
         setup: Any = tuple(unit(given["setup"], "setup axis").tolist())
         if isinstance(part, Scene):
-            asked = {"setup": setup, "flip": flip, "tolerance": tolerance}
-            asked["ignore"] = ignored_words(part.part, given["ignore"])
+            ignore = ignored_words(part.part, given["ignore"])
+            asked = {"setup": setup, "flip": flip, "tolerance": tolerance, "ignore": ignore}
             for word in options:
                 own = part.options[word]
                 if not (np.allclose(own, setup, atol=1e-12) if word == "setup" else own == asked[word]):
                     raise OptionError(f"the scene was made with {word}={own!r}: give another one there")
             return part
         whole = part if isinstance(part, Part) else read_part(part)
-        ignored = tuple(sorted(ignored_faces(whole, given["ignore"])))
         words = ignored_words(whole, given["ignore"])
+        ignored = tuple(sorted(ignored_faces(whole, words)))
         return cls(whole, orient(whole, towards=setup, flip=flip), setup, flip, words, ignored, tolerance)
 
     @property
@@ -103,11 +103,12 @@ class Scene(Record):
 
     def surround(self, at: At = lambda whose, face: None) -> Surroundings:
         """What is, and what may be, in the way; `at` is told whose work goes on at which face, if there is any to do."""
-        if "around" not in self.__dict__:
-            self.__dict__["around"] = surroundings(self.part, CHORD_ASKED * self.asked, ignored=self.ignored, at=at)
-        return self.around
+        if "_around" not in self.__dict__:
+            self.__dict__["_around"] = surroundings(self.part, CHORD_ASKED * self.asked, ignored=self.ignored, at=at)
+        found: Surroundings = self.__dict__["_around"]
+        return found
 
-    @cached_property
+    @property
     def around(self) -> Surroundings:
         """What is, and what may be, in the way."""
         return self.surround()
