@@ -11,6 +11,8 @@ from pathlib import Path
 import jsonschema
 import pytest
 
+from plan_cutters.report import Staging
+
 ROOT = Path(__file__).parent.parent
 SAMPLES = ROOT / "samples"
 ENV = {**os.environ, "PYTHONPATH": f"{ROOT / 'plugin'}{os.pathsep}{ROOT}"}
@@ -262,6 +264,14 @@ def test_an_interrupt_at_the_very_start(tmp_path):
         assert delay < 0.2 or process.returncode == 130
         assert delay < 0.2 or "Traceback" not in said
         assert leftovers(tmp_path) == []
+
+
+def test_a_folder_is_named_before_it_exists(tmp_path):
+    seen = []
+    with Staging(tmp_path / "out", lambda folder: seen.append((folder, folder.exists()))) as staging:
+        assert seen == [(staging.folder, False)]
+        assert staging.folder.is_dir()
+    assert leftovers(tmp_path) == []
 
 
 def test_debug_shows_the_traceback_and_keeps_the_code(tmp_path):

@@ -27,9 +27,7 @@ def one_part(part: str, out: Path, options: "Options", given: dict[str, Any]) ->
     default = () if to_stdout and given["out"] is None else DEFAULT_FORMATS
     formats = read_formats(given["formats"]) if given["formats"] else default
     report("part", part)
-    staging = Staging(out) if formats else None
-    if staging:
-        report("staging", str(staging.folder))
+    staging = Staging(out, lambda folder: report("staging", str(folder))) if formats else None
     watch = Onlooker(out, given)
     try:
         from plan_cutters.pipeline import run

@@ -127,11 +127,10 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int) -> int:
     """
     here, there = os.pipe()
     environment = {**os.environ, REPORT: str(there), MEMORY: str(memory)}
+    watch = _Watch(here, read_timeout)
     # A session of its own: an interrupt from the terminal reaches the child once, through us.
     child = subprocess.Popen([sys.executable, "-m", "plan_cutters", *words], env=environment, pass_fds=(there,),
                              start_new_session=True)  # fmt: skip
-    os.close(there)
-    watch = _Watch(here, read_timeout)
     asked: list[int] = []
 
     def stop(number: int, _: object) -> None:
@@ -143,22 +142,22 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int) -> int:
             child.send_signal(signal.SIGINT)
 
     previous = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
+    os.close(there)
     try:
         while child.poll() is None:
             watch.listen(0.2)
             if watch.late():
-                _end(child)
-                watch.clear()
                 raise watch.ended(*watch.verdict())
-        watch.listen(0.0)
     finally:
+        _end(child)
+        # What it said last counts, too: a folder is named before it exists.
+        watch.listen(0.0)
+        watch.clear()
         os.close(here)
         for number, handler in previous.items():
             signal.signal(number, handler)
-        _end(child)
     if child.returncode >= 0:
         return child.returncode
-    watch.clear()
     if asked and watch.safe is None:
         raise KeyboardInterrupt
     if asked:
@@ -244,5 +243,6 @@ class _Watch:
         return Unfinished(what, INTERRUPTED if interrupted else max(self.code, code), out, self.parts)
 
     def clear(self) -> None:
+        """Take away what the child had begun to write and not given to the output."""
         for folder in self.staging:
             shutil.rmtree(Path(folder), ignore_errors=True)

@@ -2,8 +2,8 @@
 
 import hashlib
 import os
+import secrets
 import shutil
-import tempfile
 import time
 from collections.abc import Callable, Collection, Sequence
 from contextlib import suppress
@@ -45,19 +45,27 @@ def read_formats(text: str) -> tuple[str, ...]:
 class Staging:
     """A folder beside the output in which files grow; each appears in the output whole, or not at all.
 
+    Parameters
+    ----------
+    out : Path
+    named : callable, optional
+        Told the folder before it exists, so that whoever ends this process at any moment can take it away.
+
     Raises
     ------
     PlanError
         At the start if the output can surely not be written: before the work, not after it.
     """
 
-    def __init__(self, out: Path) -> None:
+    def __init__(self, out: Path, named: Callable[[Path], None] = lambda _: None) -> None:
         self.out = out
+        self.folder = out.absolute().parent / f".{out.name}-{secrets.token_hex(4)}"
+        named(self.folder)
         try:
             if out.exists() and not out.is_dir():
                 raise PlanError("the output must be a folder, this is a file; give another with -o", file=str(out))
             out.absolute().parent.mkdir(parents=True, exist_ok=True)
-            self.folder = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.absolute().parent))
+            self.folder.mkdir(mode=0o700)
         except OSError as error:
             raise _unwritable(out, error) from None
 
