@@ -237,16 +237,19 @@ class Triangles(Record):
     face : (t,) int32
         Face number.
     chord_error : float
-        Largest measured distance between a triangle and the surface that it stands for, mm. Each point of the face, up
+        Bound of the distance between a triangle and the surface that it stands for, mm. Each point of the face, up
         to its true border, has a triangle within it.
     missing : tuple of (int, str)
         Faces without triangles, with the reason.
+    measured : tuple of int
+        Faces whose surface or border only the kernel can evaluate: there the distance is measured, not proved.
     """
 
     vertex: Floats
     face: Ints
     chord_error: float
     missing: tuple[tuple[int, str], ...]
+    measured: tuple[int, ...] = ()
 
     def __len__(self) -> int:
         return len(self.vertex)

@@ -152,7 +152,7 @@ def test_bezier_surfaces(seed, degrees, rational):
     if max(degrees) <= 10:  # beyond, the kernel's powers lose digits
         assert_as_the_kernel(surface, u, v, 1e-8)
     # The same by cutting between poles, which loses none. The kernel may have lost so many that ours is not trusted.
-    ours = compiled.evaluator(surface.adaptor)(u, v, 1)[:, 0]
+    ours = compiled.form_of(surface.adaptor).evaluate(u, v, 1)[:, 0]
     net = np.concatenate([points * weights[..., None], weights[..., None]], -1)
     for a, b, found in zip(u, v, ours, strict=True):
         rows = net

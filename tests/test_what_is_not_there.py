@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -27,6 +28,7 @@ from test_triangles import triangulated
 from cad_io import read_part
 from cad_io.arrays import Triangles
 from cad_io.kernel import faces as faces_of
+from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, plan, posture_map
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange
@@ -148,12 +150,9 @@ def test_a_face_without_area_hides_nothing_and_leaves_no_doubt():
 
 
 def test_a_tolerance_that_was_raised_is_held_against_the_cutter(monkeypatch):
-    from cad_io.tessellate import triangles
+    from plan_cutters.scene import surroundings as gathered
 
-    original = triangles._refined
-    monkeypatch.setattr(
-        triangles, "_refined", lambda part, meshes, chord, budget, at: original(part, meshes, chord, 40, at)
-    )
+    monkeypatch.setattr(gathered, "tessellate", partial(tessellate, budget=40))
     part, thin = read_part(ball(50)), Cutter.flat(radius=0.5, length=20)
     result = plan(part, cutters=[thin, Cutter.flat(radius=20, length=200)], faces="all", grid=6, area_budget=0)
     assert result.plan.effective.tolerance_mm > 4 * 0.5

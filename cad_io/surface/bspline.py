@@ -17,7 +17,7 @@ DEGREE = 25
 
 
 @kernel
-def _span(knot, degree, t):  # type: ignore[no-untyped-def]
+def span(knot, degree, t):  # type: ignore[no-untyped-def]
     """The last interval of positive length that begins at or before t, within the range; the end belongs to the last one."""
     low, high = degree, len(knot) - degree - 1
     while high - low > 1:
@@ -33,7 +33,7 @@ def _span(knot, degree, t):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _basis(knot, degree, span, t, order, left, right, table, out):  # type: ignore[no-untyped-def]
+def basis(knot, degree, span, t, order, left, right, table, out):  # type: ignore[no-untyped-def]
     """Write the basis functions that are not zero in a span (degree + 1,), and derivatives up to `order` (2 at most), as rows."""
     table[0, 0] = 1.0
     for j in range(1, degree + 1):
@@ -77,7 +77,7 @@ def _basis(knot, degree, span, t, order, left, right, table, out):  # type: igno
 
 
 @kernel
-def _wrapped(t, first, period):  # type: ignore[no-untyped-def]
+def wrapped(t, first, period):  # type: ignore[no-untyped-def]
     """A parameter of a periodic surface within its first period, both ends included; of others (period 0) as it is."""
     if period > 0.0 and (t < first or t > first + period):
         t -= period * np.floor((t - first) / period)
@@ -161,14 +161,14 @@ def _divided(found, origin, order, out):  # type: ignore[no-untyped-def]
 @kernel
 def _point(u, v, net, order, room, out):  # type: ignore[no-untyped-def]
     """Write value and derivatives at one pair of parameters."""
-    s = _wrapped(u, net.knot_u[net.degree_u], net.period_u)
-    t = _wrapped(v, net.knot_v[net.degree_v], net.period_v)
+    s = wrapped(u, net.knot_u[net.degree_u], net.period_u)
+    t = wrapped(v, net.knot_v[net.degree_v], net.period_v)
     if not (s - s == 0.0 and t - t == 0.0):
         out[:] = np.nan
         return
-    row, column = _span(net.knot_u, net.degree_u, s), _span(net.knot_v, net.degree_v, t)
-    _basis(net.knot_u, net.degree_u, row, s, order, room.left, room.right, room.table, room.bu)
-    _basis(net.knot_v, net.degree_v, column, t, order, room.left, room.right, room.table, room.bv)
+    row, column = span(net.knot_u, net.degree_u, s), span(net.knot_v, net.degree_v, t)
+    basis(net.knot_u, net.degree_u, row, s, order, room.left, room.right, room.table, room.bu)
+    basis(net.knot_v, net.degree_v, column, t, order, room.left, room.right, room.table, room.bv)
     _summed(net, row, column, order, room)
     if net.rational:
         _divided(room.found, room.origin, order, out)

@@ -4,14 +4,30 @@ Each is a frame (origin, X, Y, Z) and `S = O + r(v) (cos u X + sin u Y) + h(v) Z
 """
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from cad_io.arrays import Floats
+from cad_io.surface.bends import Bends
 
-#: r, r', r'', h, h', h'' at v (n,).
-Profile = Callable[[Floats], tuple[Floats, Floats, Floats, Floats, Floats, Floats]]
+
+class Limits(NamedTuple):
+    """Bounds of a profile C over intervals of v (b,): its distance r from the axis, |C'|, |C''|, and how far C'' may differ
+    from its value in the middle; the speed |Sv| once more."""
+
+    reach: Floats
+    first: Floats
+    second: Floats
+    spread: Floats
+    speed: Floats
+
+
+class Profile(NamedTuple):
+    """A curve that is turned about an axis: r, r', r'', h, h', h'' at v (n,), and its limits between lines of v (b + 1,)."""
+
+    at: Callable[[Floats], tuple[Floats, Floats, Floats, Floats, Floats, Floats]]
+    limits: Callable[[Floats], Limits]
 
 
 def frame_of(position: Any) -> Floats:
@@ -34,7 +50,7 @@ def revolved(frame: Floats, profile: Profile, u: Floats, v: Floats, count: int) 
     out = np.empty((len(u), count, 3))
     cosine, sine = np.cos(u)[:, None], np.sin(u)[:, None]
     outward, along = cosine * frame[1] + sine * frame[2], cosine * frame[2] - sine * frame[1]
-    r, r1, r2, h, h1, h2 = (np.broadcast_to(each, v.shape)[:, None] for each in profile(v))
+    r, r1, r2, h, h1, h2 = (np.broadcast_to(each, v.shape)[:, None] for each in profile.at(v))
     axis = frame[3]
     out[:, 0] = frame[0] + r * outward + h * axis
     if count > 1:
@@ -46,19 +62,62 @@ def revolved(frame: Floats, profile: Profile, u: Floats, v: Floats, count: int) 
 
 def cylinder(radius: float) -> Profile:
     one, none = np.ones(1), np.zeros(1)
-    return lambda v: (radius * one, none, none, v, one, none)
+    return Profile(lambda v: (radius * one, none, none, v, one, none), lambda v: _limits(v, radius, 0.0, 0.0, 0.0, 1.0))
 
 
 def cone(radius: float, half_angle: float) -> Profile:
     one, none, slope, rise = np.ones(1), np.zeros(1), np.sin(half_angle), np.cos(half_angle)
-    return lambda v: (radius + v * slope, slope * one, none, v * rise, rise * one, none)
+
+    def limits(v: Floats) -> Limits:
+        ends = np.abs(radius + v * slope)
+        return _limits(v, np.maximum(ends[1:], ends[:-1]), abs(slope), 0.0, 0.0, 1.0)
+
+    return Profile(lambda v: (radius + v * slope, slope * one, none, v * rise, rise * one, none), limits)
 
 
 def torus(major: float, minor: float) -> Profile:
     """A sphere is one whose major radius is zero."""
 
-    def profile(v: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
+    def at(v: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
         c, s = minor * np.cos(v), minor * np.sin(v)
         return major + c, -s, -c, s, c, -s
 
-    return profile
+    def limits(v: Floats) -> Limits:
+        # The distance changes by no more than the way along the tube, and is never more than both radii.
+        reach = np.abs(major + minor * np.cos(0.5 * (v[1:] + v[:-1]))) + 0.5 * minor * np.diff(v)
+        return _limits(v, np.minimum(reach, major + minor), minor, minor, 0.5 * minor * np.diff(v), minor)
+
+    return Profile(at, limits)
+
+
+def _limits(v: Floats, *each: Floats | float) -> Limits:
+    return Limits(*(np.broadcast_to(np.asarray(one, float), (len(v) - 1,)) for one in each))
+
+
+def plane_bends(u: Floats, v: Floats) -> Bends:
+    """How a plane bends: not at all."""
+    found = Bends.none(u, v)
+    found.first[:] = 1.0
+    return found
+
+
+def bends(frame: Floats, profile: Profile, u: Floats, v: Floats) -> Bends:
+    """How a surface of revolution bends over the cells between lines of u and v."""
+    return turned_bends(lambda s, t, count: revolved(frame, profile, s, t, count), profile.limits(v), u, v)
+
+
+def turned_bends(evaluate: Callable[[Floats, Floats, int], Floats], limits: Limits, u: Floats, v: Floats) -> Bends:
+    """The same from the surface's values and its profile's limits.
+
+    Along u the profile is turned as a whole: a derivative along it turns the vector by a right angle and drops its part
+    along the axis, so none is longer than the profile's own.
+    """
+    found = Bends.none(u, v)
+    s, t = (each.ravel() for each in np.meshgrid(0.5 * (u[1:] + u[:-1]), 0.5 * (v[1:] + v[:-1]), indexing="ij"))
+    found.middle[:] = evaluate(s, t, 6)[:, 3:].reshape(found.middle.shape)
+    half_u, half_v = 0.5 * np.diff(u)[:, None], 0.5 * np.diff(v)[None]
+    found.spread[..., 0] = limits.reach * half_u + limits.first * half_v
+    found.spread[..., 1] = limits.second * half_u + limits.spread
+    found.spread[..., 2] = limits.first * half_u + limits.second * half_v
+    found.first[..., 0], found.first[..., 1] = limits.reach, limits.speed
+    return found

@@ -1,0 +1,265 @@
+"""How far a triangle in a face's parameter plane may be from the surface: proved from how the surface bends about it.
+
+With corners p_i, a point p = sum l_i p_i of the triangle and second derivatives H within `spread` of `middle` over a
+rectangle that holds it, Taylor's formula gives `|S(p) - sum l_i S(p_i)| <= 1/2 sum_(i<j) l_i l_j q(p_i - p_j)`, with
+`q(d) = |middle(d, d)| + spread(d, d)`: the squares' weighted sum about p is that of the edges. A table holds middle and
+spread for windows of cells, so that one look tells them for a triangle of any size.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from cad_io.jit import decorators
+from cad_io.surface import Bends, Surface
+from cad_io.surface.forms import lines_within
+
+entry, kernel = decorators(__file__)
+
+#: Cells each way on a bent surface, at least, and if it is bent one way only; at most, where dense knots are put together.
+_CELLS, _ALONG, _MOST = 24, 96, 256
+#: Knots nearer than this share of the range are one line; what they hide is added to every distance.
+_NARROW = 1e-9
+#: Columns of a table: Suu, Svv, Suv in the middle, what Suu and Svv may differ by (Suv shared out to them), |Su|, |Sv|.
+_WIDE = 13
+
+
+class Table(NamedTuple):
+    """Bends over windows of cells.
+
+    u, v: lines. kink_u, kink_v (k, 2): lines where first derivatives jump, and how far at most. node (n, _WIDE):
+    windows' bends, level after level:
+    those of level (i, j) begin at start[i, j] and are along_u[i] by along_v[j]. slack: mm added to every distance.
+    """
+
+    u: Any
+    v: Any
+    kink_u: Any
+    kink_v: Any
+    node: Any
+    start: Any
+    along_u: Any
+    along_v: Any
+    slack: float
+
+
+def table_of(surface: Surface, box: tuple[float, float, float, float]) -> tuple[Table, bool]:
+    """The table of a surface over a rectangle (u0, u1, v0, v1), and whether its bounds are proved.
+
+    Bounds of a surface that only the kernel can evaluate are guessed from derivatives in places: what stands on them must
+    be measured.
+    """
+    form = surface.form
+    if form is not None:
+        lines, kinks, slack = [], [], []
+        for k in range(2):
+            ends = (box[2 * k], box[2 * k + 1])
+            knots, jumps = lines_within(form.knots[k], form.jumps[k], form.period[k], ends)
+            found, hidden = _merged(knots, ends)
+            lines.append(found)
+            kinks.append(np.stack([knots, jumps], axis=1)[jumps > 0.0])
+            slack.append(hidden)
+        bends = _bends(form.bends, *lines)
+        bent = [np.abs(bends.middle[:, :, k]).max() + bends.spread[:, :, k].max() > 0.0 for k in range(3)]
+        if np.isfinite(bends.spread).all() and np.isfinite(bends.first).all():
+            ways = [bent[k] or bent[2] for k in range(2)]
+            finer = [_subdivided(lines[k], _CELLS if all(ways) else _ALONG) if ways[k] else lines[k] for k in range(2)]
+            bends = _bends(form.bends, *finer)
+            finer = [_thinned(each) for each in finer]
+            if np.isfinite(bends.spread).all() and np.isfinite(bends.first).all():
+                hidden = 2.0 * float(bends.first[..., 0].max() * slack[0] + bends.first[..., 1].max() * slack[1])
+                return _table(finer[0], finer[1], kinks[0], kinks[1], bends, hidden), True
+    u, v = (np.linspace(box[2 * k], box[2 * k + 1], _CELLS + 1) for k in range(2))
+    none = np.zeros((0, 2))
+    return _table(u, v, none, none, _guessed(surface, u, v), 0.0), False
+
+
+def _merged(knots: Floats, ends: tuple[float, float]) -> tuple[Floats, float]:
+    """Lines at the ends and at the knots between, and the width of what is hidden where knots are nearly one."""
+    narrow = _NARROW * (ends[1] - ends[0])
+    kept = [ends[0]]
+    for knot in (*knots.tolist(), ends[1]):
+        if knot - kept[-1] > narrow:
+            kept.append(knot)
+    if len(kept) > 1 and kept[-1] != ends[1]:
+        kept[-1] = ends[1]
+    hidden = narrow * (len(knots) + 2 - len(kept))
+    return (np.array(kept) if len(kept) > 1 else np.array([ends[0], max(ends[1], ends[0] + 1e-300)])), hidden
+
+
+def _subdivided(lines: Floats, count: int) -> Floats:
+    """Lines with others between them, so that there are about `count` cells or more."""
+    if len(lines) > count:
+        return lines
+    times = np.maximum(1, np.ceil(count * np.diff(lines) / (lines[-1] - lines[0]) - 1e-6)).astype(int)
+    pieces = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(lines[:-1], lines[1:], times, strict=True)]
+    return np.append(np.concatenate(pieces), lines[-1])
+
+
+def _groups(cells: int) -> NDArray[np.int64]:
+    """Where groups of cells begin, so that there are no more than _MOST."""
+    return np.arange(0, cells, -(-cells // _MOST))
+
+
+def _thinned(lines: Floats) -> Floats:
+    """Lines that are left when cells are put together in groups."""
+    return np.append(lines[:-1][_groups(len(lines) - 1)], lines[-1])
+
+
+def _bends(of: Any, u: Floats, v: Floats) -> Bends:
+    """Bends over cells between lines, groups of them put together where there are too many."""
+    groups_u, groups_v = _groups(len(u) - 1), _groups(len(v) - 1)
+    if len(groups_u) == len(u) - 1 and len(groups_v) == len(v) - 1:
+        return Bends(*of(u, v))
+    strips = []
+    for first, last in zip(groups_u, np.append(groups_u[1:], len(u) - 1), strict=True):
+        fine = of(u[first : last + 1], v)
+        high = np.maximum.reduceat(fine.middle.max(axis=0), groups_v, axis=0)
+        low = np.minimum.reduceat(fine.middle.min(axis=0), groups_v, axis=0)
+        middle = 0.5 * (high + low)
+        each = np.repeat(middle, np.diff(np.append(groups_v, len(v) - 1)), axis=0)
+        off = (np.linalg.norm(fine.middle - each, axis=3) + fine.spread).max(axis=0)
+        strips.append((middle, np.maximum.reduceat(off, groups_v, axis=0),
+                       np.maximum.reduceat(fine.first.max(axis=0), groups_v, axis=0)))  # fmt: skip
+    return Bends(*(np.stack(column) for column in zip(*strips, strict=True)))
+
+
+def _guessed(surface: Surface, u: Floats, v: Floats) -> Bends:
+    """Bends from derivatives at the cells' corners: what differs within a cell is taken to be what its corners differ by."""
+    s, t = (grid.ravel() for grid in np.meshgrid(u, v, indexing="ij"))
+    with np.errstate(all="ignore"):
+        corner = surface.second(s, t).reshape(len(u), len(v), 6, 3)
+    each = np.stack([corner[:-1, :-1], corner[1:, :-1], corner[:-1, 1:], corner[1:, 1:]])
+    middle = each[:, :, :, 3:].mean(axis=0)
+    spread = np.linalg.norm(each[:, :, :, 3:] - middle, axis=4).max(axis=0)
+    return Bends(middle, spread, np.linalg.norm(each[:, :, :, 1:3], axis=4).max(axis=0))
+
+
+def _table(u: Floats, v: Floats, kink_u: Floats, kink_v: Floats, bends: Bends, slack: float) -> Table:
+    # Suv is shared out to Suu and Svv, |2 du dv| <= k du^2 + dv^2 / k, in the ratio in which steps of one length stand.
+    first = bends.first.reshape(-1, 2).max(axis=0)
+    ratio = float(first[0] / first[1]) if (first > 0).all() and np.isfinite(first).all() else 1.0
+    along_u, along_v = _windows(len(u) - 1), _windows(len(v) - 1)
+    counts = along_u[:, None] * along_v[None, :]
+    start = np.concatenate([[0], np.cumsum(counts)[:-1]]).reshape(counts.shape)
+    node = np.zeros((int(counts.sum()), _WIDE))
+    cells = node[: len(bends.first.reshape(-1, 2))]
+    cells[:, :9] = bends.middle.reshape(-1, 9)
+    spread = bends.spread.reshape(-1, 3)
+    cells[:, 9], cells[:, 10] = spread[:, 0] + ratio * spread[:, 2], spread[:, 1] + spread[:, 2] / ratio
+    cells[:, 11:] = bends.first.reshape(-1, 2)
+    found = Table(
+        u, v, np.ascontiguousarray(kink_u), np.ascontiguousarray(kink_v), node, start, along_u, along_v, slack
+    )
+    _gather(found, ratio)
+    return found
+
+
+def _windows(cells: int) -> NDArray[np.int64]:
+    """Windows at each level: single cells, then two neighbouring blocks of 1, 2, 4, ... cells each."""
+    counts, blocks = [cells], cells
+    while blocks > 1:
+        counts.append(blocks - 1)
+        if blocks == 2:
+            break
+        blocks = -(-blocks // 2)
+    return np.array(counts, np.int64)
+
+
+@kernel
+def _join(one, other, ratio, out):  # type: ignore[no-untyped-def]
+    """Write the bends of two windows together."""
+    uu, vv, uv = 0.0, 0.0, 0.0
+    for c in range(3):
+        uu += (one[c] - other[c]) ** 2
+        vv += (one[3 + c] - other[3 + c]) ** 2
+        uv += (one[6 + c] - other[6 + c]) ** 2
+    uv = 0.5 * np.sqrt(uv)
+    spread_u = max(one[9], other[9]) + 0.5 * np.sqrt(uu) + ratio * uv
+    spread_v = max(one[10], other[10]) + 0.5 * np.sqrt(vv) + uv / ratio
+    for c in range(9):
+        out[c] = 0.5 * (one[c] + other[c])
+    out[9], out[10] = spread_u, spread_v
+    out[11], out[12] = max(one[11], other[11]), max(one[12], other[12])
+
+
+@kernel
+def _fill(table, ratio):  # type: ignore[no-untyped-def]
+    node, start, along_u, along_v = table.node, table.start, table.along_u, table.along_v
+    for k in range(1, len(along_u)):
+        step = 1 if k == 1 else 2
+        for i in range(along_u[k]):
+            other = min(i + 1 if k == 1 else 2 * i + 2, along_u[k - 1] - 1)
+            for j in range(along_v[0]):
+                below = start[k - 1, 0]
+                _join(node[below + step * i * along_v[0] + j], node[below + other * along_v[0] + j], ratio,
+                      node[start[k, 0] + i * along_v[0] + j])  # fmt: skip
+    for k in range(len(along_u)):
+        for m in range(1, len(along_v)):
+            step = 1 if m == 1 else 2
+            for i in range(along_u[k]):
+                before, here = start[k, m - 1] + i * along_v[m - 1], start[k, m] + i * along_v[m]
+                for j in range(along_v[m]):
+                    other = min(j + 1 if m == 1 else 2 * j + 2, along_v[m - 1] - 1)
+                    _join(node[before + step * j], node[before + other], ratio, node[here + j])
+
+
+@entry
+def _gather(table, ratio):  # type: ignore[no-untyped-def]
+    """Fill the windows of all levels from the single cells."""
+    _fill(table, ratio)
+
+
+@kernel
+def _cell(lines, t, low):  # type: ignore[no-untyped-def]
+    """The cell between lines in which a parameter lies; on a line the one above (`low`) or below."""
+    first, last = 0, len(lines) - 1
+    while last - first > 1:
+        middle = (first + last) // 2
+        if t > lines[middle] or (low and t == lines[middle]):
+            first = middle
+        else:
+            last = middle
+    return first
+
+
+@kernel
+def _window(lines, low, high):  # type: ignore[no-untyped-def]
+    """Level and number of the smallest window that holds a range."""
+    a, b = _cell(lines, low, True), _cell(lines, high, False)
+    if b <= a:
+        return 0, b
+    level = 1
+    while (b >> (level - 1)) - (a >> (level - 1)) > 1:
+        level += 1
+    return level, a >> (level - 1)
+
+
+@kernel
+def window(table, low_u, high_u, low_v, high_v):  # type: ignore[no-untyped-def]
+    """Row of `table.node` that bounds a rectangle."""
+    k, i = _window(table.u, low_u, high_u)
+    m, j = _window(table.v, low_v, high_v)
+    return table.start[k, m] + min(i, table.along_u[k] - 1) * table.along_v[m] + min(j, table.along_v[m] - 1)
+
+
+@kernel
+def bend(row, du, dv):  # type: ignore[no-untyped-def]
+    """Largest q of a step in the parameter plane: `1/8 q` bounds how far an edge is from its course."""
+    uu, vv, uv = du * du, dv * dv, 2.0 * du * dv
+    total = 0.0
+    for c in range(3):
+        total += (row[c] * uu + row[3 + c] * vv + row[6 + c] * uv) ** 2
+    return np.sqrt(total) + row[9] * uu + row[10] * vv
+
+
+@kernel
+def most_inside(a, b, c):  # type: ignore[no-untyped-def]
+    """Half the largest sum of `l_i l_j q_ij` over a triangle whose edges have q of a, b and c."""
+    edge = 0.25 * max(a, max(b, c))
+    across = 2.0 * (a * b + b * c + c * a) - a * a - b * b - c * c
+    if across > 0.0 and a + b > c and b + c > a and c + a > b:
+        edge = max(edge, a * b * c / across)
+    return 0.5 * edge

@@ -1,0 +1,254 @@
+"""Border curves in a face's parameter plane, evaluated and bounded in compiled code.
+
+Lines, circles, ellipses, B-splines and Bezier curves are exact, and how far they stray from a chord is proved; all others are
+replaced by cubics through many of their points, and what stands on them is measured.
+"""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from OCP.BRepAdaptor import BRepAdaptor_Curve2d
+from OCP.GeomAbs import GeomAbs_Circle, GeomAbs_Ellipse
+from OCP.gp import gp_Pnt2d, gp_Vec2d
+
+from cad_io.arrays import Floats
+from cad_io.jit import decorators
+from cad_io.kernel import is_kernel_error
+from cad_io.surface.bspline import DEGREE, Net, basis, span, wrapped
+from cad_io.surface.bspline import evaluate as evaluate_net
+from cad_io.surface.forms import curve_lines, curve_net
+from cad_io.surface.net_bends import net_bends
+
+entry, kernel = decorators(__file__)
+
+#: Cells along a bent curve, at least; points of a curve that is replaced.
+_CELLS, _POINTS = 16, 257
+_TRIED = np.array([0.13, 0.37, 0.5, 0.61, 0.89])
+_AGREE = 1e-9
+#: Columns of `Curves.number`: what it is, degree, first knot, first pole, first line, number of lines.
+_NET, _CONIC = 0, 1
+
+
+class Curves(NamedTuple):
+    """Curves of a face, packed.
+
+    number (m, 6) int: is it a conic, degree, where its knots, poles and lines begin, how many lines. real (m, 7): period;
+    centre and two half axes of a conic. knot, pole (p, 4), line: of all. bend (l, 3): between a line and the next the
+    largest second derivative along u and v, and how far the first derivative may jump at the line.
+    """
+
+    number: Any
+    real: Any
+    knot: Any
+    pole: Any
+    line: Any
+    bend: Any
+
+
+class Room(NamedTuple):
+    """Room to evaluate in."""
+
+    left: Any
+    right: Any
+    table: Any
+    basis: Any
+    found: Any
+
+
+def packed(curves: Sequence[BRepAdaptor_Curve2d], ranges: Sequence[tuple[float, float]]) -> tuple[Curves, bool]:
+    """Curves over ranges of their parameters, and whether all are exact."""
+    number, real = np.zeros((len(curves), 6), np.int64), np.zeros((len(curves), 7))
+    knot, pole, line, bend = [np.zeros(0)], [np.zeros((0, 4))], [np.zeros(0)], [np.zeros((0, 3))]
+    knots, poles, lines, exact = 0, 0, 0, True
+    for i, (curve, ends) in enumerate(zip(curves, ranges, strict=True)):
+        conic = _conic(curve)
+        if conic is not None and _agrees(curve, ends, lambda t, c=conic: _on_conic(c, t)):
+            net, mine = None, np.array(ends)
+            bends = np.array([[*np.hypot(conic[2:4], conic[4:6]), 0.0]] * 2)
+        else:
+            conic = None
+            net = _net(curve)
+            if net is None or not _agrees(curve, ends, lambda t, n=net: _on_net(n, t)):
+                net, exact = _through_points(curve, ends), False
+            mine, bends = _bends(net, ends)
+            if not np.isfinite(bends).all():
+                net, exact = _through_points(curve, ends), False
+                mine, bends = _bends(net, ends)
+        number[i] = (conic is not None, 0 if net is None else net.degree_v, knots, poles, lines, len(mine))
+        if conic is not None:
+            real[i, 1:] = conic
+        if net is not None:
+            real[i, 0] = net.period_v
+            knot.append(net.knot_v)
+            pole.append(net.pole[0])
+            knots, poles = knots + len(net.knot_v), poles + len(net.pole[0])
+        line.append(mine)
+        bend.append(bends)
+        lines += len(mine)
+    # Where a curve's knots end tells the next's beginning.
+    number = np.concatenate([number, [[0, 0, knots, poles, lines, 0]]])
+    return Curves(
+        number, real, *(np.ascontiguousarray(np.concatenate(each)) for each in (knot, pole, line, bend))
+    ), exact
+
+
+def _conic(curve: BRepAdaptor_Curve2d) -> Floats | None:
+    """Centre and half axes (6,) of a circle or an ellipse."""
+    kind: Any = curve.GetType()
+    if kind == GeomAbs_Circle:
+        found: Any = curve.Circle()
+        radii = (found.Radius(), found.Radius())
+    elif kind == GeomAbs_Ellipse:
+        found = curve.Ellipse()
+        radii = (found.MajorRadius(), found.MinorRadius())
+    else:
+        return None
+    axes = found.XAxis().Direction(), found.YAxis().Direction()
+    return np.array([*found.Location().Coord(), *(r * c for r, d in zip(radii, axes, strict=True) for c in d.Coord())])
+
+
+def _on_conic(conic: Floats, t: Floats) -> Floats:
+    return conic[:2] + np.cos(t)[:, None] * conic[2:4] + np.sin(t)[:, None] * conic[4:6]
+
+
+def _net(curve: BRepAdaptor_Curve2d) -> Net | None:
+    try:
+        return curve_net(curve)
+    except Exception as thrown:
+        if not is_kernel_error(thrown):
+            raise
+        return None
+
+
+def _on_net(net: Net, t: Floats) -> Floats:
+    out = np.empty((len(t), 1, 3))
+    evaluate_net(np.full(len(t), 0.5), np.ascontiguousarray(t), net, out)
+    return out[:, 0, :2]
+
+
+def _agrees(curve: BRepAdaptor_Curve2d, ends: tuple[float, float], ours: Any) -> bool:
+    t = ends[0] + _TRIED * (ends[1] - ends[0])
+    there = np.array([curve.Value(float(each)).Coord() for each in t])
+    return bool((np.abs(ours(t) - there) <= _AGREE * np.abs(there).max(initial=1e-300)).all())
+
+
+def _through_points(curve: BRepAdaptor_Curve2d, ends: tuple[float, float]) -> Net:
+    """Cubics with a curve's points and derivatives."""
+    t = np.linspace(*ends, _POINTS)
+    point, speed = np.empty((_POINTS, 2)), np.empty((_POINTS, 2))
+    for k, each in enumerate(t.tolist()):
+        at, along = gp_Pnt2d(), gp_Vec2d()
+        curve.D1(each, at, along)
+        point[k], speed[k] = at.Coord(), along.Coord()
+    step = (t[1] - t[0]) / 3.0
+    pole = np.zeros((1, 2 * _POINTS, 4))
+    pole[0, 0::2, :2], pole[0, 1::2, :2] = point - step * speed, point + step * speed
+    pole[0, 0, :2], pole[0, -1, :2] = point[0], point[-1]
+    pole[..., 3] = 1.0
+    knot = np.concatenate([t[:1], t[:1], np.repeat(t, 2), t[-1:], t[-1:]])
+    return Net(np.array([0.0, 1.0]), knot, 0, 3, 0.0, 0.0, pole, False)
+
+
+def _bends(net: Net, ends: tuple[float, float]) -> tuple[Floats, Floats]:
+    """Lines over a range and, between each and the next, `Curves.bend`."""
+    knots, jumps = curve_lines(net, ends)
+    if net.degree_v == 1 and not net.rational:
+        return knots, np.column_stack([np.zeros((len(knots), 2)), jumps])
+    times = np.maximum(1, np.ceil(_CELLS * np.diff(knots) / (ends[1] - ends[0]))).astype(int)
+    pieces = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(knots[:-1], knots[1:], times, strict=True)]
+    line = np.append(np.concatenate(pieces), knots[-1])
+    found = net_bends(net, np.array([0.0, 1.0]), line)
+    bend = np.zeros((len(line), 3))
+    bend[:-1, :2] = np.abs(found.middle[0, :, 1, :2]) + found.spread[0, :, 1:2]
+    bend[np.searchsorted(line, knots), 2] = jumps
+    return line, bend
+
+
+@entry
+def room():  # type: ignore[no-untyped-def]
+    """Room for the kernels."""
+    wide = DEGREE + 1
+    return Room(np.empty(wide), np.empty(wide), np.empty((wide, wide)), np.empty((3, wide)), np.empty(4))
+
+
+@kernel
+def point(curves, i, t, room):  # type: ignore[no-untyped-def]
+    """Parameters (u, v) of the surface on a curve."""
+    number, real = curves.number[i], curves.real[i]
+    if number[0] == _CONIC:
+        c, s = np.cos(t), np.sin(t)
+        return real[1] + c * real[3] + s * real[5], real[2] + c * real[4] + s * real[6]
+    knot, degree = curves.knot[number[2] : curves.number[i + 1, 2]], number[1]
+    t = wrapped(t, knot[degree], real[0])
+    low = span(knot, degree, t)
+    basis(knot, degree, low, t, 0, room.left, room.right, room.table, room.basis)
+    first = number[3] + low - degree
+    u, v, w = 0.0, 0.0, 0.0
+    for k in range(degree + 1):
+        share = room.basis[0, k]
+        u += share * curves.pole[first + k, 0]
+        v += share * curves.pole[first + k, 1]
+        w += share * curves.pole[first + k, 3]
+    return u / w, v / w
+
+
+@kernel
+def strays(curves, i, a, b):  # type: ignore[no-untyped-def]
+    """How far a curve may be along u and along v, between two parameters, from the chord traversed evenly."""
+    first, count = curves.number[i, 4], curves.number[i, 5]
+    low, high = min(a, b), max(a, b)
+    line = curves.line[first : first + count]
+    start, stop = 0, count - 1
+    while stop - start > 1:
+        middle = (start + stop) // 2
+        if low >= line[middle]:
+            start = middle
+        else:
+            stop = middle
+    wide = high - low
+    u, v, sum_u, sum_v, jumps = 0.0, 0.0, 0.0, 0.0, 0.0
+    k = start
+    while k < count - 1 and (k == start or line[k] < high):
+        row = curves.bend[first + k]
+        u, v = max(u, row[0]), max(v, row[1])
+        # A second derivative b over a piece at s takes the curve no farther than b ds (high - s) (s - low) / (high - low).
+        a, b = low if k == start else line[k], high if k == count - 2 else min(high, line[k + 1])
+        s = min(max(0.5 * (low + high), a), b)
+        at = (b - a) * (high - s) * (s - low) / wide if wide > 0.0 else 0.0
+        sum_u, sum_v = sum_u + row[0] * at, sum_v + row[1] * at
+        if low < line[k]:
+            jumps += row[2] * (high - line[k]) * (line[k] - low) / wide
+        k += 1
+    wide *= 0.125 * wide
+    return min(u * wide, sum_u) + jumps, min(v * wide, sum_v) + jumps
+
+
+@entry
+def farthest(curves, curve, ends, most):  # type: ignore[no-untyped-def]
+    """Write how far each curve (m, 2) may be along u and along v from its chords: of curve (k,), -1 for none, `ends` (k, 2)."""
+    most[:] = 0.0
+    for k in range(len(curve)):
+        i = curve[k]
+        if i >= 0:
+            u, v = strays(curves, i, ends[k, 0], ends[k, 1])
+            most[i, 0], most[i, 1] = max(most[i, 0], u), max(most[i, 1], v)
+
+
+def reach(curves: Curves, uv: Floats, curve: Any, ends: Floats) -> tuple[Floats, Floats]:
+    """Corners (2,) of a rectangle that holds the nodes (n, 2) of a mesh and all of its border.
+
+    A curve strays only so far from its chords, and never leaves the hull of its poles.
+    """
+    low, high = uv.min(axis=0), uv.max(axis=0)
+    most = np.zeros((len(curves.number) - 1, 2))
+    farthest(curves, curve.ravel(), ends.reshape(-1, 2), most)
+    from_, to = low.copy(), high.copy()
+    for i, beyond in enumerate(most):
+        pole = curves.pole[curves.number[i, 3] : curves.number[i + 1, 3]]
+        below, above = low - beyond, high + beyond
+        if len(pole) and pole[:, 3].min() > 0:
+            point = pole[:, :2] / pole[:, 3:]
+            below, above = np.maximum(below, point.min(axis=0)), np.minimum(above, point.max(axis=0))
+        from_, to = np.minimum(from_, below), np.maximum(to, above)
+    return from_, to

@@ -1,0 +1,121 @@
+"""One face on its way to triangles: where they begin, what bounds their distance from the surface, and those that are laid."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from cad_io.part import Part
+from cad_io.surface import Surface
+from cad_io.tessellate.bounds import Table, table_of
+from cad_io.tessellate.curves import Curves, packed, reach
+from cad_io.tessellate.mesh import UVMesh
+from cad_io.tessellate.refine import Found, Start, refined
+
+#: Measured distances count this much larger, for what lies between the points measured.
+MARGIN = 1.05
+#: Where triangles are measured that must be: shares of their corners.
+_MEASURED = np.array([(a, b, 4 - a - b) for a in range(5) for b in range(5 - a) if max(a, b, 4 - a - b) < 4]) / 4
+#: Triangles measured at once.
+_AT_ONCE = 1 << 16
+#: How often a guess that does not hold is made again, and how much larger than measured.
+_GUESSES, _LARGER = 6, 1.02
+
+Indices = NDArray[np.int64]
+
+
+class Laid(NamedTuple):
+    """Finished triangles of a face: nodes (n, 3) in mm, corners (t, 3), the bound of their distance from it, mm, and their area
+    in the parameter plane."""
+
+    point: Floats
+    corner: Indices
+    off: float
+    area: float
+
+
+class Patch(NamedTuple):
+    """A face before its triangles are cut.
+
+    proved: whether the bound of the table and the curves holds everywhere; else it is a guess, and distances are measured.
+    """
+
+    number: int
+    surface: Surface
+    start: Start
+    table: Table
+    curves: Curves
+    proved: bool
+
+    @staticmethod
+    def of(part: Part, number: int, mesh: UVMesh) -> "Patch":
+        """The patch of a face that begins with a mesh."""
+        surface = part.surface(number)
+        curves, exact = packed([b.curve for b in mesh.border],
+                               [(float(b.parameter.min()), float(b.parameter.max())) for b in mesh.border])  # fmt: skip
+        curve, ends = _edges(mesh)
+        start = Start(np.ascontiguousarray(mesh.uv), mesh.corner.astype(np.int64), curve, ends)
+        low, high = reach(curves, mesh.uv, curve, ends)
+        table, proved = table_of(surface, (low[0], high[0], low[1], high[1]))
+        return Patch(number, surface, start, table, curves, proved and exact)
+
+    def counted(self, chord: float, most: int) -> tuple[int, int]:
+        """Triangles and nodes that a chord error takes."""
+        none = Found(np.zeros((0, 2)), np.zeros((0, 3), np.int64))
+        triangles, nodes, *_ = refined(self.start, self.table, self.curves, self._asked(chord), most, none)
+        return triangles, nodes
+
+    def _asked(self, chord: float) -> float:
+        return chord if self.proved else chord / MARGIN
+
+    def laid(self, chord: float, count: tuple[int, int], most: int) -> Laid:
+        """Triangles for a chord error, as many as were counted, and no more than `most` where that was a guess."""
+        for guess in range(_GUESSES):
+            found = Found(np.empty((count[1], 2)), np.empty((count[0], 3), np.int64))
+            *_, off, strayed, area = refined(self.start, self.table, self.curves, self._asked(chord), count[0], found)
+            point = self.surface.values(found.uv[:, 0], found.uv[:, 1])
+            if not self.proved:
+                off = MARGIN * _measured(self.surface, found, point) + strayed
+            laid = Laid(point, found.corner, off, area)
+            if self.proved or off <= chord or not np.isfinite(off) or count[0] >= most or guess + 1 == _GUESSES:
+                break
+            self = self._replace(table=self.table._replace(node=_LARGER * off / chord * self.table.node))
+            count = self.counted(chord, most)
+        return laid
+
+
+def _measured(surface: Surface, found: Found, point: Floats) -> float:
+    """Largest distance found between points of triangles and of the surface with the same parameters, mm."""
+    worst = 0.0
+    for first in range(0, len(found.corner), _AT_ONCE):
+        corner = found.corner[first : first + _AT_ONCE]
+        for share in _MEASURED:
+            uv = np.einsum("c,tcx->tx", share, found.uv[corner])
+            off = surface.values(uv[:, 0], uv[:, 1]) - np.einsum("c,tcx->tx", share, point[corner])
+            # Not a number counts as far.
+            worst = max(worst, float(np.nan_to_num(np.linalg.norm(off, axis=1), nan=np.inf).max(initial=0.0)))
+    return worst
+
+
+def _edges(mesh: UVMesh) -> tuple[Indices, Floats]:
+    """`curve` and `ends` of a mesh's triangles, as in `Start`."""
+    n = len(mesh.uv)
+    curve, ends = np.full(mesh.corner.shape, -1, np.int64), np.zeros((*mesh.corner.shape, 2))
+    if not mesh.border:
+        return curve, ends
+    keys, first, last = [], [], []
+    for border in mesh.border:
+        a, b = border.nodes[:-1].astype(np.int64), border.nodes[1:].astype(np.int64)
+        keys.append(np.concatenate([a * n + b, b * n + a]))
+        first.append(np.concatenate([border.parameter[:-1], border.parameter[1:]]))
+        last.append(np.concatenate([border.parameter[1:], border.parameter[:-1]]))
+    index = np.repeat(np.arange(len(keys)), [len(each) for each in keys])
+    key = np.concatenate(keys)
+    order = np.argsort(key, kind="stable")
+    wanted = mesh.corner.astype(np.int64) * n + np.roll(mesh.corner, -1, axis=1)
+    at = order[np.minimum(np.searchsorted(key, wanted, sorter=order), len(key) - 1)]
+    hit = key[at] == wanted
+    curve[hit] = index[at[hit]]
+    ends[hit] = np.stack([np.concatenate(first), np.concatenate(last)], axis=1)[at[hit]]
+    return curve, ends
