@@ -254,6 +254,11 @@ class Triangles(Record):
     def __len__(self) -> int:
         return len(self.vertex)
 
+    @property
+    def measured_share(self) -> float:
+        """Share of the triangles whose distance is not proved."""
+        return float(np.isin(self.face, self.measured).mean()) if self.measured and len(self) else 0.0
+
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class FaceLabels(Record):

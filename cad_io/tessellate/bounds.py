@@ -18,8 +18,10 @@ from cad_io.surface.forms import lines_within
 
 entry, kernel = decorators(__file__)
 
-#: Cells each way on a bent surface, at least, and if it is bent one way only; at most, where dense knots are put together.
-_CELLS, _ALONG, _MOST = 24, 96, 256
+#: Cells along a surface that is bent one way only, at least; at most, where dense knots are put together.
+_ALONG, _MOST = 96, 256
+#: Cells each way where not many triangles are to be laid, and where many are: bounds close in as cells shrink.
+COARSE, FINE = 24, 64
 #: Knots nearer than this share of the range are one line; what they hide is added to every distance.
 _NARROW = 1e-9
 #: Columns of a table: Suu, Svv, Suv in the middle, what Suu and Svv may differ by (Suv shared out to them), |Su|, |Sv|.
@@ -45,8 +47,9 @@ class Table(NamedTuple):
     slack: float
 
 
-def table_of(surface: Surface, box: tuple[float, float, float, float]) -> tuple[Table, bool]:
-    """The table of a surface over a rectangle (u0, u1, v0, v1), and whether its bounds are proved.
+def table_of(surface: Surface, box: tuple[float, float, float, float], cells: int = COARSE) -> tuple[Table, bool]:
+    """The table of a surface over a rectangle (u0, u1, v0, v1), of so many cells each way or more, and whether its bounds are
+    proved.
 
     Bounds of a surface that only the kernel can evaluate are guessed from derivatives in places: what stands on them must
     be measured.
@@ -65,13 +68,13 @@ def table_of(surface: Surface, box: tuple[float, float, float, float]) -> tuple[
         bent = [np.abs(bends.middle[:, :, k]).max() + bends.spread[:, :, k].max() > 0.0 for k in range(3)]
         if np.isfinite(bends.spread).all() and np.isfinite(bends.first).all():
             ways = [bent[k] or bent[2] for k in range(2)]
-            finer = [_subdivided(lines[k], _CELLS if all(ways) else _ALONG) if ways[k] else lines[k] for k in range(2)]
+            finer = [_subdivided(lines[k], cells if all(ways) else _ALONG) if ways[k] else lines[k] for k in range(2)]
             bends = _bends(form.bends, *finer)
             finer = [_thinned(each) for each in finer]
             if np.isfinite(bends.spread).all() and np.isfinite(bends.first).all():
                 hidden = 2.0 * float(bends.first[..., 0].max() * slack[0] + bends.first[..., 1].max() * slack[1])
                 return _table(finer[0], finer[1], kinks[0], kinks[1], bends, hidden), True
-    u, v = (np.linspace(box[2 * k], box[2 * k + 1], _CELLS + 1) for k in range(2))
+    u, v = (np.linspace(box[2 * k], box[2 * k + 1], cells + 1) for k in range(2))
     none = np.zeros((0, 2))
     return _table(u, v, none, none, _guessed(surface, u, v), 0.0), False
 

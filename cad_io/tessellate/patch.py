@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from cad_io.part import Part
 from cad_io.surface import Surface
-from cad_io.tessellate.bounds import Table, table_of
+from cad_io.tessellate.bounds import FINE, Table, table_of
 from cad_io.tessellate.curves import Curves, packed, reach
 from cad_io.tessellate.mesh import UVMesh
 from cad_io.tessellate.refine import Found, Start, refined
@@ -21,6 +21,9 @@ _MEASURED = np.array([(a, b, 4 - a - b) for a in range(5) for b in range(5 - a) 
 _AT_ONCE = 1 << 16
 #: How often a guess that does not hold is made again, and how much larger than measured.
 _GUESSES, _LARGER = 6, 1.02
+
+#: Triangles from which a finer table takes less time than the triangles that it saves.
+_MANY = 8000
 
 Indices = NDArray[np.int64]
 
@@ -49,16 +52,20 @@ class Patch(NamedTuple):
     proved: bool
 
     @staticmethod
-    def of(part: Part, number: int, mesh: UVMesh) -> "Patch":
-        """The patch of a face that begins with a mesh."""
+    def of(part: Part, number: int, mesh: UVMesh, chord: float) -> "Patch":
+        """The patch of a face that begins with a mesh, its table as fine as is worth while for a chord error."""
         surface = part.surface(number)
         curves, exact = packed([b.curve for b in mesh.border],
                                [(float(b.parameter.min()), float(b.parameter.max())) for b in mesh.border])  # fmt: skip
         curve, ends = _edges(mesh)
         start = Start(np.ascontiguousarray(mesh.uv), mesh.corner.astype(np.int64), curve, ends)
         low, high = reach(curves, mesh.uv, curve, ends)
-        table, proved = table_of(surface, (low[0], high[0], low[1], high[1]))
-        return Patch(number, surface, start, table, curves, proved and exact)
+        box = (low[0], high[0], low[1], high[1])
+        table, proved = table_of(surface, box)
+        patch = Patch(number, surface, start, table, curves, proved and exact)
+        if proved and patch.counted(chord, _MANY)[0] > _MANY:
+            patch = patch._replace(table=table_of(surface, box, FINE)[0])
+        return patch
 
     def counted(self, chord: float, most: int) -> tuple[int, int]:
         """Triangles and nodes that a chord error takes."""

@@ -66,7 +66,7 @@ def tessellate(
         patches = []
         for number in list(meshes):
             at("kernel", number)
-            patches.append(Patch.of(part, number, meshes.pop(number)))
+            patches.append(Patch.of(part, number, meshes.pop(number), chord))
         coarse, counts = _affordable(patches, chord, budget, part)
         laid = []
         for patch, count in zip(patches, counts, strict=True):

@@ -65,7 +65,12 @@ class Effective(_Frozen):
     rotation_deg: tuple[float, float]
     rotation_step_deg: float
     tolerance_mm: float = Field(description="the gouge tolerance that was kept, raised where a budget binds")
-    chord_error_mm: float = Field(description="largest measured distance from obstacle triangles to the surface")
+    chord_error_mm: float = Field(description="bound of the distance between obstacle triangles and the surface")
+    chord_measured_share: float = Field(
+        default=0.0,
+        description="share of the triangles whose distance is measured at points, not proved: on faces whose surface or border "
+        "only the CAD kernel can evaluate",
+    )
     obstacle_triangles: int
     flip: bool
     area_budget: int = Field(description="contacts that may be added between the samples")

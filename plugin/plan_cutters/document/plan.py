@@ -39,6 +39,7 @@ def plan_of(
             rotation_step_deg=float(np.degrees(options.postures.step)),
             tolerance_mm=scene.tolerance,
             chord_error_mm=around.surely.triangles.chord_error,
+            chord_measured_share=around.surely.triangles.measured_share,
             obstacle_triangles=len(around.may_be.triangles),
             flip=options.flip,
             area_budget=options.area_budget,
