@@ -35,6 +35,7 @@ from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Writer
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
 from OCP.TColgp import TColgp_Array1OfPnt
 from OCP.TCollection import TCollection_ExtendedString
+from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDocStd import TDocStd_Document
 from OCP.TopLoc import TopLoc_Location
@@ -220,6 +221,31 @@ def test_simple_shapes_behind_extrusion_and_revolution_are_recognised():
     axis = gp_Ax1(gp_Pnt(0, 4, 0), gp_Dir(1, 0, 0))
     round_ = read_part(BRepPrimAPI_MakeRevol(line, axis).Shape())
     assert (round_.faces[0].shape, round_.faces[0].area) == ("cylinder", pytest.approx(40 * np.pi))
+
+
+@pytest.mark.parametrize("convert", [lambda s: s, as_nurbs], ids=["turned", "nurbs"])
+@pytest.mark.parametrize("height", [0.0, 0.0005, 0.27])
+def test_a_ridge_between_the_nodes_is_no_cylinder(height, convert):
+    """1 m long, the ridge 4 mm wide: an axis through none of the nodes that are looked at first."""
+    curve = ridge(1000.0, 4.0, height)
+    axis = gp_Ax1(gp_Pnt(0, 0, -50), gp_Dir(1, 0, 0))
+    part = read_part(convert(BRepPrimAPI_MakeRevol(BRepBuilderAPI_MakeEdge(curve).Edge(), axis, 1.0).Shape()))
+    assert [f.shape for f in part.faces] == ["sculptured" if height > 0.1 else "cylinder"]
+
+
+def ridge(length, width, height):
+    """A straight cubic B-spline along x with a ridge at 0.37 of its length: nothing of it reaches farther."""
+    at = 0.37 * length
+    knots = np.array([0.0, *(at + width * np.array([-0.5, -0.25, 0.0, 0.25, 0.5])), length])
+    greville = np.convolve(np.repeat(knots, [4, 1, 1, 1, 1, 1, 4])[1:-1], np.ones(3) / 3, mode="valid")
+    pole = TColgp_Array1OfPnt(1, len(greville))
+    for i, x in enumerate(greville.tolist(), 1):
+        pole.SetValue(i, gp_Pnt(x, 0, 1.5 * height if abs(x - at) < 1e-9 else 0.0))
+    values, times = TColStd_Array1OfReal(1, 7), TColStd_Array1OfInteger(1, 7)
+    for i, (knot, count) in enumerate(zip(knots.tolist(), [4, 1, 1, 1, 1, 1, 4], strict=True), 1):
+        values.SetValue(i, knot)
+        times.SetValue(i, count)
+    return Geom_BSplineCurve(pole, values, times, 3)
 
 
 def test_area_of_an_extruded_spline():

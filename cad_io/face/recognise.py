@@ -1,20 +1,40 @@
 """What a surface is in shape, whatever the file calls it: plane, cylinder, cone, sphere, torus or sculptured.
 
 Many systems write quadrics as rational B-splines. Curvature rejects nearly every sculptured surface at once; what is
-left is fitted, and the fit counts only if every point lies within a tolerance of it.
+left is fitted, and the fit counts only if the whole surface lies within a tolerance of it: a ridge between two nodes is no
+quadric. On each polynomial piece of the surface the shape's equation is a polynomial too, and one that is small at enough
+Chebyshev nodes is small between them (Ehlich and Zeller, 1964).
 """
 
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+
 import numpy as np
+from OCP.GeomAbs import GeomAbs_CN
 
 from cad_io.arrays import Floats
 from cad_io.face.curvature import curvature
+from cad_io.kernel import interval_ends
 from cad_io.surface import Surface
+from cad_io.surface.forms import lines_within
 
 #: Farthest that a point may lie from the simple shape: mm, and as a share of the face's size.
 WITHIN, WITHIN_SHARE = 1e-3, 1e-4
+#: Between the nodes that are looked at first, and beyond them to the borders, so many times as far.
+_BETWEEN = 3.0
 _NODES = 8
 #: Relative spread of a curvature that may still be constant: written shapes wobble, the fit decides.
 _WOBBLE = 0.1
+#: Nodes along a piece of degree p: so many p, and more. Between them a quadric's equation (degree 2 p) is at most 1.3 times,
+#: a torus's (4 p) at most 4 times as large as at them.
+_EACH, _MORE = 6, 2
+#: Nodes along what is no polynomial: angles, and surfaces that only the kernel knows.
+_SMOOTH = 24
+#: Points looked at together.
+_AT_ONCE = 1 << 16
+
+#: A shape and the distances (n,) of points (n, 3) from it.
+Fit = tuple[str, Callable[[Floats], Floats]]
 
 
 def recognise(surface: Surface, box: tuple[float, float, float, float]) -> str:
@@ -25,54 +45,93 @@ def recognise(surface: Surface, box: tuple[float, float, float, float]) -> str:
     geometry = curvature(derivatives)
     if geometry.bad.any():
         return "sculptured"
-    point, normal, kappa = derivatives[:, 0], geometry.normal, geometry.curvature
+    point = derivatives[:, 0]
     size = float(np.linalg.norm(np.ptp(point, axis=0)))
     within = min(WITHIN, WITHIN_SHARE * size)
-    if _off_plane(point) <= within:
-        return "plane"
+    for kind, distance in _fits(point, geometry.normal, geometry.curvature, size):
+        if distance(point).max() <= within:
+            # Only what the nodes agree with is looked at everywhere.
+            whole = all(distance(each).max() <= _BETWEEN * within for each in _everywhere(surface, box))
+            return kind if whole else "sculptured"
+    return "sculptured"
+
+
+def _fits(point: Floats, normal: Floats, kappa: Floats, size: float) -> Iterator[Fit]:
+    """Shapes that points with their normals and principal curvatures may lie on."""
+    yield _plane(point)
     large = float(np.abs(kappa).max())
     if large * size < 1e-3:
-        return "sculptured"
+        return
     spread = np.ptp(kappa, axis=0)
     constant = spread <= _WOBBLE * np.abs(kappa).max(axis=0)
     flat = np.abs(kappa).max(axis=0) <= 1e-2 * large
     if constant.all() and not flat.any() and abs(kappa.mean(axis=0) @ (1, -1)) <= _WOBBLE * large:
-        centre = (point + normal / kappa.mean(axis=1)[:, None]).mean(axis=0)
-        return "sphere" if np.ptp(np.linalg.norm(point - centre, axis=1)) <= 2 * within else "sculptured"
-    if flat.any():
-        return _ruled(point, normal, within)
-    for tube in np.nonzero(constant)[0]:
-        if _is_torus(point, normal, float(kappa[:, tube].mean()), within):
-            return "torus"
-    return "sculptured"
+        yield _sphere(point, normal, kappa)
+    elif flat.any():
+        yield from _ruled(point, normal)
+    else:
+        for tube in np.nonzero(constant)[0]:
+            yield _torus(point, normal, float(kappa[:, tube].mean()))
 
 
-def _off_plane(point: Floats) -> float:
-    centred = point - point.mean(axis=0)
-    return float(np.abs(centred @ np.linalg.svd(centred, full_matrices=False)[2][2]).max())
+def _everywhere(surface: Surface, box: tuple[float, float, float, float]) -> Iterator[Floats]:
+    """Points (n, 3) at Chebyshev nodes of all pieces of a surface, some pieces at a time."""
+    form, nodes = surface.form, []
+    for axis in range(2):
+        ends = (box[2 * axis], box[2 * axis + 1])
+        degree = form.degree[axis] if form else 0
+        if form is not None:
+            knots, _ = lines_within(form.knots[axis], form.jumps[axis], form.period[axis], ends)
+        else:
+            of = surface.adaptor
+            count, lines = (of.NbUIntervals, of.UIntervals) if axis == 0 else (of.NbVIntervals, of.VIntervals)
+            knots = interval_ends(count(GeomAbs_CN), lines, GeomAbs_CN)
+        inner = [t for t in knots.tolist() if ends[0] < t < ends[1]]
+        count = _EACH * degree + _MORE if degree else _SMOOTH
+        share = 0.5 - 0.5 * np.cos(np.pi * (np.arange(count) + 0.5) / count)
+        nodes.append([a + share * (b - a) for a, b in pairwise([ends[0], *inner, ends[1]])])
+    u = np.concatenate(nodes[0])
+    rows = max(1, _AT_ONCE // len(u))
+    v = np.concatenate(nodes[1])
+    for first in range(0, len(v), rows):
+        s, t = (g.ravel() for g in np.meshgrid(u, v[first : first + rows]))
+        yield surface.values(s, t)
 
 
-def _circle(flat: Floats) -> tuple[Floats, float, Floats]:
-    """Centre, radius and residuals of the circle through points (n, 2), by least squares."""
+def _plane(point: Floats) -> Fit:
+    middle = point.mean(axis=0)
+    normal = np.linalg.svd(point - middle, full_matrices=False)[2][2]
+    return "plane", lambda p: np.abs((p - middle) @ normal)
+
+
+def _sphere(point: Floats, normal: Floats, kappa: Floats) -> Fit:
+    centre = (point + normal / kappa.mean(axis=1)[:, None]).mean(axis=0)
+    far = np.linalg.norm(point - centre, axis=1)
+    radius = 0.5 * float(far.min() + far.max())
+    return "sphere", lambda p: np.abs(np.linalg.norm(p - centre, axis=1) - radius)
+
+
+def _circle(flat: Floats) -> tuple[Floats, float]:
+    """Centre and radius of the circle through points (n, 2), by least squares."""
     design = np.column_stack([2 * flat, np.ones(len(flat))])
     solution = np.linalg.lstsq(design, (flat**2).sum(axis=1), rcond=None)[0]
     centre = solution[:2]
-    radius = float(np.sqrt(max(solution[2] + centre @ centre, 0.0)))
-    return centre, radius, np.linalg.norm(flat - centre, axis=1) - radius
+    return centre, float(np.sqrt(max(solution[2] + centre @ centre, 0.0)))
 
 
-def _ruled(point: Floats, normal: Floats, within: float) -> str:
+def _ruled(point: Floats, normal: Floats) -> Iterator[Fit]:
     """Cylinder or cone: the normals of either lie on a circle about the axis."""
     axes = np.linalg.svd(normal - normal.mean(axis=0), full_matrices=False)[2]
     axis = axes[2]
     lean = normal @ axis  # sine of the half angle: constant on a cone, zero on a cylinder
     if np.ptp(lean) > 1e-2:
-        return "sculptured"
-    slope = float(lean.mean())
-    flat, height = point @ axes[:2].T, point @ axis
-    if abs(slope) < 1e-4:
-        return "cylinder" if np.abs(_circle(flat)[2]).max() <= within else "sculptured"
+        return
+    if abs(float(lean.mean())) < 1e-4:
+        middle, radius = _circle(point @ axes[:2].T)
+        yield "cylinder", lambda p: np.abs(np.linalg.norm(p @ axes[:2].T - middle, axis=1) - radius)
+        return
     # A cone's points stand off its axis along the normals' part across it, by a distance that is linear in the height.
+    flat, height = point @ axes[:2].T, point @ axis
     across = normal @ axes[:2].T
     across /= np.linalg.norm(across, axis=1)[:, None]
     # flat = centre + (r0 + k height) across, unknown: centre, r0, k.
@@ -81,22 +140,26 @@ def _ruled(point: Floats, normal: Floats, within: float) -> str:
     design[:n, 0] = design[n:, 1] = 1.0
     design[:, 2] = across.T.ravel()
     design[:, 3] = (across * height[:, None]).T.ravel()
-    centre_x, centre_y, r0, k = np.linalg.lstsq(design, flat.T.ravel(), rcond=None)[0]
-    radius = np.hypot(flat[:, 0] - centre_x, flat[:, 1] - centre_y)
-    side = np.sign(r0 + k * height)
-    off = (radius - side * (r0 + k * height)) / np.hypot(1.0, k)
-    return "cone" if np.abs(off).max() <= within else "sculptured"
+    *centre, r0, k = np.linalg.lstsq(design, flat.T.ravel(), rcond=None)[0]
+    side = np.sign(r0 + k * height.mean())
+
+    def distance(p: Floats) -> Floats:
+        radius = np.linalg.norm(p @ axes[:2].T - centre, axis=1)
+        return np.asarray(np.abs(radius - side * (r0 + k * (p @ axis))) / np.hypot(1.0, k))
+
+    yield "cone", distance
 
 
-def _is_torus(point: Floats, normal: Floats, kappa: float, within: float) -> bool:
+def _torus(point: Floats, normal: Floats, kappa: float) -> Fit:
     """Tube of constant curvature kappa about a circle."""
     spine = point + normal / kappa
     centre = spine.mean(axis=0)
     axes = np.linalg.svd(spine - centre, full_matrices=False)[2]
-    height = (point - centre) @ axes[2]
-    flat = (spine - centre) @ axes[:2].T
-    middle, radius, _ = _circle(flat)
-    outward = np.linalg.norm((point - centre) @ axes[:2].T - middle, axis=1) - radius
+    middle, radius = _circle((spine - centre) @ axes[:2].T)
     spine_height = float(((spine - centre) @ axes[2]).mean())
-    off = np.hypot(outward, height - spine_height) - 1 / abs(kappa)
-    return bool(np.abs(off).max() <= within)
+
+    def distance(p: Floats) -> Floats:
+        outward = np.linalg.norm((p - centre) @ axes[:2].T - middle, axis=1) - radius
+        return np.asarray(np.abs(np.hypot(outward, (p - centre) @ axes[2] - spine_height) - 1 / abs(kappa)))
+
+    return "torus", distance

@@ -46,7 +46,7 @@ class Form(NamedTuple):
 
     evaluate: values and derivatives. bends: bounds over the cells between lines along u and v, among which all inner `knots`
     must be. knots: lines along u and along v where polynomial pieces end, and jumps: by how much the first derivative across
-    each may jump there; both within one period, which is 0 where there is none.
+    each may jump there; both within one period, which is 0 where there is none. degree: of the pieces, 0 where they are none.
     """
 
     evaluate: Evaluator
@@ -54,6 +54,7 @@ class Form(NamedTuple):
     knots: tuple[Floats, Floats] = (_NONE, _NONE)
     jumps: tuple[Floats, Floats] = (_NONE, _NONE)
     period: tuple[float, float] = (0.0, 0.0)
+    degree: tuple[int, int] = (0, 0)
 
 
 def form_of(adaptor: BRepAdaptor_Surface) -> Form | None:
@@ -185,6 +186,7 @@ def _of_net(net: "Net") -> Form:
     return Form(
         evaluate, lambda u, v: net_bends(net, u, v),
         (along[0][0], along[1][0]), (along[0][1], along[1][1]), (net.period_u, net.period_v),
+        (net.degree_u, net.degree_v),
     )  # fmt: skip
 
 
@@ -277,4 +279,6 @@ def _turned(curve: "Net", axis: Any) -> Form:
         limits = elementary.Limits(reach, speed, bend, 2.0 * of_line.spread[0, :, 1], speed)
         return elementary.turned_bends(evaluate, limits, u, v)
 
-    return Form(evaluate, bends, (_NONE, line.knots[1]), (_NONE, line.jumps[1]), (0.0, line.period[1]))
+    return Form(
+        evaluate, bends, (_NONE, line.knots[1]), (_NONE, line.jumps[1]), (0.0, line.period[1]), (0, line.degree[1])
+    )
