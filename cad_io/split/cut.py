@@ -13,18 +13,18 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from OCP.BinTools import BinTools
-from OCP.BRep import BRep_Tool
+from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Splitter
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepTools import BRepTools
 from OCP.ShapeAnalysis import ShapeAnalysis_ShapeTolerance
 from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_EDGE, TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
-from OCP.TopoDS import TopoDS, TopoDS_Shape
+from OCP.TopoDS import TopoDS, TopoDS_Shape, TopoDS_Shell, TopoDS_Solid
 from OCP.TopTools import TopTools_ListOfShape
 
 from cad_io.face.uv_region import uv_area
 from cad_io.kernel import explore, shape_map
-from cad_io.kernel.components import children, compound
+from cad_io.kernel.components import as_one, children, compound
 from cad_io.kernel.limited import ChildDied, TimeLimit, limited
 from cad_io.split.denser import denser
 
@@ -110,7 +110,8 @@ def _answers(jobs: Sequence[Job]) -> bytes:
 def _cut(job: Job) -> bytes | Fault:
     """What `_unpacked` takes, or why there is none."""
     tools, arguments = TopTools_ListOfShape(), TopTools_ListOfShape()
-    arguments.Append(job.shape)
+    skin = _skin(job.shape)
+    arguments.Append(skin or job.shape)
     for edge in job.edges:
         tools.Append(edge)
     splitter = BRepAlgoAPI_Splitter()
@@ -136,6 +137,8 @@ def _cut(job: Job) -> bytes | Fault:
             return Fault(f"splitting loses a piece of F{number}", number)
         # From the map: with the orientation that the face has in the result.
         pieces[number] = [known.FindKey(known.FindIndex(f)) for f in images]
+    if skin:
+        result = _filled(job, pieces)
     fault = _wrong(job, result, pieces)
     if fault:
         return fault
@@ -143,6 +146,39 @@ def _cut(job: Job) -> bytes | Fault:
     stream = io.BytesIO()
     BinTools.Write_s(compound([result, *(compound(p) for p in pieces.values())]), stream)
     return stream.getvalue()
+
+
+def _skin(shape: Any) -> Any | None:
+    """The shells of a solid, if they hold nothing but faces, each once; else None.
+
+    Of a solid, the kernel asks for every edge that cuts it whether it lies inside, and for that all faces: with hundreds of
+    edges, nearly all of its time goes there (OCCT 7.9).
+    """
+    if shape.ShapeType() != TopAbs_SOLID:
+        return None
+    shells = children(shape)
+    if any(shell.ShapeType() != TopAbs_SHELL for shell in shells):
+        return None
+    within = [face for shell in shells for face in children(shell)]
+    if any(face.ShapeType() != TopAbs_FACE for face in within):
+        return None
+    return as_one(shells) if len(within) == shape_map(shape, TopAbs_FACE).Extent() else None
+
+
+def _filled(job: Job, pieces: dict[int, list[Any]]) -> Any:
+    """A solid again, of the pieces of its faces."""
+    known, numbers = shape_map(job.shape, TopAbs_FACE), list(job.faces)
+    builder, solid = BRep_Builder(), TopoDS_Solid()
+    builder.MakeSolid(solid)
+    for old in children(job.shape):
+        shell = TopoDS_Shell()
+        builder.MakeShell(shell)
+        for face in children(old):
+            for piece in pieces[numbers[known.FindIndex(face) - 1]]:
+                builder.Add(shell, piece)
+        shell.Closed(BRep_Tool.IsClosed_s(shell))
+        builder.Add(solid, shell)
+    return solid
 
 
 def _unpacked(data: bytes, job: Job) -> Cut:
