@@ -17,6 +17,7 @@ from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Splitter
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepTools import BRepTools
+from OCP.OSD import OSD_ThreadPool
 from OCP.ShapeAnalysis import ShapeAnalysis_ShapeTolerance
 from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_EDGE, TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
 from OCP.TopoDS import TopoDS, TopoDS_Shape, TopoDS_Shell, TopoDS_Solid
@@ -25,7 +26,7 @@ from OCP.TopTools import TopTools_ListOfShape
 from cad_io.face.uv_region import uv_area
 from cad_io.kernel import explore, shape_map
 from cad_io.kernel.components import as_one, children, compound
-from cad_io.kernel.limited import ChildDied, TimeLimit, limited
+from cad_io.kernel.limited import KERNEL_THREADS, ChildDied, TimeLimit, limited
 from cad_io.split.denser import denser
 
 #: Points closer than this are one, mm: what the kernel's splitter was tried with.
@@ -119,6 +120,11 @@ def _cut(job: Job) -> bytes | Fault:
     splitter.SetTools(tools)
     splitter.SetFuzzyValue(FUZZY)
     splitter.SetNonDestructive(True)
+    # The result is the same, byte for byte.
+    threads = KERNEL_THREADS.get()
+    if threads > 1:
+        OSD_ThreadPool.DefaultPool_s(threads)
+        splitter.SetRunParallel(True)
     # In place, which a copy of the process may do.
     with denser((job.faces[n], parts) for n, parts in job.rough.items()):
         splitter.Build()
@@ -204,7 +210,7 @@ def _wrong(job: Job, result: Any, pieces: dict[int, list[Any]]) -> Fault | None:
         before, after = uv_area(face), sum(uv_area(TopoDS.Face_s(p)) for p in pieces[number])
         if not abs(after - before) <= _SAME_AREA * abs(before):
             return Fault(f"the pieces of F{number} do not have its area", number)
-    if not BRepCheck_Analyzer(result).IsValid() and BRepCheck_Analyzer(job.shape).IsValid():
+    if not BRepCheck_Analyzer(result, True, KERNEL_THREADS.get() > 1).IsValid() and BRepCheck_Analyzer(job.shape).IsValid():
         bad = (n for n in pieces if not all(BRepCheck_Analyzer(piece).IsValid() for piece in pieces[n]))
         return Fault("splitting makes the shape invalid", next(bad, None))
     return None

@@ -25,6 +25,7 @@ from cad_io.split.contour import LabelGrid, Line, curves, smoothed
 from cad_io.split.cut_faces import FITS, Effort, cut_faces
 from cad_io.split.face_grid import label_grid
 from cad_io.split.surface_edge import surface_edge
+from cad_io.surface import Surface
 
 #: Label of a piece about which nothing is known, and of a face left whole although its labels differ.
 UNKNOWN, MIXED = -1, -2
@@ -92,12 +93,20 @@ class _Work:
     known: Ints
     lines: Sequence[Line] = ()
     edges: list[Any] = field(default_factory=list)
+    outlines: dict[int, tuple[Any, Floats]] = field(default_factory=dict)
+
+    def outline(self, piece: Any) -> Floats:
+        """As `uv_region.outline`, once for each piece."""
+        if id(piece) not in self.outlines:
+            self.outlines[id(piece)] = piece, outline(piece)  # kept with the piece, so that no other has its id
+        return self.outlines[id(piece)][1]
 
     def draw(self, fit: float) -> str:
         """Draw the boundary; why that is not possible, or nothing."""
         try:
             with translated("drawing label boundaries"):
-                self.edges = [surface_edge(self.face, spline) for spline in curves(self.grid, self.lines, fit)]
+                surface = Surface(self.face)
+                self.edges = [surface_edge(self.face, surface, each) for each in curves(self.grid, self.lines, fit)]
         except (ValueError, CadIoError) as error:
             return str(error)
         return ""
@@ -110,7 +119,7 @@ class _Work:
         calm &= self.known >= 0
         astray = 0
         for shape in pieces:
-            ranks = field[calm & self.within(outline(shape))]
+            ranks = field[calm & self.within(self.outline(shape))]
             astray += len(ranks) - np.bincount(ranks, minlength=1).max()
         if astray > _ASTRAY * calm.sum():
             return f"{astray} of {calm.sum()} nodes end up in a piece of another label"
@@ -127,7 +136,7 @@ class _Work:
 
     def labelled(self, number: int, shape: Any) -> Piece:
         """A piece with the label of the nodes inside it, or of the nearest one (in cells)."""
-        segments = outline(shape)
+        segments = self.outline(shape)
         shares = _shares(self.known[self.within(segments)])
         if shares:
             return Piece(number, max(shares, key=lambda k: shares[k]), shape, shares)

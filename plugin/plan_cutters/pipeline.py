@@ -242,7 +242,9 @@ def assemble(
     with clock.stage("plan", shown=False):
         document = plan_of(ready, entries, selected, chosen, started or datetime.datetime.now(datetime.UTC))
     reaches = {cutter.id: each.reach for cutter, each in judged.items()}
-    return Result(clock.stamp(document), ready.scene, ready.samples, ready.surface_class, reaches, ready.options.postures)
+    return Result(
+        clock.stamp(document), ready.scene, ready.samples, ready.surface_class, reaches, ready.options.postures
+    )
 
 
 def _affordable(part: Part, targets: Sequence[int], options: Options) -> None:
