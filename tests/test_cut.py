@@ -39,7 +39,9 @@ def hollow():
 
 def drilled():
     axis = gp_Ax2(gp_Pnt(20, 15, -5), gp_Dir(0, 0, 1))
-    return BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(40, 30, 20).Shape(), BRepPrimAPI_MakeCylinder(axis, 8, 40).Shape()).Shape()
+    return BRepAlgoAPI_Cut(
+        BRepPrimAPI_MakeBox(40, 30, 20).Shape(), BRepPrimAPI_MakeCylinder(axis, 8, 40).Shape()
+    ).Shape()
 
 
 def moved():

@@ -210,7 +210,10 @@ def _wrong(job: Job, result: Any, pieces: dict[int, list[Any]]) -> Fault | None:
         before, after = uv_area(face), sum(uv_area(TopoDS.Face_s(p)) for p in pieces[number])
         if not abs(after - before) <= _SAME_AREA * abs(before):
             return Fault(f"the pieces of F{number} do not have its area", number)
-    if not BRepCheck_Analyzer(result, True, KERNEL_THREADS.get() > 1).IsValid() and BRepCheck_Analyzer(job.shape).IsValid():
+    if (
+        not BRepCheck_Analyzer(result, True, KERNEL_THREADS.get() > 1).IsValid()
+        and BRepCheck_Analyzer(job.shape).IsValid()
+    ):
         bad = (n for n in pieces if not all(BRepCheck_Analyzer(piece).IsValid() for piece in pieces[n]))
         return Fault("splitting makes the shape invalid", next(bad, None))
     return None
