@@ -224,9 +224,9 @@ def test_only_the_face_that_spoils_the_cut_is_left_whole(monkeypatch):
     bad_edges = []
     real_cut, real_rescue = cut_faces.cut, cut_faces._rescue
 
-    def spy(unit, numbers, drawings, attempt):
+    def spy(unit, numbers, drawings, attempt, first):
         bad_edges.append(drawings[bad])
-        return real_rescue(unit, numbers, drawings, attempt)
+        return real_rescue(unit, numbers, drawings, attempt, first)
 
     def cut(jobs, seconds):
         if not bad_edges:

@@ -8,6 +8,11 @@ import signal
 import time
 import warnings
 from collections.abc import Callable
+from contextvars import ContextVar
+
+#: How many threads of the kernel's own a copy may use. They are kept in a pool that does not survive a fork: more than one only
+#: where this process has never had the kernel use any.
+KERNEL_THREADS: ContextVar[int] = ContextVar("KERNEL_THREADS", default=1)
 
 #: Looks, one a second, at a copy that sleeps and does nothing before it is taken for stuck.
 _ASLEEP = 60

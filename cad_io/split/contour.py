@@ -6,6 +6,7 @@ ends, and slides to where the chain bends least: the staircase of a straight bou
 changes sides. A cubic B-spline is then fitted to the chain. No kernel here: only arrays.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -46,6 +47,13 @@ class LabelGrid(Record):
     near: NDArray[np.bool_]
     closed_u: bool
     closed_v: bool
+
+
+class Line(NamedTuple):
+    """Points x (n, 2) in cells, where a boundary crosses grid edges; closed: the last one is followed by the first."""
+
+    x: Floats
+    closed: bool
 
 
 class Spline(NamedTuple):
@@ -97,40 +105,62 @@ def without_specks(field: Ints, closed_u: bool, closed_v: bool) -> Ints:
     return out + low
 
 
-def boundaries(grid: LabelGrid, fit: float) -> list[Spline]:
-    """Curves along all label boundaries of a grid, cut at the seams of closed directions.
+def smoothed(grids: Sequence[LabelGrid]) -> list[list[Line]]:
+    """Lines along all label boundaries of each grid, cut at the seams of closed directions.
+
+    All grids together, because that costs little more than one: each line is what it would be alone.
+
+    Parameters
+    ----------
+    grids : sequence of LabelGrid
+
+    Returns
+    -------
+    list of list of Line
+        Of each grid; none for a field of one label.
+    """
+    chains = [
+        [chain for k in range(int(grid.field.min()), int(grid.field.max())) for chain in _chains(grid, k)]
+        for grid in grids
+    ]
+    along = iter(_relaxed([chain for mine in chains for chain in mine]))
+    return [
+        [line for chain in mine for line in _cut(chain, chain.base + next(along)[:, None] * chain.step, grid)]
+        for grid, mine in zip(grids, chains, strict=True)
+    ]
+
+
+def curves(grid: LabelGrid, lines: Sequence[Line], fit: float) -> list[Spline]:
+    """Curves along lines of a grid.
 
     Parameters
     ----------
     grid : LabelGrid
+    lines : sequence of Line
     fit : float
-        Root mean square distance between curve and chain that the fit may leave, cells.
+        Root mean square distance between curve and line that the fit may leave, cells.
 
     Returns
     -------
     list of Spline
         In surface parameters, inside the rectangle of the grid lines. A curve ends on that rectangle, on a seam or
-        REACH cells off the face; else it is closed. Empty for a field of one label.
+        REACH cells off the face; else it is closed.
     """
-    chains = [chain for k in range(int(grid.field.min()), int(grid.field.max())) for chain in _chains(grid, k)]
     shape = np.array(grid.field.shape, float)
-    lines = (grid.u, grid.v)
-    corner = np.array([g[0] for g in lines])
-    cell = np.array([(g[-1] - g[0]) / (len(g) - 1) for g in lines])
+    axes = (grid.u, grid.v)
+    corner = np.array([g[0] for g in axes])
+    cell = np.array([(g[-1] - g[0]) / (len(g) - 1) for g in axes])
     out = []
-    for chain, t in zip(chains, _relaxed(chains), strict=True):
-        x = chain.base + t[:, None] * chain.step
-        for piece, closed in _cut(chain, x, grid):
-            if closed:
-                piece = np.vstack([piece, piece[:1]])
-            for a, is_closed in enumerate((grid.closed_u, grid.closed_v)):
-                if is_closed:
-                    piece[:, a] -= np.floor(piece[:, a].mean() / shape[a]) * shape[a]
-            uv = np.stack([np.interp(piece[:, a], np.arange(len(g)), g) for a, g in enumerate(lines)], axis=1)
-            knots, poles = _fitted((uv - corner) / cell, closed, fit)
-            # The curve lies in the hull of its poles: clipped poles keep it on the surface's own domain.
-            poles = np.clip(poles * cell + corner, corner, [g[-1] for g in lines])
-            out.append(Spline(knots, poles, closed))
+    for line in lines:
+        piece = np.vstack([line.x, line.x[:1]]) if line.closed else line.x.copy()
+        for a, is_closed in enumerate((grid.closed_u, grid.closed_v)):
+            if is_closed:
+                piece[:, a] -= np.floor(piece[:, a].mean() / shape[a]) * shape[a]
+        uv = np.stack([np.interp(piece[:, a], np.arange(len(g)), g) for a, g in enumerate(axes)], axis=1)
+        knots, poles = _fitted((uv - corner) / cell, line.closed, fit)
+        # The curve lies in the hull of its poles: clipped poles keep it on the surface's own domain.
+        poles = np.clip(poles * cell + corner, corner, [g[-1] for g in axes])
+        out.append(Spline(knots, poles, line.closed))
     return out
 
 
@@ -235,8 +265,8 @@ def _relaxed(chains: list[_Chain]) -> list[Floats]:
     return np.split(t, last[:-1] + 1)
 
 
-def _cut(chain: _Chain, x: Floats, grid: LabelGrid) -> list[tuple[Floats, bool]]:
-    """Parts of a chain that lie near the face and do not cross a seam: (points in cells, closed)."""
+def _cut(chain: _Chain, x: Floats, grid: LabelGrid) -> list[Line]:
+    """Parts of a chain that lie near the face and do not cross a seam."""
     node = np.round(chain.base).astype(int) % grid.field.shape
     near = grid.near[node[:, 0], node[:, 1]]
     seam = np.zeros(len(x), bool)
@@ -245,7 +275,7 @@ def _cut(chain: _Chain, x: Floats, grid: LabelGrid) -> list[tuple[Floats, bool]]
             seam |= (node[:, axis] == 0) & (chain.step[:, axis] == 0)
     if chain.closed:
         if near.all() and not seam.any():
-            return [(x, True)]
+            return [Line(x, True)]
         start = int(np.argmax(seam | ~near))
         order = np.r_[start : len(x), 0 : start + 1]
         shift = np.where((np.arange(len(order)) >= len(x) - start)[:, None], chain.turn, 0.0)
@@ -258,7 +288,7 @@ def _cut(chain: _Chain, x: Floats, grid: LabelGrid) -> list[tuple[Floats, bool]]
             continue
         stop = i + 1 if near[i] else i
         if stop - begin >= 2:
-            out.append((x[begin:stop].copy(), False))
+            out.append(Line(x[begin:stop], False))
         begin = i if near[i] else i + 1
     return out
 

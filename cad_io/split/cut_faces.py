@@ -5,7 +5,7 @@ time is a guard against calls of the kernel that never end, in processor seconds
 call in two runs might do what it could not in the other only where it takes as long as the guard, minutes.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -124,7 +124,7 @@ def cut_faces(
         if isinstance(result, Cut):
             unit.cut = result
         else:
-            failed |= _rescue(unit, numbers, drawings, lambda job, numbers: attempt([job], [numbers])[0])
+            failed |= _rescue(unit, numbers, drawings, lambda job, numbers: attempt([job], [numbers])[0], result)
 
     pieces = {number: [face] for number, face in faces.items()}
     for unit in units:
@@ -165,30 +165,45 @@ def _edges(drawings: dict[int, Drawing], numbers: Iterable[int]) -> list[Any]:
 
 
 def _rescue(
-    unit: _Unit, numbers: list[int], drawings: dict[int, Drawing], attempt: Callable[[Job, list[int]], Cut | Fault]
-) -> dict[int, str]:
-    """Cut as many of the faces as possible; why the others were not cut."""
+    unit: _Unit, numbers: list[int], drawings: dict[int, Drawing], attempt: Callable[[Job, list[int]], Cut | Fault],
+    first: Fault,
+) -> dict[int, str]:  # fmt: skip
+    """Cut as many of the faces as possible; why the others were not cut. `first`: why all of them could not be."""
     failed: dict[int, str] = {}
     bases = _bases(unit)
     done: list[int] = []
     rough: dict[int, int] = {}
+    fits = dict.fromkeys(numbers, FITS[0])
+
+    def way(group: list[int], base: int, dense: dict[int, int]) -> Hashable:
+        return base, frozenset((n, fits[n]) for n in done + group), frozenset(dense.items())
+
+    # What is left of a group when half of it is done is the same attempt again.
+    tried = {way(numbers, 0, rough): first}
     groups = [numbers]
     while groups:
         group = groups.pop()
         alone = len(group) == 1
         faults = []
-        ways = [(b, f, d) for f in FITS for d in DENSITIES for b in bases] if alone else [(bases[0], FITS[0], 1)]
-        for (shape, faces), fit, dense in ways:
-            if alone and (reason := drawings[group[0]].draw(fit)):
-                faults.append(Fault(reason))
-                continue
+        ways = [(b, f, d) for f in FITS for d in DENSITIES for b in range(len(bases))] if alone else [(0, FITS[0], 1)]
+        for base, fit, dense in ways:
+            if alone:
+                fits[group[0]] = fit
+                if reason := drawings[group[0]].draw(fit):
+                    faults.append(Fault(reason))
+                    continue
             denser = rough | ({group[0]: dense} if dense > 1 else {})
-            found = attempt(Job(shape, faces, _edges(drawings, done + group), denser), done + group)
+            this = way(group, base, denser)
+            if this in tried:
+                faults.append(tried[this])
+                continue
+            found = attempt(Job(*bases[base], _edges(drawings, done + group), denser), done + group)
             if isinstance(found, Cut):
                 unit.cut = found
                 done += group
                 rough = denser
                 break
+            tried[this] = found
             faults.append(found)
         else:
             culprit = faults[0].face

@@ -21,10 +21,11 @@ from cad_io.errors import CadIoError
 from cad_io.face.uv_region import inside, interior_point, outline
 from cad_io.kernel import shape_map, translated
 from cad_io.kernel.components import compound, flat
-from cad_io.split.contour import LabelGrid, boundaries
+from cad_io.split.contour import LabelGrid, Line, curves, smoothed
 from cad_io.split.cut_faces import FITS, Effort, cut_faces
 from cad_io.split.face_grid import label_grid
 from cad_io.split.surface_edge import surface_edge
+from cad_io.surface import Surface
 
 #: Label of a piece about which nothing is known, and of a face left whole although its labels differ.
 UNKNOWN, MIXED = -1, -2
@@ -90,13 +91,22 @@ class _Work:
     face: Any
     grid: LabelGrid
     known: Ints
+    lines: Sequence[Line] = ()
     edges: list[Any] = field(default_factory=list)
+    outlines: dict[int, tuple[Any, Floats]] = field(default_factory=dict)
+
+    def outline(self, piece: Any) -> Floats:
+        """As `uv_region.outline`, once for each piece."""
+        if id(piece) not in self.outlines:
+            self.outlines[id(piece)] = piece, outline(piece)  # kept with the piece, so that no other has its id
+        return self.outlines[id(piece)][1]
 
     def draw(self, fit: float) -> str:
         """Draw the boundary; why that is not possible, or nothing."""
         try:
             with translated("drawing label boundaries"):
-                self.edges = [surface_edge(self.face, spline) for spline in boundaries(self.grid, fit)]
+                surface = Surface(self.face)
+                self.edges = [surface_edge(self.face, surface, each) for each in curves(self.grid, self.lines, fit)]
         except (ValueError, CadIoError) as error:
             return str(error)
         return ""
@@ -109,7 +119,7 @@ class _Work:
         calm &= self.known >= 0
         astray = 0
         for shape in pieces:
-            ranks = field[calm & self.within(outline(shape))]
+            ranks = field[calm & self.within(self.outline(shape))]
             astray += len(ranks) - np.bincount(ranks, minlength=1).max()
         if astray > _ASTRAY * calm.sum():
             return f"{astray} of {calm.sum()} nodes end up in a piece of another label"
@@ -126,7 +136,7 @@ class _Work:
 
     def labelled(self, number: int, shape: Any) -> Piece:
         """A piece with the label of the nodes inside it, or of the nearest one (in cells)."""
-        segments = outline(shape)
+        segments = self.outline(shape)
         shares = _shares(self.known[self.within(segments)])
         if shares:
             return Piece(number, max(shares, key=lambda k: shares[k]), shape, shares)
@@ -182,12 +192,11 @@ def split(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 120) -> S
             continue
         if specks:
             dropped[number] = specks
-        drawn = _Work(faces[number], grid, known)
-        reason = drawn.draw(FITS[0])
-        if reason:
-            whole[number] = reason
-        elif drawn.edges:
-            work[number] = drawn
+        work[number] = _Work(faces[number], grid, known)
+    for drawn, lines in zip(work.values(), smoothed([drawn.grid for drawn in work.values()]), strict=True):
+        drawn.lines = lines
+    whole |= {number: reason for number, drawn in work.items() if (reason := drawn.draw(FITS[0]))}
+    work = {number: drawn for number, drawn in work.items() if drawn.edges and number not in whole}
     effort = Effort()
     shape, shapes = part.shape, {number: [face] for number, face in faces.items()}
     if work:
@@ -211,7 +220,7 @@ def split(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 120) -> S
 def _alone(number: int, work: _Work, seconds: float, effort: Effort) -> tuple[Piece, ...]:
     """Pieces of a copy of a face that could not be cut where it stands; none if it cannot be cut alone either."""
     face = TopoDS.Face_s(BRepBuilderAPI_Copy(work.face, False, False).Shape())
-    copy = _Work(face, work.grid, work.known)
+    copy = _Work(face, work.grid, work.known, work.lines)
     if copy.draw(FITS[0]):
         return ()
     _, pieces, failed = cut_faces(face, {number: face}, {number: copy}, seconds, effort)

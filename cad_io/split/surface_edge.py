@@ -24,7 +24,7 @@ DEVIATION = 1e-4
 _MOST_SITES = 5000
 
 
-def surface_edge(face: Any, spline: Spline) -> Any:
+def surface_edge(face: Any, surface: Surface, spline: Spline) -> Any:
     """Edge with the given parameter curve on the face's surface and a cubic curve in space of the same parameter.
 
     The kernel's own builder of curves in space stops silently up to 1 mm off (OCCT 7.9); here the surface is
@@ -33,6 +33,8 @@ def surface_edge(face: Any, spline: Spline) -> Any:
     Parameters
     ----------
     face : TopoDS_Face
+    surface : Surface
+        The face's own.
     spline : Spline
         In surface parameters.
 
@@ -46,7 +48,6 @@ def surface_edge(face: Any, spline: Spline) -> Any:
     ValueError
         The deviation cannot be reached.
     """
-    surface = Surface(face)
     curve = BSpline(spline.knots, spline.poles, 3)
 
     def at(t: Floats) -> Floats:

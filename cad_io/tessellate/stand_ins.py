@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve
@@ -30,7 +29,9 @@ _CORNERS = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)])
 _GRID, _SLIVER = 64, 1e-9
 #: Nodes of triangles so near, as a share of their extent, are one.
 _SAME = 1e-5
-_SIDES = trimesh.creation.box().faces  # corners in the same order as _CORNERS, outward
+#: Triangles of the box with these corners, outward.
+_SIDES = np.array([(1, 3, 0), (4, 1, 0), (0, 3, 2), (2, 4, 0), (1, 7, 3), (5, 1, 4),
+                   (5, 7, 1), (3, 7, 2), (6, 4, 2), (2, 7, 6), (6, 5, 4), (7, 5, 6)])  # fmt: skip
 
 
 StandIn = Literal["triangles", "box", "edges", "none"]

@@ -3,9 +3,8 @@
 import datetime
 import inspect
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from cad_io.read.read import TIMEOUT
 from cad_io.sample import sample
 from cad_io.tessellate.triangles import At
 from plan_cutters.document.build import cutter_entry
+from plan_cutters.document.clock import Clock, Progress
 from plan_cutters.document.model import AreaEntry, CutterEntry
 from plan_cutters.document.plan import plan_of, selection
 from plan_cutters.domain.checks import shown
@@ -38,9 +38,6 @@ from plan_cutters.stages.classify import classify, regions
 from plan_cutters.stages.decompose import decompose, march_differs
 from plan_cutters.stages.posture_maps import posture_maps
 from plan_cutters.stages.select_cutters import ranked
-
-#: Told the stage, how much of it is done, of how much.
-Progress = Callable[[str, int, int], None]
 
 #: Samples that a plan may take.
 MOST_SAMPLES = 5_000_000
@@ -79,7 +76,7 @@ def plan(part: Any, *, progress: Progress | None = None, **options: Any) -> Resu
     if progress is not None and not callable(progress):
         raise OptionError(f"progress must be a function of (stage, done, total), not {shown(progress)}")
     given = part.options | options if isinstance(part, Scene) else options
-    return run(part, Options.of(given), progress=progress)
+    return run(part, Options.of(given), Clock(progress))
 
 
 _OPTIONS = [each.replace(kind=each.KEYWORD_ONLY) for each in inspect.signature(Options).parameters.values()]
@@ -89,35 +86,13 @@ vars(plan)["__signature__"] = inspect.Signature(
 )
 
 
-@dataclass
-class _Clock:
-    """Seconds by stage, and whom to tell."""
-
-    progress: Progress | None
-    seconds: dict[str, float] = field(default_factory=dict)
-
-    @contextmanager
-    def stage(self, name: str) -> Iterator[Callable[[int, int], None]]:
-        def tell(done: int, total: int) -> None:
-            if self.progress:
-                self.progress(name, done, total)
-
-        tell(0, 1)
-        began = time.perf_counter()
-        yield tell
-        self.seconds[name] = time.perf_counter() - began
-        tell(1, 1)
-
-
 def run(
-    part: Any, options: Options, *, progress: Progress | None = None, read_timeout: float = TIMEOUT,
-    at: At = lambda whose, face: None,
-) -> Result:  # fmt: skip
+    part: Any, options: Options, clock: Clock, *, read_timeout: float = TIMEOUT, at: At = lambda whose, face: None
+) -> Result:
     """`plan` with its options gathered.
 
     `read_timeout` is the most seconds that a faulty file may take to read; `at` is told whose work goes on at which face.
     """
-    clock = _Clock(progress)
     started = datetime.datetime.now(datetime.UTC)
     ready = prepare(part, options, clock, read_timeout=read_timeout, at=at)
     judged: dict[Cutter, Judged] = {}
@@ -132,30 +107,35 @@ def run(
     with clock.stage("maps") as tell:
         cutter = next(c for c in ready.cutters if c.id == result.shown)
         maps = posture_maps(ready.samples, cutter, ready.conditions, progress=tell)
-    document = result.plan.model_copy(update={"run": result.plan.run.model_copy(update={"seconds": clock.seconds})})
-    return replace(result, plan=document, maps=maps)
+    return replace(result, plan=clock.stamp(result.plan), maps=maps)
 
 
 def prepare(
-    part: Any, options: Options, clock: "_Clock | None" = None, *, read_timeout: float = TIMEOUT,
+    part: Any, options: Options, clock: Clock | None = None, *, read_timeout: float = TIMEOUT,
     at: At = lambda whose, face: None,
 ) -> Prepared:  # fmt: skip
     """Read, sample, classify and surround with obstacles; arguments as for `run`."""
-    clock = clock or _Clock(None)
+    clock = clock or Clock()
     with clock.stage("read"):
         stands = _read(part, options, read_timeout)
     cutters = tuple(ranked(options.judged))
-    with clock.stage("sample"):
+    whole = stands.part if isinstance(stands, Scene) else stands
+    with clock.stage("measure"):
+        _ = whole.faces
+    with clock.stage("sew"):
+        _ = whole.sewn
+    with clock.stage("orient"):
         scene = Scene.of(
             stands, setup=options.setup, flip=options.flip, tolerance=options.tolerance, ignore=options.ignore
         )
-        whole = scene.part
+    with clock.stage("sample"):
         chosen = choose(whole, options.faces, scene.ignored, scene.ignore)
         spacing: Spacing = options.spacing
         if options.grid is None and options.spacing is None:
             spacing = default_spacing(whole, scene.orientation, chosen.targets, cutters)
         _affordable(whole, chosen.targets, options)
         samples = sample(whole, scene.orientation, grid=options.grid, spacing=spacing, faces=chosen.targets)
+    with clock.stage("classify"):
         surface_class = classify(samples, float(np.linalg.norm(whole.size)))
         region = regions(samples, surface_class)
     if not (samples.unjudged < 0).any():
@@ -168,6 +148,8 @@ def prepare(
     conditions = Conditions(
         options.machine, np.array(scene.setup), options.postures, around, scene.tolerance, options.jobs
     )
+    with clock.stage("tree"):
+        _ = around.may_be.solids, around.surely.solids
     with clock.stage("compile"):
         _warm(samples, cutters[0], conditions)
     with clock.stage("bodies"):
@@ -240,11 +222,11 @@ def _judged(
 
 
 def assemble(
-    ready: Prepared, judged: Mapping[Cutter, Judged], clock: "_Clock | None" = None,
+    ready: Prepared, judged: Mapping[Cutter, Judged], clock: Clock | None = None,
     started: datetime.datetime | None = None,
 ) -> Result:  # fmt: skip
     """The result of all cutters: the choice, the area between the samples for the one chosen, and the plan."""
-    clock = clock or _Clock(None)
+    clock = clock or Clock()
     entries = [judged[c].entry for c in ready.cutters]
     selected, chosen = selection(entries)
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
@@ -257,9 +239,12 @@ def assemble(
         area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
                          short=served.short, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
         entries = [e.model_copy(update={"area": area}) if e.id == best else e for e in entries]
-    document = plan_of(ready, entries, selected, chosen, started or datetime.datetime.now(datetime.UTC), clock.seconds)
+    with clock.stage("plan", shown=False):
+        document = plan_of(ready, entries, selected, chosen, started or datetime.datetime.now(datetime.UTC))
     reaches = {cutter.id: each.reach for cutter, each in judged.items()}
-    return Result(document, ready.scene, ready.samples, ready.surface_class, reaches, ready.options.postures)
+    return Result(
+        clock.stamp(document), ready.scene, ready.samples, ready.surface_class, reaches, ready.options.postures
+    )
 
 
 def _affordable(part: Part, targets: Sequence[int], options: Options) -> None:
@@ -278,7 +263,7 @@ def _affordable(part: Part, targets: Sequence[int], options: Options) -> None:
 
 
 def _warm(samples: SurfaceSamples, cutter: Cutter, conditions: Conditions) -> None:
-    """Build the tree and load or compile every kernel, so that stage times are those of the work."""
+    """Load or compile every kernel, so that stage times are those of the work."""
     from plan_cutters.kernels import search
 
     none, contacts, found = np.zeros(0, np.int64), contacts_of(samples), found_of(blank(0))

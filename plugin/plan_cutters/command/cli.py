@@ -1,5 +1,7 @@
 """The command line: options in, exit code out."""
 
+import gc
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,6 +15,7 @@ from plan_cutters.command.codes import guarded
 from plan_cutters.command.supervise import (
     INTERRUPTED,
     Unfinished,
+    began,
     can_supervise,
     default_memory,
     is_child,
@@ -195,8 +198,12 @@ def command(parts: tuple[str, ...], **given: Any) -> int:
         raise OptionError("two parts have the same name and would write to the same folder; plan them one by one")
     options = _options(given)
     codes = []
+    since: float | None = began()
     for part, out in zip(parts, outs, strict=True):
-        code, line = guarded(lambda part=part, out=out: one_part(part, out, options, given), given["debug"])
+        code, line = guarded(
+            lambda part=part, out=out, since=since: one_part(part, out, options, given, since), given["debug"]
+        )
+        since = None
         codes.append(code)
         report("done", str(code))
         if len(parts) > 1 and not given["quiet"]:
@@ -240,6 +247,7 @@ def main(args: Sequence[str] | None = None) -> NoReturn:
     """Entry point of the command: what has a part to read runs in a child process."""
     words = list(sys.argv[1:] if args is None else args)
     if is_child():
+        gc.disable()  # nothing of what imports make is garbage; `one_part` turns it on again
         limit_memory()
         keep_output()
         code, line = guarded(lambda: (_parsed(words), ""), "--debug" in words)
@@ -247,6 +255,11 @@ def main(args: Sequence[str] | None = None) -> NoReturn:
         code, line = guarded(lambda: (_watched(words), ""), "--debug" in words)
     if line:
         click.echo(line, err=True)
+    if is_child():
+        # Everything is on disk: to take the CAD kernel and the compiler down in order would only cost time, up to a second.
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(code)
     sys.exit(code)
 
 

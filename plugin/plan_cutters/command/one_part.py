@@ -1,5 +1,6 @@
 """One part: planned, written, summarised; and what is said when its models could not be made to an end."""
 
+import gc
 import sys
 import traceback
 from pathlib import Path
@@ -17,8 +18,10 @@ if TYPE_CHECKING:
     from plan_cutters.options import Options
 
 
-def one_part(part: str, out: Path, options: "Options", given: dict[str, Any]) -> tuple[int, str]:
-    """Plan one part; exit code and a line about it."""
+def one_part(
+    part: str, out: Path, options: "Options", given: dict[str, Any], began: float | None = None
+) -> tuple[int, str]:
+    """Plan one part; exit code and a line about it. `began`: when the command did, for the first part (`time.monotonic`)."""
     from plan_cutters.report import DEFAULT_FORMATS, PLAN, Staging, file_name, read_formats, write_all
     from plan_cutters.report.to_json import dumps, explain
 
@@ -30,16 +33,24 @@ def one_part(part: str, out: Path, options: "Options", given: dict[str, Any]) ->
     staging = Staging(out, lambda folder: report("staging", str(folder))) if formats else None
     watch = Onlooker(out, given)
     try:
+        import plan_cutters.report.models  # noqa: F401  all that takes time to load is loaded in the stage `start`
+        from cad_io.kernel.limited import KERNEL_THREADS
+        from plan_cutters.document.clock import Clock
         from plan_cutters.pipeline import run
 
+        KERNEL_THREADS.set(options.jobs)
+        gc.freeze()
+        gc.enable()
         with Progress(given["quiet"]) as tell:
-            result = run(part, options, progress=tell, read_timeout=given["read_timeout"], at=report_work)
+            clock = Clock(tell, began=began)
+            result = run(part, options, clock, read_timeout=given["read_timeout"], at=report_work)
         document = result.plan
         if not formats:
             watch.summarise(document)
         else:
             with watch:
-                document = write_all(result, out, formats, staging, step_schema=given["step_schema"], onlooker=watch)
+                document = write_all(result, out, formats, staging, step_schema=given["step_schema"], onlooker=watch,
+                                     clock=clock)  # fmt: skip
     except KeyboardInterrupt:
         if watch.plan is None:
             raise

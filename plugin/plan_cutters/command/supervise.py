@@ -18,13 +18,15 @@ import warnings
 from collections.abc import Sequence
 from pathlib import Path
 
-#: Environment variable by which the child knows its number of the pipe to report on, and its memory limit in bytes.
-REPORT, MEMORY = "PLAN_CUTTERS_REPORT", "PLAN_CUTTERS_MEMORY"
+#: Environment variables by which the child knows its number of the pipe to report on, its memory limit in bytes, and when
+#: the command began.
+REPORT, MEMORY, BEGAN = "PLAN_CUTTERS_REPORT", "PLAN_CUTTERS_MEMORY", "PLAN_CUTTERS_BEGAN"
 #: Exit code of an interrupted run.
 INTERRUPTED = 130
 #: Stages in which the kernel works on what the file says, and how many times the limit of reading each may take.
-LIMITED = {"read": 1.0, "sample": 5.0, "tessellate": 5.0, "write": 5.0}
-_WORK = {"sample": "sampling", "tessellate": "tessellation", "write": "splitting and writing"}
+LIMITED = {"read": 1.0, "measure": 5.0, "sew": 5.0, "orient": 5.0, "sample": 5.0, "tessellate": 5.0, "write": 5.0}
+_WORK = {"measure": "measuring of faces", "sew": "sewing", "orient": "search for the inside", "sample": "sampling",
+         "tessellate": "tessellation", "write": "splitting and writing"}  # fmt: skip
 
 
 class Supervised(Exception):
@@ -57,6 +59,20 @@ def can_supervise() -> bool:
 def is_child() -> bool:
     """Whether this process was started by `supervise`."""
     return REPORT in os.environ
+
+
+def began() -> float:
+    """When the command began, as `time.monotonic()` counts, which does so alike in all processes that there are parents of.
+
+    Where the system does not tell, it is what the processor has spent on this process ago, or longer.
+    """
+    if is_child():
+        return float(os.environ[BEGAN])
+    age = time.process_time()
+    with contextlib.suppress(OSError, ValueError, AttributeError, IndexError):  # only Linux has all of it
+        ticks = int(Path("/proc/self/stat").read_text().rpartition(")")[2].split()[19])
+        age = max(age, time.clock_gettime(time.CLOCK_BOOTTIME) - ticks / os.sysconf("SC_CLK_TCK"))
+    return time.monotonic() - age
 
 
 def limit_memory() -> None:
@@ -126,7 +142,7 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int) -> int:
         It crashed or was stopped.
     """
     here, there = os.pipe()
-    environment = {**os.environ, REPORT: str(there), MEMORY: str(memory)}
+    environment = {**os.environ, REPORT: str(there), MEMORY: str(memory), BEGAN: str(began())}
     watch = _Watch(here, read_timeout)
     # A session of its own: an interrupt from the terminal reaches the child once, through us.
     child = subprocess.Popen([sys.executable, "-m", "plan_cutters", *words], env=environment, pass_fds=(there,),
@@ -146,6 +162,9 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int) -> int:
     try:
         while child.poll() is None:
             watch.listen(0.2)
+            if watch.over:  # neither the child nor a copy of it holds the other end: it has ended, or is about to
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    child.wait(0.2)
             if watch.late():
                 raise watch.ended(*watch.verdict())
     finally:
@@ -185,13 +204,14 @@ class _Watch:
         self.staging: set[str] = set()
         self.rest = b""
         self.parts, self.code = 0, 0
+        self.over = False
         self.safe: tuple[int, Path] | None = None
 
     def listen(self, seconds: float) -> None:
         while select.select([self.pipe], [], [], seconds)[0]:
             data = os.read(self.pipe, 1 << 16)
             if not data:
-                time.sleep(seconds)
+                self.over = True
                 return
             *lines, self.rest = (self.rest + data).split(b"\n")
             for line in lines:

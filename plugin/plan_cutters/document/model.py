@@ -197,7 +197,12 @@ class Run(_Frozen):
     """What differs between two runs with the same input."""
 
     time: str
-    seconds: dict[str, float]
+    seconds: dict[str, float] = Field(description="by stage; those of a cutter, by its id, are its judging")
+    total: float = Field(
+        default=0.0,
+        description="seconds from the start of the command (from Python: of the planning, without what lies between it and the "
+        "writing) to the writing of this file; the stages are its parts",
+    )
 
 
 class Plan(_Frozen):

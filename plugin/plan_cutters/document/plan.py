@@ -16,7 +16,7 @@ RULE = "largest radius, then smaller corner radius, then shorter length, then li
 
 def plan_of(
     ready: Prepared, entries: Sequence[CutterEntry], selected: str | None, selection: Selection,
-    started: datetime.datetime, seconds: dict[str, float],
+    started: datetime.datetime,
 ) -> Plan:  # fmt: skip
     """The plan of a part from the entries of its cutters."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
@@ -67,7 +67,7 @@ def plan_of(
             *area_notes(entries, doubtful=around.doubtful),
         ],
         legend=PALETTE,
-        run=Run(time=started.isoformat(timespec="seconds"), seconds=seconds),
+        run=Run(time=started.isoformat(timespec="seconds"), seconds={}),
     )
 
 

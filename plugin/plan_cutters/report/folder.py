@@ -4,7 +4,6 @@ import hashlib
 import os
 import secrets
 import shutil
-import time
 from collections.abc import Callable, Collection, Sequence
 from contextlib import suppress
 from importlib import import_module
@@ -12,6 +11,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from cad_io.errors import CadIoError
+from plan_cutters.document.clock import Clock
 from plan_cutters.document.model import FileEntry, Plan
 from plan_cutters.errors import OptionError, PlanError
 
@@ -109,6 +109,7 @@ def write_all(
     *,
     step_schema: str = "ap242",
     onlooker: Onlooker | None = None,
+    clock: Clock | None = None,
 ) -> Plan:
     """Write the formats asked for into the folder `out`, each file whole or not at all.
 
@@ -126,6 +127,8 @@ def write_all(
     step_schema : str
         `ap242`, `ap214` or `ap203`.
     onlooker : Onlooker, optional
+    clock : Clock, optional
+        The one that ran while the plan was made; default one that goes on from there.
 
     Returns
     -------
@@ -140,12 +143,13 @@ def write_all(
         The folder cannot be written to.
     """
     read_formats(",".join(formats))
-    from plan_cutters.report.models import SCHEMAS, rungs, split_result
-    from plan_cutters.report.to_json import PENDING, write_plan
+    clock = clock or Clock.after(result.plan.run)
+    with clock.stage("start", shown=False):
+        from plan_cutters.report.models import SCHEMAS, rungs, split_result
+        from plan_cutters.report.to_json import PENDING, write_plan
 
     if step_schema not in SCHEMAS:
         raise OptionError(f"STEP schema {step_schema!r} is not built in; give one of {', '.join(SCHEMAS)}")
-    began = time.perf_counter()
     models = [name for name in _MODELS if name in formats]
     arrays = [name for name in ("npz",) if name in formats] + (["postures"] if result.maps else [])
     with staging or Staging(out) as staging:
@@ -155,22 +159,23 @@ def write_all(
 
         def write(name: str, split: Any, **more: str) -> None:
             file, module, function = _WRITERS[name]
-            writer: Callable[..., None] = getattr(import_module(f"plan_cutters.report.{module}"), function)
-            writer(result, split, staging.folder / file, **more)
-            files[name] = FileEntry(name=file, sha256=_sha256(staging.folder / file))
+            with clock.stage(name, shown=False):
+                writer: Callable[..., None] = getattr(import_module(f"plan_cutters.report.{module}"), function)
+                writer(result, split, staging.folder / file, **more)
+                files[name] = FileEntry(name=file, sha256=_sha256(staging.folder / file))
 
         def put() -> Plan:
-            seconds = document.run.seconds | {"write": time.perf_counter() - began}
             plan = document.model_copy(
                 update={
                     "files": {name: files[name] for name in _WRITERS if name in files},
                     "not_written": dict(missing),
-                    "run": document.run.model_copy(update={"seconds": seconds}),
                 }
             )
+            plan = clock.stamp(plan)
             if "json" in formats:
-                write_plan(plan, staging.folder / PLAN)
-                staging.publish(PLAN)
+                with clock.stage("json", shown=False):
+                    write_plan(plan, staging.folder / PLAN)
+                    staging.publish(PLAN)
             return plan
 
         try:
@@ -183,14 +188,16 @@ def write_all(
             staging.publish(entry.name)
         document = put()
         if onlooker:
-            onlooker.safe(document)
+            with clock.stage("show", shown=False):
+                onlooker.safe(document)
         split = None
         for name in models:
             try:
                 if split is None:
                     if onlooker:
                         onlooker.begins("split")
-                    split = split_result(result)
+                    with clock.stage("split", shown=False):
+                        split = split_result(result)
                     document = document.model_copy(update={"split": rungs(split)})
                 if onlooker:
                     onlooker.begins(name)

@@ -1,0 +1,68 @@
+"""Seconds by stage: what `run.seconds` of the plan is made of."""
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from plan_cutters.document.model import Plan, Run
+
+#: Told the stage, how much of it is done, of how much.
+Progress = Callable[[str, int, int], None]
+
+
+class Clock:
+    """What each stage takes, stage after stage; one that comes again goes on.
+
+    Parameters
+    ----------
+    progress : callable, optional
+        Told of stages that are shown.
+    began : float, optional
+        `time.monotonic()` when the command began: what has passed since then is the stage `start`.
+
+    Attributes
+    ----------
+    seconds : dict
+        Stage -> seconds.
+    """
+
+    def __init__(self, progress: Progress | None = None, *, began: float | None = None) -> None:
+        self.progress = progress
+        self.seconds: dict[str, float] = {}
+        self._began = time.monotonic()
+        if began is not None:
+            self.seconds["start"], self._began = self._began - began, began
+
+    @classmethod
+    def after(cls, run: Run) -> "Clock":
+        """One that goes on after what has been written into a plan."""
+        clock = cls()
+        clock.seconds |= run.seconds
+        clock._began -= run.total
+        return clock
+
+    @property
+    def total(self) -> float:
+        """Seconds since the command began, or the clock was made: all stages, and what lies between them."""
+        return time.monotonic() - self._began
+
+    def stamp(self, plan: Plan) -> Plan:
+        """The plan with the seconds so far."""
+        run = plan.run.model_copy(update={"seconds": dict(self.seconds), "total": self.total})
+        return plan.model_copy(update={"run": run})
+
+    @contextmanager
+    def stage(self, name: str, *, shown: bool = True) -> Iterator[Callable[[int, int], None]]:
+        """Inside the block, time counts for the stage; tell what is given how much of how much is done."""
+
+        def tell(done: int, total: int) -> None:
+            if self.progress and shown:
+                self.progress(name, done, total)
+
+        tell(0, 1)
+        began = time.monotonic()
+        try:
+            yield tell
+        finally:
+            self.seconds[name] = self.seconds.get(name, 0.0) + time.monotonic() - began
+        tell(1, 1)
