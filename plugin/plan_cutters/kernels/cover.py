@@ -18,8 +18,8 @@ from plan_cutters.kernels.zone import _EXTENTS, FARTHEST, _held, _near, _zone
 
 #: Largest angle (rad) between normals within `extent`: up to it, the surface is a graph over its tangent planes.
 _MOST_TURN = 0.5
-#: Steps along the lean that the patch is cut into: finer ones where fewer do not do.
-_STEPS = (2, 6, 18)
+#: Bodies of a patch: the whole, and pieces of it along the lean, 2, 6 and 18.
+_BODIES = 27
 
 
 class Patches(NamedTuple):
@@ -109,16 +109,68 @@ def _stadium_hit(vertex, i, body, polygon, spare):  # type: ignore[no-untyped-de
 
 
 @kernel
-def _free_of_far(body, frame, face, near, tree, triangle_face, scratch):  # type: ignore[no-untyped-def]
-    """True if no triangle that is not near reaches into the stadium body."""
+def _pieces(body, frame, h, tilt, slides, bodies):  # type: ignore[no-untyped-def]
+    """Write the bodies of a contact that wanders by no more than h: the whole, then in 2, 6 and 18 pieces along the lean.
+
+    Each piece holds those that it is cut into. `tilt` is (sine, cosine), `slides` what a step along the lean shifts the body
+    aside, what a step across it does, and what else may; `body` holds the axes, and the body of no wandering.
+    """
+    sine, cosine = tilt
+    slide, across, beside = slides
+    at = 0
+    for count in (1, 2, 6, 18):
+        wide = h / count
+        for step in range(count):
+            shift = (2 * step + 1 - count) * wide
+            for k in range(BODY):
+                bodies[at, k] = body[k]
+            for k in range(3):
+                bodies[at, P + k] += shift * (frame.f[k] - slide * frame.t[k])
+            bodies[at, RADIUS] += wide * cosine
+            bodies[at, LOW] -= wide * sine
+            bodies[at, HIGH] += wide * sine
+            bodies[at, HALF] = h * across + wide * abs(slide) + beside
+            at += 1
+
+
+@kernel
+def _reaches(vertex, i, bodies, polygon, spare):  # type: ignore[no-untyped-def]
+    """Whether triangle i, which reaches into the whole, reaches into one of its finest pieces."""
+    for half in range(2):
+        if not _stadium_hit(vertex, i, bodies[1 + half], polygon, spare):
+            continue
+        for sixth in range(3 * half, 3 * half + 3):
+            if not _stadium_hit(vertex, i, bodies[3 + sixth], polygon, spare):
+                continue
+            for last in range(3 * sixth, 3 * sixth + 3):
+                if _stadium_hit(vertex, i, bodies[9 + last], polygon, spare):
+                    return True
+    return False
+
+
+@kernel
+def _blocks(i, bodies, flat, frame, face, near, tree, triangle_face, scratch):  # type: ignore[no-untyped-def]
+    """Whether triangle i is not near and reaches into the moved cutter."""
+    vertex, polygon, spare = tree.vertex, scratch.polygon, scratch.spare
+    return (
+        _stadium_hit(vertex, i, bodies[0], polygon, spare)
+        and not _near(vertex, triangle_face, i, frame, face, near)
+        and (flat or _reaches(vertex, i, bodies, polygon, spare))
+    )
+
+
+@kernel
+def _blocker(hint, bodies, flat, frame, face, near, tree, triangle_face, scratch):  # type: ignore[no-untyped-def]
+    """First triangle found that is not near and reaches into the moved cutter, `hint` (-1: none) before others; -1 if none."""
     vertex, box, depth = tree
-    stack, polygon, spare = scratch.stack, scratch.polygon, scratch.spare
-    count, first, top = len(vertex), (1 << depth) - 1, 1
+    stack, count, first, top = scratch.stack, len(vertex), (1 << depth) - 1, 1
+    if hint >= 0 and _blocks(hint, bodies, flat, frame, face, near, tree, triangle_face, scratch):
+        return hint
     stack[0] = 0
     while top > 0:
         top -= 1
         node = stack[top]
-        if hit._box_apart(box, node, body, 0.0):
+        if hit._box_apart(box, node, bodies[0], 0.0):
             continue
         if node < first:
             stack[top] = 2 * node + 2
@@ -127,9 +179,9 @@ def _free_of_far(body, frame, face, near, tree, triangle_face, scratch):  # type
             continue
         leaf = node - first
         for i in range((count * leaf) >> depth, (count * (leaf + 1)) >> depth):
-            if _stadium_hit(vertex, i, body, polygon, spare) and not _near(vertex, triangle_face, i, frame, face, near):
-                return False
-    return True
+            if _blocks(i, bodies, flat, frame, face, near, tree, triangle_face, scratch):
+                return i
+    return -1
 
 
 @entry
@@ -152,7 +204,9 @@ def cover(  # type: ignore[no-untyped-def]
         Face numbers of its triangles.
     covered : (n,) bool, written
     """
-    body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
+    body, f, t, bodies = np.empty(BODY), np.empty(3), np.empty(3), np.empty((_BODIES, BODY))
+    # What was in the way of the contact before is likely in the way of this one.
+    blocker = -1
     scratch = hit.scratch()
     most, near = np.empty((_EXTENTS, 7)), np.empty(6)
     for row in rows:
@@ -222,33 +276,22 @@ def cover(  # type: ignore[no-untyped-def]
         if not near[0] > 0.0:
             continue
         for k in range(3):
+            body[P + k] = p[k]
             body[A + k] = a[k]
             body[X + k] = cosine * f[k] - sine * n[k]
             body[Y + k] = t[k]
         if flat:
-            for k in range(3):
-                body[P + k] = p[k]
             body[OFFSET], body[RADIUS], body[HALF] = 0.0, 2.0 * radius + h - safe, 0.0
             body[LOW], body[HIGH] = safe - lift, length - safe + lift
-            covered[row] = _free_of_far(body, frame, face, near, tree, triangle_face, scratch)
-            continue
-        grow = 0.5 * radius * psi * psi + lift
-        slide = radius * k_ft / sine
-        for steps in _STEPS:
-            wide = h / steps
-            body[HALF] = h * abs(1.0 - radius * k_tt / sine) + wide * abs(slide) + radius * beside
-            good = True
-            for step in range(steps):
-                shift = (2 * step + 1 - steps) * wide
-                for k in range(3):
-                    body[P + k] = p[k] + shift * (f[k] - slide * t[k])
-                body[OFFSET] = radius
-                body[RADIUS] = radius - safe + grow + wide * cosine
-                body[LOW] = safe - grow - wide * sine
-                body[HIGH] = length - safe + grow + wide * sine
-                if not _free_of_far(body, frame, face, near, tree, triangle_face, scratch):
-                    good = False
-                    break
-            if good:
-                covered[row] = True
-                break
+            for k in range(BODY):
+                bodies[0, k] = body[k]
+        else:
+            grow = 0.5 * radius * psi * psi + lift
+            body[OFFSET], body[RADIUS], body[HALF] = radius, radius - safe + grow, 0.0
+            body[LOW], body[HIGH] = safe - grow, length - safe + grow
+            slides = (radius * k_ft / sine, abs(1.0 - radius * k_tt / sine), radius * beside)
+            _pieces(body, frame, h, (sine, cosine), slides, bodies)
+        found = _blocker(blocker, bodies, flat, frame, face, near, tree, triangle_face, scratch)
+        covered[row] = found < 0
+        if found >= 0:
+            blocker = found
