@@ -13,11 +13,23 @@ import numpy as np
 from plan_cutters.kernels import hit
 from plan_cutters.kernels.hit import BODY, HALF, HIGH, LOW, OFFSET, RADIUS, A, P, X, Y
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.zone import _EXTENTS, FARTHEST, _held, _near, _zone
+from plan_cutters.kernels.rows import Frame, Scratch
+from plan_cutters.kernels.zone import (
+    EXTENTS,
+    begin,
+    distance_of,
+    held_below,
+    look_round,
+    near_by,
+    seen,
+)
 
 #: Largest angle (rad) between normals within `extent`: up to it, the surface is a graph over its tangent planes.
 _MOST_TURN = 0.5
+#: In place of a triangle that is in the way: there is none, or it is not to be told.
+_NOTHING, _BENT = -1, -2
+#: Row of a distance within which a sixth of the nodes lie.
+_HALF_WAY = 8
 #: Bodies of a patch: the whole, and pieces of it along the lean, 2, 6 and 18.
 _BODIES = 27
 
@@ -37,6 +49,18 @@ class Patches(NamedTuple):
     flat: Any
     patch: Any
     home: Any
+
+
+class _Room(NamedTuple):
+    """Where a contact is worked out: directions along and across the lean, bodies, bounds of curvature, what counts as near."""
+
+    f: Any
+    t: Any
+    body: Any
+    bodies: Any
+    near: Any
+    seen: Any
+    scratch: Scratch
 
 
 @kernel
@@ -109,16 +133,18 @@ def _stadium_hit(vertex, i, body, polygon, spare):  # type: ignore[no-untyped-de
 
 
 @kernel
-def _pieces(body, frame, h, tilt, slides, bodies):  # type: ignore[no-untyped-def]
+def _pieces(body, frame, h, pose, slides, bodies, finest):  # type: ignore[no-untyped-def]
     """Write the bodies of a contact that wanders by no more than h: the whole, then in 2, 6 and 18 pieces along the lean.
 
-    Each piece holds those that it is cut into. `tilt` is (sine, cosine), `slides` what a step along the lean shifts the body
-    aside, what a step across it does, and what else may; `body` holds the axes, and the body of no wandering.
+    Each piece holds those that it is cut into. `pose` is (sine, cosine) of the tilt, `slides` what a step along the lean
+    shifts the body aside, what a step across it does, and what else may; `body` is that of no wandering.
     """
-    sine, cosine = tilt
+    sine, cosine = pose
     slide, across, beside = slides
     at = 0
     for count in (1, 2, 6, 18):
+        if count > finest:
+            return
         wide = h / count
         for step in range(count):
             shift = (2 * step + 1 - count) * wide
@@ -154,14 +180,14 @@ def _blocks(i, bodies, flat, frame, face, near, tree, triangle_face, scratch):  
     vertex, polygon, spare = tree.vertex, scratch.polygon, scratch.spare
     return (
         _stadium_hit(vertex, i, bodies[0], polygon, spare)
-        and not _near(vertex, triangle_face, i, frame, face, near)
+        and not near_by(vertex, triangle_face, i, frame, face, near)
         and (flat or _reaches(vertex, i, bodies, polygon, spare))
     )
 
 
 @kernel
-def _blocker(hint, bodies, flat, frame, face, near, tree, triangle_face, scratch):  # type: ignore[no-untyped-def]
-    """First triangle found that is not near and reaches into the moved cutter, `hint` (-1: none) before others; -1 if none."""
+def _first(hint, bodies, flat, frame, face, near, tree, triangle_face, scratch):  # type: ignore[no-untyped-def]
+    """First triangle found that is not near and reaches into the moved cutter, `hint` (-1: none) before others."""
     vertex, box, depth = tree
     stack, count, first, top = scratch.stack, len(vertex), (1 << depth) - 1, 1
     if hint >= 0 and _blocks(hint, bodies, flat, frame, face, near, tree, triangle_face, scratch):
@@ -181,7 +207,126 @@ def _blocker(hint, bodies, flat, frame, face, near, tree, triangle_face, scratch
         for i in range((count * leaf) >> depth, (count * (leaf + 1)) >> depth):
             if _blocks(i, bodies, flat, frame, face, near, tree, triangle_face, scratch):
                 return i
-    return -1
+    return _NOTHING
+
+
+@kernel
+def _motion(row, patches, nodes, frame, sine, h, turn, flat):  # type: ignore[no-untyped-def]
+    """How a contact's cutter turns about its axis as the contact wanders.
+
+    Returns the surface's curvature across the lean and its mixed term, and the turn within the patch, in all (psi) and beside
+    what follows from the curvature at the contact.
+    """
+    if flat:
+        return 0.0, 0.0, 0.0, 0.0
+    k_tt, k_ft, home = 0.0, 0.0, patches.home[row]
+    for k in range(3):
+        for m in range(3):
+            k_ft += patches.tensor[row, k, m] * frame.f[k] * frame.t[m]
+            k_tt += patches.tensor[row, k, m] * frame.t[k] * frame.t[m]
+    wobble = nodes.about[nodes.index[home[0], home[1]], 12]
+    beside = (2.0 * wobble * h + 0.5 * turn * turn + turn * turn / (sine - turn)) / (sine - turn)
+    psi = min(turn / (sine - turn), (abs(k_tt) + abs(k_ft)) * h / sine + beside)
+    return k_tt, k_ft, psi, beside
+
+
+@kernel
+def _extent(most, last, full, h, pose, flat, psi, turn, radius, safe, chord, near):  # type: ignore[no-untyped-def]
+    """The largest of the distances up to row `last` within which curvature alone keeps surface and cutter apart.
+
+    Returns its row, -1 if there is none. Writes what `near_by` takes.
+    """
+    sine, cosine = pose
+    ff, tt, ft, whole, spread, angle, cell = -np.inf, -np.inf, 0.0, 0.0, 0.0, 0.0, 0.0
+    held = -1
+    for row in range(last + 1):
+        distance = h * distance_of(row)
+        ff, tt, ft = max(ff, most[row, 0]), max(tt, most[row, 1]), max(ft, most[row, 2])
+        whole, spread, angle = max(whole, most[row, 3]), max(spread, most[row, 4]), max(angle, most[row, 5])
+        cell = max(cell, most[row, 6])
+        if distance > full:
+            break
+        # Between nodes and between contacts normals turn some more than from node to node.
+        more = 1.05 * whole * (h + cell)
+        steep = 1.05 * np.sqrt(angle) + more
+        if not steep <= _MOST_TURN:
+            break
+        tangent = np.tan(steep)
+        extra = 1.3 * whole * more * (3.5 * tangent + 2.0 * more)
+        if flat:
+            top = 0.5 * (ff + tt) + 0.5 * spread + extra
+            if not 0.5 * max(0.0, top) * distance * distance <= safe:
+                break
+            near[2], near[3], near[4] = top, top, 0.0
+        else:
+            extra += 1.05 * spread * (psi + turn * turn)
+            if not held_below(sine, cosine, turn, ff + extra, ft, tt + extra, distance, radius):
+                break
+            near[2], near[3], near[4] = ff + extra, tt + extra, ft
+        near[0], near[1] = distance - h - chord, 0.6 * whole * distance * distance + chord
+        held = row
+    near[5] = chord + 1e-9
+    return held
+
+
+@kernel
+def _in_the_way(row, patches, nodes, face, lengths, tree, triangle_face, blocker, room):  # type: ignore[no-untyped-def]
+    """A triangle in the way within a contact's patch, `blocker` looked at first; `_NOTHING`; or `_BENT`: not to be told."""
+    radius, length, safe, chord = lengths
+    f, t, body, near = room.f, room.t, room.body, room.near
+    p, n, a = patches.point[row], patches.normal[row], patches.axis[row]
+    h, flat, home = patches.patch[row], patches.flat[row], patches.home[row]
+    if not h > 0.0:
+        return _BENT
+    cosine = hit.dot(a, n)
+    for k in range(3):
+        f[k] = a[k] - cosine * n[k]
+    sine = np.sqrt(hit.dot(f, f))
+    if flat or sine < 1e-6:
+        sine, cosine = 0.0, 1.0
+        hit.perpendicular(n, f)
+    else:
+        for k in range(3):
+            f[k] /= sine
+    hit.cross(n, f, t)
+    frame, pose, most = Frame(p, n, f, t), (sine, cosine), room.seen.most
+    if not begin(frame, h, home, nodes, room.seen):
+        return _BENT
+    full, turn, lift, k_tt, k_ft, psi, beside = np.inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    # Bounds do not get smaller with distance: what does not hold nearby needs no look farther out.
+    for last in (0, _HALF_WAY, EXTENTS - 1):
+        if full == np.inf:
+            full = look_round(frame, h, home, nodes, room.seen, h * distance_of(last))
+        if full < 0.0:
+            return _BENT
+        # How far the normal turns within the patch, and how far the surface leaves the tangent plane.
+        turn, lift = 1.05 * most[0, 3] * h, 0.55 * most[0, 3] * h * h
+        if not turn <= 0.2 or (not flat and (sine <= 2.0 * turn or cosine <= 2.0 * turn)):
+            return _BENT
+        k_tt, k_ft, psi, beside = _motion(row, patches, nodes, frame, sine, h, turn, flat)
+        held = _extent(most, last, full, h, pose, flat, psi, turn, radius, safe, chord, near)
+        if held < 0:
+            return _BENT
+        if held < last:
+            break
+    if not near[0] > 0.0:
+        return _BENT
+    for k in range(3):
+        body[P + k] = p[k]
+        body[A + k] = a[k]
+        body[X + k] = cosine * f[k] - sine * n[k]
+        body[Y + k] = t[k]
+    if flat:
+        body[OFFSET], body[RADIUS], body[HALF] = 0.0, 2.0 * radius + h - safe, 0.0
+        body[LOW], body[HIGH] = safe - lift, length - safe + lift
+        _pieces(body, frame, 0.0, pose, (0.0, 0.0, 0.0), room.bodies, 1)
+    else:
+        grow = 0.5 * radius * psi * psi + lift
+        body[OFFSET], body[RADIUS], body[HALF] = radius, radius - safe + grow, 0.0
+        body[LOW], body[HIGH] = safe - grow, length - safe + grow
+        slides = (radius * k_ft / sine, abs(1.0 - radius * k_tt / sine), radius * beside)
+        _pieces(body, frame, h, pose, slides, room.bodies, 18)
+    return _first(blocker, room.bodies, flat, frame, face, near, tree, triangle_face, room.scratch)
 
 
 @entry
@@ -204,94 +349,12 @@ def cover(  # type: ignore[no-untyped-def]
         Face numbers of its triangles.
     covered : (n,) bool, written
     """
-    body, f, t, bodies = np.empty(BODY), np.empty(3), np.empty(3), np.empty((_BODIES, BODY))
-    # What was in the way of the contact before is likely in the way of this one.
-    blocker = -1
-    scratch = hit.scratch()
-    most, near = np.empty((_EXTENTS, 7)), np.empty(6)
+    room = _Room(np.empty(3), np.empty(3), np.empty(BODY), np.empty((_BODIES, BODY)), np.empty(6), seen(),
+                 hit.scratch())  # fmt: skip
+    lengths, blocker = (radius, length, safe, chord), -1
     for row in rows:
-        covered[row] = False
-        p, n, a = patches.point[row], patches.normal[row], patches.axis[row]
-        h, flat, home = patches.patch[row], patches.flat[row], patches.home[row]
-        if not h > 0.0:
-            continue
-        cosine = hit.dot(a, n)
-        for k in range(3):
-            f[k] = a[k] - cosine * n[k]
-        sine = np.sqrt(hit.dot(f, f))
-        if flat or sine < 1e-6:
-            sine, cosine = 0.0, 1.0
-            hit.perpendicular(n, f)
-        else:
-            for k in range(3):
-                f[k] /= sine
-        hit.cross(n, f, t)
-        frame = Frame(p, n, f, t)
-        full = _zone(frame, h, home, nodes, most)
-        if full < 0.0:
-            continue
-        # How far the normal turns within the patch, and how far the surface leaves the tangent plane.
-        turn, lift = 1.05 * most[0, 3] * h, 0.55 * most[0, 3] * h * h
-        if not turn <= 0.2 or (not flat and (sine <= 2.0 * turn or cosine <= 2.0 * turn)):
-            continue
-        # How far the cutter turns about its axis within the patch, in all and beside what follows from the curvature
-        # at the contact.
-        psi, k_tt, k_ft, beside = 0.0, 0.0, 0.0, 0.0
-        if not flat:
-            for k in range(3):
-                for m in range(3):
-                    k_ft += patches.tensor[row, k, m] * f[k] * t[m]
-                    k_tt += patches.tensor[row, k, m] * t[k] * t[m]
-            wobble = nodes.wobble[nodes.index[home[0], home[1]]]
-            beside = (2.0 * wobble * h + 0.5 * turn * turn + turn * turn / (sine - turn)) / (sine - turn)
-            psi = min(turn / (sine - turn), (abs(k_tt) + abs(k_ft)) * h / sine + beside)
-        # The largest distance up to which curvature alone keeps surface and cutter apart.
-        extent = 0.0
-        for step in range(_EXTENTS):
-            distance = h * (2.0 + (FARTHEST - 2.0) * (step / (_EXTENTS - 1)) ** 2)
-            whole = most[step, 3]
-            if distance > full:
-                break
-            # Between nodes and between contacts normals turn some more than from node to node.
-            more = 1.05 * whole * (h + most[step, 6])
-            steep = 1.05 * most[step, 5] + more
-            if not steep <= _MOST_TURN:
-                break
-            tangent = np.tan(steep)
-            extra = 1.3 * whole * more * (3.5 * tangent + 2.0 * more)
-            if flat:
-                top = 0.5 * (most[step, 0] + most[step, 1]) + 0.5 * most[step, 4] + extra
-                if not 0.5 * max(0.0, top) * distance * distance <= safe:
-                    break
-                near[2], near[3], near[4] = top, top, 0.0
-            else:
-                extra += 1.05 * most[step, 4] * (psi + turn * turn)
-                if not _held(sine, cosine, turn, most[step, 0] + extra, most[step, 2], most[step, 1] + extra,
-                             distance, radius):  # fmt: skip
-                    break
-                near[2], near[3], near[4] = most[step, 0] + extra, most[step, 1] + extra, most[step, 2]
-            extent = distance
-            near[1] = 0.6 * whole * distance * distance + chord
-        near[0], near[5] = extent - h - chord, chord + 1e-9
-        if not near[0] > 0.0:
-            continue
-        for k in range(3):
-            body[P + k] = p[k]
-            body[A + k] = a[k]
-            body[X + k] = cosine * f[k] - sine * n[k]
-            body[Y + k] = t[k]
-        if flat:
-            body[OFFSET], body[RADIUS], body[HALF] = 0.0, 2.0 * radius + h - safe, 0.0
-            body[LOW], body[HIGH] = safe - lift, length - safe + lift
-            for k in range(BODY):
-                bodies[0, k] = body[k]
-        else:
-            grow = 0.5 * radius * psi * psi + lift
-            body[OFFSET], body[RADIUS], body[HALF] = radius, radius - safe + grow, 0.0
-            body[LOW], body[HIGH] = safe - grow, length - safe + grow
-            slides = (radius * k_ft / sine, abs(1.0 - radius * k_tt / sine), radius * beside)
-            _pieces(body, frame, h, (sine, cosine), slides, bodies)
-        found = _blocker(blocker, bodies, flat, frame, face, near, tree, triangle_face, scratch)
-        covered[row] = found < 0
+        found = _in_the_way(row, patches, nodes, face, lengths, tree, triangle_face, blocker, room)
+        covered[row] = found == _NOTHING
+        # What was in the way of one contact is likely in the way of the next.
         if found >= 0:
             blocker = found

@@ -187,7 +187,7 @@ def _cover(
     patches = Patches(
         contacts.point, contacts.normal, tensor, contacts.axis, contacts.flat, contacts.patch, contacts.home
     )
-    nodes = Nodes(field.index, field.closed, field.point, field.normal, field.tensor, field.wobble, field.radius)
+    nodes = Nodes(field.index, field.closed, field.about)
     chord = obstacles.triangles.chord_error
 
     def work(piece: NDArray[np.int64]) -> None:
