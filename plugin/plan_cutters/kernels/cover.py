@@ -26,8 +26,8 @@ from plan_cutters.kernels.zone import (
 
 #: Largest angle (rad) between normals within `extent`: up to it, the surface is a graph over its tangent planes.
 _MOST_TURN = 0.5
-#: In place of a triangle that is in the way: there is none, or it is not to be told.
-_NOTHING, _BENT = -1, -2
+#: Outlooks of a contact that is not known to serve its patch: most halvings that are told apart; none will do.
+MOST_HALVINGS, NEVER = 3, 255
 #: Row of a distance within which a sixth of the nodes lie.
 _HALF_WAY = 8
 #: Bodies of a patch: the whole, and pieces of it along the lean, 2, 6 and 18.
@@ -207,7 +207,7 @@ def _first(hint, bodies, flat, frame, face, near, tree, triangle_face, scratch):
         for i in range((count * leaf) >> depth, (count * (leaf + 1)) >> depth):
             if _blocks(i, bodies, flat, frame, face, near, tree, triangle_face, scratch):
                 return i
-    return _NOTHING
+    return -1
 
 
 @kernel
@@ -270,14 +270,29 @@ def _extent(most, last, full, h, pose, flat, psi, turn, radius, safe, chord, nea
 
 
 @kernel
-def _in_the_way(row, patches, nodes, face, lengths, tree, triangle_face, blocker, room):  # type: ignore[no-untyped-def]
-    """A triangle in the way within a contact's patch, `blocker` looked at first; `_NOTHING`; or `_BENT`: not to be told."""
+def _halvings(most, h, pose, flat, radius, safe, chord, near):  # type: ignore[no-untyped-def]
+    """How often a patch must be halved until curvature holds right at its contact, as far as the nodes about it now tell."""
+    halved = h
+    for count in range(1, MOST_HALVINGS):
+        halved *= 0.5
+        turn = 1.05 * most[0, 3] * halved
+        steep = not flat and (pose[0] <= 2.0 * turn or pose[1] <= 2.0 * turn)
+        if turn <= 0.2 and not steep:
+            psi = 0.0 if flat else turn / (pose[0] - turn)
+            if _extent(most, 0, np.inf, halved, pose, flat, psi, turn, radius, safe, chord, near) == 0:
+                return count
+    return MOST_HALVINGS
+
+
+@kernel
+def _outlook(row, patches, nodes, face, lengths, tree, triangle_face, blocker, room):  # type: ignore[no-untyped-def]
+    """What `cover` writes for a contact, and the triangle in the way, -1 if there is none; `blocker` is looked at first."""
     radius, length, safe, chord = lengths
     f, t, body, near = room.f, room.t, room.body, room.near
     p, n, a = patches.point[row], patches.normal[row], patches.axis[row]
     h, flat, home = patches.patch[row], patches.flat[row], patches.home[row]
     if not h > 0.0:
-        return _BENT
+        return 1, -1
     cosine = hit.dot(a, n)
     for k in range(3):
         f[k] = a[k] - cosine * n[k]
@@ -291,26 +306,29 @@ def _in_the_way(row, patches, nodes, face, lengths, tree, triangle_face, blocker
     hit.cross(n, f, t)
     frame, pose, most = Frame(p, n, f, t), (sine, cosine), room.seen.most
     if not begin(frame, h, home, nodes, room.seen):
-        return _BENT
+        return NEVER, -1
+    # In the smallest patch there remain the home node's own curvature and what it may differ in its cell.
+    if not flat and not held_below(sine, cosine, 0.0, most[0, 0], most[0, 2], most[0, 1], 0.0, radius):
+        return NEVER, -1
     full, turn, lift, k_tt, k_ft, psi, beside = np.inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     # Bounds do not get smaller with distance: what does not hold nearby needs no look farther out.
     for last in (0, _HALF_WAY, EXTENTS - 1):
         if full == np.inf:
             full = look_round(frame, h, home, nodes, room.seen, h * distance_of(last))
         if full < 0.0:
-            return _BENT
+            return 1, -1
         # How far the normal turns within the patch, and how far the surface leaves the tangent plane.
         turn, lift = 1.05 * most[0, 3] * h, 0.55 * most[0, 3] * h * h
         if not turn <= 0.2 or (not flat and (sine <= 2.0 * turn or cosine <= 2.0 * turn)):
-            return _BENT
+            return _halvings(most, h, pose, flat, radius, safe, chord, near), -1
         k_tt, k_ft, psi, beside = _motion(row, patches, nodes, frame, sine, h, turn, flat)
         held = _extent(most, last, full, h, pose, flat, psi, turn, radius, safe, chord, near)
         if held < 0:
-            return _BENT
+            return _halvings(most, h, pose, flat, radius, safe, chord, near), -1
         if held < last:
             break
     if not near[0] > 0.0:
-        return _BENT
+        return NEVER, -1
     for k in range(3):
         body[P + k] = p[k]
         body[A + k] = a[k]
@@ -326,12 +344,13 @@ def _in_the_way(row, patches, nodes, face, lengths, tree, triangle_face, blocker
         body[LOW], body[HIGH] = safe - grow, length - safe + grow
         slides = (radius * k_ft / sine, abs(1.0 - radius * k_tt / sine), radius * beside)
         _pieces(body, frame, h, pose, slides, room.bodies, 18)
-    return _first(blocker, room.bodies, flat, frame, face, near, tree, triangle_face, room.scratch)
+    found = _first(blocker, room.bodies, flat, frame, face, near, tree, triangle_face, room.scratch)
+    return 0 if found < 0 else 1, found
 
 
 @entry
 def cover(  # type: ignore[no-untyped-def]
-    rows, patches, nodes, face, radius, length, safe, chord, tree, triangle_face, covered
+    rows, patches, nodes, face, radius, length, safe, chord, tree, triangle_face, outlook
 ):
     """Decide for contacts on one face whether their axis serves every contact within a patch about them.
 
@@ -347,14 +366,15 @@ def cover(  # type: ignore[no-untyped-def]
     tree : Tree
     triangle_face : (t,) int32
         Face numbers of its triangles.
-    covered : (n,) bool, written
+    outlook : (n,) uint8, written
+        0: it does. 1 to MOST_HALVINGS: not known; how often the patch must be halved until it may, a guess that tells what to
+        try first. NEVER: it serves no smaller patch, either, as far as the nodes tell of the surface.
     """
     room = _Room(np.empty(3), np.empty(3), np.empty(BODY), np.empty((_BODIES, BODY)), np.empty(6), seen(),
                  hit.scratch())  # fmt: skip
     lengths, blocker = (radius, length, safe, chord), -1
     for row in rows:
-        found = _in_the_way(row, patches, nodes, face, lengths, tree, triangle_face, blocker, room)
-        covered[row] = found == _NOTHING
+        outlook[row], found = _outlook(row, patches, nodes, face, lengths, tree, triangle_face, blocker, room)
         # What was in the way of one contact is likely in the way of the next.
         if found >= 0:
             blocker = found
