@@ -175,7 +175,7 @@ def begin(frame, h, home, nodes, out):  # type: ignore[no-untyped-def]
         out.most[k, 0], out.most[k, 1] = -np.inf, -np.inf
         for c in range(2, 7):
             out.most[k, c] = 0.0
-    nearest, _, _, gap = _line(frame, h, nodes, 0, home[0], home[1], home[1], out.most)
+    nearest, _, _, gap = _line(frame, h, nodes, 0, home[0] + 0, home[1] + 0, home[1] + 0, out.most)
     for side in range(4):
         out.lines[side], out.nearest[side], out.gap[side] = 0, nearest, False
     return not (gap or np.isnan(nearest))
