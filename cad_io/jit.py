@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import numba
+from numba.core.types import unliteral  # type: ignore[attr-defined]
 
 VERSION: str = numba.__version__
 
@@ -57,6 +58,21 @@ def _our_cache(sources: Path) -> Iterator[None]:
         numba.config.CACHE_DIR = before
 
 
+def _once(compiled: Any) -> Any:
+    """Compile a function once for all numbers that it is called with.
+
+    The compiler takes a number that stands in a call, or that a variable begins with, for a type of its own, and compiles the
+    function for it and all that it calls, then again for any number.
+    """
+    asked = compiled.get_call_template
+
+    def plainly(args: Any, kws: Any) -> Any:
+        return asked(tuple(map(unliteral, args)), {name: unliteral(kind) for name, kind in kws.items()})
+
+    compiled.get_call_template = plainly
+    return compiled
+
+
 def decorators(file: str) -> tuple[Decorator, Decorator]:
     """`entry` and `kernel` for the sources in the folder of a file.
 
@@ -68,10 +84,10 @@ def decorators(file: str) -> tuple[Decorator, Decorator]:
 
     def entry(function: Callable[..., Any]) -> Callable[..., Any]:
         with _our_cache(sources):
-            return numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+            return _once(numba.njit(cache=True, nogil=True, error_model="numpy")(function))
 
     def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
         with _our_cache(sources):
-            return numba.njit(cache=True, nogil=True, error_model="numpy", _nrt=False)(function)
+            return _once(numba.njit(cache=True, nogil=True, error_model="numpy", _nrt=False)(function))
 
     return entry, kernel

@@ -1,6 +1,7 @@
 """Cells that are called served, against the exact surface: random contacts in them."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,17 +15,19 @@ from cad_io.sample import sample
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Machine, plan
 from plan_cutters.domain.posture import PostureRange
+from plan_cutters.kernels.cover import NEVER
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.stages.between import between
 from plan_cutters.stages.cells import CellContacts, Field, quartered
+from plan_cutters.stages.site import Site, _cover
 
 SAMPLES = Path(__file__).parent.parent / "samples"
 UP = np.array([0.0, 0.0, 1.0])
 
 
-def served(part, cutter, *, budget, tolerance=0.01, chord=None, machine="unlimited", **how):
+def served(part, cutter, *, budget, tolerance=0.01, chord=None, machine="unlimited", jobs=2, **how):
     """What `between` finds after a plan, and the geometry that it is asked of."""
     machine = Machine.parse(machine)
     result = plan(part, cutters=[cutter], tolerance=tolerance, area_budget=0, machine=machine, **how)
@@ -36,7 +39,7 @@ def served(part, cutter, *, budget, tolerance=0.01, chord=None, machine="unlimit
         return point, shape.normal, shape.direction_max, shape.curvature
 
     around = Surroundings.sheet(Obstacles(tessellate(whole, chord or 0.2 * tolerance)))
-    conditions = Conditions(machine, UP, result.postures, around, tolerance, 2)
+    conditions = Conditions(machine, UP, result.postures, around, tolerance, jobs)
     found = between(samples, result.reaches[cutter.id], cutter, whole, side, conditions, budget=budget)
     return found, geometry, whole
 
@@ -119,9 +122,57 @@ def test_flat_surfaces_are_served_by_their_samples():
 def test_more_budget_never_serves_less_and_threads_do_not_matter():
     part = read_part(SAMPLES / "pocket_top.step")
     cutter = Cutter.flat(radius=8.0, length=90.0)
-    shares = [served(part, cutter, budget=b)[0].share for b in (0, 400, 2000, 20_000)]
+    looks = [served(part, cutter, budget=b)[0] for b in (0, 400, 2000, 20_000)]
+    shares = [found.share for found in looks]
     assert shares == sorted(shares)
     assert shares[0] < shares[-1]
+    for budget, found in zip((0, 400, 2000), looks, strict=False):
+        assert found.contacts - looks[0].contacts <= budget
+    alone = served(part, cutter, budget=2000, jobs=1)[0]
+    for name in ("face", "uv", "span", "axis"):
+        assert (getattr(alone.cells, name) == getattr(looks[2].cells, name)).all()
+    assert (alone.share, alone.left, alone.short) == (looks[2].share, looks[2].left, looks[2].short)
+
+
+def test_every_budget_looks_at_the_cells_of_a_smaller_one():
+    """On a surface where not all can be served: shares never fall, and what is left is told apart."""
+    part = read_part(shapes.shell(shapes.Patch.random(np.random.default_rng(0), height=6.0).face()))
+    cutter = Cutter.flat(radius=2.0, length=40.0)
+    looks = [served(part, cutter, budget=b, grid=61, tolerance=0.02)[0] for b in (0, 40, 2500, 20_000)]
+    shares = [found.share for found in looks]
+    assert shares == sorted(shares)
+    assert shares[0] < shares[-1] < 1
+    for found in looks:
+        assert 0 <= found.short + found.dropped <= found.left
+        assert found.contacts - looks[0].contacts <= 20_000
+
+
+def test_it_stops_where_nothing_is_gained():
+    """On a surface too wild for its samples no cell is served, however large the budget."""
+    part = read_part(shapes.shell(shapes.Patch.random(np.random.default_rng(3), height=9.0).face()))
+    found = served(part, Cutter.flat(radius=3.0, length=40.0), budget=200_000, grid=31, tolerance=0.02)[0]
+    assert found.contacts < 20_000
+    assert found.left > 0
+    assert found.short == 0
+
+
+def test_no_smaller_patch_is_served_where_none_is_said_to_be():
+    part = read_part(shapes.shell(shapes.Patch.random(np.random.default_rng(3), height=9.0).face()))
+    cutter, sites = Cutter.flat(radius=3.0, length=40.0), []
+    with pytest.MonkeyPatch.context() as patch:
+        made = Site.refine
+        patch.setattr(Site, "refine", lambda site, *asked: (sites.append(site), made(site, *asked))[1])
+        served(part, cutter, budget=2000, grid=31, tolerance=0.02)
+    (site,) = sites
+    never = 0
+    for contacts, outlook in site.pools:
+        rows = np.flatnonzero(outlook == NEVER)
+        never += len(rows)
+        for smaller in (0.3, 0.01, 0.0001):
+            shrunk = replace(contacts, patch=smaller * contacts.patch)
+            again = _cover(shrunk, contacts.axis, contacts.flat, site.field, cutter, site.conditions, rows)
+            assert (again == NEVER).all()
+    assert never > 20
 
 
 def test_leans_too_small_to_know_their_side_serve_no_cell():

@@ -25,6 +25,10 @@ def cores() -> int:
     return os.cpu_count() or 1
 
 
+#: Contacts between the samples unless a number is asked for: so many for each sample, and at most.
+_BETWEEN, _MOST_BETWEEN = 24, 100_000
+
+
 @dataclass(frozen=True, slots=True)
 class Options:
     """Options of a plan. Lengths mm, angles rad.
@@ -55,8 +59,9 @@ class Options:
         Threads. None: as many as there are cores.
     flip : bool
         Machine the other side of open shells and loose faces.
-    area_budget : int
-        Most contacts to look at between the samples for the selected cutter; 0: none.
+    area_budget : int, optional
+        Most contacts to look at between the samples for the selected cutter; 0: none. None: 24 for each sample, at most
+        100,000.
     posture_maps : bool
         Find every free tilt of every sample, too, for the cutter that the models show.
     unit : str, optional
@@ -91,7 +96,7 @@ class Options:
     tolerance: float = 0.01
     jobs: int = field(default_factory=cores)
     flip: bool = False
-    area_budget: int = 100_000
+    area_budget: int | None = None
     posture_maps: bool = False
     unit: str | None = None
 
@@ -109,7 +114,7 @@ class Options:
             )
         if self.unit is not None and self.unit not in UNITS:
             raise OptionError(f"unit {self.unit!r} is not one of {', '.join(UNITS)}")
-        if self.area_budget < 0:
+        if self.area_budget is not None and self.area_budget < 0:
             raise OptionError(f"area budget {self.area_budget} must not be negative")
         if self.jobs < 1:
             raise OptionError(f"jobs {self.jobs} must be at least 1")
@@ -126,10 +131,9 @@ class Options:
 
         take(cutters=Cutter.each_of(self.cutters), machine=Machine.of(self.machine))
         take(setup=tuple(unit(self.setup, "setup axis").tolist()), tolerance=number(self.tolerance, "tolerance"))
-        take(
-            jobs=cores() if self.jobs is None else whole(self.jobs, "jobs"),
-            area_budget=whole(self.area_budget, "area budget"),
-        )
+        take(jobs=cores() if self.jobs is None else whole(self.jobs, "jobs"))
+        if self.area_budget is not None:
+            take(area_budget=whole(self.area_budget, "area budget"))
         take(flip=flag(self.flip, "flip"), posture_maps=flag(self.posture_maps, "posture_maps"))
         choice(self.faces, "faces")
         choice(self.ignore, "ignore")
@@ -151,6 +155,10 @@ class Options:
                 near = get_close_matches(word, known, 1)
                 raise OptionError(f"no option is called {word}; {f'{near[0]}?' if near else ', '.join(known)}")
         return cls(**words)
+
+    def contacts_between(self, samples: int) -> int:
+        """Most contacts to look at between so many samples."""
+        return min(_MOST_BETWEEN, _BETWEEN * samples) if self.area_budget is None else self.area_budget
 
     @property
     def postures(self) -> PostureRange:

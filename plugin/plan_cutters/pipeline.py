@@ -231,13 +231,14 @@ def assemble(
     selected, chosen = selection(entries)
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
     best = selected or next((e.id for e in entries if not (e.inaccessible or e.undecided)), None)
-    if best and ready.options.area_budget:
+    budget = ready.options.contacts_between(len(ready.samples))
+    if best and budget:
         with clock.stage("area"):
             cutter = next(c for c in ready.cutters if c.id == best)
             served = between(ready.samples, judged[cutter].reach, cutter, ready.scene.part, ready.scene.orientation,
-                             ready.conditions, budget=ready.options.area_budget)  # fmt: skip
+                             ready.conditions, budget=budget)  # fmt: skip
         area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
-                         short=served.short, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
+                         short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
         entries = [e.model_copy(update={"area": area}) if e.id == best else e for e in entries]
     with clock.stage("plan", shown=False):
         document = plan_of(ready, entries, selected, chosen, started or datetime.datetime.now(datetime.UTC))

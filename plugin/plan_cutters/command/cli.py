@@ -155,9 +155,9 @@ class _Vector(click.ParamType):
 @click.option(
     "--area-budget",
     type=int,
-    default=100_000,
     metavar="N",
-    help="Contacts to look at between the samples of the selected cutter; 0: samples alone.  [default: 100000]",
+    help="Contacts to look at between the samples of the selected cutter; 0: samples alone.  [default: 24 a sample, at most "
+    "100000]",
 )
 @click.option("--flip", is_flag=True, help="Machine the other side of open shells and loose faces.")
 @click.option(

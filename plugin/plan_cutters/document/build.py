@@ -231,8 +231,12 @@ def area_notes(entries: Sequence[CutterEntry], *, doubtful: bool) -> Iterator[st
             what = "all of the target surface whose area is known" if area.left_out else "all of the target surface"
             yield f"{entry.id} serves {what}, {known}."
         else:
-            why = [f"no posture was found that serves the finest cells about {area.left - area.short} contacts"]
-            why = why if area.left > area.short else []
+            lost = area.left - area.short - area.dropped
+            why = (
+                [f"no posture was found that serves the cells about {lost} contacts, or finer ones"] if lost > 0 else []
+            )
+            if area.dropped:
+                why.append(f"{area.dropped} cells were not cut up, for too little of the surface was to be gained")
             if area.short:
                 why.append(
                     f"the budget was spent with {area.short} cells open, so a larger --area-budget may serve more"

@@ -151,6 +151,10 @@ class AreaEntry(_Frozen):
     contacts: int = Field(description="contacts looked at, samples included")
     left: int = Field(description="contacts whose cells were not shown to be served when the budget ended")
     short: int = Field(description="those of them for which the budget was spent")
+    dropped: int = Field(
+        default=0,
+        description="those of them that were not looked at more closely, for too little area was to be gained",
+    )
     left_out: list[str] = Field(default=[], description="target faces whose area is not known: they are not in `share`")
 
 

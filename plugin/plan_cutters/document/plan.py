@@ -42,7 +42,7 @@ def plan_of(
             chord_measured_share=around.surely.triangles.measured_share,
             obstacle_triangles=len(around.may_be.triangles),
             flip=options.flip,
-            area_budget=options.area_budget,
+            area_budget=options.contacts_between(len(samples)),
             posture_maps=options.posture_maps,
         ),
         versions=versions(),

@@ -13,13 +13,25 @@ import numpy as np
 from plan_cutters.kernels import hit
 from plan_cutters.kernels.hit import BODY, HALF, HIGH, LOW, OFFSET, RADIUS, A, P, X, Y
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.zone import _EXTENTS, FARTHEST, _held, _near, _zone
+from plan_cutters.kernels.rows import Frame, Scratch
+from plan_cutters.kernels.zone import (
+    EXTENTS,
+    begin,
+    distance_of,
+    held_below,
+    look_round,
+    near_by,
+    seen,
+)
 
 #: Largest angle (rad) between normals within `extent`: up to it, the surface is a graph over its tangent planes.
 _MOST_TURN = 0.5
-#: Steps along the lean that the patch is cut into: finer ones where fewer do not do.
-_STEPS = (2, 6, 18)
+#: Outlooks of a contact that is not known to serve its patch: most halvings that are told apart; none will do.
+MOST_HALVINGS, NEVER = 3, 255
+#: Row of a distance within which a sixth of the nodes lie.
+_HALF_WAY = 8
+#: Bodies of a patch: the whole, and pieces of it along the lean, 2, 6 and 18.
+_BODIES = 27
 
 
 class Patches(NamedTuple):
@@ -37,6 +49,18 @@ class Patches(NamedTuple):
     flat: Any
     patch: Any
     home: Any
+
+
+class _Room(NamedTuple):
+    """Where a contact is worked out: directions along and across the lean, bodies, bounds of curvature, what counts as near."""
+
+    f: Any
+    t: Any
+    body: Any
+    bodies: Any
+    near: Any
+    seen: Any
+    scratch: Scratch
 
 
 @kernel
@@ -109,16 +133,70 @@ def _stadium_hit(vertex, i, body, polygon, spare):  # type: ignore[no-untyped-de
 
 
 @kernel
-def _free_of_far(body, frame, face, near, tree, triangle_face, scratch):  # type: ignore[no-untyped-def]
-    """True if no triangle that is not near reaches into the stadium body."""
+def _pieces(body, frame, h, pose, slides, bodies, finest):  # type: ignore[no-untyped-def]
+    """Write the bodies of a contact that wanders by no more than h: the whole, then in 2, 6 and 18 pieces along the lean.
+
+    Each piece holds those that it is cut into. `pose` is (sine, cosine) of the tilt, `slides` what a step along the lean
+    shifts the body aside, what a step across it does, and what else may; `body` is that of no wandering.
+    """
+    sine, cosine = pose
+    slide, across, beside = slides
+    at = 0
+    for count in (1, 2, 6, 18):
+        if count > finest:
+            return
+        wide = h / count
+        for step in range(count):
+            shift = (2 * step + 1 - count) * wide
+            for k in range(BODY):
+                bodies[at, k] = body[k]
+            for k in range(3):
+                bodies[at, P + k] += shift * (frame.f[k] - slide * frame.t[k])
+            bodies[at, RADIUS] += wide * cosine
+            bodies[at, LOW] -= wide * sine
+            bodies[at, HIGH] += wide * sine
+            bodies[at, HALF] = h * across + wide * abs(slide) + beside
+            at += 1
+
+
+@kernel
+def _reaches(vertex, i, bodies, polygon, spare):  # type: ignore[no-untyped-def]
+    """Whether triangle i, which reaches into the whole, reaches into one of its finest pieces."""
+    for half in range(2):
+        if not _stadium_hit(vertex, i, bodies[1 + half], polygon, spare):
+            continue
+        for sixth in range(3 * half, 3 * half + 3):
+            if not _stadium_hit(vertex, i, bodies[3 + sixth], polygon, spare):
+                continue
+            for last in range(3 * sixth, 3 * sixth + 3):
+                if _stadium_hit(vertex, i, bodies[9 + last], polygon, spare):
+                    return True
+    return False
+
+
+@kernel
+def _blocks(i, bodies, flat, frame, face, near, tree, triangle_face, scratch):  # type: ignore[no-untyped-def]
+    """Whether triangle i is not near and reaches into the moved cutter."""
+    vertex, polygon, spare = tree.vertex, scratch.polygon, scratch.spare
+    return (
+        _stadium_hit(vertex, i, bodies[0], polygon, spare)
+        and not near_by(vertex, triangle_face, i, frame, face, near)
+        and (flat or _reaches(vertex, i, bodies, polygon, spare))
+    )
+
+
+@kernel
+def _first(hint, bodies, flat, frame, face, near, tree, triangle_face, scratch):  # type: ignore[no-untyped-def]
+    """First triangle found that is not near and reaches into the moved cutter, `hint` (-1: none) before others."""
     vertex, box, depth = tree
-    stack, polygon, spare = scratch.stack, scratch.polygon, scratch.spare
-    count, first, top = len(vertex), (1 << depth) - 1, 1
+    stack, count, first, top = scratch.stack, len(vertex), (1 << depth) - 1, 1
+    if hint >= 0 and _blocks(hint, bodies, flat, frame, face, near, tree, triangle_face, scratch):
+        return hint
     stack[0] = 0
     while top > 0:
         top -= 1
         node = stack[top]
-        if hit._box_apart(box, node, body, 0.0):
+        if hit._box_apart(box, node, bodies[0], 0.0):
             continue
         if node < first:
             stack[top] = 2 * node + 2
@@ -127,14 +205,152 @@ def _free_of_far(body, frame, face, near, tree, triangle_face, scratch):  # type
             continue
         leaf = node - first
         for i in range((count * leaf) >> depth, (count * (leaf + 1)) >> depth):
-            if _stadium_hit(vertex, i, body, polygon, spare) and not _near(vertex, triangle_face, i, frame, face, near):
-                return False
-    return True
+            if _blocks(i, bodies, flat, frame, face, near, tree, triangle_face, scratch):
+                return i
+    return -1
+
+
+@kernel
+def _motion(row, patches, nodes, frame, sine, h, turn, flat):  # type: ignore[no-untyped-def]
+    """How a contact's cutter turns about its axis as the contact wanders.
+
+    Returns the surface's curvature across the lean and its mixed term, and the turn within the patch, in all (psi) and beside
+    what follows from the curvature at the contact.
+    """
+    if flat:
+        return 0.0, 0.0, 0.0, 0.0
+    k_tt, k_ft, home = 0.0, 0.0, patches.home[row]
+    for k in range(3):
+        for m in range(3):
+            k_ft += patches.tensor[row, k, m] * frame.f[k] * frame.t[m]
+            k_tt += patches.tensor[row, k, m] * frame.t[k] * frame.t[m]
+    wobble = nodes.about[nodes.index[home[0], home[1]], 12]
+    beside = (2.0 * wobble * h + 0.5 * turn * turn + turn * turn / (sine - turn)) / (sine - turn)
+    psi = min(turn / (sine - turn), (abs(k_tt) + abs(k_ft)) * h / sine + beside)
+    return k_tt, k_ft, psi, beside
+
+
+@kernel
+def _extent(most, last, full, h, pose, flat, psi, turn, radius, safe, chord, near):  # type: ignore[no-untyped-def]
+    """The largest of the distances up to row `last` within which curvature alone keeps surface and cutter apart.
+
+    Returns its row, -1 if there is none. Writes what `near_by` takes.
+    """
+    sine, cosine = pose
+    ff, tt, ft, whole, spread, angle, cell = -np.inf, -np.inf, 0.0, 0.0, 0.0, 0.0, 0.0
+    held = -1
+    for row in range(last + 1):
+        distance = h * distance_of(row)
+        ff, tt, ft = max(ff, most[row, 0]), max(tt, most[row, 1]), max(ft, most[row, 2])
+        whole, spread, angle = max(whole, most[row, 3]), max(spread, most[row, 4]), max(angle, most[row, 5])
+        cell = max(cell, most[row, 6])
+        if distance > full:
+            break
+        # Between nodes and between contacts normals turn some more than from node to node.
+        more = 1.05 * whole * (h + cell)
+        steep = 1.05 * np.sqrt(angle) + more
+        if not steep <= _MOST_TURN:
+            break
+        tangent = np.tan(steep)
+        extra = 1.3 * whole * more * (3.5 * tangent + 2.0 * more)
+        if flat:
+            top = 0.5 * (ff + tt) + 0.5 * spread + extra
+            if not 0.5 * max(0.0, top) * distance * distance <= safe:
+                break
+            near[2], near[3], near[4] = top, top, 0.0
+        else:
+            extra += 1.05 * spread * (psi + turn * turn)
+            if not held_below(sine, cosine, turn, ff + extra, ft, tt + extra, distance, radius):
+                break
+            near[2], near[3], near[4] = ff + extra, tt + extra, ft
+        near[0], near[1] = distance - h - chord, 0.6 * whole * distance * distance + chord
+        held = row
+    near[5] = chord + 1e-9
+    return held
+
+
+@kernel
+def _halvings(most, h, pose, flat, radius, safe, chord, near):  # type: ignore[no-untyped-def]
+    """How often a patch must be halved until curvature holds right at its contact, as far as the nodes about it now tell."""
+    halved = h
+    for count in range(1, MOST_HALVINGS):
+        halved *= 0.5
+        turn = 1.05 * most[0, 3] * halved
+        steep = not flat and (pose[0] <= 2.0 * turn or pose[1] <= 2.0 * turn)
+        if turn <= 0.2 and not steep:
+            psi = 0.0 if flat else turn / (pose[0] - turn)
+            if _extent(most, 0, np.inf, halved, pose, flat, psi, turn, radius, safe, chord, near) == 0:
+                return count
+    return MOST_HALVINGS
+
+
+@kernel
+def _outlook(row, patches, nodes, face, lengths, tree, triangle_face, blocker, room):  # type: ignore[no-untyped-def]
+    """What `cover` writes for a contact, and the triangle in the way, -1 if there is none; `blocker` is looked at first."""
+    radius, length, safe, chord = lengths
+    f, t, body, near = room.f, room.t, room.body, room.near
+    p, n, a = patches.point[row], patches.normal[row], patches.axis[row]
+    h, flat, home = patches.patch[row], patches.flat[row], patches.home[row]
+    if not h > 0.0:
+        return 1, -1
+    cosine = hit.dot(a, n)
+    for k in range(3):
+        f[k] = a[k] - cosine * n[k]
+    sine = np.sqrt(hit.dot(f, f))
+    if flat or sine < 1e-6:
+        sine, cosine = 0.0, 1.0
+        hit.perpendicular(n, f)
+    else:
+        for k in range(3):
+            f[k] /= sine
+    hit.cross(n, f, t)
+    frame, pose, most = Frame(p, n, f, t), (sine, cosine), room.seen.most
+    if not begin(frame, h, home, nodes, room.seen):
+        return NEVER, -1
+    # In the smallest patch there remain the home node's own curvature and what it may differ in its cell.
+    if not flat and not held_below(sine, cosine, 0.0, most[0, 0], most[0, 2], most[0, 1], 0.0, radius):
+        return NEVER, -1
+    full, turn, lift, k_tt, k_ft, psi, beside = np.inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    # Bounds do not get smaller with distance: what does not hold nearby needs no look farther out.
+    for last in (0, _HALF_WAY, EXTENTS - 1):
+        if full == np.inf:
+            full = look_round(frame, h, home, nodes, room.seen, h * distance_of(last))
+        if full < 0.0:
+            return 1, -1
+        # How far the normal turns within the patch, and how far the surface leaves the tangent plane.
+        turn, lift = 1.05 * most[0, 3] * h, 0.55 * most[0, 3] * h * h
+        if not turn <= 0.2 or (not flat and (sine <= 2.0 * turn or cosine <= 2.0 * turn)):
+            return _halvings(most, h, pose, flat, radius, safe, chord, near), -1
+        k_tt, k_ft, psi, beside = _motion(row, patches, nodes, frame, sine, h, turn, flat)
+        held = _extent(most, last, full, h, pose, flat, psi, turn, radius, safe, chord, near)
+        if held < 0:
+            return _halvings(most, h, pose, flat, radius, safe, chord, near), -1
+        if held < last:
+            break
+    if not near[0] > 0.0:
+        return NEVER, -1
+    for k in range(3):
+        body[P + k] = p[k]
+        body[A + k] = a[k]
+        body[X + k] = cosine * f[k] - sine * n[k]
+        body[Y + k] = t[k]
+    if flat:
+        body[OFFSET], body[RADIUS], body[HALF] = 0.0, 2.0 * radius + h - safe, 0.0
+        body[LOW], body[HIGH] = safe - lift, length - safe + lift
+        _pieces(body, frame, 0.0, pose, (0.0, 0.0, 0.0), room.bodies, 1)
+    else:
+        grow = 0.5 * radius * psi * psi + lift
+        body[OFFSET], body[RADIUS], body[HALF] = radius, radius - safe + grow, 0.0
+        body[LOW], body[HIGH] = safe - grow, length - safe + grow
+        slides = (radius * k_ft / sine, abs(1.0 - radius * k_tt / sine), radius * beside)
+        _pieces(body, frame, h, pose, slides, room.bodies, 18)
+    found = _first(blocker, room.bodies, flat, frame, face, near, tree, triangle_face, room.scratch)
+    return 0 if found < 0 else 1, found
 
 
 @entry
 def cover(  # type: ignore[no-untyped-def]
-    rows, patches, nodes, face, radius, length, safe, chord, tree, triangle_face, covered
+    rows, patches, nodes, face, radius, length, safe, chord, tree, triangle_face, outlook
 ):
     """Decide for contacts on one face whether their axis serves every contact within a patch about them.
 
@@ -150,105 +366,15 @@ def cover(  # type: ignore[no-untyped-def]
     tree : Tree
     triangle_face : (t,) int32
         Face numbers of its triangles.
-    covered : (n,) bool, written
+    outlook : (n,) uint8, written
+        0: it does. 1 to MOST_HALVINGS: not known; how often the patch must be halved until it may, a guess that tells what to
+        try first. NEVER: it serves no smaller patch, either, as far as the nodes tell of the surface.
     """
-    body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
-    scratch = hit.scratch()
-    most, near = np.empty((_EXTENTS, 7)), np.empty(6)
+    room = _Room(np.empty(3), np.empty(3), np.empty(BODY), np.empty((_BODIES, BODY)), np.empty(6), seen(),
+                 hit.scratch())  # fmt: skip
+    lengths, blocker = (radius, length, safe, chord), -1
     for row in rows:
-        covered[row] = False
-        p, n, a = patches.point[row], patches.normal[row], patches.axis[row]
-        h, flat, home = patches.patch[row], patches.flat[row], patches.home[row]
-        if not h > 0.0:
-            continue
-        cosine = hit.dot(a, n)
-        for k in range(3):
-            f[k] = a[k] - cosine * n[k]
-        sine = np.sqrt(hit.dot(f, f))
-        if flat or sine < 1e-6:
-            sine, cosine = 0.0, 1.0
-            hit.perpendicular(n, f)
-        else:
-            for k in range(3):
-                f[k] /= sine
-        hit.cross(n, f, t)
-        frame = Frame(p, n, f, t)
-        full = _zone(frame, h, home, nodes, most)
-        if full < 0.0:
-            continue
-        # How far the normal turns within the patch, and how far the surface leaves the tangent plane.
-        turn, lift = 1.05 * most[0, 3] * h, 0.55 * most[0, 3] * h * h
-        if not turn <= 0.2 or (not flat and (sine <= 2.0 * turn or cosine <= 2.0 * turn)):
-            continue
-        # How far the cutter turns about its axis within the patch, in all and beside what follows from the curvature
-        # at the contact.
-        psi, k_tt, k_ft, beside = 0.0, 0.0, 0.0, 0.0
-        if not flat:
-            for k in range(3):
-                for m in range(3):
-                    k_ft += patches.tensor[row, k, m] * f[k] * t[m]
-                    k_tt += patches.tensor[row, k, m] * t[k] * t[m]
-            wobble = nodes.wobble[nodes.index[home[0], home[1]]]
-            beside = (2.0 * wobble * h + 0.5 * turn * turn + turn * turn / (sine - turn)) / (sine - turn)
-            psi = min(turn / (sine - turn), (abs(k_tt) + abs(k_ft)) * h / sine + beside)
-        # The largest distance up to which curvature alone keeps surface and cutter apart.
-        extent = 0.0
-        for step in range(_EXTENTS):
-            distance = h * (2.0 + (FARTHEST - 2.0) * (step / (_EXTENTS - 1)) ** 2)
-            whole = most[step, 3]
-            if distance > full:
-                break
-            # Between nodes and between contacts normals turn some more than from node to node.
-            more = 1.05 * whole * (h + most[step, 6])
-            steep = 1.05 * most[step, 5] + more
-            if not steep <= _MOST_TURN:
-                break
-            tangent = np.tan(steep)
-            extra = 1.3 * whole * more * (3.5 * tangent + 2.0 * more)
-            if flat:
-                top = 0.5 * (most[step, 0] + most[step, 1]) + 0.5 * most[step, 4] + extra
-                if not 0.5 * max(0.0, top) * distance * distance <= safe:
-                    break
-                near[2], near[3], near[4] = top, top, 0.0
-            else:
-                extra += 1.05 * most[step, 4] * (psi + turn * turn)
-                if not _held(sine, cosine, turn, most[step, 0] + extra, most[step, 2], most[step, 1] + extra,
-                             distance, radius):  # fmt: skip
-                    break
-                near[2], near[3], near[4] = most[step, 0] + extra, most[step, 1] + extra, most[step, 2]
-            extent = distance
-            near[1] = 0.6 * whole * distance * distance + chord
-        near[0], near[5] = extent - h - chord, chord + 1e-9
-        if not near[0] > 0.0:
-            continue
-        for k in range(3):
-            body[A + k] = a[k]
-            body[X + k] = cosine * f[k] - sine * n[k]
-            body[Y + k] = t[k]
-        if flat:
-            for k in range(3):
-                body[P + k] = p[k]
-            body[OFFSET], body[RADIUS], body[HALF] = 0.0, 2.0 * radius + h - safe, 0.0
-            body[LOW], body[HIGH] = safe - lift, length - safe + lift
-            covered[row] = _free_of_far(body, frame, face, near, tree, triangle_face, scratch)
-            continue
-        grow = 0.5 * radius * psi * psi + lift
-        slide = radius * k_ft / sine
-        for steps in _STEPS:
-            wide = h / steps
-            body[HALF] = h * abs(1.0 - radius * k_tt / sine) + wide * abs(slide) + radius * beside
-            good = True
-            for step in range(steps):
-                shift = (2 * step + 1 - steps) * wide
-                for k in range(3):
-                    body[P + k] = p[k] + shift * (f[k] - slide * t[k])
-                body[OFFSET] = radius
-                body[RADIUS] = radius - safe + grow + wide * cosine
-                body[LOW] = safe - grow - wide * sine
-                body[HIGH] = length - safe + grow + wide * sine
-                if not _free_of_far(body, frame, face, near, tree, triangle_face, scratch):
-                    good = False
-                    break
-            if good:
-                covered[row] = True
-                break
+        outlook[row], found = _outlook(row, patches, nodes, face, lengths, tree, triangle_face, blocker, room)
+        # What was in the way of one contact is likely in the way of the next.
+        if found >= 0:
+            blocker = found

@@ -233,6 +233,13 @@ def _sweep(contacts, row, ranges, radius, length, depth_allowed, solids, inside,
     return -1, 0.0, hint, known_count
 
 
+@kernel
+def _copy(source, target):  # type: ignore[no-untyped-def]
+    """Copy a table; to assign it whole takes the compiler seconds, for the texts of errors that cannot be."""
+    for i in range(source.size):
+        target.flat[i] = source.flat[i]
+
+
 @entry
 def search(rows, contacts, ranges, radius, length, safe, blocked, may_be, surely, found):  # type: ignore[no-untyped-def]
     """Decide the samples `rows`, one after the other, each starting from the posture of the one before.
@@ -279,13 +286,15 @@ def search(rows, contacts, ranges, radius, length, safe, blocked, may_be, surely
                 found.axis[row, k] = cosine * contacts.normal[row, k] + sine * found.lean[row, k]
         else:
             if shared:
-                sure_known[:], sure_count, sure_hint = known, known_count, hint
+                _copy(known, sure_known)
+                sure_count, sure_hint = known_count, hint
             rotation, tilt, sure_hint, sure_count = _sweep(
                 contacts, row, ranges, radius, length, blocked, surely, SURELY_INSIDE,
                 _Start(last_rotation, last_tilt, sure_hint, sure_known, sure_count), room,
             )  # fmt: skip
             if shared:
-                known[:], known_count, hint = sure_known, sure_count, sure_hint
+                _copy(sure_known, known)
+                known_count, hint = sure_count, sure_hint
             found.verdict[row] = UNDECIDED if rotation >= 0 else INACCESSIBLE
             if tally[AXIS_LIMIT] == 0.0:
                 found.reason[row] = AXIS_LIMIT

@@ -48,7 +48,7 @@ def _bound(vertex, order, lo, hi, box):  # type: ignore[no-untyped-def]
         bx, by, bz = v[2, 0] - v[0, 0], v[2, 1] - v[0, 1], v[2, 2] - v[0, 2]
         normal[0], normal[1], normal[2] = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
         if i == lo:
-            first[:] = normal
+            first[0], first[1], first[2] = normal[0], normal[1], normal[2]
         # Faces may be turned either way: count each normal to the side of the first.
         side = 1.0 if normal[0] * first[0] + normal[1] * first[1] + normal[2] * first[2] >= 0.0 else -1.0
         for k in range(3):
@@ -69,7 +69,8 @@ def _bound(vertex, order, lo, hi, box):  # type: ignore[no-untyped-def]
     if size < 1e-100:
         mean[0], mean[1], mean[2] = 0.0, 0.0, 1.0
     else:
-        mean /= size
+        for k in range(3):
+            mean[k] /= size
     # The other sides: across the mean normal, the first along the longest side of the node that allows it.
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for i in range(lo, hi):
@@ -86,14 +87,18 @@ def _bound(vertex, order, lo, hi, box):  # type: ignore[no-untyped-def]
     axes[0, along] = 1.0
     for k in range(3):
         axes[0, k] -= mean[along] * mean[k]
-    axes[0] /= np.sqrt(axes[0, 0] ** 2 + axes[0, 1] ** 2 + axes[0, 2] ** 2)
-    axes[2] = mean
+    size = np.sqrt(axes[0, 0] ** 2 + axes[0, 1] ** 2 + axes[0, 2] ** 2)
+    for k in range(3):
+        axes[0, k] /= size
+        axes[2, k] = mean[k]
     axes[1, 0] = mean[1] * axes[0, 2] - mean[2] * axes[0, 1]
     axes[1, 1] = mean[2] * axes[0, 0] - mean[0] * axes[0, 2]
     axes[1, 2] = mean[0] * axes[0, 1] - mean[1] * axes[0, 0]
     # Extents from the box's middle, so that far from the origin nothing is lost to rounding.
-    middle = 0.5 * (low + high)
-    low[:], high[:] = np.inf, -np.inf
+    middle = np.empty(3)
+    for k in range(3):
+        middle[k] = 0.5 * (low[k] + high[k])
+        low[k], high[k] = np.inf, -np.inf
     for i in range(lo, hi):
         for corner in range(3):
             v = vertex[order[i], corner]

@@ -1,32 +1,25 @@
 """Between the samples: over which share of the target area do the postures found hold, each with its axis kept?
 
-The argument and its assumptions are in `docs/between_samples.md`. Where a contact's posture does not serve its whole
-cell, another one with more room to the local gouging bound is tried, then the cell is cut into four, until a budget of
-contacts is spent.
+The argument and its assumptions are in `docs/between_samples.md`. Where a contact's posture does not serve its whole cell,
+another one with more room to the local gouging bound is tried. Then the cell is cut into four: those cells first at which the
+most area may be gained for each contact, until that is too little or a budget of contacts is spent.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints, Orientation, Record, SurfaceSamples
 from cad_io.part import Part
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.verdicts import Reach, blank
-from plan_cutters.kernels.rows import Contacts
-from plan_cutters.scene.conditions import Conditions, search_postures
-from plan_cutters.scene.threads import in_chunks
-from plan_cutters.stages.cells import CellContacts, Field, laid, quartered, tensors
+from plan_cutters.domain.verdicts import Reach
+from plan_cutters.scene.conditions import Conditions
+from plan_cutters.stages.cells import CellContacts, laid
+from plan_cutters.stages.site import Site, best
 
-#: Room to the local gouging bound, in sines of tilt, that is asked of other postures, in turn: the smaller a cell, the
-#: less is of use.
-_ROOM = ((0.5,), (0.5, 0.2), (0.5, 0.2), (0.5, 0.2, 0.05))
-#: A lean with a smaller sine has no direction.
-_UPRIGHT = 1e-9
-#: Times that a cell is cut into four, at most.
-_LEVELS = 6
+#: Least gain, as a share of the target area for each contact, for which cells are cut into four.
+LEAST_GAIN = 1e-7
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -63,6 +56,8 @@ class Between(Record):
         Contacts whose cells are not served, when the budget or the levels ended, and samples of faces without cells.
     short : int
         Those of them for which the budget was spent.
+    dropped : int
+        Those of them that were not looked at more closely since too little was to be gained.
     unknown : tuple of int
         Target faces whose area is not known: none of them is served, and they are not in `share`.
     cells : Cells
@@ -72,6 +67,7 @@ class Between(Record):
     contacts: int
     left: int
     short: int
+    dropped: int
     unknown: tuple[int, ...]
     cells: Cells
 
@@ -110,104 +106,43 @@ def between(
     areas = {number: part.faces[number - 1].area for number in targets}
     unknown = tuple(number for number, area in areas.items() if not area > 0)
     whole = sum(area for area in areas.values() if area > 0)
-    served, looked, left, short = 0.0, int((samples.unjudged < 0).sum()), len(samples), 0
-    found = [Cells(np.zeros(0, np.int32), np.zeros((0, 2)), np.zeros((0, 2)), np.zeros((0, 3)))]
+    looked, left, short = int((samples.unjudged < 0).sum()), len(samples), 0
+    sites, nodes, strips = list[Site](), list[CellContacts](), list[CellContacts]()
     for grid in samples.grids:
         trim = part.trim(grid.face)
         if trim is None or not trim.closed:
             continue  # which part of the surface it uses is not known well enough
-        field, now, strips = laid(part, orientation, samples, grid, reach, conditions)
-        # A fair share of the budget for each face, by its samples; where it is short, the largest cells first.
-        mine = int((grid.index >= 0).sum())
-        allowed = int(budget * mine / max(1, len(samples)))
-        left -= mine
-        chosen = _largest(strips, allowed)
-        left += len(strips) - len(chosen)
-        short += len(strips) - len(chosen)
-        allowed -= len(chosen)
-        looked += len(chosen)
-        now = CellContacts.joined(now, strips.of(chosen))
-        for level in range(_LEVELS + 1):
-            good = _served(now, field, cutter, conditions, _ROOM[min(level, len(_ROOM) - 1)])
-            served += float(now.area[good].sum())
-            found.append(
-                Cells(np.full(int(good.sum()), grid.face, np.int32), now.middle[good], now.span[good], now.axis[good])
-            )
-            now = now.of(~good)
-            chosen = _largest(now, allowed // 4 if level < _LEVELS else 0)
-            left += len(now) - len(chosen)
-            short += len(now) - len(chosen) if level < _LEVELS else 0
-            now = now.of(chosen)
-            if not len(now):
-                break
-            now = quartered(now, field, level, conditions)
-            allowed -= len(now)
-            looked += len(now)
-    share = served / whole if whole > 0 else 0.0
-    columns = ([getattr(cells, name) for cells in found] for name in Cells.__slots__)
-    return Between(float(np.floor(1e6 * min(1.0, share + 1e-9)) / 1e6), looked, left, short, unknown,
-                   Cells(*map(np.concatenate, columns)))  # fmt: skip
+        field, mine, beside = laid(part, orientation, samples, grid, reach, conditions)
+        left -= int((grid.index >= 0).sum())
+        sites.append(Site(field, cutter, conditions))
+        nodes.append(mine)
+        strips.append(beside)
+    # The strips come first, the largest ones where the budget is short.
+    chosen = best(np.concatenate([np.zeros(0), *(each.area for each in strips)]), budget)
+    short += int((~chosen).sum())
+    looked, budget = looked + int(chosen.sum()), budget - int(chosen.sum())
+    ends = np.cumsum([len(each) for each in strips])
+    for site, mine, beside, kept in zip(sites, nodes, strips, np.split(chosen, ends[:-1]), strict=True):
+        site.add(CellContacts.joined(mine, beside.of(kept)), 0)
+    # A fair share of the rest for each face, by how many of its cells are open and worth it.
+    least = LEAST_GAIN * whole
+    wanted = [site.worthy(least) for site in sites]
+    for site, share in zip(sites, wanted, strict=True):
+        looked += site.refine(budget * share // max(1, sum(wanted)), least)
+    left += int((~chosen).sum()) + sum(site.left for site in sites)
+    served = sum(site.served for site in sites) / whole if whole > 0 else 0.0
+    return Between(
+        float(np.floor(1e6 * min(1.0, served + 1e-9)) / 1e6), looked, left, short + sum(site.short for site in sites),
+        sum(site.dropped for site in sites), unknown, _cells(sites),
+    )  # fmt: skip
 
 
-def _largest(contacts: CellContacts, most: int) -> NDArray[np.intp]:
-    """Rows of at most so many contacts, those of the largest cells, in their order."""
-    return np.sort(np.argsort(-contacts.area, kind="stable")[: max(0, most)])
-
-
-def _served(
-    contacts: CellContacts, field: Field, cutter: Cutter, conditions: Conditions, rooms: Sequence[float]
-) -> NDArray[np.bool_]:
-    """Contacts whose posture, or another one, serves their cell; postures found on the way are kept."""
-    good = np.zeros(len(contacts), bool)
-    known = np.isfinite(contacts.axis).all(axis=1) & _whole(contacts)
-    _cover(contacts, field, cutter, conditions, np.flatnonzero(known), good)
-    for room in rooms:
-        open_rows = np.flatnonzero(~good & _whole(contacts))
-        # A posture with room to the local gouging bound: the search is told that the surface is more concave.
-        curved = contacts.curvature + room / cutter.radius
-        at = Contacts(contacts.point, contacts.normal, contacts.direction_max, curved)
-        found, (safe, _) = blank(len(contacts)), conditions.depths
-        search_postures(at, open_rows, cutter, conditions, (safe, safe), found)
-        rows = open_rows[found.reached[open_rows]]
-        if len(rows):
-            contacts.axis[rows], contacts.flat[rows] = found.axis[rows], False
-            _cover(contacts, field, cutter, conditions, rows, good)
-    return good
-
-
-def _cover(
-    contacts: CellContacts, field: Field, cutter: Cutter, conditions: Conditions, rows: NDArray[np.int64],
-    good: NDArray[np.bool_],
-) -> None:  # fmt: skip
-    from plan_cutters.kernels.cover import Patches, cover
-    from plan_cutters.kernels.zone import Nodes
-
-    tensor = tensors(contacts.normal, contacts.direction_max, contacts.curvature)
-    obstacles, (safe, _) = conditions.obstacles, conditions.depths
-    patches = Patches(
-        contacts.point, contacts.normal, tensor, contacts.axis, contacts.flat, contacts.patch, contacts.home
-    )
-    nodes = Nodes(field.index, field.closed, field.point, field.normal, field.tensor, field.wobble, field.radius)
-    chord = obstacles.triangles.chord_error
-
-    def work(piece: NDArray[np.int64]) -> None:
-        cover(piece, patches, nodes, field.number, cutter.radius, cutter.length, safe, chord, obstacles.tree,
-              obstacles.faces, good)  # fmt: skip
-
-    in_chunks(work, rows, conditions.jobs)
-    # A cell that is served touches no skin with any of its cutters: within a body are all of them or none.
-    mine = rows[good[rows]]
-    axis, normal = contacts.axis[mine], contacts.normal[mine]
-    upright = (axis * normal).sum(axis=1)
-    across = axis - upright[:, None] * normal
-    sine = np.linalg.norm(across, axis=1)
-    flat = contacts.flat[mine] | (sine < _UPRIGHT)
-    lean = np.where(flat[:, None], contacts.direction_max[mine], across / np.where(flat, 1.0, sine)[:, None])
-    tilt = np.where(flat, 0.0, np.arctan2(sine, upright))
-    good[mine] = ~conditions.obstacles.holds(cutter, contacts.point[mine], normal, lean, tilt)
-
-
-def _whole(contacts: CellContacts) -> NDArray[np.bool_]:
-    """Contacts at which the surface could be evaluated."""
-    columns = (contacts.point, contacts.normal, contacts.direction_max, contacts.curvature)
-    return np.asarray(np.all([np.isfinite(column).all(axis=1) for column in columns], axis=0))
+def _cells(sites: Sequence[Site]) -> Cells:
+    """The served cells of all faces."""
+    pieces = [Cells(np.zeros(0, np.int32), np.zeros((0, 2)), np.zeros((0, 2)), np.zeros((0, 3)))]
+    pieces += [
+        Cells(np.full(len(each), site.field.number, np.int32), each.middle, each.span, each.axis)
+        for site in sites for each in site.found
+    ]  # fmt: skip
+    columns = ([getattr(cells, name) for cells in pieces] for name in Cells.__slots__)
+    return Cells(*map(np.concatenate, columns))

@@ -17,7 +17,7 @@ from cad_io.face.trim import Trim
 from cad_io.part import Part
 from plan_cutters.domain.verdicts import INTERFERENCE_FREE, Reach
 from plan_cutters.scene.conditions import Conditions
-from plan_cutters.stages.nodes import WIDER, WILDER, from_neighbours, tensors
+from plan_cutters.stages.nodes import WIDER, WILDER, from_neighbours, steepest, tensors
 
 Indices = NDArray[np.int64]
 
@@ -92,6 +92,13 @@ class Field:
     tensor: Floats
     wobble: Floats = field(default_factory=lambda: np.zeros(0))
     radius: Floats = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def about(self) -> Floats:
+        """What kernels take of the nodes (`kernels.zone.Nodes`)."""
+        upper = self.tensor.reshape(-1, 9)[:, [0, 1, 2, 4, 5, 8]]
+        largest, spread = steepest(self.tensor, self.wobble)
+        return np.column_stack([self.point, self.normal, upper, self.wobble, self.radius, largest, spread])
 
     def at(self, uv: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """Points, normals, larger principal directions and curvatures at parameters (n, 2)."""

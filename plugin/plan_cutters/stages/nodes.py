@@ -19,6 +19,13 @@ def tensors(normal: Floats, direction_max: Floats, curvature: Floats) -> Floats:
     return np.asarray(high * e1 * e1.transpose(0, 2, 1) + low * e2 * e2.transpose(0, 2, 1))
 
 
+def steepest(tensor: Floats, wobble: Floats) -> tuple[Floats, Floats]:
+    """Most that a principal curvature (n,) and the difference of two (n,) may be where tensors differ by a wobble, 1/mm."""
+    trace = np.einsum("nii->n", tensor)
+    spread = np.sqrt(np.maximum(0.0, 2.0 * np.einsum("nij,nij->n", tensor, tensor) - trace * trace))
+    return 0.5 * (np.abs(trace) + spread) + wobble, spread + 2.0 * wobble
+
+
 def from_neighbours(
     point: Floats, tensor: Floats, grid: FaceGrid, index: NDArray[np.integer]
 ) -> tuple[Floats, Floats]:  # fmt: skip

@@ -1,0 +1,209 @@
+"""A face's cells between the samples: which are served, which are still open, and which of them to cut into four next."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from dataclasses import field as dataclasses_field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.verdicts import blank
+from plan_cutters.kernels.rows import Contacts
+from plan_cutters.scene.conditions import Conditions, search_postures
+from plan_cutters.scene.threads import in_chunks
+from plan_cutters.stages.cells import CellContacts, Field, quartered, tensors
+
+#: Times that a cell is cut into four, at most.
+LEVELS = 6
+#: Room to the local gouging bound, in sines of tilt, that is asked of other postures, in turn: the smaller a cell, the
+#: less is of use.
+_ROOM = ((0.5,), (0.5, 0.2), (0.5, 0.2), (0.5, 0.2, 0.05))
+#: A lean with a smaller sine has no direction.
+_UPRIGHT = 1e-9
+#: Cells are cut together as long as they are worth no less than the best one by this factor.
+_ALIKE = 0.25
+#: The gain is judged over at least so many of the last contacts.
+_JUDGED = 4000
+
+#: As `kernels.cover` writes them, but without its import: how often a cell must be halved, never, 0: it is served.
+Outlook = NDArray[np.uint8]
+_NEVER = 255
+#: Of a contact at which no posture is known.
+_UNTOLD = 2
+
+
+@dataclass(slots=True)
+class Site:
+    """A face and its cells.
+
+    Attributes
+    ----------
+    field : Field
+    cutter : Cutter
+    conditions : Conditions
+    found : list of CellContacts
+        Served.
+    pools : list of (CellContacts, outlook)
+        Open, by how often they were cut into four.
+    short, dropped : int
+        Open cells that would be cut if the budget were not spent, and that are not for the gain is too small.
+    """
+
+    field: Field
+    cutter: Cutter
+    conditions: Conditions
+    found: list[CellContacts] = dataclasses_field(default_factory=list)
+    pools: list[tuple[CellContacts, Outlook]] = dataclasses_field(default_factory=list)
+    short: int = 0
+    dropped: int = 0
+
+    @property
+    def served(self) -> float:
+        """Area that is served, mm2."""
+        return float(sum(cells.area.sum() for cells in self.found))
+
+    @property
+    def left(self) -> int:
+        """Open cells."""
+        return sum(len(contacts) for contacts, _ in self.pools)
+
+    def add(self, contacts: CellContacts, level: int) -> float:
+        """Look at contacts of cells that were cut so many times; the area that is served by them."""
+        outlook = _served(contacts, self.field, self.cutter, self.conditions, _ROOM[min(level, len(_ROOM) - 1)])
+        good = outlook == 0
+        self.found.append(contacts.of(good))
+        if level == len(self.pools):
+            self.pools.append((contacts.of(np.zeros(0, np.intp)), outlook[:0]))
+        before, known = self.pools[level]
+        self.pools[level] = CellContacts.joined(before, contacts.of(~good)), np.concatenate([known, outlook[~good]])
+        return float(contacts.area[good].sum())
+
+    def worth(self, level: int) -> Floats:
+        """Area (n,) to be gained for each contact that is spent on an open cell, mm2, if all goes well."""
+        if level >= min(len(self.pools), LEVELS):
+            return np.zeros(0)
+        contacts, outlook = self.pools[level]
+        # Cutting once takes 4 contacts, twice 4 + 16, and so on.
+        spent = (4.0 ** (np.minimum(outlook, LEVELS).astype(float) + 1.0) - 4.0) / 3.0
+        return np.where(outlook == _NEVER, 0.0, contacts.area / np.maximum(spent, 4.0))
+
+    def worthy(self, least: float) -> int:
+        """Open cells at which more than a least area may be gained for each contact."""
+        return sum(int((self.worth(level) > least).sum()) for level in range(LEVELS))
+
+    def _taken(self, level: int, rows: NDArray[np.intp]) -> CellContacts:
+        """Take open cells out of a pool."""
+        contacts, outlook = self.pools[level]
+        self.pools[level] = contacts.of(np.delete(np.arange(len(contacts)), rows)), np.delete(outlook, rows)
+        return contacts.of(rows)
+
+    def refine(self, budget: int, least: float) -> int:
+        """Cut cells into four, those of the largest worth first; how many contacts were looked at.
+
+        Ends when the budget is spent, when no cell is worth more than `least`, mm2 a contact, or when the last contacts
+        gained less than that.
+        """
+        looked, poor, rounds = 0, False, list[tuple[int, float]]()
+        while budget >= 4 and not poor:
+            worth = [self.worth(level) for level in range(LEVELS)]
+            every = np.concatenate(worth)
+            alike = every >= max(_ALIKE * every.max(initial=0.0), np.nextafter(least, np.inf))
+            chosen = best(np.where(alike, every, 0.0), min(budget // 4, int(alike.sum())))
+            if not chosen.any():
+                break
+            gained, count = 0.0, 0
+            cuts = [np.flatnonzero(part) for part in np.split(chosen, np.cumsum([len(each) for each in worth])[:-1])]
+            for level, contacts in [(level, self._taken(level, rows)) for level, rows in enumerate(cuts) if len(rows)]:
+                quarters = quartered(contacts, self.field, level, self.conditions)
+                gained += self.add(quarters, level + 1)
+                count += len(quarters)
+            looked, budget = looked + count, budget - 4 * int(chosen.sum())
+            rounds.append((count, gained))
+            poor = _poor(rounds, least)
+        self.short = 0 if poor else self.worthy(least)
+        self.dropped = self.worthy(0.0) - self.short
+        return looked
+
+
+def best(worth: Floats, most: int) -> NDArray[np.bool_]:
+    """Which are the at most so many of the largest worth; the first of equal ones."""
+    chosen = np.zeros(len(worth), bool)
+    chosen[np.argsort(-worth, kind="stable")[: max(0, most)]] = True
+    return chosen
+
+
+def _poor(rounds: Sequence[tuple[int, float]], least: float) -> bool:
+    """Whether the last rounds, enough of them to tell, gained less than a least area for each contact."""
+    count, gained = 0, 0.0
+    for more, area in reversed(rounds):
+        count, gained = count + more, gained + area
+        if count >= _JUDGED:
+            return gained < least * count
+    return False
+
+
+def _served(
+    contacts: CellContacts, field: Field, cutter: Cutter, conditions: Conditions, rooms: Sequence[float]
+) -> Outlook:
+    """Outlook of contacts whose posture, or another one, serves their cell (0) or may serve parts of it.
+
+    Of the postures found on the way, the one with the best outlook is kept.
+    """
+    outlook = np.full(len(contacts), _UNTOLD, np.uint8)
+    known = np.isfinite(contacts.axis).all(axis=1) & _whole(contacts)
+    rows = np.flatnonzero(known)
+    outlook[rows] = _cover(contacts, contacts.axis, contacts.flat, field, cutter, conditions, rows)
+    for room in rooms:
+        open_rows = np.flatnonzero((outlook > 0) & _whole(contacts))
+        # A posture with room to the local gouging bound: the search is told that the surface is more concave.
+        curved = contacts.curvature + room / cutter.radius
+        at = Contacts(contacts.point, contacts.normal, contacts.direction_max, curved)
+        found, (safe, _) = blank(len(contacts)), conditions.depths
+        search_postures(at, open_rows, cutter, conditions, (safe, safe), found)
+        rows = open_rows[found.reached[open_rows]]
+        if len(rows):
+            new = _cover(contacts, found.axis, np.zeros(len(contacts), bool), field, cutter, conditions, rows)
+            better = (new <= outlook[rows]) | ~known[rows]
+            rows, new = rows[better], new[better]
+            contacts.axis[rows], contacts.flat[rows], outlook[rows], known[rows] = found.axis[rows], False, new, True
+    return outlook
+
+
+def _cover(
+    contacts: CellContacts, axes: Floats, flats: NDArray[np.bool_], field: Field, cutter: Cutter, conditions: Conditions,
+    rows: NDArray[np.int64],
+) -> Outlook:  # fmt: skip
+    """Outlook (m,) of rows of contacts with axes."""
+    from plan_cutters.kernels.cover import Patches, cover
+    from plan_cutters.kernels.zone import Nodes
+
+    tensor = tensors(contacts.normal, contacts.direction_max, contacts.curvature)
+    obstacles, (safe, _) = conditions.obstacles, conditions.depths
+    patches = Patches(contacts.point, contacts.normal, tensor, axes, flats, contacts.patch, contacts.home)
+    nodes, outlook = Nodes(field.index, field.closed, field.about), np.zeros(len(contacts), np.uint8)
+    chord = obstacles.triangles.chord_error
+
+    def work(piece: NDArray[np.int64]) -> None:
+        cover(piece, patches, nodes, field.number, cutter.radius, cutter.length, safe, chord, obstacles.tree,
+              obstacles.faces, outlook)  # fmt: skip
+
+    in_chunks(work, rows, conditions.jobs)
+    # A cell that is served touches no skin with any of its cutters: within a body are all of them or none.
+    mine = rows[outlook[rows] == 0]
+    axis, normal = axes[mine], contacts.normal[mine]
+    upright = (axis * normal).sum(axis=1)
+    across = axis - upright[:, None] * normal
+    sine = np.linalg.norm(across, axis=1)
+    flat = flats[mine] | (sine < _UPRIGHT)
+    lean = np.where(flat[:, None], contacts.direction_max[mine], across / np.where(flat, 1.0, sine)[:, None])
+    tilt = np.where(flat, 0.0, np.arctan2(sine, upright))
+    outlook[mine[conditions.obstacles.holds(cutter, contacts.point[mine], normal, lean, tilt)]] = _NEVER
+    return outlook[rows]
+
+
+def _whole(contacts: CellContacts) -> NDArray[np.bool_]:
+    """Contacts at which the surface could be evaluated."""
+    columns = (contacts.point, contacts.normal, contacts.direction_max, contacts.curvature)
+    return np.asarray(np.all([np.isfinite(column).all(axis=1) for column in columns], axis=0))
