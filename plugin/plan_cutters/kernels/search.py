@@ -10,129 +10,37 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
-from plan_cutters.kernels.hit import (
-    BODY,
-    HIGH,
-    OFFSET,
-    A,
-    P,
-    X,
-    cross,
-    dot,
-    lean_frame,
-    perpendicular,
-    scratch,
-    stand,
-    tree_hit,
-)
+from plan_cutters.kernels.arcs import axis_arcs, local_gouge
+from plan_cutters.kernels.hit import BODY, cross, dot, lean_frame, perpendicular, scratch, stand, tree_hit
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, outside, winding
-from plan_cutters.kernels.rows import Frame, Scratch, Tool
+from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
+from plan_cutters.kernels.nowhere import memory, nowhere
+from plan_cutters.kernels.probing import (
+    AXIS_LIMIT,
+    BURIED,
+    COLLISION,
+    LOCAL_GOUGE,
+    REAR_GOUGE,
+    allowed,
+    forbid,
+    forbid_point,
+    forbid_probed,
+    inner_height,
+    inside,
+    remove,
+    room_to_search,
+    turned,
+)
+from plan_cutters.kernels.rows import Frame, Tool
 
 # As in `plan_cutters.domain.verdicts`, which must not load the compiler; a test holds them together.
 INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
-AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, COLLISION, BURIED, ATTRIBUTES = 0, 1, 2, 3, 4, 5
 
-#: Gaps narrower than this are not searched: no machine holds a tilt to 0.01 deg. rad.
-NARROWEST = 1.7e-4
-#: Intervals that one rotation may fall into; widest first, a search has not been seen to need ten.
-_ROOM = 256
 #: Obstacle points remembered from probe to probe.
 _KNOWN = 16
-#: By how much a posture within a body is turned to find the others there, at first, rad.
-_TURN = 0.2
-
-
-@kernel
-def remove(intervals, count, first, last, narrowest):  # type: ignore[no-untyped-def]
-    """Take [first, last] out of sorted intervals in place, drop what is narrower than `narrowest`; the new count."""
-    kept = 0
-    for row in range(count):
-        low, high = intervals[row, 0], intervals[row, 1]
-        if last <= low or first >= high:
-            intervals[kept, 0], intervals[kept, 1] = low, high
-            kept += 1
-            continue
-        below, above = first - low >= narrowest, high - last >= narrowest
-        if below and above and kept == row:
-            # One interval becomes two: those after it, all above `last`, move up.
-            if count == len(intervals):
-                below = first - low > high - last
-                above = not below
-            else:
-                for k in range(count, row, -1):
-                    intervals[k, 0], intervals[k, 1] = intervals[k - 1, 0], intervals[k - 1, 1]
-                intervals[row, 1] = first
-                intervals[row + 1, 0] = last
-                return count + 1
-        if below:
-            intervals[kept, 0], intervals[kept, 1] = low, first
-            kept += 1
-        if above:
-            intervals[kept, 0], intervals[kept, 1] = last, high
-            kept += 1
-    return kept
-
-
-@kernel
-def _forbid(intervals, count, first, last, attribute, tally):  # type: ignore[no-untyped-def]
-    """Take an arc out and book what it takes on an attribute; the new count."""
-    before = 0.0
-    for i in range(count):
-        before += intervals[i, 1] - intervals[i, 0]
-    count = remove(intervals, count, first, last, NARROWEST)
-    for i in range(count):
-        before -= intervals[i, 1] - intervals[i, 0]
-    tally[attribute] += before
-    return count
-
-
-@kernel
-def _attribute(x, y, z, radius):  # type: ignore[no-untyped-def]
-    """What an obstacle point that far from the contact is in the way of."""
-    return REAR_GOUGE if x * x + y * y + z * z <= 4.0 * radius * radius else COLLISION
-
-
-@kernel
-def inner_height(radius, length):  # type: ignore[no-untyped-def]
-    """Height of the point of the cutter's axis that is asked for whether the cutter lies within a body.
-
-    As near to the spindle as it can be while no other point of the cutter is farther from its outside.
-    """
-    return max(0.5 * length, length - radius)
-
-
-@kernel
-def _inside(body, height, solids, stack):  # type: ignore[no-untyped-def]
-    """Winding number of the bodies about the point of a body's axis at a height over the contact.
-
-    The end of the axis is asked first: where that is surely outside, all of it is.
-    """
-    high = body[HIGH]
-    x = body[P] + high * body[A] - body[OFFSET] * body[X]
-    y = body[P + 1] + high * body[A + 1] - body[OFFSET] * body[X + 1]
-    z = body[P + 2] + high * body[A + 2] - body[OFFSET] * body[X + 2]
-    if outside(x, y, z, solids):
-        return 0.0
-    x = body[P] + height * body[A] - body[OFFSET] * body[X]
-    y = body[P + 1] + height * body[A + 1] - body[OFFSET] * body[X + 1]
-    z = body[P + 2] + height * body[A + 2] - body[OFFSET] * body[X + 2]
-    return winding(x, y, z, solids, stack)
-
-
-@kernel
-def _turned(frame, tilt, tool, tree, body, scratch):  # type: ignore[no-untyped-def]
-    """How far a posture that touches nothing can be tilted either way and still surely touch nothing, rad."""
-    half = _TURN
-    while half > 0.5 * NARROWEST:
-        stand(body, frame, np.cos(tilt), np.sin(tilt), tool.radius, tool.shrunk, tool.low, tool.high)
-        hit, _, _, _ = tree_hit(tree, body, half, -1, scratch)
-        if hit < 0:
-            return half
-        half *= 0.5
-    # No narrower: what is left is the probe's own neighbourhood, as for every other obstacle.
-    return 0.5 * NARROWEST
+#: Rotations without a posture after which a proof that there is none is tried.
+_PATIENCE = 2
+_ALL = 1 << 30
 
 
 class _Start(NamedTuple):
@@ -146,62 +54,34 @@ class _Start(NamedTuple):
     known_count: int
 
 
-class _Room(NamedTuple):
-    """Room to work in: intervals (k, 2), lean direction f and t = n x f, e2 = n x direction_max, a body, a tally by attribute."""
-
-    intervals: Any
-    f: Any
-    t: Any
-    e2: Any
-    body: Any
-    tally: Any
-    scratch: Scratch
-
-
 @kernel
-def _sweep(contacts, row, ranges, radius, length, depth_allowed, solids, inside, start, room):  # type: ignore[no-untyped-def]
-    """Search all rotations of one sample; (rotation index or -1, tilt, last triangle in the way, count of known points).
+def _sweep(contacts, row, ranges, begin, end, tool, length, solids, within, start, room):  # type: ignore[no-untyped-def]
+    """Search rotations of one sample; (index or -1, tilt, last triangle in the way, how many points were in it).
 
-    A posture with a winding number of `inside` or more, or none, is not taken.
+    Of the rotations, nearest to that of the start first, those from place `begin` to before `end`.
+    
+    A posture with a winding number of `within` or more, or none, is not taken.
     """
     p, n, e1 = contacts.point[row], contacts.normal[row], contacts.direction_max[row]
-    kappa_max, kappa_min = contacts.curvature[row, 0], contacts.curvature[row, 1]
     intervals, f, t, body, tally = room.intervals, room.f, room.t, room.body, room.tally
     hint, known, known_count = start.hint, start.known, start.known_count
     cross(n, e1, room.e2)
     frame, rotations = Frame(p, n, f, t), len(ranges.rotation_cos)
     tally[:] = 0.0
-    low, high, shrunk = depth_allowed, length - depth_allowed, radius - depth_allowed
-    tool = Tool(radius, shrunk, low, high)
-    for turn in range(rotations):
+    for turn in range(begin, min(rotations, end)):
         step = (turn + 1) // 2 if turn % 2 else -(turn // 2)
         rotation = (start.rotation + step) % rotations
-        cosine, sine = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
-        lean_frame(e1, room.e2, cosine, sine, f, t)
-        count = axis_arcs(
-            dot(ranges.setup, n), dot(ranges.setup, f), ranges.limit_cos, ranges.tilt_low, ranges.tilt_high, intervals
-        )
-        for i in range(count):
-            tally[AXIS_LIMIT] += intervals[i, 1] - intervals[i, 0] + NARROWEST
-        least = local_gouge(kappa_max, kappa_min, cosine, sine, radius)
-        if np.isnan(least):
-            continue
-        if least > 0.0:
-            count = remove(intervals, count, -1.0, least, 0.0)
-        for i in range(count):
-            tally[LOCAL_GOUGE] += intervals[i, 1] - intervals[i, 0] + NARROWEST
+        count = allowed(contacts, row, ranges, rotation, tool.radius, room)
         # What was in the way before, at other rotations and at the neighbours, is most likely so again.
         for i in range(min(known_count, len(known))):
+            if count == 0:
+                break
             x, y, z = 0.0, 0.0, 0.0
             for k in range(3):
                 x += (known[i, k] - p[k]) * f[k]
                 y += (known[i, k] - p[k]) * t[k]
                 z += (known[i, k] - p[k]) * n[k]
-            first, last = point_arc(z, x + radius, y, 0.0, radius, shrunk, low, high)
-            if first <= last:
-                count = _forbid(intervals, count, first, last, _attribute(x, y, z, radius), tally)
-                if count == 0:
-                    break
+            count = forbid_point(x, y, z, tool, intervals, count, tally)
         wish = start.tilt
         while count > 0:
             widest, tilt = -1.0, 0.0
@@ -212,23 +92,18 @@ def _sweep(contacts, row, ranges, radius, length, depth_allowed, solids, inside,
                     widest = intervals[i, 1] - intervals[i, 0]
                     tilt = 0.5 * (intervals[i, 0] + intervals[i, 1])
             wish = -1.0
-            stand(body, frame, np.cos(tilt), np.sin(tilt), radius, shrunk, low, high)
+            stand(body, frame, np.cos(tilt), np.sin(tilt), tool.radius, tool.shrunk, tool.low, tool.high)
             triangle, height, px, py = tree_hit(solids.tree, body, 0.0, hint, room.scratch)
             if triangle < 0:
-                if _inside(body, inner_height(radius, length), solids, room.scratch.stack) < inside:
+                if inside(body, inner_height(tool.radius, length), solids, room.scratch.stack) < within:
                     return rotation, tilt, hint, known_count
-                half = _turned(frame, tilt, tool, solids.tree, body, room.scratch)
-                count = _forbid(intervals, count, tilt - half, tilt + half, BURIED, tally)
+                half = turned(frame, tilt, tool, solids.tree, body, room.scratch)
+                count = forbid(intervals, count, tilt - half, tilt + half, BURIED, tally)
                 continue
             hint = triangle
-            first, last = point_arc(height, px, py, tilt, radius, shrunk, low, high)
-            # At the edge of the body the arc may be no wider than rounding: take the probe's own neighbourhood too.
-            first, last = min(first, tilt - 0.5 * NARROWEST), max(last, tilt + 0.5 * NARROWEST)
-            back, cosine_tilt, sine_tilt = px - radius, np.cos(tilt), np.sin(tilt)
-            x, z = cosine_tilt * back + sine_tilt * height, cosine_tilt * height - sine_tilt * back
-            count = _forbid(intervals, count, first, last, _attribute(x, py, z, radius), tally)
+            count, x, y, z = forbid_probed(height, px, py, tilt, tool, intervals, count, tally)
             for k in range(3):
-                known[known_count % len(known), k] = p[k] + x * f[k] + py * t[k] + z * n[k]
+                known[known_count % len(known), k] = p[k] + x * f[k] + y * t[k] + z * n[k]
             known_count += 1
     return -1, 0.0, hint, known_count
 
@@ -251,21 +126,31 @@ def search(rows, contacts, ranges, radius, length, safe, blocked, may_be, surely
         All that may be in the way, for calling a posture safe; what certainly is, for calling it blocked.
     found : Found, written
     """
-    room = _Room(
-        np.empty((_ROOM, 2)), np.empty(3), np.empty(3), np.empty(3), np.empty(BODY), np.empty(ATTRIBUTES),
-        scratch(),
-    )  # fmt: skip
+    room, past, patience = room_to_search(), memory(len(ranges.rotation_cos)), _PATIENCE
     tally = room.tally
+    light = Tool(radius, radius - safe, safe, length - safe)
+    heavy = Tool(radius, radius - blocked, blocked, length - blocked)
     known, known_count = np.empty((_KNOWN, 3)), 0
     last_rotation, last_tilt, hint = 0, -1.0, -1
     # What is only perhaps in the way must not count as surely in it: then the two are remembered apart.
     shared = len(may_be.tree.vertex) == len(surely.tree.vertex)
     sure_known, sure_count, sure_hint = np.empty((_KNOWN, 3)), 0, -1
     for row in rows:
-        rotation, tilt, hint, known_count = _sweep(
-            contacts, row, ranges, radius, length, safe, may_be, MAYBE_INSIDE,
-            _Start(last_rotation, last_tilt, hint, known, known_count), room,
-        )  # fmt: skip
+        rotation, done = -1, False
+        if patience > 0:
+            rotation, tilt, hint, known_count = _sweep(
+                contacts, row, ranges, 0, patience, light, length, may_be, MAYBE_INSIDE,
+                _Start(last_rotation, last_tilt, hint, known, known_count), room,
+            )  # fmt: skip
+        if rotation < 0:
+            done = nowhere(contacts, row, ranges, heavy, length, surely, SURELY_INSIDE, past, room)
+        if rotation < 0 and not done:
+            rotation, tilt, hint, known_count = _sweep(
+                contacts, row, ranges, patience, _ALL, light, length, may_be, MAYBE_INSIDE,
+                _Start(last_rotation, last_tilt, hint, known, known_count), room,
+            )  # fmt: skip
+        # Where the sample before has no posture, this one most likely has none either.
+        patience = 0 if done else _PATIENCE
         if rotation >= 0:
             found.verdict[row] = ACCESSIBLE
             last_rotation, last_tilt = rotation, tilt
@@ -278,14 +163,16 @@ def search(rows, contacts, ranges, radius, length, safe, blocked, may_be, surely
                 )
                 found.axis[row, k] = cosine * contacts.normal[row, k] + sine * found.lean[row, k]
         else:
-            if shared:
-                sure_known[:], sure_count, sure_hint = known, known_count, hint
-            rotation, tilt, sure_hint, sure_count = _sweep(
-                contacts, row, ranges, radius, length, blocked, surely, SURELY_INSIDE,
-                _Start(last_rotation, last_tilt, sure_hint, sure_known, sure_count), room,
-            )  # fmt: skip
-            if shared:
-                known[:], known_count, hint = sure_known, sure_count, sure_hint
+            rotation = -1
+            if not done:
+                if shared:
+                    sure_known[:], sure_count, sure_hint = known, known_count, hint
+                rotation, tilt, sure_hint, sure_count = _sweep(
+                    contacts, row, ranges, 0, _ALL, heavy, length, surely, SURELY_INSIDE,
+                    _Start(last_rotation, last_tilt, sure_hint, sure_known, sure_count), room,
+                )  # fmt: skip
+                if shared:
+                    known[:], known_count, hint = sure_known, sure_count, sure_hint
             found.verdict[row] = UNDECIDED if rotation >= 0 else INACCESSIBLE
             if tally[AXIS_LIMIT] == 0.0:
                 found.reason[row] = AXIS_LIMIT
@@ -359,7 +246,7 @@ def dummy_clear(rows, contacts, radius, length, safe, solids, clear):  # type: i
         cross(n, f, t)
         stand(body, Frame(contacts.point[row], n, f, t), 1.0, 0.0, 0.0, 2.0 * radius - safe, safe, length - safe)
         triangle, _, _, _ = tree_hit(solids.tree, body, 0.0, hint, room)
-        clear[row] = triangle < 0 and _inside(body, inner_height(radius, length), solids, room.stack) < MAYBE_INSIDE
+        clear[row] = triangle < 0 and inside(body, inner_height(radius, length), solids, room.stack) < MAYBE_INSIDE
         if triangle >= 0:
             hint = triangle
 
