@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.hit import cross, stand, tree_hit
+from plan_cutters.kernels.hit import cross, deep_hit, stand
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.probing import (
     BURIED,
@@ -21,12 +21,14 @@ from plan_cutters.kernels.probing import (
     forbid_probed,
     inner_height,
     inside,
+    next_tilt,
     turned,
 )
 from plan_cutters.kernels.rows import Frame
 
 #: Points remembered for each rotation, and of those that the tree gave last.
-_KEPT, _POOL = 12, 128
+_KEPT, _POOL = 64, 128
+_NARROWEST = 1e-5
 
 
 class Memory(NamedTuple):
@@ -48,7 +50,7 @@ def memory(rotations):  # type: ignore[no-untyped-def]
     """Nothing remembered yet."""
     return Memory(
         np.empty((rotations, _KEPT, 3)), np.zeros(rotations, np.int64), np.full((3, _POOL), np.inf),
-        np.empty((3, _POOL)), np.empty(_POOL), np.zeros(2, np.int64),
+        np.empty((3, _POOL)), np.empty(_POOL), np.zeros(1, np.int64),
     )  # fmt: skip
 
 
@@ -84,7 +86,7 @@ def _deepest(past, count, turn, tilt, tool):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def nowhere(contacts, row, ranges, tool, length, solids, within, past, room):  # type: ignore[no-untyped-def]
+def nowhere(contacts, row, ranges, tool, length, solids, within, start, past, room):  # type: ignore[no-untyped-def]
     """Whether it is proved that a sample has no posture at any rotation.
 
     Parameters
@@ -114,7 +116,8 @@ def nowhere(contacts, row, ranges, tool, length, solids, within, past, room):  #
     for i in range(pooled):
         _see(past, i, p, e1, e2, n)
     for step in range(rotations):
-        rotation = (past.tally[1] + step) % rotations
+        side = (step + 1) // 2 if step % 2 else -(step // 2)
+        rotation = (start[0] + side) % rotations
         turn = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
         count = allowed(contacts, row, ranges, rotation, tool.radius, room)
         known, kept = past.count[rotation], 0
@@ -128,30 +131,27 @@ def nowhere(contacts, row, ranges, tool, length, solids, within, past, room):  #
                 y += offset * t[k]
                 z += offset * n[k]
             before = tally[REAR_GOUGE] + tally[COLLISION]
-            count = forbid_point(x, y, z, tool, intervals, count, tally)
+            count = forbid_point(x, y, z, tool, _NARROWEST, intervals, count, tally)
             if tally[REAR_GOUGE] + tally[COLLISION] > before:
                 for k in range(3):
                     past.point[rotation, kept, k] = past.point[rotation, i, k]
                 kept += 1
+        wish = start[1]
         while count > 0:
-            widest = 0
-            for i in range(1, count):
-                if intervals[i, 1] - intervals[i, 0] > intervals[widest, 1] - intervals[widest, 0]:
-                    widest = i
-            tilt = 0.5 * (intervals[widest, 0] + intervals[widest, 1])
+            tilt, wish = next_tilt(intervals, count, wish), -1.0
             height, px, py = _deepest(past, pooled, turn, tilt, tool)
             new = np.isnan(height)
             if new:
                 stand(body, frame, np.cos(tilt), np.sin(tilt), tool.radius, tool.shrunk, tool.low, tool.high)
-                triangle, height, px, py = tree_hit(solids.tree, body, 0.0, -1, room.scratch)
+                triangle, height, px, py = deep_hit(solids.tree, body, room.scratch)
                 if triangle < 0:
                     if inside(body, inner_height(tool.radius, length), solids, room.scratch.stack) < within:
-                        past.count[rotation], past.tally[1] = kept, rotation
-                        return False
+                        past.count[rotation] = kept
+                        return rotation, tilt
                     half = turned(frame, tilt, tool, solids.tree, body, room.scratch)
-                    count = forbid(intervals, count, tilt - half, tilt + half, BURIED, tally)
+                    count = forbid(intervals, count, tilt - half, tilt + half, _NARROWEST, BURIED, tally)
                     continue
-            count, x, y, z = forbid_probed(height, px, py, tilt, tool, intervals, count, tally)
+            count, x, y, z = forbid_probed(height, px, py, tilt, tool, _NARROWEST, intervals, count, tally)
             if kept < _KEPT:
                 for k in range(3):
                     past.point[rotation, kept, k] = p[k] + x * f[k] + y * t[k] + z * n[k]
@@ -164,4 +164,4 @@ def nowhere(contacts, row, ranges, tool, length, solids, within, past, room):  #
                 past.tally[0] += 1
                 pooled = min(past.tally[0], _POOL)
         past.count[rotation] = kept
-    return True
+    return -1, 0.0

@@ -53,12 +53,12 @@ def remove(intervals, count, first, last, narrowest):  # type: ignore[no-untyped
 
 
 @kernel
-def forbid(intervals, count, first, last, attribute, tally):  # type: ignore[no-untyped-def]
+def forbid(intervals, count, first, last, narrowest, attribute, tally):  # type: ignore[no-untyped-def]
     """Take an arc out and book what it takes on an attribute; the new count."""
     before = 0.0
     for i in range(count):
         before += intervals[i, 1] - intervals[i, 0]
-    count = remove(intervals, count, first, last, NARROWEST)
+    count = remove(intervals, count, first, last, narrowest)
     for i in range(count):
         before -= intervals[i, 1] - intervals[i, 0]
     tally[attribute] += before
@@ -157,20 +157,33 @@ def allowed(contacts, row, ranges, rotation, radius, room):  # type: ignore[no-u
 
 
 @kernel
-def forbid_point(x, y, z, tool, intervals, count, tally):  # type: ignore[no-untyped-def]
+def forbid_point(x, y, z, tool, narrowest, intervals, count, tally):  # type: ignore[no-untyped-def]
     """Take out the tilts at which an obstacle point, along f, t and n from the contact, is in the cutter; the new count."""
     first, last = point_arc(z, x + tool.radius, y, 0.0, tool.radius, tool.shrunk, tool.low, tool.high)
     if first > last:
         return count
-    return forbid(intervals, count, first, last, _attribute(x, y, z, tool.radius), tally)
+    return forbid(intervals, count, first, last, narrowest, _attribute(x, y, z, tool.radius), tally)
 
 
 @kernel
-def forbid_probed(height, px, py, tilt, tool, intervals, count, tally):  # type: ignore[no-untyped-def]
+def forbid_probed(height, px, py, tilt, tool, narrowest, intervals, count, tally):  # type: ignore[no-untyped-def]
     """The same of a point that a probe at a tilt has met, in the tool's frame; (the new count, the point along f, t, n)."""
     first, last = point_arc(height, px, py, tilt, tool.radius, tool.shrunk, tool.low, tool.high)
     # At the edge of the body the arc may be no wider than rounding: take the probe's own neighbourhood too.
-    first, last = min(first, tilt - 0.5 * NARROWEST), max(last, tilt + 0.5 * NARROWEST)
+    first, last = min(first, tilt - 0.5 * narrowest), max(last, tilt + 0.5 * narrowest)
     back, cosine, sine = px - tool.radius, np.cos(tilt), np.sin(tilt)
     x, z = cosine * back + sine * height, cosine * height - sine * back
-    return forbid(intervals, count, first, last, _attribute(x, py, z, tool.radius), tally), x, py, z
+    return forbid(intervals, count, first, last, narrowest, _attribute(x, py, z, tool.radius), tally), x, py, z
+
+
+@kernel
+def next_tilt(intervals, count, wish):  # type: ignore[no-untyped-def]
+    """The tilt to probe next: the one wished for where it is left, or the middle of the widest interval."""
+    widest, tilt = -1.0, 0.0
+    for i in range(count):
+        if intervals[i, 0] <= wish <= intervals[i, 1]:
+            widest, tilt = 10.0, wish
+        elif intervals[i, 1] - intervals[i, 0] > widest:
+            widest = intervals[i, 1] - intervals[i, 0]
+            tilt = 0.5 * (intervals[i, 0] + intervals[i, 1])
+    return tilt

@@ -20,6 +20,7 @@ from plan_cutters.kernels.probing import (
     BURIED,
     COLLISION,
     LOCAL_GOUGE,
+    NARROWEST,
     REAR_GOUGE,
     allowed,
     forbid,
@@ -27,6 +28,7 @@ from plan_cutters.kernels.probing import (
     forbid_probed,
     inner_height,
     inside,
+    next_tilt,
     remove,
     room_to_search,
     turned,
@@ -39,8 +41,7 @@ INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 2
 #: Obstacle points remembered from probe to probe.
 _KNOWN = 16
 #: Rotations without a posture after which a proof that there is none is tried.
-_PATIENCE = 2
-_ALL = 1 << 30
+_PATIENCE = 1
 
 
 class _Start(NamedTuple):
@@ -55,12 +56,11 @@ class _Start(NamedTuple):
 
 
 @kernel
-def _sweep(contacts, row, ranges, begin, end, tool, length, solids, within, start, room):  # type: ignore[no-untyped-def]
+def _sweep(contacts, row, ranges, begin, end, tool, length, solids, start, room):  # type: ignore[no-untyped-def]
     """Search rotations of one sample; (index or -1, tilt, last triangle in the way, how many points were in it).
 
     Of the rotations, nearest to that of the start first, those from place `begin` to before `end`.
-    
-    A posture with a winding number of `within` or more, or none, is not taken.
+    A posture that may lie within a body is not taken.
     """
     p, n, e1 = contacts.point[row], contacts.normal[row], contacts.direction_max[row]
     intervals, f, t, body, tally = room.intervals, room.f, room.t, room.body, room.tally
@@ -81,27 +81,20 @@ def _sweep(contacts, row, ranges, begin, end, tool, length, solids, within, star
                 x += (known[i, k] - p[k]) * f[k]
                 y += (known[i, k] - p[k]) * t[k]
                 z += (known[i, k] - p[k]) * n[k]
-            count = forbid_point(x, y, z, tool, intervals, count, tally)
+            count = forbid_point(x, y, z, tool, NARROWEST, intervals, count, tally)
         wish = start.tilt
         while count > 0:
-            widest, tilt = -1.0, 0.0
-            for i in range(count):
-                if intervals[i, 0] <= wish <= intervals[i, 1]:
-                    widest, tilt = 10.0, wish
-                elif intervals[i, 1] - intervals[i, 0] > widest:
-                    widest = intervals[i, 1] - intervals[i, 0]
-                    tilt = 0.5 * (intervals[i, 0] + intervals[i, 1])
-            wish = -1.0
+            tilt, wish = next_tilt(intervals, count, wish), -1.0
             stand(body, frame, np.cos(tilt), np.sin(tilt), tool.radius, tool.shrunk, tool.low, tool.high)
             triangle, height, px, py = tree_hit(solids.tree, body, 0.0, hint, room.scratch)
             if triangle < 0:
-                if inside(body, inner_height(tool.radius, length), solids, room.scratch.stack) < within:
+                if inside(body, inner_height(tool.radius, length), solids, room.scratch.stack) < MAYBE_INSIDE:
                     return rotation, tilt, hint, known_count
                 half = turned(frame, tilt, tool, solids.tree, body, room.scratch)
-                count = forbid(intervals, count, tilt - half, tilt + half, BURIED, tally)
+                count = forbid(intervals, count, tilt - half, tilt + half, NARROWEST, BURIED, tally)
                 continue
             hint = triangle
-            count, x, y, z = forbid_probed(height, px, py, tilt, tool, intervals, count, tally)
+            count, x, y, z = forbid_probed(height, px, py, tilt, tool, NARROWEST, intervals, count, tally)
             for k in range(3):
                 known[known_count % len(known), k] = p[k] + x * f[k] + y * t[k] + z * n[k]
             known_count += 1
@@ -126,31 +119,32 @@ def search(rows, contacts, ranges, radius, length, safe, blocked, may_be, surely
         All that may be in the way, for calling a posture safe; what certainly is, for calling it blocked.
     found : Found, written
     """
-    room, past, patience = room_to_search(), memory(len(ranges.rotation_cos)), _PATIENCE
+    room, patience, rotations = room_to_search(), _PATIENCE, len(ranges.rotation_cos)
     tally = room.tally
     light = Tool(radius, radius - safe, safe, length - safe)
     heavy = Tool(radius, radius - blocked, blocked, length - blocked)
+    light_past, heavy_past = memory(rotations), memory(rotations)
     known, known_count = np.empty((_KNOWN, 3)), 0
-    last_rotation, last_tilt, hint = 0, -1.0, -1
-    # What is only perhaps in the way must not count as surely in it: then the two are remembered apart.
-    shared = len(may_be.tree.vertex) == len(surely.tree.vertex)
-    sure_known, sure_count, sure_hint = np.empty((_KNOWN, 3)), 0, -1
+    last_rotation, last_tilt, hint, heavy_start = 0, -1.0, -1, 0
     for row in rows:
-        rotation, done = -1, False
+        rotation, sure = -1, False
         if patience > 0:
             rotation, tilt, hint, known_count = _sweep(
-                contacts, row, ranges, 0, patience, light, length, may_be, MAYBE_INSIDE,
+                contacts, row, ranges, 0, patience, light, length, may_be,
                 _Start(last_rotation, last_tilt, hint, known, known_count), room,
             )  # fmt: skip
         if rotation < 0:
-            done = nowhere(contacts, row, ranges, heavy, length, surely, SURELY_INSIDE, past, room)
-        if rotation < 0 and not done:
-            rotation, tilt, hint, known_count = _sweep(
-                contacts, row, ranges, patience, _ALL, light, length, may_be, MAYBE_INSIDE,
-                _Start(last_rotation, last_tilt, hint, known, known_count), room,
-            )  # fmt: skip
+            freed, _ = nowhere(
+                contacts, row, ranges, heavy, length, surely, SURELY_INSIDE, (heavy_start, -1.0), heavy_past, room
+            )
+            sure = freed < 0
+            if not sure:
+                heavy_start = freed
+                rotation, tilt = nowhere(
+                    contacts, row, ranges, light, length, may_be, MAYBE_INSIDE, (last_rotation, last_tilt), light_past, room
+                )
         # Where the sample before has no posture, this one most likely has none either.
-        patience = 0 if done else _PATIENCE
+        patience = _PATIENCE if rotation >= 0 else 0
         if rotation >= 0:
             found.verdict[row] = ACCESSIBLE
             last_rotation, last_tilt = rotation, tilt
@@ -163,17 +157,7 @@ def search(rows, contacts, ranges, radius, length, safe, blocked, may_be, surely
                 )
                 found.axis[row, k] = cosine * contacts.normal[row, k] + sine * found.lean[row, k]
         else:
-            rotation = -1
-            if not done:
-                if shared:
-                    sure_known[:], sure_count, sure_hint = known, known_count, hint
-                rotation, tilt, sure_hint, sure_count = _sweep(
-                    contacts, row, ranges, 0, _ALL, heavy, length, surely, SURELY_INSIDE,
-                    _Start(last_rotation, last_tilt, sure_hint, sure_known, sure_count), room,
-                )  # fmt: skip
-                if shared:
-                    known[:], known_count, hint = sure_known, sure_count, sure_hint
-            found.verdict[row] = UNDECIDED if rotation >= 0 else INACCESSIBLE
+            found.verdict[row] = INACCESSIBLE if sure else UNDECIDED
             if tally[AXIS_LIMIT] == 0.0:
                 found.reason[row] = AXIS_LIMIT
             elif tally[LOCAL_GOUGE] == 0.0:
