@@ -13,7 +13,7 @@ from plan_cutters.kernels.rows import Scratch
 # As in `plan_cutters.domain.verdicts`, which must not load the compiler; a test holds them together.
 AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, COLLISION, BURIED, ATTRIBUTES = 0, 1, 2, 3, 4, 5
 
-#: Gaps narrower than this are not searched: no machine holds a tilt to 0.01 deg. rad.
+#: A posture stands for the tilts that are so near, rad: no machine holds a tilt to 0.01 deg.
 NARROWEST = 1.7e-4
 #: Intervals that one rotation may fall into; widest first, a search has not been seen to need ten.
 _ROOM = 256

@@ -2,11 +2,10 @@
 
 A found posture is safe: no triangle reaches deeper into the cutter than `safe`. Where none is found, the same search
 at the depth `blocked` decides whether the sample is inaccessible (everything is forbidden by what certainly lies too
-deep) or undecided. A cutter that touches nothing may still lie within a body: then so does every posture that it can be
-turned to without touching a skin.
+deep) or undecided. What is forbidden at `blocked` is so at `safe`: after a sample without a posture that is asked first,
+and one answer is all that an inaccessible sample takes. A cutter that touches nothing may still lie within a body: then
+so does every posture that it can be turned to without touching a skin.
 """
-
-from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,91 +13,65 @@ from plan_cutters.kernels.arcs import axis_arcs, local_gouge
 from plan_cutters.kernels.hit import BODY, cross, dot, lean_frame, perpendicular, scratch, stand, tree_hit
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
-from plan_cutters.kernels.nowhere import memory, nowhere
 from plan_cutters.kernels.probing import (
     AXIS_LIMIT,
     BURIED,
     COLLISION,
     LOCAL_GOUGE,
-    NARROWEST,
     REAR_GOUGE,
-    allowed,
-    forbid,
-    forbid_point,
-    forbid_probed,
     inner_height,
     inside,
-    next_tilt,
     remove,
     room_to_search,
-    turned,
 )
 from plan_cutters.kernels.rows import Frame, Tool
+from plan_cutters.kernels.sweep import memory, sweep
 
 # As in `plan_cutters.domain.verdicts`, which must not load the compiler; a test holds them together.
 INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
 
-#: Obstacle points remembered from probe to probe.
-_KNOWN = 16
-#: Rotations without a posture after which a proof that there is none is tried.
-_PATIENCE = 1
-
-
-class _Start(NamedTuple):
-    """Where a search begins: the posture of the sample before, the triangle and the points (k, 3) that were last in the way,
-    and how many of these there were in all."""
-
-    rotation: int
-    tilt: float
-    hint: int
-    known: Any
-    known_count: int
+#: Between arcs of what is certainly in the way, gaps narrower than this are none: no machine holds a tilt to 0.01 deg. rad.
+_NO_GAP = 1.7e-4
+#: A posture is searched in gaps down to this, rad: it may stand where arcs leave more than they seem to.
+_FINEST = 1e-5
+#: How far apart tilts are among which the one of least depth is looked for at first, rad.
+_COARSE = 0.05
 
 
 @kernel
-def _sweep(contacts, row, ranges, begin, end, tool, length, solids, start, room):  # type: ignore[no-untyped-def]
-    """Search rotations of one sample; (index or -1, tilt, last triangle in the way, how many points were in it).
+def _reason(tally):  # type: ignore[no-untyped-def]
+    """What leaves no posture: the attribute that leaves none alone, or the one that most tilts are booked on."""
+    if tally[AXIS_LIMIT] == 0.0:
+        return AXIS_LIMIT
+    if tally[LOCAL_GOUGE] == 0.0:
+        return LOCAL_GOUGE
+    reason = REAR_GOUGE
+    for attribute in (COLLISION, BURIED):
+        if tally[attribute] > tally[reason]:
+            reason = attribute
+    return reason
 
-    Of the rotations, nearest to that of the start first, those from place `begin` to before `end`.
-    A posture that may lie within a body is not taken.
-    """
-    p, n, e1 = contacts.point[row], contacts.normal[row], contacts.direction_max[row]
-    intervals, f, t, body, tally = room.intervals, room.f, room.t, room.body, room.tally
-    hint, known, known_count = start.hint, start.known, start.known_count
-    cross(n, e1, room.e2)
-    frame, rotations = Frame(p, n, f, t), len(ranges.rotation_cos)
-    tally[:] = 0.0
-    for turn in range(begin, min(rotations, end)):
-        step = (turn + 1) // 2 if turn % 2 else -(turn // 2)
-        rotation = (start.rotation + step) % rotations
-        count = allowed(contacts, row, ranges, rotation, tool.radius, room)
-        # What was in the way before, at other rotations and at the neighbours, is most likely so again.
-        for i in range(min(known_count, len(known))):
-            if count == 0:
-                break
-            x, y, z = 0.0, 0.0, 0.0
-            for k in range(3):
-                x += (known[i, k] - p[k]) * f[k]
-                y += (known[i, k] - p[k]) * t[k]
-                z += (known[i, k] - p[k]) * n[k]
-            count = forbid_point(x, y, z, tool, NARROWEST, intervals, count, tally)
-        wish = start.tilt
-        while count > 0:
-            tilt, wish = next_tilt(intervals, count, wish), -1.0
-            stand(body, frame, np.cos(tilt), np.sin(tilt), tool.radius, tool.shrunk, tool.low, tool.high)
-            triangle, height, px, py = tree_hit(solids.tree, body, 0.0, hint, room.scratch)
-            if triangle < 0:
-                if inside(body, inner_height(tool.radius, length), solids, room.scratch.stack) < MAYBE_INSIDE:
-                    return rotation, tilt, hint, known_count
-                half = turned(frame, tilt, tool, solids.tree, body, room.scratch)
-                count = forbid(intervals, count, tilt - half, tilt + half, NARROWEST, BURIED, tally)
-                continue
-            hint = triangle
-            count, x, y, z = forbid_probed(height, px, py, tilt, tool, NARROWEST, intervals, count, tally)
-            for k in range(3):
-                known[known_count % len(known), k] = p[k] + x * f[k] + y * t[k] + z * n[k]
-            known_count += 1
-    return -1, 0.0, hint, known_count
+
+@kernel
+def _write(found, row, contacts, ranges, rotation, tilt):  # type: ignore[no-untyped-def]
+    """Write a posture."""
+    n, e1 = contacts.normal[row], contacts.direction_max[row]
+    turn_cos, turn_sin = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
+    cosine, sine = np.cos(tilt), np.sin(tilt)
+    found.tilt[row], found.rotation[row] = tilt, rotation
+    for k in range(3):
+        i, j = (k + 1) % 3, (k + 2) % 3
+        found.lean[row, k] = turn_cos * e1[k] + turn_sin * (n[i] * e1[j] - n[j] * e1[i])
+        found.axis[row, k] = cosine * n[k] + sine * found.lean[row, k]
+
+
+@kernel
+def _surely_none(contacts, row, ranges, tool, length, solids, start, past, room):  # type: ignore[no-untyped-def]
+    """Whether what is surely in the way leaves a sample no posture; the last one that it left to any, and that."""
+    rotation, tilt = sweep(contacts, row, ranges, tool, length, solids, SURELY_INSIDE, _NO_GAP, start, len(ranges.rotation_cos), past, room)
+    if rotation < 0:
+        return start, True
+    return (rotation, tilt), False
 
 
 @entry
@@ -119,55 +92,80 @@ def search(rows, contacts, ranges, radius, length, safe, blocked, may_be, surely
         All that may be in the way, for calling a posture safe; what certainly is, for calling it blocked.
     found : Found, written
     """
-    room, patience, rotations = room_to_search(), _PATIENCE, len(ranges.rotation_cos)
-    tally = room.tally
+    rotations, room = len(ranges.rotation_cos), room_to_search()
     light = Tool(radius, radius - safe, safe, length - safe)
     heavy = Tool(radius, radius - blocked, blocked, length - blocked)
+    # What is only perhaps in the way must not count as surely in it: the two are remembered apart.
     light_past, heavy_past = memory(rotations), memory(rotations)
-    known, known_count = np.empty((_KNOWN, 3)), 0
-    last_rotation, last_tilt, hint, heavy_start = 0, -1.0, -1, 0
+    last, freed, lost = (0, -1.0), (0, -1.0), False
     for row in rows:
-        rotation, sure = -1, False
-        if patience > 0:
-            rotation, tilt, hint, known_count = _sweep(
-                contacts, row, ranges, 0, patience, light, length, may_be,
-                _Start(last_rotation, last_tilt, hint, known, known_count), room,
-            )  # fmt: skip
-        if rotation < 0:
-            freed, _ = nowhere(
-                contacts, row, ranges, heavy, length, surely, SURELY_INSIDE, (heavy_start, -1.0), heavy_past, room
+        asked, sure = lost, False
+        if asked:
+            freed, sure = _surely_none(contacts, row, ranges, heavy, length, surely, freed, heavy_past, room)
+        if not sure:
+            rotation, tilt = sweep(
+                contacts, row, ranges, light, length, may_be, MAYBE_INSIDE, _FINEST, last, rotations, light_past, room
             )
-            sure = freed < 0
-            if not sure:
-                heavy_start = freed
-                rotation, tilt = nowhere(
-                    contacts, row, ranges, light, length, may_be, MAYBE_INSIDE, (last_rotation, last_tilt), light_past, room
-                )
-        # Where the sample before has no posture, this one most likely has none either.
-        patience = _PATIENCE if rotation >= 0 else 0
-        if rotation >= 0:
-            found.verdict[row] = ACCESSIBLE
-            last_rotation, last_tilt = rotation, tilt
-            found.tilt[row], found.rotation[row] = tilt, rotation
-            cosine, sine = np.cos(tilt), np.sin(tilt)
-            for k in range(3):
-                found.lean[row, k] = (
-                    ranges.rotation_cos[rotation] * contacts.direction_max[row, k]
-                    + ranges.rotation_sin[rotation] * room.e2[k]
-                )
-                found.axis[row, k] = cosine * contacts.normal[row, k] + sine * found.lean[row, k]
-        else:
-            found.verdict[row] = INACCESSIBLE if sure else UNDECIDED
-            if tally[AXIS_LIMIT] == 0.0:
-                found.reason[row] = AXIS_LIMIT
-            elif tally[LOCAL_GOUGE] == 0.0:
-                found.reason[row] = LOCAL_GOUGE
+            lost = rotation < 0
+            if not lost:
+                last = rotation, tilt
+                found.verdict[row] = ACCESSIBLE
+                _write(found, row, contacts, ranges, rotation, tilt)
+                continue
+        found.reason[row] = _reason(room.tally)
+        if not asked:
+            freed, sure = _surely_none(contacts, row, ranges, heavy, length, surely, freed, heavy_past, room)
+            if sure:
+                found.reason[row] = _reason(room.tally)
+        found.verdict[row] = INACCESSIBLE if sure else UNDECIDED
+
+
+@entry
+def least_depth(contacts, ranges, radius, length, least, most, share, solids, found):  # type: ignore[no-untyped-def]
+    """The posture of the first contact at which the least depth reaches into the cutter, by halving in ratio.
+
+    At first among tilts that are `_COARSE` apart at all rotations, then among all tilts at the rotation found.
+
+    Parameters
+    ----------
+    contacts : Contacts
+    ranges : Ranges
+    radius, length : float
+        Flat-end cutter, mm.
+    least, most : float
+        Depths (mm) to look between: that at which nothing was found, and the largest that is tried.
+    share : float
+        Of itself to which the depth is found.
+    solids : Solids
+        All that may be in the way.
+    found : Found, written
+        The posture.
+
+    Returns
+    -------
+    low, high : float
+        A depth at which no posture was found at that rotation, and that of the posture; nan where there is none at `most`.
+    """
+    rotations = len(ranges.rotation_cos)
+    past, room = memory(rotations), room_to_search()
+    low, high, last = least, np.nan, (0, -1.0)
+    for narrowest, near in ((_COARSE, 5.0 * share), (_NO_GAP, share)):
+        low, depth, turns = least, most, 1 if high == high else rotations
+        while not high - low <= near * high:
+            if high == high:
+                depth = np.sqrt(low * high)
+            tool = Tool(radius, radius - depth, depth, length - depth)
+            rotation, tilt = sweep(
+                contacts, 0, ranges, tool, length, solids, MAYBE_INSIDE, narrowest, last, turns, past, room
+            )
+            if rotation >= 0:
+                last, high = (rotation, tilt), depth
+                _write(found, 0, contacts, ranges, rotation, tilt)
+            elif high == high:
+                low = depth
             else:
-                reason = REAR_GOUGE
-                for attribute in (COLLISION, BURIED):
-                    if tally[attribute] > tally[reason]:
-                        reason = attribute
-                found.reason[row] = reason
+                break
+    return low, high
 
 
 @entry

@@ -1,8 +1,8 @@
-"""Is there surely no posture? A proof, mostly from what was in the way at the sample before.
+"""All rotations of one sample in turn: a posture, or that there is none.
 
-At each rotation the points that forbade all its tilts at the sample before are asked first: a neighbour's obstacles stand
+At each rotation the points that forbade tilts there at the sample before are asked first: a neighbour's obstacles stand
 nearly where its own do, and an arc costs a hundredth of a walk of the tree. A tilt that they leave is shown to the points
-last found at all rotations, and only then to the tree. The proof fails at the first tilt that nothing forbids.
+last met at any rotation, and only then to the tree. What nothing forbids is a posture.
 """
 
 from typing import Any, NamedTuple
@@ -28,13 +28,12 @@ from plan_cutters.kernels.rows import Frame
 
 #: Points remembered for each rotation, and of those that the tree gave last.
 _KEPT, _POOL = 64, 128
-_NARROWEST = 1e-5
 
 
 class Memory(NamedTuple):
-    """What the proofs before have found: points (rotations, k, 3) that forbade all tilts of each, and how many (rotations,);
-    the last points (3, m) that the tree gave, and the same as seen from the contact, along direction_max, e2 and the
-    normal; how deep each is in the cutter (m,); tallies: points the tree gave, rotation at which a proof failed last.
+    """What the sweeps before have met: points (rotations, k, 3) that forbade tilts of each, and how many (rotations,); the
+    last points (3, m) that the tree gave, and the same as seen from the contact, along direction_max, e2 and the normal;
+    how deep each is in the cutter (m,); how many the tree gave in all (1,).
     """
 
     point: Any
@@ -42,7 +41,7 @@ class Memory(NamedTuple):
     pool: Any
     seen: Any
     depth: Any
-    tally: Any
+    given: Any
 
 
 @entry
@@ -86,8 +85,8 @@ def _deepest(past, count, turn, tilt, tool):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def nowhere(contacts, row, ranges, tool, length, solids, within, start, past, room):  # type: ignore[no-untyped-def]
-    """Whether it is proved that a sample has no posture at any rotation.
+def sweep(contacts, row, ranges, tool, length, solids, within, narrowest, start, turns, past, room):  # type: ignore[no-untyped-def]
+    """Look for a posture of one sample at all rotations, those next to the first looked at first.
 
     Parameters
     ----------
@@ -96,26 +95,37 @@ def nowhere(contacts, row, ranges, tool, length, solids, within, start, past, ro
         The sample.
     ranges : Ranges
     tool : Tool
-        The cutter, shrunk by the depth that certainly matters.
+        The cutter, shrunk by the depth that does not matter.
     length : float
         Of the cutter itself, mm.
     solids : Solids
-        What is surely in the way.
+        What is in the way.
     within : float
         Winding number from which a posture lies within a body.
-    past : Memory
+    narrowest : float
+        Intervals of tilt narrower than this are passed over, rad.
+    start : (int, float)
+        Rotation to begin with, and the tilt that is tried first at each.
+    turns : int
+        How many rotations to look at.
+    past : Memory, read and written
     room : Room
-        Tilts are booked on what forbids them, as the searches do.
+        Tilts are booked on what forbids them.
+
+    Returns
+    -------
+    rotation : int
+        -1 if there is no posture.
+    tilt : float
+        rad.
     """
     p, n, e1, e2 = contacts.point[row], contacts.normal[row], contacts.direction_max[row], room.e2
     intervals, f, t, body, tally = room.intervals, room.f, room.t, room.body, room.tally
     cross(n, e1, e2)
     frame, rotations = Frame(p, n, f, t), len(ranges.rotation_cos)
     tally[:] = 0.0
-    pooled = min(past.tally[0], _POOL)
-    for i in range(pooled):
-        _see(past, i, p, e1, e2, n)
-    for step in range(rotations):
+    pooled = -1
+    for step in range(turns):
         side = (step + 1) // 2 if step % 2 else -(step // 2)
         rotation = (start[0] + side) % rotations
         turn = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
@@ -131,7 +141,7 @@ def nowhere(contacts, row, ranges, tool, length, solids, within, start, past, ro
                 y += offset * t[k]
                 z += offset * n[k]
             before = tally[REAR_GOUGE] + tally[COLLISION]
-            count = forbid_point(x, y, z, tool, _NARROWEST, intervals, count, tally)
+            count = forbid_point(x, y, z, tool, narrowest, intervals, count, tally)
             if tally[REAR_GOUGE] + tally[COLLISION] > before:
                 for k in range(3):
                     past.point[rotation, kept, k] = past.point[rotation, i, k]
@@ -139,8 +149,11 @@ def nowhere(contacts, row, ranges, tool, length, solids, within, start, past, ro
         wish = start[1]
         while count > 0:
             tilt, wish = next_tilt(intervals, count, wish), -1.0
-            height, px, py = _deepest(past, pooled, turn, tilt, tool)
-            new = np.isnan(height)
+            # Mostly the first posture of all is free, as it was at the sample before: then the pool is not looked at.
+            new = pooled < 0
+            if not new:
+                height, px, py = _deepest(past, pooled, turn, tilt, tool)
+                new = np.isnan(height)
             if new:
                 stand(body, frame, np.cos(tilt), np.sin(tilt), tool.radius, tool.shrunk, tool.low, tool.high)
                 triangle, height, px, py = deep_hit(solids.tree, body, room.scratch)
@@ -149,19 +162,21 @@ def nowhere(contacts, row, ranges, tool, length, solids, within, start, past, ro
                         past.count[rotation] = kept
                         return rotation, tilt
                     half = turned(frame, tilt, tool, solids.tree, body, room.scratch)
-                    count = forbid(intervals, count, tilt - half, tilt + half, _NARROWEST, BURIED, tally)
+                    count = forbid(intervals, count, tilt - half, tilt + half, narrowest, BURIED, tally)
                     continue
-            count, x, y, z = forbid_probed(height, px, py, tilt, tool, _NARROWEST, intervals, count, tally)
+            count, x, y, z = forbid_probed(height, px, py, tilt, tool, narrowest, intervals, count, tally)
             if kept < _KEPT:
                 for k in range(3):
                     past.point[rotation, kept, k] = p[k] + x * f[k] + y * t[k] + z * n[k]
                 kept += 1
             if new:
-                slot = past.tally[0] % _POOL
+                slot = past.given[0] % _POOL
                 for k in range(3):
                     past.pool[k, slot] = p[k] + x * f[k] + y * t[k] + z * n[k]
-                _see(past, slot, p, e1, e2, n)
-                past.tally[0] += 1
-                pooled = min(past.tally[0], _POOL)
+                past.given[0] += 1
+                first = slot if pooled >= 0 else 0
+                pooled = min(past.given[0], _POOL)
+                for i in range(first, slot + 1 if first == slot else pooled):
+                    _see(past, i, p, e1, e2, n)
         past.count[rotation] = kept
     return -1, 0.0
