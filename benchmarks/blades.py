@@ -33,9 +33,7 @@ def section(radius: float) -> Any:
     offset = 0.5 * thick * side * np.sqrt(1 - 0.8 * along**4)
     angle = BEND * along**2 * 0.5 + TWIST * share * along + offset / radius
     height = 0.5 * LONG * along * (1 - 0.1 * share)
-    points = [
-        cq.Vector(radius * math.cos(a), radius * math.sin(a), h) for a, h in zip(angle, height, strict=True)
-    ]
+    points = [cq.Vector(radius * math.cos(a), radius * math.sin(a), h) for a, h in zip(angle, height, strict=True)]
     return cq.Wire.assembleEdges([cq.Edge.makeSpline(points, periodic=True)])
 
 
@@ -73,9 +71,7 @@ def measured(prepared: Any, cutter: Any) -> dict[str, float]:
     for name, rows in groups.items():
         again = blank(len(samples))
         began = time.process_time()
-        search_postures(
-            contacts, np.flatnonzero(rows), cutter, conditions, conditions.depths, again, fixed=True
-        )
+        search_postures(contacts, np.flatnonzero(rows), cutter, conditions, conditions.depths, again, fixed=True)
         seconds[name] = time.process_time() - began
     began = time.process_time()
     found = witnesses(samples, reach, cutter, conditions, buried=prepared.buried)

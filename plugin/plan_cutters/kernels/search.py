@@ -68,7 +68,9 @@ def _write(found, row, contacts, ranges, rotation, tilt):  # type: ignore[no-unt
 @kernel
 def _surely_none(contacts, row, ranges, tool, length, solids, start, past, room):  # type: ignore[no-untyped-def]
     """Whether what is surely in the way leaves a sample no posture; the last one that it left to any, and that."""
-    rotation, tilt = sweep(contacts, row, ranges, tool, length, solids, SURELY_INSIDE, _NO_GAP, start, len(ranges.rotation_cos), past, room)
+    rotation, tilt = sweep(
+        contacts, row, ranges, tool, length, solids, SURELY_INSIDE, _NO_GAP, start, len(ranges.rotation_cos), past, room
+    )
     if rotation < 0:
         return start, True
     return (rotation, tilt), False
