@@ -1,6 +1,6 @@
 """What a sample costs where the answer is no, on a drum with bent blades 3 mm apart, and on real files.
 
-    python benchmarks/blades.py [FILE ...] [--cutter R3L40 ...] [--tree DIR]
+    python benchmarks/blades.py [FILE ...] [--cutter R3L40 ...]
 
 prints processor time a sample, one thread, 36 rotations: of those that are reached, of those that are not (what lies within
 another body left out), and what the witnesses cost in all. With no file, the drum: eight blades, each lofted through four

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import (
-    ACCESSIBLE,
     BURIED,
     INACCESSIBLE,
     INTERFERENCE_FREE,
