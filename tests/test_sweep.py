@@ -7,8 +7,8 @@ import pytest
 import waves
 
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, UNDECIDED, blank
-from plan_cutters.kernels import material, search
-from plan_cutters.kernels.rows import Contacts
+from plan_cutters.kernels import material, probing, search, sweep
+from plan_cutters.kernels.rows import Contacts, Tool
 from plan_cutters.scene.conditions import found_of
 
 TURNS, SAFE, BLOCKED, LENGTH = 12, 0.02, 0.03, 20.0
@@ -127,3 +127,24 @@ def test_every_rotation_is_looked_at():
         assert 1 <= free.sum() <= 2
         assert reach.verdict[0] == ACCESSIBLE
         assert free[reach.rotation[0]]
+
+
+@pytest.mark.parametrize("given", [1, 127, 128, 129, 256, 300])
+def test_what_is_remembered_is_seen_from_the_contact_at_hand(given):
+    """Points met far away change nothing here, wherever they seemed to be from the contact before."""
+    contact = Contacts(np.zeros((1, 3)), np.array([[0.0, 0, 1]]), np.array([[1.0, 0, 0]]), np.zeros((1, 2)))
+    # A speck on the axis of the first posture tried, 45 deg at rotation 0, so that what is remembered is asked.
+    speck = np.array([7.0, 0, 8.0]) + 0.1 * np.array([[1.0, 0, 0], [0, 1, 0], [0, 0, 1]])
+    solids, tool = material.sheet(waves.tree_of(speck[None])), Tool(1.0, 1.0 - SAFE, SAFE, LENGTH - SAFE)
+
+    def swept(past):
+        return sweep.sweep(contact, 0, RANGES, tool, LENGTH, solids, 0.25, 1e-5, (0, -1.0), TURNS, past,
+                           probing.room_to_search())  # fmt: skip
+
+    full = sweep.memory(TURNS)
+    full.given[0], full.pool[:] = given, 1e4
+    rng = np.random.default_rng(0)
+    full.seen[:] = rng.uniform([[-4], [-4], [0.1]], [[4], [4], [4]], full.seen.shape)
+    rotation, tilt = swept(full)
+    assert (rotation, tilt) == swept(sweep.memory(TURNS))
+    assert (rotation, tilt != np.pi / 4) == (0, True)

@@ -174,9 +174,11 @@ def sweep(contacts, row, ranges, tool, length, solids, within, narrowest, start,
                 for k in range(3):
                     past.pool[k, slot] = p[k] + x * f[k] + y * t[k] + z * n[k]
                 past.given[0] += 1
-                first = slot if pooled >= 0 else 0
+                if pooled < 0:
+                    for i in range(min(past.given[0], _POOL)):
+                        _see(past, i, p, e1, e2, n)
+                else:
+                    _see(past, slot, p, e1, e2, n)
                 pooled = min(past.given[0], _POOL)
-                for i in range(first, slot + 1 if first == slot else pooled):
-                    _see(past, i, p, e1, e2, n)
         past.count[rotation] = kept
     return -1, 0.0
