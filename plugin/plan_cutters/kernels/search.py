@@ -153,6 +153,8 @@ def least_depth(contacts, ranges, radius, length, least, most, share, solids, fo
     low, high, last = least, np.nan, (0, -1.0)
     for narrowest, near in ((_COARSE, 5.0 * share), (_NO_GAP, share)):
         low, depth, turns = least, most, 1 if high == high else rotations
+        # Where nothing was found, a cutter that is all but a line is stopped again and again: not every tilt is tried.
+        narrowest = narrowest if turns == 1 else max(narrowest, 0.1 * _COARSE)
         while not high - low <= near * high:
             if high == high:
                 depth = np.sqrt(low * high)

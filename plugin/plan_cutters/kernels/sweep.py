@@ -161,7 +161,7 @@ def sweep(contacts, row, ranges, tool, length, solids, within, narrowest, start,
                     if inside(body, inner_height(tool.radius, length), solids, room.scratch.stack) < within:
                         past.count[rotation] = kept
                         return rotation, tilt
-                    half = turned(frame, tilt, tool, solids.tree, body, room.scratch)
+                    half = max(turned(frame, tilt, tool, solids.tree, body, room.scratch), 0.5 * narrowest)
                     count = forbid(intervals, count, tilt - half, tilt + half, narrowest, BURIED, tally)
                     continue
             count, x, y, z = forbid_probed(height, px, py, tilt, tool, narrowest, intervals, count, tally)
