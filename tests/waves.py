@@ -49,3 +49,43 @@ def tree_of(vertex):
 def ranges(rotations, limit_cos=-2.0, tilt=(0.0, np.pi / 2)):
     """Postures at rotations (k,), rad, with an axis limit about z."""
     return Ranges(np.cos(rotations), np.sin(rotations), *tilt, np.array([0, 0, 1.0]), limit_cos)
+
+
+#: Walls of the comb: how many, how far apart, how thick at the bottom and how much less at the top, how high, how long; mm.
+WALLS, PITCH, THICK, TAPER, HIGH, LONG = 4, 4.0, 1.4, 0.8, 14.0, 24.0
+
+
+def _wall(u, v, k, side):
+    """Points of one side of bent wall k at shares u of its length and v of its height, their slopes along x and z."""
+    x, z = LONG * (u - 0.5), HIGH * v
+    along, up = 0.008 * x + 0.0651 * np.cos(0.21 * x + 0.1), np.full_like(x, 0.05 - 0.5 * side * TAPER / HIGH)
+    y = PITCH * k + 0.004 * x**2 + 0.31 * np.sin(0.21 * x + 0.1) + 0.5 * side * THICK + up * z
+    return np.stack([x, y, z], -1), along, up
+
+
+def comb_samples(n):
+    """2 n * n contacts on both sides of a wall in the middle of a comb of bent walls, from the bottom up."""
+    u, v = (c.ravel() for c in np.meshgrid(np.linspace(0.07, 0.95, n), np.linspace(0.21, 0.97, n), indexing="ij"))
+    found = []
+    for side in (-1.0, 1.0):
+        point, along, up = _wall(u, v, 1, side)
+        size = np.sqrt(1 + along**2 + up**2)
+        normal = side * np.stack([-along, np.ones_like(up), -up], -1) / size[:, None]
+        # Ruled along its height: the one curvature that is not zero is across that.
+        straight = np.stack([np.zeros_like(up), up, np.ones_like(up)], -1) / np.sqrt(1 + up**2)[:, None]
+        bend = side * (0.008 - 0.013671 * np.sin(0.21 * point[:, 0] + 0.1)) * (1 + up**2) / size**3
+        direction = np.where(bend[:, None] > 0, np.cross(straight, normal), straight)
+        found.append((point, normal, direction, np.stack([np.maximum(bend, 0.0), np.minimum(bend, 0.0)], 1)))
+    return Contacts(*(np.ascontiguousarray(np.concatenate(each)) for each in zip(*found, strict=True)))
+
+
+def comb_triangles(n):
+    """Walls and floor of the comb, (m, 3, 3)."""
+    found = []
+    u, v = np.meshgrid(np.linspace(0, 1, n), np.linspace(0, 1, n), indexing="ij")
+    grids = [_wall(u, v, k, side)[0] for k in range(WALLS) for side in (-1.0, 1.0)]
+    grids.append(np.stack([LONG * (u - 0.5), PITCH * WALLS * v - PITCH, np.zeros_like(u)], -1))
+    for p in grids:
+        a, b, c, d = p[:-1, :-1], p[1:, :-1], p[1:, 1:], p[:-1, 1:]
+        found.append(np.stack([np.stack([a, b, c], 2), np.stack([a, c, d], 2)], 2).reshape(-1, 3, 3))
+    return np.ascontiguousarray(np.concatenate(found))

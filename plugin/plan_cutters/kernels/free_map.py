@@ -14,8 +14,8 @@ from plan_cutters.kernels.gaps import COLUMNS, FIRST, GAPS, LAST, UF, UL, Room, 
 from plan_cutters.kernels.hit import BODY, cross, dot, lean_frame, scratch
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.lanes import LANES, _boxes_pass, _see, _see_leaf, _see_triangle, _triangles_pass, _turn
+from plan_cutters.kernels.probing import remove
 from plan_cutters.kernels.rows import Frame, Tool
-from plan_cutters.kernels.search import remove
 
 #: Blocks of boxes kept as seen from one contact, and blocks that may wait to be looked at.
 _SEEN, _QUEUE = 1 << 11, 1 << 13

@@ -344,3 +344,38 @@ def tree_hit(tree, body, rate, hint, scratch):  # type: ignore[no-untyped-def]
             if hit and (rate == 0.0 or _swept_hit(vertex, i, body, rate, scratch)):
                 return i, height, px, py
     return -1, 0.0, 0.0, 0.0
+
+
+@kernel
+def _inset(box, i, body):  # type: ignore[no-untyped-def]
+    """How deep the centre of box i lies in a cylinder; negative outside."""
+    dx, dy, dz = box[i, 0] - body[0], box[i, 1] - body[1], box[i, 2] - body[2]
+    height = dx * body[3] + dy * body[4] + dz * body[5]
+    across = dx * body[6] + dy * body[7] + dz * body[8] + body[OFFSET]
+    aside = dx * body[9] + dy * body[10] + dz * body[11]
+    return min(min(height - body[LOW], body[HIGH] - height), body[RADIUS] - np.sqrt(across * across + aside * aside))
+
+
+@kernel
+def deep_hit(tree, body, scratch):  # type: ignore[no-untyped-def]
+    """`tree_hit` with `rate` 0, of two boxes the one that lies deeper first: where something is in the way, sooner there."""
+    vertex, box, depth = tree.vertex, tree.box, tree.depth
+    stack, n, first, top = scratch.stack, len(vertex), (1 << depth) - 1, 1
+    stack[0] = 0
+    while top > 0:
+        top -= 1
+        node = stack[top]
+        if _box_apart(box, node, body, 0.0):
+            continue
+        if node < first:
+            left = 1 if _inset(box, 2 * node + 1, body) >= _inset(box, 2 * node + 2, body) else 0
+            stack[top] = 2 * node + 1 + left
+            stack[top + 1] = 2 * node + 2 - left
+            top += 2
+            continue
+        leaf = node - first
+        for i in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
+            hit, height, px, py = triangle_hit(vertex, i, body, 0.0, scratch.polygon, scratch.spare)
+            if hit:
+                return i, height, px, py
+    return -1, 0.0, 0.0, 0.0

@@ -2,242 +2,78 @@
 
 A found posture is safe: no triangle reaches deeper into the cutter than `safe`. Where none is found, the same search
 at the depth `blocked` decides whether the sample is inaccessible (everything is forbidden by what certainly lies too
-deep) or undecided. A cutter that touches nothing may still lie within a body: then so does every posture that it can be
-turned to without touching a skin.
+deep) or undecided. What is forbidden at `blocked` is so at `safe`: after a sample without a posture that is asked first,
+and one answer is all that an inaccessible sample takes. A cutter that touches nothing may still lie within a body: then
+so does every posture that it can be turned to without touching a skin.
 """
-
-from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
-from plan_cutters.kernels.hit import (
-    BODY,
-    HIGH,
-    OFFSET,
-    A,
-    P,
-    X,
-    cross,
-    dot,
-    lean_frame,
-    perpendicular,
-    scratch,
-    stand,
-    tree_hit,
-)
+from plan_cutters.kernels.arcs import axis_arcs, local_gouge
+from plan_cutters.kernels.hit import BODY, cross, dot, lean_frame, perpendicular, scratch, stand, tree_hit
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, outside, winding
-from plan_cutters.kernels.rows import Frame, Scratch, Tool
+from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
+from plan_cutters.kernels.probing import (
+    AXIS_LIMIT,
+    BURIED,
+    COLLISION,
+    LOCAL_GOUGE,
+    REAR_GOUGE,
+    inner_height,
+    inside,
+    remove,
+    room_to_search,
+)
+from plan_cutters.kernels.rows import Frame, Tool
+from plan_cutters.kernels.sweep import memory, sweep
 
 # As in `plan_cutters.domain.verdicts`, which must not load the compiler; a test holds them together.
 INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
-AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, COLLISION, BURIED, ATTRIBUTES = 0, 1, 2, 3, 4, 5
 
-#: Gaps narrower than this are not searched: no machine holds a tilt to 0.01 deg. rad.
-NARROWEST = 1.7e-4
-#: Intervals that one rotation may fall into; widest first, a search has not been seen to need ten.
-_ROOM = 256
-#: Obstacle points remembered from probe to probe.
-_KNOWN = 16
-#: By how much a posture within a body is turned to find the others there, at first, rad.
-_TURN = 0.2
+#: Between arcs of what is certainly in the way, gaps narrower than this are none: no machine holds a tilt to 0.01 deg. rad.
+_NO_GAP = 1.7e-4
+#: A posture is searched in gaps down to this, rad: it may stand where arcs leave more than they seem to.
+_FINEST = 1e-5
+#: How far apart tilts are among which the one of least depth is looked for at first, rad.
+_COARSE = 0.05
 
 
 @kernel
-def remove(intervals, count, first, last, narrowest):  # type: ignore[no-untyped-def]
-    """Take [first, last] out of sorted intervals in place, drop what is narrower than `narrowest`; the new count."""
-    kept = 0
-    for row in range(count):
-        low, high = intervals[row, 0], intervals[row, 1]
-        if last <= low or first >= high:
-            intervals[kept, 0], intervals[kept, 1] = low, high
-            kept += 1
-            continue
-        below, above = first - low >= narrowest, high - last >= narrowest
-        if below and above and kept == row:
-            # One interval becomes two: those after it, all above `last`, move up.
-            if count == len(intervals):
-                below = first - low > high - last
-                above = not below
-            else:
-                for k in range(count, row, -1):
-                    intervals[k, 0], intervals[k, 1] = intervals[k - 1, 0], intervals[k - 1, 1]
-                intervals[row, 1] = first
-                intervals[row + 1, 0] = last
-                return count + 1
-        if below:
-            intervals[kept, 0], intervals[kept, 1] = low, first
-            kept += 1
-        if above:
-            intervals[kept, 0], intervals[kept, 1] = last, high
-            kept += 1
-    return kept
+def _reason(tally):  # type: ignore[no-untyped-def]
+    """What leaves no posture: the attribute that leaves none alone, or the one that most tilts are booked on."""
+    if tally[AXIS_LIMIT] == 0.0:
+        return AXIS_LIMIT
+    if tally[LOCAL_GOUGE] == 0.0:
+        return LOCAL_GOUGE
+    reason = REAR_GOUGE
+    for attribute in (COLLISION, BURIED):
+        if tally[attribute] > tally[reason]:
+            reason = attribute
+    return reason
 
 
 @kernel
-def _forbid(intervals, count, first, last, attribute, tally):  # type: ignore[no-untyped-def]
-    """Take an arc out and book what it takes on an attribute; the new count."""
-    before = 0.0
-    for i in range(count):
-        before += intervals[i, 1] - intervals[i, 0]
-    count = remove(intervals, count, first, last, NARROWEST)
-    for i in range(count):
-        before -= intervals[i, 1] - intervals[i, 0]
-    tally[attribute] += before
-    return count
+def _write(found, row, contacts, ranges, rotation, tilt):  # type: ignore[no-untyped-def]
+    """Write a posture."""
+    n, e1 = contacts.normal[row], contacts.direction_max[row]
+    turn_cos, turn_sin = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
+    cosine, sine = np.cos(tilt), np.sin(tilt)
+    found.tilt[row], found.rotation[row] = tilt, rotation
+    for k in range(3):
+        i, j = (k + 1) % 3, (k + 2) % 3
+        found.lean[row, k] = turn_cos * e1[k] + turn_sin * (n[i] * e1[j] - n[j] * e1[i])
+        found.axis[row, k] = cosine * n[k] + sine * found.lean[row, k]
 
 
 @kernel
-def _attribute(x, y, z, radius):  # type: ignore[no-untyped-def]
-    """What an obstacle point that far from the contact is in the way of."""
-    return REAR_GOUGE if x * x + y * y + z * z <= 4.0 * radius * radius else COLLISION
-
-
-@kernel
-def inner_height(radius, length):  # type: ignore[no-untyped-def]
-    """Height of the point of the cutter's axis that is asked for whether the cutter lies within a body.
-
-    As near to the spindle as it can be while no other point of the cutter is farther from its outside.
-    """
-    return max(0.5 * length, length - radius)
-
-
-@kernel
-def _inside(body, height, solids, stack):  # type: ignore[no-untyped-def]
-    """Winding number of the bodies about the point of a body's axis at a height over the contact.
-
-    The end of the axis is asked first: where that is surely outside, all of it is.
-    """
-    high = body[HIGH]
-    x = body[P] + high * body[A] - body[OFFSET] * body[X]
-    y = body[P + 1] + high * body[A + 1] - body[OFFSET] * body[X + 1]
-    z = body[P + 2] + high * body[A + 2] - body[OFFSET] * body[X + 2]
-    if outside(x, y, z, solids):
-        return 0.0
-    x = body[P] + height * body[A] - body[OFFSET] * body[X]
-    y = body[P + 1] + height * body[A + 1] - body[OFFSET] * body[X + 1]
-    z = body[P + 2] + height * body[A + 2] - body[OFFSET] * body[X + 2]
-    return winding(x, y, z, solids, stack)
-
-
-@kernel
-def _turned(frame, tilt, tool, tree, body, scratch):  # type: ignore[no-untyped-def]
-    """How far a posture that touches nothing can be tilted either way and still surely touch nothing, rad."""
-    half = _TURN
-    while half > 0.5 * NARROWEST:
-        stand(body, frame, np.cos(tilt), np.sin(tilt), tool.radius, tool.shrunk, tool.low, tool.high)
-        hit, _, _, _ = tree_hit(tree, body, half, -1, scratch)
-        if hit < 0:
-            return half
-        half *= 0.5
-    # No narrower: what is left is the probe's own neighbourhood, as for every other obstacle.
-    return 0.5 * NARROWEST
-
-
-class _Start(NamedTuple):
-    """Where a search begins: the posture of the sample before, the triangle and the points (k, 3) that were last in the way,
-    and how many of these there were in all."""
-
-    rotation: int
-    tilt: float
-    hint: int
-    known: Any
-    known_count: int
-
-
-class _Room(NamedTuple):
-    """Room to work in: intervals (k, 2), lean direction f and t = n x f, e2 = n x direction_max, a body, a tally by attribute."""
-
-    intervals: Any
-    f: Any
-    t: Any
-    e2: Any
-    body: Any
-    tally: Any
-    scratch: Scratch
-
-
-@kernel
-def _sweep(contacts, row, ranges, radius, length, depth_allowed, solids, inside, start, room):  # type: ignore[no-untyped-def]
-    """Search all rotations of one sample; (rotation index or -1, tilt, last triangle in the way, count of known points).
-
-    A posture with a winding number of `inside` or more, or none, is not taken.
-    """
-    p, n, e1 = contacts.point[row], contacts.normal[row], contacts.direction_max[row]
-    kappa_max, kappa_min = contacts.curvature[row, 0], contacts.curvature[row, 1]
-    intervals, f, t, body, tally = room.intervals, room.f, room.t, room.body, room.tally
-    hint, known, known_count = start.hint, start.known, start.known_count
-    cross(n, e1, room.e2)
-    frame, rotations = Frame(p, n, f, t), len(ranges.rotation_cos)
-    tally[:] = 0.0
-    low, high, shrunk = depth_allowed, length - depth_allowed, radius - depth_allowed
-    tool = Tool(radius, shrunk, low, high)
-    for turn in range(rotations):
-        step = (turn + 1) // 2 if turn % 2 else -(turn // 2)
-        rotation = (start.rotation + step) % rotations
-        cosine, sine = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
-        lean_frame(e1, room.e2, cosine, sine, f, t)
-        count = axis_arcs(
-            dot(ranges.setup, n), dot(ranges.setup, f), ranges.limit_cos, ranges.tilt_low, ranges.tilt_high, intervals
-        )
-        for i in range(count):
-            tally[AXIS_LIMIT] += intervals[i, 1] - intervals[i, 0] + NARROWEST
-        least = local_gouge(kappa_max, kappa_min, cosine, sine, radius)
-        if np.isnan(least):
-            continue
-        if least > 0.0:
-            count = remove(intervals, count, -1.0, least, 0.0)
-        for i in range(count):
-            tally[LOCAL_GOUGE] += intervals[i, 1] - intervals[i, 0] + NARROWEST
-        # What was in the way before, at other rotations and at the neighbours, is most likely so again.
-        for i in range(min(known_count, len(known))):
-            x, y, z = 0.0, 0.0, 0.0
-            for k in range(3):
-                x += (known[i, k] - p[k]) * f[k]
-                y += (known[i, k] - p[k]) * t[k]
-                z += (known[i, k] - p[k]) * n[k]
-            first, last = point_arc(z, x + radius, y, 0.0, radius, shrunk, low, high)
-            if first <= last:
-                count = _forbid(intervals, count, first, last, _attribute(x, y, z, radius), tally)
-                if count == 0:
-                    break
-        wish = start.tilt
-        while count > 0:
-            widest, tilt = -1.0, 0.0
-            for i in range(count):
-                if intervals[i, 0] <= wish <= intervals[i, 1]:
-                    widest, tilt = 10.0, wish
-                elif intervals[i, 1] - intervals[i, 0] > widest:
-                    widest = intervals[i, 1] - intervals[i, 0]
-                    tilt = 0.5 * (intervals[i, 0] + intervals[i, 1])
-            wish = -1.0
-            stand(body, frame, np.cos(tilt), np.sin(tilt), radius, shrunk, low, high)
-            triangle, height, px, py = tree_hit(solids.tree, body, 0.0, hint, room.scratch)
-            if triangle < 0:
-                if _inside(body, inner_height(radius, length), solids, room.scratch.stack) < inside:
-                    return rotation, tilt, hint, known_count
-                half = _turned(frame, tilt, tool, solids.tree, body, room.scratch)
-                count = _forbid(intervals, count, tilt - half, tilt + half, BURIED, tally)
-                continue
-            hint = triangle
-            first, last = point_arc(height, px, py, tilt, radius, shrunk, low, high)
-            # At the edge of the body the arc may be no wider than rounding: take the probe's own neighbourhood too.
-            first, last = min(first, tilt - 0.5 * NARROWEST), max(last, tilt + 0.5 * NARROWEST)
-            back, cosine_tilt, sine_tilt = px - radius, np.cos(tilt), np.sin(tilt)
-            x, z = cosine_tilt * back + sine_tilt * height, cosine_tilt * height - sine_tilt * back
-            count = _forbid(intervals, count, first, last, _attribute(x, py, z, radius), tally)
-            for k in range(3):
-                known[known_count % len(known), k] = p[k] + x * f[k] + py * t[k] + z * n[k]
-            known_count += 1
-    return -1, 0.0, hint, known_count
-
-
-@kernel
-def _copy(source, target):  # type: ignore[no-untyped-def]
-    """Copy a table; to assign it whole takes the compiler seconds, for the texts of errors that cannot be."""
-    for i in range(source.size):
-        target.flat[i] = source.flat[i]
+def _surely_none(contacts, row, ranges, tool, length, solids, start, past, room):  # type: ignore[no-untyped-def]
+    """Whether what is surely in the way leaves a sample no posture; the last one that it left to any, and that."""
+    rotation, tilt = sweep(
+        contacts, row, ranges, tool, length, solids, SURELY_INSIDE, _NO_GAP, start, len(ranges.rotation_cos), past, room
+    )
+    if rotation < 0:
+        return start, True
+    return (rotation, tilt), False
 
 
 @entry
@@ -258,54 +94,82 @@ def search(rows, contacts, ranges, radius, length, safe, blocked, may_be, surely
         All that may be in the way, for calling a posture safe; what certainly is, for calling it blocked.
     found : Found, written
     """
-    room = _Room(
-        np.empty((_ROOM, 2)), np.empty(3), np.empty(3), np.empty(3), np.empty(BODY), np.empty(ATTRIBUTES),
-        scratch(),
-    )  # fmt: skip
-    tally = room.tally
-    known, known_count = np.empty((_KNOWN, 3)), 0
-    last_rotation, last_tilt, hint = 0, -1.0, -1
-    # What is only perhaps in the way must not count as surely in it: then the two are remembered apart.
-    shared = len(may_be.tree.vertex) == len(surely.tree.vertex)
-    sure_known, sure_count, sure_hint = np.empty((_KNOWN, 3)), 0, -1
+    rotations, room = len(ranges.rotation_cos), room_to_search()
+    light = Tool(radius, radius - safe, safe, length - safe)
+    heavy = Tool(radius, radius - blocked, blocked, length - blocked)
+    # What is only perhaps in the way must not count as surely in it: the two are remembered apart.
+    light_past, heavy_past = memory(rotations), memory(rotations)
+    last, freed, lost = (0, -1.0), (0, -1.0), False
     for row in rows:
-        rotation, tilt, hint, known_count = _sweep(
-            contacts, row, ranges, radius, length, safe, may_be, MAYBE_INSIDE,
-            _Start(last_rotation, last_tilt, hint, known, known_count), room,
-        )  # fmt: skip
-        if rotation >= 0:
-            found.verdict[row] = ACCESSIBLE
-            last_rotation, last_tilt = rotation, tilt
-            found.tilt[row], found.rotation[row] = tilt, rotation
-            cosine, sine = np.cos(tilt), np.sin(tilt)
-            for k in range(3):
-                found.lean[row, k] = (
-                    ranges.rotation_cos[rotation] * contacts.direction_max[row, k]
-                    + ranges.rotation_sin[rotation] * room.e2[k]
-                )
-                found.axis[row, k] = cosine * contacts.normal[row, k] + sine * found.lean[row, k]
-        else:
-            if shared:
-                _copy(known, sure_known)
-                sure_count, sure_hint = known_count, hint
-            rotation, tilt, sure_hint, sure_count = _sweep(
-                contacts, row, ranges, radius, length, blocked, surely, SURELY_INSIDE,
-                _Start(last_rotation, last_tilt, sure_hint, sure_known, sure_count), room,
-            )  # fmt: skip
-            if shared:
-                _copy(sure_known, known)
-                known_count, hint = sure_count, sure_hint
-            found.verdict[row] = UNDECIDED if rotation >= 0 else INACCESSIBLE
-            if tally[AXIS_LIMIT] == 0.0:
-                found.reason[row] = AXIS_LIMIT
-            elif tally[LOCAL_GOUGE] == 0.0:
-                found.reason[row] = LOCAL_GOUGE
+        asked, sure = lost, False
+        if asked:
+            freed, sure = _surely_none(contacts, row, ranges, heavy, length, surely, freed, heavy_past, room)
+        if not sure:
+            rotation, tilt = sweep(
+                contacts, row, ranges, light, length, may_be, MAYBE_INSIDE, _FINEST, last, rotations, light_past, room
+            )
+            lost = rotation < 0
+            if not lost:
+                last = rotation, tilt
+                found.verdict[row] = ACCESSIBLE
+                _write(found, row, contacts, ranges, rotation, tilt)
+                continue
+        found.reason[row] = _reason(room.tally)
+        if not asked:
+            freed, sure = _surely_none(contacts, row, ranges, heavy, length, surely, freed, heavy_past, room)
+            if sure:
+                found.reason[row] = _reason(room.tally)
+        found.verdict[row] = INACCESSIBLE if sure else UNDECIDED
+
+
+@entry
+def least_depth(contacts, ranges, radius, length, least, most, share, solids, found):  # type: ignore[no-untyped-def]
+    """The posture of the first contact at which the least depth reaches into the cutter, by halving in ratio.
+
+    At first among tilts that are `_COARSE` apart at all rotations, then among all tilts at the rotation found.
+
+    Parameters
+    ----------
+    contacts : Contacts
+    ranges : Ranges
+    radius, length : float
+        Flat-end cutter, mm.
+    least, most : float
+        Depths (mm) to look between: that at which nothing was found, and the largest that is tried.
+    share : float
+        Of itself to which the depth is found.
+    solids : Solids
+        All that may be in the way.
+    found : Found, written
+        The posture.
+
+    Returns
+    -------
+    low, high : float
+        A depth at which no posture was found at that rotation, and that of the posture; nan where there is none at `most`.
+    """
+    rotations = len(ranges.rotation_cos)
+    past, room = memory(rotations), room_to_search()
+    low, high, last = least, np.nan, (0, -1.0)
+    for narrowest, near in ((_COARSE, 5.0 * share), (_NO_GAP, share)):
+        low, depth, turns = least, most, 1 if high == high else rotations
+        # Where nothing was found, a cutter that is all but a line is stopped again and again: not every tilt is tried.
+        narrowest = narrowest if turns == 1 else max(narrowest, 0.1 * _COARSE)
+        while not high - low <= near * high:
+            if high == high:
+                depth = np.sqrt(low * high)
+            tool = Tool(radius, radius - depth, depth, length - depth)
+            rotation, tilt = sweep(
+                contacts, 0, ranges, tool, length, solids, MAYBE_INSIDE, narrowest, last, turns, past, room
+            )
+            if rotation >= 0:
+                last, high = (rotation, tilt), depth
+                _write(found, 0, contacts, ranges, rotation, tilt)
+            elif high == high:
+                low = depth
             else:
-                reason = REAR_GOUGE
-                for attribute in (COLLISION, BURIED):
-                    if tally[attribute] > tally[reason]:
-                        reason = attribute
-                found.reason[row] = reason
+                break
+    return low, high
 
 
 @entry
@@ -368,7 +232,7 @@ def dummy_clear(rows, contacts, radius, length, safe, solids, clear):  # type: i
         cross(n, f, t)
         stand(body, Frame(contacts.point[row], n, f, t), 1.0, 0.0, 0.0, 2.0 * radius - safe, safe, length - safe)
         triangle, _, _, _ = tree_hit(solids.tree, body, 0.0, hint, room)
-        clear[row] = triangle < 0 and _inside(body, inner_height(radius, length), solids, room.stack) < MAYBE_INSIDE
+        clear[row] = triangle < 0 and inside(body, inner_height(radius, length), solids, room.stack) < MAYBE_INSIDE
         if triangle >= 0:
             hint = triangle
 

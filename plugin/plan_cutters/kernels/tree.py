@@ -5,29 +5,44 @@ counts, and it shrinks with the square of their size.
 
 The tree is complete: node j of level k covers the triangles `[n j >> k, n (j + 1) >> k)` of the ordered list, so
 no pointers are kept. Splitting is at the median of the triangles' centres along the longest side of their box.
+
+What is looked at together lies together: centres move with the triangles they stand for, and what is below a node is done
+before the next node of its level, so that all but the uppermost levels run in the processor's own memory. Corners lie
+coordinate by coordinate, for several to be looked at at a time.
 """
+
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from plan_cutters.kernels.jit import entry, kernel
 
 LEAF = 4
+#: Triangles looked at together.
+_LANES = 8
 
 
 @kernel
-def _select(order, key, lo, hi, nth):  # type: ignore[no-untyped-def]
-    """Partially sort `order[lo:hi]` so that the nth entry is in place (Hoare's selection)."""
+def _swap(order, centre, i, j):  # type: ignore[no-untyped-def]
+    order[i], order[j] = order[j], order[i]
+    for k in range(3):
+        centre[k, i], centre[k, j] = centre[k, j], centre[k, i]
+
+
+@kernel
+def _select(order, centre, axis, lo, hi, nth):  # type: ignore[no-untyped-def]
+    """Partially sort `order[lo:hi]`, and their centres with it, so that the nth is in place (Hoare's selection)."""
     hi -= 1
     while lo < hi:
-        pivot = key[order[(lo + hi) >> 1]]
+        pivot = centre[axis, (lo + hi) >> 1]
         i, j = lo, hi
         while i <= j:
-            while key[order[i]] < pivot:
+            while centre[axis, i] < pivot:
                 i += 1
-            while key[order[j]] > pivot:
+            while centre[axis, j] > pivot:
                 j -= 1
             if i <= j:
-                order[i], order[j] = order[j], order[i]
+                _swap(order, centre, i, j)
                 i += 1
                 j -= 1
         if nth <= j:
@@ -38,86 +53,207 @@ def _select(order, key, lo, hi, nth):  # type: ignore[no-untyped-def]
             return
 
 
-@entry
-def _bound(vertex, order, lo, hi, box):  # type: ignore[no-untyped-def]
-    """Bound `order[lo:hi]` by a box whose third side is along the mean normal."""
-    mean, first, normal = np.zeros(3), np.zeros(3), np.zeros(3)
+@kernel
+def _extent(row, lo, hi, lows, highs):  # type: ignore[no-untyped-def]
+    """Least and largest of `row[lo:hi]`, several at a time; scratch: lows, highs (_LANES,)."""
+    low, high = row[lo], row[lo]
+    whole = lo + (hi - lo) // _LANES * _LANES
+    if whole > lo:
+        for lane in range(len(lows)):
+            lows[lane], highs[lane] = row[lo + lane], row[lo + lane]
+        for i in range(lo + _LANES, whole, _LANES):
+            for lane in range(len(lows)):
+                lows[lane], highs[lane] = min(lows[lane], row[i + lane]), max(highs[lane], row[i + lane])
+        for lane in range(len(lows)):
+            low, high = min(low, lows[lane]), max(high, highs[lane])
+    for i in range(whole, hi):
+        low, high = min(low, row[i]), max(high, row[i])
+    return low, high
+
+
+@kernel
+def _normals(corner, normal):  # type: ignore[no-untyped-def]
+    """Write the normals (3, n) of triangles, as long as twice their area."""
+    for i in range(corner.shape[1]):
+        ax, ay, az = corner[3, i] - corner[0, i], corner[4, i] - corner[1, i], corner[5, i] - corner[2, i]
+        bx, by, bz = corner[6, i] - corner[0, i], corner[7, i] - corner[1, i], corner[8, i] - corner[2, i]
+        normal[0, i], normal[1, i], normal[2, i] = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+
+
+@kernel
+def _mean_normal(corner, normal, lo, hi):  # type: ignore[no-untyped-def]
+    """Unit mean normal of triangles `lo` to `hi`, area counted; along z if they have none."""
+    x, y, z = 0.0, 0.0, 0.0
+    fx, fy, fz = normal[0, lo], normal[1, lo], normal[2, lo]
     for i in range(lo, hi):
-        v = vertex[order[i]]
-        ax, ay, az = v[1, 0] - v[0, 0], v[1, 1] - v[0, 1], v[1, 2] - v[0, 2]
-        bx, by, bz = v[2, 0] - v[0, 0], v[2, 1] - v[0, 1], v[2, 2] - v[0, 2]
-        normal[0], normal[1], normal[2] = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
-        if i == lo:
-            first[0], first[1], first[2] = normal[0], normal[1], normal[2]
+        nx, ny, nz = normal[0, i], normal[1, i], normal[2, i]
         # Faces may be turned either way: count each normal to the side of the first.
-        side = 1.0 if normal[0] * first[0] + normal[1] * first[1] + normal[2] * first[2] >= 0.0 else -1.0
-        for k in range(3):
-            mean[k] += side * normal[k]
-    size = np.sqrt(mean[0] ** 2 + mean[1] ** 2 + mean[2] ** 2)
+        side = 1.0 if nx * fx + ny * fy + nz * fz >= 0.0 else -1.0
+        x, y, z = x + side * nx, y + side * ny, z + side * nz
+    size = np.sqrt(x**2 + y**2 + z**2)
     if size < 1e-100 and hi - lo > 2:
         # Points have no normals: the plane through them, then.
-        o = vertex[order[lo], 0]
         for i in range(lo + 1, hi - 1):
-            v, w = vertex[order[i], 0], vertex[order[i + 1], 0]
-            ax, ay, az = v[0] - o[0], v[1] - o[1], v[2] - o[2]
-            bx, by, bz = w[0] - o[0], w[1] - o[1], w[2] - o[2]
-            normal[0], normal[1], normal[2] = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
-            side = 1.0 if normal[0] * mean[0] + normal[1] * mean[1] + normal[2] * mean[2] >= 0.0 else -1.0
-            for k in range(3):
-                mean[k] += side * normal[k]
-        size = np.sqrt(mean[0] ** 2 + mean[1] ** 2 + mean[2] ** 2)
+            j = i + 1
+            ax, ay, az = corner[0, i] - corner[0, lo], corner[1, i] - corner[1, lo], corner[2, i] - corner[2, lo]
+            bx, by, bz = corner[0, j] - corner[0, lo], corner[1, j] - corner[1, lo], corner[2, j] - corner[2, lo]
+            nx, ny, nz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+            side = 1.0 if nx * x + ny * y + nz * z >= 0.0 else -1.0
+            x, y, z = x + side * nx, y + side * ny, z + side * nz
+        size = np.sqrt(x**2 + y**2 + z**2)
     if size < 1e-100:
-        mean[0], mean[1], mean[2] = 0.0, 0.0, 1.0
-    else:
-        for k in range(3):
-            mean[k] /= size
-    # The other sides: across the mean normal, the first along the longest side of the node that allows it.
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for i in range(lo, hi):
-        for corner in range(3):
+        return 0.0, 0.0, 1.0
+    return x / size, y / size, z / size
+
+
+@kernel
+def _reach(corner, lo, hi, middle, axes, room):  # type: ignore[no-untyped-def]
+    """Write into `room.least` and `room.most` (3,) how far triangles `lo` to `hi` reach along axes (3, 3) from a point."""
+    lows, highs, least, most = room.lows, room.highs, room.least, room.most
+    mx, my, mz = middle[0], middle[1], middle[2]
+    whole = lo + (hi - lo) // _LANES * _LANES
+    for k in range(3):
+        x, y, z, low, high = axes[k, 0], axes[k, 1], axes[k, 2], np.inf, -np.inf
+        for i in range(whole, hi):
+            for c in range(0, 9, 3):
+                at = (corner[c, i] - mx) * x + (corner[c + 1, i] - my) * y + (corner[c + 2, i] - mz) * z
+                low, high = min(low, at), max(high, at)
+        least[k], most[k] = low, high
+    if whole == lo:
+        return
+    for k in range(3):
+        for lane in range(lows.shape[1]):
+            lows[k, lane], highs[k, lane] = np.inf, -np.inf
+    for i in range(lo, whole, _LANES):
+        for c in range(0, 9, 3):
             for k in range(3):
-                low[k] = min(low[k], vertex[order[i], corner, k])
-                high[k] = max(high[k], vertex[order[i], corner, k])
+                x, y, z = axes[k, 0], axes[k, 1], axes[k, 2]
+                for lane in range(lows.shape[1]):
+                    j = i + lane
+                    at = (corner[c, j] - mx) * x + (corner[c + 1, j] - my) * y + (corner[c + 2, j] - mz) * z
+                    lows[k, lane], highs[k, lane] = min(lows[k, lane], at), max(highs[k, lane], at)
+    for k in range(3):
+        for lane in range(lows.shape[1]):
+            least[k], most[k] = min(least[k], lows[k, lane]), max(most[k], highs[k, lane])
+
+
+class _Room(NamedTuple):
+    """Room to bound a node in: low, high (levels, 2, 3), the boxes along x, y and z of a node's two children by its level;
+    middle (3,), axes (3, 3), least, most (3,), and lows, highs (3, _LANES)."""
+
+    low: Any
+    high: Any
+    middle: Any
+    axes: Any
+    least: Any
+    most: Any
+    lows: Any
+    highs: Any
+
+
+@kernel
+def _bound(corner, normal, lo, hi, low, high, box, node, room):  # type: ignore[no-untyped-def]
+    """Bound triangles `lo` to `hi`, which lie between low and high (3,), by a box whose third side is along the mean normal."""
+    middle, axes = room.middle, room.axes
+    mean = _mean_normal(corner, normal, lo, hi)
+    # The other sides: across the mean normal, the first along the longest side of the node that allows it.
     along, best = 0, -1.0
     for k in range(3):
+        middle[k] = 0.5 * (low[k] + high[k])
         extent = (high[k] - low[k] + 1e-300) * np.sqrt(max(0.0, 1.0 - mean[k] ** 2))
         if extent > best:
             along, best = k, extent
-    axes = np.zeros((3, 3))
-    axes[0, along] = 1.0
     for k in range(3):
-        axes[0, k] -= mean[along] * mean[k]
+        axes[0, k] = (1.0 if k == along else 0.0) - mean[along] * mean[k]
+        axes[2, k] = mean[k]
     size = np.sqrt(axes[0, 0] ** 2 + axes[0, 1] ** 2 + axes[0, 2] ** 2)
     for k in range(3):
         axes[0, k] /= size
-        axes[2, k] = mean[k]
     axes[1, 0] = mean[1] * axes[0, 2] - mean[2] * axes[0, 1]
     axes[1, 1] = mean[2] * axes[0, 0] - mean[0] * axes[0, 2]
     axes[1, 2] = mean[0] * axes[0, 1] - mean[1] * axes[0, 0]
     # Extents from the box's middle, so that far from the origin nothing is lost to rounding.
-    middle = np.empty(3)
-    for k in range(3):
-        middle[k] = 0.5 * (low[k] + high[k])
-        low[k], high[k] = np.inf, -np.inf
-    for i in range(lo, hi):
-        for corner in range(3):
-            v = vertex[order[i], corner]
-            for k in range(3):
-                c = (v[0] - middle[0]) * axes[k, 0] + (v[1] - middle[1]) * axes[k, 1] + (v[2] - middle[2]) * axes[k, 2]
-                low[k], high[k] = min(low[k], c), max(high[k], c)
+    _reach(corner, lo, hi, middle, axes, room)
     square, scale = 0.0, abs(middle[0]) + abs(middle[1]) + abs(middle[2])
     for k in range(3):
-        box[k] = middle[k]
-        box[3 + k], box[6 + k], box[9 + k] = axes[0, k], axes[1, k], axes[2, k]
+        box[node, k] = middle[k]
     for k in range(3):
         # A hair wider, so that rounding cannot leave a corner outside.
-        half = 0.5 * (high[k] - low[k]) * (1 + 1e-12) + 1e-14 * scale
-        centre = 0.5 * (high[k] + low[k])
+        half = 0.5 * (room.most[k] - room.least[k]) * (1 + 1e-12) + 1e-14 * scale
+        centre = 0.5 * (room.most[k] + room.least[k])
         for i in range(3):
-            box[i] += centre * axes[k, i]
-        box[12 + k] = half
+            box[node, i] += centre * axes[k, i]
+            box[node, 3 + 3 * k + i] = axes[k, i]
+        box[node, 12 + k] = half
         square += half * half
-    box[15] = np.sqrt(square) * (1 + 1e-12)
+    box[node, 15] = np.sqrt(square) * (1 + 1e-12)
+
+
+@kernel
+def _sort(order, centre, depth, lows, highs):  # type: ignore[no-untyped-def]
+    """Bring triangles into the order of the tree's leaves, each node with all below it before the next."""
+    n, level, j = len(order), 0, 0
+    while depth > 0:
+        lo, hi = (n * j) >> level, (n * (j + 1)) >> level
+        axis, longest = 0, -1.0
+        for k in range(3):
+            low, high = _extent(centre[k], lo, hi, lows, highs)
+            if high - low > longest:
+                axis, longest = k, high - low
+        _select(order, centre, axis, lo, hi, (n * (2 * j + 1)) >> (level + 1))
+        if level + 1 < depth:
+            level, j = level + 1, 2 * j
+            continue
+        # The next node that was not below one done: up past those that were second, then beside.
+        j += 1
+        while j & 1 == 0 and level > 0:
+            level, j = level - 1, j >> 1
+        if level == 0:
+            return
+
+
+@kernel
+def _bounds(corner, normal, depth, box, room):  # type: ignore[no-untyped-def]
+    """Bound every node, after the two below it."""
+    n = corner.shape[1]
+    for leaf in range(1 << depth):
+        lo, hi = (n * leaf) >> depth, (n * (leaf + 1)) >> depth
+        low, high = room.low[depth, leaf & 1], room.high[depth, leaf & 1]
+        for k in range(3):
+            low[k], high[k] = np.inf, -np.inf
+            for i in range(lo, hi):
+                low[k] = min(low[k], min(corner[k, i], min(corner[3 + k, i], corner[6 + k, i])))
+                high[k] = max(high[k], max(corner[k, i], max(corner[3 + k, i], corner[6 + k, i])))
+        level, j = depth, leaf
+        _bound(corner, normal, lo, hi, low, high, box, (1 << level) - 1 + j, room)
+        while j & 1:
+            # Both children are done: then so can be what is above them.
+            level, j = level - 1, j >> 1
+            low, high = room.low[level, j & 1], room.high[level, j & 1]
+            for k in range(3):
+                low[k] = min(room.low[level + 1, 0, k], room.low[level + 1, 1, k])
+                high[k] = max(room.high[level + 1, 0, k], room.high[level + 1, 1, k])
+            lo, hi = (n * j) >> level, (n * (j + 1)) >> level
+            _bound(corner, normal, lo, hi, low, high, box, (1 << level) - 1 + j, room)
+
+
+@kernel
+def _middles(vertex, centre):  # type: ignore[no-untyped-def]
+    """Write the middles (3, n) of the boxes around triangles."""
+    for i in range(len(vertex)):
+        for k in range(3):
+            low = min(vertex[i, 0, k], vertex[i, 1, k], vertex[i, 2, k])
+            high = max(vertex[i, 0, k], vertex[i, 1, k], vertex[i, 2, k])
+            centre[k, i] = 0.5 * (low + high)
+
+
+@kernel
+def _corners(vertex, order, corner):  # type: ignore[no-untyped-def]
+    """Write the corners' coordinates (9, n) in order."""
+    for i in range(len(order)):
+        for c in range(3):
+            for k in range(3):
+                corner[3 * c + k, i] = vertex[order[i], c, k]
 
 
 @entry
@@ -142,31 +278,20 @@ def build(vertex):  # type: ignore[no-untyped-def]
     depth = 0
     while (n >> depth) > LEAF:
         depth += 1
-    centre = np.empty((3, n))
-    for i in range(n):
-        for k in range(3):
-            low = min(vertex[i, 0, k], vertex[i, 1, k], vertex[i, 2, k])
-            high = max(vertex[i, 0, k], vertex[i, 1, k], vertex[i, 2, k])
-            centre[k, i] = 0.5 * (low + high)
+    lows, highs = np.empty(_LANES), np.empty(_LANES)
     order = np.arange(n).astype(np.int32)
-    for level in range(depth):
-        for j in range(1 << level):
-            lo, hi = (n * j) >> level, (n * (j + 1)) >> level
-            axis, longest = 0, -1.0
-            for k in range(3):
-                low, high = np.inf, -np.inf
-                for i in range(lo, hi):
-                    c = centre[k, order[i]]
-                    low, high = min(low, c), max(high, c)
-                if high - low > longest:
-                    axis, longest = k, high - low
-            _select(order, centre[axis], lo, hi, (n * (2 * j + 1)) >> (level + 1))
-    nodes = (2 << depth) - 1
-    box = np.empty((nodes, 16))
-    for node in range(nodes):
-        level = 0
-        while (2 << level) - 1 <= node:
-            level += 1
-        j = node - ((1 << level) - 1)
-        _bound(vertex, order, (n * j) >> level, (n * (j + 1)) >> level, box[node])
+    centre = np.empty((3, n))
+    _middles(vertex, centre)
+    _sort(order, centre, depth, lows, highs)
+    corner = np.empty((9, n))
+    _corners(vertex, order, corner)
+    # The centres have served: their room is that of the normals.
+    normal = centre
+    _normals(corner, normal)
+    box = np.empty(((2 << depth) - 1, 16))
+    room = _Room(
+        np.empty((depth + 1, 2, 3)), np.empty((depth + 1, 2, 3)), np.empty(3), np.empty((3, 3)), np.empty(3), np.empty(3),
+        np.empty((3, _LANES)), np.empty((3, _LANES)),
+    )  # fmt: skip
+    _bounds(corner, normal, depth, box, room)
     return order, box, depth

@@ -79,7 +79,7 @@ class Obstacles(Record):
     def tree(self) -> Tree:
         """The triangles in tree order, and the tree, as the kernels take it."""
         order, box, depth = self._built
-        return Tree(np.ascontiguousarray(self.triangles.vertex[order]), box, depth)
+        return Tree(self.triangles.vertex.take(order, axis=0), box, depth)
 
     @cached_property
     def solids(self) -> "Solids":

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import (
-    ACCESSIBLE,
     BURIED,
     INACCESSIBLE,
     INTERFERENCE_FREE,
@@ -22,7 +21,7 @@ from plan_cutters.domain.verdicts import (
 )
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.buried import cover
-from plan_cutters.scene.conditions import Conditions, contacts_of, search_postures
+from plan_cutters.scene.conditions import Conditions, contacts_of, found_of, search_postures
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.threads import Progress, in_chunks
 
@@ -181,23 +180,17 @@ def _least_depth(
     samples: SurfaceSamples, row: int, reason: str, cutter: Cutter, conditions: Conditions
 ) -> tuple[Reach, float, float] | None:
     """The posture of least depth, and depths, mm, between which that lies; None if no posture is left at any."""
-    one, first = slice(row, row + 1), np.zeros(1, np.int64)
+    from plan_cutters.kernels.search import least_depth
+
+    one = slice(row, row + 1)
     curvature = np.zeros((1, 2)) if reason == "local_gouge" else samples.curvature[one]
     contact = Contacts(samples.point[one], samples.normal[one], samples.direction_max[one], curvature)
-    deepest = min(cutter.radius, cutter.length / 2) * (1 - 1e-9)
-    low, high = conditions.depths[0], deepest
-    best: Reach | None = None
-    while best is None or high - low > _PRECISION * high:
-        depth = np.sqrt(low * high) if best else deepest
-        trial = blank(1)
-        search_postures(contact, first, cutter, conditions, (depth, depth), trial)
-        if trial.verdict[0] == ACCESSIBLE:
-            best, high = trial, depth
-        elif best is None:
-            return None
-        else:
-            low = depth
-    return best, low, high
+    deepest, best = min(cutter.radius, cutter.length / 2) * (1 - 1e-9), blank(1)
+    low, high = least_depth(
+        contact, conditions.ranges, cutter.radius, cutter.length, conditions.depths[0], deepest, _PRECISION,
+        conditions.obstacles.solids, found_of(best),
+    )  # fmt: skip
+    return None if np.isnan(high) else (best, low, high)
 
 
 def _covered(samples: SurfaceSamples, row: int, skin: Obstacles) -> Witness:
