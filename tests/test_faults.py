@@ -10,7 +10,6 @@ from cad_parts import as_nurbs, ball, compound, drilled, rod
 from fault_files import FINE, LOST, PATTERNS, REFUSED, WARNED, seeds
 from OCP.IGESControl import IGESControl_Writer
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader, STEPControl_Writer
-from test_cli import assert_one_line, run
 
 from cad_io import LostFace, Part, ReadError, read_part
 from cad_io.read import read
@@ -274,12 +273,13 @@ def test_tessellation_tells_where_it_is():
     assert [face for who, face in told if who == "own"] == numbers
 
 
-def test_the_command_names_our_tessellation(whole, tmp_path):
-    from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
-
-    writer = STEPControl_Writer()
-    writer.Transfer(as_nurbs(rod(900.0, 900.0)), STEPControl_AsIs)
-    writer.Write(str(tmp_path / "part.step"))
-    words = ["part.step", "--cutter", "R3L40", "--faces", "all", "--grid", "3", "--tolerance", "1e-4", "--quiet"]
-    ran = run(*words, "--read-timeout", "0.8", cwd=tmp_path, timeout=60)
-    assert_one_line(ran, 3, "part.step", "our own tessellation")
+def test_our_tessellation_is_named_where_it_takes_too_long():
+    here, there = os.pipe()
+    watch = _Watch(here, 1e-9)
+    os.write(there, b"part part.step\nstage tessellate\nwork own F3\n")
+    watch.listen(1.0)
+    os.close(there)
+    assert watch.late()
+    said = str(watch.ended(*watch.verdict()))
+    os.close(here)
+    assert said.startswith("part.step: F3: our own tessellation did not end within")
