@@ -3,6 +3,8 @@
 from typing import Any
 
 from OCP.BRep import BRep_Builder
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
+from OCP.gp import gp_Dir, gp_Pln, gp_Pnt
 from OCP.TopAbs import TopAbs_COMPOUND, TopAbs_EDGE
 from OCP.TopoDS import TopoDS_Compound, TopoDS_Iterator
 from OCP.TopTools import TopTools_IndexedMapOfShape
@@ -33,6 +35,14 @@ def components(shape: Any) -> list[Any]:
     for i, part in enumerate(parts):
         groups.setdefault(find(i), []).append(part)
     return [group[0] if len(group) == 1 else compound(group) for group in groups.values()]
+
+
+def corner(side: float, gap: float) -> TopoDS_Compound:
+    """A square face in the plane of x and y, and beside it, at a gap, one across it: next to the smallest part in which something
+    is in the way."""
+    floor = BRepBuilderAPI_MakeFace(gp_Pln(), 0.0, side, 0.0, side).Face()
+    across = gp_Pln(gp_Pnt(-gap, 0.0, 0.0), gp_Dir(1.0, 0.0, 0.0))
+    return compound([floor, BRepBuilderAPI_MakeFace(across, -side, side, -side, side).Face()])
 
 
 def compound(shapes: list[Any]) -> Any:

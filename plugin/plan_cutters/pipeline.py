@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io import Part, SurfaceSamples, read_part
+from cad_io import Part, read_part
 from cad_io.read.read import TIMEOUT
 from cad_io.sample import sample
 from cad_io.tessellate.triangles import At
@@ -23,6 +23,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.nesting import handed, order
 from plan_cutters.domain.verdicts import CONVEX, Reach, blank
 from plan_cutters.errors import OptionError, UnjudgeableError
+from plan_cutters.kernels.rows import Contacts
 from plan_cutters.options import Options
 from plan_cutters.result import Result
 from plan_cutters.scene.buried import buried
@@ -87,14 +88,16 @@ vars(plan)["__signature__"] = inspect.Signature(
 
 
 def run(
-    part: Any, options: Options, clock: Clock, *, read_timeout: float = TIMEOUT, at: At = lambda whose, face: None
-) -> Result:
+    part: Any, options: Options, clock: Clock, *, read_timeout: float = TIMEOUT, at: At = lambda whose, face: None,
+    ahead: Callable[[], None] = lambda: None,
+) -> Result:  # fmt: skip
     """`plan` with its options gathered.
 
-    `read_timeout` is the most seconds that a faulty file may take to read; `at` is told whose work goes on at which face.
+    `read_timeout` is the most seconds that a faulty file may take to read; `at` is told whose work goes on at which face;
+    `ahead` waits for machine code that is made meanwhile.
     """
     started = datetime.datetime.now(datetime.UTC)
-    ready = prepare(part, options, clock, read_timeout=read_timeout, at=at)
+    ready = prepare(part, options, clock, read_timeout=read_timeout, at=at, ahead=ahead)
     judged: dict[Cutter, Judged] = {}
     for cutter in order(ready.cutters):
         with clock.stage(cutter.id) as tell:
@@ -112,7 +115,7 @@ def run(
 
 def prepare(
     part: Any, options: Options, clock: Clock | None = None, *, read_timeout: float = TIMEOUT,
-    at: At = lambda whose, face: None,
+    at: At = lambda whose, face: None, ahead: Callable[[], None] = lambda: None,
 ) -> Prepared:  # fmt: skip
     """Read, sample, classify and surround with obstacles; arguments as for `run`."""
     clock = clock or Clock()
@@ -151,7 +154,8 @@ def prepare(
     with clock.stage("tree"):
         _ = around.may_be.solids, around.surely.solids
     with clock.stage("compile"):
-        _warm(samples, cutters[0], conditions)
+        ahead()
+        warm(contacts_of(samples), cutters[0], conditions)
     with clock.stage("bodies"):
         within = buried(samples, scene.orientation, around.bodies, around.surely, scene.tolerance)
     return Prepared(scene, options, chosen, spacing, samples, surface_class, region, within, conditions, cutters)
@@ -263,11 +267,11 @@ def _affordable(part: Part, targets: Sequence[int], options: Options) -> None:
         )
 
 
-def _warm(samples: SurfaceSamples, cutter: Cutter, conditions: Conditions) -> None:
+def warm(contacts: Contacts, cutter: Cutter, conditions: Conditions) -> None:
     """Load or compile every kernel, so that stage times are those of the work."""
     from plan_cutters.kernels import search
 
-    none, contacts, found = np.zeros(0, np.int64), contacts_of(samples), found_of(blank(0))
+    none, found = np.zeros(0, np.int64), found_of(blank(0))
     search.dummy_clear(none, contacts, cutter.radius, cutter.length, conditions.tolerance,
                       conditions.obstacles.solids, np.zeros(0, bool))  # fmt: skip
     search.search(none, contacts, conditions.ranges, cutter.radius, cutter.length, *conditions.depths,

@@ -3,6 +3,7 @@
 import gc
 import sys
 import traceback
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -33,6 +34,7 @@ def one_part(
     staging = Staging(out, lambda folder: report("staging", str(folder))) if formats else None
     watch = Onlooker(out, given)
     try:
+        ahead = _compiling(options, given["quiet"])
         import plan_cutters.report.models  # noqa: F401  all that takes time to load is loaded in the stage `start`
         from cad_io.kernel.limited import KERNEL_THREADS
         from plan_cutters.document.clock import Clock
@@ -43,7 +45,7 @@ def one_part(
         gc.enable()
         with Progress(given["quiet"]) as tell:
             clock = Clock(tell, began=began)
-            result = run(part, options, clock, read_timeout=given["read_timeout"], at=report_work)
+            result = run(part, options, clock, read_timeout=given["read_timeout"], at=report_work, ahead=ahead)
         document = result.plan
         if not formats:
             watch.summarise(document)
@@ -68,6 +70,16 @@ def one_part(
     for name, why in document.not_written.items():
         click.echo(f"plan-cutters: {file_name(name)} was not written: {why}", err=True)
     return code_of(document), ""
+
+
+def _compiling(options: "Options", quiet: bool) -> Callable[[], None]:
+    """Let machine code be made meanwhile where there is none, and say so; what waits for it."""
+    from plan_cutters.command.ahead import begin
+
+    wait = begin(options.posture_maps) if options.jobs > 1 else None
+    if wait is not None and not quiet:
+        click.echo("compiling for this machine, once: the first plan takes about half a minute longer", err=True)
+    return wait or (lambda: None)
 
 
 class Onlooker:

@@ -1,7 +1,18 @@
-"""The two decorators of kernels (`cad_io.jit`), with a cache folder for just these sources."""
+"""The decorators of all kernels of cutters; see `cad_io.jit`."""
 
-from cad_io.jit import VERSION, decorators
+from pathlib import Path
 
-__all__ = ["VERSION", "entry", "kernel"]
+from cad_io.jit import VERSION, cache_folder, decorators
+
+__all__ = ["VERSION", "at_hand", "entry", "kernel"]
 
 entry, kernel = decorators(__file__)
+
+
+def at_hand(name: str) -> bool | None:
+    """Whether there is machine code of an entry, `module.function`, made by an earlier run or by another process.
+
+    None where it is kept for this process alone, since no folder can be written to.
+    """
+    folder = Path(cache_folder(Path(__file__).parent))
+    return any(folder.glob(f"**/{name}-*.nbi")) if folder.name.startswith("kernels-") else None

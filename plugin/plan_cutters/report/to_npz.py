@@ -38,9 +38,9 @@ def write_postures(result: Any, _split: object, path: Path) -> None:
 
 def _write(arrays: dict[str, Any], path: Path) -> None:
     # numpy's own writer stamps the time: two runs would differ.
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+    with zipfile.ZipFile(path, "w") as archive:
         for key, array in arrays.items():
             buffer = io.BytesIO()
             np.lib.format.write_array(buffer, np.ascontiguousarray(array), allow_pickle=False)
             archive.writestr(zipfile.ZipInfo(f"{key}.npy", (1980, 1, 1, 0, 0, 0)), buffer.getvalue(),
-                             zipfile.ZIP_DEFLATED)  # fmt: skip
+                             zipfile.ZIP_DEFLATED, compresslevel=1)  # fmt: skip

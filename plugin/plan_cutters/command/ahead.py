@@ -1,0 +1,68 @@
+"""Machine code made ahead: on the first run of all, a second process compiles while this one reads and meshes the part."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+
+from plan_cutters.command.supervise import REPORT
+
+#: The longest that is waited for it, s: what is not there by then is compiled here.
+_PATIENCE = 120.0
+
+
+def begin(maps: bool) -> Callable[[], None] | None:
+    """Start the second process where there is no machine code yet; what waits for its end, None where it is not needed.
+
+    Parameters
+    ----------
+    maps : bool
+        Whether posture maps will be asked for.
+    """
+    from plan_cutters.kernels.jit import at_hand
+
+    if at_hand("search.search") is not False:
+        return None
+    environment = {name: value for name, value in os.environ.items() if name != REPORT}
+    words = [sys.executable, "-m", "plan_cutters.command.ahead", *(["maps"] if maps else [])]
+    try:
+        other = subprocess.Popen(words, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                 stderr=subprocess.DEVNULL)  # fmt: skip
+    except OSError:
+        return None  # it would only have saved time
+
+    def wait() -> None:
+        try:
+            other.wait(_PATIENCE)
+        except subprocess.TimeoutExpired:
+            other.kill()
+            other.wait()
+
+    return wait
+
+
+def compile_all(maps: bool) -> None:
+    """Compile what every plan needs: the search at once, with nothing to search, then a plan of a small corner."""
+    import numpy as np
+
+    from cad_io.arrays import Triangles
+    from cad_io.kernel.components import corner
+    from plan_cutters import Cutter, plan
+    from plan_cutters.domain.machine import Machine
+    from plan_cutters.domain.posture import PostureRange
+    from plan_cutters.kernels.rows import Contacts
+    from plan_cutters.pipeline import warm
+    from plan_cutters.scene.conditions import Conditions
+    from plan_cutters.scene.obstacles import Obstacles
+    from plan_cutters.scene.surroundings import Surroundings
+
+    cutter, none = Cutter.flat(radius=1, length=9), np.zeros((0, 3))
+    one = Obstacles(Triangles(np.eye(3)[None], np.ones(1, np.int32), 1e-3, ()))
+    conditions = Conditions(Machine(), np.array([0.0, 0.0, 1.0]), PostureRange(), Surroundings.sheet(one), 0.01, 1)
+    warm(Contacts(none, none, none, none[:, :2].copy()), cutter, conditions)
+    # What reading and meshing need is compiled by the first process meanwhile, and only loaded here.
+    plan(corner(20.0, 0.2), faces=[1], cutters=[cutter], grid=9, jobs=1, posture_maps=maps)
+
+
+if __name__ == "__main__":
+    compile_all("maps" in sys.argv[1:])
