@@ -22,7 +22,7 @@ entry, kernel = decorators(__file__)
 _ALONG, _MOST = 96, 256
 #: Cells each way where not many triangles are to be laid, and where many are: bounds close in as cells shrink.
 COARSE, FINE = 24, 64
-#: Knots nearer than this share of the range are one line; what they hide is added to every distance.
+#: Knots nearer than this share of the range are one line; what the surface does between them is not proved.
 _NARROW = 1e-9
 #: Columns of a table: Suu, Svv, Suv in the middle, what Suu and Svv may differ by (Suv shared out to them), |Su|, |Sv|.
 _WIDE = 13
@@ -31,9 +31,8 @@ _WIDE = 13
 class Table(NamedTuple):
     """Bends over windows of cells.
 
-    u, v: lines. kink_u, kink_v (k, 2): lines where first derivatives jump, and how far at most. node (n, _WIDE):
-    windows' bends, level after level:
-    those of level (i, j) begin at start[i, j] and are along_u[i] by along_v[j]. slack: mm added to every distance.
+    u, v: lines. kink_u, kink_v (k, 2): lines where first derivatives jump, and how far at most. node (n, _WIDE): windows'
+    bends, level after level: those of level (i, j) begin at start[i, j] and are along_u[i] by along_v[j].
     """
 
     u: Any
@@ -44,26 +43,25 @@ class Table(NamedTuple):
     start: Any
     along_u: Any
     along_v: Any
-    slack: float
 
 
 def table_of(surface: Surface, box: tuple[float, float, float, float], cells: int = COARSE) -> tuple[Table, bool]:
     """The table of a surface over a rectangle (u0, u1, v0, v1), of so many cells each way or more, and whether its bounds are
     proved.
 
-    Bounds of a surface that only the kernel can evaluate are guessed from derivatives in places: what stands on them must
-    be measured.
+    Bounds of a surface that only the kernel can evaluate are guessed from derivatives in places, and what a surface does between
+    knots that are nearly one is left out: what stands on either must be measured.
     """
     form = surface.form
     if form is not None:
-        lines, kinks, slack = [], [], []
+        lines, kinks, whole = [], [], True
         for k in range(2):
             ends = (box[2 * k], box[2 * k + 1])
             knots, jumps = lines_within(form.knots[k], form.jumps[k], form.period[k], ends)
-            found, hidden = _merged(knots, ends)
-            lines.append(found)
+            lines.append(_merged(knots, ends))
             kinks.append(np.stack([knots, jumps], axis=1)[jumps > 0.0])
-            slack.append(hidden)
+            # A knot at the border itself hides nothing: the piece beyond it is as wide as others, and hardly entered.
+            whole = whole and bool((np.diff(knots) > _NARROW * (ends[1] - ends[0])).all())
         bends = _bends(form.bends, *lines)
         bent = [np.abs(bends.middle[:, :, k]).max() + bends.spread[:, :, k].max() > 0.0 for k in range(3)]
         if np.isfinite(bends.spread).all() and np.isfinite(bends.first).all():
@@ -72,24 +70,20 @@ def table_of(surface: Surface, box: tuple[float, float, float, float], cells: in
             bends = _bends(form.bends, *finer)
             finer = [_thinned(each) for each in finer]
             if np.isfinite(bends.spread).all() and np.isfinite(bends.first).all():
-                hidden = 2.0 * float(bends.first[..., 0].max() * slack[0] + bends.first[..., 1].max() * slack[1])
-                return _table(finer[0], finer[1], kinks[0], kinks[1], bends, hidden), True
+                return _table(finer[0], finer[1], kinks[0], kinks[1], bends), whole
     u, v = (np.linspace(box[2 * k], box[2 * k + 1], cells + 1) for k in range(2))
     none = np.zeros((0, 2))
-    return _table(u, v, none, none, _guessed(surface, u, v), 0.0), False
+    return _table(u, v, none, none, _guessed(surface, u, v)), False
 
 
-def _merged(knots: Floats, ends: tuple[float, float]) -> tuple[Floats, float]:
-    """Lines at the ends and at the knots between, and the width of what is hidden where knots are nearly one."""
+def _merged(knots: Floats, ends: tuple[float, float]) -> Floats:
+    """Lines at the ends and at the knots between, one where knots are nearly one."""
     narrow = _NARROW * (ends[1] - ends[0])
     kept = [ends[0]]
-    for knot in (*knots.tolist(), ends[1]):
-        if knot - kept[-1] > narrow:
+    for knot in knots.tolist():
+        if knot - kept[-1] > narrow and ends[1] - knot > narrow:
             kept.append(knot)
-    if len(kept) > 1 and kept[-1] != ends[1]:
-        kept[-1] = ends[1]
-    hidden = narrow * (len(knots) + 2 - len(kept))
-    return (np.array(kept) if len(kept) > 1 else np.array([ends[0], max(ends[1], ends[0] + 1e-300)])), hidden
+    return np.array([*kept, max(ends[1], ends[0] + 1e-300)])
 
 
 def _subdivided(lines: Floats, count: int) -> Floats:
@@ -140,7 +134,7 @@ def _guessed(surface: Surface, u: Floats, v: Floats) -> Bends:
     return Bends(middle, spread, np.linalg.norm(each[:, :, :, 1:3], axis=4).max(axis=0))
 
 
-def _table(u: Floats, v: Floats, kink_u: Floats, kink_v: Floats, bends: Bends, slack: float) -> Table:
+def _table(u: Floats, v: Floats, kink_u: Floats, kink_v: Floats, bends: Bends) -> Table:
     # Suv is shared out to Suu and Svv, |2 du dv| <= k du^2 + dv^2 / k, in the ratio in which steps of one length stand.
     first = bends.first.reshape(-1, 2).max(axis=0)
     ratio = float(first[0] / first[1]) if (first > 0).all() and np.isfinite(first).all() else 1.0
@@ -153,9 +147,7 @@ def _table(u: Floats, v: Floats, kink_u: Floats, kink_v: Floats, bends: Bends, s
     spread = bends.spread.reshape(-1, 3)
     cells[:, 9], cells[:, 10] = spread[:, 0] + ratio * spread[:, 2], spread[:, 1] + spread[:, 2] / ratio
     cells[:, 11:] = bends.first.reshape(-1, 2)
-    found = Table(
-        u, v, np.ascontiguousarray(kink_u), np.ascontiguousarray(kink_v), node, start, along_u, along_v, slack
-    )
+    found = Table(u, v, np.ascontiguousarray(kink_u), np.ascontiguousarray(kink_v), node, start, along_u, along_v)
     _gather(found, ratio)
     return found
 

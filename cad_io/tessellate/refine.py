@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cad_io.jit import decorators
-from cad_io.tessellate.bounds import Table, bend, most_inside, window
-from cad_io.tessellate.curves import Curves, point, room, strays
+from cad_io.tessellate.bounds import bend, most_inside, window
+from cad_io.tessellate.curves import point, room, strays
 
 entry, kernel = decorators(__file__)
 
@@ -125,7 +125,7 @@ def _look(stack, k, table, curves, chord):  # type: ignore[no-untyped-def]
     jump_u, line_u = _jumps(table.kink_u, box[0], box[1])
     jump_v, line_v = _jumps(table.kink_v, box[2], box[3])
     jump = jump_u + jump_v
-    off = inside + strayed + jump + table.slack
+    off = inside + strayed + jump
     if jump > inside and jump > strayed:
         axis = 0 if jump_u >= jump_v else 1
         line = table.kink_u[line_u, 0] if axis == 0 else table.kink_v[line_v, 0]
@@ -256,6 +256,3 @@ def refined(start, table, curves, chord, most, found):  # type: ignore[no-untype
         np.empty(high, np.int64),
     )  # fmt: skip
     return _refined(start, table, curves, chord, most, stack, room(), found)
-
-
-__all__ = ["Curves", "Found", "Start", "Table", "refined"]
