@@ -199,10 +199,13 @@ def test_several_parts_the_largest_code(tmp_path):
     assert "bad.step: plan-cutters: bad.step" in done.stderr
 
 
-def test_an_interrupt_leaves_nothing(tmp_path):
+@pytest.mark.parametrize("ignored", [False, True], ids=["", "in the background"])
+def test_an_interrupt_leaves_nothing(tmp_path, ignored):
+    """A shell lets what it runs in the background ignore interrupts; asked for in person, one still counts."""
     process = subprocess.Popen(
         [sys.executable, "-m", "plan_cutters", str(SAMPLES / "peaks_and_valleys.step"), "--grid", "401"],
         cwd=tmp_path, env=ENV, stderr=subprocess.PIPE, text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN if ignored else signal.default_int_handler),
     )  # fmt: skip
     assert process.stderr is not None
     for line in process.stderr:

@@ -2,6 +2,7 @@
 
 import gc
 import os
+import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -247,6 +248,8 @@ def main(args: Sequence[str] | None = None) -> NoReturn:
     """Entry point of the command: what has a part to read runs in a child process."""
     words = list(sys.argv[1:] if args is None else args)
     if is_child():
+        # Whoever started the command may ignore interrupts, as a shell does for what runs in the background: the parent does not.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         gc.disable()  # nothing of what imports make is garbage; `one_part` turns it on again
         limit_memory()
         keep_output()
