@@ -18,10 +18,11 @@ from cad_io.surface.forms import lines_within
 
 entry, kernel = decorators(__file__)
 
-#: Cells along a surface that is bent one way only, at least; at most, where dense knots are put together.
-_ALONG, _MOST = 96, 256
-#: Cells each way where not many triangles are to be laid, and where many are: bounds close in as cells shrink.
-COARSE, FINE = 24, 64
+#: Cells along a surface that is bent one way only, at least, so many times those of one bent both ways; at most, where dense
+#: knots are put together.
+_ALONG, _MOST = 4, 256
+#: Cells each way where few triangles are to be laid, more, and many: bounds close in as cells shrink.
+COARSE, MIDDLE, FINE = 8, 24, 64
 #: Knots nearer than this share of the range are one line; what the surface does between them is not proved.
 _NARROW = 1e-9
 #: Columns of a table: Suu, Svv, Suv in the middle, what Suu and Svv may differ by (Suv shared out to them), |Su|, |Sv|.
@@ -66,7 +67,7 @@ def table_of(surface: Surface, box: tuple[float, float, float, float], cells: in
         bent = [np.abs(bends.middle[:, :, k]).max() + bends.spread[:, :, k].max() > 0.0 for k in range(3)]
         if np.isfinite(bends.spread).all() and np.isfinite(bends.first).all():
             ways = [bent[k] or bent[2] for k in range(2)]
-            finer = [_subdivided(lines[k], cells if all(ways) else _ALONG) if ways[k] else lines[k] for k in range(2)]
+            finer = [_subdivided(lines[k], cells if all(ways) else _ALONG * cells) if ways[k] else lines[k] for k in range(2)]
             bends = _bends(form.bends, *finer)
             finer = [_thinned(each) for each in finer]
             if np.isfinite(bends.spread).all() and np.isfinite(bends.first).all():

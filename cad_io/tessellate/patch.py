@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from cad_io.part import Part
 from cad_io.surface import Surface
-from cad_io.tessellate.bounds import FINE, Table, table_of
+from cad_io.tessellate.bounds import FINE, MIDDLE, Table, table_of
 from cad_io.tessellate.curves import Curves, packed, reach
 from cad_io.tessellate.mesh import UVMesh
 from cad_io.tessellate.refine import Found, Start, refined
@@ -22,8 +22,8 @@ _AT_ONCE = 1 << 16
 #: How often a guess that does not hold is made again, and how much larger than measured.
 _GUESSES, _LARGER = 6, 1.02
 
-#: Triangles from which a finer table takes less time than the triangles that it saves.
-_MANY = 8000
+#: Triangles from which a table of so many cells takes less time than the triangles that it saves.
+_FINER = ((400, MIDDLE), (8000, FINE))
 
 Indices = NDArray[np.int64]
 
@@ -63,8 +63,9 @@ class Patch(NamedTuple):
         box = (low[0], high[0], low[1], high[1])
         table, proved = table_of(surface, box)
         patch = Patch(number, surface, start, table, curves, proved and exact)
-        if proved and patch.counted(chord, _MANY)[0] > _MANY:
-            patch = patch._replace(table=table_of(surface, box, FINE)[0])
+        for many, cells in _FINER:
+            if proved and patch.counted(chord, many)[0] > many:
+                patch = patch._replace(table=table_of(surface, box, cells)[0])
         return patch
 
     def counted(self, chord: float, most: int) -> tuple[int, int]:
