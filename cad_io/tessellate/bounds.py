@@ -67,7 +67,9 @@ def table_of(surface: Surface, box: tuple[float, float, float, float], cells: in
         bent = [np.abs(bends.middle[:, :, k]).max() + bends.spread[:, :, k].max() > 0.0 for k in range(3)]
         if np.isfinite(bends.spread).all() and np.isfinite(bends.first).all():
             ways = [bent[k] or bent[2] for k in range(2)]
-            finer = [_subdivided(lines[k], cells if all(ways) else _ALONG * cells) if ways[k] else lines[k] for k in range(2)]
+            finer = [
+                _subdivided(lines[k], cells if all(ways) else _ALONG * cells) if ways[k] else lines[k] for k in range(2)
+            ]
             bends = _bends(form.bends, *finer)
             finer = [_thinned(each) for each in finer]
             if np.isfinite(bends.spread).all() and np.isfinite(bends.first).all():
