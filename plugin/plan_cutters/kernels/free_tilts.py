@@ -7,16 +7,17 @@ range is halved. Ranges narrower than `narrowest` stay undecided.
 
 import numpy as np
 
-from plan_cutters.kernels.arcs import point_arc
-from plan_cutters.kernels.hit import BODY, cross, scratch, stand, tree_hit
+from plan_cutters.kernels.hit import BODY, cross, scratch, tree_hit
 from plan_cutters.kernels.jit import entry
+from plan_cutters.kernels.probing import OFFSET_OF, arc_of, put
 from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.tool_arcs import ARCS
 
 OPEN, FORBIDDEN, UNSURE = 0, 1, 2
 
 
 @entry
-def free_tilts(p, n, f, low, high, radius, length, depth_allowed, narrowest, tree, room):  # type: ignore[no-untyped-def]
+def free_tilts(p, n, f, low, high, tool, mode, narrowest, tree, room):  # type: ignore[no-untyped-def]
     """Split a range of tilts into free, forbidden and undecided parts.
 
     Parameters
@@ -25,8 +26,10 @@ def free_tilts(p, n, f, low, high, radius, length, depth_allowed, narrowest, tre
         Contact, normal, lean direction.
     low, high : float
         rad.
-    radius, length, depth_allowed : float
-        Cutter, and the depth up to which a triangle does not matter, mm.
+    tool : Tool
+        Without what does not matter.
+    mode : int
+        In which it touches.
     narrowest : float
         rad.
     tree : Tree
@@ -41,27 +44,26 @@ def free_tilts(p, n, f, low, high, radius, length, depth_allowed, narrowest, tre
     t = np.empty(3)
     cross(n, f, t)
     frame, body = Frame(p, n, f, t), np.empty(BODY)
-    walk = scratch()
+    walk, arcs, piece = scratch(), np.empty((ARCS, 2)), tool.piece[mode]
     parts = np.empty((room + 4, 3))
     pending = np.empty((room + 4, 2))
     pending[0, 0], pending[0, 1] = low, high
     top, done, hint = 1, 0, -1
-    shrunk, bottom, ceiling = radius - depth_allowed, depth_allowed, length - depth_allowed
     while top > 0:
         top -= 1
         first, last = pending[top, 0], pending[top, 1]
         tilt, half = 0.5 * (first + last), 0.5 * (last - first)
-        stand(body, frame, np.cos(tilt), np.sin(tilt), radius, shrunk, bottom, ceiling)
+        put(body, frame, tilt, tool, mode)
         # A hair more than half, so that a free range holds at its very ends.
-        triangle, height, px, py = tree_hit(tree, body, half + 1e-12, hint, walk)
+        triangle, which, height, px, py = tree_hit(tree, body, piece, half + 1e-12, hint, walk)
         kind, cut_first, cut_last = OPEN, first, last
         if triangle >= 0:
             hint = triangle
             kind, cut_first, cut_last = UNSURE, tilt, tilt
-            triangle, height, px, py = tree_hit(tree, body, 0.0, hint, walk)
+            triangle, which, height, px, py = tree_hit(tree, body, piece, 0.0, hint, walk)
             if triangle >= 0:
                 hint = triangle
-                arc_first, arc_last = point_arc(height, px, py, tilt, radius, shrunk, bottom, ceiling)
+                arc_first, arc_last = arc_of(which, height, px, py, tilt, tool.mode[mode, OFFSET_OF], piece, 0.0, arcs)
                 kind = FORBIDDEN
                 cut_first, cut_last = max(first, min(arc_first, tilt)), min(last, max(arc_last, tilt))
             if last - first <= narrowest or top + done + 3 > room:

@@ -99,7 +99,7 @@ def _boxes_pass(view, block, cosine, sine, gap, count, tool, margin):  # type: i
     What parts a box from the body is, as for a point: beside the cylinder; below its bottom where the gap begins; in front
     of the rim where it ends; below the rim at both; above the top where it ends; behind where it begins; out of reach.
     """
-    radius, shrunk, low, high = tool
+    radius, shrunk, low, high, _ = tool
     for lane in range(len(margin)):
         margin[lane] = np.inf
     for g in range(count):
@@ -174,7 +174,7 @@ def _see_leaf(seen, vertex, begin, end, p, e1, e2, n):  # type: ignore[no-untype
 @kernel
 def _triangles_pass(seen, cosine, sine, gap, count, tool, margin):  # type: ignore[no-untyped-def]
     """`_boxes_pass` for the triangles of a leaf."""
-    radius, shrunk, low, high = tool
+    radius, shrunk, low, high, _ = tool
     for lane in range(len(margin)):
         margin[lane] = np.inf
     for g in range(count):

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Record, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.posture import lean
-from plan_cutters.scene.conditions import Conditions, contacts_of, require_finite
+from plan_cutters.scene.conditions import Conditions, contacts_of, cylinder_of, require_finite
 from plan_cutters.scene.threads import Progress, in_chunks
 
 #: Ends are certified to this, rad; where that cannot be, the band left is counted as undecided.
@@ -54,7 +54,7 @@ def posture_maps(
     from plan_cutters.kernels.free_map import free_map
 
     rotations, ranges, tree = conditions.postures.rotations, conditions.ranges, conditions.obstacles.wide_tree
-    safe, _ = conditions.depths
+    tool = cylinder_of(conditions.light(cutter))
     contacts = contacts_of(samples)
     n, k = len(samples), len(rotations)
     count = np.zeros((n, k), np.int32)
@@ -65,7 +65,7 @@ def posture_maps(
         # Room for the most intervals only while a piece is worked on: memory grows with what is found.
         part = np.empty((len(rows), k, _ROOM, 2))
         mine, unsure = np.empty((len(rows), k), np.int32), np.empty((len(rows), k))
-        free_map(rows, contacts, ranges, cutter.radius, cutter.length, safe, NARROWEST, tree, _ROOM, part, mine, unsure)
+        free_map(rows, contacts, ranges, tool, NARROWEST, tree, _ROOM, part, mine, unsure)
         count[rows], undecided[rows] = mine, unsure
         if conditions.obstacles.solids.cell.size:
             _leave_bodies(samples, rows, cutter, conditions, part, mine)
@@ -93,7 +93,7 @@ def _leave_bodies(
     row, turn = rows[at[:, 0]], rotations[at[:, 1]]
     tilt = part[at[:, 0], at[:, 1], at[:, 2]].mean(axis=1)
     inside = conditions.obstacles.holds(
-        cutter,
+        conditions.light(cutter),
         samples.point[row],
         samples.normal[row],
         lean(samples.normal[row], samples.direction_max[row], turn),

@@ -11,7 +11,7 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.kernels.rows import Contacts
-from plan_cutters.scene.conditions import Conditions, search_postures
+from plan_cutters.scene.conditions import Conditions, search_postures, tool_of
 from plan_cutters.scene.threads import in_chunks
 from plan_cutters.stages.cells import CellContacts, Field, quartered, tensors
 
@@ -155,13 +155,14 @@ def _served(
     known = np.isfinite(contacts.axis).all(axis=1) & _whole(contacts)
     rows = np.flatnonzero(known)
     outlook[rows] = _cover(contacts, contacts.axis, contacts.flat, field, cutter, conditions, rows)
+    light = conditions.light(cutter)
     for room in rooms:
         open_rows = np.flatnonzero((outlook > 0) & _whole(contacts))
         # A posture with room to the local gouging bound: the search is told that the surface is more concave.
         curved = contacts.curvature + room / cutter.radius
         at = Contacts(contacts.point, contacts.normal, contacts.direction_max, curved)
-        found, (safe, _) = blank(len(contacts)), conditions.depths
-        search_postures(at, open_rows, cutter, conditions, (safe, safe), found)
+        found = blank(len(contacts))
+        search_postures(at, open_rows, light, light, conditions, found)
         rows = open_rows[found.reached[open_rows]]
         if len(rows):
             new = _cover(contacts, found.axis, np.zeros(len(contacts), bool), field, cutter, conditions, rows)
@@ -176,18 +177,19 @@ def _cover(
     rows: NDArray[np.int64],
 ) -> Outlook:  # fmt: skip
     """Outlook (m,) of rows of contacts with axes."""
-    from plan_cutters.kernels.cover import Patches, cover
+    from plan_cutters.kernels.cover import Patches, Sweeping, cover
     from plan_cutters.kernels.zone import Nodes
 
     tensor = tensors(contacts.normal, contacts.direction_max, contacts.curvature)
-    obstacles, (safe, _) = conditions.obstacles, conditions.depths
+    obstacles, light = conditions.obstacles, conditions.light(cutter)
     patches = Patches(contacts.point, contacts.normal, tensor, axes, flats, contacts.patch, contacts.home)
     nodes, outlook = Nodes(field.index, field.closed, field.about), np.zeros(len(contacts), np.uint8)
     chord = obstacles.triangles.chord_error
+    sweeping = Sweeping(tool_of(light), light.dummy, *light.noses(cutter.taper, cutter.shape), light.flutes,
+                        conditions.tolerance - chord, chord)  # fmt: skip
 
     def work(piece: NDArray[np.int64]) -> None:
-        cover(piece, patches, nodes, field.number, cutter.radius, cutter.length, safe, chord, obstacles.tree,
-              obstacles.faces, outlook)  # fmt: skip
+        cover(piece, patches, nodes, field.number, sweeping, obstacles.tree, obstacles.faces, outlook)
 
     in_chunks(work, rows, conditions.jobs)
     # A cell that is served touches no skin with any of its cutters: within a body are all of them or none.
@@ -199,7 +201,7 @@ def _cover(
     flat = flats[mine] | (sine < _UPRIGHT)
     lean = np.where(flat[:, None], contacts.direction_max[mine], across / np.where(flat, 1.0, sine)[:, None])
     tilt = np.where(flat, 0.0, np.arctan2(sine, upright))
-    outlook[mine[conditions.obstacles.holds(cutter, contacts.point[mine], normal, lean, tilt)]] = _NEVER
+    outlook[mine[conditions.obstacles.holds(light, contacts.point[mine], normal, lean, tilt)]] = _NEVER
     return outlook[rows]
 
 
