@@ -7,39 +7,41 @@ proofs. Heights are over the tip.
 
 import math
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Record
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.holder import Stage
-from plan_cutters.domain.shapes import (
-    Mode,
-    flank,
-    flute_length,
-    lens_height,
-    modes,
-    stages,
-    tip_angle,
-    top_radius,
+from plan_cutters.domain.pieces import (
+    ARC,
+    BOTTOM,
+    COLUMNS,
+    CYLINDER,
+    FLUTES,
+    HAIR,
+    HIGH,
+    KIND,
+    LOW,
+    PART,
+    PARTS,
+    RADIUS,
+    ROUND,
+    SCALE,
+    SLOPE,
+    TOP,
+    WIDE,
+    Band,
+    Kind,
+    alone,
+    among,
+    flute_rows,
+    seam,
+    share,
+    sharpest,
+    solid,
 )
-
-#: Kinds of a piece: below `radius + slope (w - low)` for the first two; the third has a cross section of an arc: what is
-#: nearer than `round` to the disk of radius `radius` (negative: to all of the circle on its far side) at the height `centre`.
-CYLINDER, CONE, ARC = 0.0, 1.0, 2.0
-#: Columns of a piece: its kind, its heights, and for an arc, in place of slope: the height of its centre. Then what is made of
-#: these: 1 / sqrt(1 + slope^2); its lowest and highest point; its radius at the upper height (arcs: the largest); its part.
-KIND, LOW, HIGH, RADIUS, SLOPE, ROUND, SCALE, BOTTOM, TOP, WIDE, PART, COLUMNS = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11
-#: Parts of an assembly.
-FLUTES, NECK, SHANK, HOLDER = 0, 1, 2, 3
-_PARTS = {"neck": NECK, "shank": SHANK, "holder": HOLDER}
-
-#: By which pieces overlap where they meet, mm: what lies in the plane between two of them is in one.
-_HAIR = 1e-9
-
-Kind = Literal["cover", "certain"]
+from plan_cutters.domain.shapes import Mode, flute_length, modes, stages, top_radius
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -77,7 +79,7 @@ class Assembly(Record):
         """The mode (n,) in which it touches at each tilt, rad; the last one where it touches in none."""
         found = np.full(len(tilt), len(self.mode) - 1)
         for i in range(len(self.mode) - 1, -1, -1):
-            found[(tilt >= self.mode[i, 2] - _HAIR) & (tilt <= self.mode[i, 3] + _HAIR)] = i
+            found[(tilt >= self.mode[i, 2] - HAIR) & (tilt <= self.mode[i, 3] + HAIR)] = i
         return found
 
     def on_axis(self, contact: Floats, normal: Floats, lean: Floats, tilt: Floats) -> Floats:
@@ -136,20 +138,6 @@ class Assembly(Record):
         return wide
 
 
-@dataclass(frozen=True, slots=True)
-class _Band:
-    """A stage between two heights, and by how much its sides are moved in (out: negative)."""
-
-    part: int
-    low: float
-    stage: Stage
-    inset: float
-
-    @property
-    def high(self) -> float:
-        return self.low + self.stage.length
-
-
 def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "cover") -> Assembly:
     """Pieces of a cutter.
 
@@ -165,29 +153,29 @@ def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "cover"
         `cover`: no point that counts is outside the pieces. `certain`: every point of the pieces counts.
     """
     flutes, rest = flutes - (cutter.allowance or 0.0), rest - (cutter.clearance or 0.0)
-    bands = [_Band(_PARTS[part], low, stage, rest) for part, low, stage in stages(cutter)]
+    bands = [Band(PARTS[part], low, stage, rest) for part, low, stage in stages(cutter)]
     top = flute_length(cutter)
     rows, slack = [], 0.0
     if kind == "certain" or not bands:
-        rows += _flutes(cutter, flutes, top - flutes, kind)
+        rows += flute_rows(cutter, flutes, top - flutes, kind)
         for band in bands:
-            rows += _alone(band)
+            rows += alone(band)
     else:
         first = bands[0]
-        end, start = _seam(top_radius(cutter), flutes, first.stage.radius, first.inset, top)
+        end, start = seam(top_radius(cutter), flutes, first.stage.radius, first.inset, top)
         if cutter.shape == "lollipop":
             start = min(start, cutter.radius)
-        rows += _flutes(cutter, flutes, end, kind)
+        rows += flute_rows(cutter, flutes, end, kind)
         for i, band in enumerate(bands):
             if i + 1 < len(bands):
                 above = bands[i + 1]
-                end, after = _seam(band.stage.upper_radius, band.inset, above.stage.radius, above.inset, band.high)
+                end, after = seam(band.stage.upper_radius, band.inset, above.stage.radius, above.inset, band.high)
             else:
                 end, after = band.high - band.inset, math.inf
-            rows += _among(band, start, end, exact=(cutter.clearance or 0.0) > 0.0)
+            rows += among(band, start, end, exact=(cutter.clearance or 0.0) > 0.0)
             start = after
     slack = _slack(cutter, flutes, bands, kind)
-    table = np.array([row for row in rows if _solid(row)], float).reshape(-1, COLUMNS)
+    table = np.array([row for row in rows if solid(row)], float).reshape(-1, COLUMNS)
     found = modes(cutter)
     touching = np.array([_mode(mode, cutter.allowance or 0.0) for mode in found])
     placed = np.repeat(table[None], len(found), axis=0)
@@ -205,7 +193,7 @@ def _mode(mode: Mode, allowance: float) -> tuple[float, float, float, float, flo
     return mode.offset, mode.radius + allowance, mode.low, mode.high, mode.height
 
 
-def _inner(cutter: Cutter, bands: list[_Band]) -> tuple[float, float]:
+def _inner(cutter: Cutter, bands: list[Band]) -> tuple[float, float]:
     """Heights of a point of the axis as deep in the cutter as any and as near to the spindle as can be, and of its end."""
     if not bands:
         return max(0.5 * cutter.length, cutter.length - cutter.radius), cutter.length
@@ -213,192 +201,7 @@ def _inner(cutter: Cutter, bands: list[_Band]) -> tuple[float, float]:
     return deepest.low + 0.5 * deepest.stage.length, bands[-1].high
 
 
-def _row(kind: float, low: float, high: float, radius: float, slope: float, around: float, part: int) -> list[float]:
-    if kind == ARC:
-        bottom, top = max(low, slope - around), min(high, slope + around)
-        return [kind, low, high, radius, slope, around, 1.0, bottom, top, radius + around, part]
-    wide = radius + slope * (high - low)
-    return [kind, low, high, radius, slope, around, 1.0 / math.hypot(1.0, slope), low, high, wide, part]
-
-
-def _band(low: float, high: float, radius: float, slope: float, part: int) -> list[float]:
-    """A cylinder or cone, whose radius is given at the lower height."""
-    return _row(CYLINDER if slope == 0.0 else CONE, low, high, radius, slope, 0.0, part)
-
-
-def _solid(row: list[float]) -> bool:
-    """Whether a piece holds anything; cones that end in a point are cut there by their own test."""
-    if row[KIND] == ARC:
-        return row[ROUND] > 0.0 and row[TOP] > row[BOTTOM] and row[WIDE] > 0.0
-    return row[HIGH] > row[LOW] and max(row[RADIUS], row[WIDE]) > 0.0
-
-
-def _seam(lower: float, lower_inset: float, upper: float, upper_inset: float, at: float) -> tuple[float, float]:
-    """Heights at which the band below a seam ends, and the one above begins: the narrower runs on into the wider."""
-    below, above = lower - lower_inset, upper - upper_inset
-    if above > below:
-        start = at + upper_inset
-        return max(at, start) + _HAIR, start
-    if below > above:
-        end = at - lower_inset
-        return end, min(at, end) - _HAIR
-    return at + _HAIR, at
-
-
-def _among(band: _Band, start: float, end: float, *, exact: bool) -> list[list[float]]:
-    """A band among others, between two heights; grown with round edges or with square ones, which hold more."""
-    stage, inset = band.stage, band.inset
-    side = stage.radius - inset * math.hypot(1.0, stage.slope)
-    rows = []
-    if exact and inset < 0.0:
-        # Round edges where a seam is a step; the side goes from tangent circle to tangent circle, or runs on.
-        shift = inset * math.sin(math.atan(stage.slope))
-        if abs(start - band.low) > _HAIR:
-            rows.append(_row(ARC, -math.inf, math.inf, stage.radius, band.low, -inset, band.part))
-            start = band.low + shift if start >= band.low + inset else start
-        if abs(end - band.high) > 2.0 * _HAIR:
-            rows.append(_row(ARC, -math.inf, math.inf, stage.upper_radius, band.high, -inset, band.part))
-            end = band.high + shift if end <= band.high - inset else end
-    rows.append(_band(start, end, side + stage.slope * (start - band.low), stage.slope, band.part))
-    return rows
-
-
-def _alone(band: _Band) -> list[list[float]]:
-    """A band by itself, exactly."""
-    stage, inset = band.stage, band.inset
-    side = stage.radius - inset * math.hypot(1.0, stage.slope)
-    if inset >= 0.0:
-        low, high = band.low + inset, band.high - inset
-        return [_band(low, high, side + stage.slope * inset, stage.slope, band.part)]
-    shift = inset * math.sin(math.atan(stage.slope))
-    low, high = band.low + shift, band.high + shift
-    return [
-        _band(low, high, side + stage.slope * shift, stage.slope, band.part),
-        _row(ARC, -math.inf, math.inf, stage.radius, band.low, -inset, band.part),
-        _row(ARC, -math.inf, math.inf, stage.upper_radius, band.high, -inset, band.part),
-    ]
-
-
-def _flutes(cutter: Cutter, inset: float, top: float, kind: Kind) -> list[list[float]]:
-    """Pieces of what cuts, up to a height."""
-    return {"end": _end, "lollipop": _lollipop, "barrel": _barrel, "lens": _lens, "form": _form}[cutter.shape](
-        cutter, inset, top, kind
-    )
-
-
-def _unless_higher(row: list[float], top: float) -> list[float]:
-    """An arc, cut off where it would stand out above the end of the flutes."""
-    return row if row[TOP] <= top else _row(ARC, row[LOW], top, row[RADIUS], row[SLOPE], row[ROUND], int(row[PART]))
-
-
-def _end(cutter: Cutter, inset: float, top: float, kind: Kind) -> list[list[float]]:
-    offset, corner, lean = cutter.radius - cutter.corner_radius, cutter.corner_radius, cutter.taper
-    left = corner - inset
-    # The flank's distance from the axis at the height of the corner's centre.
-    side, slope = offset + left / math.cos(lean), math.tan(lean) if lean else 0.0
-    rows = []
-    if left > 0.0:
-        rows.append(_unless_higher(_row(ARC, -math.inf, math.inf, offset, corner, left, FLUTES), top))
-        low = corner - left * math.sin(lean)
-    else:
-        low = inset
-    radius = cutter.radius - inset if lean == 0.0 else side + slope * (low - corner)
-    rows.append(_band(low, top, radius, slope, FLUTES))
-    return rows
-
-
-def _lollipop(cutter: Cutter, inset: float, top: float, kind: Kind) -> list[list[float]]:
-    return [_row(ARC, -math.inf, math.inf, 0.0, cutter.radius, cutter.radius - inset, FLUTES)]
-
-
-def _barrel(cutter: Cutter, inset: float, top: float, kind: Kind) -> list[list[float]]:
-    wide, tip = cutter.arc_radius - inset, cutter.corner_radius
-    offset, centre = cutter.radius - cutter.arc_radius, cutter.arc_height
-    if not tip:
-        low = inset
-        if inset < 0.0:
-            # Grown, its sharp lower edge is round.
-            edge = flank(cutter, 0.0)
-            rows = [_row(ARC, -math.inf, math.inf, edge, 0.0, -inset, FLUTES)]
-            return [*rows, _row(ARC, 0.0, top, offset, centre, wide, FLUTES)]
-        return [_row(ARC, low, top, offset, centre, wide, FLUTES)]
-    joint, left = tip_angle(cutter), tip - inset
-    if left > 0.0:
-        low = tip - left * math.cos(joint)
-        ball = _unless_higher(_row(ARC, -math.inf, math.inf, 0.0, tip, left, FLUTES), top)
-        return [ball, _row(ARC, low, top, offset, centre, wide, FLUTES)]
-    return [_row(ARC, inset, top, offset, centre, wide, FLUTES)]
-
-
-def _lens(cutter: Cutter, inset: float, top: float, kind: Kind) -> list[list[float]]:
-    bottom, corner = cutter.arc_radius, cutter.corner_radius
-    offset, centre, left = cutter.radius - corner, lens_height(cutter), corner - inset
-    side = cutter.radius - inset
-    if left > 0.0:
-        joint = bottom - (bottom - inset) * math.cos(tip_angle(cutter))
-        rows = [_unless_higher(_row(ARC, -math.inf, math.inf, offset, centre, left, FLUTES), top)]
-    else:
-        # The eroded bottom goes on until it meets the eroded side.
-        joint = bottom - math.sqrt(max(0.0, (bottom - inset) ** 2 - side**2))
-        rows, centre = [], joint
-    return [
-        _row(ARC, -math.inf, joint, 0.0, bottom, bottom - inset, FLUTES),
-        *rows,
-        _band(centre, top, side, 0.0, FLUTES),
-    ]
-
-
-def _form(cutter: Cutter, inset: float, top: float, kind: Kind) -> list[list[float]]:
-    """Bands between the heights of an outline; sides next to a re-entrant corner are moved in less (`docs/tools.md`)."""
-    points, rows = cutter.outline, []
-    for i in range(len(points) - 1):
-        (r0, w0), (r1, w1) = points[i], points[i + 1]
-        if w1 <= w0:
-            continue
-        stage = Stage(max(r0, 1e-12), w1 - w0, max(r1, 1e-12))
-        if kind == "certain":
-            rows += _alone(_Band(FLUTES, w0, stage, inset))
-            continue
-        share = _share(points, i) if inset > 0.0 else 1.0
-        mine = inset * share
-        low_step, high_step = _step(points, i, -1), _step(points, i + 1, 1)
-        low = w0 + mine if low_step > 0.0 else w0 - abs(mine) if low_step < 0.0 else w0 - _HAIR
-        last = w1 == points[-1][1]
-        high = top if last else w1 - mine if high_step > 0.0 else w1 + abs(mine) if high_step < 0.0 else w1 + _HAIR
-        side = stage.radius - mine * math.hypot(1.0, stage.slope)
-        rows.append(_band(low, high, side + stage.slope * (low - w0), stage.slope, FLUTES))
-    return rows
-
-
-def _step(points: tuple[tuple[float, float], ...], i: int, way: int) -> float:
-    """By how much a band is wider than what lies beyond one of its ends, point i, seen downwards (-1) or upwards (1)."""
-    r, w = points[i]
-    j = i + way
-    other = None
-    while 0 <= j < len(points) and points[j][1] == w:
-        other = points[j][0]
-        j += way
-    if j < 0 or j >= len(points):
-        # The tip, or the end of the flutes: open, but for the kernel's own end.
-        return r if way < 0 else 0.0
-    return 0.0 if other is None else r - other
-
-
-def _share(points: tuple[tuple[float, float], ...], i: int) -> float:
-    """By which share of the depth the side from point i to the next is moved in: less next to a re-entrant corner."""
-    least = 1.0
-    for k in (i, i + 1):
-        if 0 < k < len(points) - 1:
-            (a, b), (c, d), (e, f) = points[k - 1], points[k], points[k + 1]
-            first, second = math.atan2(d - b, c - a), math.atan2(f - d, e - c)
-            turn = math.remainder(second - first, 2.0 * math.pi)
-            if turn < 0.0:
-                least = min(least, math.cos(0.5 * turn))
-    # A step on the other side of a horizontal piece meets this side, too.
-    return least
-
-
-def _slack(cutter: Cutter, inset: float, bands: list[_Band], kind: Kind) -> float:
+def _slack(cutter: Cutter, inset: float, bands: list[Band], kind: Kind) -> float:
     """How far at most a point is from what counts though a cover piece holds it, mm."""
     if kind == "certain":
         return 0.0
@@ -409,17 +212,8 @@ def _slack(cutter: Cutter, inset: float, bands: list[_Band], kind: Kind) -> floa
             most = max(most, -band.inset * (1.0 / math.cos(half) - 1.0))
     if cutter.shape == "form":
         for i in range(len(cutter.outline) - 1):
-            most = max(most, abs(inset) * (1.0 - _share(cutter.outline, i)), abs(inset) * _sharpest(cutter.outline, i))
+            most = max(most, abs(inset) * (1.0 - share(cutter.outline, i)), abs(inset) * sharpest(cutter.outline, i))
     if inset < 0.0:
         # Grown flutes have square upper edges.
         most = max(most, -inset * (math.sqrt(2.0) - 1.0))
     return most
-
-
-def _sharpest(points: tuple[tuple[float, float], ...], k: int) -> float:
-    """By how much more than the depth the corner at point k of a convex seam lies within both sides."""
-    if not 0 < k < len(points) - 1:
-        return 0.0
-    (a, b), (c, d), (e, f) = points[k - 1], points[k], points[k + 1]
-    turn = math.remainder(math.atan2(f - d, e - c) - math.atan2(d - b, c - a), 2.0 * math.pi)
-    return 0.0 if turn <= 0.0 else 1.0 / max(0.05, math.cos(0.5 * turn)) - 1.0

@@ -17,6 +17,7 @@ from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.pieces import ARC, BOTTOM, COLUMNS, HIGH, KIND, LOW, RADIUS, ROUND, SLOPE, TOP, WIDE
 from plan_cutters.kernels.rows import Frame, Scratch
 from plan_cutters.kernels.search import mode_at
+from plan_cutters.kernels.vectors import cross, dot, perpendicular
 from plan_cutters.kernels.zone import (
     EXTENTS,
     Nose,
@@ -292,17 +293,17 @@ def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, 
     h, flat, home = patches.patch[row], patches.flat[row], patches.home[row]
     if not h > 0.0:
         return 1, -1
-    cosine = hit.dot(a, n)
+    cosine = dot(a, n)
     for k in range(3):
         f[k] = a[k] - cosine * n[k]
-    sine = np.sqrt(hit.dot(f, f))
+    sine = np.sqrt(dot(f, f))
     if flat or sine < 1e-6:
         sine, cosine = 0.0, 1.0
-        hit.perpendicular(n, f)
+        perpendicular(n, f)
     else:
         for k in range(3):
             f[k] /= sine
-    hit.cross(n, f, t)
+    cross(n, f, t)
     mode = 0 if flat else mode_at(tool, np.arctan2(sine, cosine))
     if mode < 0:
         return NEVER, -1

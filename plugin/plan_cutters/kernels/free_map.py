@@ -11,11 +11,12 @@ import numpy as np
 
 from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
 from plan_cutters.kernels.gaps import COLUMNS, FIRST, GAPS, LAST, UF, UL, Room, _begin, _cut_gaps, _cuts, _end, _take
-from plan_cutters.kernels.hit import BODY, cross, dot, lean_frame, scratch
+from plan_cutters.kernels.hit import BODY, scratch
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.lanes import LANES, _boxes_pass, _see, _see_leaf, _see_triangle, _triangles_pass, _turn
 from plan_cutters.kernels.probing import remove
 from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.vectors import cross, dot, lean_frame
 
 #: Blocks of boxes kept as seen from one contact, and blocks that may wait to be looked at.
 _SEEN, _QUEUE = 1 << 11, 1 << 13

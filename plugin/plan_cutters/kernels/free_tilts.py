@@ -7,11 +7,12 @@ range is halved. Ranges narrower than `narrowest` stay undecided.
 
 import numpy as np
 
-from plan_cutters.kernels.hit import BODY, cross, scratch, tree_hit
+from plan_cutters.kernels.hit import BODY, scratch, tree_hit
 from plan_cutters.kernels.jit import entry
 from plan_cutters.kernels.probing import OFFSET_OF, arc_of, put
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.tool_arcs import ARCS
+from plan_cutters.kernels.vectors import cross
 
 OPEN, FORBIDDEN, UNSURE = 0, 1, 2
 

@@ -9,7 +9,7 @@ so does every posture that it can be turned to without touching a skin.
 
 import numpy as np
 
-from plan_cutters.kernels.hit import BODY, cross, dot, lean_frame, perpendicular, scratch, stand, tree_hit
+from plan_cutters.kernels.hit import BODY, scratch, stand, tree_hit
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
 from plan_cutters.kernels.probing import (
@@ -31,6 +31,7 @@ from plan_cutters.kernels.probing import (
 )
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.sweep import memory, sweep
+from plan_cutters.kernels.vectors import cross, dot, lean_frame, perpendicular
 
 # As in `plan_cutters.domain.verdicts`, which must not load the compiler; a test holds them together.
 INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255

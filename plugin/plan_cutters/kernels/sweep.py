@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.hit import cross, deep_hit
+from plan_cutters.kernels.hit import deep_hit
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.pieces import ARC, HIGH, KIND, LOW, RADIUS, ROUND, SCALE, SLOPE
 from plan_cutters.kernels.probing import (
@@ -27,6 +27,7 @@ from plan_cutters.kernels.probing import (
     turned,
 )
 from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.vectors import cross
 
 #: Points remembered for each rotation, and of those that the tree gave last.
 _KEPT, _POOL = 64, 128

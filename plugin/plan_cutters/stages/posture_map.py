@@ -10,9 +10,10 @@ import numpy as np
 
 from cad_io import SurfaceSamples, Triangles
 from cad_io.arrays import Floats, Record
-from plan_cutters.domain.assembly import FLUTES, HOLDER, NECK, SHANK, Assembly
+from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.pieces import FLUTES, HOLDER, NECK, SHANK
 from plan_cutters.domain.posture import lean
 from plan_cutters.scene.conditions import tool_of
 from plan_cutters.scene.obstacles import Obstacles
@@ -135,7 +136,7 @@ def posture_map_of(
         no_contact.append(complement(touching, low, high))
         for word, (obstacles, tool) in alone.items():
             parts = [np.zeros((0, 3))]
-            parts += [_parts(obstacles, tool, p, n, f, *pair, narrowest) for pair in touching.tolist()]
+            parts += [_parts(obstacles, tool, p, n, f, first, last, narrowest) for first, last in touching.tolist()]
             apart[word].append(_minus(complement(_merged(np.concatenate(parts), OPEN), low, high), no_contact[-1]))
         pieces, sure = [np.zeros((0, 3))], [np.zeros((0, 3))]
         for first, last in _both(allowed, bounds):
