@@ -222,7 +222,8 @@ def _judged(
     found = witnesses(samples, reach, cutter, ready.conditions, buried=ready.buried)
     marched = march_differs(samples, convex, ready.region, reach.interference_free)
     doubtful = ready.conditions.around.doubtful
-    return Judged(reach, cutter_entry(cutter, samples, reach, found, marched, seconds, doubtful=doubtful))
+    return Judged(reach, cutter_entry(cutter, samples, reach, found, marched, seconds, doubtful=doubtful,
+                                       slack=ready.conditions.light(cutter).slack))  # fmt: skip
 
 
 def assemble(

@@ -136,13 +136,7 @@ class Cutter(Dimensions):
         """The same, with what is asked for the whole plan where it has none of its own."""
         return replace(
             self,
-            allowance=allowance if self.allowance is None else self.allowance,
-            clearance=clearance if self.clearance is None else self.clearance,
+            allowance=allowance if self.allowance is None and allowance else self.allowance,
+            clearance=clearance if self.clearance is None and clearance else self.clearance,
             holder=self.holder or holder,
         )
-
-
-def builtin() -> tuple[Cutter, ...]:
-    """Metric flat ends R 1 to 12, each with the length below the holder that long end mills of its size have."""
-    usual = {1: 20, 1.5: 25, 2: 30, 2.5: 35, 3: 40, 4: 50, 5: 60, 6: 80, 8: 90, 10: 100, 12: 120}
-    return tuple(Cutter.flat(radius=r, length=l, name=f"flat end D{2 * r:g} x {l}") for r, l in usual.items())
