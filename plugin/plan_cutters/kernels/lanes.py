@@ -67,6 +67,18 @@ def wide_tree(tree):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def _facing(nx, nz, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
+    """A direction (x, z) across a line, turned to where the body is at all tilts of a gap: from its axis at the first to what lies before its rim at the last."""
+    if sa * nx + ca * nz < 0.0:
+        nx, nz = -nx, -nz
+    if ca * nz <= -sa * nx:
+        nx, nz = ca, -sa
+    if sb * nx <= -cb * nz:
+        nx, nz = -cb, sb
+    return nx, nz
+
+
+@kernel
 def _see(view, slot, blocks, block, p, e1, e2, n, margin):  # type: ignore[no-untyped-def]
     """Write a block of boxes into a slot of the view, as seen from the contact.
 
@@ -116,7 +128,8 @@ def _boxes_pass(view, block, cosine, sine, gap, count, tool, margin):  # type: i
             t1 = cosine * view[block, 7, lane] - sine * view[block, 4, lane]
             t2 = cosine * view[block, 8, lane] - sine * view[block, 5, lane]
             z0, z1, z2 = view[block, 9, lane], view[block, 10, lane], view[block, 11, lane]
-            slope, room = _rim(y, radius, shrunk)
+            wide = abs(t0) + abs(t1) + abs(t2)
+            slope, room = _rim(y - max(-0.5 * wide, min(0.5 * wide, y)), radius, shrunk)
             room += slope * y
             top = ca * z + sa * x + abs(ca * z0 + sa * f0) + abs(ca * z1 + sa * f1) + abs(ca * z2 + sa * f2)
             bottom = cb * z + sb * x - abs(cb * z0 + sb * f0) - abs(cb * z1 + sb * f1) - abs(cb * z2 + sb * f2)
@@ -128,8 +141,18 @@ def _boxes_pass(view, block, cosine, sine, gap, count, tool, margin):  # type: i
             under = ca * low + sa * room - z - abs(z0 - d * t0) - abs(z1 - d * t1) - abs(z2 - d * t2)
             d = sb * slope
             under = min(under, cb * low + sb * room - z - abs(z0 - d * t0) - abs(z1 - d * t1) - abs(z2 - d * t2))
+            nx, nz = _facing(t0 * z1 - z0 * t1, f0 * t1 - t0 * f1, ca, sa, cb, sb)
+            up, out = nx * sa + nz * ca, nz * sa - nx * ca
+            d, over = abs(out) * slope, nx * x + nz * z
+            own = low * up + abs(out) * room + 2.0 * radius * min(0.0, out) - over
+            own -= abs(nx * f0 + nz * z0 - d * t0) + abs(nx * f1 + nz * z1 - d * t1) + abs(nx * f2 + nz * z2 - d * t2)
+            up, out = nx * sb + nz * cb, nz * sb - nx * cb
+            d = abs(out) * slope
+            other = low * up + abs(out) * room + 2.0 * radius * min(0.0, out) - over
+            other -= abs(nx * f0 + nz * z0 - d * t0) + abs(nx * f1 + nz * z1 - d * t1) + abs(nx * f2 + nz * z2 - d * t2)
+            under = max(under, min(own, other))
             ahead = x - abs(f0) - abs(f1) - abs(f2)
-            beside = abs(y) - abs(t0) - abs(t1) - abs(t2)
+            beside = abs(y) - wide
             best = max(beside - shrunk, low - view[block, 12, lane])
             best = max(best, level - top)
             best = max(best, min(room - front, max(ahead, max(low - top, bottom))))
@@ -202,6 +225,14 @@ def _triangles_pass(seen, cosine, sine, gap, count, tool, margin):  # type: igno
             under = ca * low + sa * room - max(z0 - d * y0, max(z1 - d * y1, z2 - d * y2))
             d = sb * slope
             under = min(under, cb * low + sb * room - max(z0 - d * y0, max(z1 - d * y1, z2 - d * y2)))
+            nx, nz = _facing((y1 - y0) * (z2 - z0) - (z1 - z0) * (y2 - y0), (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0), ca, sa, cb, sb)
+            up, out = nx * sa + nz * ca, nz * sa - nx * ca
+            d = abs(out) * slope
+            own = low * up + abs(out) * room + 2.0 * radius * min(0.0, out) - max(nx * x0 + nz * z0 - d * y0, max(nx * x1 + nz * z1 - d * y1, nx * x2 + nz * z2 - d * y2))
+            up, out = nx * sb + nz * cb, nz * sb - nx * cb
+            d = abs(out) * slope
+            own = min(own, low * up + abs(out) * room + 2.0 * radius * min(0.0, out) - max(nx * x0 + nz * z0 - d * y0, max(nx * x1 + nz * z1 - d * y1, nx * x2 + nz * z2 - d * y2)))
+            under = max(under, own)
             beside = max(min(y0, min(y1, y2)), -max(y0, max(y1, y2)))
             best = max(beside - shrunk, low - highest)
             best = max(best, level - top)
