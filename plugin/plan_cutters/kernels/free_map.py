@@ -80,6 +80,7 @@ class _View(NamedTuple):
     margin: Any
     inside: Any
     which: Any
+    reach: float
 
 
 @kernel
@@ -104,7 +105,7 @@ def _rotation(frame, e1, e2, turn, gap, count, tool, narrowest, wide, seen, room
             slot, block = queue[w, 0], queue[w, 1]
             if slot < 0:
                 slot = _SEEN
-                _see(view, slot, blocks, offset[level] + block, p, e1, e2, n, margin)
+                _see(view, slot, blocks, offset[level] + block, p, e1, e2, n, seen.reach)
                 _rising(view, below, slot, LANES, low)
             _boxes_pass(view, slot, cosine, sine, gap, count, tool, margin)
             for lane in range(LANES):
@@ -140,7 +141,7 @@ def _rotation(frame, e1, e2, turn, gap, count, tool, narrowest, wide, seen, room
                     count = _take(gap, count, left, right)
                 if inner == _UNSEEN and tally[0] < _SEEN:
                     inner = tally[0]
-                    _see(view, inner, blocks, offset[level + 1] + box, p, e1, e2, n, inside)
+                    _see(view, inner, blocks, offset[level + 1] + box, p, e1, e2, n, seen.reach)
                     if not _rising(view, below, inner, LANES, low):
                         _forget(below, home, slot, lane)
                         continue
@@ -208,20 +209,20 @@ def free_map(  # type: ignore[no-untyped-def]
         np.empty((3, 3)), np.empty((8, 3)), np.empty((8, 3)), np.empty(BODY), np.empty((64, 2)),
         scratch(),
     )  # fmt: skip
+    tool = Tool(radius, radius - depth_allowed, depth_allowed, length - depth_allowed)
     view = _View(
         np.empty((_SEEN + 1, 16, LANES)), np.empty((_LEAVES + 2, 9, LANES)), np.empty((_SEEN + 1, LANES), np.int64),
         np.empty((_SEEN, 2), np.int64), np.zeros(3, np.int64), np.zeros(LANES, np.int64),
         np.empty((_QUEUE, 2), np.int64), np.empty((_QUEUE, 2), np.int64), np.empty(LANES), np.empty(LANES),
-        np.empty(LANES, np.int64),
+        np.empty(LANES, np.int64), np.hypot(tool.high, tool.radius + tool.shrunk),
     )  # fmt: skip
-    tool = Tool(radius, radius - depth_allowed, depth_allowed, length - depth_allowed)
     for place in range(len(rows)):
         row = rows[place]
         p, n, e1 = contacts.point[row], contacts.normal[row], contacts.direction_max[row]
         cross(n, e1, e2)
         frame = Frame(p, n, f, t)
         view.home[0, 0], view.tally[0], view.tally[1] = -1, 1, 0
-        _see(view.boxes, 0, wide.blocks, 0, p, e1, e2, n, view.margin)
+        _see(view.boxes, 0, wide.blocks, 0, p, e1, e2, n, view.reach)
         some = _rising(view.boxes, view.below, 0, 1 << (wide.bottom % 3), tool.low)
         for lane in range(LANES):
             _see_triangle(view.leaves[_LEAVES + 1], lane, wide.vertex, view.known[lane], p, e1, e2, n)

@@ -79,17 +79,19 @@ def _facing(nx, nz, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _see(view, slot, blocks, block, p, e1, e2, n, margin):  # type: ignore[no-untyped-def]
+def _see(view, slot, blocks, block, p, e1, e2, n, reach):  # type: ignore[no-untyped-def]
     """Write a block of boxes into a slot of the view, as seen from the contact.
 
-    Rows: centre along e1, e2, n; half sides along e1, along e2, along n; how far up the box goes; the point.
+    Rows: centre along e1, e2, n; half sides along e1, along e2, along n; how far up the box goes, if any of it is within reach
+    of the contact; the point.
     """
-    for lane in range(len(margin)):
+    for lane in range(LANES):
         x, y, z = blocks[block, 0, lane] - p[0], blocks[block, 1, lane] - p[1], blocks[block, 2, lane] - p[2]
         view[slot, 0, lane] = x * e1[0] + y * e1[1] + z * e1[2]
         view[slot, 1, lane] = x * e2[0] + y * e2[1] + z * e2[2]
         height = x * n[0] + y * n[1] + z * n[2]
         view[slot, 2, lane] = height
+        square, away = x * x + y * y + z * z, 0.0
         for k in range(3):
             x, y, z = blocks[block, 3 + 3 * k, lane], blocks[block, 4 + 3 * k, lane], blocks[block, 5 + 3 * k, lane]
             view[slot, 3 + k, lane] = x * e1[0] + y * e1[1] + z * e1[2]
@@ -97,7 +99,12 @@ def _see(view, slot, blocks, block, p, e1, e2, n, margin):  # type: ignore[no-un
             up = x * n[0] + y * n[1] + z * n[2]
             view[slot, 9 + k, lane] = up
             height += abs(up)
-        view[slot, 12, lane] = height
+            away += abs(
+                view[slot, 3 + k, lane] * view[slot, 0, lane]
+                + view[slot, 6 + k, lane] * view[slot, 1, lane]
+                + up * view[slot, 2, lane]
+            )
+        view[slot, 12, lane] = -np.inf if square - away > reach * np.sqrt(square) else height
         x, y, z = blocks[block, 12, lane] - p[0], blocks[block, 13, lane] - p[1], blocks[block, 14, lane] - p[2]
         view[slot, 13, lane] = x * e1[0] + y * e1[1] + z * e1[2]
         view[slot, 14, lane] = x * e2[0] + y * e2[1] + z * e2[2]
@@ -153,17 +160,11 @@ def _boxes_pass(view, block, cosine, sine, gap, count, tool, margin):  # type: i
             under = max(under, min(own, other))
             ahead = x - abs(f0) - abs(f1) - abs(f2)
             beside = abs(y) - wide
-            best = max(beside - shrunk, low - view[block, 12, lane])
-            best = max(best, level - top)
+            best = max(beside - shrunk, level - top)
             best = max(best, min(room - front, max(ahead, max(low - top, bottom))))
             best = max(best, under)
             best = max(best, bottom - high)
             best = max(best, behind - 2.0 * radius + room)
-            away = np.sqrt(x * x + z * z) + 1e-300
-            ux, uz = x / away, z / away
-            away -= abs(ux * f0 + uz * z0) + abs(ux * f1 + uz * z1) + abs(ux * f2 + uz * z2)
-            far = radius + np.sqrt(max(0.0, shrunk * shrunk - max(0.0, beside) ** 2))
-            best = max(best, away - np.sqrt(high * high + far * far))
             margin[lane] = min(margin[lane], best)
 
 
@@ -240,11 +241,6 @@ def _triangles_pass(seen, cosine, sine, gap, count, tool, margin):  # type: igno
             best = max(best, under)
             best = max(best, bottom - high)
             best = max(best, behind - 2.0 * radius + room)
-            ux, uz = x0 + x1 + x2, z0 + z1 + z2
-            away = np.sqrt(ux * ux + uz * uz) + 1e-300
-            away = min(ux * x0 + uz * z0, min(ux * x1 + uz * z1, ux * x2 + uz * z2)) / away
-            far = radius + np.sqrt(max(0.0, shrunk * shrunk - max(0.0, beside) ** 2))
-            best = max(best, away - np.sqrt(high * high + far * far))
             margin[lane] = min(margin[lane], best)
 
 
