@@ -9,7 +9,7 @@ import numpy as np
 
 from plan_cutters.kernels.gaps import CF, CL, SF, SL
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.passes import _rim
+from plan_cutters.kernels.passes import _facing, _rim
 
 #: Boxes and triangles looked at together.
 LANES = 8
@@ -64,18 +64,6 @@ def wide_tree(tree):  # type: ignore[no-untyped-def]
                 for side in range(3):
                     blocks[block, 3 + 3 * side + k, lane] = box[node, 12 + side] * box[node, 3 + 3 * side + k]
     return vertex, blocks, offset, bottom
-
-
-@kernel
-def _facing(nx, nz, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
-    """A direction (x, z) across a line, turned to where the body is at all tilts of a gap: from its axis at the first to what lies before its rim at the last."""
-    if sa * nx + ca * nz < 0.0:
-        nx, nz = -nx, -nz
-    if ca * nz <= -sa * nx:
-        nx, nz = ca, -sa
-    if sb * nx <= -cb * nz:
-        nx, nz = -cb, sb
-    return nx, nz
 
 
 @kernel
