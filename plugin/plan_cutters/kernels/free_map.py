@@ -75,6 +75,7 @@ class _View(NamedTuple):
     home: Any
     tally: Any
     known: Any
+    place: Any
     queue: Any
     ahead: Any
     margin: Any
@@ -84,7 +85,7 @@ class _View(NamedTuple):
 
 
 @kernel
-def _rotation(frame, e1, e2, turn, gap, count, tool, narrowest, wide, seen, room):  # type: ignore[no-untyped-def]
+def _rotation(frame, e1, e2, turn, rotation, gap, count, tool, narrowest, wide, seen, room):  # type: ignore[no-untyped-def]
     """Take the gaps of one rotation, its cosine and sine `turn`, through the tree, level by level; how many are left."""
     p, n = frame.p, frame.n
     radius, shrunk, low, high = tool
@@ -92,9 +93,15 @@ def _rotation(frame, e1, e2, turn, gap, count, tool, narrowest, wide, seen, room
     vertex, blocks, offset, bottom = wide
     view, leaves, below, home, tally = seen.boxes, seen.leaves, seen.below, seen.home, seen.tally
     known, queue, ahead = seen.known, seen.queue, seen.ahead
+    place = seen.place
     margin, inside, which = seen.margin, seen.inside, seen.which
     triangles, levels = len(vertex), len(offset) - 1
-    count, _ = _leaf(leaves[_LEAVES + 1], known, vertex, frame, turn, gap, count, tool, narrowest, inside, room)
+    for k in range(LANES):
+        _see_triangle(leaves[_LEAVES + 2], k, vertex, known[rotation, k], p, e1, e2, n)
+    count, _ = _leaf(
+        leaves[_LEAVES + 2], known[rotation], vertex, frame, turn, gap, count, tool, narrowest, inside, room
+    )
+    count, _ = _leaf(leaves[_LEAVES + 1], known[-1], vertex, frame, turn, gap, count, tool, narrowest, inside, room)
     queue[0, 0], queue[0, 1] = 0, 0
     waiting = 1
     for level in range(levels):
@@ -129,10 +136,12 @@ def _rotation(frame, e1, e2, turn, gap, count, tool, narrowest, wide, seen, room
                         leaves[inner], which, vertex, frame, turn, gap, count, tool, narrowest, inside, room
                     )
                     if cut >= 0:
-                        known[tally[2]] = begin + cut
+                        known[-1, tally[2]] = begin + cut
                         for k in range(9):
                             leaves[_LEAVES + 1, k, tally[2]] = leaves[inner, k, cut]
                         tally[2] = (tally[2] + 1) % LANES
+                        known[rotation, place[rotation]] = begin + cut
+                        place[rotation] = (place[rotation] + 1) % LANES
                     continue
                 x, y, z = view[slot, 13, lane], view[slot, 14, lane], view[slot, 15, lane]
                 x, y = cosine * x + sine * y, cosine * y - sine * x
@@ -211,8 +220,9 @@ def free_map(  # type: ignore[no-untyped-def]
     )  # fmt: skip
     tool = Tool(radius, radius - depth_allowed, depth_allowed, length - depth_allowed)
     view = _View(
-        np.empty((_SEEN + 1, 16, LANES)), np.empty((_LEAVES + 2, 9, LANES)), np.empty((_SEEN + 1, LANES), np.int64),
-        np.empty((_SEEN, 2), np.int64), np.zeros(3, np.int64), np.zeros(LANES, np.int64),
+        np.empty((_SEEN + 1, 16, LANES)), np.empty((_LEAVES + 3, 9, LANES)), np.empty((_SEEN + 1, LANES), np.int64),
+        np.empty((_SEEN, 2), np.int64), np.zeros(3, np.int64), np.zeros((len(ranges.rotation_cos) + 1, LANES), np.int64),
+        np.zeros(len(ranges.rotation_cos), np.int64),
         np.empty((_QUEUE, 2), np.int64), np.empty((_QUEUE, 2), np.int64), np.empty(LANES), np.empty(LANES),
         np.empty(LANES, np.int64), np.hypot(tool.high, tool.radius + tool.shrunk),
     )  # fmt: skip
@@ -225,7 +235,7 @@ def free_map(  # type: ignore[no-untyped-def]
         _see(view.boxes, 0, wide.blocks, 0, p, e1, e2, n, view.reach)
         some = _rising(view.boxes, view.below, 0, 1 << (wide.bottom % 3), tool.low)
         for lane in range(LANES):
-            _see_triangle(view.leaves[_LEAVES + 1], lane, wide.vertex, view.known[lane], p, e1, e2, n)
+            _see_triangle(view.leaves[_LEAVES + 1], lane, wide.vertex, view.known[-1, lane], p, e1, e2, n)
         for rotation in range(len(ranges.rotation_cos)):
             cosine, sine = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
             lean_frame(e1, e2, cosine, sine, f, t)
@@ -243,5 +253,5 @@ def free_map(  # type: ignore[no-untyped-def]
                 _begin(gap, g, arcs[g, 0], 0.0)
                 _end(gap, g, arcs[g, 1], 0.0)
             if some and count > 0:
-                count = _rotation(frame, e1, e2, (cosine, sine), gap, count, tool, narrowest, wide, view, work)
+                count = _rotation(frame, e1, e2, (cosine, sine), rotation, gap, count, tool, narrowest, wide, view, work)
             count_out[place, rotation], undecided[place, rotation] = _write(gap, count, room, part[place, rotation])
