@@ -19,7 +19,7 @@ from plan_cutters.kernels.rows import Frame, Tool
 
 #: Blocks of boxes kept as seen from one contact, and blocks that may wait to be looked at.
 _SEEN, _QUEUE = 1 << 11, 1 << 13
-#: Leaves of triangles kept so; one more for others, one for the triangles that cut gaps last and are tried first.
+#: Leaves of triangles kept so; one more for others, two for the triangles that are tried first.
 _LEAVES = 1 << 11
 #: What is known of the boxes in a block below another: not looked at yet, none rises above the tangent plane.
 _UNSEEN, _NONE = -1, -2
@@ -67,7 +67,11 @@ def _leaf(seen, which, vertex, frame, turn, gap, count, tool, narrowest, margin,
 
 class _View(NamedTuple):
     """What is kept of the tree as seen from one contact, for all rotations: boxes and leaves, what lies below each box, which
-    box each block hangs below, and tallies: blocks and leaves kept, place of the next triangle that is tried first."""
+    box each block hangs below, and tallies: blocks and leaves kept, place of the next triangle that is tried first.
+
+    known (rotations + 1, LANES): triangles that cut gaps of each rotation last, of this sample or the one before, the last row
+    those of any; place (rotations,) of the next of a rotation. What is `reach` away from the contact is out of reach.
+    """
 
     boxes: Any
     leaves: Any
@@ -253,5 +257,7 @@ def free_map(  # type: ignore[no-untyped-def]
                 _begin(gap, g, arcs[g, 0], 0.0)
                 _end(gap, g, arcs[g, 1], 0.0)
             if some and count > 0:
-                count = _rotation(frame, e1, e2, (cosine, sine), rotation, gap, count, tool, narrowest, wide, view, work)
+                count = _rotation(
+                    frame, e1, e2, (cosine, sine), rotation, gap, count, tool, narrowest, wide, view, work
+                )
             count_out[place, rotation], undecided[place, rotation] = _write(gap, count, room, part[place, rotation])

@@ -9,7 +9,7 @@ import numpy as np
 
 from plan_cutters.kernels.gaps import CF, CL, SF, SL
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.passes import _facing, _rim
+from plan_cutters.kernels.passes import _facing, _from_plane, _rim
 
 #: Boxes and triangles looked at together.
 LANES = 8
@@ -104,7 +104,9 @@ def _boxes_pass(view, block, cosine, sine, gap, count, tool, margin):  # type: i
     """Write a margin for each box of a block: 0 or more only if none of its points enters the body in any gap.
 
     What parts a box from the body is, as for a point: beside the cylinder; below its bottom where the gap begins; in front
-    of the rim where it ends; below the rim at both; above the top where it ends; behind where it begins; out of reach.
+    of the rim where it ends; below the rim at both, seen along the normal or across the box's thin side; above the top where
+    it ends; behind where it begins. The rim is seen as a line, its tangent half way from the box's middle to its side next to
+    the axis.
     """
     radius, shrunk, low, high = tool
     for lane in range(len(margin)):
@@ -137,14 +139,15 @@ def _boxes_pass(view, block, cosine, sine, gap, count, tool, margin):  # type: i
             d = sb * slope
             under = min(under, cb * low + sb * room - z - abs(z0 - d * t0) - abs(z1 - d * t1) - abs(z2 - d * t2))
             nx, nz = _facing(t0 * z1 - z0 * t1, f0 * t1 - t0 * f1, ca, sa, cb, sb)
-            up, out = nx * sa + nz * ca, nz * sa - nx * ca
-            d, over = abs(out) * slope, nx * x + nz * z
-            own = low * up + abs(out) * room + 2.0 * radius * min(0.0, out) - over
-            own -= abs(nx * f0 + nz * z0 - d * t0) + abs(nx * f1 + nz * z1 - d * t1) + abs(nx * f2 + nz * z2 - d * t2)
-            up, out = nx * sb + nz * cb, nz * sb - nx * cb
-            d = abs(out) * slope
-            other = low * up + abs(out) * room + 2.0 * radius * min(0.0, out) - over
-            other -= abs(nx * f0 + nz * z0 - d * t0) + abs(nx * f1 + nz * z1 - d * t1) + abs(nx * f2 + nz * z2 - d * t2)
+            over = nx * x + nz * z
+            begins, share = _from_plane(nx, nz, ca, sa, tool)
+            d = share * slope
+            own = begins + share * room - over - abs(nx * f0 + nz * z0 - d * t0)
+            own -= abs(nx * f1 + nz * z1 - d * t1) + abs(nx * f2 + nz * z2 - d * t2)
+            begins, share = _from_plane(nx, nz, cb, sb, tool)
+            d = share * slope
+            other = begins + share * room - over - abs(nx * f0 + nz * z0 - d * t0)
+            other -= abs(nx * f1 + nz * z1 - d * t1) + abs(nx * f2 + nz * z2 - d * t2)
             under = max(under, min(own, other))
             ahead = x - abs(f0) - abs(f1) - abs(f2)
             beside = abs(y) - wide
@@ -214,13 +217,15 @@ def _triangles_pass(seen, cosine, sine, gap, count, tool, margin):  # type: igno
             under = ca * low + sa * room - max(z0 - d * y0, max(z1 - d * y1, z2 - d * y2))
             d = sb * slope
             under = min(under, cb * low + sb * room - max(z0 - d * y0, max(z1 - d * y1, z2 - d * y2)))
-            nx, nz = _facing((y1 - y0) * (z2 - z0) - (z1 - z0) * (y2 - y0), (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0), ca, sa, cb, sb)
-            up, out = nx * sa + nz * ca, nz * sa - nx * ca
-            d = abs(out) * slope
-            own = low * up + abs(out) * room + 2.0 * radius * min(0.0, out) - max(nx * x0 + nz * z0 - d * y0, max(nx * x1 + nz * z1 - d * y1, nx * x2 + nz * z2 - d * y2))
-            up, out = nx * sb + nz * cb, nz * sb - nx * cb
-            d = abs(out) * slope
-            own = min(own, low * up + abs(out) * room + 2.0 * radius * min(0.0, out) - max(nx * x0 + nz * z0 - d * y0, max(nx * x1 + nz * z1 - d * y1, nx * x2 + nz * z2 - d * y2)))
+            nx, nz = (y1 - y0) * (z2 - z0) - (z1 - z0) * (y2 - y0), (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0)
+            nx, nz = _facing(nx, nz, ca, sa, cb, sb)
+            h0, h1, h2 = nx * x0 + nz * z0, nx * x1 + nz * z1, nx * x2 + nz * z2
+            begins, share = _from_plane(nx, nz, ca, sa, tool)
+            d = share * slope
+            own = begins + share * room - max(h0 - d * y0, max(h1 - d * y1, h2 - d * y2))
+            begins, share = _from_plane(nx, nz, cb, sb, tool)
+            d = share * slope
+            own = min(own, begins + share * room - max(h0 - d * y0, max(h1 - d * y1, h2 - d * y2)))
             under = max(under, own)
             beside = max(min(y0, min(y1, y2)), -max(y0, max(y1, y2)))
             best = max(beside - shrunk, low - highest)
