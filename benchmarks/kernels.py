@@ -173,7 +173,7 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
     blocks = wide.blocks
     view, leaves, margin = np.empty((len(blocks), 16, 8)), np.empty((200, 9, 8)), np.empty(8)
     for i in range(len(blocks)):
-        lanes._see(view, i, blocks, i, point[0], first[0], np.cross(normal[0], first[0]), normal[0], margin)
+        lanes._see(view, i, blocks, i, point[0], first[0], np.cross(normal[0], first[0]), normal[0], 100.0)
     for i in range(len(leaves)):
         lanes._see_leaf(
             leaves[i], vertex, 8 * i, 8 * i + 8, point[0], first[0], np.cross(normal[0], first[0]), normal[0]

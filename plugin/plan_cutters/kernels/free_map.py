@@ -20,7 +20,7 @@ from plan_cutters.kernels.vectors import cross, dot, lean_frame
 
 #: Blocks of boxes kept as seen from one contact, and blocks that may wait to be looked at.
 _SEEN, _QUEUE = 1 << 11, 1 << 13
-#: Leaves of triangles kept so; one more for others, one for the triangles that cut gaps last and are tried first.
+#: Leaves of triangles kept so; one more for others, two for the triangles that are tried first.
 _LEAVES = 1 << 11
 #: What is known of the boxes in a block below another: not looked at yet, none rises above the tangent plane.
 _UNSEEN, _NONE = -1, -2
@@ -68,7 +68,11 @@ def _leaf(seen, which, vertex, frame, turn, gap, count, tool, narrowest, margin,
 
 class _View(NamedTuple):
     """What is kept of the tree as seen from one contact, for all rotations: boxes and leaves, what lies below each box, which
-    box each block hangs below, and tallies: blocks and leaves kept, place of the next triangle that is tried first."""
+    box each block hangs below, and tallies: blocks and leaves kept, place of the next triangle that is tried first.
+
+    known (rotations + 1, LANES): triangles that cut gaps of each rotation last, of this sample or the one before, the last row
+    those of any; place (rotations,) of the next of a rotation. What is `reach` away from the contact is out of reach.
+    """
 
     boxes: Any
     leaves: Any
@@ -76,15 +80,17 @@ class _View(NamedTuple):
     home: Any
     tally: Any
     known: Any
+    place: Any
     queue: Any
     ahead: Any
     margin: Any
     inside: Any
     which: Any
+    reach: float
 
 
 @kernel
-def _rotation(frame, e1, e2, turn, gap, count, tool, narrowest, wide, seen, room):  # type: ignore[no-untyped-def]
+def _rotation(frame, e1, e2, turn, rotation, gap, count, tool, narrowest, wide, seen, room):  # type: ignore[no-untyped-def]
     """Take the gaps of one rotation, its cosine and sine `turn`, through the tree, level by level; how many are left."""
     p, n = frame.p, frame.n
     radius, shrunk, low, high, _ = tool
@@ -92,9 +98,15 @@ def _rotation(frame, e1, e2, turn, gap, count, tool, narrowest, wide, seen, room
     vertex, blocks, offset, bottom = wide
     view, leaves, below, home, tally = seen.boxes, seen.leaves, seen.below, seen.home, seen.tally
     known, queue, ahead = seen.known, seen.queue, seen.ahead
+    place = seen.place
     margin, inside, which = seen.margin, seen.inside, seen.which
     triangles, levels = len(vertex), len(offset) - 1
-    count, _ = _leaf(leaves[_LEAVES + 1], known, vertex, frame, turn, gap, count, tool, narrowest, inside, room)
+    for k in range(LANES):
+        _see_triangle(leaves[_LEAVES + 2], k, vertex, known[rotation, k], p, e1, e2, n)
+    count, _ = _leaf(
+        leaves[_LEAVES + 2], known[rotation], vertex, frame, turn, gap, count, tool, narrowest, inside, room
+    )
+    count, _ = _leaf(leaves[_LEAVES + 1], known[-1], vertex, frame, turn, gap, count, tool, narrowest, inside, room)
     queue[0, 0], queue[0, 1] = 0, 0
     waiting = 1
     for level in range(levels):
@@ -105,7 +117,7 @@ def _rotation(frame, e1, e2, turn, gap, count, tool, narrowest, wide, seen, room
             slot, block = queue[w, 0], queue[w, 1]
             if slot < 0:
                 slot = _SEEN
-                _see(view, slot, blocks, offset[level] + block, p, e1, e2, n, margin)
+                _see(view, slot, blocks, offset[level] + block, p, e1, e2, n, seen.reach)
                 _rising(view, below, slot, LANES, low)
             _boxes_pass(view, slot, cosine, sine, gap, count, tool, margin)
             for lane in range(LANES):
@@ -129,10 +141,12 @@ def _rotation(frame, e1, e2, turn, gap, count, tool, narrowest, wide, seen, room
                         leaves[inner], which, vertex, frame, turn, gap, count, tool, narrowest, inside, room
                     )
                     if cut >= 0:
-                        known[tally[2]] = begin + cut
+                        known[-1, tally[2]] = begin + cut
                         for k in range(9):
                             leaves[_LEAVES + 1, k, tally[2]] = leaves[inner, k, cut]
                         tally[2] = (tally[2] + 1) % LANES
+                        known[rotation, place[rotation]] = begin + cut
+                        place[rotation] = (place[rotation] + 1) % LANES
                     continue
                 x, y, z = view[slot, 13, lane], view[slot, 14, lane], view[slot, 15, lane]
                 x, y = cosine * x + sine * y, cosine * y - sine * x
@@ -141,7 +155,7 @@ def _rotation(frame, e1, e2, turn, gap, count, tool, narrowest, wide, seen, room
                     count = _take(gap, count, left, right)
                 if inner == _UNSEEN and tally[0] < _SEEN:
                     inner = tally[0]
-                    _see(view, inner, blocks, offset[level + 1] + box, p, e1, e2, n, inside)
+                    _see(view, inner, blocks, offset[level + 1] + box, p, e1, e2, n, seen.reach)
                     if not _rising(view, below, inner, LANES, low):
                         _forget(below, home, slot, lane)
                         continue
@@ -210,10 +224,11 @@ def free_map(  # type: ignore[no-untyped-def]
         scratch(),
     )  # fmt: skip
     view = _View(
-        np.empty((_SEEN + 1, 16, LANES)), np.empty((_LEAVES + 2, 9, LANES)), np.empty((_SEEN + 1, LANES), np.int64),
-        np.empty((_SEEN, 2), np.int64), np.zeros(3, np.int64), np.zeros(LANES, np.int64),
+        np.empty((_SEEN + 1, 16, LANES)), np.empty((_LEAVES + 3, 9, LANES)), np.empty((_SEEN + 1, LANES), np.int64),
+        np.empty((_SEEN, 2), np.int64), np.zeros(3, np.int64), np.zeros((len(ranges.rotation_cos) + 1, LANES), np.int64),
+        np.zeros(len(ranges.rotation_cos), np.int64),
         np.empty((_QUEUE, 2), np.int64), np.empty((_QUEUE, 2), np.int64), np.empty(LANES), np.empty(LANES),
-        np.empty(LANES, np.int64),
+        np.empty(LANES, np.int64), np.hypot(tool.high, tool.radius + tool.shrunk),
     )  # fmt: skip
     for place in range(len(rows)):
         row = rows[place]
@@ -221,10 +236,10 @@ def free_map(  # type: ignore[no-untyped-def]
         cross(n, e1, e2)
         frame = Frame(p, n, f, t)
         view.home[0, 0], view.tally[0], view.tally[1] = -1, 1, 0
-        _see(view.boxes, 0, wide.blocks, 0, p, e1, e2, n, view.margin)
+        _see(view.boxes, 0, wide.blocks, 0, p, e1, e2, n, view.reach)
         some = _rising(view.boxes, view.below, 0, 1 << (wide.bottom % 3), tool.low)
         for lane in range(LANES):
-            _see_triangle(view.leaves[_LEAVES + 1], lane, wide.vertex, view.known[lane], p, e1, e2, n)
+            _see_triangle(view.leaves[_LEAVES + 1], lane, wide.vertex, view.known[-1, lane], p, e1, e2, n)
         for rotation in range(len(ranges.rotation_cos)):
             cosine, sine = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
             lean_frame(e1, e2, cosine, sine, f, t)
@@ -244,5 +259,7 @@ def free_map(  # type: ignore[no-untyped-def]
                 _begin(gap, g, arcs[g, 0], 0.0)
                 _end(gap, g, arcs[g, 1], 0.0)
             if some and count > 0:
-                count = _rotation(frame, e1, e2, (cosine, sine), gap, count, tool, narrowest, wide, view, work)
+                count = _rotation(
+                    frame, e1, e2, (cosine, sine), rotation, gap, count, tool, narrowest, wide, view, work
+                )
             count_out[place, rotation], undecided[place, rotation] = _write(gap, count, room, part[place, rotation])

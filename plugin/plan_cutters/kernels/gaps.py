@@ -216,20 +216,22 @@ def _cut_gaps(vertex, i, frame, gap, count, narrowest, tool, room):  # type: ign
             g += 1
             continue
         # A side or the middle of the triangle sticks out further than its corners: mostly by a little, at one end.
+        at_first, at_last = _in_the_way(vertex, i, frame, a, tool, room), _in_the_way(vertex, i, frame, b, tool, room)
         # What was undecided at its ends no longer is where this triangle is in the way.
-        for column, tilt, off in ((UF, a, -gap[g, UF]), (UL, b, gap[g, UL])):
-            if (
-                off != 0.0
-                and _in_the_way(vertex, i, frame, tilt, tool, room)
-                and _in_the_way(vertex, i, frame, tilt + off, tool, room)
-            ):
-                gap[g, column] = 0.0
-        up, up_failed = _shrink(corner, gap, g, 1.0, narrowest, tool, first, second)
+        if at_first and gap[g, UF] > 0.0 and _in_the_way(vertex, i, frame, a - gap[g, UF], tool, room):
+            gap[g, UF] = 0.0
+        if at_last and gap[g, UL] > 0.0 and _in_the_way(vertex, i, frame, b + gap[g, UL], tool, room):
+            gap[g, UL] = 0.0
+        # From an end at which it is not in the way nothing is gained if it is at the other.
+        up, up_failed, down, down_failed = np.inf, b - a, np.inf, b - a
+        if not at_last:
+            up, up_failed = _shrink(corner, gap, g, 1.0, narrowest, tool, first, second)
         if up <= 2.0 * narrowest and gap[g, UF] + up <= 3.0 * narrowest:
             _begin(gap, g, a + up, gap[g, UF] + up)
             cut = True
             continue
-        down, down_failed = _shrink(corner, gap, g, -1.0, narrowest, tool, first, second)
+        if not at_first:
+            down, down_failed = _shrink(corner, gap, g, -1.0, narrowest, tool, first, second)
         if down <= 2.0 * narrowest and gap[g, UL] + down <= 3.0 * narrowest:
             _end(gap, g, b - down, gap[g, UL] + down)
             cut = True

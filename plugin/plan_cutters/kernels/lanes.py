@@ -9,7 +9,7 @@ import numpy as np
 
 from plan_cutters.kernels.gaps import CF, CL, SF, SL
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.passes import _rim
+from plan_cutters.kernels.passes import _facing, _from_plane, _rim
 
 #: Boxes and triangles looked at together.
 LANES = 8
@@ -67,17 +67,19 @@ def wide_tree(tree):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _see(view, slot, blocks, block, p, e1, e2, n, margin):  # type: ignore[no-untyped-def]
+def _see(view, slot, blocks, block, p, e1, e2, n, reach):  # type: ignore[no-untyped-def]
     """Write a block of boxes into a slot of the view, as seen from the contact.
 
-    Rows: centre along e1, e2, n; half sides along e1, along e2, along n; how far up the box goes; the point.
+    Rows: centre along e1, e2, n; half sides along e1, along e2, along n; how far up the box goes, if any of it is within reach
+    of the contact; the point.
     """
-    for lane in range(len(margin)):
+    for lane in range(LANES):
         x, y, z = blocks[block, 0, lane] - p[0], blocks[block, 1, lane] - p[1], blocks[block, 2, lane] - p[2]
         view[slot, 0, lane] = x * e1[0] + y * e1[1] + z * e1[2]
         view[slot, 1, lane] = x * e2[0] + y * e2[1] + z * e2[2]
         height = x * n[0] + y * n[1] + z * n[2]
         view[slot, 2, lane] = height
+        square, away = x * x + y * y + z * z, 0.0
         for k in range(3):
             x, y, z = blocks[block, 3 + 3 * k, lane], blocks[block, 4 + 3 * k, lane], blocks[block, 5 + 3 * k, lane]
             view[slot, 3 + k, lane] = x * e1[0] + y * e1[1] + z * e1[2]
@@ -85,7 +87,12 @@ def _see(view, slot, blocks, block, p, e1, e2, n, margin):  # type: ignore[no-un
             up = x * n[0] + y * n[1] + z * n[2]
             view[slot, 9 + k, lane] = up
             height += abs(up)
-        view[slot, 12, lane] = height
+            away += abs(
+                view[slot, 3 + k, lane] * view[slot, 0, lane]
+                + view[slot, 6 + k, lane] * view[slot, 1, lane]
+                + up * view[slot, 2, lane]
+            )
+        view[slot, 12, lane] = -np.inf if square - away > reach * np.sqrt(square) else height
         x, y, z = blocks[block, 12, lane] - p[0], blocks[block, 13, lane] - p[1], blocks[block, 14, lane] - p[2]
         view[slot, 13, lane] = x * e1[0] + y * e1[1] + z * e1[2]
         view[slot, 14, lane] = x * e2[0] + y * e2[1] + z * e2[2]
@@ -97,7 +104,9 @@ def _boxes_pass(view, block, cosine, sine, gap, count, tool, margin):  # type: i
     """Write a margin for each box of a block: 0 or more only if none of its points enters the body in any gap.
 
     What parts a box from the body is, as for a point: beside the cylinder; below its bottom where the gap begins; in front
-    of the rim where it ends; below the rim at both; above the top where it ends; behind where it begins; out of reach.
+    of the rim where it ends; below the rim at both, seen along the normal or across the box's thin side; above the top where
+    it ends; behind where it begins. The rim is seen as a line, its tangent half way from the box's middle to its side next to
+    the axis.
     """
     radius, shrunk, low, high, _ = tool
     for lane in range(len(margin)):
@@ -116,7 +125,8 @@ def _boxes_pass(view, block, cosine, sine, gap, count, tool, margin):  # type: i
             t1 = cosine * view[block, 7, lane] - sine * view[block, 4, lane]
             t2 = cosine * view[block, 8, lane] - sine * view[block, 5, lane]
             z0, z1, z2 = view[block, 9, lane], view[block, 10, lane], view[block, 11, lane]
-            slope, room = _rim(y, radius, shrunk)
+            wide = abs(t0) + abs(t1) + abs(t2)
+            slope, room = _rim(y - max(-0.5 * wide, min(0.5 * wide, y)), radius, shrunk)
             room += slope * y
             top = ca * z + sa * x + abs(ca * z0 + sa * f0) + abs(ca * z1 + sa * f1) + abs(ca * z2 + sa * f2)
             bottom = cb * z + sb * x - abs(cb * z0 + sb * f0) - abs(cb * z1 + sb * f1) - abs(cb * z2 + sb * f2)
@@ -128,19 +138,24 @@ def _boxes_pass(view, block, cosine, sine, gap, count, tool, margin):  # type: i
             under = ca * low + sa * room - z - abs(z0 - d * t0) - abs(z1 - d * t1) - abs(z2 - d * t2)
             d = sb * slope
             under = min(under, cb * low + sb * room - z - abs(z0 - d * t0) - abs(z1 - d * t1) - abs(z2 - d * t2))
+            nx, nz = _facing(t0 * z1 - z0 * t1, f0 * t1 - t0 * f1, ca, sa, cb, sb)
+            over = nx * x + nz * z
+            begins, share = _from_plane(nx, nz, ca, sa, tool)
+            d = share * slope
+            own = begins + share * room - over - abs(nx * f0 + nz * z0 - d * t0)
+            own -= abs(nx * f1 + nz * z1 - d * t1) + abs(nx * f2 + nz * z2 - d * t2)
+            begins, share = _from_plane(nx, nz, cb, sb, tool)
+            d = share * slope
+            other = begins + share * room - over - abs(nx * f0 + nz * z0 - d * t0)
+            other -= abs(nx * f1 + nz * z1 - d * t1) + abs(nx * f2 + nz * z2 - d * t2)
+            under = max(under, min(own, other))
             ahead = x - abs(f0) - abs(f1) - abs(f2)
-            beside = abs(y) - abs(t0) - abs(t1) - abs(t2)
-            best = max(beside - shrunk, low - view[block, 12, lane])
-            best = max(best, level - top)
+            beside = abs(y) - wide
+            best = max(beside - shrunk, level - top)
             best = max(best, min(room - front, max(ahead, max(low - top, bottom))))
             best = max(best, under)
             best = max(best, bottom - high)
             best = max(best, behind - 2.0 * radius + room)
-            away = np.sqrt(x * x + z * z) + 1e-300
-            ux, uz = x / away, z / away
-            away -= abs(ux * f0 + uz * z0) + abs(ux * f1 + uz * z1) + abs(ux * f2 + uz * z2)
-            far = radius + np.sqrt(max(0.0, shrunk * shrunk - max(0.0, beside) ** 2))
-            best = max(best, away - np.sqrt(high * high + far * far))
             margin[lane] = min(margin[lane], best)
 
 
@@ -202,6 +217,16 @@ def _triangles_pass(seen, cosine, sine, gap, count, tool, margin):  # type: igno
             under = ca * low + sa * room - max(z0 - d * y0, max(z1 - d * y1, z2 - d * y2))
             d = sb * slope
             under = min(under, cb * low + sb * room - max(z0 - d * y0, max(z1 - d * y1, z2 - d * y2)))
+            nx, nz = (y1 - y0) * (z2 - z0) - (z1 - z0) * (y2 - y0), (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0)
+            nx, nz = _facing(nx, nz, ca, sa, cb, sb)
+            h0, h1, h2 = nx * x0 + nz * z0, nx * x1 + nz * z1, nx * x2 + nz * z2
+            begins, share = _from_plane(nx, nz, ca, sa, tool)
+            d = share * slope
+            own = begins + share * room - max(h0 - d * y0, max(h1 - d * y1, h2 - d * y2))
+            begins, share = _from_plane(nx, nz, cb, sb, tool)
+            d = share * slope
+            own = min(own, begins + share * room - max(h0 - d * y0, max(h1 - d * y1, h2 - d * y2)))
+            under = max(under, own)
             beside = max(min(y0, min(y1, y2)), -max(y0, max(y1, y2)))
             best = max(beside - shrunk, low - highest)
             best = max(best, level - top)
@@ -209,11 +234,6 @@ def _triangles_pass(seen, cosine, sine, gap, count, tool, margin):  # type: igno
             best = max(best, under)
             best = max(best, bottom - high)
             best = max(best, behind - 2.0 * radius + room)
-            ux, uz = x0 + x1 + x2, z0 + z1 + z2
-            away = np.sqrt(ux * ux + uz * uz) + 1e-300
-            away = min(ux * x0 + uz * z0, min(ux * x1 + uz * z1, ux * x2 + uz * z2)) / away
-            far = radius + np.sqrt(max(0.0, shrunk * shrunk - max(0.0, beside) ** 2))
-            best = max(best, away - np.sqrt(high * high + far * far))
             margin[lane] = min(margin[lane], best)
 
 

@@ -60,6 +60,46 @@ def _rim(y, radius, shrunk):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def _facing(nx, nz, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
+    """A direction (x, z), up or down as it may be, turned to where the body is at all tilts of a gap.
+
+    It then leans from the axis to the front or to the back by no more than 90 deg at any of them.
+    """
+    if sa * nx + ca * nz < 0.0:
+        nx, nz = -nx, -nz
+    if sa * nx + ca * nz <= 0.0:
+        nx, nz = ca, -sa
+    if sb * nx + cb * nz <= 0.0:
+        nx, nz = -cb, sb
+    return nx, nz
+
+
+@kernel
+def _from_plane(nx, nz, c, s, tool):  # type: ignore[no-untyped-def]
+    """How far along a direction (x, z) the body begins at a tilt: (distance, and to be added for each mm of room at the rim)."""
+    up, out = nx * s + nz * c, nz * s - nx * c
+    return tool.low * up + 2.0 * tool.radius * min(0.0, out), abs(out)
+
+
+@kernel
+def _plane_passes(corner, ca, sa, cb, sb, tool):  # type: ignore[no-untyped-def]
+    """Whether a plane, nearly that of the triangle, has it on one side and the body on the other at all tilts of a gap."""
+    x0, z0, y0 = corner[0, 0], corner[0, 1], corner[0, 2]
+    x1, z1, y1 = corner[1, 0], corner[1, 1], corner[1, 2]
+    x2, z2, y2 = corner[2, 0], corner[2, 1], corner[2, 2]
+    slope, room = _rim((y0 + y1 + y2) / 3.0, tool.radius, tool.shrunk)
+    nx, nz = (y1 - y0) * (z2 - z0) - (z1 - z0) * (y2 - y0), (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0)
+    nx, nz = _facing(nx, nz, ca, sa, cb, sb)
+    h0, h1, h2 = nx * x0 + nz * z0, nx * x1 + nz * z1, nx * x2 + nz * z2
+    for c, s in ((ca, sa), (cb, sb)):
+        begins, share = _from_plane(nx, nz, c, s, tool)
+        d = share * slope
+        if max(h0 - d * y0, max(h1 - d * y1, h2 - d * y2)) > begins + share * room:
+            return False
+    return True
+
+
+@kernel
 def _never(polygon, count, radius, shrunk):  # type: ignore[no-untyped-def]
     """Whether a polygon of rows (x, z, y) is out of reach at every tilt.
 
@@ -149,6 +189,8 @@ def _passes(corner, cf, sf, cl, sl, tool, first, second):  # type: ignore[no-unt
     is cut off in turn.
     """
     radius, shrunk, low, high, _ = tool
+    if _plane_passes(corner, cf, sf, cl, sl, tool):
+        return True
     count = _clip(corner, 3, first, sf, cf, low * min(1.0, cf * min(cf + sf, cl + sl)))
     if count == 0 or _parts_pass(first, count, cf, sf, cl, sl, tool):
         return True
