@@ -14,6 +14,7 @@ from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.BRepTools import BRepTools
+from OCP.IMeshTools import IMeshTools_Parameters
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
@@ -45,7 +46,9 @@ class UVMesh(NamedTuple):
     border: tuple[BorderCurve, ...]
 
 
-def uv_meshes(part: Part, numbers: Sequence[int], deflection: float, angle: float) -> dict[int, UVMesh]:
+def uv_meshes(
+    part: Part, numbers: Sequence[int], deflection: float, angle: float, *, inside: float = 1.0
+) -> dict[int, UVMesh]:
     """Mesh faces and leave the shape without a mesh again; faces that cannot be meshed are not in the result.
 
     Parameters
@@ -55,16 +58,25 @@ def uv_meshes(part: Part, numbers: Sequence[int], deflection: float, angle: floa
         Faces to mesh.
     deflection, angle : float
         What is asked of the kernel's mesher: mm, rad.
+    inside : float, optional
+        So many times coarser may the triangles be that touch no border.
     """
     whole = len(numbers) == len(part.faces)
     shape = part.shape if whole else as_one([part.face(n) for n in numbers])
     BRepTools.Clean_s(shape)
     try:
-        BRepMesh_IncrementalMesh(shape, deflection, False, angle, False)
+        BRepMesh_IncrementalMesh(shape, _asked(deflection, angle, inside))
         meshes = {n: _taken(part, n) for n in numbers}
     finally:
         BRepTools.Clean_s(shape)
     return {n: mesh for n, mesh in meshes.items() if mesh is not None}
+
+
+def _asked(deflection: float, angle: float, inside: float) -> IMeshTools_Parameters:
+    asked = IMeshTools_Parameters()
+    asked.Deflection, asked.Angle = deflection, angle
+    asked.DeflectionInterior, asked.AngleInterior = inside * deflection, -1.0
+    return asked
 
 
 def _taken(part: Part, number: int) -> UVMesh | None:
@@ -105,15 +117,27 @@ def _bordered(mesh: UVMesh, on_curve: Sequence[Floats], surface: Surface) -> UVM
     uv, corner, border = [mesh.uv], [mesh.corner], []
     count = len(mesh.uv)
     ends: dict[int, list[int]] = {}
-    for (nodes, parameter, curve), there in zip(mesh.border, on_curve, strict=True):
-        here = mesh.uv[nodes]
-        passed = np.flatnonzero((np.abs(there - here) > _SAME * np.maximum(1.0, np.abs(here))).any(axis=1))
-        off = surface.values(*there[passed].T) - surface.values(*here[passed].T)
-        passed = passed[np.linalg.norm(off, axis=1) > _ON]
+    # All borders at once: a call for each takes longer than its points.
+    every = [mesh.uv[border.nodes] for border in mesh.border]
+    here, there = np.concatenate([*every, mesh.uv[:0]]), np.concatenate([*on_curve, mesh.uv[:0]])
+    beside = np.flatnonzero((np.abs(there - here) > _SAME * np.maximum(1.0, np.abs(here))).any(axis=1))
+    if not len(beside):
+        return mesh
+    point = surface.values(*np.concatenate([there[beside], here[beside]]).T)
+    off = point[: len(beside)] - point[len(beside) :]
+    beside = beside[np.linalg.norm(off, axis=1) > _ON]
+    if not len(beside):
+        return mesh
+    firsts = np.cumsum([0, *map(len, every)])
+    for (nodes, parameter, curve), first, last in zip(mesh.border, firsts[:-1], firsts[1:], strict=True):
+        passed = beside[(beside >= first) & (beside < last)] - first
+        if not len(passed):
+            border.append(BorderCurve(nodes, parameter, curve))
+            continue
         own = nodes.copy()
         own[passed] = count + np.arange(len(passed))
         count += len(passed)
-        uv.append(there[passed])
+        uv.append(there[first + passed])
         corner.append(_filled(nodes, own))
         border.append(BorderCurve(own, parameter, curve))
         for node, new in zip(nodes[passed].tolist(), own[passed].tolist(), strict=True):
