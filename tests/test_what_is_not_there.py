@@ -124,8 +124,8 @@ def test_a_face_that_cannot_be_meshed_stands_as_its_box(monkeypatch):
 
     original = mesh.uv_meshes
 
-    def refuses(part, numbers, *more, **how):
-        return {n: found for n, found in original(part, numbers, *more, **how).items() if n != 7}
+    def refuses(part, numbers, *more):
+        return {n: found for n, found in original(part, numbers, *more).items() if n != 7}
 
     monkeypatch.setattr(triangles, "uv_meshes", refuses)
     # The lower face of a lid 3 mm above the plate.

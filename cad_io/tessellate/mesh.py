@@ -14,7 +14,6 @@ from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.BRepTools import BRepTools
-from OCP.IMeshTools import IMeshTools_Parameters
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
@@ -46,9 +45,7 @@ class UVMesh(NamedTuple):
     border: tuple[BorderCurve, ...]
 
 
-def uv_meshes(
-    part: Part, numbers: Sequence[int], deflection: float, angle: float, *, inside: float = 1.0
-) -> dict[int, UVMesh]:
+def uv_meshes(part: Part, numbers: Sequence[int], deflection: float, angle: float) -> dict[int, UVMesh]:
     """Mesh faces and leave the shape without a mesh again; faces that cannot be meshed are not in the result.
 
     Parameters
@@ -58,25 +55,16 @@ def uv_meshes(
         Faces to mesh.
     deflection, angle : float
         What is asked of the kernel's mesher: mm, rad.
-    inside : float, optional
-        So many times coarser may the triangles be that touch no border.
     """
     whole = len(numbers) == len(part.faces)
     shape = part.shape if whole else as_one([part.face(n) for n in numbers])
     BRepTools.Clean_s(shape)
     try:
-        BRepMesh_IncrementalMesh(shape, _asked(deflection, angle, inside))
+        BRepMesh_IncrementalMesh(shape, deflection, False, angle, False)
         meshes = {n: _taken(part, n) for n in numbers}
     finally:
         BRepTools.Clean_s(shape)
     return {n: mesh for n, mesh in meshes.items() if mesh is not None}
-
-
-def _asked(deflection: float, angle: float, inside: float) -> IMeshTools_Parameters:
-    asked = IMeshTools_Parameters()
-    asked.Deflection, asked.Angle = deflection, angle
-    asked.DeflectionInterior, asked.AngleInterior = inside * deflection, -1.0
-    return asked
 
 
 def _taken(part: Part, number: int) -> UVMesh | None:

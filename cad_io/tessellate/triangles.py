@@ -23,8 +23,6 @@ from cad_io.tessellate.refine import Found
 _COARSER = 32.0
 _COARSE = 3e-4  # of the part's size: never asked to be finer than this
 _ANGLE = 0.5
-#: Inside a face so much coarser still; at its border triangles might be folded over when they are cut.
-_INSIDE = 8.0
 #: A face is missing if more than this share of it has no triangles.
 _UNCOVERED = 0.01
 #: Times the budget at which counting ends; how much the chord error grows at least where the budget binds.
@@ -120,10 +118,10 @@ def _start(part: Part, wanted: Sequence[int], chord: float, budget: int, at: At)
     size = float(np.linalg.norm(part.size))
     deflection = max(_COARSER * chord, _COARSE * size)
     at("kernel", 0)
-    meshes = uv_meshes(part, wanted, deflection, _ANGLE, inside=_INSIDE)
+    meshes = uv_meshes(part, wanted, deflection, _ANGLE)
     while sum(len(m.corner) for m in meshes.values()) > budget and deflection < size:
         deflection *= 4
-        meshes = uv_meshes(part, wanted, deflection, 2 * _ANGLE, inside=_INSIDE)
+        meshes = uv_meshes(part, wanted, deflection, 2 * _ANGLE)
     for number in wanted:
         if number not in meshes:
             at("kernel", number)
