@@ -87,7 +87,7 @@ def test_part_without_faces(tmp_path):
         (["--cutter", "X9"], "R6L80"),
         (["--cutter", "R-6L80"], "positive"),
         (["--cutter", "R6L0"], "positive"),
-        (["--cutter", "R6L80rc1"], "not judged yet"),
+        (["--cutter", "R6L80F90"], "shorter than its flutes"),
         (["--cutter", "R6L80rc9"], "corner radius"),
         (["--tilt", "60:0"], "60:0"),
         (["--tilt", "0:120"], "0:120"),
