@@ -1,6 +1,6 @@
-"""Tools of all kinds on `peaks_and_valleys.step`, 201 x 201 samples, 36 rotations: seconds of search, against a flat end in turn.
+"""Tools of all kinds on `peaks_and_valleys.step`, 201 x 201 samples, 36 rotations: seconds of search, against a flat end.
 
-`python benchmarks/tools.py` prints dummy tests and search of each tool alone, best of five, as a ratio to the flat end of the same
+`python benchmarks/tools.py` prints dummy tests and search of each tool alone, best of five, as a ratio to the flat end of its
 radius, then ten tools in one plan.
 """
 
