@@ -198,6 +198,8 @@ def _check_shape(cutter: Dimensions, name: str) -> None:
         raise CutterError(
             f"{name}: a taper of {math.degrees(cutter.taper):.4g} deg lies beyond 80 deg (the half angle)"
         )
+    if cutter.shape not in ("barrel", "lens") and (cutter.arc_radius or cutter.arc_height):
+        raise CutterError(f"{name}: only barrels and lenses have an arc of their own")
     if cutter.shape != "form" and cutter.outline:
         raise CutterError(f"{name}: an outline belongs to the shape form")
     if cutter.shape == "end" and top == top:
