@@ -90,7 +90,7 @@ def test_part_without_faces(tmp_path):
         (["--cutter", "R6L80F90"], "shorter than its flutes"),
         (["--cutter", "R6L80rc9"], "corner radius"),
         (["--tilt", "60:0"], "60:0"),
-        (["--tilt", "0:120"], "0:120"),
+        (["--tilt", "0:190"], "0:190"),
         (["--tilt", "steep"], "MIN:MAX"),
         (["--rotation", "0:400"], "0:400"),
         (["--rotation-step", "0"], "rotation step"),

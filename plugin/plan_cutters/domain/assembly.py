@@ -226,7 +226,7 @@ def _slack(cutter: Cutter, inset: float, bands: list[Band], kind: Kind) -> float
             most = max(most, -band.inset * (1.0 / math.cos(half) - 1.0))
     if cutter.shape == "form":
         for i in range(len(cutter.outline) - 1):
-            most = max(most, abs(inset) * (1.0 - share(cutter.outline, i)), abs(inset) * sharpest(cutter.outline, i))
+            most = max(most, inset * (1.0 - share(cutter.outline, i)), sharpest(cutter.outline, i, inset))
             stage = cutter.outline[i : i + 2]
             if inset < 0.0 and stage[1][1] > stage[0][1]:
                 # Grown sides end at the heights of their corners.

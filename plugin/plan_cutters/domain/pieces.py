@@ -241,10 +241,9 @@ def _form(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list
         low_step, high_step = _step(points, i, -1), _step(points, i + 1, 1)
         # Grown, a side that leans reaches past its ends along its normal.
         rise = max(0.0, -mine) * math.sin(math.atan(stage.slope))
-        low = w0 + mine if low_step > 0.0 else w0 - abs(mine) - HAIR if low_step < 0.0 else w0 - max(0.0, rise) - HAIR
-        high = (
-            w1 - mine if high_step > 0.0 else w1 + abs(mine) + HAIR if high_step < 0.0 else w1 - min(0.0, rise) + HAIR
-        )
+        below, beyond = max(rise, _past(points, i, mine)), max(-rise, _past(points, i + 1, mine))
+        low = w0 + mine if low_step > 0.0 else w0 - HAIR - (abs(mine) if low_step < 0.0 else below)
+        high = w1 - mine if high_step > 0.0 else w1 + HAIR + (abs(mine) if high_step < 0.0 else beyond)
         if w1 == points[-1][1]:
             high = top
         side = stage.radius - mine * math.hypot(1.0, stage.slope)
@@ -266,28 +265,37 @@ def _step(points: tuple[tuple[float, float], ...], i: int, way: int) -> float:
     return 0.0 if other is None else r - other
 
 
+def _turn(points: tuple[tuple[float, float], ...], k: int) -> float:
+    """By which angle an outline turns at point k, rad: negative at a re-entrant corner."""
+    if not 0 < k < len(points) - 1:
+        return 0.0
+    (a, b), (c, d), (e, f) = points[k - 1], points[k], points[k + 1]
+    return math.remainder(math.atan2(f - d, e - c) - math.atan2(d - b, c - a), 2.0 * math.pi)
+
+
 def share(points: tuple[tuple[float, float], ...], i: int) -> float:
     """By which share of the depth the side from point i to the next is moved in: less next to a re-entrant corner."""
-    least, corners = 1.0, [i, i + 1]
+    corners = [i, i + 1]
     # A corner on the other side of a step meets this side, too.
     if i > 0 and points[i - 1][1] == points[i][1]:
         corners.append(i - 1)
     if i + 2 < len(points) and points[i + 2][1] == points[i + 1][1]:
         corners.append(i + 2)
-    for k in corners:
-        if 0 < k < len(points) - 1:
-            (a, b), (c, d), (e, f) = points[k - 1], points[k], points[k + 1]
-            first, second = math.atan2(d - b, c - a), math.atan2(f - d, e - c)
-            turn = math.remainder(second - first, 2.0 * math.pi)
-            if turn < 0.0:
-                least = min(least, math.cos(0.5 * turn))
-    return least
+    return min(math.cos(0.5 * min(0.0, _turn(points, k))) for k in corners)
 
 
-def sharpest(points: tuple[tuple[float, float], ...], k: int) -> float:
-    """By how much more than the depth the corner at point k of a convex seam lies within both sides."""
-    if not 0 < k < len(points) - 1:
+def _past(points: tuple[tuple[float, float], ...], k: int, inset: float) -> float:
+    """How far a side that is moved in runs on past a re-entrant corner, up to where the other one begins."""
+    return max(0.0, inset) * math.tan(-0.5 * min(0.0, _turn(points, k)))
+
+
+def sharpest(points: tuple[tuple[float, float], ...], k: int, inset: float) -> float:
+    """By how much pieces of sides that meet at point k and are moved by `inset` hold too much there, mm."""
+    turn = _turn(points, k)
+    if turn <= 0.0:
         return 0.0
-    (a, b), (c, d), (e, f) = points[k - 1], points[k], points[k + 1]
-    turn = math.remainder(math.atan2(f - d, e - c) - math.atan2(d - b, c - a), 2.0 * math.pi)
-    return 0.0 if turn <= 0.0 else 1.0 / max(0.05, math.cos(0.5 * turn)) - 1.0
+    if inset < 0.0:
+        return -inset * (1.0 / max(0.05, math.cos(0.5 * turn)) - 1.0)
+    # A step ends at its own depth, a side that leans at the corner's height.
+    step = points[k][1] in (points[k - 1][1], points[k + 1][1])
+    return 0.0 if step else inset * (1.0 - math.cos(turn))

@@ -250,7 +250,12 @@ def free_map(  # type: ignore[no-untyped-def]
             if np.isnan(least):
                 continue
             count = axis_arcs(
-                dot(ranges.setup, n), dot(ranges.setup, f), ranges.limit_cos, ranges.tilt_low, ranges.tilt_high, arcs
+                dot(ranges.setup, n),
+                dot(ranges.setup, f),
+                ranges.limit_cos,
+                ranges.tilt_low,
+                min(0.5 * np.pi, ranges.tilt_high),
+                arcs,
             )
             if least > 0.0:
                 count = remove(arcs, count, -1.0, least, 0.0)
