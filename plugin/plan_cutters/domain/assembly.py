@@ -99,8 +99,7 @@ class Assembly(Record):
         height = (from_centre @ axis)[:, None]
         q = np.linalg.norm(from_centre - height * axis, axis=1)[:, None]
         row = self.piece[mode].T[:, None]
-        base = np.where(row[KIND] == ARC, 0.0, row[LOW])
-        side = (row[RADIUS] + row[SLOPE] * (height - base) - q) * row[SCALE]
+        side = (row[RADIUS] + row[SLOPE] * (height - row[BOTTOM]) - q) * row[SCALE]
         arc = row[ROUND] - np.hypot(np.maximum(0.0, q - row[RADIUS]), height - row[SLOPE])
         deep = np.minimum(np.where(row[KIND] == ARC, arc, side), np.minimum(height - row[LOW], row[HIGH] - height))
         return np.asarray(deep.max(axis=1))
