@@ -51,7 +51,7 @@ def test_rotations_share_the_range():
     [
         {"tilt": (1.0, 0.5)},
         {"tilt": (-0.1, 1)},
-        {"tilt": (0, 2)},
+        {"tilt": (0, 4)},
         {"rotation": (0, 7)},
         {"rotation": (1, 0)},
         {"step": 0.0},
