@@ -9,7 +9,9 @@ from typing import Any
 
 from cad_io.units import UNITS
 from plan_cutters.domain.checks import choice, flag, number, shown, whole
-from plan_cutters.domain.cutter import Cutter, builtin
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.drawer import builtin
+from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange, unit
 from plan_cutters.errors import OptionError
@@ -37,6 +39,10 @@ class Options:
     ----------
     cutters : tuple of Cutter
         May be given as one cutter or a list, and texts such as `R6L80` for cutters. Empty: the built-in ones.
+    holder : Holder, optional
+        Of the cutters that have none; may be given as a text such as `R15L30`.
+    allowance, holder_clearance : float
+        Stock left on the surface, and room asked of neck, shank and holder, for cutters that do not say so themselves.
     machine : Machine
         May be given as a text such as `tilt:60`.
     setup : tuple of float
@@ -77,13 +83,16 @@ class Options:
     >>> Options(cutters="R6L80", setup=(0, 0, 5)).setup
     (0.0, 0.0, 1.0)
     >>> [cutter.id for cutter in Options().judged][:3]
-    ['R1L20', 'R1.5L25', 'R2L30']
+    ['R1L20F6N0.95x9S3HR10.5L60', 'R1L20rc1F6N0.95x9S3HR10.5L60', 'R1.5L25F9N1.425x11S3HR10.5L60']
     >>> Options(grid=1)
     Traceback (most recent call last):
     plan_cutters.errors.OptionError: grid 1 must lie between 2 and 5000 samples a side
     """
 
     cutters: tuple[Cutter, ...] = ()
+    holder: Holder | None = None
+    allowance: float = 0.0
+    holder_clearance: float = 0.0
     machine: Machine = field(default_factory=Machine)
     setup: tuple[float, float, float] = (0.0, 0.0, 1.0)
     faces: Any = None
@@ -112,6 +121,10 @@ class Options:
             raise OptionError(
                 f"tolerance {self.tolerance:g} must lie between {LEAST_TOLERANCE:g} and {MOST_TOLERANCE:g} mm"
             )
+        for word in ("allowance", "holder_clearance"):
+            value = getattr(self, word)
+            if not 0.0 <= value < math.inf:
+                raise OptionError(f"{word.replace('_', ' ')} {value:g} must be 0 or a positive number of mm")
         if self.unit is not None and self.unit not in UNITS:
             raise OptionError(f"unit {self.unit!r} is not one of {', '.join(UNITS)}")
         if self.area_budget is not None and self.area_budget < 0:
@@ -135,6 +148,10 @@ class Options:
         if self.area_budget is not None:
             take(area_budget=whole(self.area_budget, "area budget"))
         take(flip=flag(self.flip, "flip"), posture_maps=flag(self.posture_maps, "posture_maps"))
+        take(allowance=number(self.allowance, "allowance"))
+        take(holder_clearance=number(self.holder_clearance, "holder clearance"))
+        if self.holder is not None:
+            take(holder=Holder.of(self.holder))
         choice(self.faces, "faces")
         choice(self.ignore, "ignore")
         if self.grid is not None:
@@ -167,5 +184,6 @@ class Options:
 
     @property
     def judged(self) -> tuple[Cutter, ...]:
-        """The cutters to judge, each id once."""
-        return tuple({c.id: c for c in self.cutters or builtin()}.values())
+        """The cutters to judge, each id once, with what is asked for the whole plan."""
+        given = [c.asked(self.allowance, self.holder_clearance, self.holder) for c in self.cutters or builtin()]
+        return tuple({c.id: c for c in given}.values())

@@ -27,7 +27,7 @@ from plan_cutters.kernels.rows import Contacts
 from plan_cutters.options import Options
 from plan_cutters.result import Result
 from plan_cutters.scene.buried import buried
-from plan_cutters.scene.conditions import Conditions, contacts_of, found_of
+from plan_cutters.scene.conditions import Conditions, contacts_of, found_of, tool_of
 from plan_cutters.scene.faces import choose
 from plan_cutters.scene.prepared import Prepared
 from plan_cutters.scene.scene import Scene
@@ -222,7 +222,8 @@ def _judged(
     found = witnesses(samples, reach, cutter, ready.conditions, buried=ready.buried)
     marched = march_differs(samples, convex, ready.region, reach.interference_free)
     doubtful = ready.conditions.around.doubtful
-    return Judged(reach, cutter_entry(cutter, samples, reach, found, marched, seconds, doubtful=doubtful))
+    return Judged(reach, cutter_entry(cutter, samples, reach, found, marched, seconds, doubtful=doubtful,
+                                       slack=ready.conditions.light(cutter).slack))  # fmt: skip
 
 
 def assemble(
@@ -272,7 +273,7 @@ def warm(contacts: Contacts, cutter: Cutter, conditions: Conditions) -> None:
     from plan_cutters.kernels import search
 
     none, found = np.zeros(0, np.int64), found_of(blank(0))
-    search.dummy_clear(none, contacts, cutter.radius, cutter.length, conditions.tolerance,
-                      conditions.obstacles.solids, np.zeros(0, bool))  # fmt: skip
-    search.search(none, contacts, conditions.ranges, cutter.radius, cutter.length, *conditions.depths,
-                  conditions.obstacles.solids, conditions.around.surely.solids, found)  # fmt: skip
+    light, heavy = conditions.light(cutter), conditions.heavy(cutter)
+    search.dummy_clear(none, contacts, light.dummy, tool_of(light), conditions.obstacles.solids, np.zeros(0, bool))
+    search.search(none, contacts, conditions.ranges, tool_of(light), tool_of(heavy), conditions.obstacles.solids,
+                  conditions.around.surely.solids, found)  # fmt: skip

@@ -9,11 +9,13 @@ import numpy as np
 
 from cad_io.arrays import Floats
 from cad_io.sample import locate
+from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.checks import number, numbers, radians
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import OptionError
+from plan_cutters.scene.conditions import tools
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.surroundings import surroundings
 from plan_cutters.stages.posture_map import SETTLED, Ask, PostureMap, complement, moved, posture_map_of
@@ -50,7 +52,7 @@ def posture_map(
     rotations : sequence of float
         rad, from the direction of the largest curvature; at most a full turn either way.
     tilt : tuple of float
-        Range, rad, within 0 to pi/2.
+        Range, rad, within 0 to pi.
     machine : Machine or str, optional
         A text as `tilt:60` (degrees). Default: no axis limit.
     tolerance : float, optional
@@ -82,13 +84,13 @@ def posture_map(
     wanted = (part.asked if isinstance(part, Scene) else 0.01) if tolerance is None else number(tolerance, "tolerance")
     if not (wanted >= 0 and cutter.large_enough(wanted)):
         raise OptionError(f"tolerance {wanted:g} mm must lie between 0 and a quarter of the cutter's radius and length")
-    low, high = max(0.0, low), min(np.pi / 2, high)
+    low, high = max(0.0, low), min(np.pi, high)
     stage = Scene.of(part, **scene, **({"tolerance": wanted} if wanted > 0 else {}))
     contact = locate(stage.part, stage.orientation, place, ignore=stage.ignored)
     ask = Ask(contact, cutter, np.array(turns), (low, high), machine, np.array(stage.setup))
     if wanted > 0:
         around, kept = stage.around, stage.tolerance
-        found = posture_map_of(ask, around, around.surely.depths(kept), _NARROWEST, kept)
+        found = posture_map_of(ask, around, tools(cutter, kept, around.surely.triangles.chord_error), _NARROWEST, kept)
         if cutter.large_enough(kept):
             return found
         # So coarse a tolerance says nothing about so small a cutter.
@@ -103,7 +105,8 @@ def posture_map(
         # Twice the chord error: next to the contact, where the true clearance is zero, triangles must not count,
         # local gouging does.
         nominal = 2 * triangles.chord_error + 1e-9
-        now = posture_map_of(ask, around, (nominal, nominal), _NARROWEST_NOMINAL, 0.0)
+        tool = assembly(cutter, nominal, nominal)
+        now = posture_map_of(ask, around, (tool, tool), _NARROWEST_NOMINAL, 0.0)
         if before is not None and moved(before, now) < SETTLED:
             return replace(now, settled=True)
         before, chord = now, chord * _FINER

@@ -33,9 +33,6 @@ if TYPE_CHECKING:
 _NOT_BUILT = {
     "cutters": "tool library files are not read yet; give each cutter with --cutter R6L80",
     "fixture": "fixtures are not read yet",
-    "allowance": "an allowance is not judged yet",
-    "holder_clearance": "holders are not judged yet",
-    "holder": "holders are not judged yet",
     "assume_stickout": "tool library files are not read yet",
     "skip_bad": "tool library files are not read yet",
     "cluster": "clusters are not used yet; --jobs gives threads on this machine",
@@ -68,6 +65,20 @@ class _Vector(click.ParamType):
         return x, y, z
 
 
+def _list_cutters(ctx: click.Context, param: click.Parameter, asked: bool) -> None:
+    """Print the built-in drawer, one cutter a line, and end."""
+    if not asked or ctx.resilient_parsing:
+        return
+    from plan_cutters.domain.drawer import builtin
+
+    click.echo(
+        "Built-in cutters: usual metric sizes in plain holders, for a first look; nobody's tools. Lengths in mm."
+    )
+    for cutter in builtin():
+        click.echo(f"{cutter.id:36}  {cutter.name}")
+    ctx.exit()
+
+
 @click.command(
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
     epilog="Exit codes: 0 a cutter finishes every sample; 1 none does; 2 wrong command line; 3 the part cannot be "
@@ -79,7 +90,21 @@ class _Vector(click.ParamType):
     "--cutter",
     multiple=True,
     metavar="SPEC",
-    help="A flat end as R6L80: radius 6, length 80 mm. Repeatable; default: built-in flat ends, R 1 to 12.",
+    help="R6L80: radius 6, length 80 mm; then rc1 corner radius (rc6: ball), T5 taper (half angle, deg), F20 flutes, N5.5x40 "
+    "neck (radius x length), S6 shank radius. Repeatable; default: the built-in drawer (--list-cutters).",
+)
+@click.option(
+    "--holder",
+    metavar="SPEC",
+    help="Holder of the cutters given: R15L30 (radius, length); stages from the nose up joined by +, cones as R12:15L20.",
+)
+@click.option(
+    "--list-cutters",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_list_cutters,
+    help="List the built-in cutters and exit.",
 )
 @click.option(
     "--machine",
@@ -127,9 +152,14 @@ class _Vector(click.ParamType):
 )
 @click.option("--rotation-step", type=float, default=10.0, metavar="DEG", help="[default: 10]")
 @click.option("--tolerance", type=float, default=0.01, metavar="MM", help="Gouge tolerance.  [default: 0.01]")
-@click.option("--allowance", type=float, hidden=True)
-@click.option("--holder-clearance", type=float, hidden=True)
-@click.option("--holder", multiple=True, metavar="FILE", hidden=True)
+@click.option("--allowance", type=float, default=0.0, metavar="MM", help="Stock left on the surface.  [default: 0]")
+@click.option(
+    "--holder-clearance",
+    type=float,
+    default=0.0,
+    metavar="MM",
+    help="Room asked of neck, shank and holder.  [default: 0]",
+)
 @click.option("--assume-stickout", type=float, hidden=True)
 @click.option("--skip-bad", is_flag=True, hidden=True)
 @click.option("-o", "--out", metavar="DIR", help="Folder for the files.  [default: <stem>-plan]")
@@ -218,6 +248,7 @@ def command(parts: tuple[str, ...], **given: Any) -> int:
 
 def _options(given: dict[str, Any]) -> "Options":
     from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.domain.holder import Holder
     from plan_cutters.domain.machine import Machine
     from plan_cutters.domain.posture import PostureRange
     from plan_cutters.options import Options
@@ -226,6 +257,9 @@ def _options(given: dict[str, Any]) -> "Options":
     more = {} if given["jobs"] is None else {"jobs": given["jobs"]}
     return Options(
         cutters=tuple(Cutter.parse(spec) for spec in given["cutter"]),
+        holder=None if given["holder"] is None else Holder.parse(given["holder"]),
+        allowance=given["allowance"],
+        holder_clearance=given["holder_clearance"],
         machine=Machine.parse(given["machine"]),
         setup=given["setup"],
         faces=given["faces"],

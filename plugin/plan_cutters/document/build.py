@@ -19,10 +19,12 @@ from plan_cutters.document.model import (
     PartInfo,
     Posture,
     SewingInfo,
+    StageEntry,
     Verdicts,
     WitnessEntry,
 )
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.shapes import flute_length, modes
 from plan_cutters.domain.verdicts import (
     ACCESSIBLE,
     INACCESSIBLE,
@@ -72,9 +74,9 @@ def _counts(verdict: NDArray[np.uint8]) -> dict[str, Any]:
 
 def cutter_entry(
     cutter: Cutter, samples: SurfaceSamples, reach: Reach, found: Sequence[Witness], march_differs: int, seconds: float,
-    *, doubtful: bool,
+    *, doubtful: bool, slack: float,
 ) -> CutterEntry:  # fmt: skip
-    """What a cutter reaches, and why not where it does not; `doubtful`: obstacles are missing."""
+    """What a cutter reaches, and why not where it does not; `doubtful`: obstacles are missing; `slack` as in `Assembly`."""
     counts = _counts(reach.verdict)
     # What is missing from the obstacles can only be in the way of more.
     feasible = False if counts["inaccessible"] else None if counts["undecided"] or doubtful else True
@@ -85,6 +87,23 @@ def cutter_entry(
         radius=cutter.radius,
         corner_radius=cutter.corner_radius,
         length=cutter.length,
+        shape=cutter.shape,
+        taper_deg=float(np.degrees(cutter.taper)),
+        flutes_mm=flute_length(cutter),
+        stages=[
+            StageEntry(
+                part=part,
+                low_mm=low,
+                length_mm=stage.length,
+                radius_mm=stage.radius,
+                upper_radius_mm=stage.upper_radius,
+            )
+            for part, low, stage in cutter.stages
+        ],
+        touches_deg=[degrees((mode.low, mode.high)) for mode in modes(cutter)],
+        allowance_mm=cutter.allowance or 0.0,
+        clearance_mm=cutter.clearance or 0.0,
+        slack_mm=slack,
         feasible=feasible,
         march_differs=march_differs,
         **counts,
@@ -180,10 +199,10 @@ def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen) -> list[Fa
     return result
 
 
-def notes(scene: Scene, options: Options, samples: SurfaceSamples) -> list[str]:
+def notes(scene: Scene, options: Options, samples: SurfaceSamples, cutters: Sequence[Cutter]) -> list[str]:
     """What the verdicts do not say."""
     notes = [
-        "Cutters are flat ends, judged as solid cylinders of their length, without a holder.",
+        *_tool_notes(options, cutters),
         f"Verdicts are about samples; grid neighbours, and borders from the nearest sample of their face, are at most "
         f"{samples.max_gap:.3g} mm apart.",
     ]
@@ -201,6 +220,24 @@ def notes(scene: Scene, options: Options, samples: SurfaceSamples) -> list[str]:
         )
     notes += _around_notes(scene.part, scene.around)
     return notes
+
+
+def _tool_notes(options: Options, cutters: Sequence[Cutter]) -> Iterator[str]:
+    """How the cutters are judged."""
+    if not options.cutters:
+        yield "The cutters are the built-in drawer, of usual metric sizes in plain holders: give your own with --cutter."
+    bare = [c.id for c in cutters if c.holder is None]
+    if bare:
+        yield f"{listed(bare)} {'is' if len(bare) == 1 else 'are'} judged up to the stated length, without a holder."
+    beyond = [
+        c.id for c in cutters if max(mode.high for mode in modes(c)) > options.postures.tilt[1] + 1e-6 > 0.5 * np.pi
+    ]
+    if beyond:
+        yield (f"{listed(beyond)} can touch at larger tilts than the {np.degrees(options.postures.tilt[1]):g} deg searched: "
+               "--tilt asks for more.")  # fmt: skip
+    held = [c.id for c in cutters if c.holder is None and not c.stages]
+    if held and len(held) == len(cutters):
+        yield "All of a cutter's length cuts, unless it says where its flutes end."
 
 
 def _around_notes(part: Part, around: Surroundings) -> Iterator[str]:

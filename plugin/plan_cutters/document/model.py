@@ -53,6 +53,11 @@ class Effective(_Frozen):
 
     cutters: list[str]
     cutter_source: str
+    holder: str | None = Field(default=None, description="of the cutters that were given without one")
+    allowance_mm: float = Field(default=0.0, description="stock left on the surface, unless a cutter says otherwise")
+    holder_clearance_mm: float = Field(
+        default=0.0, description="room asked of neck, shank and holder, unless a cutter says otherwise"
+    )
     unit: str | None = Field(default=None, description="length unit taken instead of the file's")
     machine: str
     setup: Vector
@@ -158,12 +163,33 @@ class AreaEntry(_Frozen):
     left_out: list[str] = Field(default=[], description="target faces whose area is not known: they are not in `share`")
 
 
+class StageEntry(_Frozen):
+    """What stands above the flutes, from there up: neck, shank, the stages of the holder."""
+
+    part: Literal["neck", "shank", "holder"]
+    low_mm: float = Field(description="height over the tip at which it begins")
+    length_mm: float
+    radius_mm: float
+    upper_radius_mm: float
+
+
 class CutterEntry(Verdicts):
     id: str
     name: str
     radius: float
     corner_radius: float
-    length: float
+    length: float = Field(description="from the tip to the holder's nose, or to the end of what is checked")
+    shape: str = Field(default="end", description="end, lollipop, barrel, lens or form")
+    taper_deg: float = Field(default=0.0, description="half angle")
+    flutes_mm: float | None = Field(default=None, description="height over the tip up to which it cuts")
+    stages: list[StageEntry] = []
+    touches_deg: list[tuple[float, float]] = Field(default=[], description="tilts at which the cutting part can touch")
+    allowance_mm: float = 0.0
+    clearance_mm: float = Field(default=0.0, description="room asked of neck, shank and holder")
+    slack_mm: float = Field(
+        default=0.0,
+        description="how far from what counts a point may be and still count, where a shape is held in a larger one",
+    )
     feasible: bool | None = Field(
         description="null: only undecided samples stand in the way, or it reaches all that could be judged but obstacles are "
         "missing"

@@ -26,6 +26,9 @@ def plan_of(
         effective=Effective(
             cutters=[c.id for c in ready.cutters],
             cutter_source="given" if options.cutters else "built-in",
+            holder=None if options.holder is None else options.holder.id,
+            allowance_mm=options.allowance,
+            holder_clearance_mm=options.holder_clearance,
             unit=options.unit,
             machine=options.machine.name,
             setup=scene.setup,
@@ -62,7 +65,7 @@ def plan_of(
         selected=selected,
         selection=selection,
         notes=[
-            *notes(scene, options, samples),
+            *notes(scene, options, samples, ready.cutters),
             *choice.notes,
             *area_notes(entries, doubtful=around.doubtful),
         ],

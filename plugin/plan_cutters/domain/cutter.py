@@ -1,63 +1,83 @@
-"""Cutters: the words and numbers of a flat-end cutter, and how one is written on a command line."""
+"""Cutters: tool assemblies that can exist, how they are made, and what follows from their dimensions."""
 
 import math
-import re
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
-from plan_cutters.domain.checks import items, number, shown
+from plan_cutters.domain.checks import items
+from plan_cutters.domain.dimensions import Dimensions, points_of
+from plan_cutters.domain.holder import Holder, Stage, text_of
+from plan_cutters.domain.shapes import Part, check, flute_length, stages
+from plan_cutters.domain.spec import dimensions, written
 from plan_cutters.errors import CutterError
-
-_SPEC = re.compile(r"R(?P<radius>-?[0-9.]+)L(?P<length>-?[0-9.]+)(?:rc(?P<corner>-?[0-9.]+))?", re.IGNORECASE)
-
-
-def _number(value: float) -> str:
-    return f"{value:.10g}"
 
 
 @dataclass(frozen=True, slots=True)
-class Cutter:
-    """A cutter as the search sees it: a solid cylinder, bottom centre to spindle.
+class Cutter(Dimensions):
+    """A cutter that can be judged: a solid of revolution, from its tip to the end of its holder; see `Dimensions`.
 
-    Attributes
-    ----------
-    radius, length : float
-        mm; the length is that of the cylinder that is checked, tip to spindle side.
-    corner_radius : float
-        mm; 0 for a flat end. Other corners are not judged yet.
-    name : str
-        For people; the id is made from the dimensions.
+    Raises
+    ------
+    CutterError
+        No such cutter can exist.
     """
 
-    radius: float
-    length: float
-    corner_radius: float = 0.0
-    name: str = ""
-
     def __post_init__(self) -> None:
-        for word in ("radius", "length", "corner_radius"):
-            value = number(getattr(self, word), f"cutter {word.replace('_', ' ')}", error=CutterError)
-            object.__setattr__(self, word, value)
-        if not isinstance(self.name, str):
-            raise CutterError(f"a cutter's name must be a text, not {shown(self.name)}")
-        for word, value in (("radius", self.radius), ("length", self.length)):
-            if not (math.isfinite(value) and value > 0):
-                raise CutterError(f"cutter {word} must be a positive number of mm, not {value:g}")
-        if not 0 <= self.corner_radius <= self.radius:
-            raise CutterError(f"corner radius {self.corner_radius:g} must lie between 0 and the radius {self.radius:g}")
-        if self.corner_radius:
-            raise CutterError(
-                f"cutter {self.id}: bull and ball noses are not judged yet; give a flat end such as R6L80 instead"
-            )
+        Dimensions.__post_init__(self)
+        check(self, self.id)
 
     @classmethod
-    def flat(cls, *, radius: float, length: float, name: str = "") -> "Cutter":
-        """A flat-end cutter, lengths in mm."""
-        return cls(radius=radius, length=length, name=name)
+    def flat(cls, *, radius: float, length: float, **more: Any) -> "Cutter":
+        """A flat-end cutter, lengths in mm; `more`: any other attribute."""
+        return cls(radius, length, **more)
+
+    @classmethod
+    def bull(cls, *, radius: float, corner_radius: float, length: float, **more: Any) -> "Cutter":
+        """A bull nose."""
+        return cls(radius, length, corner_radius, **more)
+
+    @classmethod
+    def ball(cls, *, radius: float, length: float, **more: Any) -> "Cutter":
+        """A ball end."""
+        return cls(radius, length, radius, **more)
+
+    @classmethod
+    def lollipop(cls, *, radius: float, neck_radius: float, length: float, **more: Any) -> "Cutter":
+        """A ball on a neck, which goes on up to its length."""
+        return cls(radius, length, radius, shape="lollipop", shank_radius=neck_radius, **more)
+
+    @classmethod
+    def barrel(cls, *, radius: float, flank_radius: float, length: float, height: float | None = None,
+               tip_radius: float = 0.0, **more: Any) -> "Cutter":  # fmt: skip
+        """A barrel: its flank is an arc of a large radius, widest (`radius`) at a height over the tip.
+
+        With a tip radius a ball is the tip, to which the flank is tangent: then the height follows.
+        """
+        if tip_radius:
+            inner, outer = flank_radius - radius, flank_radius - tip_radius
+            if not 0 <= inner <= outer:
+                raise CutterError(f"a flank of radius {flank_radius:g} is tangent to no tip of radius {tip_radius:g} under a "
+                                  f"cutter of radius {radius:g}")  # fmt: skip
+            height = tip_radius + math.sqrt(outer**2 - inner**2)
+        elif height is None:
+            raise CutterError("a barrel needs the height of its widest place, or the radius of its tip")
+        return cls(radius, length, tip_radius, shape="barrel", arc_radius=flank_radius, arc_height=height, **more)
+
+    @classmethod
+    def lens(cls, *, radius: float, bottom_radius: float, corner_radius: float, length: float, **more: Any) -> "Cutter":
+        """A lens: its bottom is an arc of a large radius about the axis, with a corner of a small one."""
+        return cls(radius, length, corner_radius, shape="lens", arc_radius=bottom_radius, **more)
+
+    @classmethod
+    def form(cls, outline: Sequence[tuple[float, float]], *, length: float, **more: Any) -> "Cutter":
+        """Any revolved outline of points (radius, height), from the tip to the end of the flutes."""
+        points = points_of(outline)
+        return cls(max((r for r, _ in points), default=0.0), length, shape="form", outline=points, **more)
 
     @classmethod
     def parse(cls, spec: str) -> "Cutter":
-        """Read `R6L80`: radius and length in mm; `R6L80rc1` adds a corner radius.
+        """Read `R6L80`: radius and length in mm; `R6L80rc1` adds a corner radius (`spec.dimensions` has the rest).
 
         Raises
         ------
@@ -72,15 +92,7 @@ class Cutter:
         Traceback (most recent call last):
         plan_cutters.errors.CutterError: cutter '' is not of the form R6L80 (radius 6 mm, length 80 mm)
         """
-        if not isinstance(spec, str):
-            raise CutterError(f"{shown(spec)} is no cutter: give a Cutter or a text such as 'R6L80'")
-        match = _SPEC.fullmatch(spec.strip())
-        try:
-            if match:
-                return cls(float(match["radius"]), float(match["length"]), float(match["corner"] or 0))
-        except ValueError:
-            pass
-        raise CutterError(f"cutter {spec!r} is not of the form R6L80 (radius 6 mm, length 80 mm)")
+        return cls(**dimensions(spec))
 
     @classmethod
     def of(cls, given: Any) -> "Cutter":
@@ -96,26 +108,35 @@ class Cutter:
             return (cls.of(given),)
         return tuple(cls.of(each) for each in items(given, "cutters", "cutters", error=CutterError))
 
-    def inside(self, other: "Cutter") -> bool:
-        """True if, touching the same contact with the same axis, this cutter lies within the other.
+    @property
+    def stages(self) -> tuple[tuple[Part, float, Stage], ...]:
+        """What stands above the flutes, from there up: its part, the height over the tip at which it begins, mm, the stage."""
+        return stages(self)
 
-        Corners alike, a radius no larger, a length no larger: the bottom disks touch inside one another at the contact.
-        With another corner radius, a longer cutter or a holder that is not so (`docs/nested_cutters.md`).
-        """
-        return self.corner_radius == other.corner_radius and self.radius <= other.radius and self.length <= other.length
+    @property
+    def thinnest(self) -> float:
+        """Of radius and height, that of the cutting part which is the least, mm."""
+        return min(self.radius, flute_length(self))
 
     def large_enough(self, tolerance: float) -> bool:
         """Whether verdicts to a tolerance, mm, say anything about this cutter: it is at least four of it thick and long."""
-        return tolerance < min(self.radius, self.length) / 4
+        return tolerance < self.thinnest / 4
+
+    @property
+    def plain(self) -> bool:
+        """Whether it is a flat end without stages: a solid cylinder."""
+        return self.id == f"R{text_of(self.radius)}L{text_of(self.length)}"
 
     @property
     def id(self) -> str:
         """`R6L80`: the same dimensions, the same id."""
-        corner = f"rc{_number(self.corner_radius)}" if self.corner_radius else ""
-        return f"R{_number(self.radius)}L{_number(self.length)}{corner}"
+        return written(self)
 
-
-def builtin() -> tuple[Cutter, ...]:
-    """Metric flat ends R 1 to 12, each with the length below the holder that long end mills of its size have."""
-    usual = {1: 20, 1.5: 25, 2: 30, 2.5: 35, 3: 40, 4: 50, 5: 60, 6: 80, 8: 90, 10: 100, 12: 120}
-    return tuple(Cutter.flat(radius=r, length=l, name=f"flat end D{2 * r:g} x {l}") for r, l in usual.items())
+    def asked(self, allowance: float, clearance: float, holder: Holder | None) -> "Cutter":
+        """The same, with what is asked for the whole plan where it has none of its own."""
+        return replace(
+            self,
+            allowance=allowance if self.allowance is None and allowance else self.allowance,
+            clearance=clearance if self.clearance is None and clearance else self.clearance,
+            holder=self.holder or holder,
+        )

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.shapes import SAME, flute_length
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, UNJUDGED, Reach, blank
 
 
@@ -12,6 +13,43 @@ def order(cutters: Sequence[Cutter]) -> list[Cutter]:
     The first hands the samples that it does not reach up to those around it, the others their postures down.
     """
     return [cutters[-1], *cutters[:-1]] if cutters else []
+
+
+def inside(cutter: Cutter, other: Cutter) -> bool:
+    """True if, touching the same contact with the same axis at any tilt, one cutter lies within another.
+
+    Of straight end mills alone (`docs/nested_cutters.md`). The disk of the one's corner lies in the other's, its corner radius is
+    no larger; what stands above may be shifted against the other by as much as these differ, and what does not cut lies in
+    what does not cut either and has no less clearance.
+    """
+    if any(each.shape != "end" or each.taper for each in (cutter, other)) or cutter.allowance != other.allowance:
+        return False
+    taller = other.corner_radius - cutter.corner_radius
+    aside = other.radius - cutter.radius
+    if taller < 0.0 or aside < taller:
+        return False
+    bands = _bands(other)
+    looser = (cutter.clearance or 0.0) > (other.clearance or 0.0)
+    for cuts, low, high, _, most in _bands(cutter):
+        met = low
+        for their_cuts, their_low, their_high, least, _ in bands:
+            if their_high <= low or their_low >= high + taller:
+                continue
+            if their_low > met + SAME or most + aside > least + SAME or (not cuts and (their_cuts or looser)):
+                return False
+            met = their_high
+        if met < high + taller - SAME:
+            return False
+    return True
+
+
+def _bands(cutter: Cutter) -> list[tuple[bool, float, float, float, float]]:
+    """From the tip up: whether it cuts, from which height to which, its least and largest radius, mm."""
+    found = [(True, 0.0, flute_length(cutter), cutter.radius, cutter.radius)]
+    for _, low, stage in cutter.stages:
+        ends = stage.radius, stage.upper_radius
+        found.append((False, low, low + stage.length, min(ends), max(ends)))
+    return found
 
 
 def handed(cutter: Cutter, judged: Mapping[Cutter, Reach], n: int) -> Reach:
@@ -28,12 +66,12 @@ def handed(cutter: Cutter, judged: Mapping[Cutter, Reach], n: int) -> Reach:
     """
     known = blank(n)
     for other, reach in judged.items():
-        if cutter.inside(other):
+        if inside(cutter, other):
             rows = reach.reached & (known.verdict == UNJUDGED)
             known.verdict[rows] = ACCESSIBLE
             for name in ("axis", "lean", "tilt", "rotation"):
                 getattr(known, name)[rows] = getattr(reach, name)[rows]
-        elif other.inside(cutter):
+        elif inside(other, cutter):
             rows = (reach.verdict == INACCESSIBLE) & (known.verdict == UNJUDGED)
             known.verdict[rows], known.reason[rows] = INACCESSIBLE, reach.reason[rows]
     return known

@@ -13,7 +13,7 @@ CONVEX, CONCAVE, SADDLE = 0, 1, 2
 
 #: Why no posture is left, in the order in which the attributes are applied; `Reach.reason` is an index into it.
 #: `buried`: under or within a body; `tolerance`: that is too coarse for the cutter, which is undecided everywhere then.
-REASONS = ("axis_limit", "local_gouge", "rear_gouge", "collision", "buried", "tolerance")
+REASONS = ("axis_limit", "local_gouge", "rear_gouge", "collision", "buried", "tolerance", "neck", "shank", "holder")
 BURIED, TOLERANCE, NO_REASON = 4, 5, 255
 
 Bytes = NDArray[np.uint8]

@@ -60,14 +60,39 @@ def point_arc(height, px, py, tilt, radius_offset, radius, low, high):  # type: 
 
 
 @kernel
-def local_gouge(kappa_max, kappa_min, cosine, sine, radius):  # type: ignore[no-untyped-def]
-    """Least tilt without local gouging at a rotation, rad; nan if none: sin(tilt) >= R kappa across the lean."""
-    bound = radius * (kappa_max * sine * sine + kappa_min * cosine * cosine)
+def local_gouge(kappa_max, kappa_min, cosine, sine, offset, radius):  # type: ignore[no-untyped-def]
+    """Tilts without local gouging at a rotation, from and to, rad; nan if there are none.
+
+    A tool that touches with a centre of curvature `offset` from its axis and a radius of curvature there, mm, curves by 1 /
+    radius
+    along the lean and by sin(tilt) / (offset + radius sin(tilt)) across it; the surface may nowhere curve more. With a negative
+    offset, a barrel, that is an upper bound of the tilt; the tilts beyond 90 deg that it would leave again are not given.
+    """
+    across = kappa_max * sine * sine + kappa_min * cosine * cosine
+    if radius > 0.0:
+        along = kappa_max * cosine * cosine + kappa_min * sine * sine
+        if offset == 0.0:
+            return (0.0, np.pi) if radius * kappa_max <= 1.0 + ROUNDING else (np.nan, np.nan)
+        mixed = (kappa_max - kappa_min) * sine * cosine
+        room = 1.0 - radius * along
+        if room <= 0.0:
+            return np.nan, np.nan
+        across += mixed * mixed * radius / room
+        left = 1.0 - radius * across
+        if offset < 0.0:
+            if left >= 0.0:
+                return 0.0, np.pi
+            bound = offset * across / left
+            return 0.0, np.arcsin(bound) if bound < 1.0 else np.pi
+        if left <= 0.0:
+            return (0.0, np.pi) if across <= 0.0 else (np.nan, np.nan)
+        across /= left
+    bound = offset * across
     if bound <= ROUNDING:
-        return 0.0
+        return 0.0, np.pi
     if bound > 1.0:
-        return np.nan
-    return np.arcsin(bound)
+        return np.nan, np.nan
+    return np.arcsin(bound), np.pi - np.arcsin(bound)
 
 
 @kernel

@@ -2,8 +2,8 @@
 
 Obstacles are shared out by distance from the contact. Within `extent` of it the surface that the contact lies on is
 held below a paraboloid by its curvature and a bound on the change of curvature, and the cutter above it: nothing to
-test. Everything else is tested against the cutter moved along with the contact: a stadium instead of a disk across
-the axis, for the directions in which the contact wanders and the cutter turns about its axis.
+test. Everything else is tested against the cutter moved along with the contact: each of its pieces larger, and drawn out
+across the axis, for the directions in which the contact wanders and the cutter turns about its axis.
 """
 
 from typing import Any, NamedTuple
@@ -11,11 +11,16 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from plan_cutters.kernels import hit
-from plan_cutters.kernels.hit import BODY, HALF, HIGH, LOW, OFFSET, RADIUS, A, P, X, Y
+from plan_cutters.kernels.drawn import drawn_hit
+from plan_cutters.kernels.hit import BODY, HALF, OFFSET, A, P, X, Y
 from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.pieces import ARC, BOTTOM, COLUMNS, HIGH, KIND, LOW, RADIUS, ROUND, SLOPE, TOP, WIDE
 from plan_cutters.kernels.rows import Frame, Scratch
+from plan_cutters.kernels.search import mode_at
+from plan_cutters.kernels.vectors import cross, dot, perpendicular
 from plan_cutters.kernels.zone import (
     EXTENTS,
+    Nose,
     begin,
     distance_of,
     held_below,
@@ -51,96 +56,71 @@ class Patches(NamedTuple):
     home: Any
 
 
+class Sweeping(NamedTuple):
+    """A tool as this asks for it.
+
+    tool : Tool, without what does not matter; dummy (k, COLUMNS), as `search.dummy_clear` takes it; nose (m,) int64: of each
+    mode a
+    mask of the pieces that lie in what its nose sweeps when it goes on along the axis, widening by `lean` (m,), rad; flutes,
+    a mask
+    of the pieces that cut; safe, chord: the depth up to which a triangle does not matter, and the chord error, mm.
+    """
+
+    tool: Any
+    dummy: Any
+    nose: Any
+    lean: Any
+    flutes: int
+    safe: float
+    chord: float
+
+
 class _Room(NamedTuple):
-    """Where a contact is worked out: directions along and across the lean, bodies, bounds of curvature, what counts as near."""
+    """Where a contact is worked out: directions along and across the lean, bodies and their pieces, bounds of curvature, what
+    counts
+    as near."""
 
     f: Any
     t: Any
-    body: Any
     bodies: Any
+    pieces: Any
     near: Any
     seen: Any
     scratch: Scratch
 
 
 @kernel
-def _to_segment(px, py, half):  # type: ignore[no-untyped-def]
-    """Squared distance of a point from the segment (0, -half) (0, half)."""
-    py -= min(half, max(-half, py))
-    return px * px + py * py
+def _grown(piece, out, radial, axial):  # type: ignore[no-untyped-def]
+    """Write pieces that hold these, moved by no more than `radial` across the axis and `axial` along it."""
+    for k in range(len(piece)):
+        for c in range(COLUMNS):
+            out[k, c] = piece[k, c]
+        out[k, LOW] -= axial
+        out[k, HIGH] += axial
+        if piece[k, KIND] == ARC:
+            both = np.sqrt(radial * radial + axial * axial)
+            out[k, ROUND] += both
+            out[k, BOTTOM] = max(out[k, LOW], piece[k, SLOPE] - out[k, ROUND])
+            out[k, TOP] = min(out[k, HIGH], piece[k, SLOPE] + out[k, ROUND])
+            out[k, WIDE] += both
+        else:
+            slope = piece[k, SLOPE]
+            out[k, RADIUS] += radial + (abs(slope) - slope) * axial
+            out[k, WIDE] += radial + (abs(slope) + slope) * axial
+            out[k, BOTTOM], out[k, TOP] = out[k, LOW], out[k, HIGH]
 
 
 @kernel
-def _shadow_distance(polygon, count, half):  # type: ignore[no-untyped-def]
-    """Squared distance between the shadow of a convex polygon and the segment (0, -half) (0, half)."""
-    area = 0.0
-    for i in range(count):
-        j = i + 1 if i + 1 < count else 0
-        area += polygon[i, 1] * polygon[j, 2] - polygon[j, 1] * polygon[i, 2]
-    inside = abs(area) > 0.0
-    best = np.inf
-    for i in range(count):
-        j = i + 1 if i + 1 < count else 0
-        xi, yi = polygon[i, 1], polygon[i, 2]
-        ex, ey = polygon[j, 1] - xi, polygon[j, 2] - yi
-        best = min(best, _to_segment(xi, yi, half))
-        # The segment's ends against the side, and whether one of them (the lower) lies within the polygon.
-        square = ex * ex + ey * ey
-        for end in (-half, half):
-            part = 0.0
-            if square > 0.0:
-                part = min(1.0, max(0.0, (-xi * ex + (end - yi) * ey) / square))
-            x, y = xi + part * ex, yi + part * ey - end
-            best = min(best, x * x + y * y)
-        if (xi * ey - (yi + half) * ex) * area < 0.0:
-            inside = False
-        # The side crosses the segment.
-        if (xi < 0.0) != (xi + ex < 0.0) and abs(yi - xi / ex * ey) <= half:
-            return 0.0
-    return 0.0 if inside else best
+def _bodies(body, piece, frame, h, pose, slides, grow, room, finest):  # type: ignore[no-untyped-def]
+    """Write the bodies of a contact that wanders by no more than h: the whole, then in 2, 6 and 18 parts along the lean.
 
-
-@kernel
-def _stadium_hit(vertex, i, body, polygon, spare):  # type: ignore[no-untyped-def]
-    """Whether triangle i reaches into the stadium body."""
-    low, high = body[LOW], body[HIGH]
-    least, most, total = np.inf, -np.inf, 0.0
-    for corner in range(3):
-        dx = vertex[i, corner, 0] - body[0]
-        dy = vertex[i, corner, 1] - body[1]
-        dz = vertex[i, corner, 2] - body[2]
-        height = dx * body[3] + dy * body[4] + dz * body[5]
-        polygon[corner, 0] = height
-        polygon[corner, 1] = dx * body[6] + dy * body[7] + dz * body[8] + body[OFFSET]
-        polygon[corner, 2] = dx * body[9] + dy * body[10] + dz * body[11]
-        least, most = min(least, height), max(most, height)
-        total += height + polygon[corner, 1] + polygon[corner, 2]
-    # What is no number is in the way.
-    total += low + high
-    if total - total != 0.0:
-        return True
-    if most <= low or least >= high:
-        return False
-    source, count = polygon, 3
-    if least < low:
-        count = hit._cut(source, count, spare, low, 1.0)
-        source = spare
-    if most > high:
-        target = polygon if least < low else spare
-        count = hit._cut(source, count, target, high, -1.0)
-        source = target
-    return count > 0 and not _shadow_distance(source, count, body[HALF]) >= body[RADIUS] * body[RADIUS]
-
-
-@kernel
-def _pieces(body, frame, h, pose, slides, bodies, finest):  # type: ignore[no-untyped-def]
-    """Write the bodies of a contact that wanders by no more than h: the whole, then in 2, 6 and 18 pieces along the lean.
-
-    Each piece holds those that it is cut into. `pose` is (sine, cosine) of the tilt, `slides` what a step along the lean
-    shifts the body aside, what a step across it does, and what else may; `body` is that of no wandering.
+    Each holds those that it is cut into. `pose` is (sine, cosine) of the tilt. `slides`: what a step along the lean moves the
+    tool
+    along it and aside, what a step across it does, and what else may move it aside; `grow`: what else may move it at all. `body`
+    is that of no wandering.
     """
     sine, cosine = pose
-    slide, across, beside = slides
+    forth, back, slide, across, beside = slides
     at = 0
     for count in (1, 2, 6, 18):
         if count > finest:
@@ -149,94 +129,97 @@ def _pieces(body, frame, h, pose, slides, bodies, finest):  # type: ignore[no-un
         for step in range(count):
             shift = (2 * step + 1 - count) * wide
             for k in range(BODY):
-                bodies[at, k] = body[k]
+                room.bodies[at, k] = body[k]
             for k in range(3):
-                bodies[at, P + k] += shift * (frame.f[k] - slide * frame.t[k])
-            bodies[at, RADIUS] += wide * cosine
-            bodies[at, LOW] -= wide * sine
-            bodies[at, HIGH] += wide * sine
-            bodies[at, HALF] = h * across + wide * abs(slide) + beside
+                room.bodies[at, P + k] += shift * (forth * frame.f[k] - slide * frame.t[k])
+            room.bodies[at, HALF] = h * across + wide * abs(slide) + beside
+            along = wide * abs(forth) + h * back
+            _grown(piece, room.pieces[at], along * abs(cosine) + grow, along * sine + grow)
             at += 1
 
 
 @kernel
-def _reaches(vertex, i, bodies, polygon, spare):  # type: ignore[no-untyped-def]
-    """Whether triangle i, which reaches into the whole, reaches into one of its finest pieces."""
+def _reaches(vertex, i, mask, room):  # type: ignore[no-untyped-def]
+    """Whether triangle i, which reaches into the whole, reaches into one of its finest parts."""
+    bodies, pieces, scratch = room.bodies, room.pieces, room.scratch
     for half in range(2):
-        if not _stadium_hit(vertex, i, bodies[1 + half], polygon, spare):
+        if not drawn_hit(vertex, i, bodies[1 + half], pieces[1 + half], mask, scratch):
             continue
         for sixth in range(3 * half, 3 * half + 3):
-            if not _stadium_hit(vertex, i, bodies[3 + sixth], polygon, spare):
+            if not drawn_hit(vertex, i, bodies[3 + sixth], pieces[3 + sixth], mask, scratch):
                 continue
             for last in range(3 * sixth, 3 * sixth + 3):
-                if _stadium_hit(vertex, i, bodies[9 + last], polygon, spare):
+                if drawn_hit(vertex, i, bodies[9 + last], pieces[9 + last], mask, scratch):
                     return True
     return False
 
 
 @kernel
-def _blocks(i, bodies, flat, frame, face, near, tree, triangle_face, scratch):  # type: ignore[no-untyped-def]
-    """Whether triangle i is not near and reaches into the moved cutter."""
-    vertex, polygon, spare = tree.vertex, scratch.polygon, scratch.spare
-    return (
-        _stadium_hit(vertex, i, bodies[0], polygon, spare)
-        and not near_by(vertex, triangle_face, i, frame, face, near)
-        and (flat or _reaches(vertex, i, bodies, polygon, spare))
-    )
+def _blocks(i, mask, nose, whole, frame, face, tree, triangle_face, room):  # type: ignore[no-untyped-def]
+    """Whether triangle i reaches into a piece of the moved cutter; into its nose only if it is not near."""
+    vertex = tree.vertex
+    hit = drawn_hit(vertex, i, room.bodies[0], room.pieces[0], mask, room.scratch)
+    if hit & nose and near_by(vertex, triangle_face, i, frame, face, room.near):
+        hit &= ~nose
+    return hit != 0 and (whole or _reaches(vertex, i, hit, room))
 
 
 @kernel
-def _first(hint, bodies, flat, frame, face, near, tree, triangle_face, scratch):  # type: ignore[no-untyped-def]
-    """First triangle found that is not near and reaches into the moved cutter, `hint` (-1: none) before others."""
-    vertex, box, depth = tree
-    stack, count, first, top = scratch.stack, len(vertex), (1 << depth) - 1, 1
-    if hint >= 0 and _blocks(hint, bodies, flat, frame, face, near, tree, triangle_face, scratch):
+def _first(hint, nose, whole, frame, face, tree, triangle_face, room):  # type: ignore[no-untyped-def]
+    """First triangle found that is in the way of the moved cutter, `hint` (-1: none) before others."""
+    vertex, box, depth = tree.vertex, tree.box, tree.depth
+    stack, masks, count, first, top = room.scratch.stack, room.scratch.masks, len(vertex), (1 << depth) - 1, 1
+    every = hit.everything(room.pieces[0])
+    if hint >= 0 and _blocks(hint, every, nose, whole, frame, face, tree, triangle_face, room):
         return hint
-    stack[0] = 0
+    stack[0], masks[0] = 0, every
     while top > 0:
         top -= 1
         node = stack[top]
-        if hit._box_apart(box, node, bodies[0], 0.0):
+        mask = hit.alive(box, node, room.bodies[0], room.pieces[0], masks[top], 0.0)
+        if mask == 0:
             continue
         if node < first:
-            stack[top] = 2 * node + 2
-            stack[top + 1] = 2 * node + 1
+            stack[top], masks[top] = 2 * node + 2, mask
+            stack[top + 1], masks[top + 1] = 2 * node + 1, mask
             top += 2
             continue
         leaf = node - first
         for i in range((count * leaf) >> depth, (count * (leaf + 1)) >> depth):
-            if _blocks(i, bodies, flat, frame, face, near, tree, triangle_face, scratch):
+            if _blocks(i, mask, nose, whole, frame, face, tree, triangle_face, room):
                 return i
     return -1
 
 
 @kernel
-def _motion(row, patches, nodes, frame, sine, h, turn, flat):  # type: ignore[no-untyped-def]
-    """How a contact's cutter turns about its axis as the contact wanders.
+def _motion(row, patches, nodes, frame, sine, h, turn, offset, rise):  # type: ignore[no-untyped-def]
+    """How a contact's cutter moves and turns about its axis as the contact wanders.
 
-    Returns the surface's curvature across the lean and its mixed term, and the turn within the patch, in all (psi) and beside
-    what follows from the curvature at the contact.
+    Returns the surface's curvature along the lean, across it and mixed; the turn within the patch about the axis, in all
+    (psi) and
+    beside what follows from the curvature at the contact; what the normal may differ beside that.
     """
-    if flat:
-        return 0.0, 0.0, 0.0, 0.0
-    k_tt, k_ft, home = 0.0, 0.0, patches.home[row]
+    k_ff, k_tt, k_ft, home = 0.0, 0.0, 0.0, patches.home[row]
     for k in range(3):
         for m in range(3):
+            k_ff += patches.tensor[row, k, m] * frame.f[k] * frame.f[m]
             k_ft += patches.tensor[row, k, m] * frame.f[k] * frame.t[m]
             k_tt += patches.tensor[row, k, m] * frame.t[k] * frame.t[m]
     wobble = nodes.about[nodes.index[home[0], home[1]], 12]
+    rest = 2.0 * wobble * h + turn * turn
+    if offset == 0.0:
+        return k_ff, k_tt, k_ft, 0.0, 0.0, rest
     beside = (2.0 * wobble * h + 0.5 * turn * turn + turn * turn / (sine - turn)) / (sine - turn)
     psi = min(turn / (sine - turn), (abs(k_tt) + abs(k_ft)) * h / sine + beside)
-    return k_tt, k_ft, psi, beside
+    return k_ff, k_tt, k_ft, psi, beside, rest
 
 
 @kernel
-def _extent(most, last, full, h, pose, flat, psi, turn, radius, safe, chord, near):  # type: ignore[no-untyped-def]
+def _extent(most, last, full, h, pose, flat, psi, turn, nose, safe, chord, near):  # type: ignore[no-untyped-def]
     """The largest of the distances up to row `last` within which curvature alone keeps surface and cutter apart.
 
     Returns its row, -1 if there is none. Writes what `near_by` takes.
     """
-    sine, cosine = pose
     ff, tt, ft, whole, spread, angle, cell = -np.inf, -np.inf, 0.0, 0.0, 0.0, 0.0, 0.0
     held = -1
     for row in range(last + 1):
@@ -253,14 +236,18 @@ def _extent(most, last, full, h, pose, flat, psi, turn, radius, safe, chord, nea
             break
         tangent = np.tan(steep)
         extra = 1.3 * whole * more * (3.5 * tangent + 2.0 * more)
-        if flat:
+        if flat or not nose.offset > 0.0:
+            # In whatever direction it leans.
             top = 0.5 * (ff + tt) + 0.5 * spread + extra
-            if not 0.5 * max(0.0, top) * distance * distance <= safe:
+            if flat:
+                if not 0.5 * max(0.0, top) * distance * distance <= safe:
+                    break
+            elif not held_below(pose, turn, top, 0.0, top, distance, nose):
                 break
             near[2], near[3], near[4] = top, top, 0.0
         else:
             extra += 1.05 * spread * (psi + turn * turn)
-            if not held_below(sine, cosine, turn, ff + extra, ft, tt + extra, distance, radius):
+            if not held_below(pose, turn, ff + extra, ft, tt + extra, distance, nose):
                 break
             near[2], near[3], near[4] = ff + extra, tt + extra, ft
         near[0], near[1] = distance - h - chord, 0.6 * whole * distance * distance + chord
@@ -270,47 +257,67 @@ def _extent(most, last, full, h, pose, flat, psi, turn, radius, safe, chord, nea
 
 
 @kernel
-def _halvings(most, h, pose, flat, radius, safe, chord, near):  # type: ignore[no-untyped-def]
+def _halvings(most, h, pose, flat, nose, safe, chord, near):  # type: ignore[no-untyped-def]
     """How often a patch must be halved until curvature holds right at its contact, as far as the nodes about it now tell."""
     halved = h
     for count in range(1, MOST_HALVINGS):
         halved *= 0.5
         turn = 1.05 * most[0, 3] * halved
-        steep = not flat and (pose[0] <= 2.0 * turn or pose[1] <= 2.0 * turn)
-        if turn <= 0.2 and not steep:
-            psi = 0.0 if flat else turn / (pose[0] - turn)
-            if _extent(most, 0, np.inf, halved, pose, flat, psi, turn, radius, safe, chord, near) == 0:
+        if turn <= 0.2 and not _too_steep(pose, turn, flat, nose):
+            psi = 0.0 if flat or nose.offset == 0.0 else turn / (pose[0] - turn)
+            if _extent(most, 0, np.inf, halved, pose, flat, psi, turn, nose, safe, chord, near) == 0:
                 return count
     return MOST_HALVINGS
 
 
 @kernel
-def _outlook(row, patches, nodes, face, lengths, tree, triangle_face, blocker, room):  # type: ignore[no-untyped-def]
+def _too_steep(pose, turn, flat, nose):  # type: ignore[no-untyped-def]
+    """Whether the normal turns too much within a patch for the tilt: the cutter must lean, and touch with the same mode, all over
+    it.
+    """
+    if flat:
+        return False
+    sine, cosine = pose
+    if (nose.offset != 0.0 and sine <= 2.0 * turn) or (nose.offset >= 0.0 and cosine <= 2.0 * turn):
+        return True
+    tilt = np.arctan2(sine, cosine)
+    return (nose.low > 0.0 and tilt - turn < nose.low) or tilt + turn > nose.high
+
+
+@kernel
+def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, room):  # type: ignore[no-untyped-def]
     """What `cover` writes for a contact, and the triangle in the way, -1 if there is none; `blocker` is looked at first."""
-    radius, length, safe, chord = lengths
-    f, t, body, near = room.f, room.t, room.body, room.near
+    tool, safe, chord = sweeping.tool, sweeping.safe, sweeping.chord
+    f, t, near = room.f, room.t, room.near
     p, n, a = patches.point[row], patches.normal[row], patches.axis[row]
     h, flat, home = patches.patch[row], patches.flat[row], patches.home[row]
     if not h > 0.0:
         return 1, -1
-    cosine = hit.dot(a, n)
+    cosine = dot(a, n)
     for k in range(3):
         f[k] = a[k] - cosine * n[k]
-    sine = np.sqrt(hit.dot(f, f))
+    sine = np.sqrt(dot(f, f))
     if flat or sine < 1e-6:
         sine, cosine = 0.0, 1.0
-        hit.perpendicular(n, f)
+        perpendicular(n, f)
     else:
         for k in range(3):
             f[k] /= sine
-    hit.cross(n, f, t)
+    cross(n, f, t)
+    mode = 0 if flat else mode_at(tool, np.arctan2(sine, cosine))
+    if mode < 0:
+        return NEVER, -1
+    offset, rise, low, high, _ = tool.mode[mode]
+    nose = Nose(offset, rise, np.cos(sweeping.lean[mode]), np.sin(sweeping.lean[mode]), low, high)
+    if flat and len(tool.mode) > 1 and high < 0.25:
+        return NEVER, -1
     frame, pose, most = Frame(p, n, f, t), (sine, cosine), room.seen.most
     if not begin(frame, h, home, nodes, room.seen):
         return NEVER, -1
     # In the smallest patch there remain the home node's own curvature and what it may differ in its cell.
-    if not flat and not held_below(sine, cosine, 0.0, most[0, 0], most[0, 2], most[0, 1], 0.0, radius):
+    if not flat and not held_below(pose, 0.0, most[0, 0], most[0, 2], most[0, 1], 0.0, nose):
         return NEVER, -1
-    full, turn, lift, k_tt, k_ft, psi, beside = np.inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    full, turn, lift, k_ff, k_tt, k_ft, psi, beside, rest = np.inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     # Bounds do not get smaller with distance: what does not hold nearby needs no look farther out.
     for last in (0, _HALF_WAY, EXTENTS - 1):
         if full == np.inf:
@@ -319,39 +326,44 @@ def _outlook(row, patches, nodes, face, lengths, tree, triangle_face, blocker, r
             return 1, -1
         # How far the normal turns within the patch, and how far the surface leaves the tangent plane.
         turn, lift = 1.05 * most[0, 3] * h, 0.55 * most[0, 3] * h * h
-        if not turn <= 0.2 or (not flat and (sine <= 2.0 * turn or cosine <= 2.0 * turn)):
-            return _halvings(most, h, pose, flat, radius, safe, chord, near), -1
-        k_tt, k_ft, psi, beside = _motion(row, patches, nodes, frame, sine, h, turn, flat)
-        held = _extent(most, last, full, h, pose, flat, psi, turn, radius, safe, chord, near)
+        if not turn <= 0.2 or _too_steep(pose, turn, flat, nose):
+            return _halvings(most, h, pose, flat, nose, safe, chord, near), -1
+        if not flat:
+            k_ff, k_tt, k_ft, psi, beside, rest = _motion(row, patches, nodes, frame, sine, h, turn, offset, rise)
+        held = _extent(most, last, full, h, pose, flat, psi, turn, nose, safe, chord, near)
         if held < 0:
-            return _halvings(most, h, pose, flat, radius, safe, chord, near), -1
+            return _halvings(most, h, pose, flat, nose, safe, chord, near), -1
         if held < last:
             break
     if not near[0] > 0.0:
         return NEVER, -1
     for k in range(3):
-        body[P + k] = p[k]
+        body[P + k] = p[k] + rise * n[k]
         body[A + k] = a[k]
         body[X + k] = cosine * f[k] - sine * n[k]
         body[Y + k] = t[k]
+    body[HALF] = 0.0
     if flat:
-        body[OFFSET], body[RADIUS], body[HALF] = 0.0, 2.0 * radius + h - safe, 0.0
-        body[LOW], body[HIGH] = safe - lift, length - safe + lift
-        _pieces(body, frame, 0.0, pose, (0.0, 0.0, 0.0), room.bodies, 1)
+        body[OFFSET] = 0.0
+        for k in range(BODY):
+            room.bodies[0, k] = body[k]
+        _grown(sweeping.dummy, room.pieces[0], h + rise * turn, lift + rise * turn * turn)
     else:
-        grow = 0.5 * radius * psi * psi + lift
-        body[OFFSET], body[RADIUS], body[HALF] = radius, radius - safe + grow, 0.0
-        body[LOW], body[HIGH] = safe - grow, length - safe + grow
-        slides = (radius * k_ft / sine, abs(1.0 - radius * k_tt / sine), radius * beside)
-        _pieces(body, frame, h, pose, slides, room.bodies, 18)
-    found = _first(blocker, room.bodies, flat, frame, face, near, tree, triangle_face, room.scratch)
+        body[OFFSET] = offset
+        grow = 0.5 * abs(offset) * psi * psi + lift + rise * rest
+        # The centre of curvature wanders less than the contact on a concave surface, and turns with the normal.
+        lever = rise
+        if sine > 0.0:
+            lever += offset / sine
+        slides = (1.0 - rise * k_ff, rise * abs(k_ft), lever * k_ft, abs(1.0 - lever * k_tt), abs(offset) * beside)
+        _bodies(body, tool.piece[mode], frame, h, pose, slides, grow, room, 18)
+    exempt = sweeping.flutes if flat else sweeping.nose[mode]
+    found = _first(blocker, exempt, flat, frame, face, tree, triangle_face, room)
     return 0 if found < 0 else 1, found
 
 
 @entry
-def cover(  # type: ignore[no-untyped-def]
-    rows, patches, nodes, face, radius, length, safe, chord, tree, triangle_face, outlook
-):
+def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, outlook):  # type: ignore[no-untyped-def]
     """Decide for contacts on one face whether their axis serves every contact within a patch about them.
 
     Parameters
@@ -361,8 +373,7 @@ def cover(  # type: ignore[no-untyped-def]
     nodes : Nodes
     face : int
         Number of the face.
-    radius, length, safe, chord : float
-        Cutter, the depth up to which a triangle does not matter, and the chord error, mm.
+    sweeping : Sweeping
     tree : Tree
     triangle_face : (t,) int32
         Face numbers of its triangles.
@@ -370,11 +381,12 @@ def cover(  # type: ignore[no-untyped-def]
         0: it does. 1 to MOST_HALVINGS: not known; how often the patch must be halved until it may, a guess that tells what to
         try first. NEVER: it serves no smaller patch, either, as far as the nodes tell of the surface.
     """
-    room = _Room(np.empty(3), np.empty(3), np.empty(BODY), np.empty((_BODIES, BODY)), np.empty(6), seen(),
+    count = sweeping.tool.piece.shape[1]
+    room = _Room(np.empty(3), np.empty(3), np.empty((_BODIES, BODY)), np.empty((_BODIES, count, COLUMNS)), np.empty(6), seen(),
                  hit.scratch())  # fmt: skip
-    lengths, blocker = (radius, length, safe, chord), -1
+    body, blocker = np.empty(BODY), -1
     for row in rows:
-        outlook[row], found = _outlook(row, patches, nodes, face, lengths, tree, triangle_face, blocker, room)
+        outlook[row], found = _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, room)
         # What was in the way of one contact is likely in the way of the next.
         if found >= 0:
             blocker = found

@@ -11,11 +11,12 @@ import numpy as np
 
 from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
 from plan_cutters.kernels.gaps import COLUMNS, FIRST, GAPS, LAST, UF, UL, Room, _begin, _cut_gaps, _cuts, _end, _take
-from plan_cutters.kernels.hit import BODY, cross, dot, lean_frame, scratch
+from plan_cutters.kernels.hit import BODY, scratch
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.lanes import LANES, _boxes_pass, _see, _see_leaf, _see_triangle, _triangles_pass, _turn
 from plan_cutters.kernels.probing import remove
-from plan_cutters.kernels.rows import Frame, Tool
+from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.vectors import cross, dot, lean_frame
 
 #: Blocks of boxes kept as seen from one contact, and blocks that may wait to be looked at.
 _SEEN, _QUEUE = 1 << 11, 1 << 13
@@ -92,7 +93,7 @@ class _View(NamedTuple):
 def _rotation(frame, e1, e2, turn, rotation, gap, count, tool, narrowest, wide, seen, room):  # type: ignore[no-untyped-def]
     """Take the gaps of one rotation, its cosine and sine `turn`, through the tree, level by level; how many are left."""
     p, n = frame.p, frame.n
-    radius, shrunk, low, high = tool
+    radius, shrunk, low, high, _ = tool
     cosine, sine = turn
     vertex, blocks, offset, bottom = wide
     view, leaves, below, home, tally = seen.boxes, seen.leaves, seen.below, seen.home, seen.tally
@@ -194,7 +195,7 @@ def _write(gap, count, room, part):  # type: ignore[no-untyped-def]
 
 @entry
 def free_map(  # type: ignore[no-untyped-def]
-    rows, contacts, ranges, radius, length, depth_allowed, narrowest, wide, room, part, count_out, undecided
+    rows, contacts, ranges, tool, narrowest, wide, room, part, count_out, undecided
 ):
     """Free tilts of samples at all rotations, in one walk of the tree each, with certified ends.
 
@@ -203,8 +204,8 @@ def free_map(  # type: ignore[no-untyped-def]
     rows : (m,) int64
     contacts : Contacts
     ranges : Ranges
-    radius, length, depth_allowed : float
-        Cutter, and the depth up to which a triangle does not matter, mm.
+    tool : Cylinder
+        The cutter, smaller by the depth that does not matter.
     narrowest : float
         Ends are found to this, rad; a passing tilt is kept.
     wide : WideTree
@@ -222,7 +223,6 @@ def free_map(  # type: ignore[no-untyped-def]
         np.empty((3, 3)), np.empty((8, 3)), np.empty((8, 3)), np.empty(BODY), np.empty((64, 2)),
         scratch(),
     )  # fmt: skip
-    tool = Tool(radius, radius - depth_allowed, depth_allowed, length - depth_allowed)
     view = _View(
         np.empty((_SEEN + 1, 16, LANES)), np.empty((_LEAVES + 3, 9, LANES)), np.empty((_SEEN + 1, LANES), np.int64),
         np.empty((_SEEN, 2), np.int64), np.zeros(3, np.int64), np.zeros((len(ranges.rotation_cos) + 1, LANES), np.int64),
@@ -244,11 +244,18 @@ def free_map(  # type: ignore[no-untyped-def]
             cosine, sine = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
             lean_frame(e1, e2, cosine, sine, f, t)
             count_out[place, rotation], undecided[place, rotation] = 0, 0.0
-            least = local_gouge(contacts.curvature[row, 0], contacts.curvature[row, 1], cosine, sine, radius)
+            least, _ = local_gouge(
+                contacts.curvature[row, 0], contacts.curvature[row, 1], cosine, sine, tool.radius, 0.0
+            )
             if np.isnan(least):
                 continue
             count = axis_arcs(
-                dot(ranges.setup, n), dot(ranges.setup, f), ranges.limit_cos, ranges.tilt_low, ranges.tilt_high, arcs
+                dot(ranges.setup, n),
+                dot(ranges.setup, f),
+                ranges.limit_cos,
+                ranges.tilt_low,
+                min(0.5 * np.pi, ranges.tilt_high),
+                arcs,
             )
             if least > 0.0:
                 count = remove(arcs, count, -1.0, least, 0.0)

@@ -5,63 +5,59 @@ middle. Where the middle itself is blocked, the point in the way forbids an arc;
 range is halved. Ranges narrower than `narrowest` stay undecided.
 """
 
+from typing import Any, NamedTuple
+
 import numpy as np
 
-from plan_cutters.kernels.arcs import point_arc
-from plan_cutters.kernels.hit import BODY, cross, scratch, stand, tree_hit
-from plan_cutters.kernels.jit import entry
-from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.hit import BODY, scratch, tree_hit
+from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.probing import OFFSET_OF, arc_of, put
+from plan_cutters.kernels.rows import Frame, Scratch
+from plan_cutters.kernels.tool_arcs import ARCS
+from plan_cutters.kernels.vectors import cross
 
 OPEN, FORBIDDEN, UNSURE = 0, 1, 2
 
 
+class Parts(NamedTuple):
+    """Room to work in: parts (k, 3) as `free_tilts` gives them, pending (k, 2), arcs (ARCS, 2), a body, lists to walk with."""
+
+    parts: Any
+    pending: Any
+    arcs: Any
+    body: Any
+    scratch: Scratch
+
+
 @entry
-def free_tilts(p, n, f, low, high, radius, length, depth_allowed, narrowest, tree, room):  # type: ignore[no-untyped-def]
-    """Split a range of tilts into free, forbidden and undecided parts.
+def room_for_parts(room):  # type: ignore[no-untyped-def]
+    """Room for so many parts."""
+    return Parts(np.empty((room + 4, 3)), np.empty((room + 4, 2)), np.empty((ARCS, 2)), np.empty(BODY), scratch())
 
-    Parameters
-    ----------
-    p, n, f : (3,) float64
-        Contact, normal, lean direction.
-    low, high : float
-        rad.
-    radius, length, depth_allowed : float
-        Cutter, and the depth up to which a triangle does not matter, mm.
-    narrowest : float
-        rad.
-    tree : Tree
-    room : int
-        Most parts that can be told apart.
 
-    Returns
-    -------
-    parts : (k, 3) float64
-        first, last, kind (OPEN, FORBIDDEN, UNSURE); together the range asked for, in no order.
-    """
-    t = np.empty(3)
-    cross(n, f, t)
-    frame, body = Frame(p, n, f, t), np.empty(BODY)
-    walk = scratch()
-    parts = np.empty((room + 4, 3))
-    pending = np.empty((room + 4, 2))
+@kernel
+def divide(frame, low, high, tool, mode, narrowest, tree, work):  # type: ignore[no-untyped-def]
+    """`free_tilts` of a frame, its parts written into `work`; how many."""
+    parts, pending, body, walk, piece = work.parts, work.pending, work.body, work.scratch, tool.piece[mode]
     pending[0, 0], pending[0, 1] = low, high
-    top, done, hint = 1, 0, -1
-    shrunk, bottom, ceiling = radius - depth_allowed, depth_allowed, length - depth_allowed
+    top, done, hint, room = 1, 0, -1, len(parts) - 4
     while top > 0:
         top -= 1
         first, last = pending[top, 0], pending[top, 1]
         tilt, half = 0.5 * (first + last), 0.5 * (last - first)
-        stand(body, frame, np.cos(tilt), np.sin(tilt), radius, shrunk, bottom, ceiling)
+        put(body, frame, tilt, tool, mode)
         # A hair more than half, so that a free range holds at its very ends.
-        triangle, height, px, py = tree_hit(tree, body, half + 1e-12, hint, walk)
+        triangle, which, height, px, py = tree_hit(tree, body, piece, half + 1e-12, hint, walk)
         kind, cut_first, cut_last = OPEN, first, last
         if triangle >= 0:
             hint = triangle
             kind, cut_first, cut_last = UNSURE, tilt, tilt
-            triangle, height, px, py = tree_hit(tree, body, 0.0, hint, walk)
+            triangle, which, height, px, py = tree_hit(tree, body, piece, 0.0, hint, walk)
             if triangle >= 0:
                 hint = triangle
-                arc_first, arc_last = point_arc(height, px, py, tilt, radius, shrunk, bottom, ceiling)
+                arc_first, arc_last = arc_of(
+                    which, height, px, py, tilt, tool.mode[mode, OFFSET_OF], piece, 0.0, work.arcs
+                )
                 kind = FORBIDDEN
                 cut_first, cut_last = max(first, min(arc_first, tilt)), min(last, max(arc_last, tilt))
             if last - first <= narrowest or top + done + 3 > room:
@@ -76,4 +72,35 @@ def free_tilts(p, n, f, low, high, radius, length, depth_allowed, narrowest, tre
         if cut_first > first:
             pending[top, 0], pending[top, 1] = first, cut_first
             top += 1
-    return parts[:done]
+    return done
+
+
+@entry
+def free_tilts(p, n, f, low, high, tool, mode, narrowest, tree, room):  # type: ignore[no-untyped-def]
+    """Split a range of tilts into free, forbidden and undecided parts.
+
+    Parameters
+    ----------
+    p, n, f : (3,) float64
+        Contact, normal, lean direction.
+    low, high : float
+        rad.
+    tool : Tool
+        Without what does not matter.
+    mode : int
+        In which it touches.
+    narrowest : float
+        rad.
+    tree : Tree
+    room : int
+        Most parts that can be told apart.
+
+    Returns
+    -------
+    parts : (k, 3) float64
+        first, last, kind (OPEN, FORBIDDEN, UNSURE); together the range asked for, in no order.
+    """
+    t, work = np.empty(3), room_for_parts(room)
+    cross(n, f, t)
+    count = divide(Frame(p, n, f, t), low, high, tool, mode, narrowest, tree, work)
+    return work.parts[:count]

@@ -36,7 +36,7 @@ class Room(NamedTuple):
 @kernel
 def _cuts(x, y, z, gap, count, tool):  # type: ignore[no-untyped-def]
     """Whether a point is in the body at some tilt of some gap."""
-    radius, shrunk, low, high = tool
+    radius, shrunk, low, high, _ = tool
     square = shrunk * shrunk - y * y
     if square <= 0.0 or z <= low:
         return False
@@ -70,9 +70,9 @@ def _first_in_the_way(vertex, i, frame, a, b, sign, narrowest, tool, room):  # t
         top -= 1
         first, last = ranges[top, 0], ranges[top, 1]
         middle, half = 0.5 * (first + last), 0.5 * (last - first)
-        stand(body, frame, np.cos(middle), np.sin(middle), tool.radius, tool.shrunk, tool.low, tool.high)
-        hit, _, _, _ = triangle_hit(vertex, i, body, half + 1e-12, scratch.polygon, scratch.spare)
-        if not hit or not _swept_hit(vertex, i, body, half + 1e-12, scratch):
+        stand(body, frame, np.cos(middle), np.sin(middle), tool.radius, 0.0)
+        which, _, _, _ = triangle_hit(vertex, i, body, tool.piece, 1, half + 1e-12, scratch)
+        if which < 0 or not _swept_hit(vertex, i, body, tool.piece, 1, half + 1e-12, scratch):
             continue
         if last - first <= narrowest or top + 2 > len(ranges):
             return first if sign > 0.0 else last
@@ -161,8 +161,8 @@ def _take(gap, count, left, right):  # type: ignore[no-untyped-def]
 @kernel
 def _in_the_way(vertex, i, frame, tilt, tool, room):  # type: ignore[no-untyped-def]
     """Whether a triangle reaches into the body at a tilt."""
-    stand(room.body, frame, np.cos(tilt), np.sin(tilt), tool.radius, tool.shrunk, tool.low, tool.high)
-    return triangle_hit(vertex, i, room.body, 0.0, room.scratch.polygon, room.scratch.spare)[0]
+    stand(room.body, frame, np.cos(tilt), np.sin(tilt), tool.radius, 0.0)
+    return triangle_hit(vertex, i, room.body, tool.piece, 1, 0.0, room.scratch)[0] >= 0
 
 
 @kernel
@@ -200,7 +200,7 @@ def _cut_gaps(vertex, i, frame, gap, count, narrowest, tool, room):  # type: ign
 
     The triangle is in `room.corner` too, as rows (x, z, y) from the contact.
     """
-    radius, shrunk, low, high = tool
+    radius, shrunk, low, high, _ = tool
     corner, first, second, cut = room.corner, room.first, room.second, False
     # What its corners alone forbid is known in closed form, and mostly all that it does.
     for k in range(3):

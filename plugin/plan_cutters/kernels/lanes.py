@@ -108,7 +108,7 @@ def _boxes_pass(view, block, cosine, sine, gap, count, tool, margin):  # type: i
     it ends; behind where it begins. The rim is seen as a line, its tangent half way from the box's middle to its side next to
     the axis.
     """
-    radius, shrunk, low, high = tool
+    radius, shrunk, low, high, _ = tool
     for lane in range(len(margin)):
         margin[lane] = np.inf
     for g in range(count):
@@ -189,7 +189,7 @@ def _see_leaf(seen, vertex, begin, end, p, e1, e2, n):  # type: ignore[no-untype
 @kernel
 def _triangles_pass(seen, cosine, sine, gap, count, tool, margin):  # type: ignore[no-untyped-def]
     """`_boxes_pass` for the triangles of a leaf."""
-    radius, shrunk, low, high = tool
+    radius, shrunk, low, high, _ = tool
     for lane in range(len(margin)):
         margin[lane] = np.inf
     for g in range(count):

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from plan_cutters.kernels.hit import _nearest
 from plan_cutters.kernels.jit import kernel
+from plan_cutters.kernels.pieces import nearest
 
 #: Triangles that reach no farther along the line of turning, in radii, see the rim as one line.
 _FLAT = 0.03
@@ -44,7 +44,7 @@ def _side(polygon, count, cosine, sine, radius, shrunk, turned):  # type: ignore
         least, most = min(least, y), max(most, y)
     if least >= shrunk or most <= -shrunk:
         return 2
-    _, px, _, square = _nearest(turned, count)
+    _, px, _, square = nearest(turned, count)
     if square < shrunk * shrunk:
         return 0
     return 1 if px >= 0.0 else -1
@@ -141,7 +141,7 @@ def _never(polygon, count, radius, shrunk):  # type: ignore[no-untyped-def]
 @kernel
 def _parts_pass(polygon, count, ca, sa, cb, sb, tool):  # type: ignore[no-untyped-def]
     """`_boxes_pass` for a polygon, in two parts where need be: what the bottom sweeps over, and what it stays below."""
-    radius, shrunk, low, high = tool
+    radius, shrunk, low, high, _ = tool
     middle = 0.0
     for k in range(count):
         middle += polygon[k, 2]
@@ -188,7 +188,7 @@ def _passes(corner, cf, sf, cl, sl, tool, first, second):  # type: ignore[no-unt
     contact, or above its top where the gap ends was so before. Each point must be one of these; the rest of the triangle
     is cut off in turn.
     """
-    radius, shrunk, low, high = tool
+    radius, shrunk, low, high, _ = tool
     if _plane_passes(corner, cf, sf, cl, sl, tool):
         return True
     count = _clip(corner, 3, first, sf, cf, low * min(1.0, cf * min(cf + sf, cl + sl)))

@@ -4,14 +4,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
-from plan_cutters.kernels.hit import BODY, HIGH, OFFSET, A, P, X, dot, lean_frame, scratch, stand, tree_hit
+from plan_cutters.kernels.arcs import axis_arcs, local_gouge
+from plan_cutters.kernels.hit import BODY, OFFSET, A, P, X, scratch, stand, tree_hit
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.material import outside, winding
+from plan_cutters.kernels.pieces import FLUTES, PART
 from plan_cutters.kernels.rows import Scratch
+from plan_cutters.kernels.tool_arcs import ARCS, arc_about, closed, forbidden
+from plan_cutters.kernels.vectors import dot, lean_frame
 
 # As in `plan_cutters.domain.verdicts`, which must not load the compiler; a test holds them together.
-AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, COLLISION, BURIED, ATTRIBUTES = 0, 1, 2, 3, 4, 5
+AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, COLLISION, BURIED, NECK, SHANK, HOLDER, ATTRIBUTES = 0, 1, 2, 3, 4, 6, 7, 8, 9
+#: Columns of a tool's modes: as in `domain.assembly.Assembly`.
+OFFSET_OF, RISE, TILT_FROM, TILT_TO, OVER_TIP = 0, 1, 2, 3, 4
 
 #: A posture stands for the tilts that are so near, rad: no machine holds a tilt to 0.01 deg.
 NARROWEST = 1.7e-4
@@ -66,32 +71,27 @@ def forbid(intervals, count, first, last, narrowest, attribute, tally):  # type:
 
 
 @kernel
-def _attribute(x, y, z, radius):  # type: ignore[no-untyped-def]
-    """What an obstacle point that far from the contact is in the way of."""
-    return REAR_GOUGE if x * x + y * y + z * z <= 4.0 * radius * radius else COLLISION
+def _attribute(x, y, z, tool, mode, k):  # type: ignore[no-untyped-def]
+    """What an obstacle point that far from the contact, which is in piece k, is in the way of."""
+    part = int(tool.piece[mode, k, PART])
+    if part != FLUTES:
+        return NECK + part - 1
+    return REAR_GOUGE if x * x + y * y + z * z <= tool.reach * tool.reach else COLLISION
 
 
 @kernel
-def inner_height(radius, length):  # type: ignore[no-untyped-def]
-    """Height of the point of the cutter's axis that is asked for whether the cutter lies within a body.
+def inside(body, tool, mode, solids, stack):  # type: ignore[no-untyped-def]
+    """Winding number of the bodies about a point of the tool's axis that is as deep in it as any.
 
-    As near to the spindle as it can be while no other point of the cutter is farther from its outside.
+    The end of the axis is asked first: where that is surely outside, all of it is, for the tool touches no skin.
     """
-    return max(0.5 * length, length - radius)
-
-
-@kernel
-def inside(body, height, solids, stack):  # type: ignore[no-untyped-def]
-    """Winding number of the bodies about the point of a body's axis at a height over the contact.
-
-    The end of the axis is asked first: where that is surely outside, all of it is.
-    """
-    high = body[HIGH]
+    high = tool.end - tool.mode[mode, OVER_TIP]
     x = body[P] + high * body[A] - body[OFFSET] * body[X]
     y = body[P + 1] + high * body[A + 1] - body[OFFSET] * body[X + 1]
     z = body[P + 2] + high * body[A + 2] - body[OFFSET] * body[X + 2]
     if outside(x, y, z, solids):
         return 0.0
+    height = tool.inner - tool.mode[mode, OVER_TIP]
     x = body[P] + height * body[A] - body[OFFSET] * body[X]
     y = body[P + 1] + height * body[A + 1] - body[OFFSET] * body[X + 1]
     z = body[P + 2] + height * body[A + 2] - body[OFFSET] * body[X + 2]
@@ -99,12 +99,18 @@ def inside(body, height, solids, stack):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def turned(frame, tilt, tool, tree, body, scratch):  # type: ignore[no-untyped-def]
+def put(body, frame, tilt, tool, mode):  # type: ignore[no-untyped-def]
+    """Stand a tool at a tilt, touching in a mode."""
+    stand(body, frame, np.cos(tilt), np.sin(tilt), tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
+
+
+@kernel
+def turned(frame, tilt, tool, mode, tree, body, scratch):  # type: ignore[no-untyped-def]
     """How far a posture that touches nothing can be tilted either way and still surely touch nothing, rad."""
     half = _TURN
     while half > 0.5 * NARROWEST:
-        stand(body, frame, np.cos(tilt), np.sin(tilt), tool.radius, tool.shrunk, tool.low, tool.high)
-        hit, _, _, _ = tree_hit(tree, body, half, -1, scratch)
+        put(body, frame, tilt, tool, mode)
+        hit, _, _, _, _ = tree_hit(tree, body, tool.piece[mode], half, -1, scratch)
         if hit < 0:
             return half
         half *= 0.5
@@ -113,9 +119,12 @@ def turned(frame, tilt, tool, tree, body, scratch):  # type: ignore[no-untyped-d
 
 
 class Room(NamedTuple):
-    """Room to work in: intervals (k, 2), lean direction f and t = n x f, e2 = n x direction_max, a body, a tally by attribute."""
+    """Room to work in: intervals (k, 2), arcs (ARCS, 2), lean direction f and t = n x f, e2 = n x direction_max, a body, a
+    tally by
+    attribute."""
 
     intervals: Any
+    arcs: Any
     f: Any
     t: Any
     e2: Any
@@ -128,52 +137,107 @@ class Room(NamedTuple):
 def room_to_search():  # type: ignore[no-untyped-def]
     """Room for searches."""
     return Room(
-        np.empty((_ROOM, 2)), np.empty(3), np.empty(3), np.empty(3), np.empty(BODY), np.empty(ATTRIBUTES), scratch()
-    )
+        np.empty((_ROOM, 2)), np.empty((ARCS, 2)), np.empty(3), np.empty(3), np.empty(3), np.empty(BODY), np.empty(ATTRIBUTES),
+        scratch(),
+    )  # fmt: skip
 
 
 @kernel
-def allowed(contacts, row, ranges, rotation, radius, room):  # type: ignore[no-untyped-def]
+def permitted(contacts, row, ranges, rotation, tool, mode, f, intervals):  # type: ignore[no-untyped-def]
+    """Write the tilts of a lean direction f that the axis limit, the range asked for and the tool's own leave, and of these those
+    that local gouging leaves: (width of the first and how many they are, how many of the second).
+    """
+    n = contacts.normal[row]
+    low, high = max(ranges.tilt_low, tool.mode[mode, TILT_FROM]), min(ranges.tilt_high, tool.mode[mode, TILT_TO])
+    if low > high:
+        return 0.0, 0, 0
+    count = axis_arcs(dot(ranges.setup, n), dot(ranges.setup, f), ranges.limit_cos, low, high, intervals)
+    width = 0.0
+    for i in range(count):
+        width += intervals[i, 1] - intervals[i, 0]
+    least, most = local_gouge(
+        contacts.curvature[row, 0], contacts.curvature[row, 1], ranges.rotation_cos[rotation],
+        ranges.rotation_sin[rotation], tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE],
+    )  # fmt: skip
+    if np.isnan(least):
+        return width, count, 0
+    left = count
+    if least > 0.0:
+        left = remove(intervals, left, -1.0, least, 0.0)
+    if most < high:
+        left = remove(intervals, left, most, 4.0, 0.0)
+    return width, count, left
+
+
+@kernel
+def allowed(contacts, row, ranges, rotation, tool, mode, room):  # type: ignore[no-untyped-def]
     """Write the tilts of a rotation that axis limit and local gouging leave, and its frame; how many intervals they are.
 
     What each of the two leaves is booked on it.
     """
-    n, intervals, tally = contacts.normal[row], room.intervals, room.tally
+    intervals, tally = room.intervals, room.tally
     cosine, sine = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
     lean_frame(contacts.direction_max[row], room.e2, cosine, sine, room.f, room.t)
-    count = axis_arcs(
-        dot(ranges.setup, n), dot(ranges.setup, room.f), ranges.limit_cos, ranges.tilt_low, ranges.tilt_high, intervals
-    )
-    for i in range(count):
-        tally[AXIS_LIMIT] += intervals[i, 1] - intervals[i, 0] + NARROWEST
-    least = local_gouge(contacts.curvature[row, 0], contacts.curvature[row, 1], cosine, sine, radius)
-    if np.isnan(least):
-        return 0
-    if least > 0.0:
-        count = remove(intervals, count, -1.0, least, 0.0)
+    width, before, count = permitted(contacts, row, ranges, rotation, tool, mode, room.f, intervals)
+    tally[AXIS_LIMIT] += width + before * NARROWEST
     for i in range(count):
         tally[LOCAL_GOUGE] += intervals[i, 1] - intervals[i, 0] + NARROWEST
     return count
 
 
 @kernel
-def forbid_point(x, y, z, tool, narrowest, intervals, count, tally):  # type: ignore[no-untyped-def]
-    """Take out the tilts at which an obstacle point, along f, t and n from the contact, is in the cutter; the new count."""
-    first, last = point_arc(z, x + tool.radius, y, 0.0, tool.radius, tool.shrunk, tool.low, tool.high)
-    if first > last:
-        return count
-    return forbid(intervals, count, first, last, narrowest, _attribute(x, y, z, tool.radius), tally)
+def booked(tally):  # type: ignore[no-untyped-def]
+    """Tilts that obstacles have taken."""
+    return tally[REAR_GOUGE] + tally[COLLISION] + tally[NECK] + tally[SHANK] + tally[HOLDER]
 
 
 @kernel
-def forbid_probed(height, px, py, tilt, tool, narrowest, intervals, count, tally):  # type: ignore[no-untyped-def]
-    """The same of a point that a probe at a tilt has met, in the tool's frame; (the new count, the point along f, t, n)."""
-    first, last = point_arc(height, px, py, tilt, tool.radius, tool.shrunk, tool.low, tool.high)
-    # At the edge of the body the arc may be no wider than rounding: take the probe's own neighbourhood too.
-    first, last = min(first, tilt - 0.5 * narrowest), max(last, tilt + 0.5 * narrowest)
-    back, cosine, sine = px - tool.radius, np.cos(tilt), np.sin(tilt)
-    x, z = cosine * back + sine * height, cosine * height - sine * back
-    return forbid(intervals, count, first, last, narrowest, _attribute(x, py, z, tool.radius), tally), x, py, z
+def forbid_point(x, y, z, tool, mode, narrowest, intervals, count, room):  # type: ignore[no-untyped-def]
+    """Take out the tilts at which an obstacle point, along f, t and n from the contact, is in the tool; the new count."""
+    offset, height = tool.mode[mode, OFFSET_OF], z - tool.mode[mode, RISE]
+    piece = tool.piece[mode]
+    for k in range(len(piece)):
+        found = forbidden(height, x + offset, y, 0.0, offset, piece, k, room.arcs)
+        for i in range(found):
+            count = forbid(
+                intervals,
+                count,
+                room.arcs[i, 0],
+                room.arcs[i, 1],
+                narrowest,
+                _attribute(x, y, z, tool, mode, k),
+                room.tally,
+            )
+    return count
+
+
+@kernel
+def arc_of(k, height, px, py, tilt, offset, piece, half, arcs):  # type: ignore[no-untyped-def]
+    """First and last of the tilts about one, `half` to either side at least, at which a point is in piece k; `arcs` is
+    scratch.
+    """
+    first, last = tilt - half, tilt + half
+    if closed(offset, piece, k):
+        for i in range(forbidden(height, px, py, tilt, offset, piece, k, arcs)):
+            if arcs[i, 0] <= last and arcs[i, 1] >= first:
+                first, last = min(first, arcs[i, 0]), max(last, arcs[i, 1])
+        return first, last
+    low, high = arc_about(height, px, py, tilt, offset, piece, k)
+    return min(first, low), max(last, high)
+
+
+@kernel
+def forbid_probed(k, height, px, py, tilt, tool, mode, narrowest, intervals, count, room):  # type: ignore[no-untyped-def]
+    """The same of a point that a probe at a tilt has met in piece k, in the tool's frame; (the new count, the point along f, t,
+    n).
+    """
+    offset, piece = tool.mode[mode, OFFSET_OF], tool.piece[mode]
+    back, cosine, sine = px - offset, np.cos(tilt), np.sin(tilt)
+    x, z = cosine * back + sine * height, cosine * height - sine * back + tool.mode[mode, RISE]
+    attribute = _attribute(x, py, z, tool, mode, k)
+    # At the edge of the tool the arc may be no wider than rounding: take the probe's own neighbourhood too.
+    first, last = arc_of(k, height, px, py, tilt, offset, piece, 0.5 * narrowest, room.arcs)
+    return forbid(intervals, count, first, last, narrowest, attribute, room.tally), x, py, z
 
 
 @kernel

@@ -34,13 +34,28 @@ class Ranges(NamedTuple):
 
 
 class Tool(NamedTuple):
-    """A cutter of a radius that was made smaller by a depth all round: its own radius, the one left, and the heights between
-    which it is solid, mm."""
+    """A tool, each piece made smaller or larger by what does not matter, or does: as in `domain.assembly`.
+
+    piece (m, k, COLUMNS) and mode (m, 5) of each of the m ways in which it touches; `reach`, the distance from the contact within
+    which an obstacle of the flutes counts as rear gouging; `inner` and `end`, heights over the tip of two points of its axis; mm.
+    """
+
+    piece: Any
+    mode: Any
+    reach: float
+    inner: float
+    end: float
+
+
+class Cylinder(NamedTuple):
+    """A flat end that was made smaller by a depth all round: its own radius, the one left, and the heights between which it is
+    solid, mm; and the same as a row of pieces (1, COLUMNS)."""
 
     radius: float
     shrunk: float
     low: float
     high: float
+    piece: Any
 
 
 class Frame(NamedTuple):
@@ -53,9 +68,12 @@ class Frame(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Room to work in: stack (64,) int64, polygon and spare (8, 3), pieces (k, 3, 3)."""
+    """Room to work in: stack and masks (64,) int64, corner (3, 3), drawn (4, 3), polygon and spare (8, 3), pieces (k, 3, 3)."""
 
     stack: Any
+    masks: Any
+    corner: Any
+    drawn: Any
     polygon: Any
     spare: Any
     pieces: Any

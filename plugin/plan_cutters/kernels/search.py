@@ -9,23 +9,29 @@ so does every posture that it can be turned to without touching a skin.
 
 import numpy as np
 
-from plan_cutters.kernels.arcs import axis_arcs, local_gouge
-from plan_cutters.kernels.hit import BODY, cross, dot, lean_frame, perpendicular, scratch, stand, tree_hit
+from plan_cutters.kernels.hit import BODY, scratch, stand, tree_hit
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
 from plan_cutters.kernels.probing import (
     AXIS_LIMIT,
     BURIED,
     COLLISION,
+    HOLDER,
     LOCAL_GOUGE,
+    NECK,
+    OFFSET_OF,
     REAR_GOUGE,
-    inner_height,
+    RISE,
+    SHANK,
+    TILT_FROM,
+    TILT_TO,
     inside,
-    remove,
+    permitted,
     room_to_search,
 )
-from plan_cutters.kernels.rows import Frame, Tool
+from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.sweep import memory, sweep
+from plan_cutters.kernels.vectors import cross, dot, lean_frame, perpendicular
 
 # As in `plan_cutters.domain.verdicts`, which must not load the compiler; a test holds them together.
 INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
@@ -34,8 +40,8 @@ INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 2
 _NO_GAP = 1.7e-4
 #: A posture is searched in gaps down to this, rad: it may stand where arcs leave more than they seem to.
 _FINEST = 1e-5
-#: How far apart tilts are among which the one of least depth is looked for at first, rad.
-_COARSE = 0.05
+#: Tilts this close to the end of a tool's range are in it, rad.
+_ROUNDING = 1e-9
 
 
 @kernel
@@ -46,7 +52,7 @@ def _reason(tally):  # type: ignore[no-untyped-def]
     if tally[LOCAL_GOUGE] == 0.0:
         return LOCAL_GOUGE
     reason = REAR_GOUGE
-    for attribute in (COLLISION, BURIED):
+    for attribute in (COLLISION, BURIED, NECK, SHANK, HOLDER):
         if tally[attribute] > tally[reason]:
             reason = attribute
     return reason
@@ -66,10 +72,10 @@ def _write(found, row, contacts, ranges, rotation, tilt):  # type: ignore[no-unt
 
 
 @kernel
-def _surely_none(contacts, row, ranges, tool, length, solids, start, past, room):  # type: ignore[no-untyped-def]
+def _surely_none(contacts, row, ranges, tool, solids, start, past, room):  # type: ignore[no-untyped-def]
     """Whether what is surely in the way leaves a sample no posture; the last one that it left to any, and that."""
     rotation, tilt = sweep(
-        contacts, row, ranges, tool, length, solids, SURELY_INSIDE, _NO_GAP, start, len(ranges.rotation_cos), past, room
+        contacts, row, ranges, tool, solids, SURELY_INSIDE, _NO_GAP, start, len(ranges.rotation_cos), past, room
     )
     if rotation < 0:
         return start, True
@@ -77,7 +83,7 @@ def _surely_none(contacts, row, ranges, tool, length, solids, start, past, room)
 
 
 @entry
-def search(rows, contacts, ranges, radius, length, safe, blocked, may_be, surely, found):  # type: ignore[no-untyped-def]
+def search(rows, contacts, ranges, light, heavy, may_be, surely, found):  # type: ignore[no-untyped-def]
     """Decide the samples `rows`, one after the other, each starting from the posture of the one before.
 
     Parameters
@@ -86,27 +92,23 @@ def search(rows, contacts, ranges, radius, length, safe, blocked, may_be, surely
         Samples to decide, neighbours in sequence.
     contacts : Contacts
     ranges : Ranges
-    radius, length : float
-        Flat-end cutter, mm.
-    safe, blocked : float
-        Depths (mm) up to which a triangle does not matter, and beyond which it certainly does.
+    light, heavy : Tool
+        The tool without what does not matter, and what of it is certainly in the way.
     may_be, surely : Solids
         All that may be in the way, for calling a posture safe; what certainly is, for calling it blocked.
     found : Found, written
     """
     rotations, room = len(ranges.rotation_cos), room_to_search()
-    light = Tool(radius, radius - safe, safe, length - safe)
-    heavy = Tool(radius, radius - blocked, blocked, length - blocked)
     # What is only perhaps in the way must not count as surely in it: the two are remembered apart.
-    light_past, heavy_past = memory(rotations), memory(rotations)
+    light_past, heavy_past = memory(rotations, len(light.mode)), memory(rotations, len(heavy.mode))
     last, freed, lost = (0, -1.0), (0, -1.0), False
     for row in rows:
         asked, sure = lost, False
         if asked:
-            freed, sure = _surely_none(contacts, row, ranges, heavy, length, surely, freed, heavy_past, room)
+            freed, sure = _surely_none(contacts, row, ranges, heavy, surely, freed, heavy_past, room)
         if not sure:
             rotation, tilt = sweep(
-                contacts, row, ranges, light, length, may_be, MAYBE_INSIDE, _FINEST, last, rotations, light_past, room
+                contacts, row, ranges, light, may_be, MAYBE_INSIDE, _FINEST, last, rotations, light_past, room
             )
             lost = rotation < 0
             if not lost:
@@ -116,64 +118,41 @@ def search(rows, contacts, ranges, radius, length, safe, blocked, may_be, surely
                 continue
         found.reason[row] = _reason(room.tally)
         if not asked:
-            freed, sure = _surely_none(contacts, row, ranges, heavy, length, surely, freed, heavy_past, room)
+            freed, sure = _surely_none(contacts, row, ranges, heavy, surely, freed, heavy_past, room)
             if sure:
                 found.reason[row] = _reason(room.tally)
         found.verdict[row] = INACCESSIBLE if sure else UNDECIDED
 
 
 @entry
-def least_depth(contacts, ranges, radius, length, least, most, share, solids, found):  # type: ignore[no-untyped-def]
-    """The posture of the first contact at which the least depth reaches into the cutter, by halving in ratio.
-
-    At first among tilts that are `_COARSE` apart at all rotations, then among all tilts at the rotation found.
+def posture(contacts, ranges, tool, narrowest, start, turns, solids, found):  # type: ignore[no-untyped-def]
+    """Look for a posture of the first contact at which a tool is in nothing's way; whether there is one.
 
     Parameters
     ----------
     contacts : Contacts
     ranges : Ranges
-    radius, length : float
-        Flat-end cutter, mm.
-    least, most : float
-        Depths (mm) to look between: that at which nothing was found, and the largest that is tried.
-    share : float
-        Of itself to which the depth is found.
+    tool : Tool
+    narrowest : float
+        Intervals of tilt narrower than this are passed over, rad.
+    start : (int, float)
+        Rotation to begin with, and the tilt that is tried first at each.
+    turns : int
+        How many rotations to look at.
     solids : Solids
         All that may be in the way.
     found : Found, written
         The posture.
-
-    Returns
-    -------
-    low, high : float
-        A depth at which no posture was found at that rotation, and that of the posture; nan where there is none at `most`.
     """
-    rotations = len(ranges.rotation_cos)
-    past, room = memory(rotations), room_to_search()
-    low, high, last = least, np.nan, (0, -1.0)
-    for narrowest, near in ((_COARSE, 5.0 * share), (_NO_GAP, share)):
-        low, depth, turns = least, most, 1 if high == high else rotations
-        # Where nothing was found, a cutter that is all but a line is stopped again and again: not every tilt is tried.
-        narrowest = narrowest if turns == 1 else max(narrowest, 0.1 * _COARSE)
-        while not high - low <= near * high:
-            if high == high:
-                depth = np.sqrt(low * high)
-            tool = Tool(radius, radius - depth, depth, length - depth)
-            rotation, tilt = sweep(
-                contacts, 0, ranges, tool, length, solids, MAYBE_INSIDE, narrowest, last, turns, past, room
-            )
-            if rotation >= 0:
-                last, high = (rotation, tilt), depth
-                _write(found, 0, contacts, ranges, rotation, tilt)
-            elif high == high:
-                low = depth
-            else:
-                break
-    return low, high
+    past, room = memory(len(ranges.rotation_cos), len(tool.mode)), room_to_search()
+    rotation, tilt = sweep(contacts, 0, ranges, tool, solids, MAYBE_INSIDE, narrowest, start, turns, past, room)
+    if rotation >= 0:
+        _write(found, 0, contacts, ranges, rotation, tilt)
+    return rotation >= 0
 
 
 @entry
-def first_reason(rows, contacts, ranges, radius, reason):  # type: ignore[no-untyped-def]
+def first_reason(rows, contacts, ranges, tool, reason):  # type: ignore[no-untyped-def]
     """Write AXIS_LIMIT or LOCAL_GOUGE as the reason (n,) of samples to which these alone leave no posture.
 
     The other parameters are those of `search`; other reasons stay as they are.
@@ -185,22 +164,11 @@ def first_reason(rows, contacts, ranges, radius, reason):  # type: ignore[no-unt
         cross(n, e1, e2)
         axis_left, gouge_left = False, False
         for rotation in range(len(ranges.rotation_cos)):
-            cosine, sine = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
-            lean_frame(e1, e2, cosine, sine, f, t)
-            count = axis_arcs(
-                dot(ranges.setup, n),
-                dot(ranges.setup, f),
-                ranges.limit_cos,
-                ranges.tilt_low,
-                ranges.tilt_high,
-                intervals,
-            )
-            axis_left = axis_left or count > 0
-            least = local_gouge(contacts.curvature[row, 0], contacts.curvature[row, 1], cosine, sine, radius)
-            if not np.isnan(least) and least > 0.0:
-                count = remove(intervals, count, -1.0, least, 0.0)
-            if not np.isnan(least) and count > 0:
-                gouge_left = True
+            lean_frame(e1, e2, ranges.rotation_cos[rotation], ranges.rotation_sin[rotation], f, t)
+            for mode in range(len(tool.mode)):
+                _, before, left = permitted(contacts, row, ranges, rotation, tool, mode, f, intervals)
+                axis_left, gouge_left = axis_left or before > 0, gouge_left or left > 0
+            if gouge_left:
                 break
         if not axis_left:
             reason[row] = AXIS_LIMIT
@@ -209,19 +177,20 @@ def first_reason(rows, contacts, ranges, radius, reason):  # type: ignore[no-unt
 
 
 @entry
-def dummy_clear(rows, contacts, radius, length, safe, solids, clear):  # type: ignore[no-untyped-def]
-    """Test the dummy cutter `(2 radius, length)`, bottom centre on the sample, axis along the normal.
+def dummy_clear(rows, contacts, dummy, tool, solids, clear):  # type: ignore[no-untyped-def]
+    """Test the dummy tool, which holds the tool at tilt 0 in every rotation, its axis along the normal.
 
     Parameters
     ----------
     rows : (m,) int64
     contacts : Contacts
-    radius, length, safe : float
-        The flat-end cutter, mm, and the depth up to which a triangle does not matter.
+    dummy : (k, COLUMNS) float64
+        `Assembly.dummy`, without what does not matter.
+    tool : Tool
     solids : Solids
         All that may be in the way.
     clear : (n,) bool, written
-        True where nothing reaches deeper than `safe` into the dummy, and the dummy lies in no body.
+        True where nothing reaches into the dummy, and the dummy lies in no body.
     """
     body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
     room = scratch()
@@ -230,16 +199,25 @@ def dummy_clear(rows, contacts, radius, length, safe, solids, clear):  # type: i
         n = contacts.normal[row]
         perpendicular(n, f)
         cross(n, f, t)
-        stand(body, Frame(contacts.point[row], n, f, t), 1.0, 0.0, 0.0, 2.0 * radius - safe, safe, length - safe)
-        triangle, _, _, _ = tree_hit(solids.tree, body, 0.0, hint, room)
-        clear[row] = triangle < 0 and inside(body, inner_height(radius, length), solids, room.stack) < MAYBE_INSIDE
+        stand(body, Frame(contacts.point[row], n, f, t), 1.0, 0.0, 0.0, tool.mode[0, RISE])
+        triangle, _, _, _, _ = tree_hit(solids.tree, body, dummy, 0.0, hint, room)
+        clear[row] = triangle < 0 and inside(body, tool, 0, solids, room.stack) < MAYBE_INSIDE
         if triangle >= 0:
             hint = triangle
 
 
+@kernel
+def mode_at(tool, tilt):  # type: ignore[no-untyped-def]
+    """The mode in which a tool touches at a tilt, -1 for none."""
+    for mode in range(len(tool.mode)):
+        if tool.mode[mode, TILT_FROM] - _ROUNDING <= tilt <= tool.mode[mode, TILT_TO] + _ROUNDING:
+            return mode
+    return -1
+
+
 @entry
-def probe(rows, point, normal, axis, lean, radius, length, depths, tree, triangle):  # type: ignore[no-untyped-def]
-    """Test given postures: the triangle that reaches deeper than `depths[i]` into the cutter of posture i, or -1.
+def probe(rows, point, normal, axis, lean, tool, tree, triangle, which):  # type: ignore[no-untyped-def]
+    """Test given postures: the triangle that reaches into the tool at posture i and the piece that it reaches into, or -1.
 
     Parameters
     ----------
@@ -247,18 +225,24 @@ def probe(rows, point, normal, axis, lean, radius, length, depths, tree, triangl
         Rows to test.
     point, normal, axis, lean : (n, 3) float64
         Contact, unit normal, unit tool axis, unit lean direction.
-    radius, length : float
-    depths : (n,) float64
+    tool : Tool
+        Without what does not matter.
     tree : Tree
-    triangle : (n,) int32, written
+    triangle, which : (n,) int32, written
+        At a tilt at which the tool does not touch: -2.
     """
     body, t = np.empty(BODY), np.empty(3)
     room = scratch()
     hint = -1
     for row in rows:
-        n, f, s = normal[row], lean[row], depths[row]
+        n, f = normal[row], lean[row]
         cross(n, f, t)
-        stand(body, Frame(point[row], n, f, t), dot(axis[row], n), dot(axis[row], f), radius, radius - s, s, length - s)
-        triangle[row], _, _, _ = tree_hit(tree, body, 0.0, hint, room)
+        cosine, sine = dot(axis[row], n), dot(axis[row], f)
+        mode = mode_at(tool, np.arctan2(sine, cosine))
+        if mode < 0:
+            triangle[row], which[row] = -2, -2
+            continue
+        stand(body, Frame(point[row], n, f, t), cosine, sine, tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
+        triangle[row], which[row], _, _, _ = tree_hit(tree, body, tool.piece[mode], 0.0, hint, room)
         if triangle[row] >= 0:
             hint = triangle[row]

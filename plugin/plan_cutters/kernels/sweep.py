@@ -9,31 +9,34 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.hit import cross, deep_hit, stand
+from plan_cutters.kernels.hit import deep_hit
 from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.pieces import ARC, HIGH, KIND, LOW, RADIUS, ROUND, SCALE, SLOPE
 from plan_cutters.kernels.probing import (
     BURIED,
-    COLLISION,
-    REAR_GOUGE,
+    OFFSET_OF,
+    RISE,
     allowed,
+    booked,
     forbid,
     forbid_point,
     forbid_probed,
-    inner_height,
     inside,
     next_tilt,
+    put,
     turned,
 )
 from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.vectors import cross
 
 #: Points remembered for each rotation, and of those that the tree gave last.
 _KEPT, _POOL = 64, 128
 
 
 class Memory(NamedTuple):
-    """What the sweeps before have met: points (rotations, k, 3) that forbade tilts of each, and how many (rotations,); the
+    """What the sweeps before have met: points (rotations x modes, k, 3) that forbade tilts of each, and how many of each; the
     last points (3, m) that the tree gave, and the same as seen from the contact, along direction_max, e2 and the normal;
-    how deep each is in the cutter (m,); how many the tree gave in all (1,).
+    how deep each is in the tool (m,), and in which piece; how many the tree gave in all (1,).
     """
 
     point: Any
@@ -41,15 +44,16 @@ class Memory(NamedTuple):
     pool: Any
     seen: Any
     depth: Any
+    which: Any
     given: Any
 
 
 @entry
-def memory(rotations):  # type: ignore[no-untyped-def]
+def memory(rotations, modes):  # type: ignore[no-untyped-def]
     """Nothing remembered yet."""
     return Memory(
-        np.empty((rotations, _KEPT, 3)), np.zeros(rotations, np.int64), np.full((3, _POOL), np.inf),
-        np.empty((3, _POOL)), np.empty(_POOL), np.zeros(1, np.int64),
+        np.empty((rotations * modes, _KEPT, 3)), np.zeros(rotations * modes, np.int64), np.full((3, _POOL), np.inf),
+        np.empty((3, _POOL)), np.empty(_POOL), np.empty(_POOL, np.int64), np.zeros(1, np.int64),
     )  # fmt: skip
 
 
@@ -63,29 +67,112 @@ def _see(past, slot, p, e1, e2, n):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _deepest(past, count, turn, tilt, tool):  # type: ignore[no-untyped-def]
-    """The point of the pool that is deepest in the cutter at a posture, in the tool's frame; nan if none is in it."""
-    seen, depth, (cosine, sine) = past.seen, past.depth, turn
-    up, out, radius = np.cos(tilt), np.sin(tilt), tool.radius
+def _deepest(past, count, turn, tilt, tool, mode):  # type: ignore[no-untyped-def]
+    """The piece and the point of the pool that is deepest in the tool at a posture, in the tool's frame; -1 if none is in it.
+
+    Piece by piece and without a branch among points, so that the compiler uses the lanes of the processor.
+    """
+    seen, depth, which, (cosine, sine) = past.seen, past.depth, past.which, turn
+    up, out, offset, rise = np.cos(tilt), np.sin(tilt), tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE]
     for i in range(count):
-        x = cosine * seen[0, i] + sine * seen[1, i]
-        y = cosine * seen[1, i] - sine * seen[0, i]
-        height = up * seen[2, i] + out * x
-        px = radius + up * x - out * seen[2, i]
-        depth[i] = min(min(height - tool.low, tool.high - height), tool.shrunk - np.sqrt(px * px + y * y))
+        depth[i] = 0.0
+    for k in range(tool.piece.shape[1]):
+        low, high, radius = tool.piece[mode, k, LOW], tool.piece[mode, k, HIGH], tool.piece[mode, k, RADIUS]
+        slope, around, scale = tool.piece[mode, k, SLOPE], tool.piece[mode, k, ROUND], tool.piece[mode, k, SCALE]
+        if tool.piece[mode, k, KIND] == ARC:
+            for i in range(count):
+                x, z = cosine * seen[0, i] + sine * seen[1, i], seen[2, i] - rise
+                y = cosine * seen[1, i] - sine * seen[0, i]
+                height, px = up * z + out * x, offset + up * x - out * z
+                r = max(0.0, np.sqrt(px * px + y * y) - radius)
+                deep = around - np.sqrt(r * r + (height - slope) * (height - slope))
+                deep = min(min(height - low, high - height), deep)
+                which[i] = k if deep > depth[i] else which[i]
+                depth[i] = max(depth[i], deep)
+        else:
+            for i in range(count):
+                x, z = cosine * seen[0, i] + sine * seen[1, i], seen[2, i] - rise
+                y = cosine * seen[1, i] - sine * seen[0, i]
+                height, px = up * z + out * x, offset + up * x - out * z
+                deep = (radius + slope * (height - low) - np.sqrt(px * px + y * y)) * scale
+                deep = min(min(height - low, high - height), deep)
+                which[i] = k if deep > depth[i] else which[i]
+                depth[i] = max(depth[i], deep)
     best, found = 0.0, -1
     for i in range(count):
         if depth[i] > best:
             best, found = depth[i], i
     if found < 0:
-        return np.nan, np.nan, np.nan
-    x = cosine * seen[0, found] + sine * seen[1, found]
+        return -1, 0.0, 0.0, 0.0
+    x, z = cosine * seen[0, found] + sine * seen[1, found], seen[2, found] - rise
     y = cosine * seen[1, found] - sine * seen[0, found]
-    return up * seen[2, found] + out * x, radius + up * x - out * seen[2, found], y
+    return which[found], up * z + out * x, offset + up * x - out * z, y
 
 
 @kernel
-def sweep(contacts, row, ranges, tool, length, solids, within, narrowest, start, turns, past, room):  # type: ignore[no-untyped-def]
+def _rotation(  # type: ignore[no-untyped-def]
+    contacts, row, ranges, rotation, tool, mode, solids, within, narrowest, wish, frame, past, pooled, room
+):
+    """`sweep` at one rotation and mode: (a tilt, -1 for none; how many points of the pool are seen from this contact)."""
+    p, n, e1, e2, f, t = frame.p, frame.n, contacts.direction_max[row], room.e2, room.f, room.t
+    intervals, body, tally = room.intervals, room.body, room.tally
+    turn, place = (ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]), rotation * len(tool.mode) + mode
+    count = allowed(contacts, row, ranges, rotation, tool, mode, room)
+    known, kept = past.count[place], 0
+    for i in range(known):
+        if count == 0:
+            break
+        x, y, z = 0.0, 0.0, 0.0
+        for k in range(3):
+            offset = past.point[place, i, k] - p[k]
+            x += offset * f[k]
+            y += offset * t[k]
+            z += offset * n[k]
+        before = booked(tally)
+        count = forbid_point(x, y, z, tool, mode, narrowest, intervals, count, room)
+        if booked(tally) > before:
+            for k in range(3):
+                past.point[place, kept, k] = past.point[place, i, k]
+            kept += 1
+    while count > 0:
+        tilt, wish = next_tilt(intervals, count, wish), -1.0
+        # Mostly the first posture of all is free, as it was at the sample before: then the pool is not looked at.
+        which = -1
+        if pooled >= 0:
+            which, height, px, py = _deepest(past, pooled, turn, tilt, tool, mode)
+        new = which < 0
+        if new:
+            put(body, frame, tilt, tool, mode)
+            triangle, which, height, px, py = deep_hit(solids.tree, body, tool.piece[mode], room.scratch)
+            if triangle < 0:
+                if inside(body, tool, mode, solids, room.scratch.stack) < within:
+                    past.count[place] = kept
+                    return tilt, pooled
+                half = max(turned(frame, tilt, tool, mode, solids.tree, body, room.scratch), 0.5 * narrowest)
+                count = forbid(intervals, count, tilt - half, tilt + half, narrowest, BURIED, tally)
+                continue
+        count, x, y, z = forbid_probed(which, height, px, py, tilt, tool, mode, narrowest, intervals, count, room)
+        if kept < _KEPT:
+            for k in range(3):
+                past.point[place, kept, k] = p[k] + x * f[k] + y * t[k] + z * n[k]
+            kept += 1
+        if new:
+            slot = past.given[0] % _POOL
+            for k in range(3):
+                past.pool[k, slot] = p[k] + x * f[k] + y * t[k] + z * n[k]
+            past.given[0] += 1
+            if pooled < 0:
+                for i in range(min(past.given[0], _POOL)):
+                    _see(past, i, p, e1, e2, n)
+            else:
+                _see(past, slot, p, e1, e2, n)
+            pooled = min(past.given[0], _POOL)
+    past.count[place] = kept
+    return -1.0, pooled
+
+
+@kernel
+def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, past, room):  # type: ignore[no-untyped-def]
     """Look for a posture of one sample at all rotations, those next to the first looked at first.
 
     Parameters
@@ -95,9 +182,7 @@ def sweep(contacts, row, ranges, tool, length, solids, within, narrowest, start,
         The sample.
     ranges : Ranges
     tool : Tool
-        The cutter, shrunk by the depth that does not matter.
-    length : float
-        Of the cutter itself, mm.
+        The cutter, smaller by the depth that does not matter.
     solids : Solids
         What is in the way.
     within : float
@@ -120,65 +205,31 @@ def sweep(contacts, row, ranges, tool, length, solids, within, narrowest, start,
         rad.
     """
     p, n, e1, e2 = contacts.point[row], contacts.normal[row], contacts.direction_max[row], room.e2
-    intervals, f, t, body, tally = room.intervals, room.f, room.t, room.body, room.tally
+    f, t, tally = room.f, room.t, room.tally
     cross(n, e1, e2)
-    frame, rotations = Frame(p, n, f, t), len(ranges.rotation_cos)
+    frame, rotations, modes = Frame(p, n, f, t), len(ranges.rotation_cos), len(tool.mode)
     tally[:] = 0.0
     pooled = -1
     for step in range(turns):
         side = (step + 1) // 2 if step % 2 else -(step // 2)
         rotation = (start[0] + side) % rotations
-        turn = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
-        count = allowed(contacts, row, ranges, rotation, tool.radius, room)
-        known, kept = past.count[rotation], 0
-        for i in range(known):
-            if count == 0:
-                break
-            x, y, z = 0.0, 0.0, 0.0
-            for k in range(3):
-                offset = past.point[rotation, i, k] - p[k]
-                x += offset * f[k]
-                y += offset * t[k]
-                z += offset * n[k]
-            before = tally[REAR_GOUGE] + tally[COLLISION]
-            count = forbid_point(x, y, z, tool, narrowest, intervals, count, tally)
-            if tally[REAR_GOUGE] + tally[COLLISION] > before:
-                for k in range(3):
-                    past.point[rotation, kept, k] = past.point[rotation, i, k]
-                kept += 1
-        wish = start[1]
-        while count > 0:
-            tilt, wish = next_tilt(intervals, count, wish), -1.0
-            # Mostly the first posture of all is free, as it was at the sample before: then the pool is not looked at.
-            new = pooled < 0
-            if not new:
-                height, px, py = _deepest(past, pooled, turn, tilt, tool)
-                new = np.isnan(height)
-            if new:
-                stand(body, frame, np.cos(tilt), np.sin(tilt), tool.radius, tool.shrunk, tool.low, tool.high)
-                triangle, height, px, py = deep_hit(solids.tree, body, room.scratch)
-                if triangle < 0:
-                    if inside(body, inner_height(tool.radius, length), solids, room.scratch.stack) < within:
-                        past.count[rotation] = kept
-                        return rotation, tilt
-                    half = max(turned(frame, tilt, tool, solids.tree, body, room.scratch), 0.5 * narrowest)
-                    count = forbid(intervals, count, tilt - half, tilt + half, narrowest, BURIED, tally)
-                    continue
-            count, x, y, z = forbid_probed(height, px, py, tilt, tool, narrowest, intervals, count, tally)
-            if kept < _KEPT:
-                for k in range(3):
-                    past.point[rotation, kept, k] = p[k] + x * f[k] + y * t[k] + z * n[k]
-                kept += 1
-            if new:
-                slot = past.given[0] % _POOL
-                for k in range(3):
-                    past.pool[k, slot] = p[k] + x * f[k] + y * t[k] + z * n[k]
-                past.given[0] += 1
-                if pooled < 0:
-                    for i in range(min(past.given[0], _POOL)):
-                        _see(past, i, p, e1, e2, n)
-                else:
-                    _see(past, slot, p, e1, e2, n)
-                pooled = min(past.given[0], _POOL)
-        past.count[rotation] = kept
+        for mode in range(modes):
+            tilt, pooled = _rotation(
+                contacts,
+                row,
+                ranges,
+                rotation,
+                tool,
+                mode,
+                solids,
+                within,
+                narrowest,
+                start[1],
+                frame,
+                past,
+                pooled,
+                room,
+            )
+            if tilt >= 0.0:
+                return rotation, tilt
     return -1, 0.0

@@ -12,6 +12,21 @@ EXTENTS, FARTHEST = 17, 10.0
 _MOST_LINES = 40
 
 
+class Nose(NamedTuple):
+    """What of a cutter is held against the surface around its contact: the centre of its curvature `offset` from the axis,
+    its radius
+    of curvature there, mm; cosine and sine of the angle by which it widens along the axis, on which it goes on without end; the
+    tilts from and to at which it touches, rad. With a negative offset, a barrel, it is a ball alone.
+    """
+
+    offset: float
+    radius: float
+    widen_cos: float
+    widen_sin: float
+    low: float
+    high: float
+
+
 class Nodes(NamedTuple):
     """A face's grid: index (nu, nv) int32 into the rows of `about`, -1 outside the trim; closed (2,) bool.
 
@@ -52,20 +67,39 @@ def near_by(vertex, triangle_face, i, frame, face, near):  # type: ignore[no-unt
 
 
 @kernel
-def held_below(sine, cosine, turn, k_ff, k_ft, k_tt, extent, radius):  # type: ignore[no-untyped-def]
-    """Whether the paraboloid with these curvatures stays below the flat end within `extent` of the contact.
+def held_below(pose, turn, k_ff, k_ft, k_tt, extent, nose):  # type: ignore[no-untyped-def]
+    """Whether the paraboloid with these curvatures stays below the nose of a cutter within `extent` of the contact.
 
-    At every tilt within `turn` of the one given by its sine and cosine.
+    At every tilt within `turn` of that of `pose`, its sine and cosine. The surface offset by the nose's radius stays below
+    the same
+    nose of no radius (`docs/between_samples.md`).
     """
-    least = sine - turn
-    margin = least / radius - k_tt
-    if margin <= 0.0:
+    sine, cosine = pose
+    offset, radius, widen_cos, widen_sin = max(0.0, nose.offset), nose.radius, nose.widen_cos, nose.widen_sin
+    least, extent = sine - turn, extent + radius
+    # How far a line of the side leans from the normal at most.
+    side_sin, side_cos = sine * widen_cos + cosine * widen_sin + turn, cosine * widen_cos - sine * widen_sin - turn
+    margin = np.inf
+    if offset > 0.0:
+        margin = least / (offset + radius * least) - k_tt
+    elif radius * k_tt < 1.0:
+        margin = max(1.0, abs(k_tt))
+        if radius > 0.0:
+            margin = 1.0 / radius - k_tt
+    if not 0.0 < margin < np.inf:
         return False
     for share in (0.5, 0.25, 0.75, 0.1):
         mix = share * margin
-        curve = max(0.0, k_ff + k_ft * k_ft / mix)
-        left = least - radius * max(0.0, k_tt + mix)
-        if left >= 0.5 * curve * extent * (cosine + turn) and cosine - turn >= 0.5 * curve * extent * (sine + turn):
+        if offset == 0.0 and k_ft == 0.0:
+            mix = 0.0
+        along, across = max(0.0, k_ff + (k_ft * k_ft / mix if mix > 0.0 else 0.0)), max(0.0, k_tt + mix)
+        if not (radius * along < 1.0 and radius * across < 1.0):
+            continue
+        along, across = along / (1.0 - radius * along), across / (1.0 - radius * across)
+        left = least - offset * across
+        if offset > 0.0 and not left >= 0.5 * along * extent * (cosine + turn):
+            continue
+        if nose.offset < 0.0 or side_cos >= 0.5 * (along * extent * side_sin + across * widen_sin * (extent + offset)):
             return True
     return False
 

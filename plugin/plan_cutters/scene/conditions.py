@@ -6,11 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Record, SurfaceSamples
+from plan_cutters.domain.assembly import Assembly, assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import Reach
-from plan_cutters.kernels.rows import Contacts, Found, Ranges
+from plan_cutters.kernels.rows import Contacts, Cylinder, Found, Ranges, Tool
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.scene.threads import Progress, in_chunks
@@ -50,16 +51,23 @@ class Conditions(Record):
         """Whether the tolerance that is kept is fine enough to say anything about a cutter."""
         return cutter.large_enough(self.tolerance)
 
-    @property
-    def depths(self) -> tuple[float, float]:
-        """Depths, mm, up to which a triangle does not matter, and beyond which it certainly does."""
-        return self.obstacles.depths(self.tolerance)
+    def light(self, cutter: Cutter) -> Assembly:
+        """All of a cutter that nothing may enter: a triangle that does not reach into it lets the surface come no deeper than
+        allowed.
+        """
+        return tools(cutter, self.tolerance, self.obstacles.triangles.chord_error)[0]
+
+    def heavy(self, cutter: Cutter) -> Assembly:
+        """What of a cutter is surely in the way: a triangle that reaches into it proves a point of the surface that is too
+        deep.
+        """
+        return tools(cutter, self.tolerance, self.obstacles.triangles.chord_error)[1]
 
     @property
     def ranges(self) -> Ranges:
         """What kernels take of postures and machine."""
         rotations, (low, high) = self.postures.rotations, self.postures.tilt
-        return Ranges(np.cos(rotations), np.sin(rotations), max(0.0, low), min(np.pi / 2, high), self.setup,
+        return Ranges(np.cos(rotations), np.sin(rotations), max(0.0, low), min(np.pi, high), self.setup,
                       self.machine.limit_cos)  # fmt: skip
 
     def upright(self, normal: Floats) -> NDArray[np.bool_]:
@@ -70,6 +78,26 @@ class Conditions(Record):
 def contacts_of(samples: SurfaceSamples) -> Contacts:
     """Samples as kernels take them."""
     return Contacts(samples.point, samples.normal, samples.direction_max, samples.curvature)
+
+
+def tools(cutter: Cutter, tolerance: float, error: float) -> tuple[Assembly, Assembly]:
+    """What of a cutter nothing may enter, and what is surely in the way, for obstacles with a chord error, mm.
+
+    Every surface point has a triangle point within that error and the reverse: the flutes are smaller by the tolerance less the
+    error, and all else larger by the error; or the flutes smaller by both, and all else by the error.
+    """
+    return assembly(cutter, tolerance - error, -error), assembly(cutter, tolerance + error, error, kind="certain")
+
+
+def tool_of(made: Assembly) -> Tool:
+    """An assembly as kernels take it."""
+    return Tool(made.piece, made.mode, made.reach, made.inner, made.end)
+
+
+def cylinder_of(made: Assembly) -> Cylinder:
+    """A flat end without stages as kernels take it."""
+    ((_, low, high, radius, *_),) = made.piece[0]
+    return Cylinder(float(made.mode[0, 0]), float(radius), float(low), float(high), made.piece[0])
 
 
 def found_of(reach: Reach) -> Found:
@@ -89,8 +117,8 @@ def require_finite(contacts: Contacts, rows: NDArray[np.int64]) -> None:
 
 
 def search_postures(
-    contacts: Contacts, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, depths: tuple[float, float],
-    reach: Reach, progress: Progress | None = None, *, fixed: bool = False,
+    contacts: Contacts, rows: NDArray[np.int64], light: Assembly, heavy: Assembly, conditions: Conditions, reach: Reach,
+    progress: Progress | None = None, *, fixed: bool = False,
 ) -> None:  # fmt: skip
     """Search a posture for contacts, neighbours in sequence, and write what is found into `reach`.
 
@@ -99,10 +127,9 @@ def search_postures(
     contacts : Contacts
     rows : (m,) int64
         Contacts to decide.
-    cutter : Cutter
+    light, heavy : Assembly
+        As `Conditions.light` and `Conditions.heavy` make them of a cutter.
     conditions : Conditions
-    depths : tuple of float
-        As `Conditions.depths`, mm.
     reach : Reach
     fixed : bool
         As for `in_chunks`: each contact starts from what was found at the one before it in its piece.
@@ -119,9 +146,9 @@ def search_postures(
     require_finite(contacts, rows)
     ranges, around = conditions.ranges, conditions.around
     may_be, surely = around.may_be.solids, around.surely.solids
-    found = found_of(reach)
+    tools, found = (tool_of(light), tool_of(heavy)), found_of(reach)
 
     def work(piece: NDArray[np.int64]) -> None:
-        search(piece, contacts, ranges, cutter.radius, cutter.length, *depths, may_be, surely, found)
+        search(piece, contacts, ranges, *tools, may_be, surely, found)
 
     in_chunks(work, rows, conditions.jobs, progress, fixed=fixed)

@@ -11,7 +11,7 @@ from scipy import ndimage
 
 from cad_io.arrays import Floats, Ints, Record, Triangles
 from cad_io.part.bodies import Body
-from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.assembly import Assembly
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.kernels.rows import Tree
 
@@ -154,13 +154,13 @@ class Obstacles(Record):
         return Obstacles(triangles, weights(triangles, [body]))
 
     def holds(
-        self, cutter: Cutter, contact: Floats, normal: Floats, lean: Floats, tilt: Floats, *, surely: bool = False
+        self, tool: Assembly, contact: Floats, normal: Floats, lean: Floats, tilt: Floats, *, surely: bool = False
     ) -> NDArray[np.bool_]:  # fmt: skip
         """Whether cutters that touch no skin lie within a body, or may: (n,).
 
         Parameters
         ----------
-        cutter : Cutter
+        tool : Assembly
         contact, normal, lean : (n, 3) float
         tilt : (n,) float
             rad.
@@ -168,11 +168,8 @@ class Obstacles(Record):
             Only those of which it is sure.
         """
         from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, windings
-        from plan_cutters.kernels.search import inner_height
 
-        cosine, sine = np.cos(tilt)[:, None], np.sin(tilt)[:, None]
-        height = inner_height(cutter.radius, cutter.length)
-        point = contact + height * (cosine * normal + sine * lean) - cutter.radius * (cosine * lean - sine * normal)
+        point = tool.on_axis(contact, normal, lean, tilt)
         out = np.empty(len(point))
         windings(np.ascontiguousarray(point), self.solids, out)
         return np.asarray(out >= SURELY_INSIDE if surely else ~(out < MAYBE_INSIDE))

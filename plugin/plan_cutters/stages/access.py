@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints, SurfaceSamples
+from plan_cutters.domain.assembly import Assembly, assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import (
     BURIED,
@@ -21,7 +22,7 @@ from plan_cutters.domain.verdicts import (
 )
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.buried import cover
-from plan_cutters.scene.conditions import Conditions, contacts_of, found_of, search_postures
+from plan_cutters.scene.conditions import Conditions, contacts_of, found_of, search_postures, tool_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.threads import Progress, in_chunks
 
@@ -81,9 +82,8 @@ def access(
             contacts, np.flatnonzero(follows & (known.verdict == INACCESSIBLE)), cutter, conditions, reach.reason
         )
         wanted &= ~follows
-    search_postures(
-        contacts, np.flatnonzero(wanted), cutter, conditions, conditions.depths, reach, progress, fixed=True
-    )
+    light, heavy = conditions.light(cutter), conditions.heavy(cutter)
+    search_postures(contacts, np.flatnonzero(wanted), light, heavy, conditions, reach, progress, fixed=True)
     return reach
 
 
@@ -93,14 +93,16 @@ def _first_reasons(
     """Where the axis limit or local gouging alone leaves this cutter nothing, that is the reason."""
     from plan_cutters.kernels.search import first_reason
 
-    ranges = conditions.ranges
-    in_chunks(lambda piece: first_reason(piece, contacts, ranges, cutter.radius, reason), rows, conditions.jobs)
+    ranges, tool = conditions.ranges, tool_of(conditions.light(cutter))
+    in_chunks(lambda piece: first_reason(piece, contacts, ranges, tool, reason), rows, conditions.jobs)
 
 
 #: Witnesses kept for each face and reason, and samples tried to find them, in all.
 _KEPT, _TRIED, _TRIED_IN_ALL = 2, 6, 60
 #: Depths are found to this share of themselves.
 _PRECISION = 0.02
+#: How far apart tilts are among which the one of least depth is looked for at first, and at last, rad.
+_COARSE, _FINE = 0.05, 1.7e-4
 
 
 def witnesses(
@@ -151,16 +153,25 @@ def _witness(samples: SurfaceSamples, row: int, reach: Reach, cutter: Cutter, co
     found = _least_depth(samples, row, reason, cutter, replace(conditions, around=conditions.around.skins))
     if found is None:
         return nothing
-    obstacles, at = conditions.obstacles, slice(row, row + 1)
+    obstacles, at, light = conditions.obstacles, slice(row, row + 1), conditions.light(cutter)
     best = found[0]
-    if obstacles.holds(cutter, samples.point[at], samples.normal[at], best.lean, best.tilt)[0]:
+    if obstacles.holds(light, samples.point[at], samples.normal[at], best.lean, best.tilt)[0]:
         # Its axis lies within material: one that does not says more, if there is any.
         found = _least_depth(samples, row, reason, cutter, conditions) or found
     best, low, high = found
-    first = np.zeros(1, np.int64)
-    triangle = np.full(1, -1, np.int32)
-    probe(first, samples.point[at], samples.normal[at], best.axis, best.lean, cutter.radius, cutter.length, np.array([low]),
-          obstacles.tree, triangle)  # fmt: skip
+    first, shallow = np.zeros(1, np.int64), assembly(cutter, low, low)
+    triangle, which = np.full(1, -1, np.int32), np.full(1, -1, np.int32)
+    probe(
+        first,
+        samples.point[at],
+        samples.normal[at],
+        best.axis,
+        best.lean,
+        tool_of(shallow),
+        obstacles.tree,
+        triangle,
+        which,
+    )
     hit = int(triangle[0])
     return Witness(
         sample=row,
@@ -168,7 +179,7 @@ def _witness(samples: SurfaceSamples, row: int, reach: Reach, cutter: Cutter, co
         obstacle_face=obstacles.face(hit) if hit >= 0 else None,
         obstacle_point=None
         if hit < 0
-        else _deepest(obstacles.tree.vertex[hit], samples.point[row], samples.normal[row], best, cutter),
+        else _deepest(obstacles.tree.vertex[hit], samples.point[row], samples.normal[row], best, shallow),
         tilt=float(best.tilt[0]),
         rotation=float(conditions.postures.rotations[best.rotation[0]]),
         axis=best.axis[0],
@@ -180,17 +191,38 @@ def _least_depth(
     samples: SurfaceSamples, row: int, reason: str, cutter: Cutter, conditions: Conditions
 ) -> tuple[Reach, float, float] | None:
     """The posture of least depth, and depths, mm, between which that lies; None if no posture is left at any."""
-    from plan_cutters.kernels.search import least_depth
+    from plan_cutters.kernels.search import posture
 
     one = slice(row, row + 1)
     curvature = np.zeros((1, 2)) if reason == "local_gouge" else samples.curvature[one]
     contact = Contacts(samples.point[one], samples.normal[one], samples.direction_max[one], curvature)
-    deepest, best = min(cutter.radius, cutter.length / 2) * (1 - 1e-9), blank(1)
-    low, high = least_depth(
-        contact, conditions.ranges, cutter.radius, cutter.length, conditions.depths[0], deepest, _PRECISION,
-        conditions.obstacles.solids, found_of(best),
-    )  # fmt: skip
+    ranges, solids, rotations = conditions.ranges, conditions.obstacles.solids, len(conditions.postures.rotations)
+    least, most, best = conditions.tolerance - conditions.obstacles.triangles.chord_error, _deepest_of(cutter), blank(1)
+    low, high, start = least, np.nan, (0, -1.0)
+    # At first among tilts that are `_COARSE` apart at all rotations, then among all tilts at the rotation found.
+    for narrowest, near in ((_COARSE, 5.0 * _PRECISION), (_FINE, _PRECISION)):
+        low, depth, turns = least, most, rotations if np.isnan(high) else 1
+        # Where nothing was found, a cutter that is all but a line is stopped again and again: not every tilt is tried.
+        narrowest = narrowest if turns == 1 else max(narrowest, 0.1 * _COARSE)
+        while not high - low <= near * high:
+            if not np.isnan(high):
+                depth = float(np.sqrt(low * high))
+            tool = tool_of(assembly(cutter, depth, depth))
+            if posture(contact, ranges, tool, narrowest, start, turns, solids, found_of(best)):
+                start, high = (int(best.rotation[0]), float(best.tilt[0])), depth
+            elif not np.isnan(high):
+                low = depth
+            else:
+                break
     return None if np.isnan(high) else (best, low, high)
+
+
+def _deepest_of(cutter: Cutter) -> float:
+    """The largest depth that anything can have in a cutter and leave some of it, mm."""
+    stages = [min(stage.radius, stage.upper_radius, 0.5 * stage.length) for _, _, stage in cutter.stages]
+    return (
+        min(cutter.radius, 0.5 * cutter.length) * (1 - 1e-9) if not stages else max(cutter.radius, *stages) * (1 - 1e-9)
+    )
 
 
 def _covered(samples: SurfaceSamples, row: int, skin: Obstacles) -> Witness:
@@ -200,13 +232,9 @@ def _covered(samples: SurfaceSamples, row: int, skin: Obstacles) -> Witness:
     return Witness(row, REASONS[BURIED], face, point, None, None, None, None)
 
 
-def _deepest(triangle: Floats, contact: Floats, normal: Floats, posture: Reach, cutter: Cutter) -> Floats:
-    """The point of a triangle that is deepest in the cutter, of 66."""
-    axis, x_t = posture.axis[0], np.cos(posture.tilt[0]) * posture.lean[0] - np.sin(posture.tilt[0]) * normal
+def _deepest(triangle: Floats, contact: Floats, normal: Floats, posture: Reach, tool: Assembly) -> Floats:
+    """The point of a triangle that is deepest in the tool, of 66."""
     share = np.array([(i, j, 10 - i - j) for i in range(11) for j in range(11 - i)]) / 10
     points = share @ triangle
-    offset = points - (contact - cutter.radius * x_t)
-    height = offset @ axis
-    radial = np.linalg.norm(offset - height[:, None] * axis, axis=1)
-    depth = np.minimum(np.minimum(height, cutter.length - height), cutter.radius - radial)
+    depth = tool.depth(points, contact, normal, posture.lean[0], float(posture.tilt[0]))
     return np.asarray(points[int(depth.argmax())])

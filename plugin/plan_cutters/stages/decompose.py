@@ -7,7 +7,7 @@ from scipy.sparse.csgraph import connected_components
 
 from cad_io.arrays import Ints, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.scene.conditions import Conditions, contacts_of
+from plan_cutters.scene.conditions import Conditions, contacts_of, tool_of
 from plan_cutters.scene.threads import in_chunks
 
 
@@ -39,11 +39,13 @@ def decompose(
     if buried is not None:
         allowed &= buried < 0
     asked = np.flatnonzero(allowed) if rows is None else rows[allowed[rows]]
-    safe, _ = conditions.depths
-    solids, contacts = conditions.obstacles.solids, contacts_of(samples)
+    light = conditions.light(cutter)
+    dummy, tool, solids, contacts = light.dummy, tool_of(light), conditions.obstacles.solids, contacts_of(samples)
+    if not len(dummy):
+        return interference_free
 
     def work(piece: NDArray[np.int64]) -> None:
-        dummy_clear(piece, contacts, cutter.radius, cutter.length, safe, solids, interference_free)
+        dummy_clear(piece, contacts, dummy, tool, solids, interference_free)
 
     in_chunks(work, asked, conditions.jobs)
     return interference_free

@@ -10,9 +10,12 @@ import numpy as np
 
 from cad_io import SurfaceSamples, Triangles
 from cad_io.arrays import Floats, Record
+from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.pieces import FLUTES, HOLDER, NECK, SHANK
 from plan_cutters.domain.posture import lean
+from plan_cutters.scene.conditions import tool_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 
@@ -38,9 +41,14 @@ class PostureMap(Record):
         Tilts that are neither called free nor known to be forbidden: the uncertainty of the ends.
     local_gouge : (k,) float
         Least tilt that local gouging allows, rad; nan if none.
-    rear_gouge, collision, axis_limit : tuple of (m, 2) float
-        Each attribute alone: forbidden intervals. Obstacles within 2R of the contact and above its tangent plane are
-        rear gouging, all others collision.
+    local_gouge_most : (k,) float
+        Largest tilt that it allows: pi but for barrels.
+    rear_gouge, collision, neck, shank, holder, axis_limit : tuple of (m, 2) float
+        Each attribute alone: forbidden intervals. Obstacles in the flutes within 2R of the contact and above its tangent
+        plane are
+        rear gouging, all others in the flutes collision.
+    no_contact : tuple of (m, 2) float
+        Tilts at which the cutter touches nowhere.
     point, normal, direction_max : (3,) float
         The frame: contact, unit normal out of the material, direction from which rotations count.
     curvature : (2,) float
@@ -64,8 +72,13 @@ class PostureMap(Record):
     free: tuple[Floats, ...]
     undecided: tuple[Floats, ...]
     local_gouge: Floats
+    local_gouge_most: Floats
     rear_gouge: tuple[Floats, ...]
     collision: tuple[Floats, ...]
+    neck: tuple[Floats, ...]
+    shank: tuple[Floats, ...]
+    holder: tuple[Floats, ...]
+    no_contact: tuple[Floats, ...]
     axis_limit: tuple[Floats, ...]
     buried: tuple[Floats, ...]
     point: Floats
@@ -97,41 +110,39 @@ class Ask(Record):
 
 
 def posture_map_of(
-    ask: Ask, around: Surroundings, depths: tuple[float, float], narrowest: float, tolerance: float
+    ask: Ask, around: Surroundings, tools: tuple[Assembly, Assembly], narrowest: float, tolerance: float
 ) -> PostureMap:  # fmt: skip
-    from plan_cutters.kernels.free_tilts import FORBIDDEN, OPEN, UNSURE, free_tilts
-    from plan_cutters.kernels.points import axis_intervals, local_gouge_bound
+    """The map; `tools` as `Conditions.light` and `Conditions.heavy` make them."""
+    from plan_cutters.kernels.free_tilts import FORBIDDEN, OPEN, UNSURE
+    from plan_cutters.kernels.points import axis_intervals
 
     contact, cutter, (low, high) = ask.contact, ask.cutter, ask.tilt
     p, n, e1 = contact.point[0], contact.normal[0], contact.direction_max[0]
-    kappa_max, kappa_min = contact.curvature[0]
-    whole = around.may_be
-    near = _rear(whole.triangles, p, n, cutter.radius)
-    free, undecided, rear, collision, axis, buried = [], [], [], [], [], []
-    gouge = np.empty(len(ask.rotations))
+    whole, (light, heavy) = around.may_be, tools
+    near, far = _rear(whole.triangles, p, n, cutter.radius)
+    alone = {"rear_gouge": (near, light.only(FLUTES)), "collision": (far, light.only(FLUTES)),
+             "neck": (whole, light.only(NECK)), "shank": (whole, light.only(SHANK)),
+             "holder": (whole, light.only(HOLDER))}  # fmt: skip
+    free, undecided, axis, buried, no_contact = [], [], [], [], []
+    apart: dict[str, list[Floats]] = {word: [] for word in alone}
+    gouge = np.empty((len(ask.rotations), 2))
+    touching = _within(light.mode[:, 2:4], low, high)
     for i, rotation in enumerate(ask.rotations):
         f = lean(n, e1, float(rotation))
-        gouge[i] = local_gouge_bound(kappa_max, kappa_min, float(rotation), cutter.radius)
+        bounds = _gouge_bounds(contact.curvature[0], float(rotation), light)
+        gouge[i] = (bounds[:, 0].min(), bounds[:, 1].max()) if len(bounds) else (np.nan, np.nan)
         allowed = axis_intervals(float(ask.setup @ n), float(ask.setup @ f), ask.machine.limit_cos, low, high)
         axis.append(complement(allowed, low, high))
-
-        def parts(
-            obstacles: Obstacles | None, first: float, last: float, f: Floats = f, depth: float = depths[0]
-        ) -> Floats:
-            if obstacles is None:
-                return np.array([[first, last, OPEN]])
-            return np.asarray(free_tilts(p, n, f, first, last, cutter.radius, cutter.length, depth, narrowest,
-                                         obstacles.tree, _ROOM))  # fmt: skip
-
-        rear.append(complement(_merged(parts(near[0], low, high), OPEN), low, high))
-        collision.append(complement(_merged(parts(near[1], low, high), OPEN), low, high))
+        no_contact.append(complement(touching, low, high))
+        for word, (obstacles, tool) in alone.items():
+            parts = [np.zeros((0, 3))]
+            parts += [_parts(obstacles, tool, p, n, f, first, last, narrowest) for first, last in touching.tolist()]
+            apart[word].append(_minus(complement(_merged(np.concatenate(parts), OPEN), low, high), no_contact[-1]))
         pieces, sure = [np.zeros((0, 3))], [np.zeros((0, 3))]
-        for first, last in allowed:
-            first = max(first, gouge[i]) if not np.isnan(gouge[i]) else np.inf
-            if first <= last:
-                pieces.append(parts(whole, first, last))
-                if around.surely is not whole:
-                    sure.append(parts(around.surely, first, last, depth=depths[1]))
+        for first, last in _both(allowed, bounds):
+            pieces.append(_parts(whole, light, p, n, f, first, last, narrowest))
+            if around.surely is not whole:
+                sure.append(_parts(around.surely, heavy, p, n, f, first, last, narrowest))
         found = np.concatenate(pieces)
         open_tilts, unsure = _merged(found, OPEN), _merged(found, UNSURE)
         if around.surely is not whole:
@@ -142,7 +153,7 @@ def posture_map_of(
         within, sunk = np.zeros((2, len(open_tilts)), bool)
         if len(open_tilts):
             every = np.ones((len(open_tilts), 1))
-            frame = (cutter, every * p, every * n, every * f, open_tilts.mean(axis=1))
+            frame = (light, every * p, every * n, every * f, open_tilts.mean(axis=1))
             within = whole.holds(*frame)
             sunk = within & around.surely.holds(*frame, surely=True)
         free.append(open_tilts[~within])
@@ -152,12 +163,63 @@ def posture_map_of(
         undecided.append(unsure if not len(perhaps) else _joined(np.concatenate([unsure, perhaps])))
         assert set(found[:, 2]) <= {OPEN, FORBIDDEN, UNSURE}
     return PostureMap(
-        rotations=ask.rotations, free=tuple(free), undecided=tuple(undecided), local_gouge=gouge,
-        rear_gouge=tuple(rear), collision=tuple(collision), axis_limit=tuple(axis), buried=tuple(buried), point=p, normal=n,
+        rotations=ask.rotations, free=tuple(free), undecided=tuple(undecided), local_gouge=gouge[:, 0],
+        local_gouge_most=gouge[:, 1], axis_limit=tuple(axis), no_contact=tuple(no_contact), buried=tuple(buried), point=p,
+        normal=n,
+        **{word: tuple(each) for word, each in apart.items()},
         direction_max=e1, curvature=contact.curvature[0], tolerance=tolerance,
         certified=tolerance > 0 and not around.doubtful, missing=_named(around),
         chord_error=whole.triangles.chord_error, settled=tolerance > 0,
     )  # fmt: skip
+
+
+def _gouge_bounds(curvature: Floats, rotation: float, tool: Assembly) -> Floats:
+    """Tilts (k, 2) at which a tool touches and local gouging allows it."""
+    from plan_cutters.kernels.points import local_gouge_range
+
+    found = []
+    for offset, radius, low, high, _ in tool.mode.tolist():
+        least, most = local_gouge_range(float(curvature[0]), float(curvature[1]), rotation, offset, radius)
+        if max(least, low) <= min(most, high):
+            found.append((max(least, low), min(most, high)))
+    return _joined(np.array(found).reshape(-1, 2))
+
+
+def _parts(
+    obstacles: Obstacles | None,
+    tool: Assembly,
+    p: Floats,
+    n: Floats,
+    f: Floats,
+    first: float,
+    last: float,
+    narrowest: float,
+) -> Floats:
+    """Free, forbidden and undecided parts (k, 3) of a range of tilts, as `free_tilts` gives them."""
+    from plan_cutters.kernels.free_tilts import OPEN, free_tilts
+
+    if obstacles is None or not tool.piece.shape[1]:
+        return np.array([[first, last, OPEN]])
+    found = [np.zeros((0, 3))]
+    for mode, (_, _, low, high, _) in enumerate(tool.mode.tolist()):
+        if max(first, low) <= min(last, high):
+            found.append(
+                free_tilts(
+                    p, n, f, max(first, low), min(last, high), tool_of(tool), mode, narrowest, obstacles.tree, _ROOM
+                )
+            )
+    return np.concatenate(found)
+
+
+def _within(intervals: Floats, low: float, high: float) -> Floats:
+    """What of intervals (k, 2) lies in a range, joined where they touch."""
+    return _joined(np.array(_both(intervals, np.array([[low, high]]))).reshape(-1, 2))
+
+
+def _both(a: Floats, b: Floats) -> list[tuple[float, float]]:
+    """What two lists of intervals (k, 2) have in common."""
+    pairs = [(max(x, u), min(y, v)) for x, y in a.tolist() for u, v in b.tolist()]
+    return [(low, high) for low, high in pairs if low <= high]
 
 
 def _named(around: Surroundings) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.kernels.rows import Contacts
-from plan_cutters.scene.conditions import Conditions, search_postures
+from plan_cutters.scene.conditions import Conditions, search_postures, tool_of
 from plan_cutters.scene.threads import in_chunks
 from plan_cutters.stages.cells import CellContacts, Field, quartered, tensors
 
@@ -161,13 +161,17 @@ def _served(contacts: CellContacts, site: Site, rooms: Sequence[float]) -> Outlo
     known = np.isfinite(contacts.axis).all(axis=1) & _whole(contacts)
     rows = np.flatnonzero(known)
     outlook[rows] = _cover(contacts, tensor, contacts.axis, contacts.flat, site, rows)
+    light, bends = conditions.light(cutter), 1.0 / cutter.radius
+    if not (light.mode[:, 0] > 0.0).any():
+        # A ball gouges at every tilt or at none.
+        bends = 0.0
     for room in rooms:
         open_rows = np.flatnonzero((outlook > 0) & _whole(contacts))
         # A posture with room to the local gouging bound: the search is told that the surface is more concave.
-        curved = contacts.curvature + room / cutter.radius
+        curved = contacts.curvature + room * bends
         at = Contacts(contacts.point, contacts.normal, contacts.direction_max, curved)
-        found, (safe, _) = blank(len(contacts)), conditions.depths
-        search_postures(at, open_rows, cutter, conditions, (safe, safe), found)
+        found = blank(len(contacts))
+        search_postures(at, open_rows, light, light, conditions, found)
         rows = open_rows[found.reached[open_rows]]
         if len(rows):
             new = _cover(contacts, tensor, found.axis, np.zeros(len(contacts), bool), site, rows)
@@ -181,18 +185,19 @@ def _cover(
     contacts: CellContacts, tensor: Floats, axes: Floats, flats: NDArray[np.bool_], site: Site, rows: NDArray[np.int64]
 ) -> Outlook:
     """Outlook (m,) of rows of contacts with tensors and axes."""
-    from plan_cutters.kernels.cover import Patches, cover
+    from plan_cutters.kernels.cover import Patches, Sweeping, cover
     from plan_cutters.kernels.zone import Nodes
 
     field, cutter, conditions = site.field, site.cutter, site.conditions
-    obstacles, (safe, _) = conditions.obstacles, conditions.depths
+    obstacles, light = conditions.obstacles, conditions.light(cutter)
     patches = Patches(contacts.point, contacts.normal, tensor, axes, flats, contacts.patch, contacts.home)
     nodes, outlook = Nodes(field.index, field.closed, site.about), np.zeros(len(contacts), np.uint8)
     chord = obstacles.triangles.chord_error
+    sweeping = Sweeping(tool_of(light), light.dummy, *light.noses(cutter.taper, cutter.shape), light.flutes,
+                        conditions.tolerance - chord, chord)  # fmt: skip
 
     def work(piece: NDArray[np.int64]) -> None:
-        cover(piece, patches, nodes, field.number, cutter.radius, cutter.length, safe, chord, obstacles.tree,
-              obstacles.faces, outlook)  # fmt: skip
+        cover(piece, patches, nodes, field.number, sweeping, obstacles.tree, obstacles.faces, outlook)
 
     in_chunks(work, rows, conditions.jobs)
     # A cell that is served touches no skin with any of its cutters: within a body are all of them or none.
@@ -204,7 +209,7 @@ def _cover(
     flat = flats[mine] | (sine < _UPRIGHT)
     lean = np.where(flat[:, None], contacts.direction_max[mine], across / np.where(flat, 1.0, sine)[:, None])
     tilt = np.where(flat, 0.0, np.arctan2(sine, upright))
-    outlook[mine[conditions.obstacles.holds(cutter, contacts.point[mine], normal, lean, tilt)]] = _NEVER
+    outlook[mine[conditions.obstacles.holds(light, contacts.point[mine], normal, lean, tilt)]] = _NEVER
     return outlook[rows]
 
 

@@ -1,0 +1,246 @@
+"""A cutter as kernels take it: coaxial convex pieces, each made smaller or larger all round.
+
+A piece is a row: what is within its two heights and nearer to the axis than its outline. `COVER` pieces hold every point
+that is deep enough in the tool (or near enough to a stage), `CERTAIN` pieces hold no other point; `docs/tools.md` has the
+proofs. Heights are over the tip.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats, Record
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.pieces import (
+    ARC,
+    BOTTOM,
+    COLUMNS,
+    CYLINDER,
+    FLUTES,
+    HAIR,
+    HIGH,
+    KIND,
+    LOW,
+    PART,
+    PARTS,
+    RADIUS,
+    ROUND,
+    SCALE,
+    SLOPE,
+    TOP,
+    WIDE,
+    Band,
+    Kind,
+    alone,
+    among,
+    between,
+    flute_rows,
+    opening,
+    seam,
+    share,
+    sharpest,
+    solid,
+)
+from plan_cutters.domain.shapes import Mode, flute_length, modes, stages, top_lean, top_radius
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Assembly(Record):
+    """Pieces of a cutter and how it touches.
+
+    Attributes
+    ----------
+    piece : (m, k, COLUMNS) float
+        For each mode the same pieces, their heights counted from the mode's centre of curvature.
+    mode : (m, 5) float
+        Of each: its offset from the axis, its radius of curvature (with the allowance), the tilts from and to at which it
+        touches, rad, and its height over the tip.
+    reach : float
+        Distance from the contact, mm, within which an obstacle counts as rear gouging: the flutes' diameter.
+    inner, end : float
+        Heights over the tip, mm, of two points of the axis: one as deep in the cutter as any, and the highest.
+    slack : float
+        By how much a point may be farther from the tool, or less deep in it, than asked for and still count, mm.
+    """
+
+    piece: Floats
+    mode: Floats
+    reach: float
+    inner: float
+    end: float
+    slack: float
+
+    def only(self, part: int) -> "Assembly":
+        """The pieces of one part alone."""
+        mine = self.piece[0, :, PART] == part
+        return replace(self, piece=np.ascontiguousarray(self.piece[:, mine]))
+
+    def at(self, tilt: Floats) -> NDArray[np.int64]:
+        """The mode (n,) in which it touches at each tilt, rad; the last one where it touches in none."""
+        found = np.full(len(tilt), len(self.mode) - 1)
+        for i in range(len(self.mode) - 1, -1, -1):
+            found[(tilt >= self.mode[i, 2] - HAIR) & (tilt <= self.mode[i, 3] + HAIR)] = i
+        return found
+
+    def on_axis(self, contact: Floats, normal: Floats, lean: Floats, tilt: Floats) -> Floats:
+        """The point (n, 3) of the axis as deep in the tool as any, at contacts, normals and leans (n, 3) and tilts (n,), rad."""
+        offset, rise, _, _, height = self.mode[self.at(tilt)].T[:, :, None]
+        cosine, sine = np.cos(tilt)[:, None], np.sin(tilt)[:, None]
+        along = (self.inner - height) * (cosine * normal + sine * lean)
+        return np.asarray(contact + rise * normal + along - offset * (cosine * lean - sine * normal))
+
+    def depth(self, points: Floats, contact: Floats, normal: Floats, lean: Floats, tilt: float) -> Floats:
+        """How deep at least points (n, 3) lie in a piece of the tool at a contact, lean (3,) and tilt; negative outside."""
+        offset, rise, *_ = self.mode[(mode := int(self.at(np.array([tilt]))[0]))]
+        axis, x_t = np.cos(tilt) * normal + np.sin(tilt) * lean, np.cos(tilt) * lean - np.sin(tilt) * normal
+        from_centre = points - (contact + rise * normal - offset * x_t)
+        height = (from_centre @ axis)[:, None]
+        q = np.linalg.norm(from_centre - height * axis, axis=1)[:, None]
+        row = self.piece[mode].T[:, None]
+        side = (row[RADIUS] + row[SLOPE] * (height - row[BOTTOM]) - q) * row[SCALE]
+        arc = row[ROUND] - np.hypot(np.maximum(0.0, q - row[RADIUS]), height - row[SLOPE])
+        deep = np.minimum(np.where(row[KIND] == ARC, arc, side), np.minimum(height - row[LOW], row[HIGH] - height))
+        return np.asarray(deep.max(axis=1))
+
+    @property
+    def flutes(self) -> int:
+        """The mask of the pieces that cut."""
+        return sum(1 << k for k, part in enumerate(self.piece[0, :, PART]) if part == FLUTES)
+
+    def noses(self, taper: float, shape: str) -> tuple[NDArray[np.int64], Floats]:
+        """Of each mode the pieces, a mask, that lie in what its nose sweeps when it goes on along the axis, and the angle by
+        which it
+        widens, rad: what curvature alone holds against the surface near the contact (`docs/between_samples.md`).
+        """
+        masks = np.zeros(len(self.mode), np.int64)
+        for i, (offset, *_) in enumerate(self.mode.tolist()):
+            for k, row in enumerate(self.piece[i]):
+                own = row[KIND] == ARC and row[SLOPE] == 0.0 and row[RADIUS] == offset
+                # Under a lens's corner there is its bottom, under the corners of a form other ones.
+                straight = shape == "end" or (shape == "lens" and row[KIND] == CYLINDER)
+                wide = shape == "lens" and offset == 0.0
+                if row[PART] == FLUTES and shape != "form" and (own or straight or wide):
+                    masks[i] |= 1 << k
+        return masks, np.full(len(self.mode), max(0.0, taper))
+
+    @property
+    def dummy(self) -> Floats:
+        """Pieces (k, COLUMNS) that hold all pieces at tilt 0 in every rotation, about the line along the normal; none if the tool
+        touches nowhere at tilt 0.
+
+        Their heights count from the centre of the mode that does, the first one.
+        """
+        offset, _, low, _, _ = self.mode[0]
+        if low > 0.0:
+            return np.zeros((0, COLUMNS))
+        wide = self.piece[0].copy()
+        wide[:, [RADIUS, WIDE]] += offset
+        return wide
+
+
+def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "cover") -> Assembly:
+    """Pieces of a cutter.
+
+    Parameters
+    ----------
+    cutter : Cutter
+        Its own allowance and clearance are counted in.
+    flutes : float
+        Depth in the flutes up to which a point does not count, mm; negative: it counts within that distance of them.
+    rest : float
+        The same for neck, shank and holder.
+    kind : str
+        `cover`: no point that counts is outside the pieces. `certain`: every point of the pieces counts.
+    """
+    flutes, rest = flutes - (cutter.allowance or 0.0), rest - (cutter.clearance or 0.0)
+    bands = [Band(PARTS[part], low, stage, rest) for part, low, stage in stages(cutter)]
+    top = flute_length(cutter)
+    rows, slack = [], 0.0
+    if kind == "certain" or not bands:
+        # Grown ones end with square edges, which may hold too much, or below all edges.
+        rows += flute_rows(cutter, flutes, top + flutes if kind == "certain" and flutes < 0.0 else top - flutes, kind)
+        for band in bands:
+            rows += alone(band)
+    else:
+        first = bands[0]
+        end, start = seam(top_radius(cutter), flutes, first.stage.radius, first.inset, top)
+        if cutter.shape == "lollipop":
+            rows += opening(cutter, flutes, top)
+        else:
+            rows += between(top_radius(cutter), top_lean(cutter), first.stage.radius, first.lean, top,
+                            min(flutes, first.inset), FLUTES)  # fmt: skip
+        if flutes < 0.0:
+            end = max(end, top + flutes * min(0.0, math.sin(top_lean(cutter))))
+        rows += flute_rows(cutter, flutes, end, kind)
+        for i, band in enumerate(bands):
+            if i + 1 < len(bands):
+                above = bands[i + 1]
+                end, after = seam(band.stage.upper_radius, band.inset, above.stage.radius, above.inset, band.high)
+                rows += between(band.stage.upper_radius, band.lean, above.stage.radius, above.lean, band.high,
+                                min(band.inset, above.inset), band.part)  # fmt: skip
+            else:
+                end, after = band.high - band.inset, math.inf
+            rows += among(band, start, end, exact=(cutter.clearance or 0.0) > 0.0)
+            start = after
+    slack = _slack(cutter, flutes, bands, kind)
+    table = np.array([row for row in rows if solid(row)], float).reshape(-1, COLUMNS)
+    found = modes(cutter)
+    touching = np.array([_mode(mode, cutter.allowance or 0.0) for mode in found])
+    placed = np.repeat(table[None], len(found), axis=0)
+    for i, mode in enumerate(found):
+        placed[i][:, [LOW, HIGH, BOTTOM, TOP]] -= mode.height
+        arcs = placed[i][:, KIND] == ARC
+        placed[i][arcs, SLOPE] -= mode.height
+    inner, highest = _inner(cutter, bands)
+    return Assembly(
+        placed, touching, 2.0 * cutter.radius, inner, min(highest, float(table[:, TOP].max(initial=0.0))), slack
+    )
+
+
+def _mode(mode: Mode, allowance: float) -> tuple[float, float, float, float, float]:
+    return mode.offset, mode.radius + allowance, mode.low, mode.high, mode.height
+
+
+def _inner(cutter: Cutter, bands: list[Band]) -> tuple[float, float]:
+    """Heights of a point of the axis as deep in the cutter as any and as near to the spindle as can be, and of its end."""
+    if not bands:
+        return max(0.5 * cutter.length, cutter.length - cutter.radius), cutter.length
+    deepest = max(bands, key=lambda band: min(band.stage.radius, band.stage.upper_radius, 0.5 * band.stage.length))
+    return deepest.low + 0.5 * deepest.stage.length, bands[-1].high
+
+
+def _slack(cutter: Cutter, inset: float, bands: list[Band], kind: Kind) -> float:
+    """How far at most a point is from what counts though a cover piece holds it, mm."""
+    if kind == "certain":
+        return 0.0
+    most = 0.0
+    for band in bands:
+        if band.inset < 0.0 and (cutter.clearance or 0.0) > 0.0:
+            # Where there is no step a side ends at its seam's height though its normal there does not lie along it.
+            most = max(most, -band.inset * (1.0 / math.cos(band.lean) - 1.0))
+        elif band.inset < 0.0:
+            half = 0.25 * math.pi + 0.5 * abs(band.lean)
+            most = max(most, -band.inset * (1.0 / math.cos(half) - 1.0))
+    if cutter.shape == "form":
+        for i in range(len(cutter.outline) - 1):
+            most = max(most, inset * (1.0 - share(cutter.outline, i)), sharpest(cutter.outline, i, inset))
+            stage = cutter.outline[i : i + 2]
+            if inset < 0.0 and stage[1][1] > stage[0][1]:
+                # Grown sides end at the heights of their corners.
+                lean = math.atan2(stage[1][0] - stage[0][0], stage[1][1] - stage[0][1])
+                most = max(most, -inset * (1.0 / math.cos(lean) - 1.0))
+    top = abs(top_lean(cutter))
+    if inset < 0.0:
+        # Grown flutes have square upper edges.
+        most = max(most, -inset * (1.0 / math.cos(0.25 * math.pi + 0.5 * top) - 1.0))
+    elif bands:
+        # Sides that lean end at their seam's height though their normals there do not lie along it.
+        most = max(most, inset * (1.0 - math.cos(top)))
+        if cutter.shape == "lollipop":
+            most = max(most, inset)
+    for lean, depth in ((top, min(inset, bands[0].inset) if bands else 0.0), *((abs(b.lean), b.inset) for b in bands)):
+        if depth > 0.0:
+            most = max(most, depth * (1.0 - math.cos(0.25 * math.pi + 0.5 * lean) + math.tan(lean)))
+    return most

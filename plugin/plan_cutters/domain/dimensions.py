@@ -1,0 +1,100 @@
+"""A tool assembly in numbers: what a cutter is made of, each number by itself a possible one."""
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from plan_cutters.domain.checks import items, number, shown
+from plan_cutters.domain.holder import Holder, Stage, positive
+from plan_cutters.errors import CutterError
+
+#: Kinds of cutting part: an end mill, straight or tapered; a ball on a neck; a flank of a large arc; a bottom of one; points.
+Shape = Literal["end", "lollipop", "barrel", "lens", "form"]
+_SHAPES = ("end", "lollipop", "barrel", "lens", "form")
+
+
+@dataclass(frozen=True, slots=True)
+class Dimensions:
+    """A tool assembly as the search sees it: a solid of revolution, from the tip to the end of its holder.
+
+    Attributes
+    ----------
+    radius : float
+        Of the cutting part, mm: of a tapered one at the tip, as if its corner were that of a straight one; of a barrel the
+        largest.
+    length : float
+        mm from the tip to the holder's nose, or to the end of all that is checked where there is no holder.
+    corner_radius : float
+        mm; 0 for a flat end, the radius for a ball; of a barrel the radius of its tip, 0 for none.
+    name : str
+        For people; the id is made from the dimensions.
+    taper : float
+        Half angle, rad: positive where the radius grows from the tip up, negative for a dovetail.
+    flutes : float, optional
+        Height over the tip up to which it cuts, mm. None: up to the first stage above, or all of its length.
+    neck : Stage, optional
+        What stands right above the flutes.
+    shank_radius : float, optional
+        From there up to `length`, mm. None: the part that cuts, or the neck, goes on.
+    holder : Holder, optional
+    shape : str
+        `end`, `lollipop`, `barrel`, `lens` or `form`.
+    arc_radius, arc_height : float
+        Of a barrel's flank or a lens's bottom: its radius, and the height of a barrel's widest place over the tip, mm.
+    outline : tuple of (float, float)
+        Of a form: points (radius, height) from the axis at the tip to the end of the flutes, mm.
+    allowance, clearance : float, optional
+        Stock left on the surface, and room asked of neck, shank and holder, mm. None: as asked for the whole plan.
+    """
+
+    radius: float
+    length: float
+    corner_radius: float = 0.0
+    name: str = ""
+    taper: float = 0.0
+    flutes: float | None = None
+    neck: Stage | None = None
+    shank_radius: float | None = None
+    holder: Holder | None = None
+    shape: Shape = "end"
+    arc_radius: float = 0.0
+    arc_height: float = 0.0
+    outline: tuple[tuple[float, float], ...] = ()
+    allowance: float | None = None
+    clearance: float | None = None
+
+    def __post_init__(self) -> None:
+        for word in ("corner_radius", "taper", "arc_radius", "arc_height"):
+            value = number(getattr(self, word), f"cutter {word.replace('_', ' ')}", error=CutterError)
+            object.__setattr__(self, word, value)
+        for word in ("radius", "length"):
+            object.__setattr__(self, word, positive(getattr(self, word), f"cutter {word}"))
+        if not isinstance(self.name, str):
+            raise CutterError(f"a cutter's name must be a text, not {shown(self.name)}")
+        if not isinstance(self.shape, str) or self.shape not in _SHAPES:
+            raise CutterError(f"a cutter's shape must be one of {', '.join(_SHAPES)}, not {shown(self.shape)}")
+        for word in ("flutes", "shank_radius"):
+            if getattr(self, word) is not None:
+                object.__setattr__(self, word, positive(getattr(self, word), f"cutter {word.replace('_', ' ')}"))
+        for word in ("allowance", "clearance"):
+            if getattr(self, word) is not None:
+                object.__setattr__(self, word, positive(getattr(self, word), f"cutter {word}", zero=True))
+        if isinstance(self.holder, str):
+            object.__setattr__(self, "holder", Holder.parse(self.holder))
+        for word, kind in (("neck", Stage), ("holder", Holder)):
+            if not isinstance(getattr(self, word), kind | None):
+                raise CutterError(f"a cutter's {word} must be a {kind.__name__}, not {shown(getattr(self, word))}")
+        object.__setattr__(self, "outline", points_of(self.outline))
+
+
+def points_of(outline: Any) -> tuple[tuple[float, float], ...]:
+    found = []
+    for point in items(outline, "an outline", "points (radius, height)", error=CutterError):
+        pair = items(point, "a point of an outline", "a radius and a height", error=CutterError)
+        if len(pair) != 2:
+            raise CutterError("a point of an outline is a radius and a height, two numbers")
+        r, h = (number(value, "a radius or height of an outline", error=CutterError) for value in pair)
+        if not (math.isfinite(r) and math.isfinite(h)):
+            raise CutterError("radii and heights of an outline must be finite")
+        found.append((r, h))
+    return tuple(found)

@@ -1,0 +1,111 @@
+"""Stages: round sections of which necks, shanks and holders are made, and how a holder is written on a command line."""
+
+import math
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from plan_cutters.domain.checks import items, number, shown
+from plan_cutters.errors import CutterError
+
+#: A number in a text that describes a cutter.
+NUMBER = r"-?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
+_STAGE = re.compile(rf"R(?P<radius>{NUMBER})(?::(?P<upper>{NUMBER}))?L(?P<length>{NUMBER})", re.IGNORECASE)
+
+
+def text_of(value: float) -> str:
+    """A number as ids have it."""
+    return f"{value:.10g}"
+
+
+def positive(value: Any, what: str, *, zero: bool = False) -> float:
+    """A finite number of mm above 0, or no less than that."""
+    found = number(value, what, error=CutterError)
+    if not math.isfinite(found) or found < 0.0 or (found == 0.0 and not zero):
+        raise CutterError(f"{what} must be {'0 or ' if zero else ''}a positive number of mm, not {found:g}")
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """A round section of a holder, shank or neck: a cylinder or a cone.
+
+    Attributes
+    ----------
+    radius, upper_radius : float
+        At its lower (tip) and its upper (spindle) end, mm; the upper one is the lower one unless it is given.
+    length : float
+        mm.
+    """
+
+    radius: float
+    length: float
+    upper_radius: float = math.nan
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "radius", positive(self.radius, "a stage's radius"))
+        object.__setattr__(self, "length", positive(self.length, "a stage's length"))
+        upper = self.radius if self.upper_radius != self.upper_radius else self.upper_radius
+        object.__setattr__(self, "upper_radius", positive(upper, "a stage's upper radius"))
+
+    @property
+    def slope(self) -> float:
+        """Growth of the radius with height."""
+        return (self.upper_radius - self.radius) / self.length
+
+    @property
+    def id(self) -> str:
+        """`R15L30`, or `R15:20L30` for a cone."""
+        upper = "" if self.upper_radius == self.radius else f":{text_of(self.upper_radius)}"
+        return f"R{text_of(self.radius)}{upper}L{text_of(self.length)}"
+
+
+@dataclass(frozen=True, slots=True)
+class Holder:
+    """A tool holder: stages from its nose up. It sits where the cutter's length ends.
+
+    >>> Holder((Stage(15, 30),)).id
+    'R15L30'
+    """
+
+    stages: tuple[Stage, ...]
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        stages = tuple(items(self.stages, "a holder's stages", "stages", error=CutterError))
+        if not stages or not all(isinstance(stage, Stage) for stage in stages):
+            raise CutterError("a holder needs at least one stage: a radius and a length, as R15L30")
+        object.__setattr__(self, "stages", stages)
+        if not isinstance(self.name, str):
+            raise CutterError(f"a holder's name must be a text, not {shown(self.name)}")
+
+    @property
+    def id(self) -> str:
+        """Its stages, from the nose up."""
+        return "+".join(stage.id for stage in self.stages)
+
+    @classmethod
+    def parse(cls, spec: str) -> "Holder":
+        """Read `R15L30`, or stages from the nose up joined by `+`: `R12:15L20+R15L30`, of which the first is a cone.
+
+        Raises
+        ------
+        CutterError
+        """
+        if not isinstance(spec, str):
+            raise CutterError(f"{shown(spec)} is no holder: give a Holder or a text such as 'R15L30'")
+        found = []
+        for word in spec.strip().split("+"):
+            match = _STAGE.fullmatch(word.strip())
+            if not match:
+                raise CutterError(
+                    f"holder {spec!r} is not of the form R15L30 (radius 15 mm, length 30 mm), stages joined by +"
+                )
+            upper = float(match["upper"]) if match["upper"] else math.nan
+            found.append(Stage(float(match["radius"]), float(match["length"]), upper))
+        return cls(tuple(found))
+
+    @classmethod
+    def of(cls, given: Any) -> "Holder":
+        """A holder, or what `parse` makes of a text."""
+        return given if isinstance(given, cls) else cls.parse(given)

@@ -1,0 +1,301 @@
+"""Pieces of a cutter, row by row: stages alone and among others, and every shape of cutting part, smaller or larger all round.
+
+Heights are over the tip; `docs/tools.md` has the proofs.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from plan_cutters.domain.dimensions import Dimensions
+from plan_cutters.domain.holder import Stage
+from plan_cutters.domain.shapes import flank, lens_height, tip_angle
+
+#: Kinds of a piece: below `radius + slope (w - low)` for the first two; the third has a cross section of an arc: what is
+#: nearer than `round` to the disk of radius `radius` (negative: to all of the circle on its far side) at the height `centre`.
+CYLINDER, CONE, ARC = 0.0, 1.0, 2.0
+#: Columns of a piece: its kind, its heights, and for an arc, in place of slope: the height of its centre. Then what is made of
+#: these: 1 / sqrt(1 + slope^2); its lowest and highest point; its radius at the upper height (arcs: the largest); its part.
+KIND, LOW, HIGH, RADIUS, SLOPE, ROUND, SCALE, BOTTOM, TOP, WIDE, PART, COLUMNS = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11
+#: Parts of an assembly.
+FLUTES, NECK, SHANK, HOLDER = 0, 1, 2, 3
+PARTS = {"neck": NECK, "shank": SHANK, "holder": HOLDER}
+
+#: By which pieces overlap where they meet, mm: what lies in the plane between two of them is in one.
+HAIR = 1e-9
+
+Kind = Literal["cover", "certain"]
+
+
+@dataclass(frozen=True, slots=True)
+class Band:
+    """A stage between two heights, and by how much its sides are moved in (out: negative)."""
+
+    part: int
+    low: float
+    stage: Stage
+    inset: float
+
+    @property
+    def high(self) -> float:
+        return self.low + self.stage.length
+
+    @property
+    def lean(self) -> float:
+        """Of its side from the axis, rad."""
+        return math.atan(self.stage.slope)
+
+
+def row_of(kind: float, low: float, high: float, radius: float, slope: float, around: float, part: int) -> list[float]:
+    if kind == ARC:
+        bottom, top = max(low, slope - around), min(high, slope + around)
+        return [kind, low, high, radius, slope, around, 1.0, bottom, top, radius + around, part]
+    wide = radius + slope * (high - low)
+    return [kind, low, high, radius, slope, around, 1.0 / math.hypot(1.0, slope), low, high, wide, part]
+
+
+def band_row(low: float, high: float, radius: float, slope: float, part: int) -> list[float]:
+    """A cylinder or cone, whose radius is given at the lower height."""
+    return row_of(CYLINDER if slope == 0.0 else CONE, low, high, radius, slope, 0.0, part)
+
+
+def solid(row: list[float]) -> bool:
+    """Whether a piece holds anything; cones that end in a point are cut there by their own test."""
+    if row[KIND] == ARC:
+        return row[ROUND] > 0.0 and row[TOP] > row[BOTTOM] and row[WIDE] > 0.0
+    return row[HIGH] > row[LOW] and max(row[RADIUS], row[WIDE]) > 0.0
+
+
+def seam(lower: float, lower_inset: float, upper: float, upper_inset: float, at: float) -> tuple[float, float]:
+    """Heights at which the band below a seam ends, and the one above begins: the narrower runs on into the wider."""
+    below, above = lower - lower_inset, upper - upper_inset
+    if above > below:
+        start = at + upper_inset
+        return max(at, start) + HAIR, start
+    if below > above:
+        end = at - lower_inset
+        return end, min(at, end) - HAIR
+    return at + HAIR, at
+
+
+def between(
+    lower: float, lower_lean: float, upper: float, upper_lean: float, at: float, inset: float, part: int
+) -> list[list[float]]:
+    """What lies deeper than `inset` over a re-entrant corner of which both sides are moved in: it may be in neither of them.
+
+    Its nearest point is the corner, of the narrower of two radii, where sides meet that lean (rad) from the axis. Of the
+    directions from there inwards each lies within half the corner's turn of one side's own.
+    """
+    if inset <= 0.0:
+        return []
+    radius = min(lower, upper)
+    low = at - inset if lower > upper else at + inset * min(0.0, math.sin(lower_lean)) - HAIR
+    high = at + inset if upper > lower else at + inset * max(0.0, math.sin(upper_lean)) + HAIR
+    if lower == upper:
+        # A kink: sides that are nearly along the axis.
+        side = radius - inset * math.cos(max(abs(lower_lean), abs(upper_lean)))
+        return [band_row(low, high, side, 0.0, part)] if upper_lean > lower_lean else []
+    lean, other = (lower_lean, upper_lean) if upper > lower else (upper_lean, lower_lean)
+    # The wider side may be nearer than the corner: what is deep enough is as far from it.
+    wide = max(lower, upper) + inset * (abs(math.tan(other)) - 1.0 / math.cos(other))
+    least = inset * math.cos(0.25 * math.pi + 0.5 * abs(lean))
+    slope = math.tan(lean)
+    step = (at + least, at + inset + HAIR) if upper > lower else (at - inset - HAIR, at - least)
+    return [
+        band_row(low, high, radius + slope * (low - at) - least / math.cos(lean), slope, part),
+        band_row(*step, min(radius, wide), 0.0, part),
+    ]
+
+
+def opening(cutter: Dimensions, inset: float, at: float) -> list[list[float]]:
+    """What of a lollipop's ball lies under its neck, which begins at a height: it is deeper than the ball's side says."""
+    if inset <= 0.0:
+        return []
+    share, rise = 1.0 - inset / cutter.radius, at - cutter.radius
+    neck = cutter.shank_radius or 0.0
+    return [band_row(at - rise * (1.0 - share), at + HAIR, share * neck, neck / rise, FLUTES)]
+
+
+def among(band: Band, start: float, end: float, *, exact: bool) -> list[list[float]]:
+    """A band among others, between two heights; grown with round edges or with square ones, which hold more."""
+    stage, inset = band.stage, band.inset
+    side = stage.radius - inset * math.hypot(1.0, stage.slope)
+    rows, shift = [], min(0.0, inset) * math.sin(band.lean)
+    low_step, high_step = abs(start - band.low) > HAIR, abs(end - band.high) > 2.0 * HAIR
+    # Grown, a side that leans reaches past its ends along its normal.
+    if inset < 0.0 and not (exact and low_step):
+        start = min(start, band.low + min(0.0, shift))
+    if inset < 0.0 and not (exact and high_step):
+        end = max(end, band.high + max(0.0, shift))
+    if exact and inset < 0.0:
+        # Round edges where a seam is a step; the side goes from tangent circle to tangent circle, or runs on.
+        if low_step:
+            rows.append(row_of(ARC, -math.inf, math.inf, stage.radius, band.low, -inset, band.part))
+            start = band.low + shift if start >= band.low + inset else start
+        if high_step:
+            rows.append(row_of(ARC, -math.inf, math.inf, stage.upper_radius, band.high, -inset, band.part))
+            end = band.high + shift if end <= band.high - inset else end
+    rows.append(band_row(start, end, side + stage.slope * (start - band.low), stage.slope, band.part))
+    return rows
+
+
+def alone(band: Band) -> list[list[float]]:
+    """A band by itself, exactly."""
+    stage, inset = band.stage, band.inset
+    side = stage.radius - inset * math.hypot(1.0, stage.slope)
+    if inset >= 0.0:
+        low, high = band.low + inset, band.high - inset
+        return [band_row(low, high, side + stage.slope * inset, stage.slope, band.part)]
+    shift = inset * math.sin(math.atan(stage.slope))
+    low, high = band.low + shift, band.high + shift
+    return [
+        band_row(low, high, side + stage.slope * shift, stage.slope, band.part),
+        row_of(ARC, -math.inf, math.inf, stage.radius, band.low, -inset, band.part),
+        row_of(ARC, -math.inf, math.inf, stage.upper_radius, band.high, -inset, band.part),
+    ]
+
+
+def flute_rows(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list[float]]:
+    """Pieces of what cuts, up to a height."""
+    return {"end": _end, "lollipop": _lollipop, "barrel": _barrel, "lens": _lens, "form": _form}[cutter.shape](
+        cutter, inset, top, kind
+    )
+
+
+def _unless_higher(row: list[float], top: float) -> list[float]:
+    """An arc, cut off where it would stand out above the end of the flutes."""
+    return row if row[TOP] <= top else row_of(ARC, row[LOW], top, row[RADIUS], row[SLOPE], row[ROUND], int(row[PART]))
+
+
+def _end(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list[float]]:
+    offset, corner, lean = cutter.radius - cutter.corner_radius, cutter.corner_radius, cutter.taper
+    left = corner - inset
+    # The flank's distance from the axis at the height of the corner's centre.
+    side, slope = offset + left / math.cos(lean), math.tan(lean) if lean else 0.0
+    rows = []
+    if left > 0.0:
+        rows.append(_unless_higher(row_of(ARC, -math.inf, math.inf, offset, corner, left, FLUTES), top))
+        low = corner - left * math.sin(lean)
+    else:
+        low = inset
+    radius = cutter.radius - inset if lean == 0.0 else side + slope * (low - corner)
+    rows.append(band_row(low, top, radius, slope, FLUTES))
+    return rows
+
+
+def _lollipop(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list[float]]:
+    row = row_of(ARC, -math.inf, math.inf, 0.0, cutter.radius, cutter.radius - inset, FLUTES)
+    # Grown, the ball that its neck cuts off does not go on in the round.
+    return [_unless_higher(row, top) if kind == "certain" and inset < 0.0 else row]
+
+
+def _barrel(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list[float]]:
+    wide, tip = cutter.arc_radius - inset, cutter.corner_radius
+    offset, centre = cutter.radius - cutter.arc_radius, cutter.arc_height
+    if not tip:
+        low = inset
+        if inset < 0.0:
+            # Grown, its sharp lower edge is round.
+            edge = flank(cutter, 0.0)
+            rows = [row_of(ARC, -math.inf, math.inf, edge, 0.0, -inset, FLUTES)]
+            return [*rows, row_of(ARC, 0.0, top, offset, centre, wide, FLUTES)]
+        return [row_of(ARC, low, top, offset, centre, wide, FLUTES)]
+    joint, left = tip_angle(cutter), tip - inset
+    if left > 0.0:
+        low = tip - left * math.cos(joint)
+        ball = _unless_higher(row_of(ARC, -math.inf, math.inf, 0.0, tip, left, FLUTES), top)
+        return [ball, row_of(ARC, low, top, offset, centre, wide, FLUTES)]
+    return [row_of(ARC, inset, top, offset, centre, wide, FLUTES)]
+
+
+def _lens(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list[float]]:
+    bottom, corner = cutter.arc_radius, cutter.corner_radius
+    offset, centre, left = cutter.radius - corner, lens_height(cutter), corner - inset
+    side = cutter.radius - inset
+    if left > 0.0:
+        joint = bottom - (bottom - inset) * math.cos(tip_angle(cutter))
+        rows = [_unless_higher(row_of(ARC, -math.inf, math.inf, offset, centre, left, FLUTES), top)]
+    else:
+        # The eroded bottom goes on until it meets the eroded side.
+        joint = bottom - math.sqrt(max(0.0, (bottom - inset) ** 2 - side**2))
+        rows, centre = [], joint
+    return [
+        row_of(ARC, -math.inf, joint, 0.0, bottom, bottom - inset, FLUTES),
+        *rows,
+        band_row(centre, top, side, 0.0, FLUTES),
+    ]
+
+
+def _form(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list[float]]:
+    """Bands between the heights of an outline; sides next to a re-entrant corner are moved in less (`docs/tools.md`)."""
+    points, rows = cutter.outline, []
+    for i in range(len(points) - 1):
+        (r0, w0), (r1, w1) = points[i], points[i + 1]
+        if w1 <= w0:
+            continue
+        stage = Stage(max(r0, 1e-12), w1 - w0, max(r1, 1e-12))
+        if kind == "certain":
+            rows += alone(Band(FLUTES, w0, stage, inset))
+            continue
+        mine = inset * (share(points, i) if inset > 0.0 else 1.0)
+        low_step, high_step = _step(points, i, -1), _step(points, i + 1, 1)
+        # Grown, a side that leans reaches past its ends along its normal.
+        rise = max(0.0, -mine) * math.sin(math.atan(stage.slope))
+        below, beyond = max(rise, _past(points, i, mine)), max(-rise, _past(points, i + 1, mine))
+        low = w0 + mine if low_step > 0.0 else w0 - HAIR - (abs(mine) if low_step < 0.0 else below)
+        high = w1 - mine if high_step > 0.0 else w1 + HAIR + (abs(mine) if high_step < 0.0 else beyond)
+        if w1 == points[-1][1]:
+            high = top
+        side = stage.radius - mine * math.hypot(1.0, stage.slope)
+        rows.append(band_row(low, high, side + stage.slope * (low - w0), stage.slope, FLUTES))
+    return rows
+
+
+def _step(points: tuple[tuple[float, float], ...], i: int, way: int) -> float:
+    """By how much a band is wider than what lies beyond one of its ends, point i, seen downwards (-1) or upwards (1)."""
+    r, w = points[i]
+    j = i + way
+    other = None
+    while 0 <= j < len(points) and points[j][1] == w:
+        other = points[j][0]
+        j += way
+    if j < 0 or j >= len(points):
+        # The tip, or the end of the flutes: open, but for the kernel's own end.
+        return r if way < 0 else 0.0
+    return 0.0 if other is None else r - other
+
+
+def _turn(points: tuple[tuple[float, float], ...], k: int) -> float:
+    """By which angle an outline turns at point k, rad: negative at a re-entrant corner."""
+    if not 0 < k < len(points) - 1:
+        return 0.0
+    (a, b), (c, d), (e, f) = points[k - 1], points[k], points[k + 1]
+    return math.remainder(math.atan2(f - d, e - c) - math.atan2(d - b, c - a), 2.0 * math.pi)
+
+
+def share(points: tuple[tuple[float, float], ...], i: int) -> float:
+    """By which share of the depth the side from point i to the next is moved in: less next to a re-entrant corner."""
+    corners = [i, i + 1]
+    # A corner on the other side of a step meets this side, too.
+    if i > 0 and points[i - 1][1] == points[i][1]:
+        corners.append(i - 1)
+    if i + 2 < len(points) and points[i + 2][1] == points[i + 1][1]:
+        corners.append(i + 2)
+    return min(math.cos(0.5 * min(0.0, _turn(points, k))) for k in corners)
+
+
+def _past(points: tuple[tuple[float, float], ...], k: int, inset: float) -> float:
+    """How far a side that is moved in runs on past a re-entrant corner, up to where the other one begins."""
+    return max(0.0, inset) * math.tan(-0.5 * min(0.0, _turn(points, k)))
+
+
+def sharpest(points: tuple[tuple[float, float], ...], k: int, inset: float) -> float:
+    """By how much pieces of sides that meet at point k and are moved by `inset` hold too much there, mm."""
+    turn = _turn(points, k)
+    if turn <= 0.0:
+        return 0.0
+    if inset < 0.0:
+        return -inset * (1.0 / max(0.05, math.cos(0.5 * turn)) - 1.0)
+    # A step ends at its own depth, a side that leans at the corner's height.
+    step = points[k][1] in (points[k - 1][1], points[k + 1][1])
+    return 0.0 if step else inset * (1.0 - math.cos(turn))

@@ -1,0 +1,259 @@
+"""What follows from a cutter's words: where its flutes end, what stands above them, where it touches, and that it can exist."""
+
+import math
+from itertools import pairwise
+from typing import Literal, NamedTuple
+
+from plan_cutters.domain.dimensions import Dimensions
+from plan_cutters.domain.holder import Stage
+from plan_cutters.errors import CutterError
+
+#: Parts of an assembly that do not cut, from the flutes up.
+Part = Literal["neck", "shank", "holder"]
+#: Radii and heights this close to each other, mm, are the same.
+SAME = 1e-9
+_RIGHT = math.pi / 2
+#: A flank steeper than this is none, rad.
+_STEEPEST = math.radians(80)
+
+
+class Mode(NamedTuple):
+    """A part of the cutting edge that touches the surface with one centre of curvature.
+
+    offset, height : float
+        Where that centre lies: how far from the axis towards the contact, and over the tip, mm.
+    radius : float
+        Of curvature there, mm; 0 for a sharp edge.
+    low, high : float
+        Tilts at which it touches, rad.
+    """
+
+    offset: float
+    height: float
+    radius: float
+    low: float
+    high: float
+
+
+def _neck_height(cutter: Dimensions) -> float:
+    """Height over the tip at which a lollipop's ball meets its neck."""
+    thin = cutter.shank_radius or 0.0
+    return cutter.radius + math.sqrt(max(0.0, cutter.radius**2 - thin**2))
+
+
+def flute_length(cutter: Dimensions) -> float:
+    """Height over the tip up to which a cutter cuts, mm."""
+    if cutter.shape == "lollipop":
+        return _neck_height(cutter)
+    if cutter.shape == "form":
+        return cutter.outline[-1][1]
+    if cutter.flutes is not None:
+        return cutter.flutes
+    return cutter.length - (cutter.neck.length if cutter.neck else 0.0)
+
+
+def top_radius(cutter: Dimensions) -> float:
+    """Radius of the flutes where they end, mm."""
+    top = flute_length(cutter)
+    if cutter.shape == "lollipop":
+        return cutter.shank_radius or 0.0
+    if cutter.shape == "form":
+        return cutter.outline[-1][0]
+    if cutter.shape == "barrel":
+        return flank(cutter, top)
+    return cutter.radius + flank_offset(cutter) + (top - cutter.corner_radius) * math.tan(cutter.taper)
+
+
+def top_lean(cutter: Dimensions) -> float:
+    """How far the side of the flutes leans from the axis where they end, rad; positive where they widen."""
+    if cutter.shape == "barrel":
+        return math.asin((cutter.arc_height - flute_length(cutter)) / cutter.arc_radius)
+    if cutter.shape == "form":
+        (r, w), (s, v) = cutter.outline[-2:]
+        return math.atan2(s - r, v - w) if v > w else 0.0
+    return cutter.taper
+
+
+def flank_offset(cutter: Dimensions) -> float:
+    """How much farther from the axis a tapered flank is at the height of the corner's centre than a straight one, mm."""
+    return cutter.corner_radius * (1.0 / math.cos(cutter.taper) - 1.0)
+
+
+def flank(cutter: Dimensions, height: float) -> float:
+    """Radius of a barrel's flank at a height over the tip, mm."""
+    away = cutter.arc_radius**2 - (height - cutter.arc_height) ** 2
+    return cutter.radius - cutter.arc_radius + math.sqrt(max(0.0, away))
+
+
+def tip_angle(cutter: Dimensions) -> float:
+    """Angle of the normal, from the axis, where a barrel's or a lens's two arcs meet."""
+    if cutter.shape == "barrel":
+        return math.asin(min(1.0, (cutter.arc_radius - cutter.radius) / (cutter.arc_radius - cutter.corner_radius)))
+    return math.asin(min(1.0, (cutter.radius - cutter.corner_radius) / (cutter.arc_radius - cutter.corner_radius)))
+
+
+def lens_height(cutter: Dimensions) -> float:
+    """Height over the tip of the centre of a lens's corner."""
+    inner, outer = cutter.radius - cutter.corner_radius, cutter.arc_radius - cutter.corner_radius
+    return cutter.arc_radius - math.sqrt(max(0.0, outer**2 - inner**2))
+
+
+def stages(cutter: Dimensions) -> tuple[tuple[Part, float, Stage], ...]:
+    """What stands above the flutes, from there up: its part, the height at which it begins, the stage."""
+    found: list[tuple[Part, float, Stage]] = []
+    top = flute_length(cutter)
+    if cutter.neck is not None:
+        found.append(("neck", top, cutter.neck))
+        top += cutter.neck.length
+    if cutter.length - top > SAME:
+        radius = cutter.shank_radius
+        if radius is None:
+            radius = cutter.neck.upper_radius if cutter.neck else top_radius(cutter)
+        part: Part = "neck" if cutter.shape == "lollipop" else "shank"
+        found.append((part, top, Stage(radius, cutter.length - top)))
+    top = cutter.length
+    for stage in cutter.holder.stages if cutter.holder else ():
+        found.append(("holder", top, stage))
+        top += stage.length
+    return tuple(found)
+
+
+def modes(cutter: Dimensions) -> tuple[Mode, ...]:
+    """Where a cutter touches, by ranges of tilt that join or leave gaps; beyond them it touches nowhere."""
+    r, corner = cutter.radius, cutter.corner_radius
+    if cutter.shape == "lollipop":
+        return (Mode(0.0, r, r, 0.0, math.pi - math.asin((cutter.shank_radius or 0.0) / r)),)
+    if cutter.shape == "lens":
+        joint = tip_angle(cutter)
+        arc = Mode(0.0, cutter.arc_radius, cutter.arc_radius, 0.0, joint)
+        return arc, Mode(r - corner, lens_height(cutter), corner, joint, _RIGHT)
+    if cutter.shape == "barrel":
+        wide, centre, top = cutter.arc_radius, cutter.arc_height, flute_length(cutter)
+        last = math.acos(max(-1.0, min(1.0, (centre - top) / wide)))
+        first = tip_angle(cutter) if corner else math.acos(max(-1.0, min(1.0, centre / wide)))
+        arc = Mode(r - wide, centre, wide, first, last)
+        return (Mode(0.0, corner, corner, 0.0, first), arc) if corner else (arc,)
+    if cutter.shape == "form":
+        return _corners(cutter.outline)
+    return (Mode(r - corner, corner, corner, 0.0, _RIGHT - cutter.taper),)
+
+
+def _corners(outline: tuple[tuple[float, float], ...]) -> tuple[Mode, ...]:
+    """The corners at which an outline can touch a plane: those of its convex hull."""
+    hull: list[tuple[float, float]] = []
+    for r, h in (point for point in outline if point[0] > 0.0):
+        while len(hull) > 1 and _turn(hull[-2], hull[-1], (r, h)) <= 0.0:
+            hull.pop()
+        hull.append((r, h))
+    found = []
+    for i, (r, h) in enumerate(hull):
+        low = 0.0
+        if i > 0:
+            low = math.atan2(h - hull[i - 1][1], r - hull[i - 1][0])
+        last = i + 1 == len(hull)
+        high = max(low, _RIGHT) if last else math.atan2(hull[i + 1][1] - h, hull[i + 1][0] - r)
+        if high >= 0.0 and high > low:
+            found.append(Mode(r, h, 0.0, max(0.0, low), high))
+    return tuple(found)
+
+
+def _turn(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:
+    """Positive where a path over three points (radius, height) turns to the left."""
+    return (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])
+
+
+def check(cutter: Dimensions, name: str) -> None:
+    """Raise CutterError if there can be no such cutter."""
+    name = f"cutter {name}"
+    _check_shape(cutter, name)
+    top = flute_length(cutter)
+    if cutter.flutes is not None and cutter.shape in ("lollipop", "form"):
+        raise CutterError(f"{name}: the flutes of a {cutter.shape} end where its outline does; leave their length out")
+    if top > cutter.length + SAME:
+        raise CutterError(f"{name}: it is {cutter.length:g} mm long, shorter than its flutes of {top:g} mm")
+    if top <= 0.0:
+        raise CutterError(f"{name}: the neck of {cutter.neck.length if cutter.neck else 0:g} mm leaves no flutes")
+    if cutter.neck is not None and top + cutter.neck.length > cutter.length + SAME:
+        raise CutterError(
+            f"{name}: flutes and neck take {top + cutter.neck.length:g} mm, more than the length of {cutter.length:g} mm"
+        )
+    if cutter.shank_radius is not None and cutter.length - top - (cutter.neck.length if cutter.neck else 0.0) <= SAME:
+        raise CutterError(f"{name}: its flutes and neck reach up to its length, which leaves no room for a shank")
+    above = stages(cutter)
+    last = next((stage.upper_radius for part, _, stage in reversed(above) if part != "holder"), top_radius(cutter))
+    if cutter.holder is not None and cutter.holder.stages[0].radius < last - SAME:
+        raise CutterError(
+            f"{name}: the holder's nose of radius {cutter.holder.stages[0].radius:g} is narrower than what it holds, "
+            f"of radius {last:g}"
+        )
+
+
+def _check_shape(cutter: Dimensions, name: str) -> None:
+    r, corner, top = cutter.radius, cutter.corner_radius, flute_length_or_nan(cutter)
+    if not 0 <= corner <= r:
+        raise CutterError(f"corner radius {corner:g} must lie between 0 and the radius {r:g}")
+    if cutter.taper and cutter.shape != "end":
+        raise CutterError(f"{name}: only end mills are tapered")
+    if abs(cutter.taper) > _STEEPEST:
+        raise CutterError(
+            f"{name}: a taper of {math.degrees(cutter.taper):.4g} deg lies beyond 80 deg (the half angle)"
+        )
+    if cutter.shape not in ("barrel", "lens") and (cutter.arc_radius or cutter.arc_height):
+        raise CutterError(f"{name}: only barrels and lenses have an arc of their own")
+    if cutter.shape != "form" and cutter.outline:
+        raise CutterError(f"{name}: an outline belongs to the shape form")
+    if cutter.shape == "end" and top == top:
+        if top <= corner * (1.0 - math.sin(cutter.taper)) - SAME:
+            raise CutterError(f"{name}: its flutes of {top:g} mm end within its corner of radius {corner:g}")
+        if not top_radius(cutter) > 0.0:
+            raise CutterError(f"{name}: its flanks meet below the end of its flutes")
+    if cutter.shape == "lollipop" and not 0.0 < (cutter.shank_radius or 0.0) < r:
+        raise CutterError(
+            f"{name}: a lollipop's neck must be thinner than its ball of radius {r:g}, and there must be one"
+        )
+    if cutter.shape == "barrel":
+        if not cutter.arc_radius >= r or not cutter.arc_height >= 0.0 or not math.isfinite(cutter.arc_radius):
+            raise CutterError(
+                f"{name}: a barrel's flank needs a radius of at least its own {r:g}, and a height over its tip"
+            )
+        if corner and not corner < r:
+            raise CutterError(f"{name}: the tip of a barrel must be smaller than its radius {r:g}")
+        if corner:
+            inner, outer = cutter.arc_radius - r, cutter.arc_radius - corner
+            if abs(math.hypot(inner, cutter.arc_height - corner) - outer) > 1e-6 * cutter.arc_radius:
+                raise CutterError(
+                    f"{name}: its flank is not tangent to the ball at its tip; Cutter.barrel finds the height"
+                )
+        low = 0.0 if not corner else corner * (1.0 - math.cos(tip_angle(cutter)))
+        if not low < top or not flank(cutter, top) > 0.0 or not flank(cutter, low) > 0.0:
+            raise CutterError(
+                f"{name}: its flank must begin below the end of the flutes and be wider than its axis all along"
+            )
+        if abs(top - cutter.arc_height) >= cutter.arc_radius or cutter.arc_height - low >= cutter.arc_radius:
+            raise CutterError(f"{name}: its flank of radius {cutter.arc_radius:g} does not reach so far along its axis")
+    if cutter.shape == "lens":
+        if not (math.isfinite(cutter.arc_radius) and cutter.arc_radius >= r > corner):
+            raise CutterError(f"{name}: a lens needs a bottom of at least its radius {r:g}, and a smaller corner")
+        if not top >= lens_height(cutter) - SAME:
+            raise CutterError(f"{name}: its flutes of {top:g} mm end within its bottom")
+    if cutter.shape == "form":
+        _check_outline(cutter, name)
+
+
+def _check_outline(cutter: Dimensions, name: str) -> None:
+    points = cutter.outline
+    if len(points) < 2 or points[0] != (0.0, 0.0):
+        raise CutterError(f"{name}: an outline begins on the axis at the tip, 0 0, and has at least one more point")
+    if any(b[1] < a[1] for a, b in pairwise(points)):
+        raise CutterError(f"{name}: the heights of an outline must not fall: it would overlap itself or be hollow")
+    if any(r <= 0.0 for r, _ in points[1:]) or not points[-1][1] > 0.0:
+        raise CutterError(f"{name}: an outline's radii must be positive above its tip, and it must have a height")
+    if abs(max(r for r, _ in points) - cutter.radius) > SAME:
+        raise CutterError(f"{name}: the radius must be the largest of its outline")
+    if cutter.corner_radius:
+        raise CutterError(f"{name}: the corners of an outline are its points")
+
+
+def flute_length_or_nan(cutter: Dimensions) -> float:
+    """`flute_length`, nan where an outline has no end yet."""
+    return math.nan if cutter.shape == "form" and not cutter.outline else flute_length(cutter)

@@ -1,0 +1,156 @@
+"""Does a triangle reach into a tool that is drawn out along y_T: what a cutter sweeps while its contact wanders?
+
+A piece drawn out by `half` to either side meets a triangle exactly if the piece itself meets the triangle drawn out: a prism,
+whose faces are polygons.
+"""
+
+import numpy as np
+
+from plan_cutters.kernels.hit import HALF, OFFSET
+from plan_cutters.kernels.jit import kernel
+from plan_cutters.kernels.pieces import BOTTOM, CYLINDER, HIGH, KIND, LOW, RADIUS, TOP, WIDE, cut, polygon_hit
+
+
+@kernel
+def _to_segment(px, py, half):  # type: ignore[no-untyped-def]
+    """Squared distance of a point from the segment (0, -half) (0, half)."""
+    py -= min(half, max(-half, py))
+    return px * px + py * py
+
+
+@kernel
+def _shadow_distance(polygon, count, half):  # type: ignore[no-untyped-def]
+    """Squared distance between the shadow of a convex polygon and the segment (0, -half) (0, half)."""
+    area = 0.0
+    for i in range(count):
+        j = i + 1 if i + 1 < count else 0
+        area += polygon[i, 1] * polygon[j, 2] - polygon[j, 1] * polygon[i, 2]
+    inside = abs(area) > 0.0
+    best = np.inf
+    for i in range(count):
+        j = i + 1 if i + 1 < count else 0
+        xi, yi = polygon[i, 1], polygon[i, 2]
+        ex, ey = polygon[j, 1] - xi, polygon[j, 2] - yi
+        best = min(best, _to_segment(xi, yi, half))
+        # The segment's ends against the side, and whether one of them (the lower) lies within the polygon.
+        square = ex * ex + ey * ey
+        for end in (-half, half):
+            part = 0.0
+            if square > 0.0:
+                part = min(1.0, max(0.0, (-xi * ex + (end - yi) * ey) / square))
+            x, y = xi + part * ex, yi + part * ey - end
+            best = min(best, x * x + y * y)
+        if (xi * ey - (yi + half) * ex) * area < 0.0:
+            inside = False
+        # The side crosses the segment.
+        if (xi < 0.0) != (xi + ex < 0.0) and abs(yi - xi / ex * ey) <= half:
+            return 0.0
+    return 0.0 if inside else best
+
+
+@kernel
+def _clipped(corner, count, low, high, polygon, spare):  # type: ignore[no-untyped-def]
+    """Cut a polygon off at two heights: (in `polygon` 1 or in `spare` 2 or unchanged 0, its corners)."""
+    least, most = np.inf, -np.inf
+    for c in range(count):
+        least, most = min(least, corner[c, 0]), max(most, corner[c, 0])
+    where = 0
+    if least < low:
+        count, where = cut(corner, count, polygon, low, 1.0), 1
+    if most > high:
+        count = cut(corner if where == 0 else polygon, count, spare, high, -1.0)
+        where = 2
+    return where, count
+
+
+@kernel
+def drawn_hit(vertex, i, body, piece, mask, room):  # type: ignore[no-untyped-def]
+    """Those of the pieces of a mask, drawn out as the body says, into which triangle i reaches.
+
+    Parameters
+    ----------
+    vertex : (n, 3, 3) float64
+    body : (14,) float64
+    piece : (k, COLUMNS) float64
+    mask : int
+    room : Scratch
+    """
+    corner, half = room.corner, body[HALF]
+    least, most, total = np.inf, -np.inf, half
+    for c in range(3):
+        dx = vertex[i, c, 0] - body[0]
+        dy = vertex[i, c, 1] - body[1]
+        dz = vertex[i, c, 2] - body[2]
+        height = dx * body[3] + dy * body[4] + dz * body[5]
+        corner[c, 0] = height
+        corner[c, 1] = dx * body[6] + dy * body[7] + dz * body[8] + body[OFFSET]
+        corner[c, 2] = dx * body[9] + dy * body[10] + dz * body[11]
+        least, most = min(least, height), max(most, height)
+        total += height + corner[c, 1] + corner[c, 2]
+    # What is no number is in the way.
+    if total - total != 0.0:
+        return mask
+    hit = 0
+    for k in range(len(piece)):
+        if not (mask >> k) & 1 or most <= piece[k, BOTTOM] or least >= piece[k, TOP]:
+            continue
+        if _drawn(corner, half, piece, k, room):
+            hit |= 1 << k
+    return hit
+
+
+@kernel
+def _drawn(corner, half, piece, k, room):  # type: ignore[no-untyped-def]
+    """Whether a triangle of rows (height, x, y) reaches into a piece that is drawn out."""
+    # What holds the piece: as wide as it ever is.
+    where, count = _clipped(corner, 3, piece[k, BOTTOM], piece[k, TOP], room.polygon, room.spare)
+    source = corner if where == 0 else room.polygon if where == 1 else room.spare
+    wide = max(piece[k, RADIUS], piece[k, WIDE]) if piece[k, KIND] == CYLINDER else _widest(piece, k)
+    if count == 0 or _shadow_distance(source, count, half) >= wide * wide:
+        return False
+    if piece[k, KIND] == CYLINDER:
+        return True
+    # The faces of the prism, then whether the piece lies within it: the middle of its axis tells.
+    for side in range(5):
+        count = 3 if side < 2 else 4
+        for c in range(count):
+            at, away = c, -half if side == 0 else half
+            if side >= 2:
+                at = (side - 2 + (1 if c == 1 or c == 2 else 0)) % 3
+                away = -half if c < 2 else half
+            for j in range(3):
+                room.drawn[c, j] = corner[at, j]
+            room.drawn[c, 2] += away
+        where, count = _clipped(room.drawn, count, piece[k, LOW], piece[k, HIGH], room.polygon, room.spare)
+        source = room.drawn if where == 0 else room.polygon if where == 1 else room.spare
+        if count > 0 and polygon_hit(source, count, piece, k, 0.0)[0]:
+            return True
+    middle = 0.5 * (piece[k, BOTTOM] + piece[k, TOP])
+    return _through(corner, half, middle)
+
+
+@kernel
+def _widest(piece, k):  # type: ignore[no-untyped-def]
+    """Largest radius of a cone or an arc."""
+    return max(max(piece[k, RADIUS], piece[k, WIDE]), 0.0)
+
+
+@kernel
+def _through(corner, half, height):  # type: ignore[no-untyped-def]
+    """Whether a point of the axis lies in a drawn triangle: the line through it along y_T crosses the triangle nearby."""
+    # In the shadow along y_T: rows (height, x).
+    area = 0.0
+    for c in range(3):
+        d = c + 1 if c < 2 else 0
+        area += corner[c, 0] * corner[d, 1] - corner[d, 0] * corner[c, 1]
+    if area == 0.0:
+        return False
+    y = 0.0
+    for c in range(3):
+        d = c + 1 if c < 2 else 0
+        e = d + 1 if d < 2 else 0
+        share = ((corner[d, 0] - height) * corner[e, 1] - (corner[e, 0] - height) * corner[d, 1]) / area
+        if share < 0.0:
+            return False
+        y += share * corner[c, 2]
+    return abs(y) <= half

@@ -1,0 +1,92 @@
+"""Free tilts of samples at all rotations for tools of any kind: range by range, as at one point.
+
+Slower than `free_map`, which knows flat ends alone.
+"""
+
+import numpy as np
+
+from plan_cutters.kernels.free_tilts import OPEN, UNSURE, divide, room_for_parts
+from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.probing import permitted
+from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.vectors import cross, lean_frame
+
+#: Parts that the tilts of one rotation may fall into.
+_PARTS = 400
+
+
+@kernel
+def _enter(first, last, count, part):  # type: ignore[no-untyped-def]
+    """Enter a free interval among those (room, 2), ascending, joined with what it touches; (how many, what found no room)."""
+    for i in range(count):
+        if part[i, 1] == first:
+            part[i, 1] = last
+            return count, 0.0
+        if part[i, 0] == last:
+            part[i, 0] = first
+            return count, 0.0
+    if count == len(part):
+        return count, last - first
+    part[count, 0], part[count, 1] = first, last
+    return count + 1, 0.0
+
+
+@kernel
+def _ordered(count, part):  # type: ignore[no-untyped-def]
+    """Put free intervals in ascending order and join those that touch; how many are left."""
+    for i in range(1, count):
+        first, last, at = part[i, 0], part[i, 1], i
+        while at > 0 and part[at - 1, 0] > first:
+            part[at, 0], part[at, 1] = part[at - 1, 0], part[at - 1, 1]
+            at -= 1
+        part[at, 0], part[at, 1] = first, last
+    kept = min(count, 1)
+    for i in range(1, count):
+        if part[i, 0] <= part[kept - 1, 1]:
+            part[kept - 1, 1] = max(part[kept - 1, 1], part[i, 1])
+        else:
+            part[kept, 0], part[kept, 1] = part[i, 0], part[i, 1]
+            kept += 1
+    return kept
+
+
+@entry
+def tool_map(rows, contacts, ranges, tool, narrowest, tree, part, count_out, undecided):  # type: ignore[no-untyped-def]
+    """Free tilts of samples at all rotations; parameters as for `free_map.free_map`.
+
+    Parameters
+    ----------
+    rows : (m,) int64
+    contacts : Contacts
+    ranges : Ranges
+    tool : Tool
+        Without what does not matter.
+    narrowest : float
+        rad.
+    tree : Tree
+    part : (m, k, room, 2) float64, written
+    count_out : (m, k) int32, written
+    undecided : (m, k) float64, written
+    """
+    f, t, e2, intervals, work = np.empty(3), np.empty(3), np.empty(3), np.empty((8, 2)), room_for_parts(_PARTS)
+    for place in range(len(rows)):
+        row = rows[place]
+        p, n, e1 = contacts.point[row], contacts.normal[row], contacts.direction_max[row]
+        cross(n, e1, e2)
+        for rotation in range(len(ranges.rotation_cos)):
+            lean_frame(e1, e2, ranges.rotation_cos[rotation], ranges.rotation_sin[rotation], f, t)
+            count, unsure, mine = 0, 0.0, part[place, rotation]
+            for mode in range(len(tool.mode)):
+                _, _, left = permitted(contacts, row, ranges, rotation, tool, mode, f, intervals)
+                for i in range(left):
+                    done = divide(
+                        Frame(p, n, f, t), intervals[i, 0], intervals[i, 1], tool, mode, narrowest, tree, work
+                    )
+                    for k in range(done):
+                        width = work.parts[k, 1] - work.parts[k, 0]
+                        if work.parts[k, 2] == UNSURE:
+                            unsure += width
+                        elif work.parts[k, 2] == OPEN:
+                            count, lost = _enter(work.parts[k, 0], work.parts[k, 1], count, mine)
+                            unsure += lost
+            count_out[place, rotation], undecided[place, rotation] = _ordered(count, mine), unsure
