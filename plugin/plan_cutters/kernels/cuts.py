@@ -177,6 +177,13 @@ def _out_in_parts(corner, ca, sa, cb, sb, turning, k, room):  # type: ignore[no-
 
 
 @kernel
+def _in_the_way(vertex, i, frame, tilt, turning, k, room):  # type: ignore[no-untyped-def]
+    """Whether a triangle reaches into piece k at a tilt."""
+    stand(room.body, frame, np.cos(tilt), np.sin(tilt), turning.offset, 0.0)
+    return triangle_hit(vertex, i, room.body, turning.piece, 1 << k, 0.0, room.scratch)[0] >= 0
+
+
+@kernel
 def _first_in_the_way(vertex, i, frame, a, b, sign, narrowest, turning, k, room):  # type: ignore[no-untyped-def]
     """The first tilt, from a up or from b down (`sign`), at which a triangle is not shown to be clear of piece k; nan if none.
 
@@ -189,6 +196,8 @@ def _first_in_the_way(vertex, i, frame, a, b, sign, narrowest, turning, k, room)
     while top > 0:
         top -= 1
         first, last = ranges[top, 0], ranges[top, 1]
+        if not eight and _in_the_way(vertex, i, frame, first if sign > 0.0 else last, turning, k, room):
+            return first if sign > 0.0 else last
         middle, half = 0.5 * (first + last), 0.5 * (last - first)
         stand(body, frame, np.cos(middle), np.sin(middle), turning.offset, 0.0)
         which, _, _, _ = triangle_hit(vertex, i, body, turning.piece, 1 << k, half + 1e-12, scratch)
@@ -205,13 +214,6 @@ def _first_in_the_way(vertex, i, frame, a, b, sign, narrowest, turning, k, room)
         ranges[far, 0], ranges[far, 1] = middle, last
         top += 2
     return np.nan
-
-
-@kernel
-def _in_the_way(vertex, i, frame, tilt, turning, k, room):  # type: ignore[no-untyped-def]
-    """Whether a triangle reaches into piece k at a tilt."""
-    stand(room.body, frame, np.cos(tilt), np.sin(tilt), turning.offset, 0.0)
-    return triangle_hit(vertex, i, room.body, turning.piece, 1 << k, 0.0, room.scratch)[0] >= 0
 
 
 @kernel

@@ -79,21 +79,28 @@ def _swept(bound, j, offset, gx, gy, gz, ca, sa, cb, sb):  # type: ignore[no-unt
 
 @kernel
 def _towards(bound, j, x, y, height):  # type: ignore[no-untyped-def]
-    """The direction (x, y, w), of length 1 or 0, in which a point lies farthest beyond a bound, and its part across the axis."""
+    """The direction (x, y, w), of length 1 or 0, in which a point lies farthest beyond a bound, its part across the axis, and how far
+    about.
+    """
     q = np.sqrt(x * x + y * y)
     share = 1.0 / max(q, 1e-200)
     q0, q1, slope = bound[j, Q0], bound[j, Q1], bound[j, SIDE]
     below, above = bound[j, F0] - height, height - bound[j, F1]
     inner, outer = max(0.0, q - q0), max(0.0, q - q1)
+    lower, upper = False, False
     if bound[j, IS_ARC] > 0.0:
         out, up = inner, -below
     else:
         lower, upper = (below > 0.0) & (inner * slope <= below), (above > 0.0) & (-outer * slope <= above)
         out = inner if lower else (outer if upper else 1.0)
         up = -below if lower else (above if upper else -slope)
-    size = 1.0 / max(np.sqrt(out * out + up * up), 1e-200)
+    away = np.sqrt(out * out + up * up)
+    size = 1.0 / max(away, 1e-200)
+    if bound[j, IS_ARC] == 0.0:
+        # Beside the axis the direction was the side's own, of any length.
+        away = away if lower | upper else (q - q0 + slope * below) * size
     out, up = out * size, up * size
-    return out * x * share, out * y * share, up, out
+    return out * x * share, out * y * share, up, out, away
 
 
 @kernel
@@ -135,8 +142,8 @@ def _away(bound, j, offset, gx, gy, gz, x, y, z, cm, sm):  # type: ignore[no-unt
 
 @kernel
 def _boxes_apart(box, end, bound, j, offset, which, clear):  # type: ignore[no-untyped-def]
-    """Mark boxes that a plane of the tool parts from a bound all over their gap, met at one of its ends or its middle: row
-    `which` of `end` and the next.
+    """Mark boxes that a plane, as at one end of their gap or its middle (row `which` of `end` and the next), parts from a bound all
+    over the gap, turning with the tool or not.
     """
     for lane in range(LANES):
         x, y, z, wide = box[0, lane], box[1, lane], box[2, lane], box[EXTENT, lane]
@@ -144,8 +151,14 @@ def _boxes_apart(box, end, bound, j, offset, which, clear):  # type: ignore[no-u
         t0, t1, t2 = box[6, lane], box[7, lane], box[8, lane]
         z0, z1, z2 = box[9, lane], box[10, lane], box[11, lane]
         c, s = end[which, lane], end[which + 1, lane]
-        mx, my, mw, across = _towards(bound, j, offset + c * x - s * z, y, s * x + c * z)
+        mx, my, mw, across, _ = _towards(bound, j, offset + c * x - s * z, y, s * x + c * z)
         reach = _support(bound, j, offset, mx, mw, across)
+        gx, gz = mx * c + mw * s, mw * c - mx * s
+        over = gx * x + my * y + gz * z - abs(gx * f0 + my * t0 + gz * z0)
+        over -= abs(gx * f1 + my * t1 + gz * z1) + abs(gx * f2 + my * t2 + gz * z2)
+        fixed = over - _swept(
+            bound, j, offset, gx, my, gz, end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
+        )
         c, s = end[CA, lane], end[SA, lane]
         gx, gz = mx * c + mw * s, mw * c - mx * s
         first = gx * x + my * y + gz * z - abs(gx * f0 + my * t0 + gz * z0)
@@ -157,7 +170,7 @@ def _boxes_apart(box, end, bound, j, offset, which, clear):  # type: ignore[no-u
         good = _between(
             min(first, last), reach, my, my * y + abs(my) * wide, box[NEAREST, lane], box[FARTHEST, lane], end[CH, lane]
         )
-        clear[lane] = 1.0 if good else clear[lane]
+        clear[lane] = 1.0 if good | (fixed > _HAIR) else clear[lane]
 
 
 @kernel
@@ -244,13 +257,25 @@ def _triangles_apart(seen, end, bound, j, offset, which, clear):  # type: ignore
         x0, y0, z0 = seen[0, lane], seen[1, lane], seen[2, lane]
         x1, y1, z1 = seen[3, lane], seen[4, lane], seen[5, lane]
         x2, y2, z2 = seen[6, lane], seen[7, lane], seen[8, lane]
-        x, y, z = (x0 + x1 + x2) / 3.0, (y0 + y1 + y2) / 3.0, (z0 + z1 + z2) / 3.0
         c, s = end[which, lane], end[which + 1, lane]
-        mx, my, mw, across = _towards(bound, j, offset + c * x - s * z, y, s * x + c * z)
+        # Where a gap ends, a corner touches the piece: the plane must be the one there.
+        mx, my, mw, across, away = _towards(bound, j, offset + c * x0 - s * z0, y0, s * x0 + c * z0)
+        nx, ny, nw, part, other = _towards(bound, j, offset + c * x1 - s * z1, y1, s * x1 + c * z1)
+        near = other < away
+        mx, my, mw = nx if near else mx, ny if near else my, nw if near else mw
+        across, away = part if near else across, min(other, away)
+        nx, ny, nw, part, other = _towards(bound, j, offset + c * x2 - s * z2, y2, s * x2 + c * z2)
+        near = other < away
+        mx, my, mw = nx if near else mx, ny if near else my, nw if near else mw
+        across = part if near else across
         reach = _support(bound, j, offset, mx, mw, across)
+        gx, gz, d0, d1, d2 = mx * c + mw * s, mw * c - mx * s, my * y0, my * y1, my * y2
+        over = min(gx * x0 + gz * z0 + d0, min(gx * x1 + gz * z1 + d1, gx * x2 + gz * z2 + d2))
+        fixed = over - _swept(
+            bound, j, offset, gx, my, gz, end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
+        )
         c, s = end[CA, lane], end[SA, lane]
         gx, gz = mx * c + mw * s, mw * c - mx * s
-        d0, d1, d2 = my * y0, my * y1, my * y2
         first = min(gx * x0 + gz * z0 + d0, min(gx * x1 + gz * z1 + d1, gx * x2 + gz * z2 + d2))
         c, s = end[CB, lane], end[SB, lane]
         gx, gz = mx * c + mw * s, mw * c - mx * s
@@ -258,7 +283,7 @@ def _triangles_apart(seen, end, bound, j, offset, which, clear):  # type: ignore
         good = _between(
             min(first, last), reach, my, max(d0, max(d1, d2)), seen[9, lane], seen[10, lane], end[CH, lane]
         )
-        clear[lane] = 1.0 if good else clear[lane]
+        clear[lane] = 1.0 if good | (fixed > _HAIR) else clear[lane]
 
 
 @kernel
