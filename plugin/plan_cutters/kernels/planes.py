@@ -59,55 +59,55 @@ def _span(p, q, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _swept(bound, j, offset, gx, gy, gz, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
-    """How far a bound goes at most, at any tilt of a gap, along a direction of the part, from the centre."""
-    q0, f0, q1, f1, joint = bound[j, Q0], bound[j, F0], bound[j, Q1], bound[j, F1], bound[j, JOINT] > 0.0
-    xl, xh = _span(gx, -gz, ca, sa, cb, sb)
-    wl, wh = _span(gz, gx, ca, sa, cb, sb)
-    rl, rh = np.sqrt(xl * xl + gy * gy), np.sqrt(xh * xh + gy * gy)
-    if joint:
-        first = max(q0 * rl - offset * xl, q0 * rh - offset * xh)
-        second = max(q1 * rl - offset * xl, q1 * rh - offset * xh)
-    else:
-        # Of a negative radius: each part by itself.
-        least = 0.0 if xl * xh <= 0.0 else min(xl * xl, xh * xh)
-        first = q0 * np.sqrt(least + gy * gy) + max(-offset * xl, -offset * xh)
-        second = first
-    first, second = first + max(f0 * wl, f0 * wh), second + max(f1 * wl, f1 * wh)
-    return max(first, second) + bound[j, GROWN] * np.sqrt(gx * gx + gy * gy + gz * gz)
+def _edge(bound, j):  # type: ignore[no-untyped-def]
+    """A bound as numbers: what lanes have in common must not be read again in each."""
+    return (
+        bound[j, Q0], bound[j, F0], bound[j, Q1], bound[j, F1], bound[j, GROWN], bound[j, SIDE], bound[j, JOINT] > 0.0
+    )  # fmt: skip
 
 
 @kernel
-def _towards(bound, j, x, y, height):  # type: ignore[no-untyped-def]
+def _swept(edge, offset, gx, gy, gz, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
+    """How far a bound goes at most, at any tilt of a gap, along a direction of the part, from the centre."""
+    q0, f0, q1, f1, grown, _, joint = edge
+    xl, xh = _span(gx, -gz, ca, sa, cb, sb)
+    wl, wh = _span(gz, gx, ca, sa, cb, sb)
+    low, high = xl * xl, xh * xh
+    # A negative radius that is not the offset: each part by itself.
+    least = 0.0 if xl * xh <= 0.0 else min(low, high)
+    low, high = low if joint else least, high if joint else least
+    rl, rh = np.sqrt(low + gy * gy), np.sqrt(high + gy * gy)
+    first = max(q0 * rl - offset * xl, q0 * rh - offset * xh) + max(f0 * wl, f0 * wh)
+    second = max(q1 * rl - offset * xl, q1 * rh - offset * xh) + max(f1 * wl, f1 * wh)
+    return max(first, second) + grown * np.sqrt(gx * gx + gy * gy + gz * gz)
+
+
+@kernel
+def _towards(edge, x, y, height):  # type: ignore[no-untyped-def]
     """The direction (x, y, w), of length 1 or 0, in which a point lies farthest beyond a bound, its part across the axis, and how far
     about.
     """
+    q0, f0, q1, f1, _, slope, _ = edge
     q = np.sqrt(x * x + y * y)
     share = 1.0 / max(q, 1e-200)
-    q0, q1, slope = bound[j, Q0], bound[j, Q1], bound[j, SIDE]
-    below, above = bound[j, F0] - height, height - bound[j, F1]
+    below, above = f0 - height, height - f1
     inner, outer = max(0.0, q - q0), max(0.0, q - q1)
-    lower, upper = False, False
-    if bound[j, IS_ARC] > 0.0:
-        out, up = inner, -below
-    else:
-        lower, upper = (below > 0.0) & (inner * slope <= below), (above > 0.0) & (-outer * slope <= above)
-        out = inner if lower else (outer if upper else 1.0)
-        up = -below if lower else (above if upper else -slope)
+    # Below or above: from the rim. Else the side's own direction. An arc is all rim.
+    lower, upper = (below > 0.0) & (inner * slope <= below), (above > 0.0) & (-outer * slope <= above)
+    out = inner if lower else (outer if upper else 1.0)
+    up = -below if lower else (above if upper else -slope)
     away = np.sqrt(out * out + up * up)
     size = 1.0 / max(away, 1e-200)
-    if bound[j, IS_ARC] == 0.0:
-        # Beside the axis the direction was the side's own, of any length.
-        away = away if lower | upper else (q - q0 + slope * below) * size
+    away = away if lower | upper else (q - q0 + slope * below) * size
     out, up = out * size, up * size
     return out * x * share, out * y * share, up, out, away
 
 
 @kernel
-def _support(bound, j, offset, mx, mw, across):  # type: ignore[no-untyped-def]
+def _support(edge, offset, mx, mw, across):  # type: ignore[no-untyped-def]
     """How far a bound goes along a unit direction of the tool, from the centre."""
-    first, second = bound[j, Q0] * across + bound[j, F0] * mw, bound[j, Q1] * across + bound[j, F1] * mw
-    return max(first, second) + bound[j, GROWN] - offset * mx
+    q0, f0, q1, f1, grown, _, _ = edge
+    return max(q0 * across + f0 * mw, q1 * across + f1 * mw) + grown - offset * mx
 
 
 @kernel
@@ -125,18 +125,19 @@ def _between(least, reach, my, y_most, nearest, farthest, cosine):  # type: igno
 
 
 @kernel
-def _lean(bound, j, y, wide, sine):  # type: ignore[no-untyped-def]
+def _lean(edge, y, wide, sine):  # type: ignore[no-untyped-def]
     """How much a plane under a rim leans along the line of turning where something stands beside the contact."""
-    radius = max(bound[j, Q0], _HAIR)
+    radius = max(edge[0], _HAIR)
     y = y - max(-0.5 * wide, min(0.5 * wide, y))
     y = max(-_STEEP * radius, min(_STEEP * radius, y))
     return sine * y / np.sqrt(radius * radius - y * y)
 
 
 @kernel
-def _away(bound, j, offset, gx, gy, gz, x, y, z, cm, sm):  # type: ignore[no-untyped-def]
+def _away(edge, offset, gx, gy, gz, x, y, z, cm, sm):  # type: ignore[no-untyped-def]
     """1 or -1: which way along a direction of the part something lies from a bound at the middle of a gap."""
-    up = 0.5 * (bound[j, F0] + min(bound[j, F1], bound[j, F0] + 20.0 * max(bound[j, Q0], bound[j, Q1])))
+    q0, f0, q1, f1, _, _, _ = edge
+    up = 0.5 * (f0 + min(f1, f0 + 20.0 * max(q0, q1)))
     return 1.0 if gx * (x + offset * cm - up * sm) + gy * y + gz * (z - offset * sm - up * cm) >= 0.0 else -1.0
 
 
@@ -145,19 +146,20 @@ def _boxes_apart(box, end, bound, j, offset, which, clear):  # type: ignore[no-u
     """Mark boxes that a plane, as at one end of their gap or its middle (row `which` of `end` and the next), parts from a bound all
     over the gap, turning with the tool or not.
     """
-    for lane in range(LANES):
+    edge = _edge(bound, j)
+    for lane in range(len(clear)):
         x, y, z, wide = box[0, lane], box[1, lane], box[2, lane], box[EXTENT, lane]
         f0, f1, f2 = box[3, lane], box[4, lane], box[5, lane]
         t0, t1, t2 = box[6, lane], box[7, lane], box[8, lane]
         z0, z1, z2 = box[9, lane], box[10, lane], box[11, lane]
         c, s = end[which, lane], end[which + 1, lane]
-        mx, my, mw, across, _ = _towards(bound, j, offset + c * x - s * z, y, s * x + c * z)
-        reach = _support(bound, j, offset, mx, mw, across)
+        mx, my, mw, across, _ = _towards(edge, offset + c * x - s * z, y, s * x + c * z)
+        reach = _support(edge, offset, mx, mw, across)
         gx, gz = mx * c + mw * s, mw * c - mx * s
         over = gx * x + my * y + gz * z - abs(gx * f0 + my * t0 + gz * z0)
         over -= abs(gx * f1 + my * t1 + gz * z1) + abs(gx * f2 + my * t2 + gz * z2)
         fixed = over - _swept(
-            bound, j, offset, gx, my, gz, end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
+            edge, offset, gx, my, gz, end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
         )
         c, s = end[CA, lane], end[SA, lane]
         gx, gz = mx * c + mw * s, mw * c - mx * s
@@ -176,33 +178,35 @@ def _boxes_apart(box, end, bound, j, offset, which, clear):  # type: ignore[no-u
 @kernel
 def _boxes_under(box, end, bound, j, offset, clear):  # type: ignore[no-untyped-def]
     """Mark boxes that lie under a bound all over their gap, as seen along the normal, straight or leaning along the rim."""
-    for lane in range(LANES):
+    edge = _edge(bound, j)
+    for lane in range(len(clear)):
         y, z, t0, t1, t2 = box[1, lane], box[2, lane], box[6, lane], box[7, lane], box[8, lane]
         z0, z1, z2 = box[9, lane], box[10, lane], box[11, lane]
         ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        straight = _swept(bound, j, offset, 0.0, 0.0, -1.0, ca, sa, cb, sb) + z + abs(z0) + abs(z1) + abs(z2)
-        d = _lean(bound, j, y, box[EXTENT, lane], sa)
+        straight = _swept(edge, offset, 0.0, 0.0, -1.0, ca, sa, cb, sb) + z + abs(z0) + abs(z1) + abs(z2)
+        d = _lean(edge, y, box[EXTENT, lane], sa)
         over = d * y - z - abs(d * t0 - z0) - abs(d * t1 - z1) - abs(d * t2 - z2)
-        leaning = _swept(bound, j, offset, 0.0, d, -1.0, ca, sa, cb, sb) - over
+        leaning = _swept(edge, offset, 0.0, d, -1.0, ca, sa, cb, sb) - over
         clear[lane] = 1.0 if min(straight, leaning) < -_HAIR else clear[lane]
 
 
 @kernel
 def _boxes_across(box, end, bound, j, offset, clear):  # type: ignore[no-untyped-def]
     """Mark boxes that a plane across their thin side parts from a bound all over their gap."""
-    for lane in range(LANES):
+    edge = _edge(bound, j)
+    for lane in range(len(clear)):
         x, y, z = box[0, lane], box[1, lane], box[2, lane]
         f0, f1, f2 = box[3, lane], box[4, lane], box[5, lane]
         t0, t1, t2 = box[6, lane], box[7, lane], box[8, lane]
         z0, z1, z2 = box[9, lane], box[10, lane], box[11, lane]
         gx, gy, gz = t0 * z1 - z0 * t1, z0 * f1 - f0 * z1, f0 * t1 - t0 * f1
         share = 1.0 / max(np.sqrt(gx * gx + gy * gy + gz * gz), 1e-200)
-        share *= _away(bound, j, offset, gx, gy, gz, x, y, z, end[CM, lane], end[SM, lane])
+        share *= _away(edge, offset, gx, gy, gz, x, y, z, end[CM, lane], end[SM, lane])
         gx, gy, gz = share * gx, share * gy, share * gz
         over = gx * x + gy * y + gz * z - abs(gx * f0 + gy * t0 + gz * z0)
         over -= abs(gx * f1 + gy * t1 + gz * z1) + abs(gx * f2 + gy * t2 + gz * z2)
         beyond = over - _swept(
-            bound, j, offset, gx, gy, gz, end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
+            edge, offset, gx, gy, gz, end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
         )
         clear[lane] = 1.0 if beyond > _HAIR else clear[lane]
 
@@ -220,7 +224,7 @@ def _all(clear):  # type: ignore[no-untyped-def]
 def boxes_clear(box, end, turning, k, clear):  # type: ignore[no-untyped-def]
     """Mark the boxes, as `turn_boxes` gives them, no point of which is in piece k at any tilt of their gap; whether all are."""
     known, bound, offset = turning.known, turning.bound, turning.offset
-    for lane in range(LANES):
+    for lane in range(len(clear)):
         out = max(abs(box[1, lane]) - box[EXTENT, lane] - known[k, BESIDE], box[NEAREST, lane] - known[k, FAR])
         clear[lane] = 1.0 if max(out, known[k, NEAR] - box[FARTHEST, lane]) > _HAIR else 0.0
     for j in range(2 * k, 2 * k + 2):
@@ -253,26 +257,27 @@ def turn_boxes(view, block, cosine, sine, box):  # type: ignore[no-untyped-def]
 @kernel
 def _triangles_apart(seen, end, bound, j, offset, which, clear):  # type: ignore[no-untyped-def]
     """`_boxes_apart` for triangles."""
-    for lane in range(LANES):
+    edge = _edge(bound, j)
+    for lane in range(len(clear)):
         x0, y0, z0 = seen[0, lane], seen[1, lane], seen[2, lane]
         x1, y1, z1 = seen[3, lane], seen[4, lane], seen[5, lane]
         x2, y2, z2 = seen[6, lane], seen[7, lane], seen[8, lane]
         c, s = end[which, lane], end[which + 1, lane]
         # Where a gap ends, a corner touches the piece: the plane must be the one there.
-        mx, my, mw, across, away = _towards(bound, j, offset + c * x0 - s * z0, y0, s * x0 + c * z0)
-        nx, ny, nw, part, other = _towards(bound, j, offset + c * x1 - s * z1, y1, s * x1 + c * z1)
+        mx, my, mw, across, away = _towards(edge, offset + c * x0 - s * z0, y0, s * x0 + c * z0)
+        nx, ny, nw, part, other = _towards(edge, offset + c * x1 - s * z1, y1, s * x1 + c * z1)
         near = other < away
         mx, my, mw = nx if near else mx, ny if near else my, nw if near else mw
         across, away = part if near else across, min(other, away)
-        nx, ny, nw, part, other = _towards(bound, j, offset + c * x2 - s * z2, y2, s * x2 + c * z2)
+        nx, ny, nw, part, other = _towards(edge, offset + c * x2 - s * z2, y2, s * x2 + c * z2)
         near = other < away
         mx, my, mw = nx if near else mx, ny if near else my, nw if near else mw
         across = part if near else across
-        reach = _support(bound, j, offset, mx, mw, across)
+        reach = _support(edge, offset, mx, mw, across)
         gx, gz, d0, d1, d2 = mx * c + mw * s, mw * c - mx * s, my * y0, my * y1, my * y2
         over = min(gx * x0 + gz * z0 + d0, min(gx * x1 + gz * z1 + d1, gx * x2 + gz * z2 + d2))
         fixed = over - _swept(
-            bound, j, offset, gx, my, gz, end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
+            edge, offset, gx, my, gz, end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
         )
         c, s = end[CA, lane], end[SA, lane]
         gx, gz = mx * c + mw * s, mw * c - mx * s
@@ -289,22 +294,23 @@ def _triangles_apart(seen, end, bound, j, offset, which, clear):  # type: ignore
 @kernel
 def _triangles_fixed(seen, end, bound, j, offset, clear):  # type: ignore[no-untyped-def]
     """`_boxes_under` and `_boxes_across` for triangles."""
-    for lane in range(LANES):
+    edge = _edge(bound, j)
+    for lane in range(len(clear)):
         x0, y0, z0 = seen[0, lane], seen[1, lane], seen[2, lane]
         x1, y1, z1 = seen[3, lane], seen[4, lane], seen[5, lane]
         x2, y2, z2 = seen[6, lane], seen[7, lane], seen[8, lane]
         ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        straight = max(z0, max(z1, z2)) + _swept(bound, j, offset, 0.0, 0.0, -1.0, ca, sa, cb, sb)
-        d = _lean(bound, j, (y0 + y1 + y2) / 3.0, 0.0, sa)
+        straight = max(z0, max(z1, z2)) + _swept(edge, offset, 0.0, 0.0, -1.0, ca, sa, cb, sb)
+        d = _lean(edge, (y0 + y1 + y2) / 3.0, 0.0, sa)
         over = min(d * y0 - z0, min(d * y1 - z1, d * y2 - z2))
-        leaning = _swept(bound, j, offset, 0.0, d, -1.0, ca, sa, cb, sb) - over
+        leaning = _swept(edge, offset, 0.0, d, -1.0, ca, sa, cb, sb) - over
         ux, uy, uz, vx, vy, vz = x1 - x0, y1 - y0, z1 - z0, x2 - x0, y2 - y0, z2 - z0
         gx, gy, gz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
         share = 1.0 / max(np.sqrt(gx * gx + gy * gy + gz * gz), 1e-200)
-        share *= _away(bound, j, offset, gx, gy, gz, x0, y0, z0, end[CM, lane], end[SM, lane])
+        share *= _away(edge, offset, gx, gy, gz, x0, y0, z0, end[CM, lane], end[SM, lane])
         gx, gy, gz = share * gx, share * gy, share * gz
         over = min(gx * x0 + gy * y0 + gz * z0, min(gx * x1 + gy * y1 + gz * z1, gx * x2 + gy * y2 + gz * z2))
-        own = _swept(bound, j, offset, gx, gy, gz, ca, sa, cb, sb) - over
+        own = _swept(edge, offset, gx, gy, gz, ca, sa, cb, sb) - over
         clear[lane] = 1.0 if min(own, min(straight, leaning)) < -_HAIR else clear[lane]
 
 
@@ -312,7 +318,7 @@ def _triangles_fixed(seen, end, bound, j, offset, clear):  # type: ignore[no-unt
 def triangles_clear(seen, end, turning, k, clear):  # type: ignore[no-untyped-def]
     """`boxes_clear` for triangles as `turn_triangles` gives them."""
     known, bound, offset = turning.known, turning.bound, turning.offset
-    for lane in range(LANES):
+    for lane in range(len(clear)):
         y0, y1, y2 = seen[1, lane], seen[4, lane], seen[7, lane]
         out = max(min(y0, min(y1, y2)), -max(y0, max(y1, y2))) - known[k, BESIDE]
         out = max(out, seen[9, lane] - known[k, FAR])
@@ -433,7 +439,7 @@ def turning_of(piece, offset, low, high):  # type: ignore[no-untyped-def]
             for j in range(2 * k, 2 * k + 2):
                 if bound[j, THERE] > 0.0:
                     reach = min(
-                        reach, _swept(bound, j, offset, 0.0, 0.0, -1.0, np.cos(a), np.sin(a), np.cos(b), np.sin(b))
+                        reach, _swept(_edge(bound, j), offset, 0.0, 0.0, -1.0, np.cos(a), np.sin(a), np.cos(b), np.sin(b))
                     )
             deepest = max(deepest, reach)
         known[k, FLOOR] = -deepest - _HAIR
