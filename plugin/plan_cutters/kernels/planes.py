@@ -13,15 +13,15 @@ import numpy as np
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.lanes import LANES
 from plan_cutters.kernels.pieces import (
-    ARC, BOTTOM, COLUMNS, CYLINDER, HIGH, KIND, LOW, RADIUS, ROUND, SLOPE, TOP, WIDE,
+    ARC, BOTTOM, CONE, CYLINDER, HIGH, KIND, LOW, RADIUS, ROUND, SLOPE, TOP, WIDE,
 )  # fmt: skip
 
 #: A bound of a piece: two rims, each a radius and a height, and by how much what lies between them is grown all round; the slope
-#: of its side; whether there is such a bound; whether its rims, seen along a direction, are farthest at an end of a range.
-IS_ARC, Q0, F0, Q1, F1, GROWN, SIDE, THERE, JOINT, BOUNDS = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
+#: of its side; whether there is such a bound.
+Q0, F0, Q1, F1, GROWN, SIDE, THERE, BOUNDS = 0, 1, 2, 3, 4, 5, 6, 7
 #: What is known of a piece: nothing nearer to the line of turning or farther from it is ever in it, nothing so far beside it along
-#: that line, nothing as low over the centre's tangent plane.
-NEAR, FAR, BESIDE, FLOOR, KNOWN = 0, 1, 2, 3, 4
+#: that line, nothing as low over the centre's tangent plane; its radius at height 0, were it to go on, and its slope if it widens.
+NEAR, FAR, BESIDE, FLOOR, AXIS, WIDENS, KNOWN = 0, 1, 2, 3, 4, 5, 6
 #: Rows of ends: cosine and sine of the first tilt, of the last, of the middle, cosine of half the gap.
 CA, SA, CB, SB, CM, SM, CH, ENDS = 0, 1, 2, 3, 4, 5, 6, 7
 #: Rows of boxes turned into a rotation's frame: centre, three half sides along f, along t, along n, extent along t, least and
@@ -61,25 +61,44 @@ def _span(p, q, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
 @kernel
 def _edge(bound, j):  # type: ignore[no-untyped-def]
     """A bound as numbers: what lanes have in common must not be read again in each."""
-    return (
-        bound[j, Q0], bound[j, F0], bound[j, Q1], bound[j, F1], bound[j, GROWN], bound[j, SIDE], bound[j, JOINT] > 0.0
-    )  # fmt: skip
+    loose = 1.0 if bound[j, Q0] < 0.0 else 0.0
+    return bound[j, Q0], bound[j, F0], bound[j, Q1], bound[j, F1], bound[j, GROWN], bound[j, SIDE], loose
 
 
 @kernel
-def _swept(edge, offset, gx, gy, gz, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
-    """How far a bound goes at most, at any tilt of a gap, along a direction of the part, from the centre."""
-    q0, f0, q1, f1, grown, _, joint = edge
-    xl, xh = _span(gx, -gz, ca, sa, cb, sb)
-    wl, wh = _span(gz, gx, ca, sa, cb, sb)
-    low, high = xl * xl, xh * xh
-    # A negative radius that is not the offset: each part by itself.
-    least = 0.0 if xl * xh <= 0.0 else min(low, high)
-    low, high = low if joint else least, high if joint else least
-    rl, rh = np.sqrt(low + gy * gy), np.sqrt(high + gy * gy)
-    first = max(q0 * rl - offset * xl, q0 * rh - offset * xh) + max(f0 * wl, f0 * wh)
-    second = max(q1 * rl - offset * xl, q1 * rh - offset * xh) + max(f1 * wl, f1 * wh)
-    return max(first, second) + grown * np.sqrt(gx * gx + gy * gy + gz * gz)
+def _most(p, q, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
+    """The most of p cos T + q sin T over a gap shorter than 180 deg."""
+    within = (q * ca - p * sa > 0.0) & (q * cb - p * sb < 0.0)
+    return np.sqrt(p * p + q * q) if within else max(p * ca + q * sa, p * cb + q * sb)
+
+
+@kernel
+def _line(edge, gx, gy, gz, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
+    """A line (slope, value at 0) that bounds how far a rim of radius 1 goes along a direction of the part over a gap.
+
+    It goes hypot(x, g_y), x what the direction has along x_T: convex in x, so below its chord. Where the radius is negative the
+    bound is from below: a tangent.
+    """
+    loose = edge[6]
+    low, high = _span(gx, -gz, ca, sa, cb, sb)
+    rl, rh, middle = np.sqrt(low * low + gy * gy), np.sqrt(high * high + gy * gy), 0.5 * (low + high)
+    slope = (rh - rl) / max(high - low, 1e-12)
+    base = max(rl - slope * low, rh - slope * high)
+    share = 1.0 / max(np.sqrt(middle * middle + gy * gy), 1e-200)
+    return slope + loose * (middle * share - slope), base + loose * (gy * gy * share - base)
+
+
+@kernel
+def _swept(edge, offset, line, gx, gz, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
+    """How far a bound goes at most, at any tilt of a gap, along a direction of the part of length 1, from the centre; `line` as
+    `_line` gives it.
+    """
+    q0, f0, q1, f1, grown, _, _ = edge
+    slope, base = line
+    first, second = q0 * slope - offset, q1 * slope - offset
+    first = q0 * base + _most(first * gx + f0 * gz, f0 * gx - first * gz, ca, sa, cb, sb)
+    second = q1 * base + _most(second * gx + f1 * gz, f1 * gx - second * gz, ca, sa, cb, sb)
+    return max(first, second) + grown
 
 
 @kernel
@@ -126,11 +145,13 @@ def _between(least, reach, my, y_most, nearest, farthest, cosine):  # type: igno
 
 @kernel
 def _lean(edge, y, wide, sine):  # type: ignore[no-untyped-def]
-    """How much a plane under a rim leans along the line of turning where something stands beside the contact."""
+    """The direction (y, z), of length 1, of a plane under a rim where something stands beside the contact."""
     radius = max(edge[0], _HAIR)
     y = y - max(-0.5 * wide, min(0.5 * wide, y))
     y = max(-_STEEP * radius, min(_STEEP * radius, y))
-    return sine * y / np.sqrt(radius * radius - y * y)
+    lean = sine * y / np.sqrt(radius * radius - y * y)
+    share = 1.0 / np.sqrt(1.0 + lean * lean)
+    return share * lean, -share
 
 
 @kernel
@@ -158,9 +179,8 @@ def _boxes_apart(box, end, bound, j, offset, which, clear):  # type: ignore[no-u
         gx, gz = mx * c + mw * s, mw * c - mx * s
         over = gx * x + my * y + gz * z - abs(gx * f0 + my * t0 + gz * z0)
         over -= abs(gx * f1 + my * t1 + gz * z1) + abs(gx * f2 + my * t2 + gz * z2)
-        fixed = over - _swept(
-            edge, offset, gx, my, gz, end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        )
+        ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
+        fixed = over - _swept(edge, offset, _line(edge, gx, my, gz, ca, sa, cb, sb), gx, gz, ca, sa, cb, sb)
         c, s = end[CA, lane], end[SA, lane]
         gx, gz = mx * c + mw * s, mw * c - mx * s
         first = gx * x + my * y + gz * z - abs(gx * f0 + my * t0 + gz * z0)
@@ -176,18 +196,20 @@ def _boxes_apart(box, end, bound, j, offset, which, clear):  # type: ignore[no-u
 
 
 @kernel
-def _boxes_under(box, end, bound, j, offset, clear):  # type: ignore[no-untyped-def]
-    """Mark boxes that lie under a bound all over their gap, as seen along the normal, straight or leaning along the rim."""
+def _boxes_under(box, end, bound, j, offset, tilted, clear):  # type: ignore[no-untyped-def]
+    """Mark boxes that lie under a bound all over their gap, as seen along the normal, straight (`tilted` 0) or leaning along the
+    rim (1).
+    """
     edge = _edge(bound, j)
     for lane in range(len(clear)):
         y, z, t0, t1, t2 = box[1, lane], box[2, lane], box[6, lane], box[7, lane], box[8, lane]
         z0, z1, z2 = box[9, lane], box[10, lane], box[11, lane]
         ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        straight = _swept(edge, offset, 0.0, 0.0, -1.0, ca, sa, cb, sb) + z + abs(z0) + abs(z1) + abs(z2)
-        d = _lean(edge, y, box[EXTENT, lane], sa)
-        over = d * y - z - abs(d * t0 - z0) - abs(d * t1 - z1) - abs(d * t2 - z2)
-        leaning = _swept(edge, offset, 0.0, d, -1.0, ca, sa, cb, sb) - over
-        clear[lane] = 1.0 if min(straight, leaning) < -_HAIR else clear[lane]
+        gy, gz = _lean(edge, y, box[EXTENT, lane], tilted * sa)
+        over = gy * y + gz * z - abs(gy * t0 + gz * z0) - abs(gy * t1 + gz * z1) - abs(gy * t2 + gz * z2)
+        line = _line(edge, 0.0, gy, gz, ca, sa, cb, sb)
+        beyond = over - _swept(edge, offset, line, 0.0, gz, ca, sa, cb, sb)
+        clear[lane] = 1.0 if beyond > _HAIR else clear[lane]
 
 
 @kernel
@@ -205,9 +227,8 @@ def _boxes_across(box, end, bound, j, offset, clear):  # type: ignore[no-untyped
         gx, gy, gz = share * gx, share * gy, share * gz
         over = gx * x + gy * y + gz * z - abs(gx * f0 + gy * t0 + gz * z0)
         over -= abs(gx * f1 + gy * t1 + gz * z1) + abs(gx * f2 + gy * t2 + gz * z2)
-        beyond = over - _swept(
-            edge, offset, gx, gy, gz, end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        )
+        ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
+        beyond = over - _swept(edge, offset, _line(edge, gx, gy, gz, ca, sa, cb, sb), gx, gz, ca, sa, cb, sb)
         clear[lane] = 1.0 if beyond > _HAIR else clear[lane]
 
 
@@ -224,12 +245,17 @@ def _all(clear):  # type: ignore[no-untyped-def]
 def boxes_clear(box, end, turning, k, clear):  # type: ignore[no-untyped-def]
     """Mark the boxes, as `turn_boxes` gives them, no point of which is in piece k at any tilt of their gap; whether all are."""
     known, bound, offset = turning.known, turning.bound, turning.offset
+    beside, base, slope, near, far = known[k, BESIDE], known[k, AXIS], known[k, WIDENS], known[k, NEAR], known[k, FAR]
     for lane in range(len(clear)):
-        out = max(abs(box[1, lane]) - box[EXTENT, lane] - known[k, BESIDE], box[NEAREST, lane] - known[k, FAR])
-        clear[lane] = 1.0 if max(out, known[k, NEAR] - box[FARTHEST, lane]) > _HAIR else 0.0
+        # No point is higher over the centre than far from the line of turning.
+        aside = min(beside, base + slope * box[FARTHEST, lane])
+        out = max(abs(box[1, lane]) - box[EXTENT, lane] - aside, box[NEAREST, lane] - far)
+        clear[lane] = 1.0 if max(out, near - box[FARTHEST, lane]) > _HAIR else 0.0
     for j in range(2 * k, 2 * k + 2):
         if bound[j, THERE] > 0.0 and not _all(clear):
-            _boxes_under(box, end, bound, j, offset, clear)
+            _boxes_under(box, end, bound, j, offset, 0.0, clear)
+            if not _all(clear):
+                _boxes_under(box, end, bound, j, offset, 1.0, clear)
             for which in (CB, CA, CM):
                 if not _all(clear):
                     _boxes_apart(box, end, bound, j, offset, which, clear)
@@ -276,9 +302,8 @@ def _triangles_apart(seen, end, bound, j, offset, which, clear):  # type: ignore
         reach = _support(edge, offset, mx, mw, across)
         gx, gz, d0, d1, d2 = mx * c + mw * s, mw * c - mx * s, my * y0, my * y1, my * y2
         over = min(gx * x0 + gz * z0 + d0, min(gx * x1 + gz * z1 + d1, gx * x2 + gz * z2 + d2))
-        fixed = over - _swept(
-            edge, offset, gx, my, gz, end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        )
+        ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
+        fixed = over - _swept(edge, offset, _line(edge, gx, my, gz, ca, sa, cb, sb), gx, gz, ca, sa, cb, sb)
         c, s = end[CA, lane], end[SA, lane]
         gx, gz = mx * c + mw * s, mw * c - mx * s
         first = min(gx * x0 + gz * z0 + d0, min(gx * x1 + gz * z1 + d1, gx * x2 + gz * z2 + d2))
@@ -292,40 +317,57 @@ def _triangles_apart(seen, end, bound, j, offset, which, clear):  # type: ignore
 
 
 @kernel
-def _triangles_fixed(seen, end, bound, j, offset, clear):  # type: ignore[no-untyped-def]
-    """`_boxes_under` and `_boxes_across` for triangles."""
+def _triangles_under(seen, end, bound, j, offset, tilted, clear):  # type: ignore[no-untyped-def]
+    """`_boxes_under` for triangles."""
+    edge = _edge(bound, j)
+    for lane in range(len(clear)):
+        y0, z0, y1, z1, y2, z2 = seen[1, lane], seen[2, lane], seen[4, lane], seen[5, lane], seen[7, lane], seen[8, lane]
+        ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
+        gy, gz = _lean(edge, (y0 + y1 + y2) / 3.0, 0.0, tilted * sa)
+        over = min(gy * y0 + gz * z0, min(gy * y1 + gz * z1, gy * y2 + gz * z2))
+        line = _line(edge, 0.0, gy, gz, ca, sa, cb, sb)
+        beyond = over - _swept(edge, offset, line, 0.0, gz, ca, sa, cb, sb)
+        clear[lane] = 1.0 if beyond > _HAIR else clear[lane]
+
+
+@kernel
+def _triangles_across(seen, end, bound, j, offset, clear):  # type: ignore[no-untyped-def]
+    """Mark triangles whose own plane parts them from a bound all over their gap."""
     edge = _edge(bound, j)
     for lane in range(len(clear)):
         x0, y0, z0 = seen[0, lane], seen[1, lane], seen[2, lane]
         x1, y1, z1 = seen[3, lane], seen[4, lane], seen[5, lane]
         x2, y2, z2 = seen[6, lane], seen[7, lane], seen[8, lane]
         ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        straight = max(z0, max(z1, z2)) + _swept(edge, offset, 0.0, 0.0, -1.0, ca, sa, cb, sb)
-        d = _lean(edge, (y0 + y1 + y2) / 3.0, 0.0, sa)
-        over = min(d * y0 - z0, min(d * y1 - z1, d * y2 - z2))
-        leaning = _swept(edge, offset, 0.0, d, -1.0, ca, sa, cb, sb) - over
         ux, uy, uz, vx, vy, vz = x1 - x0, y1 - y0, z1 - z0, x2 - x0, y2 - y0, z2 - z0
         gx, gy, gz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
         share = 1.0 / max(np.sqrt(gx * gx + gy * gy + gz * gz), 1e-200)
         share *= _away(edge, offset, gx, gy, gz, x0, y0, z0, end[CM, lane], end[SM, lane])
         gx, gy, gz = share * gx, share * gy, share * gz
         over = min(gx * x0 + gy * y0 + gz * z0, min(gx * x1 + gy * y1 + gz * z1, gx * x2 + gy * y2 + gz * z2))
-        own = _swept(edge, offset, gx, gy, gz, ca, sa, cb, sb) - over
-        clear[lane] = 1.0 if min(own, min(straight, leaning)) < -_HAIR else clear[lane]
+        line = _line(edge, gx, gy, gz, ca, sa, cb, sb)
+        beyond = over - _swept(edge, offset, line, gx, gz, ca, sa, cb, sb)
+        clear[lane] = 1.0 if beyond > _HAIR else clear[lane]
 
 
 @kernel
 def triangles_clear(seen, end, turning, k, clear):  # type: ignore[no-untyped-def]
     """`boxes_clear` for triangles as `turn_triangles` gives them."""
     known, bound, offset = turning.known, turning.bound, turning.offset
+    beside, base, slope, near, far = known[k, BESIDE], known[k, AXIS], known[k, WIDENS], known[k, NEAR], known[k, FAR]
     for lane in range(len(clear)):
         y0, y1, y2 = seen[1, lane], seen[4, lane], seen[7, lane]
-        out = max(min(y0, min(y1, y2)), -max(y0, max(y1, y2))) - known[k, BESIDE]
-        out = max(out, seen[9, lane] - known[k, FAR])
-        clear[lane] = 1.0 if max(out, known[k, NEAR] - seen[10, lane]) > _HAIR else 0.0
+        aside = min(beside, base + slope * seen[10, lane])
+        out = max(min(y0, min(y1, y2)), -max(y0, max(y1, y2))) - aside
+        out = max(out, seen[9, lane] - far)
+        clear[lane] = 1.0 if max(out, near - seen[10, lane]) > _HAIR else 0.0
     for j in range(2 * k, 2 * k + 2):
         if bound[j, THERE] > 0.0 and not _all(clear):
-            _triangles_fixed(seen, end, bound, j, offset, clear)
+            _triangles_under(seen, end, bound, j, offset, 0.0, clear)
+            if not _all(clear):
+                _triangles_under(seen, end, bound, j, offset, 1.0, clear)
+            if not _all(clear):
+                _triangles_across(seen, end, bound, j, offset, clear)
             for which in (CB, CA, CM):
                 if not _all(clear):
                     _triangles_apart(seen, end, bound, j, offset, which, clear)
@@ -375,30 +417,22 @@ def all_ends(end, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _bounds_of(piece, k, offset, bound):  # type: ignore[no-untyped-def]
+def _put_bound(bound, j, q0, f0, q1, f1, grown, slope):  # type: ignore[no-untyped-def]
+    bound[j, Q0], bound[j, F0], bound[j, Q1], bound[j, F1] = q0, f0, q1, f1
+    bound[j, GROWN], bound[j, SIDE], bound[j, THERE] = grown, slope, 1.0
+
+
+@kernel
+def _bounds_of(piece, k, bound):  # type: ignore[no-untyped-def]
     """Write the bounds of piece k."""
-    first, second = 2 * k, 2 * k + 1
-    bound[first, THERE], bound[second, THERE] = 1.0, 0.0
+    radius, slope, wide = piece[k, RADIUS], piece[k, SLOPE], piece[k, WIDE]
     if piece[k, KIND] != ARC:
-        q0, q1 = max(0.0, piece[k, RADIUS]), max(0.0, piece[k, WIDE])
-        row = (0.0, q0, piece[k, LOW], q1, piece[k, HIGH], 0.0, piece[k, SLOPE] if piece[k, KIND] != CYLINDER else 0.0)
-        for i in range(7):
-            bound[first, i] = row[i]
-        bound[first, JOINT] = 1.0
+        slope = slope if piece[k, KIND] != CYLINDER else 0.0
+        _put_bound(bound, 2 * k, max(0.0, radius), piece[k, LOW], max(0.0, wide), piece[k, HIGH], 0.0, slope)
         return
-    q, centre = piece[k, RADIUS], piece[k, SLOPE]
-    row = (1.0, q, centre, q, centre, piece[k, ROUND], 0.0)
-    for i in range(7):
-        bound[first, i] = row[i]
-    # Where the radius is the offset, q (hypot(x, y) - x) falls or rises with x all along, whatever its sign.
-    bound[first, JOINT] = 1.0 if q >= 0.0 or q == offset else 0.0
-    whole = piece[k, BOTTOM] == centre - piece[k, ROUND] and piece[k, TOP] == centre + piece[k, ROUND]
-    if whole and q >= 0.0:
-        return
-    row = (0.0, piece[k, WIDE], piece[k, BOTTOM], piece[k, WIDE], piece[k, TOP], 0.0, 0.0)
-    for i in range(7):
-        bound[second, i] = row[i]
-    bound[second, JOINT], bound[second, THERE] = 1.0, 1.0
+    _put_bound(bound, 2 * k, radius, slope, radius, slope, piece[k, ROUND], 0.0)
+    if radius < 0.0 or piece[k, BOTTOM] > slope - piece[k, ROUND] or piece[k, TOP] < slope + piece[k, ROUND]:
+        _put_bound(bound, 2 * k + 1, wide, piece[k, BOTTOM], wide, piece[k, TOP], 0.0, 0.0)
 
 
 @entry
@@ -421,11 +455,14 @@ def turning_of(piece, offset, low, high):  # type: ignore[no-untyped-def]
     count, eight = len(piece), 0
     bound, known = np.zeros((2 * count, BOUNDS)), np.zeros((count, KNOWN))
     for k in range(count):
-        _bounds_of(piece, k, offset, bound)
+        _bounds_of(piece, k, bound)
         radius, floor = piece[k, RADIUS], piece[k, LOW]
         bottom, top = piece[k, BOTTOM], piece[k, TOP]
         known[k, NEAR] = max(0.0, max(bottom, -top))
         known[k, BESIDE] = max(piece[k, WIDE], radius)
+        known[k, AXIS], known[k, WIDENS] = known[k, BESIDE], 0.0
+        if piece[k, KIND] == CONE and piece[k, SLOPE] > 0.0:
+            known[k, AXIS], known[k, WIDENS] = radius - piece[k, SLOPE] * floor, piece[k, SLOPE]
         known[k, FAR] = np.hypot(max(abs(bottom), abs(top)), abs(offset) + known[k, BESIDE])
         # The eight sides want a cutter that touches with its rim, and tilts up to 90 deg.
         if piece[k, KIND] == CYLINDER and 0.0 <= floor <= offset - radius + 1e-12 and high <= 0.5 * np.pi + 1e-9:
@@ -438,9 +475,9 @@ def turning_of(piece, offset, low, high):  # type: ignore[no-untyped-def]
             reach = np.inf
             for j in range(2 * k, 2 * k + 2):
                 if bound[j, THERE] > 0.0:
-                    reach = min(
-                        reach, _swept(_edge(bound, j), offset, 0.0, 0.0, -1.0, np.cos(a), np.sin(a), np.cos(b), np.sin(b))
-                    )
+                    edge, ca, sa, cb, sb = _edge(bound, j), np.cos(a), np.sin(a), np.cos(b), np.sin(b)
+                    line = _line(edge, 0.0, 0.0, -1.0, ca, sa, cb, sb)
+                    reach = min(reach, _swept(edge, offset, line, 0.0, -1.0, ca, sa, cb, sb))
             deepest = max(deepest, reach)
         known[k, FLOOR] = -deepest - _HAIR
     return bound, known, eight
