@@ -282,7 +282,7 @@ def turn_boxes(view, block, cosine, sine, box):  # type: ignore[no-untyped-def]
 
 @kernel
 def _triangles_apart(seen, end, bound, j, offset, which, clear):  # type: ignore[no-untyped-def]
-    """`_boxes_apart` for triangles."""
+    """`_boxes_apart` for triangles, whose corners go along a plane's direction as sums of sine and cosine."""
     edge = _edge(bound, j)
     for lane in range(len(clear)):
         x0, y0, z0 = seen[0, lane], seen[1, lane], seen[2, lane]
@@ -304,16 +304,13 @@ def _triangles_apart(seen, end, bound, j, offset, which, clear):  # type: ignore
         over = min(gx * x0 + gz * z0 + d0, min(gx * x1 + gz * z1 + d1, gx * x2 + gz * z2 + d2))
         ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
         fixed = over - _swept(edge, offset, _line(edge, gx, my, gz, ca, sa, cb, sb), gx, gz, ca, sa, cb, sb)
-        c, s = end[CA, lane], end[SA, lane]
-        gx, gz = mx * c + mw * s, mw * c - mx * s
-        first = min(gx * x0 + gz * z0 + d0, min(gx * x1 + gz * z1 + d1, gx * x2 + gz * z2 + d2))
-        c, s = end[CB, lane], end[SB, lane]
-        gx, gz = mx * c + mw * s, mw * c - mx * s
-        last = min(gx * x0 + gz * z0 + d0, min(gx * x1 + gz * z1 + d1, gx * x2 + gz * z2 + d2))
-        good = _between(
-            min(first, last), reach, my, max(d0, max(d1, d2)), seen[9, lane], seen[10, lane], end[CH, lane]
-        )
-        clear[lane] = 1.0 if good | (fixed > _HAIR) else clear[lane]
+        p, q = mx * x0 + mw * z0, mw * x0 - mx * z0
+        least = d0 - _most(-p, -q, ca, sa, cb, sb)
+        p, q = mx * x1 + mw * z1, mw * x1 - mx * z1
+        least = min(least, d1 - _most(-p, -q, ca, sa, cb, sb))
+        p, q = mx * x2 + mw * z2, mw * x2 - mx * z2
+        least = min(least, d2 - _most(-p, -q, ca, sa, cb, sb))
+        clear[lane] = 1.0 if max(least - reach, fixed) > _HAIR else clear[lane]
 
 
 @kernel
