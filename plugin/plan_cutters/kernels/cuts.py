@@ -11,7 +11,18 @@ from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.lanes import LANES
 from plan_cutters.kernels.passes import _passes
 from plan_cutters.kernels.pieces import HIGH, LOW, RADIUS, inset
-from plan_cutters.kernels.planes import BESIDE, BOXES, ENDS, FAR, FLOOR, NEAR, all_ends, distances, put_ends, triangles_clear
+from plan_cutters.kernels.planes import (
+    BESIDE,
+    BOXES,
+    ENDS,
+    FAR,
+    FLOOR,
+    NEAR,
+    all_ends,
+    distances,
+    put_ends,
+    triangles_clear,
+)
 from plan_cutters.kernels.rows import Cylinder, Scratch
 from plan_cutters.kernels.tool_arcs import ARCS, arc_about, closed, forbidden
 
@@ -20,8 +31,10 @@ _QUARTERED = 4
 
 
 class Room(NamedTuple):
-    """Room to work in: corner (3, 3), first and second (8, 3) polygons, a body, ranges (64, 2) of tilts, arcs (ARCS, 2); in lanes,
-    as in `planes`: a triangle, boxes or triangles turned, ends, what is clear, by how much ends move; parts (64, 3, 3) of a triangle and how often each was cut.
+    """Room to work in: corner (3, 3), first and second (8, 3) polygons, a body, ranges (64, 2) of tilts, arcs (ARCS, 2).
+
+    In lanes, as in `planes`: a triangle, boxes or triangles turned, ends, what is clear, by how much ends move. Parts (64, 3, 3)
+    of a triangle, and how often each was cut.
     """
 
     corner: Any
@@ -45,8 +58,8 @@ def room_to_cut():  # type: ignore[no-untyped-def]
     """Room to cut gaps in."""
     return Room(
         np.empty((3, 3)), np.empty((8, 3)), np.empty((8, 3)), np.empty(BODY), np.empty((64, 2)), np.empty((ARCS, 2)),
-        np.empty((11, LANES)), np.empty((BOXES, LANES)), np.empty((ENDS, LANES)), np.empty(LANES), np.empty(LANES), np.empty((64, 3, 3)), np.empty(64, np.int64),
-        scratch(),
+        np.empty((11, LANES)), np.empty((BOXES, LANES)), np.empty((ENDS, LANES)), np.empty(LANES), np.empty(LANES),
+        np.empty((64, 3, 3)), np.empty(64, np.int64), scratch(),
     )  # fmt: skip
 
 
@@ -60,10 +73,10 @@ def flutes(turning, k):  # type: ignore[no-untyped-def]
 @kernel
 def _meets(gap, count, first, last):  # type: ignore[no-untyped-def]
     """Whether an arc has tilts of any gap."""
+    meets = False
     for g in range(count):
-        if first < gap[g, LAST] and last > gap[g, FIRST]:
-            return True
-    return False
+        meets = meets or (first < gap[g, LAST] and last > gap[g, FIRST])
+    return meets
 
 
 @kernel
@@ -133,11 +146,8 @@ def _quarters(part, seen):  # type: ignore[no-untyped-def]
             for column, row in ((0, 0), (2, 1), (1, 2)):
                 here = part[k, column]
                 # The middle one has the middles of the sides, the others a corner each and the middles next to it.
-                if lane % 4 == 3:
-                    value = 0.5 * (here + part[other, column])
-                else:
-                    value = 0.5 * (here + part[lane % 4, column])
-                seen[3 * k + row, lane] = value
+                to = other if lane % 4 == 3 else lane % 4
+                seen[3 * k + row, lane] = 0.5 * (here + part[to, column])
     distances(seen)
 
 
@@ -300,7 +310,10 @@ def cut_gaps(vertex, i, frame, gap, count, narrowest, turning, k, room):  # type
             g += 1
             continue
         # A side or the middle of the triangle sticks out further than its corners: mostly by a little, at one end.
-        at_first, at_last = _in_the_way(vertex, i, frame, a, turning, k, room), _in_the_way(vertex, i, frame, b, turning, k, room)
+        at_first, at_last = (
+            _in_the_way(vertex, i, frame, a, turning, k, room),
+            _in_the_way(vertex, i, frame, b, turning, k, room),
+        )
         # What was undecided at its ends no longer is where this triangle is in the way.
         if at_first and gap[g, UF] > 0.0 and _in_the_way(vertex, i, frame, a - gap[g, UF], turning, k, room):
             gap[g, UF] = 0.0

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from plan_cutters.kernels.bounds import FAR, FLOOR, NEAR, Turning, turning_of
 from plan_cutters.kernels.cuts import cut_gaps, flutes, room_to_cut, take_point
 from plan_cutters.kernels.gaps import CF, CL, COLUMNS, FIRST, GAPS, LAST, SF, SL, UF, UL, _begin, _end
 from plan_cutters.kernels.hit import stand, tree_hit
@@ -16,9 +17,7 @@ from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.lanes import LANES, _boxes_pass, _see, _see_leaf, _see_triangle, _triangles_pass, _turn
 from plan_cutters.kernels.pieces import ARC, BOTTOM, HIGH, KIND, LOW, RADIUS, ROUND, SLOPE, TOP
 from plan_cutters.kernels.pieces import COLUMNS as PIECE
-from plan_cutters.kernels.planes import (
-    FAR, FLOOR, NEAR, Turning, all_ends, boxes_clear, triangles_clear, turn_boxes, turn_triangles, turning_of,
-)  # fmt: skip
+from plan_cutters.kernels.planes import all_ends, boxes_clear, triangles_clear, turn_boxes, turn_triangles
 from plan_cutters.kernels.probing import OFFSET_OF, RISE, TILT_FROM, TILT_TO, permitted
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.vectors import cross, lean_frame
@@ -185,7 +184,18 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, na
                     for k in range(LANES):
                         which[k] = begin + k
                     count, cut = _leaf(
-                        leaves[inner], which, vertex, frame, turn, gap, count, turning, left[lane], narrowest, inside, room
+                        leaves[inner],
+                        which,
+                        vertex,
+                        frame,
+                        turn,
+                        gap,
+                        count,
+                        turning,
+                        left[lane],
+                        narrowest,
+                        inside,
+                        room,
                     )
                     if cut >= 0:
                         known[-1, tally[2]] = begin + cut
@@ -222,7 +232,7 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, na
 
 @kernel
 def _write(gap, count, written, room, part):  # type: ignore[no-untyped-def]
-    """Write the gaps as intervals among others, ascending; (how many, width of what is undecided at their ends and beyond `room`)."""
+    """Write the gaps as intervals among others, ascending; (how many, how much is undecided at their ends and beyond `room`)."""
     unsure = gap[GAPS, UF] + gap[GAPS, UL]
     for g in range(count):
         unsure += gap[g, UF] + gap[g, UL]
@@ -265,8 +275,9 @@ def _ball(turning):  # type: ignore[no-untyped-def]
 
 @kernel
 def _reachable(view, lanes, turning):  # type: ignore[no-untyped-def]
-    """The mask of the pieces that boxes of the first block may reach into at any posture: they rise as high, and stand neither nearer nor
-    farther than the piece.
+    """The mask of the pieces that boxes of the first block may reach into at any posture.
+
+    They rise as high, and stand neither nearer nor farther than the piece.
     """
     mask, known = 0, turning.known
     for k in range(len(turning.piece)):
@@ -329,7 +340,12 @@ def free_map(  # type: ignore[no-untyped-def]
         if ball >= 0:
             for i in range(PIECE):
                 alone[0, i] = piece[ball, i]
-            alone[0, LOW], alone[0, HIGH], alone[0, BOTTOM], alone[0, TOP] = -np.inf, np.inf, -alone[0, ROUND], alone[0, ROUND]
+            alone[0, LOW], alone[0, HIGH], alone[0, BOTTOM], alone[0, TOP] = (
+                -np.inf,
+                np.inf,
+                -alone[0, ROUND],
+                alone[0, ROUND],
+            )
         for place in range(len(rows)):
             row = rows[place]
             p, n, e1 = contacts.point[row], contacts.normal[row], contacts.direction_max[row]

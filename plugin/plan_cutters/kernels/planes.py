@@ -1,110 +1,44 @@
 """Does a convex piece of a tool stay clear of boxes or triangles at all tilts of a gap? Eight at a time, parted by planes.
 
-Two lemmas carry all of it; `docs/tools.md` proves them. Points count from the centre about which the tool tilts. *One plane at
-both ends*: a plane that is fixed to the tool and touches the piece parts it from a point at both ends of a gap; then it does so
-in between, if the tilts at which it does not could not all lie between the ends. *A plane fixed in the part*: along a direction
-of the part the piece goes no farther, at any tilt of a gap, than a closed form says.
-"""
+Two lemmas carry all of it; `docs/between_samples.md` proves them. Points count from the centre about which the tool tilts. *One
+plane at both ends*: a plane that is fixed to the tool and touches the piece parts it from a point at both ends of a gap; then it
+does so in between, if the tilts at which it does not could not all lie between the ends. *A plane fixed in the part*: along a
+direction of the part the piece goes no farther, at any tilt of a gap, than a closed form says.
 
-from typing import Any, NamedTuple
+Loops run over `len(clear)`: where they are known to be short, the compiler does not take lanes together.
+"""
 
 import numpy as np
 
-from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.lanes import LANES
-from plan_cutters.kernels.pieces import (
-    ARC, BOTTOM, CONE, CYLINDER, HIGH, KIND, LOW, RADIUS, ROUND, SLOPE, TOP, WIDE,
+from plan_cutters.kernels.bounds import (
+    AXIS,
+    BESIDE,
+    FAR,
+    HAIR,
+    NEAR,
+    THERE,
+    WIDENS,
+    edge_of,
+    most,
+    rim_line,
+    swept,
 )  # fmt: skip
+from plan_cutters.kernels.jit import kernel
+from plan_cutters.kernels.lanes import LANES
 
-#: A bound of a piece: two rims, each a radius and a height, and by how much what lies between them is grown all round; the slope
-#: of its side; whether there is such a bound.
-Q0, F0, Q1, F1, GROWN, SIDE, THERE, BOUNDS = 0, 1, 2, 3, 4, 5, 6, 7
-#: What is known of a piece: nothing nearer to the line of turning or farther from it is ever in it, nothing so far beside it along
-#: that line, nothing as low over the centre's tangent plane; its radius at height 0, were it to go on, and its slope if it widens.
-NEAR, FAR, BESIDE, FLOOR, AXIS, WIDENS, KNOWN = 0, 1, 2, 3, 4, 5, 6
 #: Rows of ends: cosine and sine of the first tilt, of the last, of the middle, cosine of half the gap.
 CA, SA, CB, SB, CM, SM, CH, ENDS = 0, 1, 2, 3, 4, 5, 6, 7
 #: Rows of boxes turned into a rotation's frame: centre, three half sides along f, along t, along n, extent along t, least and
 #: largest distance from the line of turning.
 AT, ALONG_F, ALONG_T, ALONG_N, EXTENT, NEAREST, FARTHEST, BOXES = 0, 3, 6, 9, 12, 13, 14, 15
-#: A plane must part by more than this, mm: rounding is far less.
-_HAIR = 1e-9
-#: Parts that the tilts of a mode are cut into to know how low a piece can come.
-_PARTS = 16
 #: The direction to a point is taken no nearer to the rim's side than this.
 _STEEP = 0.98
 
 
-class Turning(NamedTuple):
-    """A tool that tilts about the centre of one mode, for posture maps.
-
-    offset : distance of the centre from the axis, mm; piece (k, COLUMNS); bound (2 k, BOUNDS), two for each piece, of which one
-    may be missing; known (k, KNOWN); eight : the mask of the pieces for which the eight sides of `lanes` do.
-    """
-
-    offset: float
-    piece: Any
-    bound: Any
-    known: Any
-    eight: int
-
-
-@kernel
-def _span(p, q, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
-    """Least and most of p cos T + q sin T over a gap shorter than 180 deg."""
-    u, v, du, dv = p * ca + q * sa, p * cb + q * sb, q * ca - p * sa, q * cb - p * sb
-    size = np.sqrt(p * p + q * q)
-    least = -size if (du < 0.0) & (dv > 0.0) else min(u, v)
-    return least, size if (du > 0.0) & (dv < 0.0) else max(u, v)
-
-
-@kernel
-def _edge(bound, j):  # type: ignore[no-untyped-def]
-    """A bound as numbers: what lanes have in common must not be read again in each."""
-    loose = 1.0 if bound[j, Q0] < 0.0 else 0.0
-    return bound[j, Q0], bound[j, F0], bound[j, Q1], bound[j, F1], bound[j, GROWN], bound[j, SIDE], loose
-
-
-@kernel
-def _most(p, q, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
-    """The most of p cos T + q sin T over a gap shorter than 180 deg."""
-    within = (q * ca - p * sa > 0.0) & (q * cb - p * sb < 0.0)
-    return np.sqrt(p * p + q * q) if within else max(p * ca + q * sa, p * cb + q * sb)
-
-
-@kernel
-def _line(edge, gx, gy, gz, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
-    """A line (slope, value at 0) that bounds how far a rim of radius 1 goes along a direction of the part over a gap.
-
-    It goes hypot(x, g_y), x what the direction has along x_T: convex in x, so below its chord. Where the radius is negative the
-    bound is from below: a tangent.
-    """
-    loose = edge[6]
-    low, high = _span(gx, -gz, ca, sa, cb, sb)
-    rl, rh, middle = np.sqrt(low * low + gy * gy), np.sqrt(high * high + gy * gy), 0.5 * (low + high)
-    slope = (rh - rl) / max(high - low, 1e-12)
-    base = max(rl - slope * low, rh - slope * high)
-    share = 1.0 / max(np.sqrt(middle * middle + gy * gy), 1e-200)
-    return slope + loose * (middle * share - slope), base + loose * (gy * gy * share - base)
-
-
-@kernel
-def _swept(edge, offset, line, gx, gz, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
-    """How far a bound goes at most, at any tilt of a gap, along a direction of the part of length 1, from the centre; `line` as
-    `_line` gives it.
-    """
-    q0, f0, q1, f1, grown, _, _ = edge
-    slope, base = line
-    first, second = q0 * slope - offset, q1 * slope - offset
-    first = q0 * base + _most(first * gx + f0 * gz, f0 * gx - first * gz, ca, sa, cb, sb)
-    second = q1 * base + _most(second * gx + f1 * gz, f1 * gx - second * gz, ca, sa, cb, sb)
-    return max(first, second) + grown
-
-
 @kernel
 def _towards(edge, x, y, height):  # type: ignore[no-untyped-def]
-    """The direction (x, y, w), of length 1 or 0, in which a point lies farthest beyond a bound, its part across the axis, and how far
-    about.
+    """The direction (x, y, w), of length 1 or 0, in which a point lies farthest beyond a bound; its part across the axis; about
+    how far.
     """
     q0, f0, q1, f1, _, slope, _ = edge
     q = np.sqrt(x * x + y * y)
@@ -136,17 +70,17 @@ def _between(least, reach, my, y_most, nearest, farthest, cosine):  # type: igno
     y_most is the largest of `my y`; `cosine` that of half the gap.
     """
     level, arm = reach - y_most, np.sqrt(max(0.0, 1.0 - my * my))
-    return (least > reach + _HAIR) & (
+    return (least > reach + HAIR) & (
         (level >= 0.0)
-        | (-level + _HAIR <= arm * nearest * cosine)
-        | (least >= reach + _HAIR + arm * farthest * (1.0 - cosine))
+        | (-level + HAIR <= arm * nearest * cosine)
+        | (least >= reach + HAIR + arm * farthest * (1.0 - cosine))
     )
 
 
 @kernel
 def _lean(edge, y, wide, sine):  # type: ignore[no-untyped-def]
     """The direction (y, z), of length 1, of a plane under a rim where something stands beside the contact."""
-    radius = max(edge[0], _HAIR)
+    radius = max(edge[0], HAIR)
     y = y - max(-0.5 * wide, min(0.5 * wide, y))
     y = max(-_STEEP * radius, min(_STEEP * radius, y))
     lean = sine * y / np.sqrt(radius * radius - y * y)
@@ -164,10 +98,11 @@ def _away(edge, offset, gx, gy, gz, x, y, z, cm, sm):  # type: ignore[no-untyped
 
 @kernel
 def _boxes_apart(box, end, bound, j, offset, which, clear):  # type: ignore[no-untyped-def]
-    """Mark boxes that a plane, as at one end of their gap or its middle (row `which` of `end` and the next), parts from a bound all
-    over the gap, turning with the tool or not.
+    """Mark boxes that a plane, as it stands at one end of their gap (row `which` of `end` and the next), parts from a bound.
+
+    All over the gap, turning with the tool or not.
     """
-    edge = _edge(bound, j)
+    edge = edge_of(bound, j)
     for lane in range(len(clear)):
         x, y, z, wide = box[0, lane], box[1, lane], box[2, lane], box[EXTENT, lane]
         f0, f1, f2 = box[3, lane], box[4, lane], box[5, lane]
@@ -180,7 +115,7 @@ def _boxes_apart(box, end, bound, j, offset, which, clear):  # type: ignore[no-u
         over = gx * x + my * y + gz * z - abs(gx * f0 + my * t0 + gz * z0)
         over -= abs(gx * f1 + my * t1 + gz * z1) + abs(gx * f2 + my * t2 + gz * z2)
         ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        fixed = over - _swept(edge, offset, _line(edge, gx, my, gz, ca, sa, cb, sb), gx, gz, ca, sa, cb, sb)
+        fixed = over - swept(edge, offset, rim_line(edge, gx, my, gz, ca, sa, cb, sb), gx, gz, ca, sa, cb, sb)
         c, s = end[CA, lane], end[SA, lane]
         gx, gz = mx * c + mw * s, mw * c - mx * s
         first = gx * x + my * y + gz * z - abs(gx * f0 + my * t0 + gz * z0)
@@ -192,7 +127,7 @@ def _boxes_apart(box, end, bound, j, offset, which, clear):  # type: ignore[no-u
         good = _between(
             min(first, last), reach, my, my * y + abs(my) * wide, box[NEAREST, lane], box[FARTHEST, lane], end[CH, lane]
         )
-        clear[lane] = 1.0 if good | (fixed > _HAIR) else clear[lane]
+        clear[lane] = 1.0 if good | (fixed > HAIR) else clear[lane]
 
 
 @kernel
@@ -200,22 +135,22 @@ def _boxes_under(box, end, bound, j, offset, tilted, clear):  # type: ignore[no-
     """Mark boxes that lie under a bound all over their gap, as seen along the normal, straight (`tilted` 0) or leaning along the
     rim (1).
     """
-    edge = _edge(bound, j)
+    edge = edge_of(bound, j)
     for lane in range(len(clear)):
         y, z, t0, t1, t2 = box[1, lane], box[2, lane], box[6, lane], box[7, lane], box[8, lane]
         z0, z1, z2 = box[9, lane], box[10, lane], box[11, lane]
         ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
         gy, gz = _lean(edge, y, box[EXTENT, lane], tilted * sa)
         over = gy * y + gz * z - abs(gy * t0 + gz * z0) - abs(gy * t1 + gz * z1) - abs(gy * t2 + gz * z2)
-        line = _line(edge, 0.0, gy, gz, ca, sa, cb, sb)
-        beyond = over - _swept(edge, offset, line, 0.0, gz, ca, sa, cb, sb)
-        clear[lane] = 1.0 if beyond > _HAIR else clear[lane]
+        line = rim_line(edge, 0.0, gy, gz, ca, sa, cb, sb)
+        beyond = over - swept(edge, offset, line, 0.0, gz, ca, sa, cb, sb)
+        clear[lane] = 1.0 if beyond > HAIR else clear[lane]
 
 
 @kernel
 def _boxes_across(box, end, bound, j, offset, clear):  # type: ignore[no-untyped-def]
     """Mark boxes that a plane across their thin side parts from a bound all over their gap."""
-    edge = _edge(bound, j)
+    edge = edge_of(bound, j)
     for lane in range(len(clear)):
         x, y, z = box[0, lane], box[1, lane], box[2, lane]
         f0, f1, f2 = box[3, lane], box[4, lane], box[5, lane]
@@ -228,8 +163,8 @@ def _boxes_across(box, end, bound, j, offset, clear):  # type: ignore[no-untyped
         over = gx * x + gy * y + gz * z - abs(gx * f0 + gy * t0 + gz * z0)
         over -= abs(gx * f1 + gy * t1 + gz * z1) + abs(gx * f2 + gy * t2 + gz * z2)
         ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        beyond = over - _swept(edge, offset, _line(edge, gx, gy, gz, ca, sa, cb, sb), gx, gz, ca, sa, cb, sb)
-        clear[lane] = 1.0 if beyond > _HAIR else clear[lane]
+        beyond = over - swept(edge, offset, rim_line(edge, gx, gy, gz, ca, sa, cb, sb), gx, gz, ca, sa, cb, sb)
+        clear[lane] = 1.0 if beyond > HAIR else clear[lane]
 
 
 @kernel
@@ -250,13 +185,11 @@ def boxes_clear(box, end, turning, k, clear):  # type: ignore[no-untyped-def]
         # No point is higher over the centre than far from the line of turning.
         aside = min(beside, base + slope * box[FARTHEST, lane])
         out = max(abs(box[1, lane]) - box[EXTENT, lane] - aside, box[NEAREST, lane] - far)
-        clear[lane] = 1.0 if max(out, near - box[FARTHEST, lane]) > _HAIR else 0.0
+        clear[lane] = 1.0 if max(out, near - box[FARTHEST, lane]) > HAIR else 0.0
     for j in range(2 * k, 2 * k + 2):
         if bound[j, THERE] > 0.0 and not _all(clear):
-            _boxes_under(box, end, bound, j, offset, 0.0, clear)
-            if not _all(clear):
-                _boxes_under(box, end, bound, j, offset, 1.0, clear)
-            for which in (CB, CA, CM):
+            _boxes_under(box, end, bound, j, offset, 1.0, clear)
+            for which in (CB, CA):
                 if not _all(clear):
                     _boxes_apart(box, end, bound, j, offset, which, clear)
             if not _all(clear):
@@ -283,7 +216,7 @@ def turn_boxes(view, block, cosine, sine, box):  # type: ignore[no-untyped-def]
 @kernel
 def _triangles_apart(seen, end, bound, j, offset, which, clear):  # type: ignore[no-untyped-def]
     """`_boxes_apart` for triangles, whose corners go along a plane's direction as sums of sine and cosine."""
-    edge = _edge(bound, j)
+    edge = edge_of(bound, j)
     for lane in range(len(clear)):
         x0, y0, z0 = seen[0, lane], seen[1, lane], seen[2, lane]
         x1, y1, z1 = seen[3, lane], seen[4, lane], seen[5, lane]
@@ -303,34 +236,41 @@ def _triangles_apart(seen, end, bound, j, offset, which, clear):  # type: ignore
         gx, gz, d0, d1, d2 = mx * c + mw * s, mw * c - mx * s, my * y0, my * y1, my * y2
         over = min(gx * x0 + gz * z0 + d0, min(gx * x1 + gz * z1 + d1, gx * x2 + gz * z2 + d2))
         ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        fixed = over - _swept(edge, offset, _line(edge, gx, my, gz, ca, sa, cb, sb), gx, gz, ca, sa, cb, sb)
+        fixed = over - swept(edge, offset, rim_line(edge, gx, my, gz, ca, sa, cb, sb), gx, gz, ca, sa, cb, sb)
         p, q = mx * x0 + mw * z0, mw * x0 - mx * z0
-        least = d0 - _most(-p, -q, ca, sa, cb, sb)
+        least = d0 - most(-p, -q, ca, sa, cb, sb)
         p, q = mx * x1 + mw * z1, mw * x1 - mx * z1
-        least = min(least, d1 - _most(-p, -q, ca, sa, cb, sb))
+        least = min(least, d1 - most(-p, -q, ca, sa, cb, sb))
         p, q = mx * x2 + mw * z2, mw * x2 - mx * z2
-        least = min(least, d2 - _most(-p, -q, ca, sa, cb, sb))
-        clear[lane] = 1.0 if max(least - reach, fixed) > _HAIR else clear[lane]
+        least = min(least, d2 - most(-p, -q, ca, sa, cb, sb))
+        clear[lane] = 1.0 if max(least - reach, fixed) > HAIR else clear[lane]
 
 
 @kernel
 def _triangles_under(seen, end, bound, j, offset, tilted, clear):  # type: ignore[no-untyped-def]
     """`_boxes_under` for triangles."""
-    edge = _edge(bound, j)
+    edge = edge_of(bound, j)
     for lane in range(len(clear)):
-        y0, z0, y1, z1, y2, z2 = seen[1, lane], seen[2, lane], seen[4, lane], seen[5, lane], seen[7, lane], seen[8, lane]
+        y0, z0, y1, z1, y2, z2 = (
+            seen[1, lane],
+            seen[2, lane],
+            seen[4, lane],
+            seen[5, lane],
+            seen[7, lane],
+            seen[8, lane],
+        )
         ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
         gy, gz = _lean(edge, (y0 + y1 + y2) / 3.0, 0.0, tilted * sa)
         over = min(gy * y0 + gz * z0, min(gy * y1 + gz * z1, gy * y2 + gz * z2))
-        line = _line(edge, 0.0, gy, gz, ca, sa, cb, sb)
-        beyond = over - _swept(edge, offset, line, 0.0, gz, ca, sa, cb, sb)
-        clear[lane] = 1.0 if beyond > _HAIR else clear[lane]
+        line = rim_line(edge, 0.0, gy, gz, ca, sa, cb, sb)
+        beyond = over - swept(edge, offset, line, 0.0, gz, ca, sa, cb, sb)
+        clear[lane] = 1.0 if beyond > HAIR else clear[lane]
 
 
 @kernel
 def _triangles_across(seen, end, bound, j, offset, clear):  # type: ignore[no-untyped-def]
     """Mark triangles whose own plane parts them from a bound all over their gap."""
-    edge = _edge(bound, j)
+    edge = edge_of(bound, j)
     for lane in range(len(clear)):
         x0, y0, z0 = seen[0, lane], seen[1, lane], seen[2, lane]
         x1, y1, z1 = seen[3, lane], seen[4, lane], seen[5, lane]
@@ -342,9 +282,9 @@ def _triangles_across(seen, end, bound, j, offset, clear):  # type: ignore[no-un
         share *= _away(edge, offset, gx, gy, gz, x0, y0, z0, end[CM, lane], end[SM, lane])
         gx, gy, gz = share * gx, share * gy, share * gz
         over = min(gx * x0 + gy * y0 + gz * z0, min(gx * x1 + gy * y1 + gz * z1, gx * x2 + gy * y2 + gz * z2))
-        line = _line(edge, gx, gy, gz, ca, sa, cb, sb)
-        beyond = over - _swept(edge, offset, line, gx, gz, ca, sa, cb, sb)
-        clear[lane] = 1.0 if beyond > _HAIR else clear[lane]
+        line = rim_line(edge, gx, gy, gz, ca, sa, cb, sb)
+        beyond = over - swept(edge, offset, line, gx, gz, ca, sa, cb, sb)
+        clear[lane] = 1.0 if beyond > HAIR else clear[lane]
 
 
 @kernel
@@ -357,17 +297,15 @@ def triangles_clear(seen, end, turning, k, clear):  # type: ignore[no-untyped-de
         aside = min(beside, base + slope * seen[10, lane])
         out = max(min(y0, min(y1, y2)), -max(y0, max(y1, y2))) - aside
         out = max(out, seen[9, lane] - far)
-        clear[lane] = 1.0 if max(out, near - seen[10, lane]) > _HAIR else 0.0
+        clear[lane] = 1.0 if max(out, near - seen[10, lane]) > HAIR else 0.0
     for j in range(2 * k, 2 * k + 2):
         if bound[j, THERE] > 0.0 and not _all(clear):
-            _triangles_under(seen, end, bound, j, offset, 0.0, clear)
-            if not _all(clear):
-                _triangles_under(seen, end, bound, j, offset, 1.0, clear)
-            if not _all(clear):
-                _triangles_across(seen, end, bound, j, offset, clear)
-            for which in (CB, CA, CM):
+            _triangles_across(seen, end, bound, j, offset, clear)
+            for which in (CB, CA):
                 if not _all(clear):
                     _triangles_apart(seen, end, bound, j, offset, which, clear)
+            if not _all(clear):
+                _triangles_under(seen, end, bound, j, offset, 1.0, clear)
     return _all(clear)
 
 
@@ -411,70 +349,3 @@ def all_ends(end, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
     for k in range(ENDS):
         for lane in range(1, LANES):
             end[k, lane] = end[k, 0]
-
-
-@kernel
-def _put_bound(bound, j, q0, f0, q1, f1, grown, slope):  # type: ignore[no-untyped-def]
-    bound[j, Q0], bound[j, F0], bound[j, Q1], bound[j, F1] = q0, f0, q1, f1
-    bound[j, GROWN], bound[j, SIDE], bound[j, THERE] = grown, slope, 1.0
-
-
-@kernel
-def _bounds_of(piece, k, bound):  # type: ignore[no-untyped-def]
-    """Write the bounds of piece k."""
-    radius, slope, wide = piece[k, RADIUS], piece[k, SLOPE], piece[k, WIDE]
-    if piece[k, KIND] != ARC:
-        slope = slope if piece[k, KIND] != CYLINDER else 0.0
-        _put_bound(bound, 2 * k, max(0.0, radius), piece[k, LOW], max(0.0, wide), piece[k, HIGH], 0.0, slope)
-        return
-    _put_bound(bound, 2 * k, radius, slope, radius, slope, piece[k, ROUND], 0.0)
-    if radius < 0.0 or piece[k, BOTTOM] > slope - piece[k, ROUND] or piece[k, TOP] < slope + piece[k, ROUND]:
-        _put_bound(bound, 2 * k + 1, wide, piece[k, BOTTOM], wide, piece[k, TOP], 0.0, 0.0)
-
-
-@entry
-def turning_of(piece, offset, low, high):  # type: ignore[no-untyped-def]
-    """What posture maps need to know of a tool in one mode.
-
-    Parameters
-    ----------
-    piece : (k, COLUMNS) float64
-    offset : float
-        mm.
-    low, high : float
-        Tilts that may be asked for, rad.
-
-    Returns
-    -------
-    bound, known, eight
-        As in `Turning`.
-    """
-    count, eight = len(piece), 0
-    bound, known = np.zeros((2 * count, BOUNDS)), np.zeros((count, KNOWN))
-    for k in range(count):
-        _bounds_of(piece, k, bound)
-        radius, floor = piece[k, RADIUS], piece[k, LOW]
-        bottom, top = piece[k, BOTTOM], piece[k, TOP]
-        known[k, NEAR] = max(0.0, max(bottom, -top))
-        known[k, BESIDE] = max(piece[k, WIDE], radius)
-        known[k, AXIS], known[k, WIDENS] = known[k, BESIDE], 0.0
-        if piece[k, KIND] == CONE and piece[k, SLOPE] > 0.0:
-            known[k, AXIS], known[k, WIDENS] = radius - piece[k, SLOPE] * floor, piece[k, SLOPE]
-        known[k, FAR] = np.hypot(max(abs(bottom), abs(top)), abs(offset) + known[k, BESIDE])
-        # The eight sides want a cutter that touches with its rim, and tilts up to 90 deg.
-        if piece[k, KIND] == CYLINDER and 0.0 <= floor <= offset - radius + 1e-12 and high <= 0.5 * np.pi + 1e-9:
-            eight |= 1 << k
-            known[k, FLOOR] = floor
-            continue
-        deepest = -np.inf
-        for part in range(_PARTS):
-            a, b = low + (high - low) * part / _PARTS, low + (high - low) * (part + 1) / _PARTS
-            reach = np.inf
-            for j in range(2 * k, 2 * k + 2):
-                if bound[j, THERE] > 0.0:
-                    edge, ca, sa, cb, sb = _edge(bound, j), np.cos(a), np.sin(a), np.cos(b), np.sin(b)
-                    line = _line(edge, 0.0, 0.0, -1.0, ca, sa, cb, sb)
-                    reach = min(reach, _swept(edge, offset, line, 0.0, -1.0, ca, sa, cb, sb))
-            deepest = max(deepest, reach)
-        known[k, FLOOR] = -deepest - _HAIR
-    return bound, known, eight
