@@ -97,7 +97,8 @@ def test_ranges_halved_one_by_one_leave_the_same(kind, scene):
 def test_little_stays_undecided(kind, scene):
     part, count, unsure = mapped(scene, tool_of(assembly(TOOLS[kind], DEPTH, DEPTH)))
     ends = 2.0 * count[count > 0].sum()
-    assert unsure.sum() < 3.0 * NARROWEST * ends
+    # A tenth of a degree an end, but where grazing planes show nothing: a lens's bottom most of all.
+    assert unsure.sum() < 7.0 * NARROWEST * ends
     assert (width(part, count) + unsure <= np.pi + 1e-6).all()
 
 
@@ -112,8 +113,9 @@ def test_a_flat_end_through_the_planes_is_the_same(scene):
     _, _, none = bounds.turning_of(tool.piece[0], tool.mode[0, 0], 0.0, np.pi / 2 + 1e-6)
     assert (eight, none) == (1, 0)
     mine, other = width(part, count), width(wide, few)
+    # What triangles cut off at both ends is known to be forbidden only to the width of ends.
     assert (mine <= other + doubt + 2e-6).all()
-    assert (other <= mine + unsure + 2e-6).all()
+    assert (other <= mine + unsure + 3.0 * NARROWEST).all()
 
 
 def deepest(points, ends, offset, row):
@@ -144,7 +146,8 @@ def test_what_planes_call_clear_never_enters(kind):
         for _ in range(60):
             k = rng.integers(len(piece))
             ends = np.sort(rng.uniform(0, made.mode[mode, 3], 2))
-            low, high = max(piece[k, 7], -50), min(piece[k, 8], 60)
+            low = max(piece[k, 7], -50)
+            high = min(piece[k, 8], low + 60)
             corners, sides = np.zeros((lanes.LANES, 3, 3)), np.zeros((lanes.LANES, 4, 3))
             for lane in range(lanes.LANES):
                 # Near the surface of the piece at a tilt of the gap.

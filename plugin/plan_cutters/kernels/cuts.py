@@ -5,24 +5,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from plan_cutters.kernels.arcs import point_arc
-from plan_cutters.kernels.gaps import CF, CL, FIRST, LAST, SF, SL, UF, UL, _begin, _cuts, _end, _part, _take
+from plan_cutters.kernels.bounds import BESIDE, FAR, FLOOR, NEAR
+from plan_cutters.kernels.gaps import CF, CL, FIRST, GAPS, LAST, SF, SL, UF, UL, _begin, _cuts, _end, _part, _take
 from plan_cutters.kernels.hit import BODY, _swept_hit, scratch, stand, triangle_hit
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.lanes import LANES
 from plan_cutters.kernels.passes import _passes
 from plan_cutters.kernels.pieces import HIGH, LOW, RADIUS, inset
-from plan_cutters.kernels.planes import (
-    BESIDE,
-    BOXES,
-    ENDS,
-    FAR,
-    FLOOR,
-    NEAR,
-    all_ends,
-    distances,
-    put_ends,
-    triangles_clear,
-)
+from plan_cutters.kernels.planes import BOXES, ENDS, all_ends, distances, put_ends, triangles_clear
 from plan_cutters.kernels.rows import Cylinder, Scratch
 from plan_cutters.kernels.tool_arcs import ARCS, arc_about, closed, forbidden
 
@@ -347,6 +337,14 @@ def cut_gaps(vertex, i, frame, gap, count, narrowest, turning, k, room):  # type
                 continue
             right = _first_in_the_way(vertex, i, frame, left, end, -1.0, narrowest, turning, k, room)
             right = left if np.isnan(right) else right
+            middle = 0.5 * (left + right)
+            if not (turning.eight >> k) & 1 and not (
+                _in_the_way(vertex, i, frame, min(left + unsure, middle), turning, k, room)
+                and _in_the_way(vertex, i, frame, middle, turning, k, room)
+                and _in_the_way(vertex, i, frame, max(right - unsure, middle), turning, k, room)
+            ):
+                # Where nothing shows the triangle clear it need not be in the way.
+                gap[GAPS, UF] += right - left
         cut = True
         before = count
         count = _part(gap, g, count, left, right, unsure)
