@@ -67,11 +67,12 @@ def measured(prepared: Any, cutter: Any) -> dict[str, float]:
     judged = time.process_time() - began
     lost = (reach.verdict == INACCESSIBLE) & ((reach.reason != BURIED) | (prepared.buried < 0))
     contacts, seconds = contacts_of(samples), {}
+    tools = conditions.light(cutter), conditions.heavy(cutter)
     groups = {"no": lost, "yes": reach.reached & (reach.verdict != INTERFERENCE_FREE)}
     for name, rows in groups.items():
         again = blank(len(samples))
         began = time.process_time()
-        search_postures(contacts, np.flatnonzero(rows), cutter, conditions, conditions.depths, again, fixed=True)
+        search_postures(contacts, np.flatnonzero(rows), *tools, conditions, again, fixed=True)
         seconds[name] = time.process_time() - began
     began = time.process_time()
     found = witnesses(samples, reach, cutter, conditions, buried=prepared.buried)

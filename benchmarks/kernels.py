@@ -21,13 +21,17 @@ import numpy as np
 sys.path.append(str(Path(__file__).parent.parent / "tests"))
 import waves
 
-from plan_cutters.kernels import arcs, cover, free_map, free_tilts, hit, lanes, material, search, tree
+from plan_cutters import Cutter
+from plan_cutters.domain.assembly import assembly
+from plan_cutters.kernels import arcs, cover, free_map, free_tilts, hit, lanes, material, probing, search, tree
 from plan_cutters.kernels.jit import kernel
-from plan_cutters.kernels.rows import Contacts, Found, Frame, Tool
+from plan_cutters.kernels.rows import Contacts, Found, Frame
 
 RADIUS, LENGTH, SAFE, BLOCKED, TURNS = 6.0, 40.0, 0.04, 0.06, 24
-CUTTER = RADIUS, LENGTH, SAFE
-TOOL = Tool(RADIUS, RADIUS - SAFE, SAFE, LENGTH - SAFE)
+TOOL = waves.flat(RADIUS, LENGTH, SAFE)
+HEAVY, PIECE = waves.flat(RADIUS, LENGTH, BLOCKED), TOOL.piece[0]
+CYLINDER, FLAT = waves.cylinder(RADIUS, LENGTH, SAFE), waves.flat(RADIUS, LENGTH, SAFE)
+DUMMY = assembly(Cutter.flat(radius=RADIUS, length=LENGTH), SAFE, SAFE).dummy
 RIGHT, UP, NARROWEST = np.pi / 2, np.array([0.0, 0, 1]), np.radians(0.1)
 Driver = Callable[[int], object]
 #: Calls of a kernel under callgrind, at most: it takes fifty times as long.
@@ -49,7 +53,7 @@ def many_local_gouges(n, at):  # type: ignore[no-untyped-def]
     total = 0.0
     for i in range(n):
         q = at[i % len(at)]
-        total += arcs.local_gouge(0.01 * q[0], 0.01 * q[1], q[4], q[5], 6.0)
+        total += arcs.local_gouge(0.01 * q[0], 0.01 * q[1], q[4], q[5], 6.0, 0.0)[0]
     return total
 
 
@@ -69,50 +73,50 @@ def many_removals(n, at, intervals):  # type: ignore[no-untyped-def]
         if i % 8 == 0:
             intervals[0, 0], intervals[0, 1], count = 0.0, 1.5, 1
         q = at[i % len(at)]
-        count = search.remove(intervals, count, q[3], q[3] + 0.05, 1e-4)
+        count = probing.remove(intervals, count, q[3], q[3] + 0.05, 1e-4)
     return count
 
 
 @kernel
-def many_boxes(n, box, bodies):  # type: ignore[no-untyped-def]
+def many_boxes(n, box, bodies, piece):  # type: ignore[no-untyped-def]
     total = 0
     for i in range(n):
-        total += hit._box_apart(box, i % len(box), bodies[i % len(bodies)], 0.0)
+        total += hit.alive(box, i % len(box), bodies[i % len(bodies)], piece, 1, 0.0)
     return total
 
 
 @kernel
-def many_triangles(n, vertex, which, bodies, polygon, spare):  # type: ignore[no-untyped-def]
+def many_triangles(n, vertex, which, bodies, piece, scratch):  # type: ignore[no-untyped-def]
     total = 0
     for i in range(n):
-        total += hit.triangle_hit(vertex, which[i % len(which)], bodies[i % len(bodies)], 0.0, polygon, spare)[0]
+        total += hit.triangle_hit(vertex, which[i % len(which)], bodies[i % len(bodies)], piece, 1, 0.0, scratch)[0]
     return total
 
 
 @kernel
-def many_walks(n, built, bodies, scratch):  # type: ignore[no-untyped-def]
+def many_walks(n, built, bodies, piece, scratch):  # type: ignore[no-untyped-def]
     total = 0
     for i in range(n):
         body = bodies[i % len(bodies)]
-        total += hit.tree_hit(built, body, 0.0, -1, scratch)[0]
+        total += hit.tree_hit(built, body, piece, 0.0, -1, scratch)[0]
     return total
 
 
 @kernel
-def many_blocks(n, view, gap, margin):  # type: ignore[no-untyped-def]
+def many_blocks(n, view, gap, tool, margin):  # type: ignore[no-untyped-def]
     total = 0.0
     for i in range(n):
-        lanes._boxes_pass(view, i % len(view), 0.8, 0.6, gap, 1, TOOL, margin)
+        lanes._boxes_pass(view, i % len(view), 0.8, 0.6, gap, 1, tool, margin)
         total += margin[0]
     return total
 
 
 @kernel
-def many_leaves(n, leaves, gap, margin):  # type: ignore[no-untyped-def]
+def many_leaves(n, leaves, gap, tool, margin):  # type: ignore[no-untyped-def]
     total = 0.0
     for i in range(n):
         seen = leaves[i % len(leaves)]
-        lanes._triangles_pass(seen, 0.8, 0.6, gap, 1, TOOL, margin)
+        lanes._triangles_pass(seen, 0.8, 0.6, gap, 1, tool, margin)
         total += margin[0]
     return total
 
@@ -153,7 +157,7 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
         lean[i] = np.cos(turn) * first[i] + np.sin(turn) * np.cross(normal[i], first[i])
         axis[i] = np.cos(tilt) * normal[i] + np.sin(tilt) * lean[i]
         left = np.cross(normal[i], lean[i])
-        hit.stand(bodies[i], Frame(point[i], normal[i], lean[i], left), np.cos(tilt), np.sin(tilt), *TOOL)
+        hit.stand(bodies[i], Frame(point[i], normal[i], lean[i], left), np.cos(tilt), np.sin(tilt), RADIUS, 0.0)
         near[i] = rng.choice(np.argsort(np.linalg.norm(centre - point[i], axis=1))[:200])
     rotations = 2 * np.pi * np.arange(TURNS) / TURNS
     scratch, cc_points = hit.scratch(), Contacts(point, normal, first, curvature)
@@ -161,13 +165,11 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
         np.empty(n, np.uint8), axis.copy(), lean.copy(), np.empty(n), np.empty(n, np.int32), np.empty(n, np.uint8)
     )
     solids = material.sheet(built)
-    free, triangle, depths = np.empty(n, np.bool_), np.empty(n, np.int32), np.full(n, SAFE)
+    free, triangle, which = np.empty(n, np.bool_), np.empty(n, np.int32), np.empty(n, np.int32)
 
     def maps_of(count: int) -> None:
         for i in range(count):
-            free_tilts.free_tilts(
-                point[i % n], normal[i % n], lean[i % n], 0.0, RIGHT, RADIUS, LENGTH, SAFE, NARROWEST, built, 2000
-            )
+            free_tilts.free_tilts(point[i % n], normal[i % n], lean[i % n], 0.0, RIGHT, TOOL, 0, NARROWEST, built, 2000)
 
     wide = lanes.WideTree(*lanes.wide_tree(built))
     blocks = wide.blocks
@@ -185,27 +187,27 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
     def all_maps(count: int) -> None:
         k = -(-count // TURNS)
         turned = waves.ranges(rotations)
-        free_map.free_map(np.arange(k), cc_points, turned, *CUTTER, NARROWEST, wide, 8, part, filled, unsure)
+        free_map.free_map(np.arange(k), cc_points, turned, FLAT, NARROWEST, built, wide, 8, part, filled, unsure)
 
     return {
         "point_arc": ("point", 200_000, lambda k: many_point_arcs(k, at)),
         "local_gouge": ("rotation", 200_000, lambda k: many_local_gouges(k, at)),
         "axis_arcs": ("rotation", 200_000, lambda k: many_axis_arcs(k, at, np.empty((3, 2)))),
         "remove": ("arc", 200_000, lambda k: many_removals(k, at, np.empty((16, 2)))),
-        "_box_apart": ("node", 200_000, lambda k: many_boxes(k, box, bodies)),
-        "triangle_hit": ("triangle", 100_000, lambda k: many_triangles(k, vertex, near, bodies, scratch.polygon, scratch.spare)),
-        "tree_hit": ("posture", 4_000, lambda k: many_walks(k, built, bodies, scratch)),
+        "alive": ("node", 200_000, lambda k: many_boxes(k, box, bodies, PIECE)),
+        "triangle_hit": ("triangle", 100_000, lambda k: many_triangles(k, vertex, near, bodies, PIECE, scratch)),
+        "tree_hit": ("posture", 4_000, lambda k: many_walks(k, built, bodies, PIECE, scratch)),
         "build": ("triangle", 7_200, lambda k: k and tree.build(loose[:k])),
         "probe": ("posture", 400, lambda k: search.probe(
-            np.arange(k), point, normal, axis, lean, RADIUS, LENGTH, depths, built, triangle)),
+            np.arange(k), point, normal, axis, lean, TOOL, built, triangle, which)),
         "dummy_clear": ("sample", 400, lambda k: search.dummy_clear(
-            np.arange(k), cc_points, RADIUS, LENGTH, SAFE, solids, free)),
+            np.arange(k), cc_points, DUMMY, TOOL, solids, free)),
         "search": ("sample", 400, lambda k: search.search(
-            np.arange(k), cc_points, waves.ranges(rotations, 0.7), RADIUS, LENGTH, SAFE, BLOCKED, solids, solids, out)),
+            np.arange(k), cc_points, waves.ranges(rotations, 0.7), TOOL, HEAVY, solids, solids, out)),
         "free_tilts": ("rotation", 100, maps_of),
         "wide_tree": ("triangle", 7_200, lambda k: k and lanes.wide_tree(built)),
-        "_boxes_pass": ("eight boxes", 100_000, lambda k: many_blocks(k, view, gap, margin)),
-        "_triangles_pass": ("eight triangles", 100_000, lambda k: many_leaves(k, leaves, gap, margin)),
+        "_boxes_pass": ("eight boxes", 100_000, lambda k: many_blocks(k, view, gap, CYLINDER, margin)),
+        "_triangles_pass": ("eight triangles", 100_000, lambda k: many_leaves(k, leaves, gap, CYLINDER, margin)),
         "free_map": ("rotation", 400 * TURNS, all_maps),
         "cover": ("contact", len(asked[0]), lambda k: cover.cover(asked[0][:k], *asked[1:])),
     }  # fmt: skip

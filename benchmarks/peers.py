@@ -39,13 +39,14 @@ from cad_io.part.orient import orient
 from cad_io.sample import sample
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter
+from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.kernels.free_map import free_map
-from plan_cutters.kernels.points import local_gouge_bound
+from plan_cutters.kernels.points import local_gouge_range
 from plan_cutters.kernels.rows import Ranges
 from plan_cutters.kernels.search import probe
-from plan_cutters.scene.conditions import Conditions, contacts_of
+from plan_cutters.scene.conditions import Conditions, contacts_of, tool_of
 from plan_cutters.scene.faces import select_faces
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
@@ -81,7 +82,7 @@ class Postures:
         lean = np.broadcast_to(lean[:, None, :], (len(ROTATIONS), len(TILTS), 3))
         c, s = np.cos(TILTS)[None, :, None], np.sin(TILTS)[None, :, None]
         big, small = samples.curvature[row]
-        bound = np.array([local_gouge_bound(big, small, float(r), CUTTER.radius) for r in ROTATIONS])
+        bound = np.array([local_gouge_range(big, small, float(r), CUTTER.radius, 0.0)[0] for r in ROTATIONS])
         return cls(p, n, c * n + s * lean, c * lean - s * n, lean, bound)
 
     @property
@@ -232,13 +233,14 @@ def maps(samples: SurfaceSamples, rows: NDArray[np.int64], obstacles: Obstacles,
     """The free tilts at all rotations."""
     k, n = len(ROTATIONS), len(rows)
     found = Maps(np.zeros((n, k, ROOM, 2)), np.zeros((n, k), np.int32), np.zeros((n, k)))
-    safe, _ = obstacles.depths(TOLERANCE)
+    safe = TOLERANCE - obstacles.triangles.chord_error
+    tool = tool_of(assembly(CUTTER, safe, safe))
     ranges = Ranges(np.cos(ROTATIONS), np.sin(ROTATIONS), 0.0, np.pi / 2, np.array([0.0, 0.0, 1.0]), -2.0)
 
     def work(places: NDArray[np.int64]) -> None:
         piece = slice(places[0], places[-1] + 1)
         free_map(
-            rows[piece], contacts_of(samples), ranges, CUTTER.radius, CUTTER.length, safe, NARROWEST, obstacles.wide_tree, ROOM,
+            rows[piece], contacts_of(samples), ranges, tool, NARROWEST, obstacles.tree, obstacles.wide_tree, ROOM,
             found.part[piece], found.filled[piece], found.undecided[piece],
         )  # fmt: skip
 
@@ -248,7 +250,7 @@ def maps(samples: SurfaceSamples, rows: NDArray[np.int64], obstacles: Obstacles,
 
 def probes(postures: Postures, obstacles: Obstacles) -> NDArray[np.bool_]:
     """Each posture by itself."""
-    safe, _ = obstacles.depths(TOLERANCE)
+    safe = TOLERANCE - obstacles.triangles.chord_error
     axis, lean = postures.axis.reshape(-1, 3), np.ascontiguousarray(postures.lean.reshape(-1, 3))
     n = len(axis)
     triangle = np.full(n, -1, np.int32)
@@ -259,11 +261,10 @@ def probes(postures: Postures, obstacles: Obstacles) -> NDArray[np.bool_]:
         normal,
         axis,
         lean,
-        CUTTER.radius,
-        CUTTER.length,
-        np.full(n, safe),
+        tool_of(assembly(CUTTER, safe, safe)),
         obstacles.tree,
         triangle,
+        triangle.copy(),
     )
     return (triangle < 0) & ~postures.gouging.ravel()
 

@@ -239,13 +239,19 @@ FINE = {
     "read_part": {
         "unit": "None", "guarded": "True", "timeout": "three, minus one, a half, huge, inf",
     },
-    "Cutter": {"radius": "three, a half", "length": "three, a half", "corner_radius": "", "name": "no text, text"},
+    "Cutter": {
+        "radius": "three, a half", "length": "three, a half", "corner_radius": "three, a half", "name": "no text, text",
+        "taper": "a half", "flutes": "None, three, a half", "shank_radius": "None", "neck": "None", "holder": "None",
+        "shape": "", "arc_radius": "", "outline": "no list", "allowance": "None, three, a half",
+        "clearance": "None, three, a half",
+    },
     "Machine": {"name": "no text, text", "tilt_limit": "None, three, a half"},
     "PostureRange": {"tilt": "", "rotation": "", "step": "three, a half"},
     "Options": {
         "cutters": "None, no list", "machine": "None", "setup": "", "grid": "None, three", "spacing": "None, three, a half",
         "tilt": "", "rotation": "", "rotation_step": "three, a half", "tolerance": "", "jobs": "None, three", "flip": "True",
-        "area_budget": "None, three", "posture_maps": "True",
+        "area_budget": "None, three", "posture_maps": "True", "allowance": "three, a half", "holder_clearance": "three, a half",
+        "holder": "None",
         "unit": "None",
     },
 }  # fmt: skip

@@ -21,7 +21,7 @@ from cad_io import read_part
 from cad_io.kernel import faces, is_kernel_error
 from cad_io.surface import Surface
 from cad_io.tessellate import tessellate
-from cad_io.tessellate.bounds import FINE, bend, most_inside, table_of, window
+from cad_io.tessellate.bounds import FINE, Ground, bend, most_inside, table_of, window
 from cad_io.tessellate.curves import packed, point, room, strays
 
 #: Points of a triangle, in shares of its corners.
@@ -142,7 +142,7 @@ def test_no_triangle_is_farther_than_its_bound(seed, degrees, rational):
     face, (knots_u, knots_v) = bspline(rng, degrees, (3, 2), rational)
     surface = Surface(face)
     box = (knots_u[0], knots_u[-1], knots_v[0], knots_v[-1])
-    table, proved = table_of(surface, box)
+    table, proved = table_of(Ground.of(surface, box))
     assert proved
     tried = 0
     for size in (1.0, 0.3, 0.1, 0.03):
@@ -166,7 +166,7 @@ def test_bounds_of_small_triangles_are_near_what_is_measured():
         surface = Surface(faces(shape)[0])
         adaptor = surface.adaptor
         box = (adaptor.FirstUParameter(), adaptor.LastUParameter(), adaptor.FirstVParameter(), adaptor.LastVParameter())
-        table, _ = table_of(surface, box, FINE)
+        table, _ = table_of(Ground.of(surface, box), FINE)
         rng = np.random.default_rng(5)
         low, wide = np.array(box[::2]), np.array(box[1::2]) - box[::2]
         ratio = []

@@ -21,6 +21,7 @@ from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.stages.between import between
 from plan_cutters.stages.cells import CellContacts, Field, quartered
+from plan_cutters.stages.nodes import tensors
 from plan_cutters.stages.site import Site, _cover
 
 SAMPLES = Path(__file__).parent.parent / "samples"
@@ -170,7 +171,8 @@ def test_no_smaller_patch_is_served_where_none_is_said_to_be():
         never += len(rows)
         for smaller in (0.3, 0.01, 0.0001):
             shrunk = replace(contacts, patch=smaller * contacts.patch)
-            again = _cover(shrunk, contacts.axis, contacts.flat, site.field, cutter, site.conditions, rows)
+            tensor = tensors(shrunk.normal, shrunk.direction_max, shrunk.curvature)
+            again = _cover(shrunk, tensor, contacts.axis, contacts.flat, site, rows)
             assert (again == NEVER).all()
     assert never > 20
 

@@ -8,7 +8,6 @@ import pytest
 import waves
 
 from plan_cutters.kernels import free_map, gaps, lanes, passes
-from plan_cutters.kernels.rows import Tool
 
 TILTS = 181
 
@@ -61,7 +60,9 @@ def test_boxes_that_pass_never_enter():
         for k in range(3):
             view[0, 3 + k], view[0, 6 + k], view[0, 9 + k] = axes[0, k], axes[1, k], axes[2, k]
         view[0, 12] = place[2] + np.abs(sides[2]).sum()
-        lanes._boxes_pass(view, 0, cosine, sine, gap_of(first, last), 1, Tool(radius, radius - low, low, high), margin)
+        lanes._boxes_pass(
+            view, 0, cosine, sine, gap_of(first, last), 1, waves.cylinder(radius, high + low, low), margin
+        )
         assert (margin == margin[0]).all()
         if margin[0] >= 0:
             passed += 1
@@ -77,11 +78,11 @@ def test_triangles_that_pass_never_enter():
     for rng, radius, low, high, first, last, place, size in cases(2, 8000):
         triangle = place + size * rng.standard_normal((3, 3)) * 10 ** rng.uniform(-1.5, 0, 3)
         seen = np.repeat(triangle.reshape(9, 1), lanes.LANES, 1)
-        lanes._triangles_pass(seen, 1.0, 0.0, gap_of(first, last), 1, Tool(radius, radius - low, low, high), margin)
+        lanes._triangles_pass(seen, 1.0, 0.0, gap_of(first, last), 1, waves.cylinder(radius, high + low, low), margin)
         assert (margin == margin[0]).all()
         corner = np.ascontiguousarray(triangle[:, [0, 2, 1]])
         ends = np.cos(first), np.sin(first), np.cos(last), np.sin(last)
-        close = passes._passes(corner, *ends, Tool(radius, radius - low, low, high), first_part, second_part)
+        close = passes._passes(corner, *ends, waves.cylinder(radius, high + low, low), first_part, second_part)
         passed, closely = passed + (margin[0] >= 0), closely + close
         if margin[0] >= 0 or close:
             assert deepest(weights @ triangle, first, last, radius, radius - low, low, high) <= 1e-9 * radius
@@ -93,7 +94,7 @@ def test_points_that_cut_are_in_the_cutter_and_others_are_not():
     cutting = 0
     for _, radius, low, high, first, last, place, _ in cases(3, 4000):
         x, y, z = place
-        cuts = gaps._cuts(x, y, z, gap_of(first, last), 1, Tool(radius, radius - low, low, high))
+        cuts = gaps._cuts(x, y, z, gap_of(first, last), 1, waves.cylinder(radius, high + low, low))
         depth = deepest(place[None], first, last, radius, radius - low, low, high)
         cutting += cuts
         # Between the tilts looked at, a point may come a little deeper.
@@ -133,10 +134,21 @@ def test_more_in_the_way_never_frees_a_tilt(seed):
     turn = 2 * np.pi * np.arange(12) / 12
 
     def free(kept):
-        n, wide = len(contacts.point), lanes.WideTree(*lanes.wide_tree(waves.tree_of(kept)))
+        n, tree = len(contacts.point), waves.tree_of(kept)
+        wide = lanes.WideTree(*lanes.wide_tree(tree))
         part, count, unsure = np.zeros((n, 12, 8, 2)), np.zeros((n, 12), np.int32), np.zeros((n, 12))
         free_map.free_map(
-            np.arange(n), contacts, waves.ranges(turn), 6.0, 40.0, 0.04, np.radians(0.1), wide, 8, part, count, unsure
+            np.arange(n),
+            contacts,
+            waves.ranges(turn),
+            waves.flat(6.0, 40.0, 0.04),
+            np.radians(0.1),
+            tree,
+            wide,
+            8,
+            part,
+            count,
+            unsure,
         )
         real = np.arange(8) < count[..., None]
         return np.where(real, part[..., 1] - part[..., 0], 0).sum(-1), unsure

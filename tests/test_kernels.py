@@ -10,22 +10,22 @@ from hypothesis import strategies as st
 from reference import depth_in_cutter, posture, random_frame, triangle_points
 
 from plan_cutters.domain.verdicts import blank
-from plan_cutters.kernels import free_tilts, hit, search, tree
+from plan_cutters.kernels import free_tilts, hit, probing, search, tree
 from plan_cutters.kernels.arcs import point_arc
 from plan_cutters.kernels.material import sheet
-from plan_cutters.kernels.points import axis_intervals, local_gouge_bound
+from plan_cutters.kernels.points import axis_intervals, local_gouge_range
 from plan_cutters.kernels.rows import Contacts, Frame, Tree
 from plan_cutters.scene.conditions import found_of
 
-SCRATCH = (np.empty((8, 3)), np.empty((8, 3)))
+SCRATCH = hit.scratch()
 
 
 def body_of(contact, normal, direction, tilt, rotation, radius, length, s):
     axis, lean = posture(normal, direction, tilt, rotation)
     body = np.empty(hit.BODY)
     frame = Frame(contact, normal, lean, np.cross(normal, lean))
-    hit.stand(body, frame, math.cos(tilt), math.sin(tilt), radius, radius - s, s, length - s)
-    return body, axis, lean
+    hit.stand(body, frame, math.cos(tilt), math.sin(tilt), radius, 0.0)
+    return body, waves.flat(radius, length, s).piece[0], axis, lean
 
 
 def soup(rng, n, size=3.0, spread=20.0):
@@ -46,9 +46,10 @@ def test_triangle_hit_agrees_with_dense_points(seed):
         contact, tilt, rotation = rng.normal(0, 5, 3), rng.uniform(0, math.pi / 2), rng.uniform(0, 2 * math.pi)
         radius, length = rng.uniform(1, 8), rng.uniform(4, 40)
         s = rng.uniform(0, 0.4)
-        body, axis, lean = body_of(contact, normal, direction, tilt, rotation, radius, length, s)
+        body, piece, axis, lean = body_of(contact, normal, direction, tilt, rotation, radius, length, s)
         triangle = contact + rng.normal(0, 8, 3) + rng.normal(0, rng.choice([0.01, 1, 20]), (3, 3))
-        found, height, px, py = hit.triangle_hit(triangle[None].copy(), 0, body, 0.0, *SCRATCH)
+        which, height, px, py = hit.triangle_hit(triangle[None].copy(), 0, body, piece, 1, 0.0, SCRATCH)
+        found = which == 0
         deepest = depth_in_cutter(triangle_points(triangle, 60), contact, normal, axis, lean, radius, length).max()
         if deepest > s:
             assert found
@@ -75,12 +76,12 @@ def test_tree_finds_what_a_loop_over_all_finds(n):
     scratch = hit.scratch()
     for _ in range(200):
         normal, direction = random_frame(rng)
-        body, *_ = body_of(rng.normal(0, 10, 3), normal, direction, rng.uniform(0, 1.5), 0.3, 4.0, 30.0, 0.01)
-        alone = [i for i in range(n) if hit.triangle_hit(built.vertex, i, body, 0.0, *SCRATCH)[0]]
-        found = hit.tree_hit(built, body, 0.0, -1, scratch)[0]
+        body, piece, *_ = body_of(rng.normal(0, 10, 3), normal, direction, rng.uniform(0, 1.5), 0.3, 4.0, 30.0, 0.01)
+        alone = [i for i in range(n) if hit.triangle_hit(built.vertex, i, body, piece, 1, 0.0, SCRATCH)[0] == 0]
+        found = hit.tree_hit(built, body, piece, 0.0, -1, scratch)[0]
         assert found in alone if alone else found == -1
         # Widened, it may find more, never less.
-        wide = hit.tree_hit(built, body, 0.05, -1, scratch)[0]
+        wide = hit.tree_hit(built, body, piece, 0.05, -1, scratch)[0]
         assert wide >= 0 or not alone
 
 
@@ -158,15 +159,22 @@ def test_kernels_and_reach_speak_of_the_same_verdicts():
 
     for name in ("INACCESSIBLE", "ACCESSIBLE", "INTERFERENCE_FREE", "UNDECIDED", "UNJUDGED"):
         assert getattr(search, name) == getattr(reach, name)
-    order = (search.AXIS_LIMIT, search.LOCAL_GOUGE, search.REAR_GOUGE, search.COLLISION)
-    assert [reach.REASONS[i] for i in order] == ["axis_limit", "local_gouge", "rear_gouge", "collision"]
+    words = ("axis_limit", "local_gouge", "rear_gouge", "collision", "buried", "neck", "shank", "holder")
+    assert [reach.REASONS[getattr(search, word.upper())] for word in words] == list(words)
 
 
 def test_local_gouge_bound():
-    assert local_gouge_bound(0.2, 0.0, 0.0, 8.0) == 0.0
-    assert local_gouge_bound(0.2, 0.0, math.radians(20), 8.0) == pytest.approx(math.radians(10.7874), abs=1e-6)
-    assert math.isnan(local_gouge_bound(0.2, 0.0, math.radians(52.25), 8.0))
-    assert local_gouge_bound(-0.1, -0.3, 1.0, 8.0) == 0.0
+    def bound(high, low, rotation):
+        least, most = local_gouge_range(high, low, rotation, 8.0, 0.0)
+        assert math.isnan(least) == math.isnan(most)
+        # A sharp edge gouges alike on both sides of the upright.
+        assert math.isnan(least) or most == pytest.approx(math.pi - least, abs=1e-12)
+        return least
+
+    assert bound(0.2, 0.0, 0.0) == 0.0
+    assert bound(0.2, 0.0, math.radians(20)) == pytest.approx(math.radians(10.7874), abs=1e-6)
+    assert math.isnan(bound(0.2, 0.0, math.radians(52.25)))
+    assert bound(-0.1, -0.3, 1.0) == 0.0
 
 
 @given(st.lists(st.tuples(st.floats(0, 1), st.floats(0, 1)), max_size=12))
@@ -178,7 +186,7 @@ def test_remove_keeps_the_complement(cuts):
     left = np.ones(len(points), bool)
     for a, b in cuts:
         first, last = min(a, b), max(a, b)
-        count = search.remove(intervals, count, first, last, 0.0)
+        count = probing.remove(intervals, count, first, last, 0.0)
         left &= ~((points > first) & (points < last))
     rows = intervals[:count]
     assert (rows[:, 0] <= rows[:, 1]).all()
@@ -200,10 +208,11 @@ def test_free_tilts_cover_the_range_and_hold(seed):
     built, _ = build(triangles)
     normal, direction = random_frame(rng)
     contact, radius, length, s = rng.normal(0, 3, 3), 4.0, 30.0, 0.01
+    tool = waves.flat(radius, length, s)
     dense = np.concatenate([triangle_points(t, 40) for t in triangles])
     for rotation in rng.uniform(0, 2 * math.pi, 6):
         _, lean = posture(normal, direction, 0.0, rotation)
-        parts = free_tilts.free_tilts(contact, normal, lean, 0.0, math.pi / 2, radius, length, s, 1e-4, built, 5000)
+        parts = free_tilts.free_tilts(contact, normal, lean, 0.0, math.pi / 2, tool, 0, 1e-4, built, 5000)
         parts = parts[np.argsort(parts[:, 0])]
         assert parts[0, 0] == 0.0
         assert parts[-1, 1] == math.pi / 2
@@ -237,7 +246,8 @@ def test_search_agrees_with_a_posture_grid(seed):
     rotations = np.arange(12) * math.pi / 6
     out = found_of(blank(n))
     contacts = Contacts(point, normal, direction, np.zeros((n, 2)))
-    search.search(np.arange(n), contacts, waves.ranges(rotations), radius, length, s, s, solids, solids, out)
+    tool = waves.flat(radius, length, s)
+    search.search(np.arange(n), contacts, waves.ranges(rotations), tool, tool, solids, solids, out)
     verdicts = set(out[0].tolist())
     assert verdicts == {search.ACCESSIBLE, search.INACCESSIBLE}
     for i in range(n):

@@ -13,8 +13,7 @@ from OCP.TopoDS import TopoDS_Compound
 from reference import depth_in_cutter, posture, random_frame
 
 from plan_cutters import Cutter, plan
-from plan_cutters.domain.cutter import Cutter as AnyCutter
-from plan_cutters.domain.nesting import handed, order
+from plan_cutters.domain.nesting import handed, inside, order
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE
 
 SAMPLES = Path(__file__).parent.parent / "samples"
@@ -29,21 +28,20 @@ def test_a_smaller_cutter_at_the_same_contact_lies_within_the_larger(seed, thinn
     points = contact + rng.uniform(-12, 12, (500, 3))
     large = depth_in_cutter(points, contact, normal, axis, lean, 6.0, 12.0)
     small = depth_in_cutter(points, contact, normal, axis, lean, 6.0 * thinner, 12.0 * shorter)
-    inside = small > 0
-    assert (small[inside] <= large[inside] + 1e-9).all()
+    within = small > 0
+    assert (small[within] <= large[within] + 1e-9).all()
 
 
 def test_inside_is_radius_length_and_corner():
     small = Cutter.flat(radius=4, length=50)
-    assert small.inside(Cutter.flat(radius=6, length=80))
-    assert small.inside(small)
-    assert not small.inside(Cutter.flat(radius=6, length=49))
-    assert not Cutter.flat(radius=6, length=40).inside(small)
-    ball = object.__new__(AnyCutter)
-    for name, value in (("radius", 4.0), ("length", 50.0), ("corner_radius", 4.0), ("name", "")):
-        object.__setattr__(ball, name, value)
-    assert not ball.inside(Cutter.flat(radius=6, length=80))
-    assert not small.inside(ball)
+    assert inside(small, Cutter.flat(radius=6, length=80))
+    assert inside(small, small)
+    assert not inside(small, Cutter.flat(radius=6, length=49))
+    assert not inside(Cutter.flat(radius=6, length=40), small)
+    # The corner of a ball lies outside every flat end, the flat's edge outside every ball.
+    ball = Cutter.ball(radius=4, length=50)
+    assert not inside(ball, Cutter.flat(radius=6, length=80))
+    assert not inside(small, ball)
 
 
 @pytest.fixture(scope="module")

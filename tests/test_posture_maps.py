@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import waves
 
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, plan, posture_map
@@ -44,9 +45,9 @@ def test_every_tilt_in_a_free_interval_is_safe(found):
     obstacles = Obstacles(tessellate(found.part, 0.002))
     hit = np.zeros(len(tilt), np.int32)
     # A hair shallower than what the map was made with: the ends are exact.
-    depth = np.full(len(tilt), obstacles.depths(0.01)[0] + 1e-9)
-    probe(np.arange(len(tilt)), samples.point[sample], n, axis, lean, CUTTER.radius, CUTTER.length, depth,
-          obstacles.tree, hit)  # fmt: skip
+    depth = 0.01 - obstacles.triangles.chord_error + 1e-9
+    probe(np.arange(len(tilt)), samples.point[sample], n, axis, lean, waves.flat(CUTTER.radius, CUTTER.length, depth),
+          obstacles.tree, hit, hit.copy())  # fmt: skip
     assert len(tilt) > 2000
     assert (hit < 0).all()
 

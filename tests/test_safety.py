@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapes
+import waves
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.BRepTools import BRepTools
@@ -67,7 +68,9 @@ def test_verdicts_equal_those_of_the_exact_surface_outside_the_band(seed):
     for offset in (-3, -2.01, -1, 0, 1, 2.01, 3):
         depths = np.clip(exact + offset * error, 1e-3, 2.0)
         triangle = np.full(n, -1, np.int32)
-        search.probe(np.arange(n), point, normal, axis, lean, radius, length, depths, obstacles.tree, triangle)
+        for i in range(n):
+            tool = waves.flat(radius, length, depths[i])
+            search.probe(np.array([i]), point, normal, axis, lean, tool, obstacles.tree, triangle, triangle.copy())
         assert (triangle[exact > depths + 2 * error] >= 0).all()
         assert (triangle[exact < depths - 2 * error] < 0).all()
 

@@ -24,16 +24,17 @@ from reference import (
 from cad_io import read_part
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Machine, plan
+from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.verdicts import INACCESSIBLE
 from plan_cutters.kernels import hit, search
 from plan_cutters.kernels.arcs import point_arc
-from plan_cutters.kernels.points import axis_intervals, local_gouge_bound
+from plan_cutters.kernels.points import axis_intervals, local_gouge_range
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.scene.obstacles import Obstacles
 
 ROUNDING = 1e-13
 RIGHT = math.pi / 2
-SCRATCH = (np.empty((8, 3)), np.empty((8, 3)))
+SCRATCH = hit.scratch()
 
 #: Distances from a singular case: on it, an ulp off, and ever further.
 OFF = st.sampled_from([0.0, 1e-16, 1e-14, 1e-10, 1e-8, 1e-5, 1e-2]).flatmap(lambda x: st.sampled_from([x, -x]))
@@ -128,7 +129,7 @@ curvatures = st.sampled_from([0.0, 1e-12, 0.05, 0.125, 0.25]).flatmap(lambda k: 
 def test_local_gouging_is_where_the_neighbourhood_is_inside(kappa, rotation, radius):
     """The paraboloid about the contact, so near that only curvature counts, lies in the cutter below the bound alone."""
     high, low = max(kappa), min(kappa)
-    bound = local_gouge_bound(high, low, rotation, radius)
+    bound, _ = local_gouge_range(high, low, rotation, radius, 0.0)
     contact, normal, first = np.zeros(3), np.array([0.0, 0, 1]), np.array([1.0, 0, 0])
     turns = np.linspace(0, 2 * math.pi, 721)
 
@@ -158,10 +159,10 @@ def test_local_gouging_is_where_the_neighbourhood_is_inside(kappa, rotation, rad
 
 @given(st.floats(-0.5, 0.5), st.floats(0, 2 * math.pi))
 def test_an_umbilic_gouges_alike_at_every_rotation(kappa, rotation):
-    here, there = (local_gouge_bound(kappa, kappa, turn, 2.0) for turn in (rotation, 0.0))
+    here, there = (local_gouge_range(kappa, kappa, turn, 2.0, 0.0)[0] for turn in (rotation, 0.0))
     assert math.isnan(here) == math.isnan(there) or abs(2.0 * kappa - 1.0) < 1e-14
     assert math.isnan(here) or math.isnan(there) or math.sin(here) == pytest.approx(math.sin(there), abs=1e-14)
-    assert math.isnan(local_gouge_bound(math.nan, 0.0, rotation, 2.0)), "an unknown curvature is never free"
+    assert math.isnan(local_gouge_range(math.nan, 0.0, rotation, 2.0, 0.0)[0]), "an unknown curvature is never free"
 
 
 @given(n=near(0.0, RIGHT, math.pi), f=near(0.0, RIGHT, math.pi), m=near(0.0, RIGHT, math.pi),
@@ -223,15 +224,18 @@ def triangles_by_the_body(draw):
 
 
 def stood(rng, tilt, radius, length, s):
-    """A body in a frame at random, and the frame: contact and the rows x_T, y_T, axis."""
+    """A body in a frame at random, its pieces, and the frame: contact and the rows x_T, y_T, axis."""
     normal, direction = random_frame(rng)
     contact = rng.normal(0, 5, 3)
     axis, lean = posture(normal, direction, tilt, 0.3)
     body, left = np.empty(hit.BODY), np.cross(normal, lean)
-    hit.stand(
-        body, Frame(contact, normal, lean, left), math.cos(tilt), math.sin(tilt), radius, radius - s, s, length - s
+    hit.stand(body, Frame(contact, normal, lean, left), math.cos(tilt), math.sin(tilt), radius, 0.0)
+    return (
+        body,
+        waves.flat(radius, length, s).piece[0],
+        contact,
+        np.stack([math.cos(tilt) * lean - math.sin(tilt) * normal, left, axis]),
     )
-    return body, contact, np.stack([math.cos(tilt) * lean - math.sin(tilt) * normal, left, axis])
 
 
 @given(triangles_by_the_body(), st.sampled_from([0.0, RIGHT, 0.4]), st.integers(0, 5))
@@ -239,11 +243,11 @@ def stood(rng, tilt, radius, length, s):
 def test_a_triangle_hits_where_its_deepest_point_is_inside(case, tilt, seed):
     radius, length, s, local = case
     assume(s < length / 2)
-    body, contact, frame = stood(np.random.default_rng(seed), tilt, radius, length, s)
+    body, piece, contact, frame = stood(np.random.default_rng(seed), tilt, radius, length, s)
     triangle = contact + (local - [radius, 0, 0]) @ frame
-    found, height, px, py = hit.triangle_hit(triangle[None].copy(), 0, body, 0.0, *SCRATCH)
+    which, height, px, py = hit.triangle_hit(triangle[None].copy(), 0, body, piece, 1, 0.0, SCRATCH)
     allowed = ROUNDING * (radius + length + np.abs(local).max() + np.abs(contact).max())
-    if found:
+    if which == 0:
         assert min(height - s, length - s - height, radius - s - math.hypot(px, py)) > -allowed
         assert distance_to_triangle(np.array([px, py, height]), local) < 10 * allowed
     else:
@@ -254,14 +258,14 @@ def test_a_triangle_hits_where_its_deepest_point_is_inside(case, tilt, seed):
 def test_a_triangle_at_a_bound_hits_from_the_first_hair(deeper):
     """Flat on the bottom, on the top, and upright along the wall."""
     radius, length, s = 3.0, 9.0, 0.01
-    body, _, frame = stood(np.random.default_rng(0), 0.4, radius, length, s)
+    body, piece, _, frame = stood(np.random.default_rng(0), 0.4, radius, length, s)
     body[hit.P : hit.P + 3] = 0.0
     disk = np.array([[0.0, 1, 0], [1, -1, 0], [-1, -1, 0]])
     wall = np.array([[0.0, -1, 2], [0, 1, 2], [0, 0, 5]])
     up, out = np.array([0, 0, 1]), np.array([1, 0, 0])
     for local in (disk + (s + deeper) * up, disk + (length - s - deeper) * up, wall + (deeper + s - radius) * out):
         triangle = np.ascontiguousarray(((local - radius * out) @ frame)[None])
-        assert hit.triangle_hit(triangle, 0, body, 0.0, *SCRATCH)[0] == (deeper > 0)
+        assert (hit.triangle_hit(triangle, 0, body, piece, 1, 0.0, SCRATCH)[0] == 0) == (deeper > 0)
 
 
 @given(triangles_by_the_body(), st.floats(1e-6, 0.3), st.integers(0, 3))
@@ -269,9 +273,9 @@ def test_a_triangle_at_a_bound_hits_from_the_first_hair(deeper):
 def test_a_miss_with_a_rate_is_a_miss_at_every_tilt_of_the_turn(case, rate, seed):
     radius, length, s, local = case
     assume(s < length / 2)
-    body, contact, frame = stood(np.random.default_rng(seed), 0.7, radius, length, s)
+    body, piece, contact, frame = stood(np.random.default_rng(seed), 0.7, radius, length, s)
     triangle = np.ascontiguousarray((contact + (local - [radius, 0, 0]) @ frame)[None])
-    if hit.tree_hit(waves.tree_of(triangle), body, rate, -1, hit.scratch())[0] >= 0:
+    if hit.tree_hit(waves.tree_of(triangle), body, piece, rate, -1, hit.scratch())[0] >= 0:
         return
     allowed = ROUNDING * (radius + length + np.abs(local).max())
     for turn in (-rate, -rate / 2, 0.0, rate / 3, rate):
@@ -297,9 +301,9 @@ def test_the_tree_misses_no_needle_and_no_point(seed):
         corner = corner * [1e-7, 1e-7, 1] + 1e-8 * rng.standard_normal((n, 3, 3))
     built, scratch, hits = waves.tree_of(corner), hit.scratch(), 0
     for _ in range(300):
-        body, _, _ = stood(rng, rng.uniform(0, RIGHT), 3.0, 9.0, 0.01)
-        alone = [i for i in range(n) if hit.triangle_hit(built.vertex, i, body, 0.0, *SCRATCH)[0]]
-        found = hit.tree_hit(built, body, 0.0, -1, scratch)[0]
+        body, piece, _, _ = stood(rng, rng.uniform(0, RIGHT), 3.0, 9.0, 0.01)
+        alone = [i for i in range(n) if hit.triangle_hit(built.vertex, i, body, piece, 1, 0.0, SCRATCH)[0] == 0]
+        found = hit.tree_hit(built, body, piece, 0.0, -1, scratch)[0]
         assert found in alone if alone else found == -1
         hits += bool(alone)
     assert 5 < hits < 300
@@ -307,6 +311,7 @@ def test_the_tree_misses_no_needle_and_no_point(seed):
 
 def test_contact_on_a_sharp_edge():
     """On a convex edge the cutter touches both faces and enters neither; on a concave one the wall is in the way."""
+    piece = waves.flat(6.0, 30.0, 1e-9).piece[0]
     for angle, free in ((-RIGHT, True), (-0.1, True), (0.1, False), (RIGHT, False)):
         far = np.array([50 * math.cos(angle), 0, 50 * math.sin(angle)])
         edge = np.array([[0.0, -40, 0], [0, 40, 0]])
@@ -317,14 +322,19 @@ def test_contact_on_a_sharp_edge():
                 body = np.empty(hit.BODY)
                 left = np.cross([0.0, 0, 1], lean)
                 hit.stand(body, Frame(np.zeros(3), np.array([0.0, 0, 1]), lean, left), math.cos(tilt), math.sin(tilt),
-                          6.0, 6.0 - 1e-9, 1e-9, 30.0 - 1e-9)  # fmt: skip
-                hits = [hit.triangle_hit(faces, i, body, 0.0, *SCRATCH)[0] for i in range(2)]
+                          6.0, 0.0)  # fmt: skip
+                hits = [hit.triangle_hit(faces, i, body, piece, 1, 0.0, SCRATCH)[0] == 0 for i in range(2)]
                 assert not hits[0], "the face under the cutter"
                 frame = np.stack([math.cos(tilt) * lean - [0, 0, math.sin(tilt)], left, axis])
                 depth = deepest_in_cylinder(faces[1] @ frame.T + [6.0, 0, 0], 6.0, 0.0, 30.0)
                 assert hits[1] == (depth > 1e-9) or abs(depth - 1e-9) < 1e-12
                 if free:
                     assert not hits[1]
+
+
+def depths(mesh, tolerance):
+    """Depths in the triangles from which a posture is not safe, and surely blocked."""
+    return tolerance - mesh.triangles.chord_error, tolerance + mesh.triangles.chord_error
 
 
 @cache
@@ -351,7 +361,7 @@ def probed(obstacles, postures, radius, length, depth):
     """Which postures no triangle reaches into deeper than `depth`."""
     n = len(postures[0])
     triangle = np.full(n, -2, np.int32)
-    search.probe(np.arange(n), *postures, radius, length, np.full(n, float(depth)), obstacles.tree, triangle)
+    search.probe(np.arange(n), *postures, waves.flat(radius, length, depth), obstacles.tree, triangle, triangle.copy())
     return triangle == -1
 
 
@@ -373,9 +383,10 @@ def test_where_a_posture_does_not_serve_another_cutter():
     hits, one = [], np.full((1, 3, 3), [2.5, 0.0, 40.0])
     for radius in (6.0, 4.0):
         body, up, across, left = np.empty(hit.BODY), np.eye(3)[2], np.eye(3)[0], np.eye(3)[1]
-        hit.stand(body, Frame(np.zeros(3), up, across, left), 1.0, 0.0, radius, 8.0, 30.0, 60.0)
-        hits.append(hit.triangle_hit(one, 0, body, 0.0, *SCRATCH)[0])
-    assert hits == [False, True], "holder"
+        hit.stand(body, Frame(np.zeros(3), up, across, left), 1.0, 0.0, radius, 0.0)
+        held = assembly(Cutter.flat(radius=radius, length=30.0, holder="R8L30"), 0.0, 0.0).piece[0]
+        hits.append(hit.triangle_hit(one, 0, body, held, 3, 0.0, SCRATCH)[0])
+    assert hits == [-1, 1], "holder"
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -387,7 +398,7 @@ def test_a_finer_tessellation_never_turns_safe_into_blocked(seed):
     postures, _ = found_postures(meshes[0], 4.0, 30.0, 0.01, n=3000)
     verdicts = []
     for mesh in meshes:
-        safe, blocked = (probed(mesh, postures, 4.0, 30.0, depth) for depth in mesh.depths(tolerance))
+        safe, blocked = (probed(mesh, postures, 4.0, 30.0, depth) for depth in depths(mesh, tolerance))
         assert not (safe & ~blocked).any()
         verdicts.append((safe, ~blocked))
     undecided = [int((~safe & ~blocked).sum()) for safe, blocked in verdicts]

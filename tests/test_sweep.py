@@ -6,10 +6,16 @@ import numpy as np
 import pytest
 import waves
 
+from cad_io.arrays import Triangles
+from plan_cutters import Cutter, Machine
+from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, UNDECIDED, blank
 from plan_cutters.kernels import material, probing, search, sweep
-from plan_cutters.kernels.rows import Contacts, Tool
-from plan_cutters.scene.conditions import found_of
+from plan_cutters.kernels.rows import Contacts
+from plan_cutters.scene.conditions import Conditions, found_of
+from plan_cutters.scene.obstacles import Obstacles
+from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.stages import access
 
 TURNS, SAFE, BLOCKED, LENGTH = 12, 0.02, 0.03, 20.0
 RANGES = waves.ranges(2 * np.pi * np.arange(TURNS) / TURNS)
@@ -25,7 +31,8 @@ def comb():
 
 def searched(contacts, solids, radius, rows):
     reach = blank(len(contacts.point))
-    search.search(rows, contacts, RANGES, radius, LENGTH, SAFE, BLOCKED, solids, solids, found_of(reach))
+    tools = waves.flat(radius, LENGTH, SAFE), waves.flat(radius, LENGTH, BLOCKED)
+    search.search(rows, contacts, RANGES, *tools, solids, solids, found_of(reach))
     return reach
 
 
@@ -42,7 +49,7 @@ def probed(contacts, solids, radius, row, depth):
         axis = np.cos(tilts)[:, None] * n + np.sin(tilts)[:, None] * lean
         triangle = np.empty(TILTS, np.int32)
         search.probe(np.arange(TILTS), np.repeat([contacts.point[row]], TILTS, 0), np.repeat([n], TILTS, 0), axis, lean,
-                     radius, LENGTH, np.full(TILTS, depth), solids.tree, triangle)  # fmt: skip
+                     waves.flat(radius, LENGTH, depth), solids.tree, triangle, triangle.copy())  # fmt: skip
         free[turn] = (triangle < 0) & (np.sin(tilts) >= radius * (most * s * s + least * c * c))
     return free
 
@@ -63,7 +70,7 @@ def test_verdicts_are_those_of_a_twin_that_probes_each_rotation(comb, radius):
             posture = np.array([reach.axis[row]]), np.array([reach.lean[row]])
             triangle = np.empty(1, np.int32)
             search.probe(np.zeros(1, np.int64), contacts.point[row : row + 1], contacts.normal[row : row + 1], *posture,
-                         radius, LENGTH, np.array([SAFE]), solids.tree, triangle)  # fmt: skip
+                         waves.flat(radius, LENGTH, SAFE), solids.tree, triangle, triangle.copy())  # fmt: skip
             assert triangle[0] == -1
     # Each radius stands for a case: from mostly reached to hopeless.
     lost = (reach.verdict == INACCESSIBLE).mean()
@@ -84,20 +91,24 @@ def test_verdicts_do_not_hang_on_the_company(comb, radius):
 
 def test_the_least_depth_is_that_of_a_grid(comb):
     contacts, solids = comb
-    radius, share = 2.0, 0.02
+    radius, share = 2.0, access._PRECISION
+    cutter, vertex = Cutter.flat(radius=radius, length=LENGTH), waves.comb_triangles(40)
+    walls = Obstacles(Triangles(vertex, np.ones(len(vertex), np.int32), 0.001, ()))
+    postures = PostureRange(step=2 * np.pi / TURNS)
+    conditions = Conditions(
+        Machine(), np.array([0, 0, 1.0]), postures, Surroundings.sheet(walls), SAFE + walls.triangles.chord_error, 1
+    )
+    assert np.cos(postures.rotations) == pytest.approx(RANGES.rotation_cos, abs=1e-12)
     lost = np.flatnonzero(searched(contacts, solids, radius, np.arange(len(contacts.point))).verdict == INACCESSIBLE)
     short = []
     for row in lost[:: max(1, len(lost) // 12)]:
         one = Contacts(*(column[row : row + 1].copy() for column in contacts))
-        best = blank(1)
-        low, high = search.least_depth(
-            one, RANGES, radius, LENGTH, SAFE, radius * (1 - 1e-9), share, solids, found_of(best)
-        )
+        best, low, high = access._least_depth(one, 0, "collision", cutter, conditions)
         assert low < high <= low * (1 + 2 * share)
         for depth, free in ((high * (1 + 1e-9), True), (low, False)):
             triangle = np.empty(1, np.int32)
-            search.probe(np.zeros(1, np.int64), one.point, one.normal, best.axis, best.lean, radius, LENGTH,
-                         np.array([depth]), solids.tree, triangle)  # fmt: skip
+            search.probe(np.zeros(1, np.int64), one.point, one.normal, best.axis, best.lean,
+                         waves.flat(radius, LENGTH, depth), solids.tree, triangle, triangle.copy())  # fmt: skip
             assert (triangle[0] < 0) == free
         assert not probed(contacts, solids, radius, row, SAFE).any()
         short.append(probed(contacts, solids, radius, row, 0.9 * low).any())
@@ -135,16 +146,16 @@ def test_what_is_remembered_is_seen_from_the_contact_at_hand(given):
     contact = Contacts(np.zeros((1, 3)), np.array([[0.0, 0, 1]]), np.array([[1.0, 0, 0]]), np.zeros((1, 2)))
     # A speck on the axis of the first posture tried, 45 deg at rotation 0, so that what is remembered is asked.
     speck = np.array([7.0, 0, 8.0]) + 0.1 * np.array([[1.0, 0, 0], [0, 1, 0], [0, 0, 1]])
-    solids, tool = material.sheet(waves.tree_of(speck[None])), Tool(1.0, 1.0 - SAFE, SAFE, LENGTH - SAFE)
+    solids, tool = material.sheet(waves.tree_of(speck[None])), waves.flat(1.0, LENGTH, SAFE)
 
     def swept(past):
-        return sweep.sweep(contact, 0, RANGES, tool, LENGTH, solids, 0.25, 1e-5, (0, -1.0), TURNS, past,
+        return sweep.sweep(contact, 0, RANGES, tool, solids, 0.25, 1e-5, (0, -1.0), TURNS, past,
                            probing.room_to_search())  # fmt: skip
 
-    full = sweep.memory(TURNS)
+    full = sweep.memory(TURNS, 1)
     full.given[0], full.pool[:] = given, 1e4
     rng = np.random.default_rng(0)
     full.seen[:] = rng.uniform([[-4], [-4], [0.1]], [[4], [4], [4]], full.seen.shape)
     rotation, tilt = swept(full)
-    assert (rotation, tilt) == swept(sweep.memory(TURNS))
+    assert (rotation, tilt) == swept(sweep.memory(TURNS, 1))
     assert (rotation, tilt != np.pi / 4) == (0, True)

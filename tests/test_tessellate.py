@@ -33,6 +33,7 @@ from scipy.spatial import cKDTree
 from cad_io import read_part
 from cad_io.kernel import values
 from cad_io.tessellate import tessellate
+from cad_io.tessellate import triangles as module
 
 ROUNDING = 1e-9
 
@@ -246,3 +247,18 @@ def test_a_small_bump_on_a_large_flat_patch_is_seen(at):
     assert triangles.chord_error <= 0.01
     assert triangles.vertex[..., 2].max() > 0.5
     assert farthest(part, triangles, 1000) <= triangles.chord_error + ROUNDING
+
+
+@pytest.mark.parametrize("budget", [2_000_000, 3000])
+def test_triangles_do_not_depend_on_the_number_of_threads(budget):
+    part = compound(as_nurbs(pocketed()), ring(), ball(at=(400.0, 0, 0)))
+    one, two = (tessellate(read_part(part), 0.02, budget=budget, jobs=jobs) for jobs in (1, 2))
+    assert (one.chord_error > 0.02) == (budget < 10_000)
+    assert one == two
+
+
+def test_a_face_without_room_is_laid_in_a_second_pass(monkeypatch):
+    """The same triangles, whether they were kept as they were counted or not."""
+    kept = tessellate(read_part(ring()), 0.02)
+    monkeypatch.setattr(module, "_ROOM", 100)
+    assert tessellate(read_part(ring()), 0.02) == kept

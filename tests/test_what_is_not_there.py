@@ -30,6 +30,7 @@ from cad_io.arrays import Triangles
 from cad_io.kernel import faces as faces_of
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, plan, posture_map
+from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import ACCESSIBLE, blank
@@ -37,7 +38,7 @@ from plan_cutters.errors import UnjudgeableError
 from plan_cutters.kernels import free_tilts, search
 from plan_cutters.kernels.material import sheet
 from plan_cutters.kernels.rows import Contacts, Tree
-from plan_cutters.scene.conditions import Conditions, found_of, search_postures
+from plan_cutters.scene.conditions import Conditions, found_of, search_postures, tool_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings, surroundings
 
@@ -188,30 +189,33 @@ def test_kernels_take_what_is_no_number_for_a_hit():
     near, n, e1 = scene()
     far = sheet(Tree(near.vertex + 1e6, near.box + np.array([1e6] * 3 + [0.0] * 13), near.depth))
     one, p, straight = np.zeros(1, np.int64), np.zeros(3), np.zeros((1, 2))
+    small = assembly(SMALL, 0.01, 0.01)
+    tool, heavy, dummy = tool_of(small), tool_of(assembly(SMALL, 0.02, 0.02)), small.dummy
     tried = 0
     for point, normal, lean in [
         *((x, n, e1) for x in spoilt(p)), *((p, x, e1) for x in spoilt(n)), *((p, n, x) for x in spoilt(e1)),
     ]:  # fmt: skip
         free = np.ones(1, bool)
-        search.dummy_clear(one, Contacts(point[None], normal[None], lean[None], straight), 2.0, 20.0, 0.01, far, free)
+        search.dummy_clear(one, Contacts(point[None], normal[None], lean[None], straight), dummy, tool, far, free)
         if lean is e1:
             assert not free[0]
         triangle = np.full(1, -1, np.int32)
         search.probe(
-            one, point[None], normal[None], normal[None], lean[None], 2.0, 20.0, np.array([0.01]), far.tree, triangle
+            one, point[None], normal[None], normal[None], lean[None], tool, far.tree, triangle, triangle.copy()
         )
-        assert triangle[0] >= 0
-        parts = free_tilts.free_tilts(point, normal, lean, 0.0, 1.5, 2.0, 20.0, 0.01, 1e-3, far.tree, 2000)
+        # What has no tilt touches nowhere, which is no way clear either.
+        assert triangle[0] >= 0 or triangle[0] == -2
+        parts = free_tilts.free_tilts(point, normal, lean, 0.0, 1.5, tool, 0, 1e-3, far.tree, 2000)
         assert not (parts[:, 2] == free_tilts.OPEN).any()
         out = blank(1)
         contact = Contacts(point[None], normal[None], lean[None], straight)
-        search.search(one, contact, waves.ranges(np.zeros(1)), 2.0, 20.0, 0.01, 0.02, far, far, found_of(out))
+        search.search(one, contact, waves.ranges(np.zeros(1)), tool, heavy, far, far, found_of(out))
         assert out.verdict[0] != ACCESSIBLE
         tried += 1
     assert tried == 9
     # The same calls with good numbers find the way clear: what was seen above is the nan.
     free = np.zeros(1, bool)
-    search.dummy_clear(one, Contacts(p[None], n[None], e1[None], straight), 2.0, 20.0, 0.01, far, free)
+    search.dummy_clear(one, Contacts(p[None], n[None], e1[None], straight), dummy, tool, far, free)
     assert free[0]
 
 
@@ -229,13 +233,14 @@ def test_the_door_refuses_what_is_no_number():
     conditions = Conditions(
         Machine(), np.array([0, 0, 1.0]), PostureRange(), Surroundings.sheet(Obstacles(good)), 0.01, 1
     )
+    tools = conditions.light(SMALL), conditions.heavy(SMALL)
     contact = Contacts(np.zeros((1, 3)), n[None], e1[None], np.zeros((1, 2)))
     for which in range(4):
         broken = list(contact)
         broken[which] = next(spoilt(contact[which]))
         with pytest.raises(ValueError, match="finite"):
-            search_postures(Contacts(*broken), np.zeros(1, np.int64), SMALL, conditions, conditions.depths, blank(1))
-    search_postures(contact, np.zeros(1, np.int64), SMALL, conditions, conditions.depths, blank(1))
+            search_postures(Contacts(*broken), np.zeros(1, np.int64), *tools, conditions, blank(1))
+    search_postures(contact, np.zeros(1, np.int64), *tools, conditions, blank(1))
 
 
 # --- the compiler's cache ----------------------------------------------------------------------------------------------------

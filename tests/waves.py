@@ -2,8 +2,11 @@
 
 import numpy as np
 
+from plan_cutters import Cutter
+from plan_cutters.domain.assembly import assembly
 from plan_cutters.kernels import tree
-from plan_cutters.kernels.rows import Contacts, Ranges, Tree
+from plan_cutters.kernels.rows import Contacts, Cylinder, Ranges, Tree
+from plan_cutters.scene.conditions import tool_of
 
 SIZE, WAVES, HEIGHT = 40.0, (0.27, 0.23), 6.0
 
@@ -49,6 +52,17 @@ def tree_of(vertex):
 def ranges(rotations, limit_cos=-2.0, tilt=(0.0, np.pi / 2)):
     """Postures at rotations (k,), rad, with an axis limit about z."""
     return Ranges(np.cos(rotations), np.sin(rotations), *tilt, np.array([0, 0, 1.0]), limit_cos)
+
+
+def flat(radius, length, depth):
+    """A flat end without stages, smaller by a depth all round."""
+    return tool_of(assembly(Cutter.flat(radius=radius, length=length), depth, depth))
+
+
+def cylinder(radius, length, depth):
+    """The same as the eight sides of posture maps take it."""
+    piece = flat(radius, length, depth).piece[0]
+    return Cylinder(radius, piece[0, 3], piece[0, 1], piece[0, 2], piece)
 
 
 #: Walls of the comb: how many, how far apart, how thick at the bottom and how much less at the top, how high, how long; mm.

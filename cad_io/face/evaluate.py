@@ -12,7 +12,9 @@ def evaluate(part: Any, orientation: Orientation, face: int, uv: Floats) -> tupl
     """Points (n, 3), mm, and differential geometry of a face's surface at parameters (n, 2), inside the trim or not."""
     derivatives = part.surface(face).second(uv[:, 0], uv[:, 1])
     sign = float(orientation.sign[face - 1])
-    return derivatives[:, 0], curvature(derivatives, sign, float(np.linalg.norm(part.size)))
+    # A column of its own: kernels are compiled again for one with steps between its rows.
+    point = np.ascontiguousarray(derivatives[:, 0])
+    return point, curvature(derivatives, sign, float(np.linalg.norm(part.size)))
 
 
 def density(part: Any, face: int, uv: Floats) -> Floats:

@@ -204,6 +204,7 @@ def of_net(net, u, v, bends):  # type: ignore[no-untyped-def]
     room = _Room(
         np.empty((p + 1, net.pole.shape[1], 4)), np.empty((p + 1, q + 1, 4)), np.empty((p + 2, q + 2, 4)),
         np.empty((p + 2, q + 2, 4)), np.empty((wide, wide)), np.empty((wide, wide)), np.empty((6, 6)), np.empty((2, 3)),
+        np.empty(len(v) - 1, np.int64), np.empty((len(v) - 1, q + 1, q + 1)),
     )  # fmt: skip
     _fill(net, u, v, bends, room)
 
@@ -219,24 +220,28 @@ class _Room(NamedTuple):
     square: Any
     ball: Any
     slope: Any
+    left: Any
+    across: Any
 
 
 @kernel
 def _fill(net, u, v, bends, room):  # type: ignore[no-untyped-def]
     p, q, cell, ball = net.degree_u, net.degree_v, room.cell, room.ball
+    for j in range(len(v) - 1):
+        room.left[j], a, b = _interval(net.knot_v, q, net.period_v, v[j], v[j + 1])
+        _bezier(net.knot_v, q, room.left[j], a, b, room.square, room.across[j])
     for i in range(len(u) - 1):
         top, a, b = _interval(net.knot_u, p, net.period_u, u[i], u[i + 1])
         _bezier(net.knot_u, p, top, a, b, room.square, room.share)
         _row(net, top, room.share, room.rows)
         for j in range(len(v) - 1):
-            left, a, b = _interval(net.knot_v, q, net.period_v, v[j], v[j + 1])
-            _bezier(net.knot_v, q, left, a, b, room.square, room.share)
+            left, share = room.left[j], room.across[j]
             for k in range(p + 1):
                 for m in range(q + 1):
                     for c in range(4):
                         total = 0.0
                         for n in range(q + 1):
-                            total += room.share[m, n] * room.rows[k, left - q + n, c]
+                            total += share[m, n] * room.rows[k, left - q + n, c]
                         cell[k, m, c] = total
             _of_cell(cell, p, q, u[i + 1] - u[i], v[j + 1] - v[j], net.rational, room)
             for k in range(3):

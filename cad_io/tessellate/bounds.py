@@ -46,15 +46,29 @@ class Table(NamedTuple):
     along_v: Any
 
 
-def table_of(surface: Surface, box: tuple[float, float, float, float], cells: int = COARSE) -> tuple[Table, bool]:
-    """The table of a surface over a rectangle (u0, u1, v0, v1), of so many cells each way or more, and whether its bounds are
-    proved.
+class Ground(NamedTuple):
+    """What all tables of a surface over a rectangle (u0, u1, v0, v1) begin with.
 
-    Bounds of a surface that only the kernel can evaluate are guessed from derivatives in places, and what a surface does between
-    knots that are nearly one is left out: what stands on either must be measured.
+    lines: along u and v at which its pieces end, None where only the kernel can evaluate it or its bends have no bound. ways:
+    whether it is bent along u and along v. bends: over the cells between the lines. kinks: as in `Table`. whole: whether nothing
+    hides between knots that are nearly one.
     """
-    form = surface.form
-    if form is not None:
+
+    surface: Surface
+    box: tuple[float, float, float, float]
+    lines: tuple[Floats, Floats] | None
+    ways: tuple[bool, bool]
+    bends: Bends | None
+    kinks: tuple[Floats, Floats]
+    whole: bool
+
+    @staticmethod
+    def of(surface: Surface, box: tuple[float, float, float, float]) -> "Ground":
+        none = np.zeros((0, 2))
+        unknown = Ground(surface, box, None, (True, True), None, (none, none), False)
+        form = surface.form
+        if form is None:
+            return unknown
         lines, kinks, whole = [], [], True
         for k in range(2):
             ends = (box[2 * k], box[2 * k + 1])
@@ -63,20 +77,45 @@ def table_of(surface: Surface, box: tuple[float, float, float, float], cells: in
             kinks.append(np.stack([knots, jumps], axis=1)[jumps > 0.0])
             # A knot at the border itself hides nothing: the piece beyond it is as wide as others, and hardly entered.
             whole = whole and bool((np.diff(knots) > _NARROW * (ends[1] - ends[0])).all())
-        bends = _bends(form.bends, *lines)
-        bent = [np.abs(bends.middle[:, :, k]).max() + bends.spread[:, :, k].max() > 0.0 for k in range(3)]
-        if np.isfinite(bends.spread).all() and np.isfinite(bends.first).all():
-            ways = [bent[k] or bent[2] for k in range(2)]
-            finer = [
-                _subdivided(lines[k], cells if all(ways) else _ALONG * cells) if ways[k] else lines[k] for k in range(2)
-            ]
-            bends = _bends(form.bends, *finer)
-            finer = [_thinned(each) for each in finer]
-            if np.isfinite(bends.spread).all() and np.isfinite(bends.first).all():
-                return _table(finer[0], finer[1], kinks[0], kinks[1], bends), whole
-    u, v = (np.linspace(box[2 * k], box[2 * k + 1], cells + 1) for k in range(2))
+        bends = _bends(form.bends, lines[0], lines[1])
+        if not _bounded(bends):
+            return unknown
+        bent = [bool(np.abs(bends.middle[:, :, k]).max() + bends.spread[:, :, k].max() > 0.0) for k in range(3)]
+        ways = (bent[0] or bent[2], bent[1] or bent[2])
+        return Ground(surface, box, (lines[0], lines[1]), ways, bends, (kinks[0], kinks[1]), whole)
+
+    def finer(self, count: int) -> list[Floats]:
+        """Lines along u and along v, so many cells each way or more between them."""
+        if self.lines is None:
+            return [np.linspace(self.box[2 * k], self.box[2 * k + 1], count + 1) for k in range(2)]
+        count = count if all(self.ways) else _ALONG * count
+        return [_subdivided(each, count) if way else each for each, way in zip(self.lines, self.ways, strict=True)]
+
+    def is_finer(self, count: int, *, than: int) -> bool:
+        """Whether a table of so many cells has more than another: lines may be dense already."""
+        return any(len(a) > len(b) for a, b in zip(self.finer(count), self.finer(than), strict=True))
+
+
+def table_of(ground: Ground, cells: int = COARSE) -> tuple[Table, bool]:
+    """The table of a surface over a rectangle, of so many cells each way or more, and whether its bounds are proved.
+
+    Bounds of a surface that only the kernel can evaluate are guessed from derivatives in places, and what a surface does between
+    knots that are nearly one is left out: what stands on either must be measured.
+    """
+    form = ground.surface.form
+    u, v = ground.finer(cells)
+    if form is not None and ground.lines is not None and ground.bends is not None:
+        same = len(u) == len(ground.lines[0]) and len(v) == len(ground.lines[1])
+        bends = ground.bends if same else _bends(form.bends, u, v)
+        if _bounded(bends):
+            return _table(_thinned(u), _thinned(v), *ground.kinks, bends), ground.whole
+        u, v = (np.linspace(ground.box[2 * k], ground.box[2 * k + 1], cells + 1) for k in range(2))
     none = np.zeros((0, 2))
-    return _table(u, v, none, none, _guessed(surface, u, v)), False
+    return _table(u, v, none, none, _guessed(ground.surface, u, v)), False
+
+
+def _bounded(bends: Bends) -> bool:
+    return bool(np.isfinite(bends.spread).all() and np.isfinite(bends.first).all())
 
 
 def _merged(knots: Floats, ends: tuple[float, float]) -> Floats:
@@ -89,13 +128,19 @@ def _merged(knots: Floats, ends: tuple[float, float]) -> Floats:
     return np.array([*kept, max(ends[1], ends[0] + 1e-300)])
 
 
+def evenly(lines: Floats, times: NDArray[np.int64]) -> Floats:
+    """Lines with others evenly between them, so that there are so many cells for each that was."""
+    which = np.repeat(np.arange(len(times)), times)
+    step = np.diff(lines) / times
+    within = np.arange(len(which)) - (np.cumsum(times) - times)[which]
+    return np.append(within * step[which] + lines[which], lines[-1])
+
+
 def _subdivided(lines: Floats, count: int) -> Floats:
     """Lines with others between them, so that there are about `count` cells or more."""
     if len(lines) > count:
         return lines
-    times = np.maximum(1, np.ceil(count * np.diff(lines) / (lines[-1] - lines[0]) - 1e-6)).astype(int)
-    pieces = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(lines[:-1], lines[1:], times, strict=True)]
-    return np.append(np.concatenate(pieces), lines[-1])
+    return evenly(lines, np.maximum(1, np.ceil(count * np.diff(lines) / (lines[-1] - lines[0]) - 1e-6)).astype(int))
 
 
 def _groups(cells: int) -> NDArray[np.int64]:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
-from OCP.GeomAbs import GeomAbs_Circle, GeomAbs_Ellipse
+from OCP.GeomAbs import GeomAbs_Circle, GeomAbs_Ellipse, GeomAbs_Line
 from OCP.gp import gp_Pnt2d, gp_Vec2d
 
 from cad_io.arrays import Floats
@@ -19,6 +19,7 @@ from cad_io.surface.bspline import DEGREE, Net, basis, span, wrapped
 from cad_io.surface.bspline import evaluate as evaluate_net
 from cad_io.surface.forms import curve_lines, curve_net
 from cad_io.surface.net_bends import net_bends
+from cad_io.tessellate.bounds import evenly
 
 entry, kernel = decorators(__file__)
 
@@ -26,6 +27,8 @@ entry, kernel = decorators(__file__)
 _CELLS, _POINTS = 16, 257
 _TRIED = np.array([0.13, 0.37, 0.5, 0.61, 0.89])
 _AGREE = 1e-9
+#: Knots of a curve across, and along a line.
+_UNIT, _KNOTS = np.array([0.0, 1.0]), np.array([0.0, 0.0, 1.0, 1.0])
 #: Columns of `Curves.number`: what it is, degree, first knot, first pole, first line, number of lines.
 _NET, _CONIC = 0, 1
 
@@ -63,7 +66,10 @@ def packed(curves: Sequence[BRepAdaptor_Curve2d], ranges: Sequence[tuple[float, 
     knots, poles, lines, exact = 0, 0, 0, True
     for i, (curve, ends) in enumerate(zip(curves, ranges, strict=True)):
         conic = _conic(curve)
-        if conic is not None and _agrees(curve, ends, lambda t, c=conic: _on_conic(c, t)):
+        straight = _straight(curve, ends)
+        if straight is not None:
+            conic, net, mine, bends = None, straight, np.array(ends), np.zeros((2, 3))
+        elif conic is not None and _agrees(curve, ends, lambda t, c=conic: _on_conic(c, t)):
             net, mine = None, np.array(ends)
             bends = np.array([[*np.hypot(conic[2:4], conic[4:6]), 0.0]] * 2)
         else:
@@ -91,6 +97,18 @@ def packed(curves: Sequence[BRepAdaptor_Curve2d], ranges: Sequence[tuple[float, 
     return Curves(
         number, real, *(np.ascontiguousarray(np.concatenate(each)) for each in (knot, pole, line, bend))
     ), exact
+
+
+def _straight(curve: BRepAdaptor_Curve2d, ends: tuple[float, float]) -> Net | None:
+    """The net of a line; most borders are lines, and need no more than its ends."""
+    if curve.GetType() != GeomAbs_Line:
+        return None
+    a, b = np.array(curve.Value(0.0).Coord()), np.array(curve.Value(1.0).Coord())
+    if not _agrees(curve, ends, lambda t: (1.0 - t)[:, None] * a + t[:, None] * b):
+        return None
+    pole = np.zeros((1, 2, 4))
+    pole[0, 0, :2], pole[0, 1, :2], pole[0, :, 3] = a, b, 1.0
+    return Net(_UNIT, _KNOTS, 0, 1, 0.0, 0.0, pole, False)
 
 
 def _conic(curve: BRepAdaptor_Curve2d) -> Floats | None:
@@ -147,7 +165,7 @@ def _through_points(curve: BRepAdaptor_Curve2d, ends: tuple[float, float]) -> Ne
     pole[0, 0, :2], pole[0, -1, :2] = point[0], point[-1]
     pole[..., 3] = 1.0
     knot = np.concatenate([t[:1], t[:1], np.repeat(t, 2), t[-1:], t[-1:]])
-    return Net(np.array([0.0, 1.0]), knot, 0, 3, 0.0, 0.0, pole, False)
+    return Net(_UNIT, knot, 0, 3, 0.0, 0.0, pole, False)
 
 
 def _bends(net: Net, ends: tuple[float, float]) -> tuple[Floats, Floats]:
@@ -155,10 +173,8 @@ def _bends(net: Net, ends: tuple[float, float]) -> tuple[Floats, Floats]:
     knots, jumps = curve_lines(net, ends)
     if net.degree_v == 1 and not net.rational:
         return knots, np.column_stack([np.zeros((len(knots), 2)), jumps])
-    times = np.maximum(1, np.ceil(_CELLS * np.diff(knots) / (ends[1] - ends[0]))).astype(int)
-    pieces = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(knots[:-1], knots[1:], times, strict=True)]
-    line = np.append(np.concatenate(pieces), knots[-1])
-    found = net_bends(net, np.array([0.0, 1.0]), line)
+    line = evenly(knots, np.maximum(1, np.ceil(_CELLS * np.diff(knots) / (ends[1] - ends[0]))).astype(int))
+    found = net_bends(net, _UNIT, line)
     bend = np.zeros((len(line), 3))
     bend[:-1, :2] = np.abs(found.middle[0, :, 1, :2]) + found.spread[0, :, 1:2]
     bend[np.searchsorted(line, knots), 2] = jumps

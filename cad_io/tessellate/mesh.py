@@ -105,15 +105,27 @@ def _bordered(mesh: UVMesh, on_curve: Sequence[Floats], surface: Surface) -> UVM
     uv, corner, border = [mesh.uv], [mesh.corner], []
     count = len(mesh.uv)
     ends: dict[int, list[int]] = {}
-    for (nodes, parameter, curve), there in zip(mesh.border, on_curve, strict=True):
-        here = mesh.uv[nodes]
-        passed = np.flatnonzero((np.abs(there - here) > _SAME * np.maximum(1.0, np.abs(here))).any(axis=1))
-        off = surface.values(*there[passed].T) - surface.values(*here[passed].T)
-        passed = passed[np.linalg.norm(off, axis=1) > _ON]
+    # All borders at once: a call for each takes longer than its points.
+    every = [mesh.uv[border.nodes] for border in mesh.border]
+    here, there = np.concatenate([*every, mesh.uv[:0]]), np.concatenate([*on_curve, mesh.uv[:0]])
+    beside = np.flatnonzero((np.abs(there - here) > _SAME * np.maximum(1.0, np.abs(here))).any(axis=1))
+    if not len(beside):
+        return mesh
+    point = surface.values(*np.concatenate([there[beside], here[beside]]).T)
+    off = point[: len(beside)] - point[len(beside) :]
+    beside = beside[np.linalg.norm(off, axis=1) > _ON]
+    if not len(beside):
+        return mesh
+    firsts = np.cumsum([0, *map(len, every)])
+    for (nodes, parameter, curve), first, last in zip(mesh.border, firsts[:-1], firsts[1:], strict=True):
+        passed = beside[(beside >= first) & (beside < last)] - first
+        if not len(passed):
+            border.append(BorderCurve(nodes, parameter, curve))
+            continue
         own = nodes.copy()
         own[passed] = count + np.arange(len(passed))
         count += len(passed)
-        uv.append(there[passed])
+        uv.append(there[first + passed])
         corner.append(_filled(nodes, own))
         border.append(BorderCurve(own, parameter, curve))
         for node, new in zip(nodes[passed].tolist(), own[passed].tolist(), strict=True):

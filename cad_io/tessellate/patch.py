@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from cad_io.part import Part
 from cad_io.surface import Surface
-from cad_io.tessellate.bounds import FINE, MIDDLE, Table, table_of
+from cad_io.tessellate.bounds import COARSE, FINE, MIDDLE, Ground, Table, table_of
 from cad_io.tessellate.curves import Curves, packed, reach
 from cad_io.tessellate.mesh import UVMesh
 from cad_io.tessellate.refine import Found, Start, refined
@@ -26,6 +26,14 @@ _GUESSES, _LARGER = 6, 1.02
 _FINER = ((400, MIDDLE), (8000, FINE))
 
 Indices = NDArray[np.int64]
+
+
+def room(triangles: int) -> Found:
+    """Room for so many triangles of a face, and as many nodes."""
+    return Found(np.empty((triangles, 2)), np.empty((triangles, 3), np.int64))
+
+
+NO_ROOM = room(0)
 
 
 class Laid(NamedTuple):
@@ -47,13 +55,14 @@ class Patch(NamedTuple):
     number: int
     surface: Surface
     start: Start
+    ground: Ground
     table: Table
     curves: Curves
     proved: bool
 
     @staticmethod
-    def of(part: Part, number: int, mesh: UVMesh, chord: float) -> "Patch":
-        """The patch of a face that begins with a mesh, its table as fine as is worth while for a chord error."""
+    def of(part: Part, number: int, mesh: UVMesh) -> "Patch":
+        """The patch of a face that begins with a mesh."""
         surface = part.surface(number)
         curves, exact = packed([b.curve for b in mesh.border],
                                [(float(b.parameter.min()), float(b.parameter.max())) for b in mesh.border])  # fmt: skip
@@ -61,36 +70,61 @@ class Patch(NamedTuple):
         start = Start(np.ascontiguousarray(mesh.uv), mesh.corner.astype(np.int64), curve, ends)
         low, high = reach(curves, mesh.uv, curve, ends)
         box = (low[0], high[0], low[1], high[1])
-        table, proved = table_of(surface, box)
-        patch = Patch(number, surface, start, table, curves, proved and exact)
-        for many, cells in _FINER:
-            if proved and patch.counted(chord, many)[0] > many:
-                patch = patch._replace(table=table_of(surface, box, cells)[0])
-        return patch
+        ground = Ground.of(surface, box)
+        table, proved = table_of(ground)
+        return Patch(number, surface, start, ground, table, curves, proved and exact)
 
-    def counted(self, chord: float, most: int) -> tuple[int, int]:
-        """Triangles and nodes that a chord error takes."""
-        none = Found(np.zeros((0, 2)), np.zeros((0, 3), np.int64))
-        triangles, nodes, *_ = refined(self.start, self.table, self.curves, self._asked(chord), most, none)
-        return triangles, nodes
+    def begun(self, chord: float, most: int, room: Found) -> tuple["Patch", "Tried"]:
+        """The patch with a table as fine as is worth while for a chord error, and its triangles."""
+        before = COARSE
+        for many, cells in _FINER if self.ground.whole else ():
+            tried = self.tried(chord, many, room)
+            if tried.triangles <= many:
+                return self, tried
+            if self.ground.is_finer(cells, than=before):
+                self, before = self._replace(table=table_of(self.ground, cells)[0]), cells
+        return self, self.tried(chord, most, room)
+
+    def tried(self, chord: float, most: int, room: Found) -> "Tried":
+        """Triangles for a chord error, counted, and kept if there is room for them."""
+        count, number, off, strayed, area = refined(self.start, self.table, self.curves, self._asked(chord), most, room)
+        own = None
+        if count <= min(most, len(room.corner)) and number <= len(room.uv):
+            own = Found(room.uv[:number].copy(), room.corner[:count].copy())
+        return Tried(chord, count, number, own, off, strayed, area)
 
     def _asked(self, chord: float) -> float:
         return chord if self.proved else chord / MARGIN
 
-    def laid(self, chord: float, count: tuple[int, int], most: int) -> Laid:
-        """Triangles for a chord error, as many as were counted, and no more than `most` where that was a guess."""
+    def laid(self, tried: "Tried", most: int) -> Laid:
+        """Triangles that were counted, and no more than `most` where that was a guess."""
+        chord = tried.chord
         for guess in range(_GUESSES):
-            found = Found(np.empty((count[1], 2)), np.empty((count[0], 3), np.int64))
-            *_, off, strayed, area = refined(self.start, self.table, self.curves, self._asked(chord), count[0], found)
+            found, off = tried.found, tried.off
+            if found is None:
+                found = Found(np.empty((tried.nodes, 2)), np.empty((tried.triangles, 3), np.int64))
+                refined(self.start, self.table, self.curves, self._asked(chord), tried.triangles, found)
             point = self.surface.values(found.uv[:, 0], found.uv[:, 1])
             if not self.proved:
-                off = MARGIN * _measured(self.surface, found, point) + strayed
-            laid = Laid(point, found.corner, off, area)
-            if self.proved or off <= chord or not np.isfinite(off) or count[0] >= most or guess + 1 == _GUESSES:
+                off = MARGIN * _measured(self.surface, found, point) + tried.strayed
+            laid = Laid(point, found.corner, off, tried.area)
+            if self.proved or off <= chord or not np.isfinite(off) or tried.triangles >= most or guess + 1 == _GUESSES:
                 break
             self = self._replace(table=self.table._replace(node=_LARGER * off / chord * self.table.node))
-            count = self.counted(chord, most)
+            tried = self.tried(chord, most, NO_ROOM)
         return laid
+
+
+class Tried(NamedTuple):
+    """Triangles counted for a chord error, mm, kept or not, with what `refined` tells of them."""
+
+    chord: float
+    triangles: int
+    nodes: int
+    found: Found | None
+    off: float
+    strayed: float
+    area: float
 
 
 def _measured(surface: Surface, found: Found, point: Floats) -> float:

@@ -188,8 +188,8 @@ def _twice_area(stack, k):  # type: ignore[no-untyped-def]
 @kernel
 def _refined(start, table, curves, chord, most, stack, spare, found):  # type: ignore[no-untyped-def]
     nodes, leaves, worst, strayed, area = np.int64(len(start.uv)), np.int64(0), 0.0, 0.0, 0.0
-    keep = len(found.corner) > 0
-    for node in range(nodes if keep else 0):
+    room_uv, room_corner = len(found.uv), len(found.corner)
+    for node in range(min(nodes, room_uv)):
         found.uv[node, 0], found.uv[node, 1] = start.uv[node, 0], start.uv[node, 1]
     for first in range(len(start.corner)):
         for c in range(3):
@@ -203,7 +203,7 @@ def _refined(start, table, curves, chord, most, stack, spare, found):  # type: i
             look = _look(stack, top, table, curves, chord)
             if look.off > chord and look.off < np.inf and stack.age[top] < _DEEPEST:
                 u, v = _cut(stack, top, look, curves, nodes, spare)
-                if keep:
+                if nodes < room_uv:
                     found.uv[nodes, 0], found.uv[nodes, 1] = u, v
                 nodes += 1
                 top += 1
@@ -213,7 +213,7 @@ def _refined(start, table, curves, chord, most, stack, spare, found):  # type: i
             strayed = max(strayed, look.strayed) if look.strayed == look.strayed else np.inf
             twice = _twice_area(stack, top)
             area += 0.5 * abs(twice)
-            if keep:
+            if leaves < room_corner:
                 # A middle on a bent border may lie beyond the opposite corner: such a child is folded over.
                 turn = 1 if twice < 0.0 else 0
                 found.corner[leaves, 0] = stack.corner[top, 0]
@@ -242,13 +242,13 @@ def refined(start, table, curves, chord, most, found):  # type: ignore[no-untype
     most : int
         Where there are more triangles, it ends: they are too many.
     found : Found, written
-        With as much room as a former call told; with none, triangles are only counted.
+        As far as there is room: with none, triangles are only counted.
 
     Returns
     -------
     (int, int, float, float, float)
-        Numbers of triangles and of nodes; the largest bound of a triangle's distance and the part that the border curves have
-        in it at most, mm; the triangles' area in the parameter plane.
+        Numbers of triangles and of nodes, however many there was room for; the largest bound of a triangle's distance and the
+        part that the border curves have in it at most, mm; the triangles' area in the parameter plane.
     """
     high = _DEEPEST + 2
     stack = Stack(

@@ -5,7 +5,10 @@ ends of border curves are added. Every triangle is cut until a bound says that i
 the surface and the border curves bend about it, so nothing needs measuring but what only the kernel can evaluate.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from typing import TypeVar
 
 import numpy as np
 
@@ -13,7 +16,8 @@ from cad_io.arrays import Triangles
 from cad_io.kernel import translated
 from cad_io.part import Part
 from cad_io.tessellate.mesh import UVMesh, uv_meshes
-from cad_io.tessellate.patch import Patch
+from cad_io.tessellate.patch import NO_ROOM, Patch, Tried, room
+from cad_io.tessellate.refine import Found
 
 #: The start is asked of the kernel's mesher this much coarser than wanted: splitting is quicker.
 _COARSER = 32.0
@@ -23,6 +27,11 @@ _ANGLE = 0.5
 _UNCOVERED = 0.01
 #: Times the budget at which counting ends; how much the chord error grows at least where the budget binds.
 _TOO_MANY, _STEP = 4, 1.02
+#: Triangles of a face that are kept as they are counted; more are counted first and laid then.
+_ROOM = 1 << 19
+
+Item = TypeVar("Item")
+Done = TypeVar("Done")
 
 #: Told who is at work, `kernel` or `own`, and at which face (0: all of them): for who watches the time.
 At = Callable[[str, int], None]
@@ -30,7 +39,7 @@ At = Callable[[str, int], None]
 
 def tessellate(
     part: Part, chord: float, *, budget: int = 2_000_000, faces: Sequence[int] | None = None,
-    at: At = lambda who, face: None,
+    jobs: int = 1, at: At = lambda who, face: None,
 ) -> Triangles:  # fmt: skip
     """Triangles whose distance from the surface is at most `chord`.
 
@@ -45,6 +54,8 @@ def tessellate(
         error, and `chord_error` says which.
     faces : sequence of int, optional
         Face numbers; default all.
+    jobs : int, optional
+        Faces at a time. Triangles do not depend on it.
     at : callable, optional
         Told who is at work, `kernel` or `own`, and at which face.
 
@@ -66,12 +77,15 @@ def tessellate(
         patches = []
         for number in list(meshes):
             at("kernel", number)
-            patches.append(Patch.of(part, number, meshes.pop(number), chord))
-        coarse, counts = _affordable(patches, chord, budget, part)
+            patches.append(Patch.of(part, number, meshes.pop(number)))
+        patches, tried = _affordable(part, patches, chord, budget, jobs, at)
         laid = []
-        for patch, count in zip(patches, counts, strict=True):
+        for patch, each in zip(
+            patches, _each(lambda i: patches[i].laid(tried[i], budget), range(len(tried)), jobs), strict=True
+        ):
             at("own", patch.number)
-            laid.append(patch.laid(coarse, count, budget))
+            laid.append(each)
+        tried.clear()
     ends = np.cumsum([0, *(len(each.corner) for each in laid)])
     vertex = np.empty((ends[-1], 3, 3))
     whole = np.ones(len(vertex), bool)
@@ -115,21 +129,64 @@ def _start(part: Part, wanted: Sequence[int], chord: float, budget: int, at: At)
     return meshes
 
 
-def _affordable(patches: Sequence[Patch], chord: float, budget: int, part: Part) -> tuple[float, list[tuple[int, int]]]:
-    """The smallest chord error found, from that asked for upwards, whose triangles are within the budget, and their numbers
-    and those of their nodes, for each patch."""
-    size = float(np.linalg.norm(part.size))
-    while True:
-        room, total = [], 0
-        for patch in patches:
-            room.append(patch.counted(chord, _TOO_MANY * budget))
-            total += room[-1][0]
-            if total > _TOO_MANY * budget:
-                break
-        if total <= budget or chord > size:
-            return chord, room
+def _affordable(
+    part: Part, patches: Sequence[Patch], chord: float, budget: int, jobs: int, at: At
+) -> tuple[list[Patch], list[Tried]]:
+    """Patches with tables as fine as is worth while, and triangles of each for the smallest chord error found, from that asked
+    for upwards, at which they are within the budget."""
+    size, most = float(np.linalg.norm(part.size)), _TOO_MANY * budget
+    # Room to work in: one for each thread.
+    rooms = [room(min(budget, _ROOM)) for _ in range(jobs)]
+    total = 0
+    tried: list[Tried] = []
+
+    def begun(patch: Patch) -> tuple[Patch, Tried]:
+        with _lent(rooms) as mine:
+            return patch.begun(chord, most, mine if total <= budget else NO_ROOM)
+
+    def again(patch: Patch) -> Tried:
+        with _lent(rooms) as mine:
+            return patch.tried(chord, most, mine if total <= budget else NO_ROOM)
+
+    finer = []
+    for patch, each in _each(begun, patches, jobs):
+        at("own", patch.number)
+        finer.append(patch)
+        tried.append(each)
+        total += each.triangles if total <= most else 0
+    while total > budget and chord <= size:
         # Their number falls about as the chord error grows.
         chord *= max(_STEP, total / budget)
+        tried, total = [], 0
+        for each in _each(again, finer, jobs):
+            tried.append(each)
+            total += each.triangles
+            if total > most and chord <= size:
+                break
+    return finer, tried
+
+
+@contextmanager
+def _lent(rooms: list[Found]) -> Iterator[Found]:
+    mine = rooms.pop()
+    try:
+        yield mine
+    finally:
+        rooms.append(mine)
+
+
+def _each(work: Callable[[Item], Done], items: Iterable[Item], jobs: int) -> Iterator[Done]:
+    """What `work` makes of each item, in their order, `jobs` at a time; those not begun are dropped when no more are taken."""
+    if jobs == 1:
+        yield from map(work, items)
+        return
+    with ThreadPoolExecutor(jobs) as pool:
+        try:
+            for future in [pool.submit(work, item) for item in items]:
+                yield future.result()
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
 
 
 def _uncovered(part: Part, number: int, area: float, chord: float) -> float:

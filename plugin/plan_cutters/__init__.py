@@ -10,6 +10,8 @@ __version__ = "0.1.0"
 
 _HOME = {
     "Cutter": "domain.cutter",
+    "Holder": "domain.holder",
+    "Stage": "domain.holder",
     "Machine": "domain.machine",
     "Options": "options",
     "Scene": "scene.scene",

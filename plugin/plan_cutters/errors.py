@@ -22,7 +22,7 @@ class OptionError(PlanError):
 
 
 class CutterError(OptionError):
-    """A cutter cannot exist, or is of a kind that is not judged yet."""
+    """A cutter or a holder cannot exist."""
 
 
 class MachineError(OptionError):

@@ -147,7 +147,7 @@ def prepare(
             f"no target face can be judged: {'; '.join(sorted(causes)) or 'no samples'}", file=whole.file
         )
     with clock.stage("tessellate"):
-        around = scene.surround(at)
+        around = scene.surround(at, jobs=options.jobs)
     conditions = Conditions(
         options.machine, np.array(scene.setup), options.postures, around, scene.tolerance, options.jobs
     )

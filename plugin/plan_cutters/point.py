@@ -52,7 +52,7 @@ def posture_map(
     rotations : sequence of float
         rad, from the direction of the largest curvature; at most a full turn either way.
     tilt : tuple of float
-        Range, rad, within 0 to pi/2.
+        Range, rad, within 0 to pi.
     machine : Machine or str, optional
         A text as `tilt:60` (degrees). Default: no axis limit.
     tolerance : float, optional
@@ -84,7 +84,7 @@ def posture_map(
     wanted = (part.asked if isinstance(part, Scene) else 0.01) if tolerance is None else number(tolerance, "tolerance")
     if not (wanted >= 0 and cutter.large_enough(wanted)):
         raise OptionError(f"tolerance {wanted:g} mm must lie between 0 and a quarter of the cutter's radius and length")
-    low, high = max(0.0, low), min(np.pi / 2, high)
+    low, high = max(0.0, low), min(np.pi, high)
     stage = Scene.of(part, **scene, **({"tolerance": wanted} if wanted > 0 else {}))
     contact = locate(stage.part, stage.orientation, place, ignore=stage.ignored)
     ask = Ask(contact, cutter, np.array(turns), (low, high), machine, np.array(stage.setup))

@@ -40,7 +40,7 @@ def summary(plan: "Plan") -> None:
                   f"{plan.samples.count} samples, gaps up to {plan.samples.max_gap_mm:.3g} mm")  # fmt: skip
     table = Table(box=None, pad_edge=False)
     for column in ("cutter", "feasible", "free", "accessible", "undecided", "inaccessible"):
-        table.add_column(column, justify="left" if column in ("cutter", "feasible") else "right")
+        table.add_column(column, justify="left" if column in ("cutter", "feasible") else "right", overflow="fold")
     for c in plan.cutters:
         word = {True: "yes", False: "no", None: "undecided"}[c.feasible]
         table.add_row(c.id + (" *" if c.id == plan.selected else ""), word, str(c.interference_free),

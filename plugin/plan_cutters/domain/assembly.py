@@ -35,13 +35,15 @@ from plan_cutters.domain.pieces import (
     Kind,
     alone,
     among,
+    between,
     flute_rows,
+    opening,
     seam,
     share,
     sharpest,
     solid,
 )
-from plan_cutters.domain.shapes import Mode, flute_length, modes, stages, top_radius
+from plan_cutters.domain.shapes import Mode, flute_length, modes, stages, top_lean, top_radius
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -97,8 +99,7 @@ class Assembly(Record):
         height = (from_centre @ axis)[:, None]
         q = np.linalg.norm(from_centre - height * axis, axis=1)[:, None]
         row = self.piece[mode].T[:, None]
-        base = np.where(row[KIND] == ARC, 0.0, row[LOW])
-        side = (row[RADIUS] + row[SLOPE] * (height - base) - q) * row[SCALE]
+        side = (row[RADIUS] + row[SLOPE] * (height - row[BOTTOM]) - q) * row[SCALE]
         arc = row[ROUND] - np.hypot(np.maximum(0.0, q - row[RADIUS]), height - row[SLOPE])
         deep = np.minimum(np.where(row[KIND] == ARC, arc, side), np.minimum(height - row[LOW], row[HIGH] - height))
         return np.asarray(deep.max(axis=1))
@@ -158,19 +159,27 @@ def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "cover"
     top = flute_length(cutter)
     rows, slack = [], 0.0
     if kind == "certain" or not bands:
-        rows += flute_rows(cutter, flutes, top - flutes, kind)
+        # Grown ones end with square edges, which may hold too much, or below all edges.
+        rows += flute_rows(cutter, flutes, top + flutes if kind == "certain" and flutes < 0.0 else top - flutes, kind)
         for band in bands:
             rows += alone(band)
     else:
         first = bands[0]
         end, start = seam(top_radius(cutter), flutes, first.stage.radius, first.inset, top)
         if cutter.shape == "lollipop":
-            start = min(start, cutter.radius)
+            rows += opening(cutter, flutes, top)
+        else:
+            rows += between(top_radius(cutter), top_lean(cutter), first.stage.radius, first.lean, top,
+                            min(flutes, first.inset), FLUTES)  # fmt: skip
+        if flutes < 0.0:
+            end = max(end, top + flutes * min(0.0, math.sin(top_lean(cutter))))
         rows += flute_rows(cutter, flutes, end, kind)
         for i, band in enumerate(bands):
             if i + 1 < len(bands):
                 above = bands[i + 1]
                 end, after = seam(band.stage.upper_radius, band.inset, above.stage.radius, above.inset, band.high)
+                rows += between(band.stage.upper_radius, band.lean, above.stage.radius, above.lean, band.high,
+                                min(band.inset, above.inset), band.part)  # fmt: skip
             else:
                 end, after = band.high - band.inset, math.inf
             rows += among(band, start, end, exact=(cutter.clearance or 0.0) > 0.0)
@@ -208,13 +217,30 @@ def _slack(cutter: Cutter, inset: float, bands: list[Band], kind: Kind) -> float
         return 0.0
     most = 0.0
     for band in bands:
-        if band.inset < 0.0 and not (cutter.clearance or 0.0) > 0.0:
-            half = 0.25 * math.pi + 0.5 * abs(math.atan(band.stage.slope))
+        if band.inset < 0.0 and (cutter.clearance or 0.0) > 0.0:
+            # Where there is no step a side ends at its seam's height though its normal there does not lie along it.
+            most = max(most, -band.inset * (1.0 / math.cos(band.lean) - 1.0))
+        elif band.inset < 0.0:
+            half = 0.25 * math.pi + 0.5 * abs(band.lean)
             most = max(most, -band.inset * (1.0 / math.cos(half) - 1.0))
     if cutter.shape == "form":
         for i in range(len(cutter.outline) - 1):
-            most = max(most, abs(inset) * (1.0 - share(cutter.outline, i)), abs(inset) * sharpest(cutter.outline, i))
+            most = max(most, inset * (1.0 - share(cutter.outline, i)), sharpest(cutter.outline, i, inset))
+            stage = cutter.outline[i : i + 2]
+            if inset < 0.0 and stage[1][1] > stage[0][1]:
+                # Grown sides end at the heights of their corners.
+                lean = math.atan2(stage[1][0] - stage[0][0], stage[1][1] - stage[0][1])
+                most = max(most, -inset * (1.0 / math.cos(lean) - 1.0))
+    top = abs(top_lean(cutter))
     if inset < 0.0:
         # Grown flutes have square upper edges.
-        most = max(most, -inset * (math.sqrt(2.0) - 1.0))
+        most = max(most, -inset * (1.0 / math.cos(0.25 * math.pi + 0.5 * top) - 1.0))
+    elif bands:
+        # Sides that lean end at their seam's height though their normals there do not lie along it.
+        most = max(most, inset * (1.0 - math.cos(top)))
+        if cutter.shape == "lollipop":
+            most = max(most, inset)
+    for lean, depth in ((top, min(inset, bands[0].inset) if bands else 0.0), *((abs(b.lean), b.inset) for b in bands)):
+        if depth > 0.0:
+            most = max(most, depth * (1.0 - math.cos(0.25 * math.pi + 0.5 * lean) + math.tan(lean)))
     return most

@@ -71,7 +71,7 @@ class Dimensions:
             object.__setattr__(self, word, positive(getattr(self, word), f"cutter {word}"))
         if not isinstance(self.name, str):
             raise CutterError(f"a cutter's name must be a text, not {shown(self.name)}")
-        if self.shape not in _SHAPES:
+        if not isinstance(self.shape, str) or self.shape not in _SHAPES:
             raise CutterError(f"a cutter's shape must be one of {', '.join(_SHAPES)}, not {shown(self.shape)}")
         for word in ("flutes", "shank_radius"):
             if getattr(self, word) is not None:

@@ -40,6 +40,11 @@ class Band:
     def high(self) -> float:
         return self.low + self.stage.length
 
+    @property
+    def lean(self) -> float:
+        """Of its side from the axis, rad."""
+        return math.atan(self.stage.slope)
+
 
 def row_of(kind: float, low: float, high: float, radius: float, slope: float, around: float, part: int) -> list[float]:
     if kind == ARC:
@@ -73,18 +78,61 @@ def seam(lower: float, lower_inset: float, upper: float, upper_inset: float, at:
     return at + HAIR, at
 
 
+def between(
+    lower: float, lower_lean: float, upper: float, upper_lean: float, at: float, inset: float, part: int
+) -> list[list[float]]:
+    """What lies deeper than `inset` over a re-entrant corner of which both sides are moved in: it may be in neither of them.
+
+    Its nearest point is the corner, of the narrower of two radii, where sides meet that lean (rad) from the axis. Of the
+    directions from there inwards each lies within half the corner's turn of one side's own.
+    """
+    if inset <= 0.0:
+        return []
+    radius = min(lower, upper)
+    low = at - inset if lower > upper else at + inset * min(0.0, math.sin(lower_lean)) - HAIR
+    high = at + inset if upper > lower else at + inset * max(0.0, math.sin(upper_lean)) + HAIR
+    if lower == upper:
+        # A kink: sides that are nearly along the axis.
+        side = radius - inset * math.cos(max(abs(lower_lean), abs(upper_lean)))
+        return [band_row(low, high, side, 0.0, part)] if upper_lean > lower_lean else []
+    lean, other = (lower_lean, upper_lean) if upper > lower else (upper_lean, lower_lean)
+    # The wider side may be nearer than the corner: what is deep enough is as far from it.
+    wide = max(lower, upper) + inset * (abs(math.tan(other)) - 1.0 / math.cos(other))
+    least = inset * math.cos(0.25 * math.pi + 0.5 * abs(lean))
+    slope = math.tan(lean)
+    step = (at + least, at + inset + HAIR) if upper > lower else (at - inset - HAIR, at - least)
+    return [
+        band_row(low, high, radius + slope * (low - at) - least / math.cos(lean), slope, part),
+        band_row(*step, min(radius, wide), 0.0, part),
+    ]
+
+
+def opening(cutter: Dimensions, inset: float, at: float) -> list[list[float]]:
+    """What of a lollipop's ball lies under its neck, which begins at a height: it is deeper than the ball's side says."""
+    if inset <= 0.0:
+        return []
+    share, rise = 1.0 - inset / cutter.radius, at - cutter.radius
+    neck = cutter.shank_radius or 0.0
+    return [band_row(at - rise * (1.0 - share), at + HAIR, share * neck, neck / rise, FLUTES)]
+
+
 def among(band: Band, start: float, end: float, *, exact: bool) -> list[list[float]]:
     """A band among others, between two heights; grown with round edges or with square ones, which hold more."""
     stage, inset = band.stage, band.inset
     side = stage.radius - inset * math.hypot(1.0, stage.slope)
-    rows = []
+    rows, shift = [], min(0.0, inset) * math.sin(band.lean)
+    low_step, high_step = abs(start - band.low) > HAIR, abs(end - band.high) > 2.0 * HAIR
+    # Grown, a side that leans reaches past its ends along its normal.
+    if inset < 0.0 and not (exact and low_step):
+        start = min(start, band.low + min(0.0, shift))
+    if inset < 0.0 and not (exact and high_step):
+        end = max(end, band.high + max(0.0, shift))
     if exact and inset < 0.0:
         # Round edges where a seam is a step; the side goes from tangent circle to tangent circle, or runs on.
-        shift = inset * math.sin(math.atan(stage.slope))
-        if abs(start - band.low) > HAIR:
+        if low_step:
             rows.append(row_of(ARC, -math.inf, math.inf, stage.radius, band.low, -inset, band.part))
             start = band.low + shift if start >= band.low + inset else start
-        if abs(end - band.high) > 2.0 * HAIR:
+        if high_step:
             rows.append(row_of(ARC, -math.inf, math.inf, stage.upper_radius, band.high, -inset, band.part))
             end = band.high + shift if end <= band.high - inset else end
     rows.append(band_row(start, end, side + stage.slope * (start - band.low), stage.slope, band.part))
@@ -136,7 +184,9 @@ def _end(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list[
 
 
 def _lollipop(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list[float]]:
-    return [row_of(ARC, -math.inf, math.inf, 0.0, cutter.radius, cutter.radius - inset, FLUTES)]
+    row = row_of(ARC, -math.inf, math.inf, 0.0, cutter.radius, cutter.radius - inset, FLUTES)
+    # Grown, the ball that its neck cuts off does not go on in the round.
+    return [_unless_higher(row, top) if kind == "certain" and inset < 0.0 else row]
 
 
 def _barrel(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list[float]]:
@@ -189,9 +239,13 @@ def _form(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list
             continue
         mine = inset * (share(points, i) if inset > 0.0 else 1.0)
         low_step, high_step = _step(points, i, -1), _step(points, i + 1, 1)
-        low = w0 + mine if low_step > 0.0 else w0 - abs(mine) if low_step < 0.0 else w0 - HAIR
-        last = w1 == points[-1][1]
-        high = top if last else w1 - mine if high_step > 0.0 else w1 + abs(mine) if high_step < 0.0 else w1 + HAIR
+        # Grown, a side that leans reaches past its ends along its normal.
+        rise = max(0.0, -mine) * math.sin(math.atan(stage.slope))
+        below, beyond = max(rise, _past(points, i, mine)), max(-rise, _past(points, i + 1, mine))
+        low = w0 + mine if low_step > 0.0 else w0 - HAIR - (abs(mine) if low_step < 0.0 else below)
+        high = w1 - mine if high_step > 0.0 else w1 + HAIR + (abs(mine) if high_step < 0.0 else beyond)
+        if w1 == points[-1][1]:
+            high = top
         side = stage.radius - mine * math.hypot(1.0, stage.slope)
         rows.append(band_row(low, high, side + stage.slope * (low - w0), stage.slope, FLUTES))
     return rows
@@ -211,24 +265,37 @@ def _step(points: tuple[tuple[float, float], ...], i: int, way: int) -> float:
     return 0.0 if other is None else r - other
 
 
-def share(points: tuple[tuple[float, float], ...], i: int) -> float:
-    """By which share of the depth the side from point i to the next is moved in: less next to a re-entrant corner."""
-    least = 1.0
-    for k in (i, i + 1):
-        if 0 < k < len(points) - 1:
-            (a, b), (c, d), (e, f) = points[k - 1], points[k], points[k + 1]
-            first, second = math.atan2(d - b, c - a), math.atan2(f - d, e - c)
-            turn = math.remainder(second - first, 2.0 * math.pi)
-            if turn < 0.0:
-                least = min(least, math.cos(0.5 * turn))
-    # A step on the other side of a horizontal piece meets this side, too.
-    return least
-
-
-def sharpest(points: tuple[tuple[float, float], ...], k: int) -> float:
-    """By how much more than the depth the corner at point k of a convex seam lies within both sides."""
+def _turn(points: tuple[tuple[float, float], ...], k: int) -> float:
+    """By which angle an outline turns at point k, rad: negative at a re-entrant corner."""
     if not 0 < k < len(points) - 1:
         return 0.0
     (a, b), (c, d), (e, f) = points[k - 1], points[k], points[k + 1]
-    turn = math.remainder(math.atan2(f - d, e - c) - math.atan2(d - b, c - a), 2.0 * math.pi)
-    return 0.0 if turn <= 0.0 else 1.0 / max(0.05, math.cos(0.5 * turn)) - 1.0
+    return math.remainder(math.atan2(f - d, e - c) - math.atan2(d - b, c - a), 2.0 * math.pi)
+
+
+def share(points: tuple[tuple[float, float], ...], i: int) -> float:
+    """By which share of the depth the side from point i to the next is moved in: less next to a re-entrant corner."""
+    corners = [i, i + 1]
+    # A corner on the other side of a step meets this side, too.
+    if i > 0 and points[i - 1][1] == points[i][1]:
+        corners.append(i - 1)
+    if i + 2 < len(points) and points[i + 2][1] == points[i + 1][1]:
+        corners.append(i + 2)
+    return min(math.cos(0.5 * min(0.0, _turn(points, k))) for k in corners)
+
+
+def _past(points: tuple[tuple[float, float], ...], k: int, inset: float) -> float:
+    """How far a side that is moved in runs on past a re-entrant corner, up to where the other one begins."""
+    return max(0.0, inset) * math.tan(-0.5 * min(0.0, _turn(points, k)))
+
+
+def sharpest(points: tuple[tuple[float, float], ...], k: int, inset: float) -> float:
+    """By how much pieces of sides that meet at point k and are moved by `inset` hold too much there, mm."""
+    turn = _turn(points, k)
+    if turn <= 0.0:
+        return 0.0
+    if inset < 0.0:
+        return -inset * (1.0 / max(0.05, math.cos(0.5 * turn)) - 1.0)
+    # A step ends at its own depth, a side that leans at the corner's height.
+    step = points[k][1] in (points[k - 1][1], points[k + 1][1])
+    return 0.0 if step else inset * (1.0 - math.cos(turn))

@@ -17,6 +17,7 @@ _ROUNDING = 1e-9
 class PostureRange:
     """Tilts from `tilt[0]` to `tilt[1]` at rotations from `rotation[0]` to `rotation[1]`, `step` apart. Radians.
 
+    Beyond a right angle a tool touches with the upper half of a ball, if it has one.
     A full turn does not repeat its first rotation; a part of a turn has both its ends, evenly shared at most `step` apart.
 
     >>> len(PostureRange().rotations), len(PostureRange(rotation=(0.0, 0.0)).rotations)
@@ -30,7 +31,7 @@ class PostureRange:
     def __post_init__(self) -> None:
         tilt, rotation = pair(self.tilt, "tilt range"), pair(self.rotation, "rotation range")
         step = number(self.step, "rotation step")
-        tilt = (radians(tilt[0], "tilt", _RIGHT), radians(tilt[1], "tilt", _RIGHT))
+        tilt = (radians(tilt[0], "tilt", math.pi), radians(tilt[1], "tilt", math.pi))
         rotation = (radians(rotation[0], "rotation", _FULL), radians(rotation[1], "rotation", _FULL))
         step = radians(step, "rotation step", _FULL)
         _check(tilt, rotation, step, _RIGHT, "rad")
@@ -75,8 +76,8 @@ def _check(tilt: tuple[float, float], rotation: tuple[float, float], step: float
     """Whether ranges have a meaning, where a right angle is `right` of a unit."""
     (low, high), (first, last) = tilt, rotation
     rounding, full = _ROUNDING * right, 4 * right
-    if not -rounding <= low <= high <= right + rounding:
-        raise OptionError(f"tilt range {low:g}:{high:g} must run upwards within 0:{right:.4g} ({unit})")
+    if not -rounding <= low <= high <= 2 * right + rounding:
+        raise OptionError(f"tilt range {low:g}:{high:g} must run upwards within 0:{2 * right:.4g} ({unit})")
     if not (math.isfinite(first) and first <= last <= first + full + rounding):
         raise OptionError(f"rotation range {first:g}:{last:g} must run upwards and span at most {full:.4g} {unit}")
     least = right / 900

@@ -64,6 +64,16 @@ def top_radius(cutter: Dimensions) -> float:
     return cutter.radius + flank_offset(cutter) + (top - cutter.corner_radius) * math.tan(cutter.taper)
 
 
+def top_lean(cutter: Dimensions) -> float:
+    """How far the side of the flutes leans from the axis where they end, rad; positive where they widen."""
+    if cutter.shape == "barrel":
+        return math.asin((cutter.arc_height - flute_length(cutter)) / cutter.arc_radius)
+    if cutter.shape == "form":
+        (r, w), (s, v) = cutter.outline[-2:]
+        return math.atan2(s - r, v - w) if v > w else 0.0
+    return cutter.taper
+
+
 def flank_offset(cutter: Dimensions) -> float:
     """How much farther from the axis a tapered flank is at the height of the corner's centre than a straight one, mm."""
     return cutter.corner_radius * (1.0 / math.cos(cutter.taper) - 1.0)
@@ -188,6 +198,8 @@ def _check_shape(cutter: Dimensions, name: str) -> None:
         raise CutterError(
             f"{name}: a taper of {math.degrees(cutter.taper):.4g} deg lies beyond 80 deg (the half angle)"
         )
+    if cutter.shape not in ("barrel", "lens") and (cutter.arc_radius or cutter.arc_height):
+        raise CutterError(f"{name}: only barrels and lenses have an arc of their own")
     if cutter.shape != "form" and cutter.outline:
         raise CutterError(f"{name}: an outline belongs to the shape form")
     if cutter.shape == "end" and top == top:

@@ -94,15 +94,28 @@ def _thin_apart(box, i, body, piece, k, grow, dx, dy, dz):  # type: ignore[no-un
 
 
 @kernel
+def _stays(body, piece, k):  # type: ignore[no-untyped-def]
+    """Whether turning leaves piece k where it is: a whole ball about the line of turning."""
+    return (
+        piece[k, KIND] == ARC
+        and piece[k, RADIUS] == 0.0
+        and body[OFFSET] == 0.0
+        and piece[k, SLOPE] == 0.0
+        and piece[k, BOTTOM] == -piece[k, ROUND]
+        and piece[k, TOP] == piece[k, ROUND]
+    )
+
+
+@kernel
 def alive(box, i, body, piece, mask, rate):  # type: ignore[no-untyped-def]
     """Those of the pieces of a mask into which a point of box i may reach: the others are parted from it by a slab or a plane."""
     dx, dy, dz = box[i, 0] - body[0], box[i, 1] - body[1], box[i, 2] - body[2]
     diagonal = box[i, 15]
-    grow = 0.0
+    widening = 0.0
     height = dx * body[3] + dy * body[4] + dz * body[5]
     across = dx * body[6] + dy * body[7] + dz * body[8]
     if rate > 0.0:
-        grow = rate * (np.sqrt(height * height + across * across) + diagonal)
+        widening = rate * (np.sqrt(height * height + across * across) + diagonal)
     across += body[OFFSET]
     aside = dx * body[9] + dy * body[10] + dz * body[11]
     aside -= min(body[HALF], max(-body[HALF], aside))
@@ -112,6 +125,7 @@ def alive(box, i, body, piece, mask, rate):  # type: ignore[no-untyped-def]
         if not (mask >> k) & 1:
             continue
         gone = 1 << k
+        grow = 0.0 if widening > 0.0 and _stays(body, piece, k) else widening
         low, high = piece[k, BOTTOM] - grow, piece[k, TOP] + grow
         if height + diagonal < low or height - diagonal > high:
             mask ^= gone
@@ -197,7 +211,7 @@ def triangle_hit(vertex, i, body, piece, mask, rate, scratch):  # type: ignore[n
         With `rate` 0, a point of the triangle in the piece, in the tool's frame from its axis.
     """
     corner = scratch.corner
-    grow, least, most, total = 0.0, np.inf, -np.inf, 0.0
+    widening, least, most, total = 0.0, np.inf, -np.inf, 0.0
     for c in range(3):
         dx = vertex[i, c, 0] - body[0]
         dy = vertex[i, c, 1] - body[1]
@@ -208,14 +222,15 @@ def triangle_hit(vertex, i, body, piece, mask, rate, scratch):  # type: ignore[n
         corner[c, 1] = across + body[OFFSET]
         corner[c, 2] = dx * body[9] + dy * body[10] + dz * body[11]
         if rate > 0.0:
-            grow = max(grow, rate * np.sqrt(height * height + across * across))
+            widening = max(widening, rate * np.sqrt(height * height + across * across))
         least, most = min(least, height), max(most, height)
         total += height + corner[c, 1] + corner[c, 2]
     # What is no number is in the way: comparisons below would let it pass.
-    total += grow
+    total += widening
     if total - total != 0.0:
         return 0, 0.0, 0.0, 0.0
     for k in range(len(piece)):
+        grow = 0.0 if widening > 0.0 and _stays(body, piece, k) else widening
         if not (mask >> k) & 1 or most <= piece[k, BOTTOM] - grow or least >= piece[k, TOP] + grow:
             continue
         low, high = piece[k, LOW] - grow, piece[k, HIGH] + grow

@@ -164,7 +164,7 @@ def permitted(contacts, row, ranges, rotation, tool, mode, f, intervals):  # typ
     left = count
     if least > 0.0:
         left = remove(intervals, left, -1.0, least, 0.0)
-    if most < np.pi:
+    if most < high:
         left = remove(intervals, left, most, 4.0, 0.0)
     return width, count, left
 

@@ -101,10 +101,13 @@ class Scene(Record):
         """What was asked for, as options of a plan."""
         return {"setup": self.setup, "flip": self.flip, "ignore": self.ignore, "tolerance": self.asked}
 
-    def surround(self, at: At = lambda whose, face: None) -> Surroundings:
-        """What is, and what may be, in the way; `at` is told whose work goes on at which face, if there is any to do."""
+    def surround(self, at: At = lambda whose, face: None, *, jobs: int = 1) -> Surroundings:
+        """What is, and what may be, in the way; if there is any work to do, `at` is told whose goes on at which face, and `jobs`
+        faces are worked on at a time."""
         if "_around" not in self.__dict__:
-            self.__dict__["_around"] = surroundings(self.part, CHORD_ASKED * self.asked, ignored=self.ignored, at=at)
+            self.__dict__["_around"] = surroundings(
+                self.part, CHORD_ASKED * self.asked, ignored=self.ignored, jobs=jobs, at=at
+            )
         found: Surroundings = self.__dict__["_around"]
         return found
 

@@ -63,7 +63,7 @@ class Surroundings(Record):
 
 
 def surroundings(
-    part: Part, chord: float, *, ignored: Collection[int] = (), at: At = lambda who, face: None
+    part: Part, chord: float, *, ignored: Collection[int] = (), jobs: int = 1, at: At = lambda who, face: None
 ) -> Surroundings:
     """Gather all that stands in a cutter's way.
 
@@ -74,6 +74,8 @@ def surroundings(
         Chord error to ask for, mm.
     ignored : collection of int
         Numbers of faces to leave out.
+    jobs : int, optional
+        Faces that are worked on at a time.
     at : callable, optional
         Told whose work is under way and at which face, as in `tessellate`.
 
@@ -82,7 +84,8 @@ def surroundings(
     UnjudgeableError
         No face has triangles.
     """
-    triangles = tessellate(part, chord, faces=[f.number for f in part.faces if f.number not in ignored], at=at)
+    faces = [f.number for f in part.faces if f.number not in ignored]
+    triangles = tessellate(part, chord, faces=faces, jobs=jobs, at=at)
     if not len(triangles):
         causes = "; ".join(sorted({why for _, why in triangles.missing}))
         raise UnjudgeableError(f"no face has triangles that could be in the way: {causes or 'all are left out'}",

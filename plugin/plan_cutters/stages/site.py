@@ -49,6 +49,8 @@ class Site:
         Open, by how often they were cut into four.
     short, dropped : int
         Open cells that would be cut if the budget were not spent, and that are not for the gain is too small.
+    about : (k, 16) float
+        What kernels take of the nodes.
     """
 
     field: Field
@@ -58,6 +60,10 @@ class Site:
     pools: list[tuple[CellContacts, Outlook]] = dataclasses_field(default_factory=list)
     short: int = 0
     dropped: int = 0
+    about: Floats = dataclasses_field(init=False)
+
+    def __post_init__(self) -> None:
+        self.about = self.field.about
 
     @property
     def served(self) -> float:
@@ -71,7 +77,7 @@ class Site:
 
     def add(self, contacts: CellContacts, level: int) -> float:
         """Look at contacts of cells that were cut so many times; the area that is served by them."""
-        outlook = _served(contacts, self.field, self.cutter, self.conditions, _ROOM[min(level, len(_ROOM) - 1)])
+        outlook = _served(contacts, self, _ROOM[min(level, len(_ROOM) - 1)])
         good = outlook == 0
         self.found.append(contacts.of(good))
         if level == len(self.pools):
@@ -144,28 +150,31 @@ def _poor(rounds: Sequence[tuple[int, float]], least: float) -> bool:
     return False
 
 
-def _served(
-    contacts: CellContacts, field: Field, cutter: Cutter, conditions: Conditions, rooms: Sequence[float]
-) -> Outlook:
+def _served(contacts: CellContacts, site: Site, rooms: Sequence[float]) -> Outlook:
     """Outlook of contacts whose posture, or another one, serves their cell (0) or may serve parts of it.
 
     Of the postures found on the way, the one with the best outlook is kept.
     """
+    cutter, conditions = site.cutter, site.conditions
     outlook = np.full(len(contacts), _UNTOLD, np.uint8)
+    tensor = tensors(contacts.normal, contacts.direction_max, contacts.curvature)
     known = np.isfinite(contacts.axis).all(axis=1) & _whole(contacts)
     rows = np.flatnonzero(known)
-    outlook[rows] = _cover(contacts, contacts.axis, contacts.flat, field, cutter, conditions, rows)
-    light = conditions.light(cutter)
+    outlook[rows] = _cover(contacts, tensor, contacts.axis, contacts.flat, site, rows)
+    light, bends = conditions.light(cutter), 1.0 / cutter.radius
+    if not (light.mode[:, 0] > 0.0).any():
+        # A ball gouges at every tilt or at none.
+        bends = 0.0
     for room in rooms:
         open_rows = np.flatnonzero((outlook > 0) & _whole(contacts))
         # A posture with room to the local gouging bound: the search is told that the surface is more concave.
-        curved = contacts.curvature + room / cutter.radius
+        curved = contacts.curvature + room * bends
         at = Contacts(contacts.point, contacts.normal, contacts.direction_max, curved)
         found = blank(len(contacts))
         search_postures(at, open_rows, light, light, conditions, found)
         rows = open_rows[found.reached[open_rows]]
         if len(rows):
-            new = _cover(contacts, found.axis, np.zeros(len(contacts), bool), field, cutter, conditions, rows)
+            new = _cover(contacts, tensor, found.axis, np.zeros(len(contacts), bool), site, rows)
             better = (new <= outlook[rows]) | ~known[rows]
             rows, new = rows[better], new[better]
             contacts.axis[rows], contacts.flat[rows], outlook[rows], known[rows] = found.axis[rows], False, new, True
@@ -173,17 +182,16 @@ def _served(
 
 
 def _cover(
-    contacts: CellContacts, axes: Floats, flats: NDArray[np.bool_], field: Field, cutter: Cutter, conditions: Conditions,
-    rows: NDArray[np.int64],
-) -> Outlook:  # fmt: skip
-    """Outlook (m,) of rows of contacts with axes."""
+    contacts: CellContacts, tensor: Floats, axes: Floats, flats: NDArray[np.bool_], site: Site, rows: NDArray[np.int64]
+) -> Outlook:
+    """Outlook (m,) of rows of contacts with tensors and axes."""
     from plan_cutters.kernels.cover import Patches, Sweeping, cover
     from plan_cutters.kernels.zone import Nodes
 
-    tensor = tensors(contacts.normal, contacts.direction_max, contacts.curvature)
+    field, cutter, conditions = site.field, site.cutter, site.conditions
     obstacles, light = conditions.obstacles, conditions.light(cutter)
     patches = Patches(contacts.point, contacts.normal, tensor, axes, flats, contacts.patch, contacts.home)
-    nodes, outlook = Nodes(field.index, field.closed, field.about), np.zeros(len(contacts), np.uint8)
+    nodes, outlook = Nodes(field.index, field.closed, site.about), np.zeros(len(contacts), np.uint8)
     chord = obstacles.triangles.chord_error
     sweeping = Sweeping(tool_of(light), light.dummy, *light.noses(cutter.taper, cutter.shape), light.flutes,
                         conditions.tolerance - chord, chord)  # fmt: skip
