@@ -3,7 +3,7 @@
     python benchmarks/tool_maps.py
 
 60 of the 201 x 201 samples of `samples/peaks_and_valleys.step` (seed 0), 36 rotations, processor time of one thread, the best of
-three.
+four.
 """
 
 import time

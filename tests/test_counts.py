@@ -14,6 +14,7 @@ import waves
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.kernels import (
     arcs,
+    cuts,
     free_map,
     gaps,
     hit,
@@ -30,7 +31,7 @@ from plan_cutters.kernels import (
 from plan_cutters.scene.conditions import found_of
 
 MODULES = (
-    arcs, free_map, gaps, hit, lanes, material, passes, pieces, probing, search, sweep, tool_arcs, vectors,
+    arcs, cuts, free_map, gaps, hit, lanes, material, passes, pieces, probing, search, sweep, tool_arcs, vectors,
 )  # fmt: skip
 
 #: What the searches below cost together, at most. Lower is better: store what you reach; higher needs a reason in the commit.
