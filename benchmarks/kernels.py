@@ -30,7 +30,7 @@ from plan_cutters.kernels.rows import Contacts, Found, Frame
 RADIUS, LENGTH, SAFE, BLOCKED, TURNS = 6.0, 40.0, 0.04, 0.06, 24
 TOOL = waves.flat(RADIUS, LENGTH, SAFE)
 HEAVY, PIECE = waves.flat(RADIUS, LENGTH, BLOCKED), TOOL.piece[0]
-CYLINDER = waves.cylinder(RADIUS, LENGTH, SAFE)
+CYLINDER, FLAT = waves.cylinder(RADIUS, LENGTH, SAFE), waves.flat(RADIUS, LENGTH, SAFE)
 DUMMY = assembly(Cutter.flat(radius=RADIUS, length=LENGTH), SAFE, SAFE).dummy
 RIGHT, UP, NARROWEST = np.pi / 2, np.array([0.0, 0, 1]), np.radians(0.1)
 Driver = Callable[[int], object]
@@ -187,7 +187,7 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
     def all_maps(count: int) -> None:
         k = -(-count // TURNS)
         turned = waves.ranges(rotations)
-        free_map.free_map(np.arange(k), cc_points, turned, CYLINDER, NARROWEST, wide, 8, part, filled, unsure)
+        free_map.free_map(np.arange(k), cc_points, turned, FLAT, NARROWEST, built, wide, 8, part, filled, unsure)
 
     return {
         "point_arc": ("point", 200_000, lambda k: many_point_arcs(k, at)),

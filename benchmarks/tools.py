@@ -105,9 +105,7 @@ def exact(path: Path, cutter: Cutter, count: int) -> str:
         if close.any():
             worst = max(worst, float(tool.over(q[close], w[close], 0.0, 0.0).max()))
     lost = entry.inaccessible + entry.undecided
-    return (
-        f"{path.name} {cutter.id}: {len(rows)} postures, {len(cloud)} points, {lost} lost, deepest {worst:.4f} mm"
-    )
+    return f"{path.name} {cutter.id}: {len(rows)} postures, {len(cloud)} points, {lost} lost, deepest {worst:.4f} mm"
 
 
 def main() -> None:

@@ -14,6 +14,7 @@ import waves
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.kernels import (
     arcs,
+    cuts,
     free_map,
     gaps,
     hit,
@@ -30,7 +31,7 @@ from plan_cutters.kernels import (
 from plan_cutters.scene.conditions import found_of
 
 MODULES = (
-    arcs, free_map, gaps, hit, lanes, material, passes, pieces, probing, search, sweep, tool_arcs, vectors,
+    arcs, cuts, free_map, gaps, hit, lanes, material, passes, pieces, probing, search, sweep, tool_arcs, vectors,
 )  # fmt: skip
 
 #: What the searches below cost together, at most. Lower is better: store what you reach; higher needs a reason in the commit.
@@ -39,7 +40,7 @@ STORED = {"deep_hit": 3430, "alive": 174570, "triangle_hit": 33850, "point_arc":
 STORED_LOST = {"sweep": 288, "deep_hit": 1830, "alive": 43450, "point_arc": 24260, "_deepest": 10220}
 #: The same of the posture maps.
 STORED_MAPS = {
-    "_boxes_pass": 1133, "_triangles_pass": 872, "_see": 215, "_cut_gaps": 830, "_shrink": 379, "_first_in_the_way": 279,
+    "_boxes_pass": 1133, "_triangles_pass": 872, "_see": 215, "cut_gaps": 830, "_shrink": 379, "_first_in_the_way": 279,
 }  # fmt: skip
 #: One last digit of the input moves one search's counts by up to 2 %, and those of all together by less than 1 %.
 SLACK, NUDGES = 0.03, range(6)
@@ -131,14 +132,16 @@ def maps(nudge):
     vertex += 1e-9 * rng.standard_normal(vertex.shape)
     rows = np.linspace(0, len(contacts.point) - 1, 8).astype(np.int64)
     turn = 2 * np.pi * np.arange(24) / 24
-    wide = lanes.WideTree(*lanes.wide_tree(waves.tree_of(vertex)))
+    tree = waves.tree_of(vertex)
+    wide = lanes.WideTree(*lanes.wide_tree(tree))
     part, count, unsure = np.zeros((8, 24, 8, 2)), np.zeros((8, 24), np.int32), np.zeros((8, 24))
     free_map.free_map(
         rows,
         contacts,
         waves.ranges(turn, np.cos(0.8)),
-        waves.cylinder(6.0, 40.0, 0.04),
+        waves.flat(6.0, 40.0, 0.04),
         np.radians(0.1),
+        tree,
         wide,
         8,
         part,

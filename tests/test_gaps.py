@@ -134,14 +134,16 @@ def test_more_in_the_way_never_frees_a_tilt(seed):
     turn = 2 * np.pi * np.arange(12) / 12
 
     def free(kept):
-        n, wide = len(contacts.point), lanes.WideTree(*lanes.wide_tree(waves.tree_of(kept)))
+        n, tree = len(contacts.point), waves.tree_of(kept)
+        wide = lanes.WideTree(*lanes.wide_tree(tree))
         part, count, unsure = np.zeros((n, 12, 8, 2)), np.zeros((n, 12), np.int32), np.zeros((n, 12))
         free_map.free_map(
             np.arange(n),
             contacts,
             waves.ranges(turn),
-            waves.cylinder(6.0, 40.0, 0.04),
+            waves.flat(6.0, 40.0, 0.04),
             np.radians(0.1),
+            tree,
             wide,
             8,
             part,

@@ -5,8 +5,8 @@ import numpy as np
 from plan_cutters import Cutter
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.kernels import tree
-from plan_cutters.kernels.rows import Contacts, Ranges, Tree
-from plan_cutters.scene.conditions import cylinder_of, tool_of
+from plan_cutters.kernels.rows import Contacts, Cylinder, Ranges, Tree
+from plan_cutters.scene.conditions import tool_of
 
 SIZE, WAVES, HEIGHT = 40.0, (0.27, 0.23), 6.0
 
@@ -60,8 +60,9 @@ def flat(radius, length, depth):
 
 
 def cylinder(radius, length, depth):
-    """The same as posture maps of flat ends take it."""
-    return cylinder_of(assembly(Cutter.flat(radius=radius, length=length), depth, depth))
+    """The same as the eight sides of posture maps take it."""
+    piece = flat(radius, length, depth).piece[0]
+    return Cylinder(radius, piece[0, 3], piece[0, 1], piece[0, 2], piece)
 
 
 #: Walls of the comb: how many, how far apart, how thick at the bottom and how much less at the top, how high, how long; mm.

@@ -9,14 +9,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.arcs import axis_arcs, local_gouge, point_arc
-from plan_cutters.kernels.gaps import COLUMNS, FIRST, GAPS, LAST, UF, UL, Room, _begin, _cut_gaps, _cuts, _end, _take
-from plan_cutters.kernels.hit import BODY, scratch
+from plan_cutters.kernels.bounds import FAR, FLOOR, NEAR, Turning, turning_of
+from plan_cutters.kernels.cuts import cut_gaps, flutes, room_to_cut, take_point
+from plan_cutters.kernels.gaps import CF, CL, COLUMNS, FIRST, GAPS, LAST, SF, SL, UF, UL, _begin, _end
+from plan_cutters.kernels.hit import stand, tree_hit
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.lanes import LANES, _boxes_pass, _see, _see_leaf, _see_triangle, _triangles_pass, _turn
-from plan_cutters.kernels.probing import remove
+from plan_cutters.kernels.pieces import ARC, BOTTOM, HIGH, KIND, LOW, RADIUS, ROUND, SLOPE, TOP
+from plan_cutters.kernels.pieces import COLUMNS as PIECE
+from plan_cutters.kernels.planes import all_ends, boxes_clear, triangles_clear, turn_boxes, turn_triangles
+from plan_cutters.kernels.probing import OFFSET_OF, RISE, TILT_FROM, TILT_TO, permitted
 from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.vectors import cross, dot, lean_frame
+from plan_cutters.kernels.vectors import cross, lean_frame
 
 #: Blocks of boxes kept as seen from one contact, and blocks that may wait to be looked at.
 _SEEN, _QUEUE = 1 << 11, 1 << 13
@@ -51,19 +55,56 @@ def _rising(view, below, block, lanes, low):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _leaf(seen, which, vertex, frame, turn, gap, count, tool, narrowest, margin, room):  # type: ignore[no-untyped-def]
-    """Take what the triangles of a leaf forbid out of the gaps; (gaps, the lane that cut last or -1)."""
+def _leaf(leaf, which, vertex, frame, turn, gap, count, turning, mask, narrowest, margin, room):  # type: ignore[no-untyped-def]
+    """Take what the triangles of a leaf forbid to the pieces of a mask out of the gaps; (gaps, the lane that cut last or -1)."""
     cosine, sine = turn
-    _triangles_pass(seen, cosine, sine, gap, count, tool, margin)
     last = -1
-    for lane in range(LANES):
-        if margin[lane] >= 0.0 or count == 0:
+    for k in range(len(turning.piece)):
+        if not (mask >> k) & 1 or count == 0:
             continue
-        _turn(seen, lane, cosine, sine, room.corner)
-        count, cut = _cut_gaps(vertex, which[lane], frame, gap, count, narrowest, tool, room)
-        if cut:
-            last = lane
+        if (turning.eight >> k) & 1:
+            _triangles_pass(leaf, cosine, sine, gap, count, flutes(turning, k), margin)
+        else:
+            turn_triangles(leaf, cosine, sine, room.turned)
+            for lane in range(LANES):
+                margin[lane] = 1.0
+            for g in range(count):
+                all_ends(room.end, gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL])
+                triangles_clear(room.turned, room.end, turning, k, room.clear)
+                for lane in range(LANES):
+                    margin[lane] = min(margin[lane], room.clear[lane] - 0.5)
+        for lane in range(LANES):
+            if margin[lane] >= 0.0 or count == 0:
+                continue
+            _turn(leaf, lane, cosine, sine, room.corner)
+            count, cut = cut_gaps(vertex, which[lane], frame, gap, count, narrowest, turning, k, room)
+            if cut:
+                last = lane
     return count, last
+
+
+@kernel
+def _reaching(view, block, cosine, sine, gap, count, turning, mask, margin, left, room):  # type: ignore[no-untyped-def]
+    """Write for each box of a block the pieces of a mask that it may reach into in some gap."""
+    for lane in range(LANES):
+        left[lane] = 0
+    turned = False
+    for k in range(len(turning.piece)):
+        if not (mask >> k) & 1:
+            continue
+        if (turning.eight >> k) & 1:
+            _boxes_pass(view, block, cosine, sine, gap, count, flutes(turning, k), margin)
+            for lane in range(LANES):
+                left[lane] |= 0 if margin[lane] >= 0.0 else 1 << k
+            continue
+        if not turned:
+            turn_boxes(view, block, cosine, sine, room.turned)
+            turned = True
+        for g in range(count):
+            all_ends(room.end, gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL])
+            if not boxes_clear(room.turned, room.end, turning, k, room.clear):
+                for lane in range(LANES):
+                    left[lane] |= 0 if room.clear[lane] > 0.0 else 1 << k
 
 
 class _View(NamedTuple):
@@ -86,43 +127,48 @@ class _View(NamedTuple):
     margin: Any
     inside: Any
     which: Any
+    left: Any
     reach: float
 
 
 @kernel
-def _rotation(frame, e1, e2, turn, rotation, gap, count, tool, narrowest, wide, seen, room):  # type: ignore[no-untyped-def]
-    """Take the gaps of one rotation, its cosine and sine `turn`, through the tree, level by level; how many are left."""
+def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, narrowest, wide, seen, room):  # type: ignore[no-untyped-def]
+    """Take the gaps of one rotation, its cosine and sine `turn`, through the tree, level by level; how many are left.
+
+    `whole` is the mask of the pieces that anything can reach from this contact, `low` what is out of reach of them all.
+    """
     p, n = frame.p, frame.n
-    radius, shrunk, low, high, _ = tool
     cosine, sine = turn
     vertex, blocks, offset, bottom = wide
     view, leaves, below, home, tally = seen.boxes, seen.leaves, seen.below, seen.home, seen.tally
     known, queue, ahead = seen.known, seen.queue, seen.ahead
     place = seen.place
-    margin, inside, which = seen.margin, seen.inside, seen.which
+    margin, inside, which, left = seen.margin, seen.inside, seen.which, seen.left
     triangles, levels = len(vertex), len(offset) - 1
     for k in range(LANES):
         _see_triangle(leaves[_LEAVES + 2], k, vertex, known[rotation, k], p, e1, e2, n)
     count, _ = _leaf(
-        leaves[_LEAVES + 2], known[rotation], vertex, frame, turn, gap, count, tool, narrowest, inside, room
+        leaves[_LEAVES + 2], known[rotation], vertex, frame, turn, gap, count, turning, whole, narrowest, inside, room
     )
-    count, _ = _leaf(leaves[_LEAVES + 1], known[-1], vertex, frame, turn, gap, count, tool, narrowest, inside, room)
-    queue[0, 0], queue[0, 1] = 0, 0
+    count, _ = _leaf(
+        leaves[_LEAVES + 1], known[-1], vertex, frame, turn, gap, count, turning, whole, narrowest, inside, room
+    )
+    queue[0, 0], queue[0, 1], queue[0, 2] = 0, 0, whole
     waiting = 1
     for level in range(levels):
         coming = 0
         for w in range(waiting):
             if count == 0:
                 return 0
-            slot, block = queue[w, 0], queue[w, 1]
+            slot, block, mask = queue[w, 0], queue[w, 1], queue[w, 2]
             if slot < 0:
                 slot = _SEEN
                 _see(view, slot, blocks, offset[level] + block, p, e1, e2, n, seen.reach)
                 _rising(view, below, slot, LANES, low)
-            _boxes_pass(view, slot, cosine, sine, gap, count, tool, margin)
+            _reaching(view, slot, cosine, sine, gap, count, turning, mask, margin, left, room)
             for lane in range(LANES):
                 inner = below[slot, lane]
-                if margin[lane] >= 0.0 or inner == _NONE or count == 0:
+                if left[lane] == 0 or inner == _NONE or count == 0:
                     continue
                 box = 8 * block + lane
                 if level == levels - 1:
@@ -138,7 +184,18 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, tool, narrowest, wide, 
                     for k in range(LANES):
                         which[k] = begin + k
                     count, cut = _leaf(
-                        leaves[inner], which, vertex, frame, turn, gap, count, tool, narrowest, inside, room
+                        leaves[inner],
+                        which,
+                        vertex,
+                        frame,
+                        turn,
+                        gap,
+                        count,
+                        turning,
+                        left[lane],
+                        narrowest,
+                        inside,
+                        room,
                     )
                     if cut >= 0:
                         known[-1, tally[2]] = begin + cut
@@ -150,9 +207,9 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, tool, narrowest, wide, 
                     continue
                 x, y, z = view[slot, 13, lane], view[slot, 14, lane], view[slot, 15, lane]
                 x, y = cosine * x + sine * y, cosine * y - sine * x
-                if _cuts(x, y, z, gap, count, tool):
-                    left, right = point_arc(z, x + radius, y, 0.0, radius, shrunk, low, high)
-                    count = _take(gap, count, left, right)
+                for k in range(len(turning.piece)):
+                    if (left[lane] >> k) & 1:
+                        count, _ = take_point(x, y, z, gap, count, turning, k, room.arcs)
                 if inner == _UNSEEN and tally[0] < _SEEN:
                     inner = tally[0]
                     _see(view, inner, blocks, offset[level + 1] + box, p, e1, e2, n, seen.reach)
@@ -166,7 +223,7 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, tool, narrowest, wide, 
                     for g in range(count):
                         gap[GAPS, UF] += gap[g, LAST] - gap[g, FIRST] + gap[g, UF] + gap[g, UL]
                     return 0
-                ahead[coming, 0], ahead[coming, 1] = inner, box
+                ahead[coming, 0], ahead[coming, 1], ahead[coming, 2] = inner, box, left[lane]
                 coming += 1
         queue, ahead = ahead, queue
         waiting = coming
@@ -174,9 +231,9 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, tool, narrowest, wide, 
 
 
 @kernel
-def _write(gap, count, room, part):  # type: ignore[no-untyped-def]
-    """Write the gaps as intervals, ascending; (how many, width of what is undecided at their ends and beyond `room`)."""
-    written, unsure = 0, gap[GAPS, UF] + gap[GAPS, UL]
+def _write(gap, count, written, room, part):  # type: ignore[no-untyped-def]
+    """Write the gaps as intervals among others, ascending; (how many, how much is undecided at their ends and beyond `room`)."""
+    unsure = gap[GAPS, UF] + gap[GAPS, UL]
     for g in range(count):
         unsure += gap[g, UF] + gap[g, UL]
         if gap[g, LAST] <= gap[g, FIRST]:
@@ -193,9 +250,51 @@ def _write(gap, count, room, part):  # type: ignore[no-untyped-def]
     return written, unsure
 
 
+@kernel
+def _joined(part, count):  # type: ignore[no-untyped-def]
+    """Join intervals, ascending, that touch; how many are left."""
+    kept = min(count, 1)
+    for i in range(1, count):
+        if part[i, 0] <= part[kept - 1, 1]:
+            part[kept - 1, 1] = max(part[kept - 1, 1], part[i, 1])
+        else:
+            part[kept, 0], part[kept, 1] = part[i, 0], part[i, 1]
+            kept += 1
+    return kept
+
+
+@kernel
+def _ball(turning):  # type: ignore[no-untyped-def]
+    """The piece that is the same body at all tilts, -1 if there is none: a ball about the centre."""
+    piece = turning.piece
+    for k in range(len(piece)):
+        if piece[k, KIND] == ARC and piece[k, RADIUS] == 0.0 and piece[k, SLOPE] == 0.0 and turning.offset == 0.0:
+            return k
+    return -1
+
+
+@kernel
+def _reachable(view, lanes, turning):  # type: ignore[no-untyped-def]
+    """The mask of the pieces that boxes of the first block may reach into at any posture.
+
+    They rise as high, and stand neither nearer nor farther than the piece.
+    """
+    mask, known = 0, turning.known
+    for k in range(len(turning.piece)):
+        for lane in range(lanes):
+            square, half = 0.0, 0.0
+            for i in range(3):
+                square += view[0, i, lane] ** 2
+                half += np.sqrt(view[0, 3 + i, lane] ** 2 + view[0, 6 + i, lane] ** 2 + view[0, 9 + i, lane] ** 2)
+            away = np.sqrt(square)
+            if view[0, 12, lane] > known[k, FLOOR] and away - half < known[k, FAR] and away + half > known[k, NEAR]:
+                mask |= 1 << k
+    return mask
+
+
 @entry
 def free_map(  # type: ignore[no-untyped-def]
-    rows, contacts, ranges, tool, narrowest, wide, room, part, count_out, undecided
+    rows, contacts, ranges, tool, narrowest, tree, wide, room, part, count_out, undecided
 ):
     """Free tilts of samples at all rotations, in one walk of the tree each, with certified ends.
 
@@ -204,11 +303,13 @@ def free_map(  # type: ignore[no-untyped-def]
     rows : (m,) int64
     contacts : Contacts
     ranges : Ranges
-    tool : Cylinder
-        The cutter, smaller by the depth that does not matter.
+    tool : Tool
+        Without what does not matter.
     narrowest : float
         Ends are found to this, rad; a passing tilt is kept.
+    tree : Tree
     wide : WideTree
+        The same.
     room : int
         Most intervals of one rotation.
     part : (m, k, room, 2) float64, written
@@ -217,54 +318,73 @@ def free_map(  # type: ignore[no-untyped-def]
     undecided : (m, k) float64, written
         Width of the bands at the ends that are neither free nor known to be forbidden, rad in all.
     """
-    t, f, e2 = np.empty(3), np.empty(3), np.empty(3)
-    gap, arcs = np.empty((GAPS + 1, COLUMNS)), np.empty((8, 2))
-    work = Room(
-        np.empty((3, 3)), np.empty((8, 3)), np.empty((8, 3)), np.empty(BODY), np.empty((64, 2)),
-        scratch(),
-    )  # fmt: skip
-    view = _View(
-        np.empty((_SEEN + 1, 16, LANES)), np.empty((_LEAVES + 3, 9, LANES)), np.empty((_SEEN + 1, LANES), np.int64),
-        np.empty((_SEEN, 2), np.int64), np.zeros(3, np.int64), np.zeros((len(ranges.rotation_cos) + 1, LANES), np.int64),
-        np.zeros(len(ranges.rotation_cos), np.int64),
-        np.empty((_QUEUE, 2), np.int64), np.empty((_QUEUE, 2), np.int64), np.empty(LANES), np.empty(LANES),
-        np.empty(LANES, np.int64), np.hypot(tool.high, tool.radius + tool.shrunk),
-    )  # fmt: skip
-    for place in range(len(rows)):
-        row = rows[place]
-        p, n, e1 = contacts.point[row], contacts.normal[row], contacts.direction_max[row]
-        cross(n, e1, e2)
-        frame = Frame(p, n, f, t)
-        view.home[0, 0], view.tally[0], view.tally[1] = -1, 1, 0
-        _see(view.boxes, 0, wide.blocks, 0, p, e1, e2, n, view.reach)
-        some = _rising(view.boxes, view.below, 0, 1 << (wide.bottom % 3), tool.low)
-        for lane in range(LANES):
-            _see_triangle(view.leaves[_LEAVES + 1], lane, wide.vertex, view.known[-1, lane], p, e1, e2, n)
-        for rotation in range(len(ranges.rotation_cos)):
-            cosine, sine = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
-            lean_frame(e1, e2, cosine, sine, f, t)
-            count_out[place, rotation], undecided[place, rotation] = 0, 0.0
-            least, _ = local_gouge(
-                contacts.curvature[row, 0], contacts.curvature[row, 1], cosine, sine, tool.radius, 0.0
+    turns = len(ranges.rotation_cos)
+    c, t, f, e2 = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
+    gap, arcs, alone = np.empty((GAPS + 1, COLUMNS)), np.empty((8, 2)), np.empty((1, PIECE))
+    work = room_to_cut()
+    count_out[:, :], undecided[:, :] = 0, 0.0
+    for mode in range(len(tool.mode)):
+        offset, rise, piece = tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE], tool.piece[mode]
+        low, high = max(ranges.tilt_low, tool.mode[mode, TILT_FROM]), min(ranges.tilt_high, tool.mode[mode, TILT_TO])
+        if low > high:
+            continue
+        bound, facts, eight = turning_of(piece, offset, low, high)
+        turning = Turning(offset, piece, bound, facts, eight)
+        view = _View(
+            np.empty((_SEEN + 1, 16, LANES)), np.empty((_LEAVES + 3, 9, LANES)), np.empty((_SEEN + 1, LANES), np.int64),
+            np.empty((_SEEN, 2), np.int64), np.zeros(3, np.int64), np.zeros((turns + 1, LANES), np.int64),
+            np.zeros(turns, np.int64), np.empty((_QUEUE, 3), np.int64), np.empty((_QUEUE, 3), np.int64), np.empty(LANES),
+            np.empty(LANES), np.empty(LANES, np.int64), np.empty(LANES, np.int64), facts[:, FAR].max(),
+        )  # fmt: skip
+        ball = _ball(turning)
+        if ball >= 0:
+            for i in range(PIECE):
+                alone[0, i] = piece[ball, i]
+            alone[0, LOW], alone[0, HIGH], alone[0, BOTTOM], alone[0, TOP] = (
+                -np.inf,
+                np.inf,
+                -alone[0, ROUND],
+                alone[0, ROUND],
             )
-            if np.isnan(least):
-                continue
-            count = axis_arcs(
-                dot(ranges.setup, n),
-                dot(ranges.setup, f),
-                ranges.limit_cos,
-                ranges.tilt_low,
-                min(0.5 * np.pi, ranges.tilt_high),
-                arcs,
-            )
-            if least > 0.0:
-                count = remove(arcs, count, -1.0, least, 0.0)
-            gap[GAPS, UF], gap[GAPS, UL] = 0.0, 0.0
-            for g in range(count):
-                _begin(gap, g, arcs[g, 0], 0.0)
-                _end(gap, g, arcs[g, 1], 0.0)
-            if some and count > 0:
-                count = _rotation(
-                    frame, e1, e2, (cosine, sine), rotation, gap, count, tool, narrowest, wide, view, work
-                )
-            count_out[place, rotation], undecided[place, rotation] = _write(gap, count, room, part[place, rotation])
+        for place in range(len(rows)):
+            row = rows[place]
+            p, n, e1 = contacts.point[row], contacts.normal[row], contacts.direction_max[row]
+            cross(n, e1, e2)
+            for i in range(3):
+                c[i] = p[i] + rise * n[i]
+            frame = Frame(c, n, f, t)
+            view.home[0, 0], view.tally[0], view.tally[1] = -1, 1, 0
+            _see(view.boxes, 0, wide.blocks, 0, c, e1, e2, n, view.reach)
+            whole = _reachable(view.boxes, 1 << (wide.bottom % 3), turning)
+            if ball >= 0 and (whole >> ball) & 1:
+                stand(work.body, Frame(c, n, e1, e2), 1.0, 0.0, 0.0, 0.0)
+                if tree_hit(tree, work.body, alone, 0.0, -1, work.scratch)[0] < 0:
+                    whole ^= 1 << ball
+                elif piece[ball, BOTTOM] == alone[0, BOTTOM] and piece[ball, TOP] == alone[0, TOP]:
+                    # In the way at every posture.
+                    continue
+            floor = np.inf
+            for k in range(len(piece)):
+                if (whole >> k) & 1:
+                    floor = min(floor, facts[k, FLOOR])
+            some = _rising(view.boxes, view.below, 0, 1 << (wide.bottom % 3), floor)
+            for lane in range(LANES):
+                _see_triangle(view.leaves[_LEAVES + 1], lane, wide.vertex, view.known[-1, lane], c, e1, e2, n)
+            for rotation in range(turns):
+                cosine, sine = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
+                lean_frame(e1, e2, cosine, sine, f, t)
+                _, _, count = permitted(contacts, row, ranges, rotation, tool, mode, f, arcs)
+                if count == 0:
+                    continue
+                gap[GAPS, UF], gap[GAPS, UL] = 0.0, 0.0
+                for g in range(count):
+                    _begin(gap, g, arcs[g, 0], 0.0)
+                    _end(gap, g, arcs[g, 1], 0.0)
+                if some:
+                    count = _rotation(
+                        frame, e1, e2, (cosine, sine), rotation, gap, count, turning, whole, floor, narrowest, wide, view,
+                        work,
+                    )  # fmt: skip
+                count, unsure = _write(gap, count, count_out[place, rotation], room, part[place, rotation])
+                count_out[place, rotation] = _joined(part[place, rotation], count)
+                undecided[place, rotation] += unsure

@@ -182,7 +182,7 @@ def _see_leaf(seen, vertex, begin, end, p, e1, e2, n):  # type: ignore[no-untype
             top = max(top, _see_triangle(seen, lane, vertex, begin + lane, p, e1, e2, n))
         else:
             for k in range(3):
-                seen[3 * k, lane], seen[3 * k + 1, lane], seen[3 * k + 2, lane] = 0.0, 0.0, -1.0
+                seen[3 * k, lane], seen[3 * k + 1, lane], seen[3 * k + 2, lane] = 0.0, 0.0, -1e9
     return top
 
 

@@ -11,7 +11,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import Reach
-from plan_cutters.kernels.rows import Contacts, Cylinder, Found, Ranges, Tool
+from plan_cutters.kernels.rows import Contacts, Found, Ranges, Tool
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.scene.threads import Progress, in_chunks
@@ -92,12 +92,6 @@ def tools(cutter: Cutter, tolerance: float, error: float) -> tuple[Assembly, Ass
 def tool_of(made: Assembly) -> Tool:
     """An assembly as kernels take it."""
     return Tool(made.piece, made.mode, made.reach, made.inner, made.end)
-
-
-def cylinder_of(made: Assembly) -> Cylinder:
-    """A flat end without stages as kernels take it."""
-    ((_, low, high, radius, *_),) = made.piece[0]
-    return Cylinder(float(made.mode[0, 0]), float(radius), float(low), float(high), made.piece[0])
 
 
 def found_of(reach: Reach) -> Found:

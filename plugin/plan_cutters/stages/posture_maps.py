@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Record, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.posture import lean
-from plan_cutters.scene.conditions import Conditions, contacts_of, cylinder_of, require_finite, tool_of
+from plan_cutters.scene.conditions import Conditions, contacts_of, require_finite, tool_of
 from plan_cutters.scene.threads import Progress, in_chunks
 
 #: Ends are certified to this, rad; where that cannot be, the band left is counted as undecided.
@@ -52,10 +52,9 @@ def posture_maps(
         Told how many pieces of the work are done, of how many.
     """
     from plan_cutters.kernels.free_map import free_map
-    from plan_cutters.kernels.tool_map import tool_map
 
-    rotations, ranges, tree = conditions.postures.rotations, conditions.ranges, conditions.obstacles.wide_tree
-    light, flat = conditions.light(cutter), cutter.plain
+    rotations, ranges, obstacles = conditions.postures.rotations, conditions.ranges, conditions.obstacles
+    tree, wide, tool = obstacles.tree, obstacles.wide_tree, tool_of(conditions.light(cutter))
     contacts = contacts_of(samples)
     n, k = len(samples), len(rotations)
     count = np.zeros((n, k), np.int32)
@@ -66,10 +65,7 @@ def posture_maps(
         # Room for the most intervals only while a piece is worked on: memory grows with what is found.
         part = np.empty((len(rows), k, _ROOM, 2))
         mine, unsure = np.empty((len(rows), k), np.int32), np.empty((len(rows), k))
-        if flat:
-            free_map(rows, contacts, ranges, cylinder_of(light), NARROWEST, tree, _ROOM, part, mine, unsure)
-        else:
-            tool_map(rows, contacts, ranges, tool_of(light), NARROWEST, conditions.obstacles.tree, part, mine, unsure)
+        free_map(rows, contacts, ranges, tool, NARROWEST, tree, wide, _ROOM, part, mine, unsure)
         count[rows], undecided[rows] = mine, unsure
         if conditions.obstacles.solids.cell.size:
             _leave_bodies(samples, rows, cutter, conditions, part, mine)

@@ -1,12 +1,12 @@
-"""Free tilts of samples at all rotations for tools of any kind: range by range, as at one point.
+"""Slow twin of posture maps: free tilts of samples at all rotations, range by range, as at one point.
 
-Slower than `free_map`, which knows flat ends alone.
+Each range is tested as a whole: nothing is handed on from one to the next, and no plane parts anything.
 """
 
+import numba
 import numpy as np
 
 from plan_cutters.kernels.free_tilts import OPEN, UNSURE, divide, room_for_parts
-from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.probing import permitted
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.vectors import cross, lean_frame
@@ -15,7 +15,7 @@ from plan_cutters.kernels.vectors import cross, lean_frame
 _PARTS = 400
 
 
-@kernel
+@numba.njit(error_model="numpy")
 def _enter(first, last, count, part):  # type: ignore[no-untyped-def]
     """Enter a free interval among those (room, 2), ascending, joined with what it touches; (how many, what found no room)."""
     for i in range(count):
@@ -31,7 +31,7 @@ def _enter(first, last, count, part):  # type: ignore[no-untyped-def]
     return count + 1, 0.0
 
 
-@kernel
+@numba.njit(error_model="numpy")
 def _ordered(count, part):  # type: ignore[no-untyped-def]
     """Put free intervals in ascending order and join those that touch; how many are left."""
     for i in range(1, count):
@@ -50,7 +50,7 @@ def _ordered(count, part):  # type: ignore[no-untyped-def]
     return kept
 
 
-@entry
+@numba.njit(error_model="numpy")
 def tool_map(rows, contacts, ranges, tool, narrowest, tree, part, count_out, undecided):  # type: ignore[no-untyped-def]
     """Free tilts of samples at all rotations; parameters as for `free_map.free_map`.
 
