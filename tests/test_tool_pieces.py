@@ -114,11 +114,11 @@ def check(rng, kind, sort, cutters, n):
     """Random cutters of a kind, their pieces against the reference; how many triangles hit and missed."""
     scratch, hits, misses = hit.scratch(), 0, 0
     for _ in range(cutters):
-        cutter = random_cutter(rng, kind)
+        error, asked = float(10.0 ** rng.uniform(-3, -1.5)), rng.random() < 0.7
+        # As a plan asks for them; and as deep everywhere, as witnesses do.
+        flutes, rest = (4 * error, -error if sort == "cover" else error) if asked else (0.2, 0.2)
+        cutter = random_cutter(rng, kind, loose=asked)
         reference = Reference(cutter)
-        error = float(10.0 ** rng.uniform(-3, -1.5))
-        # As a plan asks for them, and as deep everywhere, as witnesses do.
-        flutes, rest = (4 * error, -error if sort == "cover" else error) if rng.random() < 0.7 else (0.2, 0.2)
         made = assembly(cutter, flutes, rest, kind=sort)
         inset, above = flutes - (cutter.allowance or 0.0), rest - (cutter.clearance or 0.0)
         if not made.piece.shape[1]:

@@ -67,12 +67,15 @@ def solid(row: list[float]) -> bool:
 
 
 def seam(lower: float, lower_inset: float, upper: float, upper_inset: float, at: float) -> tuple[float, float]:
-    """Heights at which the band below a seam ends, and the one above begins: the narrower runs on into the wider."""
+    """Heights at which the band below a seam ends, and the one above begins: the narrower runs on into the wider.
+
+    A face that the other band covers is not moved in, though that one's side be moved in further.
+    """
     below, above = lower - lower_inset, upper - upper_inset
-    if above > below:
+    if above > below and not (upper <= lower and upper_inset > 0.0):
         start = at + upper_inset
         return max(at, start) + HAIR, start
-    if below > above:
+    if below > above and not (lower <= upper and lower_inset > 0.0):
         end = at - lower_inset
         return end, min(at, end) - HAIR
     return at + HAIR, at
