@@ -214,3 +214,24 @@ def test_a_million_triangles_of_each_kind(kind):
     hits, misses = check(rng, kind, "cover", 500, 2000)
     assert hits + misses > 900_000
     check(rng, kind, "certain", 100, 2000)
+
+
+def test_a_triangle_without_area_hits_where_its_longest_side_does():
+    """Its normal is nothing but rounding: no plane across it may part it from a piece."""
+    from plan_cutters.domain.pieces import ARC, FLUTES, row_of
+    from plan_cutters.kernels.pieces import polygon_hit
+
+    rng, met = np.random.default_rng(0), 0
+    for radius, around in ((0.0, 3.0), (2.0, 1.5), (12.0, 1.5), (-20.0, 26.0)):
+        piece = np.array([row_of(ARC, -math.inf, math.inf, radius, 0.5, around, FLUTES)])
+        for _ in range(400):
+            through = rng.normal(0.0, 0.5 * (abs(radius) + around), 3)
+            along = rng.standard_normal(3) * 40.0
+            corner = np.stack([through - 0.3 * along, through + 0.7 * along, through + 0.7 * along * (1 + 1e-9)])
+            points = corner[0] + np.linspace(0.0, 1.0, 20_001)[:, None] * (corner[1] - corner[0])
+            q = np.hypot(points[:, 1], points[:, 2])
+            deep = (around - np.hypot(np.maximum(0.0, q - radius), points[:, 0] - 0.5)).max()
+            if abs(deep) > 1e-3:
+                assert polygon_hit(corner.copy(), 3, piece, 0, 0.0)[0] == (deep > 0.0)
+                met += deep > 0.0
+    assert met > 200

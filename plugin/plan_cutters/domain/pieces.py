@@ -124,6 +124,10 @@ def among(band: Band, start: float, end: float, *, exact: bool) -> list[list[flo
     stage, inset = band.stage, band.inset
     side = stage.radius - inset * math.hypot(1.0, stage.slope)
     rows, shift = [], min(0.0, inset) * math.sin(band.lean)
+    if inset <= 0.0 and start < band.low + inset - HAIR and stage.slope:
+        # What runs down into a wider band does so as wide as it begins: its own slope could leave out what is deep under its rim.
+        rows.append(band_row(start, band.low + HAIR, stage.radius, 0.0, band.part))
+        start = band.low + inset
     low_step, high_step = abs(start - band.low) > HAIR, abs(end - band.high) > 2.0 * HAIR
     # Grown, a side that leans reaches past its ends along its normal.
     if inset < 0.0 and not (exact and low_step):

@@ -14,6 +14,8 @@ CYLINDER, CONE, ARC = 0.0, 1.0, 2.0
 KIND, LOW, HIGH, RADIUS, SLOPE, ROUND, SCALE, BOTTOM, TOP, WIDE, PART, COLUMNS = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11
 FLUTES, NECK, SHANK, HOLDER = 0, 1, 2, 3
 
+#: Polygons thinner than this share of their length have no normal.
+_NEEDLE = 1e-10
 #: Halvings of a line within which a point well inside a piece is looked for.
 _HALVINGS = 6
 
@@ -264,14 +266,22 @@ def _in_arc(polygon, count, piece, k, grow):  # type: ignore[no-untyped-def]
         nx += ay * bw - aw * by
         ny += aw * bx - ax * bw
         nw += ax * by - ay * bx
-    size = np.sqrt(nx * nx + ny * ny + nw * nw)
-    if size > 0.0:
+    size, longest = np.sqrt(nx * nx + ny * ny + nw * nw), 0.0
+    for i in range(1, count):
+        aw, ax, ay = polygon[i, 0] - polygon[0, 0], polygon[i, 1] - polygon[0, 1], polygon[i, 2] - polygon[0, 2]
+        longest = max(longest, aw * aw + ax * ax + ay * ay)
+    # The normal of a needle is rounding: its sides say all.
+    if size > _NEEDLE * longest:
         across = np.sqrt(nx * nx + ny * ny)
         reach = across / size
         away = (nx * polygon[0, 1] + ny * polygon[0, 2] + nw * (polygon[0, 0] - centre)) / size
         sign = 1.0
         if away < 0.0:
             away, sign = -away, -1.0
+        # Whatever the direction, it parts the two only if all corners lie beyond.
+        least = np.inf
+        for i in range(count):
+            least = min(least, sign * (nx * polygon[i, 1] + ny * polygon[i, 2] + nw * (polygon[i, 0] - centre)) / size)
         ux, uy = 1.0, 0.0
         if across > 0.0:
             ux, uy = sign * nx / across, sign * ny / across
@@ -281,7 +291,7 @@ def _in_arc(polygon, count, piece, k, grow):  # type: ignore[no-untyped-def]
             far = away / reach if reach > 0.0 else 0.0
             w, x, y = 0.0, far * ux, far * uy
         elif radius + rest * reach >= 0.0:
-            if rest >= around:
+            if least - radius * reach >= around:
                 return False, 0.0, 0.0, 0.0
             out = radius + rest * reach
             w, x, y = rest * sign * nw / size, out * ux, out * uy
