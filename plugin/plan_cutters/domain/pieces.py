@@ -202,10 +202,10 @@ def _barrel(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[li
     if not tip:
         low = inset
         if inset < 0.0:
-            # Grown, its sharp lower edge is round.
+            # Grown, its sharp lower edge is round, and the flank begins where its normal there ends.
             edge = flank(cutter, 0.0)
             rows = [row_of(ARC, -math.inf, math.inf, edge, 0.0, -inset, FLUTES)]
-            return [*rows, row_of(ARC, 0.0, top, offset, centre, wide, FLUTES)]
+            return [*rows, row_of(ARC, inset * centre / cutter.arc_radius - HAIR, top, offset, centre, wide, FLUTES)]
         return [row_of(ARC, low, top, offset, centre, wide, FLUTES)]
     joint, left = tip_angle(cutter), tip - inset
     if left > 0.0:
