@@ -51,9 +51,10 @@ def dense(whole, spacing):
                   faces=[f.number for f in whole.faces]).point  # fmt: skip
 
 
-def deepest(found, geometry, whole, cutter, cloud, count, rng):
-    """Largest depth of the surface in the cutter over random contacts in served cells, mm."""
-    cells, worst = found.cells, -math.inf
+def wandering(found, geometry, whole, cloud, count, rng):
+    """Random contacts in served cells: each with its normal, axis and x_T, and points of the surface all over and very near it,
+    where the clearance is smallest."""
+    cells = found.cells
     for row in rng.choice(len(cells.face), count):
         face = int(cells.face[row])
         u0, u1, v0, v1 = whole.trim(face).box
@@ -68,10 +69,15 @@ def deepest(found, geometry, whole, cutter, cloud, count, rng):
             across = rng.standard_normal(3)
             across -= (across @ axis) * axis
         x_t = -across / np.linalg.norm(across)
-        # The surface all over, and very near the contact, where the clearance is smallest.
         offsets = np.concatenate([rng.standard_normal((400, 2)) * size for size in (0.5, 2.0, 8.0)])
         near = geometry(face, np.clip(uv + offsets * cells.span[row], *within))[0]
-        points = np.concatenate([cloud, near])
+        yield contact, normal, axis, x_t, np.concatenate([cloud, near])
+
+
+def deepest(found, geometry, whole, cutter, cloud, count, rng):
+    """Largest depth of the surface in the cutter over random contacts in served cells, mm."""
+    worst = -math.inf
+    for contact, _, axis, x_t, points in wandering(found, geometry, whole, cloud, count, rng):
         centre = contact - cutter.radius * x_t
         height = (points - centre) @ axis
         radial = np.linalg.norm(points - centre - height[:, None] * axis, axis=1)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 import shapes
-from test_between import SAMPLES, dense, served
+from test_between import SAMPLES, dense, served, wandering
 
 from cad_io import read_part
 from plan_cutters import Cutter
@@ -68,23 +68,9 @@ def touching(cutter, normal, axis, x_t):
 
 def deepest(found, geometry, whole, cutter, cloud, count, rng):
     """Largest of the depths of the surface in the tool over random contacts in served cells, mm, to the profile's grain."""
-    cells, worst, (w, q) = found.cells, -math.inf, profile(cutter)
-    for row in rng.choice(len(cells.face), count):
-        face = int(cells.face[row])
-        u0, u1, v0, v1 = whole.trim(face).box
-        uv = cells.uv[row] + rng.uniform(-0.5, 0.5, 2) * cells.span[row]
-        if not whole.trim(face).inside(uv[:1], uv[1:])[0]:
-            continue
-        contact, normal = (x[0] for x in geometry(face, uv[None])[:2])
-        axis = cells.axis[row]
-        across = normal - (normal @ axis) * axis
-        if np.linalg.norm(across) < 1e-9:
-            across = rng.standard_normal(3)
-            across -= (across @ axis) * axis
-        x_t = -across / np.linalg.norm(across)
-        offsets = np.concatenate([rng.standard_normal((400, 2)) * size for size in (0.5, 2.0, 8.0)])
-        near = geometry(face, np.clip(uv + offsets * cells.span[row], [u0, v0], [u1, v1]))[0]
-        points = np.concatenate([cloud, near]) - contact - touching(cutter, normal, axis, x_t)
+    worst, (w, q) = -math.inf, profile(cutter)
+    for contact, normal, axis, x_t, surface in wandering(found, geometry, whole, cloud, count, rng):
+        points = surface - contact - touching(cutter, normal, axis, x_t)
         height = points @ axis
         radial = np.linalg.norm(points - height[:, None] * axis, axis=1)
         inside = (height > 0.0) & (height < w[-1])

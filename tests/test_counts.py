@@ -132,23 +132,9 @@ def maps(nudge):
     vertex += 1e-9 * rng.standard_normal(vertex.shape)
     rows = np.linspace(0, len(contacts.point) - 1, 8).astype(np.int64)
     turn = 2 * np.pi * np.arange(24) / 24
-    tree = waves.tree_of(vertex)
-    wide = lanes.WideTree(*lanes.wide_tree(tree))
-    part, count, unsure = np.zeros((8, 24, 8, 2)), np.zeros((8, 24), np.int32), np.zeros((8, 24))
-    free_map.free_map(
-        rows,
-        contacts,
-        waves.ranges(turn, np.cos(0.8)),
-        waves.flat(6.0, 40.0, 0.04),
-        np.radians(0.1),
-        tree,
-        wide,
-        8,
-        part,
-        count,
-        unsure,
+    return waves.mapped(
+        rows, contacts, waves.ranges(turn, np.cos(0.8)), waves.flat(6.0, 40.0, 0.04), waves.tree_of(vertex)
     )
-    return part, count, unsure
 
 
 def test_posture_maps_do_no_more_work_than_they_did():

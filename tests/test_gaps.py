@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import waves
 
-from plan_cutters.kernels import free_map, gaps, lanes, passes
+from plan_cutters.kernels import gaps, lanes, passes
 
 TILTS = 181
 
@@ -134,22 +134,8 @@ def test_more_in_the_way_never_frees_a_tilt(seed):
     turn = 2 * np.pi * np.arange(12) / 12
 
     def free(kept):
-        n, tree = len(contacts.point), waves.tree_of(kept)
-        wide = lanes.WideTree(*lanes.wide_tree(tree))
-        part, count, unsure = np.zeros((n, 12, 8, 2)), np.zeros((n, 12), np.int32), np.zeros((n, 12))
-        free_map.free_map(
-            np.arange(n),
-            contacts,
-            waves.ranges(turn),
-            waves.flat(6.0, 40.0, 0.04),
-            np.radians(0.1),
-            tree,
-            wide,
-            8,
-            part,
-            count,
-            unsure,
-        )
+        rows, tool = np.arange(len(contacts.point)), waves.flat(6.0, 40.0, 0.04)
+        part, count, unsure = waves.mapped(rows, contacts, waves.ranges(turn), tool, waves.tree_of(kept))
         real = np.arange(8) < count[..., None]
         return np.where(real, part[..., 1] - part[..., 0], 0).sum(-1), unsure
 

@@ -7,7 +7,7 @@ import waves
 
 from plan_cutters import Cutter
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.kernels import bounds, free_map, lanes, planes
+from plan_cutters.kernels import bounds, lanes, planes
 from plan_cutters.kernels.search import probe
 from plan_cutters.scene.conditions import tool_of
 
@@ -33,7 +33,7 @@ KINDS = tuple(TOOLS)
 def scene():
     """Waves as obstacles, contacts on them, and which postures there are."""
     tree = waves.tree_of(waves.triangles(41))
-    return waves.samples(6), tree, lanes.WideTree(*lanes.wide_tree(tree)), waves.ranges(2 * np.pi * np.arange(12) / 12)
+    return waves.samples(6), tree, waves.ranges(2 * np.pi * np.arange(12) / 12)
 
 
 def room(contacts):
@@ -46,17 +46,13 @@ def width(part, count):
 
 
 def mapped(scene, tool):
-    contacts, tree, wide, ranges = scene
-    part, count, unsure = room(contacts)
-    free_map.free_map(
-        np.arange(len(contacts.point)), contacts, ranges, tool, NARROWEST, tree, wide, ROOM, part, count, unsure
-    )
-    return part, count, unsure
+    contacts, tree, ranges = scene
+    return waves.mapped(np.arange(len(contacts.point)), contacts, ranges, tool, tree, ROOM)
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_no_tilt_of_a_free_interval_is_hit(kind, scene):
-    contacts, tree, _, ranges = scene
+    contacts, tree, ranges = scene
     made = assembly(TOOLS[kind], DEPTH, DEPTH)
     part, count, _ = mapped(scene, tool_of(made))
     place, turn, which = np.nonzero(np.arange(ROOM) < count[..., None])
@@ -79,7 +75,7 @@ def test_no_tilt_of_a_free_interval_is_hit(kind, scene):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_ranges_halved_one_by_one_leave_the_same(kind, scene):
-    contacts, tree, _, ranges = scene
+    contacts, tree, ranges = scene
     tool = tool_of(assembly(TOOLS[kind], DEPTH, DEPTH))
     part, count, unsure = mapped(scene, tool)
     rows = np.arange(0, len(contacts.point), 5)
@@ -108,7 +104,7 @@ def test_a_flat_end_through_the_planes_is_the_same(scene):
     part, count, unsure = mapped(scene, tool)
     # They want tilts up to 90 deg: a little more is asked for.
     plain = tool._replace(mode=np.array([[*tool.mode[0, :3], np.pi / 2 + 1e-6, tool.mode[0, 4]]]))
-    wide, few, doubt = mapped((scene[0], scene[1], scene[2], scene[3]._replace(tilt_high=np.pi / 2 + 1e-6)), plain)
+    wide, few, doubt = mapped((*scene[:2], scene[2]._replace(tilt_high=np.pi / 2 + 1e-6)), plain)
     _, _, eight = bounds.turning_of(tool.piece[0], tool.mode[0, 0], 0.0, np.pi / 2)
     _, _, none = bounds.turning_of(tool.piece[0], tool.mode[0, 0], 0.0, np.pi / 2 + 1e-6)
     assert (eight, none) == (1, 0)

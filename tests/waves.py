@@ -4,7 +4,7 @@ import numpy as np
 
 from plan_cutters import Cutter
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.kernels import tree
+from plan_cutters.kernels import free_map, lanes, tree
 from plan_cutters.kernels.rows import Contacts, Cylinder, Ranges, Tree
 from plan_cutters.scene.conditions import tool_of
 
@@ -47,6 +47,15 @@ def tree_of(vertex):
     """Triangles (n, 3, 3) as a tree."""
     order, box, depth = tree.build(np.ascontiguousarray(vertex))
     return Tree(np.ascontiguousarray(vertex[order]), box, depth)
+
+
+def mapped(rows, contacts, ranges, tool, built, most=8):
+    """Posture maps of contacts `rows` to 0.1 deg, `most` intervals a rotation: (intervals, how many, undecided)."""
+    shape = len(rows), len(ranges.rotation_cos)
+    part, count, unsure = np.zeros((*shape, most, 2)), np.zeros(shape, np.int32), np.zeros(shape)
+    wide = lanes.WideTree(*lanes.wide_tree(built))
+    free_map.free_map(rows, contacts, ranges, tool, np.radians(0.1), built, wide, most, part, count, unsure)
+    return part, count, unsure
 
 
 def ranges(rotations, limit_cos=-2.0, tilt=(0.0, np.pi / 2)):

@@ -111,8 +111,7 @@ class Assembly(Record):
 
     def noses(self, taper: float, shape: str) -> tuple[NDArray[np.int64], Floats]:
         """Of each mode the pieces, a mask, that lie in what its nose sweeps when it goes on along the axis, and the angle by
-        which it
-        widens, rad: what curvature alone holds against the surface near the contact (`docs/between_samples.md`).
+        which it widens, rad: what curvature alone holds against the surface near the contact (`docs/between_samples.md`).
         """
         masks = np.zeros(len(self.mode), np.int64)
         for i, (offset, *_) in enumerate(self.mode.tolist()):
@@ -157,7 +156,7 @@ def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "cover"
     flutes, rest = flutes - (cutter.allowance or 0.0), rest - (cutter.clearance or 0.0)
     bands = [Band(PARTS[part], low, stage, rest) for part, low, stage in stages(cutter)]
     top = flute_length(cutter)
-    rows, slack = [], 0.0
+    rows = []
     if kind == "certain" or not bands:
         # Grown ones end with square edges, which may hold too much, or below all edges.
         rows += flute_rows(cutter, flutes, top + flutes if kind == "certain" and flutes < 0.0 else top - flutes, kind)
@@ -184,7 +183,6 @@ def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "cover"
                 end, after = band.high - band.inset, math.inf
             rows += among(band, start, end, exact=(cutter.clearance or 0.0) > 0.0)
             start = after
-    slack = _slack(cutter, flutes, bands, kind)
     table = np.array([row for row in rows if solid(row)], float).reshape(-1, COLUMNS)
     found = modes(cutter)
     touching = np.array([_mode(mode, cutter.allowance or 0.0) for mode in found])
@@ -195,7 +193,12 @@ def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "cover"
         placed[i][arcs, SLOPE] -= mode.height
     inner, highest = _inner(cutter, bands)
     return Assembly(
-        placed, touching, 2.0 * cutter.radius, inner, min(highest, float(table[:, TOP].max(initial=0.0))), slack
+        placed,
+        touching,
+        2.0 * cutter.radius,
+        inner,
+        min(highest, float(table[:, TOP].max(initial=0.0))),
+        _slack(cutter, flutes, bands, kind),
     )
 
 

@@ -64,9 +64,9 @@ def local_gouge(kappa_max, kappa_min, cosine, sine, offset, radius):  # type: ig
     """Tilts without local gouging at a rotation, from and to, rad; nan if there are none.
 
     A tool that touches with a centre of curvature `offset` from its axis and a radius of curvature there, mm, curves by 1 /
-    radius
-    along the lean and by sin(tilt) / (offset + radius sin(tilt)) across it; the surface may nowhere curve more. With a negative
-    offset, a barrel, that is an upper bound of the tilt; the tilts beyond 90 deg that it would leave again are not given.
+    radius along the lean and by sin(tilt) / (offset + radius sin(tilt)) across it; the surface may nowhere curve more. With a
+    negative offset, a barrel, that is an upper bound of the tilt; the tilts beyond 90 deg that it would leave again are not
+    given.
     """
     across = kappa_max * sine * sine + kappa_min * cosine * cosine
     if radius > 0.0:

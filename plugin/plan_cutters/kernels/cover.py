@@ -60,10 +60,9 @@ class Sweeping(NamedTuple):
     """A tool as this asks for it.
 
     tool : Tool, without what does not matter; dummy (k, COLUMNS), as `search.dummy_clear` takes it; nose (m,) int64: of each
-    mode a
-    mask of the pieces that lie in what its nose sweeps when it goes on along the axis, widening by `lean` (m,), rad; flutes,
-    a mask
-    of the pieces that cut; safe, chord: the depth up to which a triangle does not matter, and the chord error, mm.
+    mode a mask of the pieces that lie in what its nose sweeps when it goes on along the axis, widening by `lean` (m,), rad;
+    flutes, a mask of the pieces that cut; safe, chord: the depth up to which a triangle does not matter, and the chord error,
+    mm.
     """
 
     tool: Any
@@ -77,8 +76,7 @@ class Sweeping(NamedTuple):
 
 class _Room(NamedTuple):
     """Where a contact is worked out: directions along and across the lean, bodies and their pieces, bounds of curvature, what
-    counts
-    as near."""
+    counts as near."""
 
     f: Any
     t: Any
@@ -115,9 +113,8 @@ def _bodies(body, piece, frame, h, pose, slides, grow, room, finest):  # type: i
     """Write the bodies of a contact that wanders by no more than h: the whole, then in 2, 6 and 18 parts along the lean.
 
     Each holds those that it is cut into. `pose` is (sine, cosine) of the tilt. `slides`: what a step along the lean moves the
-    tool
-    along it and aside, what a step across it does, and what else may move it aside; `grow`: what else may move it at all. `body`
-    is that of no wandering.
+    tool along it and aside, what a step across it does, and what else may move it aside; `grow`: what else may move it at all.
+    `body` is that of no wandering.
     """
     sine, cosine = pose
     forth, back, slide, across, beside = slides
@@ -195,9 +192,8 @@ def _first(hint, nose, whole, frame, face, tree, triangle_face, room):  # type: 
 def _motion(row, patches, nodes, frame, sine, h, turn, offset, rise):  # type: ignore[no-untyped-def]
     """How a contact's cutter moves and turns about its axis as the contact wanders.
 
-    Returns the surface's curvature along the lean, across it and mixed; the turn within the patch about the axis, in all
-    (psi) and
-    beside what follows from the curvature at the contact; what the normal may differ beside that.
+    Returns the surface's curvature along the lean, across it and mixed; the turn within the patch about the axis, in all (psi)
+    and beside what follows from the curvature at the contact; what the normal may differ beside that.
     """
     k_ff, k_tt, k_ft, home = 0.0, 0.0, 0.0, patches.home[row]
     for k in range(3):

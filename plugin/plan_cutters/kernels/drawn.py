@@ -6,9 +6,9 @@ whose faces are polygons.
 
 import numpy as np
 
-from plan_cutters.kernels.hit import HALF, OFFSET
+from plan_cutters.kernels.hit import HALF, into_frame
 from plan_cutters.kernels.jit import kernel
-from plan_cutters.kernels.pieces import BOTTOM, CYLINDER, HIGH, KIND, LOW, RADIUS, TOP, WIDE, cut, polygon_hit
+from plan_cutters.kernels.pieces import BOTTOM, CYLINDER, HIGH, KIND, LOW, RADIUS, TOP, WIDE, clipped, polygon_hit
 
 
 @kernel
@@ -49,21 +49,6 @@ def _shadow_distance(polygon, count, half):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _clipped(corner, count, low, high, polygon, spare):  # type: ignore[no-untyped-def]
-    """Cut a polygon off at two heights: (in `polygon` 1 or in `spare` 2 or unchanged 0, its corners)."""
-    least, most = np.inf, -np.inf
-    for c in range(count):
-        least, most = min(least, corner[c, 0]), max(most, corner[c, 0])
-    where = 0
-    if least < low:
-        count, where = cut(corner, count, polygon, low, 1.0), 1
-    if most > high:
-        count = cut(corner if where == 0 else polygon, count, spare, high, -1.0)
-        where = 2
-    return where, count
-
-
-@kernel
 def drawn_hit(vertex, i, body, piece, mask, room):  # type: ignore[no-untyped-def]
     """Those of the pieces of a mask, drawn out as the body says, into which triangle i reaches.
 
@@ -76,36 +61,27 @@ def drawn_hit(vertex, i, body, piece, mask, room):  # type: ignore[no-untyped-de
     room : Scratch
     """
     corner, half = room.corner, body[HALF]
-    least, most, total = np.inf, -np.inf, half
-    for c in range(3):
-        dx = vertex[i, c, 0] - body[0]
-        dy = vertex[i, c, 1] - body[1]
-        dz = vertex[i, c, 2] - body[2]
-        height = dx * body[3] + dy * body[4] + dz * body[5]
-        corner[c, 0] = height
-        corner[c, 1] = dx * body[6] + dy * body[7] + dz * body[8] + body[OFFSET]
-        corner[c, 2] = dx * body[9] + dy * body[10] + dz * body[11]
-        least, most = min(least, height), max(most, height)
-        total += height + corner[c, 1] + corner[c, 2]
+    _, least, most, total = into_frame(vertex, i, body, 0.0, corner)
     # What is no number is in the way.
+    total += half
     if total - total != 0.0:
         return mask
     hit = 0
     for k in range(len(piece)):
         if not (mask >> k) & 1 or most <= piece[k, BOTTOM] or least >= piece[k, TOP]:
             continue
-        if _drawn(corner, half, piece, k, room):
+        if _drawn(corner, least, most, half, piece, k, room):
             hit |= 1 << k
     return hit
 
 
 @kernel
-def _drawn(corner, half, piece, k, room):  # type: ignore[no-untyped-def]
+def _drawn(corner, least, most, half, piece, k, room):  # type: ignore[no-untyped-def]
     """Whether a triangle of rows (height, x, y) reaches into a piece that is drawn out."""
     # What holds the piece: as wide as it ever is.
-    where, count = _clipped(corner, 3, piece[k, BOTTOM], piece[k, TOP], room.polygon, room.spare)
+    where, count = clipped(corner, 3, least, most, piece[k, BOTTOM], piece[k, TOP], room.polygon, room.spare)
     source = corner if where == 0 else room.polygon if where == 1 else room.spare
-    wide = max(piece[k, RADIUS], piece[k, WIDE]) if piece[k, KIND] == CYLINDER else _widest(piece, k)
+    wide = max(0.0, max(piece[k, RADIUS], piece[k, WIDE]))
     if count == 0 or _shadow_distance(source, count, half) >= wide * wide:
         return False
     if piece[k, KIND] == CYLINDER:
@@ -121,18 +97,12 @@ def _drawn(corner, half, piece, k, room):  # type: ignore[no-untyped-def]
             for j in range(3):
                 room.drawn[c, j] = corner[at, j]
             room.drawn[c, 2] += away
-        where, count = _clipped(room.drawn, count, piece[k, LOW], piece[k, HIGH], room.polygon, room.spare)
+        where, count = clipped(room.drawn, count, least, most, piece[k, LOW], piece[k, HIGH], room.polygon, room.spare)
         source = room.drawn if where == 0 else room.polygon if where == 1 else room.spare
         if count > 0 and polygon_hit(source, count, piece, k, 0.0)[0]:
             return True
     middle = 0.5 * (piece[k, BOTTOM] + piece[k, TOP])
     return _through(corner, half, middle)
-
-
-@kernel
-def _widest(piece, k):  # type: ignore[no-untyped-def]
-    """Largest radius of a cone or an arc."""
-    return max(max(piece[k, RADIUS], piece[k, WIDE]), 0.0)
 
 
 @kernel

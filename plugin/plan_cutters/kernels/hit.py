@@ -28,7 +28,7 @@ from plan_cutters.kernels.pieces import (
     SCALE,
     SLOPE,
     TOP,
-    cut,
+    clipped,
     inset,
     polygon_hit,
     support,
@@ -190,6 +190,28 @@ def _beyond(box, i, body, piece, k, grow, height, across, aside, square):  # typ
 
 
 @kernel
+def into_frame(vertex, i, body, rate, corner):  # type: ignore[no-untyped-def]
+    """Write triangle i as rows (height, x, y) in the tool's frame, from its axis; (how much `rate` widens it at most, least and
+    most height, a sum that is no number if any of it is none).
+    """
+    widening, least, most, total = 0.0, np.inf, -np.inf, 0.0
+    for c in range(3):
+        dx = vertex[i, c, 0] - body[0]
+        dy = vertex[i, c, 1] - body[1]
+        dz = vertex[i, c, 2] - body[2]
+        height = dx * body[3] + dy * body[4] + dz * body[5]
+        across = dx * body[6] + dy * body[7] + dz * body[8]
+        corner[c, 0] = height
+        corner[c, 1] = across + body[OFFSET]
+        corner[c, 2] = dx * body[9] + dy * body[10] + dz * body[11]
+        if rate > 0.0:
+            widening = max(widening, rate * np.sqrt(height * height + across * across))
+        least, most = min(least, height), max(most, height)
+        total += height + corner[c, 1] + corner[c, 2]
+    return widening, least, most, total
+
+
+@kernel
 def triangle_hit(vertex, i, body, piece, mask, rate, scratch):  # type: ignore[no-untyped-def]
     """Whether triangle i reaches into a piece of a mask, and a point of it that does. A number that is none counts as a hit.
 
@@ -211,20 +233,7 @@ def triangle_hit(vertex, i, body, piece, mask, rate, scratch):  # type: ignore[n
         With `rate` 0, a point of the triangle in the piece, in the tool's frame from its axis.
     """
     corner = scratch.corner
-    widening, least, most, total = 0.0, np.inf, -np.inf, 0.0
-    for c in range(3):
-        dx = vertex[i, c, 0] - body[0]
-        dy = vertex[i, c, 1] - body[1]
-        dz = vertex[i, c, 2] - body[2]
-        height = dx * body[3] + dy * body[4] + dz * body[5]
-        across = dx * body[6] + dy * body[7] + dz * body[8]
-        corner[c, 0] = height
-        corner[c, 1] = across + body[OFFSET]
-        corner[c, 2] = dx * body[9] + dy * body[10] + dz * body[11]
-        if rate > 0.0:
-            widening = max(widening, rate * np.sqrt(height * height + across * across))
-        least, most = min(least, height), max(most, height)
-        total += height + corner[c, 1] + corner[c, 2]
+    widening, least, most, total = into_frame(vertex, i, body, rate, corner)
     # What is no number is in the way: comparisons below would let it pass.
     total += widening
     if total - total != 0.0:
@@ -234,15 +243,10 @@ def triangle_hit(vertex, i, body, piece, mask, rate, scratch):  # type: ignore[n
         if not (mask >> k) & 1 or most <= piece[k, BOTTOM] - grow or least >= piece[k, TOP] + grow:
             continue
         low, high = piece[k, LOW] - grow, piece[k, HIGH] + grow
-        source, count = corner, 3
-        if least < low:
-            count = cut(source, count, scratch.polygon, low, 1.0)
-            source = scratch.polygon
-        if most > high:
-            count = cut(source, count, scratch.spare, high, -1.0)
-            source = scratch.spare
+        where, count = clipped(corner, 3, least, most, low, high, scratch.polygon, scratch.spare)
         if count == 0:
             continue
+        source = corner if where == 0 else scratch.polygon if where == 1 else scratch.spare
         hit, height, px, py = polygon_hit(source, count, piece, k, grow)
         if hit:
             return k, height, px, py

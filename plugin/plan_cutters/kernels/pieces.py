@@ -78,6 +78,19 @@ def cut(source, count, target, level, keep):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def clipped(corner, count, least, most, low, high, polygon, spare):  # type: ignore[no-untyped-def]
+    """Cut a polygon, whose heights lie between `least` and `most`, off at two heights: (where the rest is: 0 unchanged, 1 in
+    `polygon`, 2 in `spare`; its corners).
+    """
+    where = 0
+    if least < low:
+        count, where = cut(corner, count, polygon, low, 1.0), 1
+    if most > high:
+        count, where = cut(corner if where == 0 else polygon, count, spare, high, -1.0), 2
+    return where, count
+
+
+@kernel
 def nearest(polygon, count):  # type: ignore[no-untyped-def]
     """Point of a convex polygon whose shadow is nearest to the axis: (height, x, y, squared distance)."""
     area = 0.0

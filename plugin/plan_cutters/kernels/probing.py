@@ -120,8 +120,7 @@ def turned(frame, tilt, tool, mode, tree, body, scratch):  # type: ignore[no-unt
 
 class Room(NamedTuple):
     """Room to work in: intervals (k, 2), arcs (ARCS, 2), lean direction f and t = n x f, e2 = n x direction_max, a body, a
-    tally by
-    attribute."""
+    tally by attribute."""
 
     intervals: Any
     arcs: Any

@@ -13,10 +13,9 @@ _MOST_LINES = 40
 
 
 class Nose(NamedTuple):
-    """What of a cutter is held against the surface around its contact: the centre of its curvature `offset` from the axis,
-    its radius
-    of curvature there, mm; cosine and sine of the angle by which it widens along the axis, on which it goes on without end; the
-    tilts from and to at which it touches, rad. With a negative offset, a barrel, it is a ball alone.
+    """What of a cutter is held against the surface around its contact: the centre of its curvature `offset` from the axis, its
+    radius of curvature there, mm; cosine and sine of the angle by which it widens along the axis, on which it goes on without
+    end; the tilts from and to at which it touches, rad. With a negative offset, a barrel, it is a ball alone.
     """
 
     offset: float
@@ -70,9 +69,8 @@ def near_by(vertex, triangle_face, i, frame, face, near):  # type: ignore[no-unt
 def held_below(pose, turn, k_ff, k_ft, k_tt, extent, nose):  # type: ignore[no-untyped-def]
     """Whether the paraboloid with these curvatures stays below the nose of a cutter within `extent` of the contact.
 
-    At every tilt within `turn` of that of `pose`, its sine and cosine. The surface offset by the nose's radius stays below
-    the same
-    nose of no radius (`docs/between_samples.md`).
+    At every tilt within `turn` of that of `pose`, its sine and cosine. The surface offset by the nose's radius stays below the
+    same nose of no radius (`docs/between_samples.md`).
     """
     sine, cosine = pose
     offset, radius, widen_cos, widen_sin = max(0.0, nose.offset), nose.radius, nose.widen_cos, nose.widen_sin

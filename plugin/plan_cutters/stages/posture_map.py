@@ -44,9 +44,8 @@ class PostureMap(Record):
     local_gouge_most : (k,) float
         Largest tilt that it allows: pi but for barrels.
     rear_gouge, collision, neck, shank, holder, axis_limit : tuple of (m, 2) float
-        Each attribute alone: forbidden intervals. Obstacles in the flutes within 2R of the contact and above its tangent
-        plane are
-        rear gouging, all others in the flutes collision.
+        Each attribute alone: forbidden intervals. Obstacles in the flutes within 2R of the contact and above its tangent plane
+        are rear gouging, all others in the flutes collision.
     no_contact : tuple of (m, 2) float
         Tilts at which the cutter touches nowhere.
     point, normal, direction_max : (3,) float

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Record, SurfaceSamples
+from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.posture import lean
 from plan_cutters.scene.conditions import Conditions, contacts_of, require_finite, tool_of
@@ -54,7 +55,8 @@ def posture_maps(
     from plan_cutters.kernels.free_map import free_map
 
     rotations, ranges, obstacles = conditions.postures.rotations, conditions.ranges, conditions.obstacles
-    tree, wide, tool = obstacles.tree, obstacles.wide_tree, tool_of(conditions.light(cutter))
+    tree, wide, light = obstacles.tree, obstacles.wide_tree, conditions.light(cutter)
+    tool = tool_of(light)
     contacts = contacts_of(samples)
     n, k = len(samples), len(rotations)
     count = np.zeros((n, k), np.int32)
@@ -68,7 +70,7 @@ def posture_maps(
         free_map(rows, contacts, ranges, tool, NARROWEST, tree, wide, _ROOM, part, mine, unsure)
         count[rows], undecided[rows] = mine, unsure
         if conditions.obstacles.solids.cell.size:
-            _leave_bodies(samples, rows, cutter, conditions, part, mine)
+            _leave_bodies(samples, rows, light, conditions, part, mine)
             count[rows] = mine
         free[int(rows[0])] = part[np.arange(_ROOM) < mine[..., None]]
 
@@ -81,7 +83,7 @@ def posture_maps(
 
 
 def _leave_bodies(
-    samples: SurfaceSamples, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, part: Floats,
+    samples: SurfaceSamples, rows: NDArray[np.int64], light: Assembly, conditions: Conditions, part: Floats,
     count: NDArray[np.int32],
 ) -> None:  # fmt: skip
     """Take out intervals (m, k, room, 2) in which the cutter lies within a body.
@@ -93,7 +95,7 @@ def _leave_bodies(
     row, turn = rows[at[:, 0]], rotations[at[:, 1]]
     tilt = part[at[:, 0], at[:, 1], at[:, 2]].mean(axis=1)
     inside = conditions.obstacles.holds(
-        conditions.light(cutter),
+        light,
         samples.point[row],
         samples.normal[row],
         lean(samples.normal[row], samples.direction_max[row], turn),
