@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cad_io import Part, read_part
 from cad_io.read.read import TIMEOUT
@@ -32,11 +31,11 @@ from plan_cutters.scene.faces import choose
 from plan_cutters.scene.prepared import Prepared
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.spacing import Spacing, default_spacing
-from plan_cutters.scene.threads import with_company
-from plan_cutters.stages.access import access, witnesses
+from plan_cutters.stages.access import witnesses
 from plan_cutters.stages.between import between
 from plan_cutters.stages.classify import classify, regions
-from plan_cutters.stages.decompose import decompose, march_differs
+from plan_cutters.stages.decompose import march_differs
+from plan_cutters.stages.judge import judge
 from plan_cutters.stages.posture_maps import posture_maps
 from plan_cutters.stages.select_cutters import ranked
 
@@ -168,40 +167,6 @@ def _read(part: Any, options: Options, timeout: float) -> Part | Scene:
     if isinstance(part, Part | Scene):
         return part
     return read_part(part, unit=options.unit, timeout=timeout)
-
-
-def judge(
-    ready: Prepared,
-    cutter: Cutter,
-    rows: NDArray[np.int64] | None = None,
-    known: Reach | None = None,
-    *,
-    progress: Callable[[int, int], None] | None = None,
-) -> Reach:
-    """What a cutter reaches of some samples, or of all; nothing else is looked at or changed.
-
-    Parameters
-    ----------
-    ready : Prepared
-    cutter : Cutter
-    rows : (m,) int64, optional
-        Samples, ascending. However they are cut, each gets the same answer, bit for bit: what is found for its neighbours
-        is found again.
-    known : Reach, optional
-        What follows from other cutters (`nesting.handed`), for all samples.
-    progress : callable, optional
-        Told how many pieces of the work are done, of how many.
-
-    Returns
-    -------
-    Reach
-        Of the m samples.
-    """
-    samples, conditions = ready.samples, ready.conditions
-    whole = None if rows is None else with_company(rows, len(samples))
-    free = decompose(samples, ready.surface_class == CONVEX, cutter, conditions, buried=ready.buried, rows=whole)
-    reach = access(samples, free, cutter, conditions, buried=ready.buried, known=known, rows=whole, progress=progress)
-    return reach if rows is None else reach.of(rows)
 
 
 @dataclass(frozen=True, slots=True)

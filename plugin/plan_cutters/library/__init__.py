@@ -1,0 +1,1 @@
+"""Tool libraries: what other programs and people write about tools, read into cutters."""

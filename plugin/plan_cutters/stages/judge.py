@@ -1,0 +1,47 @@
+"""One cutter on samples of a part that is ready: the seed's two phases, one after the other."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.verdicts import CONVEX, Reach
+from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.threads import with_company
+from plan_cutters.stages.access import access
+from plan_cutters.stages.decompose import decompose
+
+
+def judge(
+    ready: Prepared,
+    cutter: Cutter,
+    rows: NDArray[np.int64] | None = None,
+    known: Reach | None = None,
+    *,
+    progress: Callable[[int, int], None] | None = None,
+) -> Reach:
+    """What a cutter reaches of some samples, or of all; nothing else is looked at or changed.
+
+    Parameters
+    ----------
+    ready : Prepared
+    cutter : Cutter
+    rows : (m,) int64, optional
+        Samples, ascending. However they are cut, each gets the same answer, bit for bit: what is found for its neighbours
+        is found again.
+    known : Reach, optional
+        What follows from other cutters (`nesting.handed`), for all samples.
+    progress : callable, optional
+        Told how many pieces of the work are done, of how many.
+
+    Returns
+    -------
+    Reach
+        Of the m samples.
+    """
+    samples, conditions = ready.samples, ready.conditions
+    whole = None if rows is None else with_company(rows, len(samples))
+    free = decompose(samples, ready.surface_class == CONVEX, cutter, conditions, buried=ready.buried, rows=whole)
+    reach = access(samples, free, cutter, conditions, buried=ready.buried, known=known, rows=whole, progress=progress)
+    return reach if rows is None else reach.of(rows)
