@@ -63,7 +63,7 @@ def stand(body, frame, tilt_cos, tilt_sin, offset, rise):  # type: ignore[no-unt
 
 
 @kernel
-def _half_width(box, i, x, y, z):  # type: ignore[no-untyped-def]
+def half_width(box, i, x, y, z):  # type: ignore[no-untyped-def]
     """Half the extent of box i along a unit direction."""
     return (
         box[i, 12] * abs(x * box[i, 3] + y * box[i, 4] + z * box[i, 5])
@@ -132,7 +132,7 @@ def alive(box, i, body, piece, mask, rate):  # type: ignore[no-untyped-def]
             continue
         if height < low or height > high:
             if extent < 0.0:
-                extent = _half_width(box, i, body[3], body[4], body[5])
+                extent = half_width(box, i, body[3], body[4], body[5])
             if height + extent < low or height - extent > high:
                 mask ^= gone
                 continue
@@ -144,7 +144,7 @@ def alive(box, i, body, piece, mask, rate):  # type: ignore[no-untyped-def]
                     continue
                 distance = np.sqrt(square)
                 ux, uy = across / distance, aside / distance
-                wide = _half_width(
+                wide = half_width(
                     box, i, ux * body[6] + uy * body[9], ux * body[7] + uy * body[10], ux * body[8] + uy * body[11]
                 )  # fmt: skip
                 if distance - wide > radius:
@@ -182,7 +182,7 @@ def _beyond(box, i, body, piece, k, grow, height, across, aside, square):  # typ
     elif out > 0.0:
         # On the axis a cone has no tangent but its own height's.
         return False
-    wide = _half_width(
+    wide = half_width(
         box, i, up * body[3] + ux * body[6] + uy * body[9], up * body[4] + ux * body[7] + uy * body[10],
         up * body[5] + ux * body[8] + uy * body[11],
     )  # fmt: skip

@@ -125,6 +125,31 @@ def search(rows, contacts, ranges, light, heavy, may_be, surely, found):  # type
 
 
 @entry
+def until_lost(rows, at, contacts, ranges, tool, solids, patient, found):  # type: ignore[no-untyped-def]
+    """Look for postures of the samples `rows` from the `at`-th on, at which a tool is in nothing's way; where it ended.
+
+    Unless it is `patient`, behind the first sample that has none; such samples are written as UNDECIDED, for nothing was asked
+    about why. Intervals that `search` takes for none are passed over, so that it finds a posture where this does. The other
+    parameters are those of `posture`.
+    """
+    rotations, room = len(ranges.rotation_cos), room_to_search()
+    past, last = memory(rotations, len(tool.mode)), (0, -1.0)
+    while at < len(rows):
+        row = rows[at]
+        at += 1
+        rotation, tilt = sweep(contacts, row, ranges, tool, solids, MAYBE_INSIDE, _NO_GAP, last, rotations, past, room)
+        if rotation >= 0:
+            last = rotation, tilt
+            found.verdict[row] = ACCESSIBLE
+            _write(found, row, contacts, ranges, rotation, tilt)
+        else:
+            found.verdict[row] = UNDECIDED
+            if not patient:
+                return at
+    return at
+
+
+@entry
 def posture(contacts, ranges, tool, narrowest, start, turns, solids, found):  # type: ignore[no-untyped-def]
     """Look for a posture of the first contact at which a tool is in nothing's way; whether there is one.
 

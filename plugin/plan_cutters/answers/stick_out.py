@@ -1,0 +1,219 @@
+"""Least stick-out: how short a cutter can be held and still reach what it reaches.
+
+A stick-out is tried by the search that judges every cutter. Where a sample is lost, the postures that it has with a longer one
+say exactly how far each lets the holder come down, so that few searches find the least. The result is judged as a plan judges.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.stick_out import StickOut, floor_of, held, outline
+from plan_cutters.domain.verdicts import ACCESSIBLE, Reach, blank
+from plan_cutters.kernels.rows import Contacts, Tool
+from plan_cutters.scene.conditions import contacts_of, found_of, tool_of
+from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.threads import CHUNK, in_chunks
+from plan_cutters.stages.judge import judge
+
+#: Stick-outs are found to this, mm; and one this much below the least is too short.
+EXACT, BEYOND = 0.005, 0.01
+#: Samples all over the part that are looked at first, so that the others meet a stick-out that is nearly enough.
+_FIRST = 400
+#: Intervals of tilt narrower than this are passed over, rad: where they are left, the search that judges finds a posture.
+_NARROWEST = 1.7e-4
+
+Progress = Callable[[int, int], None]
+
+
+def least_stick_out(
+    ready: Prepared, cutter: Cutter, reach: Reach, *, step: float | None = None, progress: Progress | None = None
+) -> StickOut:
+    """The least stick-out with which a cutter in its holder reaches every sample that it reaches now.
+
+    Parameters
+    ----------
+    ready : Prepared
+    cutter : Cutter
+    reach : Reach
+        What `judge` found for it.
+    step : float, optional
+        Find the least stick-out of every sample, too, to this, mm.
+    progress : callable, optional
+        Told how many samples are done, of how many.
+
+    Returns
+    -------
+    StickOut
+        `least` is exact to `EXACT` for the rotations of the plan's posture range.
+    """
+    rows = np.flatnonzero(reach.reached)
+    longest = cutter.length
+    if cutter.holder is None or not len(rows):
+        why = "reaches nothing" if cutter.holder else "no holder"
+        return StickOut(np.nan, np.nan, longest, why)
+    search = _Search(ready, cutter, reach, progress or (lambda done, total: None))
+    least, limiting = search.all(rows)
+    while len(lost := rows[~judge(ready, held(cutter, least), rows).reached]) and least < longest:
+        # A holder that is not convex, or an interval of tilts as fine as the search: what is lost there needs more.
+        longer, row = max((search.one(row, least)[0], row) for row in lost.tolist())
+        least, limiting = min(longest, max(longer, least + EXACT)), row
+    each = None if step is None else search.each(rows, step)
+    found = StickOut(least, search.floor, longest, "floor" if limiting < 0 else "obstacle", served=len(rows), each=each,
+                     step=step or np.nan)  # fmt: skip
+    return found if limiting < 0 else _limited(ready, cutter, search, found, limiting)
+
+
+def _limited(ready: Prepared, cutter: Cutter, search: "_Search", found: StickOut, row: int) -> StickOut:
+    """With the posture and the obstacle of the sample that limits it, and what a shorter one finds there."""
+    beyond = max(search.floor, found.least - BEYOND)
+    shorter = judge(ready, held(cutter, beyond), np.array([row]))
+    posture, one = search.found, slice(row, row + 1)
+    triangle = int(search.needed(np.array([row]), posture)[1][row])
+    obstacles = ready.conditions.obstacles
+    axis, normal = posture.axis[row], ready.samples.normal[row]
+    face, point = None, None
+    if triangle >= 0:
+        light = ready.conditions.light(held(cutter, beyond))
+        share = np.array([(i, j, 20 - i - j) for i in range(21) for j in range(21 - i)]) / 20
+        points = share @ obstacles.tree.vertex[triangle]
+        depth = light.depth(points, ready.samples.point[row], normal, posture.lean[row], float(posture.tilt[row]))
+        face, point = obstacles.face(triangle), np.asarray(points[int(depth.argmax())])
+    turn = float(ready.conditions.postures.rotations[posture.rotation[one][0]])
+    return replace(found, beyond=beyond, verdict=int(shorter.verdict[0]), sample=row, tilt=float(posture.tilt[row]),
+                   rotation=turn, axis=axis, lean=posture.lean[row], obstacle_face=face, obstacle_point=point)  # fmt: skip
+
+
+class _Search:
+    """Searches of one cutter at any stick-out; `found` holds the shortest posture known of each sample."""
+
+    def __init__(self, ready: Prepared, cutter: Cutter, reach: Reach, progress: Progress) -> None:
+        conditions = ready.conditions
+        self.ready, self.cutter, self.conditions, self.progress = ready, cutter, conditions, progress
+        self.contacts: Contacts = contacts_of(ready.samples)
+        self.floor = min(cutter.length, floor_of(cutter, conditions.tolerance))
+        self.outline = outline(conditions.light(cutter), cutter.length)
+        self.whole = tool_of(conditions.light(cutter))
+        self.found = blank(len(ready.samples))
+        for name in Reach.__slots__:
+            getattr(self.found, name)[:] = getattr(reach, name)
+
+    def tool(self, stick_out: float) -> Tool:
+        return tool_of(self.conditions.light(held(self.cutter, stick_out)))
+
+    def needed(self, rows: NDArray[np.int64], posture: Reach) -> tuple[Floats, NDArray[np.int32]]:
+        """The stick-outs (n,) that known postures of some samples ask for, and the triangles that are in the way."""
+        from plan_cutters.kernels.stick_out import least_stick_outs
+
+        stick_out = np.full(len(posture.tilt), np.nan)
+        triangle = np.full(len(posture.tilt), -1, np.int32)
+        samples, tree = self.ready.samples, self.conditions.obstacles.tree
+        in_chunks(
+            lambda piece: least_stick_outs(piece, samples.point, samples.normal, posture.lean, posture.tilt, self.whole,
+                                           self.outline, self.floor, tree, stick_out, triangle),
+            rows, self.conditions.jobs,
+        )  # fmt: skip
+        return np.minimum(stick_out, self.cutter.length), triangle
+
+    def all(self, rows: NDArray[np.int64]) -> tuple[float, int]:
+        """The least stick-out that serves all of some samples, and the one that limits it, -1 for the floor."""
+        least, limiting, done = self.floor, -1, 0
+        few = rows[np.unique(np.linspace(0, len(rows) - 1, min(_FIRST, len(rows))).astype(int))]
+        for company in (few, rows):
+            pieces = [company[i : i + CHUNK] for i in range(0, len(company), CHUNK)]
+            at = np.zeros(len(pieces), np.int64)
+            while len(left := np.flatnonzero(at < [len(piece) for piece in pieces])):
+                lost = self._round(pieces, at, left, least)
+                for row in lost:
+                    # What an earlier one of this round asked for may be enough.
+                    longer, found = self.one(row, least)
+                    if found >= 0:
+                        least, limiting = longer, found
+                done = int(at.sum())
+                self.progress(min(done, len(rows) - 1), len(rows))
+        return least, limiting
+
+    def _round(
+        self, pieces: list[NDArray[np.int64]], at: NDArray[np.int64], left: NDArray[np.int64], stick_out: float
+    ) -> list[int]:
+        """Search each piece that is left up to the first sample that is lost; move `at` on, and return those samples."""
+        from plan_cutters.kernels.search import until_lost
+
+        tool, ranges, solids = self.tool(stick_out), self.conditions.ranges, self.conditions.obstacles.solids
+        found = blank(len(self.ready.samples))
+        lost: dict[int, int] = {}
+
+        def work(which: NDArray[np.int64]) -> None:
+            for k in which.tolist():
+                piece = pieces[k]
+                at[k] = until_lost(piece, int(at[k]), self.contacts, ranges, tool, solids, False, found_of(found))
+                row = int(piece[at[k] - 1])
+                if found.verdict[row] != ACCESSIBLE:
+                    lost[k] = row
+
+        in_chunks(work, left, self.conditions.jobs, chunk=1)
+        return [lost[k] for k in sorted(lost)]
+
+    def one(self, row: int, lost: float) -> tuple[float, int]:
+        """The least stick-out of one sample, and the sample; the one given and -1 where that is enough.
+
+        Halving between one at which it is lost and one at which it has a posture, which then comes down as far as it lets.
+        """
+        if self._posture(row, lost):
+            return lost, -1
+        rows = np.array([row])
+        best = min(self.cutter.length, float(self.needed(rows, self.found)[0][row]))
+        while best - lost > EXACT:
+            middle = 0.5 * (best + lost)
+            if self._posture(row, middle):
+                best = min(middle, float(self.needed(rows, self.found)[0][row]))
+            else:
+                lost = middle
+        return max(best, lost), row
+
+    def _posture(self, row: int, stick_out: float) -> bool:
+        """Whether a sample has a posture with a stick-out; it is kept."""
+        from plan_cutters.kernels.search import posture
+
+        one, samples, ranges = slice(row, row + 1), self.ready.samples, self.conditions.ranges
+        contact = Contacts(samples.point[one], samples.normal[one], samples.direction_max[one], samples.curvature[one])
+        best, start = blank(1), (max(0, int(self.found.rotation[row])), float(self.found.tilt[row]))
+        turns, solids = len(ranges.rotation_cos), self.conditions.obstacles.solids
+        if not posture(contact, ranges, self.tool(stick_out), _NARROWEST, start, turns, solids, found_of(best)):
+            return False
+        for name in ("axis", "lean", "tilt", "rotation"):
+            getattr(self.found, name)[row] = getattr(best, name)[0]
+        return True
+
+    def each(self, rows: NDArray[np.int64], step: float) -> Floats:
+        """The least stick-out (n,) of each of some samples to a step, nan for the others."""
+        from plan_cutters.kernels.search import until_lost
+
+        ranges, solids = self.conditions.ranges, self.conditions.obstacles.solids
+        best = np.full(len(self.ready.samples), np.nan)
+        best[rows] = self.needed(rows, self.found)[0][rows]
+        low, high = np.full(len(best), -1), np.zeros(len(best), np.int64)
+        high[rows] = np.ceil((best[rows] - self.floor) / step - 1e-9)
+        while len(left := rows[high[rows] - low[rows] > 1]):
+            # The floor first: most samples are free with it.
+            middle = np.where(low[left] < 0, 0, (low[left] + high[left]) // 2)
+            for level in np.unique(middle).tolist():
+                some, found = left[middle == level], blank(len(best))
+                tool = self.tool(min(self.cutter.length, self.floor + level * step))
+                in_chunks(
+                    lambda piece, tool=tool, found=found: until_lost(
+                        piece, 0, self.contacts, ranges, tool, solids, True, found_of(found)
+                    ),
+                    some, self.conditions.jobs,
+                )  # fmt: skip
+                reached = some[found.verdict[some] == ACCESSIBLE]
+                needed = self.needed(reached, found)[0][reached]
+                best[reached] = np.minimum(np.minimum(best[reached], self.floor + level * step), needed)
+                high[reached] = np.minimum(level, np.ceil((best[reached] - self.floor) / step - 1e-9))
+                low[some[found.verdict[some] != ACCESSIBLE]] = level
+                self.progress(len(rows) - len(left), len(rows))
+        return best
