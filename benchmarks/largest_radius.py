@@ -26,7 +26,7 @@ def main() -> None:
     part, grid = sys.argv[1] if len(sys.argv) > 1 else str(PART), int(sys.argv[2]) if len(sys.argv) > 2 else GRID
     ready = prepare(part, Options(cutters="R6L80", grid=grid))
     print(
-        "| end | samples | s | us a sample | percentiles by number, mm | no less than most | bottleneck | beyond: lost | undecided |"
+        "| end | samples | s | us each | percentiles, mm | no less than most | bottleneck | beyond: lost | not decided |"
     )
     print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
     for shape in ("flat", "ball"):
