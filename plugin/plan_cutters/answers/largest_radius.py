@@ -1,0 +1,121 @@
+"""Which is the largest flat or ball end that reaches each sample, whatever cutters there are? `docs/largest_radius.md`."""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plan_cutters.domain.assembly import Assembly
+from plan_cutters.domain.checks import number, shown
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.radius_map import RadiusMap, Shape
+from plan_cutters.domain.verdicts import BURIED, INACCESSIBLE, UNJUDGED, blank
+from plan_cutters.errors import OptionError
+from plan_cutters.scene.conditions import contacts_of, found_of, require_finite
+from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.threads import Progress, in_chunks
+
+if TYPE_CHECKING:
+    from plan_cutters.kernels.radius import Ladder
+
+#: Smallest radius that is looked at unless one is asked for, mm.
+_LEAST = 0.1
+#: Steps and lengths over radius that can be asked for.
+_STEPS, _RATIOS = (0.001, 1.0), (0.1, 1000.0)
+#: Radii that are tried, at most.
+_MOST = 5000
+_ENDS = {"flat": Cutter.flat, "ball": Cutter.ball}
+
+
+def largest_radius(
+    ready: Prepared, shape: Shape, *, ratio: float = 10.0, step: float = 0.02, least: float | None = None,
+    most: float | None = None, progress: Progress | None = None,
+) -> RadiusMap:  # fmt: skip
+    """Find the largest radius that reaches each sample, under the conditions of a plan.
+
+    Parameters
+    ----------
+    ready : Prepared
+        Its cutters are not looked at; its stock allowance counts.
+    shape : str
+        `flat` or `ball`: end mills without neck, shank and holder.
+    ratio : float, optional
+        Their length over their radius; a ball's is no less than 1.
+    step : float, optional
+        By which share each radius that is tried is larger than the one before.
+    least, most : float, optional
+        Radii to try, from and to, mm. The least is 0.1 by default, or what the tolerance lets be judged if that is more; the
+        most is half the longest side of the part's box.
+    progress : callable, optional
+        Told how many pieces of the work are done, of how many.
+
+    Raises
+    ------
+    OptionError
+        An argument has no meaning, or the tolerance is too coarse for every radius asked for.
+    """
+    from plan_cutters.kernels.radius import largest
+
+    cutters = _cutters(ready, shape, ratio, step, least, most)
+    radii = np.array([cutter.radius for cutter in cutters])
+    samples, conditions = ready.samples, ready.conditions
+    judged, within = samples.unjudged < 0, ready.buried >= 0
+    level, beyond, reach = np.full(len(samples), -1), np.full(len(samples), UNJUDGED, np.uint8), blank(len(samples))
+    light = _ladder([conditions.light(cutter) for cutter in cutters])
+    heavy = _ladder([conditions.heavy(cutter) for cutter in cutters])
+    rows, contacts, found = np.flatnonzero(judged & ~within), contacts_of(samples), found_of(reach)
+    may_be, surely = conditions.around.may_be.solids, conditions.around.surely.solids
+    require_finite(contacts, rows)
+
+    def work(piece: NDArray[np.int64]) -> None:
+        largest(piece, contacts, conditions.ranges, light, heavy, may_be, surely, found, level, beyond)
+
+    in_chunks(work, rows, conditions.jobs, progress, fixed=True)
+    beyond[judged & within], reach.reason[judged & within] = INACCESSIBLE, BURIED
+    radius = np.where(judged, np.where(level >= 0, radii[level], 0.0), np.nan)
+    return RadiusMap(shape, float(ratio), float(step), float(radii[0]), float(radii[-1]), radius, beyond, reach.reason,
+                     reach.axis, reach.lean, reach.tilt, reach.rotation)  # fmt: skip
+
+
+def _cutters(
+    ready: Prepared, shape: Shape, ratio: float, step: float, least: float | None, most: float | None
+) -> list[Cutter]:
+    """The end mills to try, each larger than the one before, of which the tolerance lets something be said."""
+    if shape not in _ENDS:
+        raise OptionError(f"the shape of an end mill is flat or ball, not {shown(shape)}")
+    ratio, step = number(ratio, "length over radius"), number(step, "step of radii")
+    lowest = 1.0 if shape == "ball" else _RATIOS[0]
+    if not lowest <= ratio <= _RATIOS[1]:
+        raise OptionError(
+            f"length over radius {ratio:g} of a {shape} end must lie between {lowest:g} and {_RATIOS[1]:g}"
+        )
+    if not _STEPS[0] <= step <= _STEPS[1]:
+        raise OptionError(f"step of radii {step:g} must lie between {_STEPS[0]:g} and {_STEPS[1]:g}")
+    conditions, part = ready.conditions, ready.scene.part
+    finest = 4.0 * conditions.tolerance / min(1.0, ratio) * (1.0 + 1e-9)
+    first = max(_LEAST, finest) if least is None else number(least, "least radius")
+    last = max(first, 0.5 * max(part.size)) if most is None else number(most, "largest radius")
+    if not 0.0 < first <= last < math.inf:
+        raise OptionError(f"radii to try, from {first:g} to {last:g} mm, must be positive and ascend", file=part.file)
+    steps = int(math.log(last / first) / math.log1p(step) + 1e-9)
+    if steps > _MOST:
+        raise OptionError(f"{steps:,} radii from {first:g} to {last:g} mm are too many to try, at most {_MOST:,} are: "
+                          "take a larger step", file=part.file)  # fmt: skip
+    radii = [first * (1.0 + step) ** k for k in range(steps + 1)]
+    made = [_ENDS[shape](radius=r, length=ratio * r).asked(ready.options.allowance, 0.0, None) for r in radii]
+    cutters = [cutter for cutter in made if conditions.judges(cutter)]
+    if not cutters:
+        raise OptionError(f"the tolerance that is kept, {conditions.tolerance:g} mm, is too coarse for radii up to "
+                          f"{last:g} mm: take a finer one, or radii over {finest:g} mm", file=part.file)  # fmt: skip
+    return cutters
+
+
+def _ladder(made: list[Assembly]) -> "Ladder":
+    """Tools as the search takes them. They have as many pieces each: a tool with fewer has one of them twice."""
+    from plan_cutters.kernels.radius import Ladder
+
+    count = max(each.piece.shape[1] for each in made)
+    piece = [each.piece[:, [min(k, each.piece.shape[1] - 1) for k in range(count)]] for each in made]
+    heights = (np.array([getattr(each, name) for each in made]) for name in ("reach", "inner", "end"))
+    return Ladder(np.array(piece), np.array([each.mode for each in made]), *heights)
