@@ -75,11 +75,11 @@ def mend(
         found = {thing: _doubted(change) for thing, change in found.items()}
     rank = {True: 0, None: 1, False: 2}
     changes = sorted(found.values(), key=lambda change: (rank[change.helps], THINGS.index(change.thing)))
-    why = (
-        f"{samples(within)} within a body, out of reach of every cutter: nothing but leaving out faces can help"
-        if within
-        else ""
-    )
+    why = ""
+    if within:
+        why = f"{samples(within)} within a body, out of reach of every cutter: nothing but leaving out faces can help"
+    elif not any(change.helps for change in changes):
+        why = "no change of one thing is known to help"
     return Mend(cutter.id, len(trials.lost), within, tuple(changes), why)
 
 

@@ -223,6 +223,7 @@ def least(steps: Steps, most: int, trials: Trials) -> Step | None:
     for _ in range(_ROUNDS):
         if at is None or at > most:
             return None
+        at = max(at, 1)
         case = _case(steps, at)
         missed = case.judged()
         if not len(missed):
@@ -234,6 +235,7 @@ def least(steps: Steps, most: int, trials: Trials) -> Step | None:
 
 
 def _onward(steps: Steps, at: int, most: int, rows: Iterator[Rows], trials: Trials) -> int | None:
+    """The least number of steps from `at` on that serves some samples; None if `most` does not."""
     for batch in rows:
         while len(batch := _case(steps, at).misses(batch)):
             row, batch = batch[:1], batch[1:]
