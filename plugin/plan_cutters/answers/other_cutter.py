@@ -4,6 +4,8 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
+
 from plan_cutters.answers.outcome import none, short
 from plan_cutters.answers.trial import Case, Left, Trials, first, least
 from plan_cutters.domain.change import Change
@@ -32,8 +34,9 @@ def stick_out(case: Case, trials: Trials) -> Change:
             len(trials.lost),
             "no holder is stated, and a longer cutter only adds to what is in the way",
         )
-    # So far out the nose is above the part wherever the cutter touches it.
-    size = math.hypot(*case.ready.scene.part.size)
+    # So far out the nose is above all obstacles wherever the cutter touches it.
+    vertex = case.ready.conditions.obstacles.triangles.vertex
+    size = float(np.linalg.norm(vertex.max(axis=(0, 1)) - vertex.min(axis=(0, 1))))
     highest = size + 2.0 * cutter.radius + flute_length(cutter) + (cutter.clearance or 0.0)
     most = math.ceil((highest - cutter.length) / GRAIN)
     if most < 1:

@@ -163,7 +163,7 @@ class Left:
     count, blocked : int
         Samples that are inaccessible or undecided, and those that are inaccessible.
     words : str
-        "lost to ..." each reason, the one with the most samples first.
+        How many samples are lost to what, the reason with the most of them first; or undecided, if all are.
     """
 
     count: int
@@ -175,7 +175,8 @@ class Left:
         """What a case leaves of some samples."""
         reach = case.look(rows)
         bad = ~reach.reached
-        return cls(int(bad.sum()), int((reach.verdict == INACCESSIBLE).sum()), reasons(reach.reason[bad]))
+        count, blocked = int(bad.sum()), int((reach.verdict == INACCESSIBLE).sum())
+        return cls(count, blocked, reasons(reach.reason[bad]) if blocked else f"{samples(count)} undecided")
 
     @property
     def helps(self) -> bool | None:
