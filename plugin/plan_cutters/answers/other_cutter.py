@@ -1,0 +1,168 @@
+"""What another cutter would have to be: held further out, of a smaller radius, with another corner."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from plan_cutters.answers.outcome import none, short
+from plan_cutters.answers.trial import Case, Left, Trials, first, least
+from plan_cutters.domain.change import Change
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.holder import Stage
+from plan_cutters.domain.shapes import SAME, flute_length
+from plan_cutters.errors import CutterError
+
+#: Steps of the stick-out, mm.
+GRAIN = 0.01
+#: Share of the radius that a step takes.
+SHARE = 0.02
+#: The radius is no smaller than so many tolerances: below that verdicts say nothing.
+THINNEST = 4.0
+#: Usual corner radii, mm; flat and ball ends are tried, too.
+CORNERS = (0.2, 0.3, 0.4, 0.5, 0.8, 1.0, 1.2, 1.5, 1.6, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0)
+
+
+def stick_out(case: Case, trials: Trials) -> Change:
+    """The least length from the tip to the holder's nose, the flutes as they are; to `GRAIN`."""
+    cutter = case.cutter
+    if cutter.holder is None:
+        return none(
+            "stick_out",
+            cutter.length,
+            len(trials.lost),
+            "no holder is stated, and a longer cutter only adds to what is in the way",
+        )
+    # So far out the nose is above all obstacles wherever the cutter touches it.
+    vertex = case.ready.conditions.obstacles.triangles.vertex
+    size = float(np.linalg.norm(vertex.max(axis=(0, 1)) - vertex.min(axis=(0, 1))))
+    highest = size + 2.0 * cutter.radius + flute_length(cutter) + (cutter.clearance or 0.0)
+    most = math.ceil((highest - cutter.length) / GRAIN)
+    if most < 1:
+        return none("stick_out", cutter.length, len(trials.lost),
+                   f"its {cutter.length:g} mm already hold the holder above all of the part")  # fmt: skip
+
+    def length(at: int) -> float:
+        return round(cutter.length + at * GRAIN, 6)
+
+    def steps(at: int) -> Case | None:
+        made = _longer(cutter, length(at))
+        return None if made is None else replace(case, cutter=made)
+
+    end = steps(most)
+    if end is None:
+        return none("stick_out", cutter.length, len(trials.lost), "no shank can go on above it")
+    left = Left.by(end, trials.lost)
+    if left.count:
+        return short("stick_out", cutter.length, length(most), left, f"{left.words} at every stick-out")
+    found = least(steps, most, trials)
+    if found is None:
+        return none(
+            "stick_out", cutter.length, len(trials.lost), "where the holder is out of the way, something else is"
+        )
+    asked = length(found.steps)
+    return Change("stick_out", cutter.length, asked, True, 0, trials.count, _beyond(found.beyond, length), found.case.cutter,
+                  f"stand out {asked:g} mm instead of {cutter.length:g} mm", {"cutters": (found.case.cutter,)})  # fmt: skip
+
+
+def radius(case: Case, trials: Trials) -> Change:
+    """The largest smaller radius, in steps of `SHARE`."""
+    cutter, tolerance = case.cutter, case.ready.conditions.tolerance
+    if cutter.shape == "form":
+        return none(
+            "radius", cutter.radius, len(trials.lost), "the outline of a form cutter has no radius to change alone"
+        )
+    most = max(0, math.floor(math.log(THINNEST * tolerance / cutter.radius) / math.log(1.0 - SHARE)))
+
+    def value(at: int) -> float:
+        return float(f"{cutter.radius * (1.0 - SHARE) ** at:.4g}")
+
+    def steps(at: int) -> Case | None:
+        made = thinner(cutter, value(at))
+        return None if made is None else replace(case, cutter=made)
+
+    while most and (end := steps(most)) is None:
+        most -= 1
+    if not most:
+        return none("radius", cutter.radius, len(trials.lost), "no thinner cutter of its proportions can exist")
+    found = first(steps, most, trials)
+    if found is None:
+        assert end is not None
+        left = Left.by(end, trials.lost)
+        why = f"with {value(most):g} mm, the least tried, {left.words}" if left.count else \
+              f"none of {most} radii down to {value(most):g} mm serves all samples"  # fmt: skip
+        return short("radius", cutter.radius, value(most), left, why)
+    asked, made = value(found.steps), found.case.cutter
+    return Change("radius", cutter.radius, asked, True, 0, trials.count, _beyond(found.beyond, value), made,
+                  f"a radius of {asked:g} mm instead of {cutter.radius:g} mm", {"cutters": (made,)})  # fmt: skip
+
+
+def corner_radius(case: Case, trials: Trials) -> Change:
+    """Another corner on an end mill of the same radius, from flat to ball; the nearest that serves."""
+    cutter = case.cutter
+    now, r = cutter.corner_radius, cutter.radius
+    if cutter.shape != "end":
+        return none("corner_radius", now, len(trials.lost), f"a {cutter.shape} has no corner to change alone")
+    values = sorted({0.0, r, *(c for c in CORNERS if c < r)} - {now}, key=lambda c: (abs(c - now), c))
+
+    def value(at: int) -> float:
+        return values[at - 1] if at else now
+
+    def steps(at: int) -> Case | None:
+        made = _made(cutter, corner_radius=value(at))
+        return None if made is None else replace(case, cutter=made)
+
+    found = first(steps, len(values), trials)
+    if found is None:
+        tried = [each for at in range(1, len(values) + 1) if (each := steps(at)) is not None]
+        if not tried:
+            return none("corner_radius", now, len(trials.lost), "its flutes are too short for any other corner")
+        best = trials.closest(tried)
+        left = Left.by(best, trials.lost)
+        corner = best.cutter.corner_radius
+        why = f"with {corner:g} mm, the best of {len(tried)} tried, {left.words}" if left.count else \
+              f"each of {len(tried)} corner radii tried loses some samples"  # fmt: skip
+        return short("corner_radius", now, corner, left, why)
+    asked, made = value(found.steps), found.case.cutter
+    words = "a flat end" if not asked else "a ball end" if asked == r else f"a corner radius of {asked:g} mm"
+    was = "a flat end" if not now else "a ball end" if now == r else f"{now:g} mm"
+    return Change("corner_radius", now, asked, True, 0, trials.count, _beyond(found.beyond, value), made,
+                  f"{words} instead of {was}", {"cutters": (made,)})  # fmt: skip
+
+
+def thinner(cutter: Cutter, radius: float) -> Cutter | None:
+    """The same of a smaller radius: a ball stays one, another corner stays as it is, and so does what is above; but what was no
+    thicker than the flutes stays so. None if there can be none."""
+    changes: dict[str, object] = {"radius": radius}
+    if cutter.corner_radius == cutter.radius:
+        changes["corner_radius"] = radius
+    if cutter.shank_radius is not None and cutter.shank_radius <= cutter.radius + SAME and cutter.shape != "lollipop":
+        changes["shank_radius"] = min(cutter.shank_radius, radius)
+    if cutter.neck is not None and cutter.neck.radius <= cutter.radius + SAME:
+        ends = min(cutter.neck.radius, radius), min(cutter.neck.upper_radius, radius)
+        if cutter.neck.upper_radius > cutter.radius + SAME:
+            ends = ends[0], cutter.neck.upper_radius
+        changes["neck"] = Stage(ends[0], cutter.neck.length, ends[1])
+    if cutter.shape == "barrel" and cutter.corner_radius:
+        # The ball at its tip is tangent to its flank, which stays as round as it is.
+        inner, outer = cutter.arc_radius - radius, cutter.arc_radius - cutter.corner_radius
+        changes["arc_height"] = cutter.corner_radius + math.sqrt(max(0.0, outer**2 - inner**2))
+    return _made(cutter, **changes)
+
+
+def _longer(cutter: Cutter, length: float) -> Cutter | None:
+    """The same with its nose so far from the tip; what it has right below it goes on, and it cuts no higher up than it does."""
+    ends = {} if cutter.shape in ("lollipop", "form") else {"flutes": flute_length(cutter)}
+    return _made(cutter, length=length, **ends)
+
+
+def _made(cutter: Cutter, **changes: object) -> Cutter | None:
+    try:
+        return replace(cutter, **changes)  # type: ignore[arg-type]
+    except CutterError:
+        return None
+
+
+def _beyond(at: int | None, value: Callable[[int], float]) -> float | None:
+    return None if at is None else value(at)

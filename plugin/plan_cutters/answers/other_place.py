@@ -1,0 +1,209 @@
+"""What would have to be different about the part: how it is clamped, how closely it is judged, which faces are to be finished."""
+
+import math
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from cad_io.arrays import Floats
+from cad_io.part.orient import orient
+from plan_cutters.answers.outcome import none
+from plan_cutters.answers.trial import Case, Left, Trials, first, samples
+from plan_cutters.domain.change import Change
+from plan_cutters.domain.posture import unit
+from plan_cutters.domain.verdicts import INACCESSIBLE, Reach
+from plan_cutters.options import LEAST_TOLERANCE
+from plan_cutters.scene.buried import buried
+from plan_cutters.scene.prepared import Prepared
+
+#: Steps of the setup axis, deg.
+TURN = 1.0
+#: Directions that serve are approached along the way from the present axis, at most so many.
+_APPROACHED = 3
+#: Directions closer to each other than this are one, deg.
+_ALIKE = 0.5
+#: Shares of the tolerance that are tried. The triangles grow in number as it falls: a tenth takes longer than all else.
+FINER = (0.5, 0.25)
+
+Axis = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """An axis that serves, how far it is from the present one, deg, and one a step nearer that does not."""
+
+    axis: Axis
+    angle: float
+    beyond: Axis
+    case: Case
+
+
+def setup(case: Case, trials: Trials, unlimited: int) -> Change:
+    """Another setup axis: of the directions tried the nearest that serves, and on the way there the first.
+
+    `unlimited`: samples that would be lost on a machine without any limit. The side of the material stays as it is.
+    """
+    ready = case.ready
+    now: Axis = ready.scene.setup
+    if ready.conditions.machine.tilt_limit is None:
+        return none("setup", now, len(trials.lost), "the machine has no limit, so it turns to any axis")
+    if unlimited:
+        return none("setup", now, unlimited, f"{samples(unlimited)} lost without any limit of the axis")
+    tried = [(axis, made) for axis in directions(ready, trials) if (made := _turned(case, axis)) is not None]
+    found, ways = None, 0
+    for axis, made in tried:
+        if ways < _APPROACHED and not trials.stopped(made, everywhere=True):
+            ways += 1
+            found = _nearest(case, trials, axis, found) or found
+    if found is None:
+        left = (
+            Left.by(trials.closest([made for _, made in tried]), trials.lost)
+            if tried
+            else Left(len(trials.lost), 1, "")
+        )
+        why = f"the best leaves {left.count:,}" if left.count else "each loses some samples"
+        return none("setup", now, left.count, f"none of {len(tried)} directions tried serves, {why}")
+    options: dict[str, object] = {"setup": found.axis}
+    more = ""
+    if found.case.ready.options.flip != ready.options.flip:
+        options["flip"] = not ready.options.flip
+        more = ", without --flip" if ready.options.flip else ", with --flip"
+    words = ",".join(f"{each:.4g}" for each in found.axis)
+    return Change("setup", now, found.axis, True, 0, trials.count, found.beyond, None,
+                  f"clamp it with {words} along the spindle, {found.angle:.4g} deg from now{more}", options)  # fmt: skip
+
+
+def _nearest(case: Case, trials: Trials, end: Axis, found: _Found | None) -> _Found | None:
+    """The first axis that serves on the way to another, in steps of `TURN`; None if it is no nearer than what is found."""
+    now: Axis = case.ready.scene.setup
+    whole = _angle(now, end)
+    far = whole if found is None else min(whole, found.angle - TURN)
+
+    def axis(at: int) -> Axis:
+        return _towards(now, end, at * TURN)
+
+    step = first(lambda at: _turned(case, axis(at)), math.ceil(far / TURN - 1e-9), trials)
+    if step is None:
+        return None
+    return _Found(axis(step.steps), min(whole, step.steps * TURN), axis(step.beyond or 0), step.case)
+
+
+def directions(ready: Prepared, trials: Trials) -> list[Axis]:
+    """Directions to try: faces, edges and corners of a cube, and the mean normals of what is lost and of all; the nearest to the
+    present axis first."""
+    now = ready.scene.setup
+    means = [ready.samples.normal[rows].mean(axis=0) for rows in (trials.lost, np.sort([*trials.lost, *trials.kept]))]
+    cube = [np.array(each, float) for each in product((-1, 0, 1), repeat=3) if any(each)]
+    found: list[Axis] = []
+    for vector in [*means, *cube]:
+        if np.linalg.norm(vector) > 1e-6:
+            axis = _axis(vector)
+            if all(_angle(axis, other) > _ALIKE for other in [now, *found]):
+                found.append(axis)
+    return sorted(found, key=lambda axis: (round(_angle(now, axis), 6), axis))
+
+
+def _axis(vector: Floats) -> Axis:
+    """A direction as it is told: what is judged is what is told."""
+    x, y, z = (float(each) + 0.0 for each in np.round(vector / np.linalg.norm(vector), 6))
+    return x, y, z
+
+
+def _angle(a: Axis, b: Axis) -> float:
+    """Between two directions, deg."""
+    return math.degrees(math.atan2(float(np.linalg.norm(np.cross(a, b))), float(np.dot(a, b))))
+
+
+def _towards(now: Axis, end: Axis, degrees: float) -> Axis:
+    """The direction so far from the present one on the way to another; no farther than that."""
+    if not 0.0 < degrees < _angle(now, end):
+        return end if degrees > 0.0 else now
+    start, other = np.array(now), np.array(end)
+    across = other - (other @ start) * start
+    if np.linalg.norm(across) < 1e-9:
+        # Straight back: any way serves.
+        across = np.cross(start, np.eye(3)[int(np.abs(start).argmin())])
+    turn = math.radians(degrees)
+    return _axis(math.cos(turn) * start + math.sin(turn) * across / np.linalg.norm(across))
+
+
+def _turned(case: Case, axis: Axis) -> Case | None:
+    """The same under another setup axis; None if a plan would then work on other sides of open faces, flipped or not."""
+    ready = case.ready
+    spindle = unit(axis, "setup axis")
+    for flip in (ready.options.flip, not ready.options.flip):
+        part = ready.scene.part
+        if (
+            ready.scene.orientation.confident
+            or (orient(part, towards=tuple(spindle.tolist()), flip=flip).sign == ready.scene.orientation.sign).all()
+        ):
+            options = replace(ready.options, setup=axis, flip=flip)
+            return replace(case, ready=replace(ready, options=options,
+                                               conditions=replace(ready.conditions, setup=spindle)))  # fmt: skip
+    return None
+
+
+def tolerance(case: Case, trials: Trials, reach: Reach) -> Change:
+    """A finer tolerance, where samples are undecided alone: `FINER` shares of it."""
+    ready = case.ready
+    now = ready.scene.asked
+    blocked = int((reach.verdict[trials.lost] == INACCESSIBLE).sum())
+    if blocked:
+        return none(
+            "tolerance", now, blocked, f"{samples(blocked)} blocked for certain, which no finer tolerance mends"
+        )
+    left, best, before = len(trials.lost), now, now
+    for share in FINER:
+        finer = float(f"{now * share:.6g}")
+        if finer < LEAST_TOLERANCE:
+            break
+        closer = _closer(case, finer)
+        if not trials.stopped(closer, everywhere=True) and not len(closer.judged()):
+            return Change("tolerance", now, finer, True, 0, trials.count, before, None,
+                          f"a tolerance of {finer:g} mm instead of {now:g} mm", {"tolerance": finer})  # fmt: skip
+        still = Left.by(closer, trials.lost)
+        if still.blocked:
+            return none(
+                "tolerance", now, still.count, f"with {finer:g} mm {samples(still.blocked)} blocked for certain"
+            )
+        before = finer
+        if still.count >= left:
+            # Nothing was gained.
+            break
+        left, best = still.count, finer
+    return Change("tolerance", now, best, None, left, 0, None, None,
+                  f"is not decided: with {before:g} mm, the finest tried, {samples(left)} undecided")  # fmt: skip
+
+
+def _closer(case: Case, asked: float) -> Case:
+    """The same, surrounded anew for a finer tolerance."""
+    ready = case.ready
+    scene = replace(ready.scene, asked=asked)
+    around = scene.surround(jobs=ready.conditions.jobs)
+    conditions = replace(ready.conditions, around=around, tolerance=scene.tolerance)
+    within = buried(ready.samples, scene.orientation, around.bodies, around.surely, scene.tolerance)
+    return replace(case, ready=replace(ready, scene=scene, conditions=conditions, buried=within))
+
+
+def faces(case: Case, trials: Trials) -> Change:
+    """Leaving out the faces with samples that are lost: they stay in the way, but need not be finished."""
+    ready = case.ready
+    face, infos = ready.samples.face, ready.scene.part.faces
+    bad = np.unique(face[trials.lost]).tolist()
+    ids = tuple(f"F{n}" for n in bad)
+    rest = [n for n in ready.chosen.targets if n not in set(bad)]
+    judged = np.unique(face[trials.kept])
+    if not np.isin(judged, rest).any():
+        return none("faces", ids, len(trials.lost), "every target face has samples that are lost")
+    area = sum(infos[n - 1].area for n in bad)
+    whole = sum(infos[n - 1].area for n in ready.chosen.targets)
+    out = np.isin(np.concatenate([trials.lost, trials.kept]), np.flatnonzero(np.isin(face, bad)))
+    share, some = 100.0 * out.mean(), 100.0 * len(trials.lost) / out.sum()
+    which = (
+        ids[0] if len(ids) == 1 else f"{len(ids)} faces ({', '.join(ids[:5])}{' and others' if len(ids) > 5 else ''})"
+    )
+    return Change("faces", ids, ids, True, 0, int((~out).sum()), None, None,
+                  f"leave {which} out: {area:.4g} mm2, {100.0 * area / whole:.3g} % of the target area and {share:.3g} % of the "
+                  f"samples, of which {some:.3g} % are lost",
+                  {"faces": ",".join(f"F{n}" for n in rest)})  # fmt: skip

@@ -1,0 +1,285 @@
+"""Values are tried on the samples that are lost now; what serves there is judged on all samples.
+
+A trial asks only whether samples have a posture, in any company; what is told of a change rests on `judge`.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.verdicts import (
+    ACCESSIBLE,
+    CONVEX,
+    INACCESSIBLE,
+    REASONS,
+    TOLERANCE,
+    UNDECIDED,
+    UNJUDGED,
+    Reach,
+    blank,
+)
+from plan_cutters.kernels.rows import Contacts
+from plan_cutters.scene.conditions import contacts_of, search_postures, tool_of
+from plan_cutters.scene.prepared import Prepared
+from plan_cutters.stages.judge import judge
+
+Rows = NDArray[np.int64]
+
+#: Samples asked at a time, at first; then four times as many.
+_FIRST, _MORE = 16, 4
+#: Samples that are asked out of their sequence, at most: in it neighbours help each other.
+_AT_RANDOM = 1024
+#: Samples that stopped a value are remembered, the last so many.
+_REMEMBERED = 32
+#: Samples by which values are compared that all leave some.
+_COMPARED = 32
+#: How often a value that serves all samples tried, but not all, is taken further.
+_ROUNDS = 8
+
+#: What stands in the way, in words that follow "lost to".
+_WORDS = {"axis_limit": "the axis limit", "local_gouge": "local gouging", "rear_gouge": "rear gouging", "collision": "collision",
+          "buried": "a body around them", "tolerance": "the tolerance", "neck": "the neck", "shank": "the shank",
+          "holder": "the holder"}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Case:
+    """A part that is ready, and a cutter, one thing of either changed."""
+
+    ready: Prepared
+    cutter: Cutter
+
+    def look(self, rows: Rows) -> Reach:
+        """What the cutter reaches of some judged samples that lie in no body: verdicts as `judge` finds them, but for the grain
+        of a search that starts elsewhere."""
+        from plan_cutters.kernels.search import dummy_clear
+
+        ready, conditions, found = self.ready, self.ready.conditions, blank(len(rows))
+        if not conditions.judges(self.cutter):
+            found.verdict[:], found.reason[:] = UNDECIDED, TOLERANCE
+            return found
+        contacts = Contacts(*(np.ascontiguousarray(column[rows]) for column in contacts_of(ready.samples)))
+        light, heavy = conditions.light(self.cutter), conditions.heavy(self.cutter)
+        free = np.zeros(len(rows), bool)
+        if len(light.dummy):
+            upright = (ready.surface_class[rows] == CONVEX) & conditions.upright(contacts.normal)
+            dummy_clear(
+                np.flatnonzero(upright), contacts, light.dummy, tool_of(light), conditions.obstacles.solids, free
+            )
+        found.verdict[free] = ACCESSIBLE
+        search_postures(contacts, np.flatnonzero(~free), light, heavy, conditions, found)
+        return found
+
+    def misses(self, rows: Rows) -> Rows:
+        """Those of some samples that it does not reach."""
+        return rows[~self.look(rows).reached]
+
+    def judged(self, rows: Rows | None = None) -> Rows:
+        """Samples that it does not reach, as a plan finds them: of all, or of some, ascending."""
+        reach = judge(self.ready, self.cutter, rows)
+        bad = np.flatnonzero(~reach.reached & (reach.verdict != UNJUDGED))
+        return bad if rows is None else rows[bad]
+
+
+#: A value's case, by its number of steps from the present one; None where there can be no such cutter or setup.
+Steps = Callable[[int], Case | None]
+
+
+@dataclass(slots=True)
+class Trials:
+    """The samples of one part and cutter to try values on.
+
+    Attributes
+    ----------
+    lost, kept : (n,) int64
+        Judged samples that the cutter does not reach now, and those that it reaches, ascending.
+    hard : list of int
+        Samples that stopped a value, the last one first.
+    """
+
+    lost: Rows
+    kept: Rows
+    hard: list[int] = field(default_factory=list)
+
+    @classmethod
+    def of(cls, reach: Reach) -> "Trials":
+        """The samples of a reach."""
+        bad = np.isin(reach.verdict, (INACCESSIBLE, UNDECIDED))
+        return cls(np.flatnonzero(bad), np.flatnonzero(reach.reached))
+
+    @property
+    def count(self) -> int:
+        """Samples that are judged."""
+        return len(self.lost) + len(self.kept)
+
+    def remember(self, row: int) -> None:
+        """A sample that stopped a value is the first that the next one is tried on."""
+        if row in self.hard:
+            self.hard.remove(row)
+        self.hard.insert(0, row)
+        del self.hard[_REMEMBERED:]
+
+    def stopped(self, case: Case, *, everywhere: bool) -> bool:
+        """Whether a sample was found that a case does not reach, of those lost now or of all."""
+        for batch in self._batches(everywhere):
+            missed = case.misses(batch)
+            if len(missed):
+                self.remember(int(missed[0]))
+                return True
+        return False
+
+    def _batches(self, everywhere: bool) -> Iterator[Rows]:
+        hard = np.array(self.hard, np.int64)
+        yield from np.split(hard, [1]) if len(hard) else ()
+        yield from batches(self.lost)
+        if everywhere:
+            yield from batches(self.kept)
+
+    def closest(self, cases: list[Case]) -> Case:
+        """Of cases that all leave some, the one that leaves fewest of a few samples spread over those lost now."""
+        few = self.lost[:: 1 + len(self.lost) // _COMPARED]
+        return min(cases, key=lambda case: len(case.misses(few)))
+
+
+def batches(rows: Rows) -> Iterator[Rows]:
+    """All of some rows: a few at random, more of them, then those left in sequence."""
+    mixed = np.random.default_rng(0).permutation(rows)[:_AT_RANDOM]
+    first, size = 0, _FIRST
+    while first < len(mixed):
+        yield mixed[first : first + size]
+        first, size = first + size, size * _MORE
+    left = np.setdiff1d(rows, mixed, assume_unique=True)
+    if len(left):
+        yield left
+
+
+@dataclass(frozen=True, slots=True)
+class Left:
+    """What a value leaves of the samples that are lost now, and to what.
+
+    count, blocked : int
+        Samples that are inaccessible or undecided, and those that are inaccessible.
+    words : str
+        How many samples are lost to what, the reason with the most of them first; or undecided, if all are.
+    """
+
+    count: int
+    blocked: int
+    words: str
+
+    @classmethod
+    def by(cls, case: Case, rows: Rows) -> "Left":
+        """What a case leaves of some samples."""
+        reach = case.look(rows)
+        bad = ~reach.reached
+        count, blocked = int(bad.sum()), int((reach.verdict == INACCESSIBLE).sum())
+        return cls(count, blocked, reasons(reach.reason[bad]) if blocked else f"{samples(count)} undecided")
+
+    @property
+    def helps(self) -> bool | None:
+        """False, or None where none of the samples is proved to be out of reach."""
+        return False if self.blocked else None
+
+
+def reasons(codes: NDArray[np.uint8]) -> str:
+    """How many samples are lost, and to what."""
+    found = [(int((codes == code).sum()), REASONS[code]) for code in np.unique(codes).tolist()]
+    ranked = sorted(found, key=lambda each: (-each[0], each[1]))
+    if len(ranked) == 1:
+        return f"{samples(ranked[0][0])} lost to {_WORDS[ranked[0][1]]}"
+    return f"{samples(len(codes))} lost: " + ", ".join(f"{count} to {_WORDS[reason]}" for count, reason in ranked)
+
+
+def samples(count: int) -> str:
+    """A number of samples as the subject of a sentence."""
+    return "1 sample is" if count == 1 else f"{count:,} samples are"
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A value that serves all samples, and what is known of the one before.
+
+    steps : int
+        From the present value.
+    case : Case
+    beyond : int, optional
+        Steps of the value before it, if that can exist: it was tried and does not serve.
+    """
+
+    steps: int
+    case: Case
+    beyond: int | None
+
+
+def least(steps: Steps, most: int, trials: Trials) -> Step | None:
+    """The least number of steps that serves all samples, if each step allows all that those before it allow.
+
+    At `most` every sample that is lost now must have been reached. Each sample that a value does not serve takes it on, by
+    halving, to the least that serves this one; the others are asked from there.
+    """
+    at = _onward(steps, 0, most, batches(trials.lost), trials)
+    for _ in range(_ROUNDS):
+        if at is None or at > most:
+            return None
+        at = max(at, 1)
+        case = _case(steps, at)
+        missed = case.judged()
+        if not len(missed):
+            return _back(steps, Step(at, case, at - 1), trials)
+        # Missed all the same: the grain of the search, or what more of the thing puts in the way.
+        onward = _onward(steps, at, most, iter([missed]), trials)
+        at = None if onward is None else max(onward, at + 1)
+    return None
+
+
+def _onward(steps: Steps, at: int, most: int, rows: Iterator[Rows], trials: Trials) -> int | None:
+    """The least number of steps from `at` on that serves some samples; None if `most` does not."""
+    for batch in rows:
+        while len(batch := _case(steps, at).misses(batch)):
+            row, batch = batch[:1], batch[1:]
+            low, high = at, most
+            if len(_case(steps, most).misses(row)):
+                return None
+            while high - low > 1:
+                middle = (low + high) // 2
+                low, high = (middle, high) if len(_case(steps, middle).misses(row)) else (low, middle)
+            at = high
+            trials.remember(int(row[0]))
+    return at
+
+
+def _case(steps: Steps, at: int) -> Case:
+    case = steps(at)
+    if case is None:
+        raise ValueError(f"there is no value at step {at}")
+    return case
+
+
+def _back(steps: Steps, found: Step, trials: Trials) -> Step:
+    """Take a value back as long as a plan with the one before finds a posture everywhere."""
+    while found.steps > 1:
+        case = _case(steps, found.steps - 1)
+        hard = np.array(sorted(trials.hard[:1]), np.int64)
+        if len(case.judged(hard)) or len(case.judged()):
+            break
+        found = Step(found.steps - 1, case, found.steps - 2)
+    return found
+
+
+def first(steps: Steps, most: int, trials: Trials) -> Step | None:
+    """The least number of steps that serves all samples, each of them tried, one after the other."""
+    before: int | None = 0
+    for at in range(1, most + 1):
+        case = steps(at)
+        if case is None:
+            continue
+        if not trials.stopped(case, everywhere=True):
+            missed = case.judged()
+            if not len(missed):
+                return Step(at, case, before)
+            trials.remember(int(missed[0]))
+        before = at
+    return None
