@@ -141,7 +141,9 @@ sizes = st.floats(0.5, 30.0)
 
 
 @settings(max_examples=60, deadline=None)
-@given(st.lists(st.tuples(sizes, sizes, sizes), min_size=1, max_size=4), st.sampled_from([0.0, 0.4]), st.integers(0, 10**6))
+@given(
+    st.lists(st.tuples(sizes, sizes, sizes), min_size=1, max_size=4), st.sampled_from([0.0, 0.4]), st.integers(0, 10**6)
+)
 def test_the_outline_lies_under_the_holder(stages, clearance, seed):
     """A point that the outline leaves out is in no piece of the holder, however far that comes up, and little more is left in."""
     stages = [(max(r, 2.0), length, max(u, 2.0)) for r, length, u in stages]

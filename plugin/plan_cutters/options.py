@@ -8,6 +8,7 @@ from difflib import get_close_matches
 from typing import Any
 
 from cad_io.units import UNITS
+from plan_cutters.domain.answers import answers_of
 from plan_cutters.domain.checks import choice, flag, number, shown, whole
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.drawer import builtin
@@ -70,6 +71,10 @@ class Options:
         100,000.
     posture_maps : bool
         Find every free tilt of every sample, too, for the cutter that the models show.
+    answers : tuple of str
+        What is to be answered after the plan, of `domain.answers.ANSWERS`, or `all`; may be given as one text.
+    length_over_radius : float
+        Of the bare flat and ball ends whose largest radius is asked for.
     unit : str, optional
         Length unit to take instead of the part's own, one of `cad_io.units.UNITS`.
 
@@ -107,6 +112,8 @@ class Options:
     flip: bool = False
     area_budget: int | None = None
     posture_maps: bool = False
+    answers: tuple[str, ...] = ()
+    length_over_radius: float = 10.0
     unit: str | None = None
 
     def __post_init__(self) -> None:
@@ -125,6 +132,8 @@ class Options:
             value = getattr(self, word)
             if not 0.0 <= value < math.inf:
                 raise OptionError(f"{word.replace('_', ' ')} {value:g} must be 0 or a positive number of mm")
+        if not 1.0 <= self.length_over_radius <= 1000.0:
+            raise OptionError(f"length over radius {self.length_over_radius:g} must lie between 1 and 1000")
         if self.unit is not None and self.unit not in UNITS:
             raise OptionError(f"unit {self.unit!r} is not one of {', '.join(UNITS)}")
         if self.area_budget is not None and self.area_budget < 0:
@@ -148,6 +157,8 @@ class Options:
         if self.area_budget is not None:
             take(area_budget=whole(self.area_budget, "area budget"))
         take(flip=flag(self.flip, "flip"), posture_maps=flag(self.posture_maps, "posture_maps"))
+        take(answers=answers_of(self.answers))
+        take(length_over_radius=number(self.length_over_radius, "length over radius"))
         take(allowance=number(self.allowance, "allowance"))
         take(holder_clearance=number(self.holder_clearance, "holder clearance"))
         if self.holder is not None:

@@ -13,10 +13,12 @@ from cad_io import Part, read_part
 from cad_io.read.read import TIMEOUT
 from cad_io.sample import sample
 from cad_io.tessellate.triangles import At
+from plan_cutters.answers.ask import ask
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock, Progress
 from plan_cutters.document.model import AreaEntry, CutterEntry
-from plan_cutters.document.plan import plan_of, selection
+from plan_cutters.document.plan import answered, plan_of, selection
+from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.nesting import handed, order
@@ -103,7 +105,8 @@ def run(
             # In the order of rank, whatever the order of work.
             earlier = {c: judged[c].reach for c in ready.cutters if c in judged}
             judged[cutter] = _judged(ready, cutter, earlier, tell)
-    result = assemble(ready, judged, clock, started)
+    answers = ask(ready, {cutter: each.reach for cutter, each in judged.items()}, clock.stage)
+    result = assemble(ready, judged, clock, started, answers)
     if not options.posture_maps:
         return result
     with clock.stage("maps") as tell:
@@ -193,11 +196,11 @@ def _judged(
 
 def assemble(
     ready: Prepared, judged: Mapping[Cutter, Judged], clock: Clock | None = None,
-    started: datetime.datetime | None = None,
+    started: datetime.datetime | None = None, answers: Answers | None = None,
 ) -> Result:  # fmt: skip
-    """The result of all cutters: the choice, the area between the samples for the one chosen, and the plan."""
-    clock = clock or Clock()
-    entries = [judged[c].entry for c in ready.cutters]
+    """The result of all cutters: the choice, the area between the samples for the one chosen, what was answered, the plan."""
+    clock, answers = clock or Clock(), answers or Answers()
+    entries = answered([judged[c].entry for c in ready.cutters], answers, ready.samples)
     selected, chosen = selection(entries)
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
     best = selected or next((e.id for e in entries if not (e.inaccessible or e.undecided)), None)
@@ -211,10 +214,10 @@ def assemble(
                          short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
         entries = [e.model_copy(update={"area": area}) if e.id == best else e for e in entries]
     with clock.stage("plan", shown=False):
-        document = plan_of(ready, entries, selected, chosen, started or datetime.datetime.now(datetime.UTC))
+        document = plan_of(ready, entries, selected, chosen, started or datetime.datetime.now(datetime.UTC), answers)
     reaches = {cutter.id: each.reach for cutter, each in judged.items()}
     return Result(
-        clock.stamp(document), ready.scene, ready.samples, ready.surface_class, reaches, ready.options.postures
+        clock.stamp(document), ready.scene, ready.samples, ready.surface_class, reaches, ready.options.postures, answers
     )
 
 

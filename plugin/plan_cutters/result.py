@@ -1,7 +1,7 @@
 """A plan with the arrays behind it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from cad_io import Part, SurfaceSamples
 from plan_cutters.document.model import CutterEntry, Plan
+from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import Reach
 from plan_cutters.scene.scene import Scene
@@ -31,6 +32,8 @@ class Result:
     reaches : dict
         Cutter id -> Reach.
     postures : PostureRange
+    answers : Answers
+        What was asked for after the plan: `stick_outs`, `radius_maps`, `mends`.
     maps : PostureMaps, optional
         Every free tilt, for the cutter `shown`, where that was asked for.
     """
@@ -41,6 +44,7 @@ class Result:
     surface_class: NDArray[np.uint8]
     reaches: dict[str, Reach]
     postures: PostureRange
+    answers: Answers = field(default_factory=Answers)
     maps: PostureMaps | None = None
 
     def __repr__(self) -> str:

@@ -204,12 +204,11 @@ class _Search:
             for level in np.unique(middle).tolist():
                 some, found = left[middle == level], blank(len(best))
                 tool = self.tool(min(self.cutter.length, self.floor + level * step))
-                in_chunks(
-                    lambda piece, tool=tool, found=found: until_lost(
-                        piece, 0, self.contacts, ranges, tool, solids, True, found_of(found)
-                    ),
-                    some, self.conditions.jobs,
-                )  # fmt: skip
+
+                def work(piece: NDArray[np.int64], tool: Tool = tool, found: Reach = found) -> None:
+                    until_lost(piece, 0, self.contacts, ranges, tool, solids, True, found_of(found))
+
+                in_chunks(work, some, self.conditions.jobs)
                 reached = some[found.verdict[some] == ACCESSIBLE]
                 needed = self.needed(reached, found)[0][reached]
                 best[reached] = np.minimum(np.minimum(best[reached], self.floor + level * step), needed)

@@ -181,6 +181,20 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, asked: bool) -> No
     is_flag=True,
     help="Also write every sample's free tilt intervals at every rotation (postures.npz), for the cutter shown.",
 )
+@click.option(
+    "--answers",
+    default="",
+    metavar="LIST",
+    help="Answer more: stick-out (how short each cutter can be held), stick-out-map (that for every sample, too), radius (the "
+    "largest flat and ball end that reaches each sample), mend (what would make each cutter that fails feasible), or all.",
+)
+@click.option(
+    "--length-over-radius",
+    type=float,
+    default=10.0,
+    metavar="N",
+    help="Of the ends whose largest radius is asked for.  [default: 10]",
+)
 @click.option("--jobs", type=int, metavar="N", help="Threads.  [default: all cores]")
 @click.option("--cluster", metavar="ADDRESS", hidden=True)
 @click.option(
@@ -273,6 +287,8 @@ def _options(given: dict[str, Any]) -> "Options":
         flip=given["flip"],
         area_budget=given["area_budget"],
         posture_maps=given["posture_maps"],
+        answers=given["answers"],
+        length_over_radius=given["length_over_radius"],
         unit=given["unit"],
         **more,
     )

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from cad_io import Part, SurfaceSamples
 from cad_io.kernel.assembly import component_of
 from plan_cutters import __version__
+from plan_cutters.document.frozen import posture, vector
 from plan_cutters.document.model import (
     CutterEntry,
     FaceEntry,
     MissingEntry,
     OrientationInfo,
     PartInfo,
-    Posture,
     SewingInfo,
     StageEntry,
     Verdicts,
@@ -53,11 +53,6 @@ def missing_entries(part: Part, around: Surroundings) -> list[MissingEntry]:
         for each in around.lost
     ]  # fmt: skip
     return found
-
-
-def vector(v: NDArray[np.float64]) -> tuple[float, float, float]:
-    """A direction or point as three plain numbers."""
-    return float(v[0]), float(v[1]), float(v[2])
 
 
 def degrees(pair: tuple[float, float]) -> tuple[float, float]:
@@ -118,20 +113,16 @@ def cutter_entry(
 
 
 def _witness_entry(witness: Witness, samples: SurfaceSamples) -> WitnessEntry:
-    posture = None
+    best = None
     if witness.tilt is not None and witness.rotation is not None and witness.axis is not None:
-        posture = Posture(
-            tilt=float(np.degrees(witness.tilt)),
-            rotation=float(np.degrees(witness.rotation)),
-            axis=vector(witness.axis),
-        )
+        best = posture(witness.tilt, witness.rotation, witness.axis)
     return WitnessEntry(
         point=vector(samples.point[witness.sample]),
         face=f"F{samples.face[witness.sample]}",
         reason=witness.reason,
         obstacle_face=None if not witness.obstacle_face else f"F{witness.obstacle_face}",
         obstacle_point=None if witness.obstacle_point is None else vector(witness.obstacle_point),
-        best_posture=posture,
+        best_posture=best,
         depth_mm=witness.depth,
     )
 

@@ -5,30 +5,27 @@ Lengths in mm, angles in degrees, part coordinates.
 
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
+
+from plan_cutters.document.answers import MendEntry, RadiusEntry, StickOutEntry
+from plan_cutters.document.frozen import Frozen, Posture, Vector
 
 FORMAT_VERSION = 1
 
-Vector = tuple[float, float, float]
 
-
-class _Frozen(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class Units(_Frozen):
+class Units(Frozen):
     length: Literal["mm"] = "mm"
     angle: Literal["deg"] = "deg"
 
 
-class OrientationInfo(_Frozen):
+class OrientationInfo(Frozen):
     """How the side out of the material was found, and whether that is more than a guess."""
 
     method: str
     confident: bool
 
 
-class SewingInfo(_Frozen):
+class SewingInfo(Frozen):
     """Faces that stand in no solid, joined where their edges coincide to find out which side is material."""
 
     tolerance_mm: float | None = Field(description="the smallest tried that left the least open; null: nothing to join")
@@ -37,7 +34,7 @@ class SewingInfo(_Frozen):
     open_length_mm: float
 
 
-class PartInfo(_Frozen):
+class PartInfo(Frozen):
     file: str | None
     sha256: str | None
     size_mm: Vector
@@ -48,7 +45,7 @@ class PartInfo(_Frozen):
     warnings: list[str]
 
 
-class Effective(_Frozen):
+class Effective(Frozen):
     """Every option after defaults."""
 
     cutters: list[str]
@@ -80,9 +77,11 @@ class Effective(_Frozen):
     flip: bool
     area_budget: int = Field(description="contacts that may be added between the samples")
     posture_maps: bool
+    answers: list[str] = Field(default=[], description="what was asked for after the plan")
+    length_over_radius: float = Field(default=10.0, description="of the ends whose largest radius is asked for")
 
 
-class SampleCounts(_Frozen):
+class SampleCounts(Frozen):
     count: int
     max_gap_mm: float = Field(
         description="largest distance between grid neighbours, and from the border of a sampled face to its nearest "
@@ -95,7 +94,7 @@ class SampleCounts(_Frozen):
     regions: int
 
 
-class Verdicts(_Frozen):
+class Verdicts(Frozen):
     interference_free: int = 0
     accessible: int = 0
     inaccessible: int = 0
@@ -103,7 +102,7 @@ class Verdicts(_Frozen):
     unjudged: int = 0
 
 
-class FaceEntry(_Frozen):
+class FaceEntry(Frozen):
     id: str
     name: str
     surface: str = Field(description="kind of the stored surface")
@@ -116,7 +115,7 @@ class FaceEntry(_Frozen):
     unjudged: str | None = Field(description="why the face, or some of its samples, could not be judged")
 
 
-class MissingEntry(_Frozen):
+class MissingEntry(Frozen):
     """A face that is in the way only as a guess, or not at all: while there is one, no cutter is feasible beyond doubt."""
 
     face: str | None = Field(description="null: it is only in the file")
@@ -128,13 +127,7 @@ class MissingEntry(_Frozen):
     )
 
 
-class Posture(_Frozen):
-    tilt: float
-    rotation: float
-    axis: Vector
-
-
-class WitnessEntry(_Frozen):
+class WitnessEntry(Frozen):
     """A sample that is not reached and the posture that comes nearest to reaching it."""
 
     point: Vector
@@ -146,7 +139,7 @@ class WitnessEntry(_Frozen):
     depth_mm: float | None = Field(description="how deep the part reaches into the cutter at the best posture")
 
 
-class AreaEntry(_Frozen):
+class AreaEntry(Frozen):
     """How far a cutter's postures, each with its axis kept, serve the surface between the samples and up to its border."""
 
     share: float = Field(
@@ -163,7 +156,7 @@ class AreaEntry(_Frozen):
     left_out: list[str] = Field(default=[], description="target faces whose area is not known: they are not in `share`")
 
 
-class StageEntry(_Frozen):
+class StageEntry(Frozen):
     """What stands above the flutes, from there up: neck, shank, the stages of the holder."""
 
     part: Literal["neck", "shank", "holder"]
@@ -182,7 +175,7 @@ class CutterEntry(Verdicts):
     shape: str = Field(default="end", description="end, lollipop, barrel, lens or form")
     taper_deg: float = Field(default=0.0, description="half angle")
     flutes_mm: float | None = Field(default=None, description="height over the tip up to which it cuts")
-    stages: list[StageEntry] = []
+    stages: list[StageEntry] = Field(default=[], description="from the flutes up")
     touches_deg: list[tuple[float, float]] = Field(default=[], description="tilts at which the cutting part can touch")
     allowance_mm: float = 0.0
     clearance_mm: float = Field(default=0.0, description="room asked of neck, shank and holder")
@@ -200,21 +193,25 @@ class CutterEntry(Verdicts):
     faces: dict[str, Verdicts]
     witnesses: list[WitnessEntry]
     area: AreaEntry | None = Field(default=None, description="of the selected cutter; null where it was not asked for")
+    least_stick_out: StickOutEntry | None = Field(default=None, description="null where it was not asked for")
+    mend: MendEntry | None = Field(
+        default=None, description="what would make it feasible; null where it is, or where that was not asked for"
+    )
     seconds: float = Field(default=0.0, exclude=True, description="dummy tests and search; not written")
 
 
-class Selection(_Frozen):
+class Selection(Frozen):
     rule: str
     runner_up: str | None
     why: str
 
 
-class FileEntry(_Frozen):
+class FileEntry(Frozen):
     name: str
     sha256: str
 
 
-class SplitEntry(_Frozen):
+class SplitEntry(Frozen):
     """How the models show a face of mixed verdicts."""
 
     rung: Literal["contour", "beside", "whole"] = Field(
@@ -223,7 +220,7 @@ class SplitEntry(_Frozen):
     why: str | None = Field(description="why it could not be split in its place")
 
 
-class Run(_Frozen):
+class Run(Frozen):
     """What differs between two runs with the same input."""
 
     time: str
@@ -235,7 +232,7 @@ class Run(_Frozen):
     )
 
 
-class Plan(_Frozen):
+class Plan(Frozen):
     """Which cutters finish the target faces of a part, where each does not, and why."""
 
     format: Literal["plan-cutters-plan"] = "plan-cutters-plan"
@@ -251,9 +248,13 @@ class Plan(_Frozen):
     cutters: list[CutterEntry]
     selected: str | None
     selection: Selection
+    largest_radius: list[RadiusEntry] = Field(
+        default=[],
+        description="of bare flat and ball ends, whatever cutters there are; empty where it was not asked for",
+    )
     notes: list[str] = Field(description="what these verdicts do not say")
     legend: dict[str, str] = Field(description="colour of each verdict in the STEP and GLB files, sRGB")
     split: dict[str, SplitEntry] = Field(default={}, description="faces of mixed verdicts: how the models show them")
-    files: dict[str, FileEntry] = {}
+    files: dict[str, FileEntry] = Field(default={}, description="what was written beside this file, by format")
     not_written: dict[str, str] = Field(default={}, description="formats asked for whose file is missing, and why")
     run: Run

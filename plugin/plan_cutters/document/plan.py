@@ -5,9 +5,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from cad_io import SurfaceSamples
+from plan_cutters.document.answers import mend_entry, radius_entry, stick_out_entry
 from plan_cutters.document.build import area_notes, degrees, face_entries, missing_entries, notes, part_info, versions
 from plan_cutters.document.model import CutterEntry, Effective, Plan, Run, SampleCounts, Selection
 from plan_cutters.document.palette import PALETTE
+from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE
 from plan_cutters.scene.prepared import Prepared
 
@@ -16,9 +19,9 @@ RULE = "largest radius, then smaller corner radius, then shorter length, then li
 
 def plan_of(
     ready: Prepared, entries: Sequence[CutterEntry], selected: str | None, selection: Selection,
-    started: datetime.datetime,
+    started: datetime.datetime, answers: Answers,
 ) -> Plan:  # fmt: skip
-    """The plan of a part from the entries of its cutters."""
+    """The plan of a part from the entries of its cutters, and what was answered after them."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
     part, around = scene.part, scene.around
     return Plan(
@@ -47,6 +50,8 @@ def plan_of(
             flip=options.flip,
             area_budget=options.contacts_between(len(samples)),
             posture_maps=options.posture_maps,
+            answers=list(options.answers),
+            length_over_radius=options.length_over_radius,
         ),
         versions=versions(),
         samples=SampleCounts(
@@ -64,6 +69,7 @@ def plan_of(
         cutters=list(entries),
         selected=selected,
         selection=selection,
+        largest_radius=[radius_entry(found, samples) for found in answers.radius_maps],
         notes=[
             *notes(scene, options, samples, ready.cutters),
             *choice.notes,
@@ -72,6 +78,19 @@ def plan_of(
         legend=PALETTE,
         run=Run(time=started.isoformat(timespec="seconds"), seconds={}),
     )
+
+
+def answered(entries: Sequence[CutterEntry], answers: Answers, samples: SurfaceSamples) -> list[CutterEntry]:
+    """The entries of cutters with what was answered about them."""
+    found = []
+    for entry in entries:
+        stick_out, mend = answers.stick_outs.get(entry.id), answers.mends.get(entry.id)
+        more = {
+            "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples),
+            "mend": None if mend is None else mend_entry(mend),
+        }
+        found.append(entry.model_copy(update=more))
+    return found
 
 
 def selection(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:

@@ -50,6 +50,11 @@ class Reach(Record):
         return self.interference_free | (self.verdict == ACCESSIBLE)
 
     @property
+    def lost(self) -> NDArray[np.bool_]:
+        """Samples (n,) that are inaccessible or undecided."""
+        return np.asarray((self.verdict == INACCESSIBLE) | (self.verdict == UNDECIDED))
+
+    @property
     def interference_free(self) -> NDArray[np.bool_]:
         """Samples (n,) at which every rotation serves at tilt 0."""
         return np.asarray(self.verdict == INTERFERENCE_FREE)

@@ -9,7 +9,10 @@ import numpy as np
 
 
 def write_npz(result: Any, _split: object, path: Path) -> None:
-    """Write `samples.npz`: the samples, and per cutter verdict, axis, lean and reason with its id as suffix."""
+    """Write `samples.npz`: the samples, and per cutter verdict, axis, lean and reason with its id as suffix.
+
+    Where they were asked for, its least stick-outs, too, and the largest radii with `flat` and `ball` as suffix.
+    """
     samples = result.samples
     arrays = {
         "point": samples.point,
@@ -26,6 +29,14 @@ def write_npz(result: Any, _split: object, path: Path) -> None:
         arrays[f"axis_{name}"] = reach.axis
         arrays[f"lean_{name}"] = reach.lean
         arrays[f"reason_{name}"] = reach.reason
+    for name, found in result.answers.stick_outs.items():
+        if found.each is not None:
+            arrays[f"stick_out_{name}"] = found.each
+    for found in result.answers.radius_maps:
+        arrays[f"radius_{found.shape}"] = found.radius
+        arrays[f"radius_beyond_{found.shape}"] = found.beyond
+        arrays[f"radius_axis_{found.shape}"] = found.axis
+        arrays[f"radius_lean_{found.shape}"] = found.lean
     _write(arrays, path)
 
 

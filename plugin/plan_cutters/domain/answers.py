@@ -1,0 +1,60 @@
+"""The answers that may be asked for after the plan, and what was found."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from plan_cutters.domain.change import Mend
+from plan_cutters.domain.checks import items, shown
+from plan_cutters.domain.radius_map import RadiusMap
+from plan_cutters.domain.stick_out import StickOut
+from plan_cutters.errors import OptionError
+
+#: What may be asked for: how short each cutter can be held; the same for every sample; how large a cutter can be where, whatever
+#: cutters there are; what would make each cutter that fails finish the part.
+ANSWERS = ("stick-out", "stick-out-map", "radius", "mend")
+
+
+def answers_of(given: Any) -> tuple[str, ...]:
+    """Words of ANSWERS, each once and in that order; `all` for all of them; a text may hold several, joined by commas.
+
+    Raises
+    ------
+    OptionError
+        Another word.
+
+    Examples
+    --------
+    >>> answers_of("mend,stick-out")
+    ('stick-out', 'mend')
+    >>> answers_of("radii")
+    Traceback (most recent call last):
+    plan_cutters.errors.OptionError: answers: 'radii' is none of stick-out, stick-out-map, radius, mend and all
+    """
+    if isinstance(given, str):
+        words: list[Any] = given.split(",") if given.strip() else []
+    else:
+        words = items(given, "answers", "words", error=OptionError) if given is not None else []
+    found = {word.strip().lower() if isinstance(word, str) else word for word in words}
+    for word in sorted(found - {*ANSWERS, "all"}, key=str):
+        raise OptionError(f"answers: {shown(word)} is none of {', '.join(ANSWERS)} and all")
+    return ANSWERS if "all" in found else tuple(word for word in ANSWERS if word in found)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Answers:
+    """What was asked for after the plan.
+
+    Attributes
+    ----------
+    stick_outs : mapping
+        Cutter id -> StickOut.
+    radius_maps : tuple of RadiusMap
+        For flat ends, and for ball ends.
+    mends : mapping
+        Cutter id -> Mend, of those that do not finish the part.
+    """
+
+    stick_outs: Mapping[str, StickOut] = field(default_factory=dict)
+    radius_maps: tuple[RadiusMap, ...] = ()
+    mends: Mapping[str, Mend] = field(default_factory=dict)
