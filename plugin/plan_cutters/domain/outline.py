@@ -156,9 +156,9 @@ def _flutes(cutter: Cutter) -> Iterator[tuple[Point, Point | None, float]]:
         yield _tip(corner, tip_angle(cutter)) if corner else (flank(cutter, 0.0), 0.0), *_round((0.0, corner), corner)
         yield end, (r - cutter.arc_radius, cutter.arc_height), cutter.arc_radius
     elif cutter.shape == "lens":
-        bottom, centre = cutter.arc_radius, lens_height(cutter)
+        bottom, high = cutter.arc_radius, lens_height(cutter)
         yield _tip(bottom, tip_angle(cutter)), (0.0, bottom), bottom
-        yield (r, centre), *_round((r - corner, centre), corner)
+        yield (r, high), *_round((r - corner, high), corner)
         yield end, None, 0.0
     else:
         centre, lean = (r - corner, corner), cutter.taper

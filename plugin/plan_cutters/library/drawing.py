@@ -5,34 +5,22 @@ from typing import NamedTuple
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.outline import AnyPart, Outline, Segment, outline
-from plan_cutters.domain.shapes import flank, flute_length, stages, top_radius
-from plan_cutters.library.sheet import FONT, LINE, Point, Sheet, at, legible, length, width_of, wrapped
+from plan_cutters.domain.shapes import flute_length
+from plan_cutters.library.notes import Note, Span, across, description, facts_of, notes_of, spans_of
+from plan_cutters.library.sheet import ARROW, FONT, LINE, Point, Sheet, at, legible, length, width_of, wrapped
 
 #: A4 upright, its margin, and what stands around the view: room for arrows below the tip and for the axis above the end.
 _PAGE, _MARGIN, _BELOW, _ABOVE = (210.0, 297.0), 9.0, 15.0, 6.0
 #: Distance of dimension lines; of the view from what stands beside it; room for leaders; least width of a sheet.
 _COLUMN, _GAP, _LEADER, _LEAST = 6.5, 5.0, 9.0, 112.0
-#: The enlarged cutting end, and what is drawn smaller than this asks for it.
-_DETAIL, _SMALL = (44.0, 40.0), 6.0
-#: Letters of the id, most lines of names and ids, most points of a form that are written out.
-_FINE, _NAMES, _IDS, _POINTS = 2.2, 2, 3, 12
+#: The enlarged cutting end, room for words below it, and what is drawn smaller than this asks for it.
+_DETAIL, _LABELS, _SMALL = (44.0, 40.0), 6.0, 6.0
+#: Letters of the id, most lines of names and of ids.
+_FINE, _NAMES, _IDS = 2.2, 2, 3
+#: Parts whose lengths the notes tell as well.
+_NOTED = ("flutes", "neck", "shank")
 #: Directions closer to each other than this have no edge between them, rad.
 _SMOOTH = 1e-4
-
-
-class _Note(NamedTuple):
-    """Words beside the view about what lies at a point of the outline."""
-
-    at: Point
-    lines: list[str]
-
-
-class _Span(NamedTuple):
-    """A length along the axis, between two heights."""
-
-    low: float
-    high: float
-    words: str
 
 
 class _View(NamedTuple):
@@ -72,159 +60,91 @@ def draw(cutter: Cutter, *, name: str = "") -> str:
     """
     line = outline(cutter)
     title = legible(name or cutter.name or cutter.id)
-    notes, spans = _notes(cutter, line), _spans(cutter)
-    facts = _facts(cutter)
-    sheet = Sheet(title, _description(cutter, notes, spans, facts))
-    columns = _columns(spans, 1.0)
+    notes, spans = notes_of(cutter, line), spans_of(cutter)
+    facts = facts_of(cutter)
+    sheet = Sheet(title, description(cutter, notes, spans, facts))
     beside = max(width_of(words) for note in notes for words in note.lines)
-    room = _PAGE[0] - 2 * _MARGIN - 2 * _GAP - _LEADER - len(spans) * _COLUMN - beside
     high = _PAGE[1] - 2 * _MARGIN - _ABOVE - _BELOW - _block_height(_NAMES, _IDS, len(facts))
-    scale = min(1.0, _standard(min(room / (2.0 * line.widest), high / line.height)))
+    scale = _scale(line, spans, _PAGE[0] - 2 * _MARGIN - 2 * _GAP - _LEADER - beside, high)
     columns = _columns(spans, scale)
     wide, tall = scale * line.widest, scale * line.height
     zoom = _zoom(cutter, line, scale)
-    shown = _fitting(notes, high - (_DETAIL[1] + 2 * LINE if zoom else 0.0))
-    listed = sum(_height(note) for note in shown) + (_DETAIL[1] + 2 * LINE if zoom else 0.0)
-    left, top = _MARGIN + len(columns) * _COLUMN + _GAP, _MARGIN + _ABOVE
-    right = left + 2 * wide + _GAP + _LEADER
-    width = max(_LEAST, right + max(beside, _DETAIL[0] + 12.0 if zoom else 0.0) + _MARGIN)
-    # A narrow sheet is no narrower than its title: the view stands in its middle.
-    shift = 0.5 * (width - right - max(beside, _DETAIL[0] if zoom else 0.0) - _MARGIN)
-    bottom = top + max(tall, listed - _BELOW)
-    view = _View(left + wide + shift, top + tall, scale)
+    enlarged = _DETAIL[1] + 2 * LINE if zoom else 0.0
+    beside = max(beside, _DETAIL[0] + 12.0 if zoom else 0.0)
+    shown = _fitting(notes, high + _BELOW - enlarged)
+    right = _MARGIN + len(columns) * _COLUMN + _GAP + 2 * wide + _GAP + _LEADER
+    width = max(_LEAST, right + beside + _MARGIN)
+    # A sheet is no narrower than its title: the view stands in its middle.
+    right = 0.5 * (width + right - beside - _MARGIN)
+    top = _MARGIN + _ABOVE
+    bottom = top + max(tall + _BELOW, sum(map(_height, shown)) + enlarged)
+    view = _View(right - _LEADER - _GAP - wide, top + tall, scale)
     _assembly(sheet, line, view)
-    _lengths(sheet, columns, cutter, view, wide)
+    _lengths(sheet, columns, line, view)
     _across(sheet, cutter, view)
-    place = (right + shift, bottom + _BELOW - _DETAIL[1]) if zoom else (right + shift, bottom + _BELOW)
-    _leaders(sheet, shown, view, wide, (right + shift, top, place[1] - (2 * LINE if zoom else 0.0)))
+    _leaders(sheet, shown, view, wide, (right, top, bottom - enlarged))
     if zoom:
-        _detail(sheet, cutter, line, view, zoom, place)
-    foot = bottom + _BELOW + 3.0
-    end = _block(sheet, (title, cutter.id), facts, line.parts, scale, foot, width)
+        _detail(sheet, cutter, line, view, zoom, (right, bottom - _DETAIL[1]))
+    end = _block(sheet, (title, cutter.id), facts, line.parts, scale, bottom + 3.0, width)
     return sheet.finished(width, end, scale=f"{scale:.10g}")
+
+
+def _scale(line: Outline, spans: list[Span], wide: float, high: float) -> float:
+    """The largest standard scale, 1:1 at most, in which the view fits a width with its dimension lines, and a height."""
+    scale = min(1.0, _standard(min(wide / (2.0 * line.widest), high / line.height)))
+    while 2.0 * scale * line.widest + len(_columns(spans, scale)) * _COLUMN > wide:
+        scale = _standard(0.9 * scale)
+    return scale
 
 
 def _standard(most: float) -> float:
     """The largest standard scale that is no larger: 1, 2 or 5 times a power of ten."""
     power = 10.0 ** math.floor(math.log10(most))
-    return max(step * power for step in (0.5, 1.0, 2.0, 5.0) if step * power <= most * (1.0 + 1e-9))
+    return max(step * power for step in (0.5, 1.0, 2.0, 5.0, 10.0) if step * power <= most * (1.0 + 1e-9))
 
 
 def _words(scale: float) -> str:
     return f"{scale:g}:1" if scale >= 1.0 else f"1:{1.0 / scale:g}"
 
 
-def _across_words(radius: float, upper: float | None = None) -> str:
-    words = f"Ø{length(2 * radius)}"
-    return words if upper is None or upper == radius else f"{words} to Ø{length(2 * upper)}"
+def _columns(spans: list[Span], scale: float) -> list[list[tuple[Span, str]]]:
+    """Spans and what is written on them in columns, from the view outwards: short ones first, and none over another's words.
 
-
-def _notes(cutter: Cutter, line: Outline) -> list[_Note]:
-    """What is said of each part and stage, from the tip up."""
-    flutes = max((s for s in line.of("flutes") if s.end[1] > s.start[1]), key=lambda s: s.end[1] - s.start[1])
-    found = [_Note(flutes.at(0.5), _cutting(cutter))]
-    holder = 0
-    for part, low, stage in stages(cutter):
-        holder += part == "holder"
-        which = f"holder {holder}" if part == "holder" and cutter.holder and len(cutter.holder.stages) > 1 else part
-        middle = 0.5 * (stage.radius + stage.upper_radius), low + 0.5 * stage.length
-        words = f"{which} {_across_words(stage.radius, stage.upper_radius)} × {length(stage.length)}"
-        found.append(_Note(middle, [words]))
-    return found
-
-
-def _cutting(cutter: Cutter) -> list[str]:
-    """The dimensions of the cutting part."""
-    corner = cutter.corner_radius
-    lines = [f"flutes {_across_words(cutter.radius)} × {length(flute_length(cutter))}"]
-    if cutter.shape == "lollipop":
-        lines.append(f"ball R{length(corner)}")
-    elif cutter.shape == "barrel":
-        lines.append(f"flank R{length(cutter.arc_radius)}")
-        lines.append(f"widest {length(cutter.arc_height)} over the tip")
-        lines.append(f"tip R{length(corner)}" if corner else f"flat tip {_across_words(flank(cutter, 0.0))}")
-    elif cutter.shape == "lens":
-        lines += [f"bottom R{length(cutter.arc_radius)}", f"corner R{length(corner)}"]
-    elif cutter.shape == "form":
-        points = cutter.outline
-        lines.append(f"form of {len(points)} points: Ø at height")
-        lines += [f"{_across_words(r)} at {length(h)}" for r, h in points[:_POINTS]]
-        lines += [f"… and {len(points) - _POINTS} more"] if len(points) > _POINTS else []
-    else:
-        ball = f"ball R{length(corner)}" if corner == cutter.radius else f"corner R{length(corner)}"
-        lines.append(ball if corner else "flat, sharp corner")
-        if cutter.taper:
-            angle = length(math.degrees(abs(cutter.taper)))
-            lines.append(f"{'taper' if cutter.taper > 0 else 'undercut'} {angle}° (half angle)")
-    if abs(top_radius(cutter) - cutter.radius) > 1e-9 and cutter.shape in ("end", "barrel"):
-        lines.append(f"{_across_words(top_radius(cutter))} where the flutes end")
-    return lines
-
-
-def _spans(cutter: Cutter) -> list[_Span]:
-    top, found = flute_length(cutter), []
-    if stages(cutter):
-        found.append(_Span(0.0, top, "flutes"))
-    found += [_Span(low, low + stage.length, part) for part, low, stage in stages(cutter) if part != "holder"]
-    found.append(_Span(0.0, cutter.length, "stick-out" if cutter.holder else "length"))
-    if cutter.holder:
-        end = cutter.length + sum(stage.length for stage in cutter.holder.stages)
-        found += [_Span(cutter.length, end, "holder"), _Span(0.0, end, "overall")]
-    found = list({(span.low, span.high): span for span in reversed(found)}.values())
-    return [span._replace(words=f"{span.words} {length(span.high - span.low)}") for span in found]
-
-
-def _columns(spans: list[_Span], scale: float) -> list[list[_Span]]:
-    """Spans in columns, from the view outwards: short ones first, and none over the words of another."""
-    columns: list[list[_Span]] = []
-    taken: list[list[tuple[float, float]]] = []
+    A span of the cutter too short for its words has its number alone; one that is too short for that is left to the notes.
+    """
+    columns: list[list[tuple[Span, str]]] = []
+    taken: list[list[Point]] = []
     for span in sorted(spans, key=lambda each: each.high - each.low):
-        middle = 0.5 * scale * (span.low + span.high)
-        half = 0.5 * max(scale * (span.high - span.low), width_of(span.words) + 1.0)
+        room, words = scale * (span.high - span.low), span.words
+        if span.name in _NOTED and width_of(words) > room:
+            words = span.number
+            if max(width_of(words), 3.0 * ARROW) > room:
+                continue
+        middle, half = 0.5 * scale * (span.low + span.high), 0.5 * max(room, width_of(words) + 1.0)
         mine = (middle - half, middle + half)
         for column, others in zip(columns, taken, strict=True):
             if all(mine[1] <= low + 1e-6 or mine[0] >= high - 1e-6 for low, high in others):
-                column.append(span)
+                column.append((span, words))
                 others.append(mine)
                 break
         else:
-            columns.append([span])
+            columns.append([(span, words)])
             taken.append([mine])
     return columns
 
 
-def _facts(cutter: Cutter) -> list[str]:
-    """What is true of the whole."""
-    holder = "no holder"
-    if cutter.holder:
-        holder = f"holder: {legible(cutter.holder.name)}" if cutter.holder.name else "with its holder"
-    found = [holder]
-    if cutter.allowance:
-        found.append(f"allowance {length(cutter.allowance)} on the surface, not drawn")
-    if cutter.clearance:
-        found.append(f"clearance {length(cutter.clearance)} of neck, shank and holder, not drawn")
-    return found
-
-
-def _description(cutter: Cutter, notes: list[_Note], spans: list[_Span], facts: list[str]) -> str:
-    """All of it in words, for whoever sees no picture; nothing is left out here."""
-    form = "; ".join(f"{_across_words(r)} at height {length(h)}" for r, h in cutter.outline)
-    said = [f"Tool assembly {cutter.id}, in mm, from the tip up", *(", ".join(note.lines) for note in notes)]
-    return "; ".join([*said, *(span.words for span in spans), *facts, *([form] if form else [])]) + "."
-
-
-def _height(note: _Note) -> float:
+def _height(note: Note) -> float:
     return LINE * len(note.lines) + 0.8
 
 
-def _fitting(notes: list[_Note], room: float) -> list[_Note]:
+def _fitting(notes: list[Note], room: float) -> list[Note]:
     """The notes for which there is room, from the tip up, and how many there are besides."""
     if sum(map(_height, notes)) <= room:
         return notes
     count = 1
-    while count < len(notes) and sum(map(_height, notes[: count + 1])) + LINE <= room:
+    while count < len(notes) and sum(map(_height, notes[: count + 1])) + 2 * LINE + 0.8 <= room:
         count += 1
-    rest = _Note(notes[count].at, [f"… {len(notes) - count} more stages: see the description"])
+    rest = Note(notes[count].at, [f"… {len(notes) - count} more stages:", "see description"])
     return [*notes[:count], rest]
 
 
@@ -262,17 +182,16 @@ def _edges(line: Outline) -> list[Point]:
     return found
 
 
-def _lengths(sheet: Sheet, columns: list[list[_Span]], cutter: Cutter, view: _View, wide: float) -> None:
+def _lengths(sheet: Sheet, columns: list[list[tuple[Span, str]]], line: Outline, view: _View) -> None:
     """Dimension lines along the axis, in columns left of the view."""
-    line = outline(cutter)
     for i, column in enumerate(columns):
-        x = view.x - wide - _GAP - i * _COLUMN
-        for span in column:
+        x = view.x - view.scale * line.widest - _GAP - i * _COLUMN
+        for span, words in column:
             low, high = view.y - view.scale * span.low, view.y - view.scale * span.high
             for height, y in ((span.low, low), (span.high, high)):
                 sheet.lines(((view.x - view.scale * _radius(line, height) - 0.8, y), (x - 1.2, y)), "fine")
             sheet.between((x, low), (x, high))
-            sheet.text(x - 1.0, 0.5 * (low + high), span.words, anchor="middle", upright=True)
+            sheet.text(x - 1.0, 0.5 * (low + high), words, anchor="middle", upright=True)
 
 
 def _radius(line: Outline, height: float) -> float:
@@ -287,10 +206,10 @@ def _across(sheet: Sheet, cutter: Cutter, view: _View) -> None:
     for side in (-r, r):
         sheet.lines(((view.x + side, view.y + 0.8), (view.x + side, y + 1.2)), "fine")
     sheet.between((view.x - r, y), (view.x + r, y))
-    sheet.text(view.x, y + 3.6, _across_words(cutter.radius), anchor="middle")
+    sheet.text(view.x, y + 3.6, across(cutter.radius), anchor="middle")
 
 
-def _leaders(sheet: Sheet, notes: list[_Note], view: _View, wide: float, room: tuple[float, float, float]) -> None:
+def _leaders(sheet: Sheet, notes: list[Note], view: _View, wide: float, room: tuple[float, float, float]) -> None:
     """Notes right of the view, each at the height of what it is about as nearly as the others let it."""
     from scipy.optimize import isotonic_regression
 
@@ -313,31 +232,35 @@ def _leaders(sheet: Sheet, notes: list[_Note], view: _View, wide: float, room: t
 
 def _zoom(cutter: Cutter, line: Outline, scale: float) -> float:
     """The scale of the enlarged cutting end; 0 where nothing of it is small."""
-    flutes = line.of("flutes")
-    least = min([2.0 * cutter.radius, *(s.length for s in flutes if s.centre or cutter.shape == "form")])
-    high = max((s.end[1] for s in flutes if s.centre), default=cutter.radius)
-    if cutter.shape == "form":
-        high = flute_length(cutter)
-    found = _standard(min(_DETAIL[0] / max(s.widest for s in flutes), _DETAIL[1] / high))
-    return found if scale * least < _SMALL and found > scale else 0.0
+    features = [s for s in line.of("flutes") if s.centre or cutter.shape == "form"]
+    if not features:
+        return 0.0
+    least = min(features, key=lambda s: s.length)
+    high = flute_length(cutter) if cutter.shape == "form" else least.end[1]
+    found = _standard(min(_DETAIL[0] / cutter.radius, (_DETAIL[1] - _LABELS) / high))
+    return found if scale * min(2.0 * cutter.radius, least.length) < _SMALL and found > scale else 0.0
 
 
 def _detail(sheet: Sheet, cutter: Cutter, line: Outline, view: _View, zoom: float, place: Point) -> None:
     """The cutting end, enlarged, right of its axis."""
     x, y = place
-    near = _View(x, y + _DETAIL[1] - 3.0, zoom)
-    sheet.window(x - 0.2, y, _DETAIL[0], _DETAIL[1] - 2.5)
+    tall = _DETAIL[1] - _LABELS
+    near = _View(x, y + tall, zoom)
+    sheet.window(x - 0.2, y, _DETAIL[0] + 0.4, tall + 0.4)
     for part in line.parts:
         sheet.fill(_silhouette(line.of(part), near), part, f"detail {part}")
     sheet.window(0, 0, 0, 0)
-    sheet.lines(((x, y - 1.0), (x, y + _DETAIL[1])), "axis")
+    sheet.lines(((x, y - 1.0), (x, y + tall + 3.0)), "axis")
     sheet.text(x, y - 2.5, f"A ({_words(zoom)})", bold=True)
-    seen = max(1.6, 0.5 * view.scale * _DETAIL[1] / zoom)
-    sheet.circle((view.x, view.y - 0.6 * seen), 1.2 * seen, "mark")
-    sheet.text(view.x - 1.2 * seen - 1.0, view.y - 0.6 * seen, "A", anchor="end", bold=True)
+    seen = view((0.5 * cutter.radius, 0.5 * tall / zoom))
+    around = max(2.2, math.dist(seen, (view.x, view.y)))
+    sheet.circle(seen, around, "mark")
+    sheet.text(seen[0] + 0.75 * around + 0.6, seen[1] + 0.75 * around + 2.5, "A", bold=True)
     for segment in line.of("flutes"):
-        if segment.centre:
-            point, (a, b) = near(segment.at(0.5)), segment.direction(0.5)
+        # The highest of some points of an arc that can be seen.
+        points = [share for share in (0.5, 0.25, 0.1) if segment.at(share)[1] <= 0.9 * tall / zoom]
+        if segment.centre and points:
+            point, (a, b) = near(segment.at(points[0])), segment.direction(points[0])
             end = (point[0] + 5.0 * b, point[1] + 5.0 * a)
             sheet.lines((end, point), "fine")
             sheet.arrow(point, end)

@@ -13,16 +13,17 @@ FONT, LINE = 2.8, 4.0
 #: A letter is no wider than this share of its height in the usual sans-serif fonts, on average; bold ones are wider.
 _LETTER, _BOLD = 0.6, 0.68
 _FAMILY = "Arial, Helvetica, 'Liberation Sans', 'DejaVu Sans', sans-serif"
-_ARROW = (2.4, 0.4)
+#: Length and half width of arrow heads.
+ARROW, _HALF = 2.4, 0.4
 #: Marks that turn the direction of what is written after them.
 _TURNING = frozenset("\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
 
-#: Fills: ground, colour of its hatching, angle of that, deg (None: no hatching), distance of its lines.
-FILLS: dict[str, tuple[str, str, float | None, float]] = {
-    "flutes": ("#FFD27A", "#7A4A00", 45.0, 1.2),
-    "neck": ("#FFF6DD", "#8C6D1F", 90.0, 1.6),
-    "shank": ("#D9D9D9", "#D9D9D9", None, 1.0),
-    "holder": ("#BBD5EA", "#2F5D86", -45.0, 2.6),
+#: Fills: the ground; colour, angle, deg, and distance of the strokes on it, and how long each of them is (distance: a line).
+FILLS: dict[str, tuple[str, str, float, float, float]] = {
+    "flutes": ("#FFD27A", "#7A4A00", 45.0, 1.2, 1.2),
+    "neck": ("#FFF6DD", "#8C6D1F", 45.0, 1.3, 0.3),
+    "shank": ("#D9D9D9", "#D9D9D9", 0.0, 1.0, 0.0),
+    "holder": ("#BBD5EA", "#2F5D86", -45.0, 2.6, 2.6),
 }
 _PENS = {
     "edge": {"stroke": "#000", "stroke-width": "0.35", "stroke-linejoin": "round"},
@@ -50,15 +51,16 @@ def width_of(text: str, size: float = FONT, *, bold: bool = False) -> float:
 
 
 def wrapped(text: str, width: float, size: float, most: int, *, bold: bool = False) -> list[str]:
-    """A text in lines of a width, broken after blanks where there are some; an ellipsis ends what takes more than `most`."""
-    lines, rest = [], text
+    """A text in lines of a width, broken after blanks or plus signs where it can be; an ellipsis ends more than `most` lines."""
+    lines: list[str] = []
+    rest = text
     while rest and len(lines) < most:
         fits = len(rest)
         while fits > 1 and width_of(rest[:fits], size, bold=bold) > width:
             # The estimate is a sum over letters: a guess by share comes close, then one by one.
             fits = max(1, min(fits - 1, math.ceil(fits * width / width_of(rest[:fits], size, bold=bold))))
-        if fits < len(rest) and " " in rest[1:fits]:
-            fits = rest.rindex(" ", 1, fits) + 1
+        if fits < len(rest):
+            fits = max(rest.rfind(" ", 1, fits), rest.rfind("+", 1, fits)) + 1 or fits
         lines.append(rest[:fits].rstrip())
         rest = rest[fits:]
     if rest:
@@ -67,9 +69,11 @@ def wrapped(text: str, width: float, size: float, most: int, *, bold: bool = Fal
 
 
 def length(value: float) -> str:
-    """A length for people: mm with up to four decimals, as few as it has; tiny ones with four digits."""
+    """A length for people: mm with up to four decimals, as few as it has; tiny and huge ones with six digits."""
+    if abs(value) >= 1e7:
+        return f"{value:.6g}"
     text = f"{value:.4f}".rstrip("0").rstrip(".")
-    return f"{value:.4g}" if text in ("0", "-0") and value else text
+    return f"{value:.6g}" if text in ("0", "-0") and value else text
 
 
 def _mm(value: float) -> str:
@@ -88,7 +92,7 @@ class Sheet:
 
     def __init__(self, title: str, description: str) -> None:
         # Several drawings may stand in one page: their ids must differ.
-        self.key = f"d{zlib.crc32(description.encode('utf-8', 'replace')):08x}"
+        self.key = f"d{zlib.crc32((title + description).encode()):08x}"
         self.root = ET.Element("svg", {"xmlns": "http://www.w3.org/2000/svg", "role": "img",
                                        "aria-labelledby": f"{self.key}-title {self.key}-desc"})  # fmt: skip
         self._add(self.root, "title", {"id": f"{self.key}-title"}).text = title
@@ -120,15 +124,16 @@ class Sheet:
 
     def fill(self, path: str, name: str, kind: str) -> None:
         """A closed path in the fill of a part; `kind` is its class."""
-        ground, colour, angle, gap = FILLS[name]
+        ground, colour, angle, gap, stroke = FILLS[name]
         id_ = f"{self.key}-{name}"
-        if angle is not None and self._defs.find(f"pattern[@id='{id_}']") is None:
+        if self._defs.find(f"pattern[@id='{id_}']") is None:
             pattern = self._add(self._defs, "pattern", {"id": id_, "width": _mm(gap), "height": _mm(gap), "patternUnits":
                                 "userSpaceOnUse", "patternTransform": f"rotate({angle:g})"})  # fmt: skip
             self._add(pattern, "rect", {"width": _mm(gap), "height": _mm(gap), "fill": ground})
-            self._add(pattern, "path", {"d": f"M0 0H{_mm(gap)}", "stroke": colour, "stroke-width": "0.3"})
-        paint = ground if angle is None else f"url(#{id_})"
-        self.path(path, "edge", fill=paint, kind=kind)
+            if stroke:
+                line = {"d": f"M0 {_mm(0.5 * gap)}h{_mm(stroke)}", "stroke": colour, "stroke-width": "0.25"}
+                self._add(pattern, "path", line)
+        self.path(path, "edge", fill=f"url(#{id_})", kind=kind)
 
     def path(self, path: str, pen: str, *, fill: str = "", kind: str = "") -> None:
         found = self._add(self._lines, "path", {"d": path, **_PENS[pen]})
@@ -159,21 +164,20 @@ class Sheet:
         """A filled arrow head whose tip points away from `tail`."""
         away = math.dist(tip, tail)
         along = ((tail[0] - tip[0]) / away, (tail[1] - tip[1]) / away)
-        long, half = _ARROW
-        base = (tip[0] + long * along[0], tip[1] + long * along[1])
-        corners = [tip, *((base[0] + side * along[1], base[1] - side * along[0]) for side in (half, -half))]
+        base = (tip[0] + ARROW * along[0], tip[1] + ARROW * along[1])
+        corners = [tip, *((base[0] + side * along[1], base[1] - side * along[0]) for side in (_HALF, -_HALF))]
         self.path("M" + "L".join(map(at, corners)) + "Z", "fine", fill="#000")
 
     def between(self, a: Point, b: Point) -> None:
         """A dimension line with arrow heads at its ends: from within where there is room, else from without."""
         apart = math.dist(a, b)
-        if apart >= 3.0 * _ARROW[0]:
+        if apart >= 3.0 * ARROW:
             self.lines((a, b), "fine")
             self.arrow(a, b)
             self.arrow(b, a)
             return
         along = ((b[0] - a[0]) / apart, (b[1] - a[1]) / apart) if apart else (1.0, 0.0)
-        out = [(end[0] + way * 2 * _ARROW[0] * along[0], end[1] + way * 2 * _ARROW[0] * along[1])
+        out = [(end[0] + way * 2 * ARROW * along[0], end[1] + way * 2 * ARROW * along[1])
                for end, way in ((a, -1), (b, 1))]  # fmt: skip
         self.lines((out[0], out[1]), "fine")
         self.arrow(a, out[0])
