@@ -51,6 +51,8 @@ def summary(plan: "Plan") -> None:
     for area in (c.area for c in plan.cutters if c.area):
         console.print(f"Between samples: {_percent(area.share)} of the target area is served with the axes found "
                       f"({area.contacts} contacts looked at).")  # fmt: skip
+    for line in answered(plan):
+        console.print(line)
     for warning in plan.part.warnings:
         console.print(f"Warning: {warning}")
     for note in plan.notes:
@@ -60,6 +62,57 @@ def summary(plan: "Plan") -> None:
             console.print(f"Not judged: {face.id} ({face.unjudged}).")
     for line in _missing(plan):
         console.print(line)
+
+
+def answered(plan: "Plan") -> list[str]:
+    """What was asked for after the plan."""
+    lines = []
+    for c in plan.cutters:
+        found = c.least_stick_out
+        if found is None:
+            continue
+        if found.least_mm is None:
+            lines.append(f"Least stick-out of {c.id}: not asked, {_HELD[found.limited_by]}.")
+            continue
+        why = "its flutes and neck end there"
+        if found.point is not None:
+            why = f"limited at {_place(found.point)} on {found.face} by {found.obstacle_face or 'the part'}"
+        lines.append(f"Least stick-out of {c.id}: {found.least_mm:.2f} mm instead of {found.longest_mm:g} mm; {why}.")
+    for each in plan.largest_radius:
+        q = {name: f"R{radius:.3g}" for name, radius in each.percentiles_mm.items()}
+        if not q or each.bottleneck_mm is None or each.bottleneck_point is None:
+            continue
+        where = f"{_place(each.bottleneck_point)} on {each.bottleneck_face}"
+        all_of_it = f"R{each.bottleneck_mm:.3g} reaches every sample" if each.bottleneck_mm else (
+            f"not even R{each.least_mm:.3g} reaches {each.below} samples"
+        )  # fmt: skip
+        least = (
+            f"R{each.most_mm:.3g}, the largest tried" if each.reason is None else f"{where} ({_spoken(each.reason)})"
+        )
+        lines.append(f"Largest {each.shape} end, {each.length_over_radius:g} radii long: {all_of_it}, half of the area takes "
+                     f"{q['50']} or more; the narrowest: {least}.")  # fmt: skip
+    for c in plan.cutters:
+        if c.mend is None:
+            continue
+        helping = [change.why for change in c.mend.changes if change.helps]
+        unsure = [change.why for change in c.mend.changes if change.helps is None]
+        text = "; or ".join(helping) if helping else c.mend.why or "no change of one thing was found to help"
+        lines.append(f"What would make {c.id} finish: {text}.")
+        if unsure and not helping:
+            lines.append(f"  Not decided: {'; '.join(unsure)}.")
+    return lines
+
+
+#: Why no stick-out was looked for.
+_HELD = {"no holder": "it has no holder", "reaches nothing": "it reaches nothing"}
+
+
+def _place(point: Sequence[float]) -> str:
+    return f"({', '.join(f'{x:.4g}' for x in point)})"
+
+
+def _spoken(reason: str) -> str:
+    return reason.replace("_", " ")
 
 
 def _side(plan: "Plan") -> str:
