@@ -241,7 +241,7 @@ FINE = {
     },
     "Cutter": {
         "radius": "three, a half", "length": "three, a half", "corner_radius": "three, a half", "name": "no text, text",
-        "taper": "a half", "flutes": "None, three, a half", "shank_radius": "None", "neck": "None", "holder": "None",
+        "taper": "a half", "flutes": "None, three, a half", "shank_radius": "None", "neck": "None, no list", "holder": "None",
         "shape": "", "arc_radius": "", "outline": "no list", "allowance": "None, three, a half",
         "clearance": "None, three, a half",
     },

@@ -16,7 +16,7 @@ from plan_cutters import Cutter
 def flutes_of(c):
     """The chain of what cuts, without its top, and the height at which it ends."""
     r, rc = c.radius, c.corner_radius
-    top = c.flutes if c.flutes is not None else c.length - (c.neck.length if c.neck else 0.0)
+    top = c.flutes if c.flutes is not None else c.length - sum(neck.length for neck in c.necks)
     if c.shape == "lollipop":
         last = math.acos(c.shank_radius / r)
         return [("arc", 0.0, r, r, -math.pi / 2, last)], r + r * math.sin(last)
@@ -57,9 +57,9 @@ def end_of(element):
 def stages_of(c, top, radius):
     """Bands (low, high, lower and upper radius) above the flutes, which end at a height with a radius."""
     found = []
-    if c.neck:
-        found.append((top, top + c.neck.length, c.neck.radius, c.neck.upper_radius))
-        top, radius = top + c.neck.length, c.neck.upper_radius
+    for neck in c.necks:
+        found.append((top, top + neck.length, neck.radius, neck.upper_radius))
+        top, radius = top + neck.length, neck.upper_radius
     if c.length - top > 1e-9:
         wide = radius if c.shank_radius is None else c.shank_radius
         found.append((top, c.length, wide, wide))
@@ -223,7 +223,10 @@ def random_cutter(rng, kind, *, bare=False, loose=True):
 
         thin = float(rng.uniform(0.4, 1.1) * r)
         upper = thin if rng.random() < 0.5 else float(rng.uniform(0.4, 1.1) * r)
-        more["neck"] = Stage(thin, float(rng.uniform(1, 4)), upper)
+        reach = float(rng.uniform(1, 4))
+        more["neck"] = Stage(thin, reach, upper)
+        if rng.random() < 0.3:
+            more["neck"] = Stage(thin, 0.4 * reach, upper), Stage(float(rng.uniform(0.4, 1.1) * r), 0.6 * reach)
     cut = {} if bare else {"flutes": flutes}
     b = float(np.radians(rng.uniform(2, 15)))
     neck = float(rng.uniform(0.2, 0.8)) * r

@@ -24,6 +24,7 @@ _HOME = {
     "PlanError": "errors",
     "CutterError": "errors",
     "MachineError": "errors",
+    "LibraryError": "errors",
     "OptionError": "errors",
 }
 __all__ = ["__version__", *sorted(_HOME)]

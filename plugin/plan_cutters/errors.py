@@ -29,5 +29,9 @@ class MachineError(OptionError):
     """A machine is unknown or contradicts itself."""
 
 
+class LibraryError(PlanError):
+    """A tool library cannot be read, or holds no tool that can be used."""
+
+
 class UnjudgeableError(PlanError):
     """The part was read, but holds nothing that could be judged."""

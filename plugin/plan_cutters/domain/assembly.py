@@ -43,7 +43,8 @@ from plan_cutters.domain.pieces import (
     sharpest,
     solid,
 )
-from plan_cutters.domain.shapes import Mode, flute_length, modes, stages, top_lean, top_radius
+from plan_cutters.domain.shapes import MOST_PIECES, Mode, flute_length, modes, stages, top_lean, top_radius
+from plan_cutters.errors import CutterError
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -184,6 +185,8 @@ def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "cover"
             rows += among(band, start, end, exact=(cutter.clearance or 0.0) > 0.0)
             start = after
     table = np.array([row for row in rows if solid(row)], float).reshape(-1, COLUMNS)
+    if len(table) > MOST_PIECES:
+        raise CutterError(f"cutter {cutter.id}: it has more sections than can be judged; give fewer that enclose it")
     found = modes(cutter)
     touching = np.array([_mode(mode, cutter.allowance or 0.0) for mode in found])
     placed = np.repeat(table[None], len(found), axis=0)

@@ -32,8 +32,8 @@ class Dimensions:
         Half angle, rad: positive where the radius grows from the tip up, negative for a dovetail.
     flutes : float, optional
         Height over the tip up to which it cuts, mm. None: up to the first stage above, or all of its length.
-    neck : Stage, optional
-        What stands right above the flutes.
+    neck : Stage or tuple of Stage, optional
+        What stands right above the flutes: one section, or several from there up.
     shank_radius : float, optional
         From there up to `length`, mm. None: the part that cuts, or the neck, goes on.
     holder : Holder, optional
@@ -53,7 +53,7 @@ class Dimensions:
     name: str = ""
     taper: float = 0.0
     flutes: float | None = None
-    neck: Stage | None = None
+    neck: Stage | tuple[Stage, ...] | None = None
     shank_radius: float | None = None
     holder: Holder | None = None
     shape: Shape = "end"
@@ -81,10 +81,33 @@ class Dimensions:
                 object.__setattr__(self, word, positive(getattr(self, word), f"cutter {word}", zero=True))
         if isinstance(self.holder, str):
             object.__setattr__(self, "holder", Holder.parse(self.holder))
-        for word, kind in (("neck", Stage), ("holder", Holder)):
-            if not isinstance(getattr(self, word), kind | None):
-                raise CutterError(f"a cutter's {word} must be a {kind.__name__}, not {shown(getattr(self, word))}")
+        if not isinstance(self.holder, Holder | None):
+            raise CutterError(f"a cutter's holder must be a Holder, not {shown(self.holder)}")
+        object.__setattr__(self, "neck", _neck(self.neck))
         object.__setattr__(self, "outline", points_of(self.outline))
+
+    @property
+    def necks(self) -> tuple[Stage, ...]:
+        """The sections of the neck, from the flutes up; none where there is no neck."""
+        if self.neck is None:
+            return ()
+        return (self.neck,) if isinstance(self.neck, Stage) else self.neck
+
+    @property
+    def neck_length(self) -> float:
+        """Of all sections of the neck, mm."""
+        return math.fsum(stage.length for stage in self.necks)
+
+
+def _neck(given: Any) -> Stage | tuple[Stage, ...] | None:
+    """One section as itself, several as a tuple: so that one neck has one form."""
+    if given is None or isinstance(given, Stage):
+        return given
+    found = items(given, "a cutter's neck", "stages", error=CutterError)
+    for each in found:
+        if not isinstance(each, Stage):
+            raise CutterError(f"a cutter's neck must be a Stage or several, not {shown(each)}")
+    return tuple(found) if len(found) > 1 else found[0] if found else None
 
 
 def points_of(outline: Any) -> tuple[tuple[float, float], ...]:

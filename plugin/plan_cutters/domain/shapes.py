@@ -12,6 +12,8 @@ from plan_cutters.errors import CutterError
 Part = Literal["neck", "shank", "holder"]
 #: Radii and heights this close to each other, mm, are the same.
 SAME = 1e-9
+#: Pieces that an assembly may have: the search keeps a mask of those still in reach, a bit for each.
+MOST_PIECES = 62
 _RIGHT = math.pi / 2
 #: A flank steeper than this is none, rad.
 _STEEPEST = math.radians(80)
@@ -49,7 +51,7 @@ def flute_length(cutter: Dimensions) -> float:
         return cutter.outline[-1][1]
     if cutter.flutes is not None:
         return cutter.flutes
-    return cutter.length - (cutter.neck.length if cutter.neck else 0.0)
+    return cutter.length - cutter.neck_length
 
 
 def top_radius(cutter: Dimensions) -> float:
@@ -102,13 +104,13 @@ def stages(cutter: Dimensions) -> tuple[tuple[Part, float, Stage], ...]:
     """What stands above the flutes, from there up: its part, the height at which it begins, the stage."""
     found: list[tuple[Part, float, Stage]] = []
     top = flute_length(cutter)
-    if cutter.neck is not None:
-        found.append(("neck", top, cutter.neck))
-        top += cutter.neck.length
+    for stage in cutter.necks:
+        found.append(("neck", top, stage))
+        top += stage.length
     if cutter.length - top > SAME:
         radius = cutter.shank_radius
         if radius is None:
-            radius = cutter.neck.upper_radius if cutter.neck else top_radius(cutter)
+            radius = cutter.necks[-1].upper_radius if cutter.necks else top_radius(cutter)
         part: Part = "neck" if cutter.shape == "lollipop" else "shank"
         found.append((part, top, Stage(radius, cutter.length - top)))
     top = cutter.length
@@ -116,6 +118,12 @@ def stages(cutter: Dimensions) -> tuple[tuple[Part, float, Stage], ...]:
         found.append(("holder", top, stage))
         top += stage.length
     return tuple(found)
+
+
+def pieces_at_most(cutter: Dimensions) -> int:
+    """Pieces that a cutter can come to: of a section its side with two round edges, or with what joins it to the next one."""
+    sides = max(0, len(cutter.outline) - 1) * (3 if cutter.allowance else 1)
+    return sum(4 if stage.slope else 3 for _, _, stage in stages(cutter)) + max(4, sides) + 2
 
 
 def modes(cutter: Dimensions) -> tuple[Mode, ...]:
@@ -172,13 +180,20 @@ def check(cutter: Dimensions, name: str) -> None:
     if top > cutter.length + SAME:
         raise CutterError(f"{name}: it is {cutter.length:g} mm long, shorter than its flutes of {top:g} mm")
     if top <= 0.0:
-        raise CutterError(f"{name}: the neck of {cutter.neck.length if cutter.neck else 0:g} mm leaves no flutes")
-    if cutter.neck is not None and top + cutter.neck.length > cutter.length + SAME:
+        raise CutterError(f"{name}: the neck of {cutter.neck_length:g} mm leaves no flutes")
+    if cutter.necks and top + cutter.neck_length > cutter.length + SAME:
         raise CutterError(
-            f"{name}: flutes and neck take {top + cutter.neck.length:g} mm, more than the length of {cutter.length:g} mm"
+            f"{name}: flutes and neck take {top + cutter.neck_length:g} mm, more than the length of {cutter.length:g} mm"
         )
-    if cutter.shank_radius is not None and cutter.length - top - (cutter.neck.length if cutter.neck else 0.0) <= SAME:
+    # Of a lollipop it is the neck under the ball, whatever stands above.
+    shank = cutter.shank_radius is not None and not (cutter.shape == "lollipop" and cutter.necks)
+    if shank and cutter.length - top - cutter.neck_length <= SAME:
         raise CutterError(f"{name}: its flutes and neck reach up to its length, which leaves no room for a shank")
+    if pieces_at_most(cutter) > MOST_PIECES:
+        raise CutterError(
+            f"{name}: it has {len(stages(cutter))} sections above its flutes and {len(cutter.outline)} points of an outline, "
+            f"too many to judge: give fewer that enclose it"
+        )
     above = stages(cutter)
     last = next((stage.upper_radius for part, _, stage in reversed(above) if part != "holder"), top_radius(cutter))
     if cutter.holder is not None and cutter.holder.stages[0].radius < last - SAME:

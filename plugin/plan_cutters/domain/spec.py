@@ -11,16 +11,18 @@ from plan_cutters.errors import CutterError
 
 _CUTTER = re.compile(
     rf"R(?P<radius>{NUMBER})L(?P<length>{NUMBER})(?:rc(?P<corner>{NUMBER}))?(?:T(?P<taper>{NUMBER}))?"
-    rf"(?:F(?P<flutes>{NUMBER}))?(?:N(?P<neck>{NUMBER})x(?P<reach>{NUMBER}))?(?:S(?P<shank>{NUMBER}))?",
+    rf"(?:F(?P<flutes>{NUMBER}))?(?P<necks>(?:N{NUMBER}(?::{NUMBER})?x{NUMBER})*)(?:S(?P<shank>{NUMBER}))?",
     re.IGNORECASE,
 )
+_NECK = re.compile(rf"N(?P<radius>{NUMBER})(?::(?P<upper>{NUMBER}))?x(?P<length>{NUMBER})", re.IGNORECASE)
 
 
 def dimensions(spec: str) -> dict[str, Any]:
     """The dimensions of a cutter from a text such as `R6L80rc1F20N5.5x40S6`.
 
     Radius and length; then, each where there is one: `rc` corner radius, `T` half angle of a taper in degrees, `F` length of
-    the flutes, `N` radius of a neck `x` its length, `S` radius of the shank. All in mm.
+    the flutes, `N` radius of a neck `x` its length (`N5:6x4` a cone; more of them from there up), `S` radius of the shank.
+    All in mm.
 
     Raises
     ------
@@ -31,15 +33,19 @@ def dimensions(spec: str) -> dict[str, Any]:
     match = _CUTTER.fullmatch(spec.strip())
     if not match:
         raise CutterError(f"cutter {spec!r} is not of the form R6L80 (radius 6 mm, length 80 mm)")
-    numbers = {name: float(text) for name, text in match.groupdict().items() if text is not None}
-    neck = Stage(numbers["neck"], numbers["reach"]) if "neck" in numbers else None
+    words = match.groupdict()
+    necks = [
+        Stage(float(each["radius"]), float(each["length"]), float(each["upper"] or each["radius"]))
+        for each in _NECK.finditer(words.pop("necks"))
+    ]
+    numbers = {name: float(text) for name, text in words.items() if text is not None}
     return {
         "radius": numbers["radius"],
         "length": numbers["length"],
         "corner_radius": numbers.get("corner", 0.0),
         "taper": math.radians(numbers.get("taper", 0.0)),
         "flutes": numbers.get("flutes"),
-        "neck": neck,
+        "neck": necks,
         "shank_radius": numbers.get("shank"),
     }
 
@@ -60,9 +66,9 @@ def written(cutter: Dimensions) -> str:
     words += [f"_{text_of(r)}x{text_of(h)}" for r, h in cutter.outline]
     if cutter.flutes is not None:
         words.append(f"F{text_of(cutter.flutes)}")
-    if cutter.neck is not None:
-        upper = "" if cutter.neck.upper_radius == cutter.neck.radius else f":{text_of(cutter.neck.upper_radius)}"
-        words.append(f"N{text_of(cutter.neck.radius)}{upper}x{text_of(cutter.neck.length)}")
+    for neck in cutter.necks:
+        upper = "" if neck.upper_radius == neck.radius else f":{text_of(neck.upper_radius)}"
+        words.append(f"N{text_of(neck.radius)}{upper}x{text_of(neck.length)}")
     if cutter.shank_radius is not None:
         words.append(f"S{text_of(cutter.shank_radius)}")
     if cutter.holder is not None:

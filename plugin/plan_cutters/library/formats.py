@@ -1,0 +1,141 @@
+"""The table of formats: what is read, and what is known well enough to say what to export instead.
+
+What a file holds decides, not how it is called.
+"""
+
+import base64
+import binascii
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from plan_cutters.errors import LibraryError
+from plan_cutters.library import freecad, fusion_csv, fusion_json, hsmworks, linuxcnc, own_toml
+from plan_cutters.library.files import Content
+from plan_cutters.library.listed import Found
+from plan_cutters.library.milling import Ask
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """A format that is read: its name, its usual suffixes, how its content is recognised and read."""
+
+    name: str
+    suffixes: tuple[str, ...]
+    recognises: Callable[[Content], bool]
+    read: Callable[[Content, Ask], Found]
+
+
+@dataclass(frozen=True, slots=True)
+class Foreign:
+    """What is recognised but not read: its name, its content, and what to do instead."""
+
+    name: str
+    recognises: Callable[[Content], bool]
+    instead: str
+
+
+def _plain(read: Callable[[Content], Found]) -> Callable[[Content, Ask], Found]:
+    return lambda content, _: read(content)
+
+
+FORMATS = (
+    Format("Fusion tools (zip)", (".tools",), fusion_json.is_zip, _plain(fusion_json.read_zip)),
+    Format("Fusion JSON", (".json",), fusion_json.is_json, _plain(fusion_json.read_json)),
+    Format("Fusion CSV", (".csv",), fusion_csv.is_csv, _plain(fusion_csv.read_csv)),
+    Format("HSMWorks", (".hsmlib",), hsmworks.is_hsmlib, _plain(hsmworks.read_hsmlib)),
+    Format("FreeCAD library", (".fctl",), freecad.is_library, _plain(freecad.read_library)),
+    Format("FreeCAD bit", (".fctb",), freecad.is_bit, _plain(freecad.read_bit)),
+    Format("FreeCAD holder", (".fcholder",), freecad.is_holder, _plain(freecad.read_holder)),
+    Format("plan-cutters TOML", (".toml",), own_toml.is_toml, own_toml.read_toml),
+    Format("LinuxCNC tool table", (".tbl",), linuxcnc.is_table, _plain(linuxcnc.read_table)),
+)
+
+_SQLITE = b"SQLite format 3\0"
+_TOML = "write the tools as TOML (docs/tool_libraries.md)"
+_FUSION = "export from a program that writes Fusion .tools, .json or CSV, or HSMWorks .hsmlib, or " + _TOML
+
+
+def _sqlite(word: bytes, *suffixes: str) -> Callable[[Content], bool]:
+    return lambda c: c.data.startswith(_SQLITE) and (word in c.data or c.path.suffix.lower() in suffixes)
+
+
+def _kirimoto(content: Content) -> bool:
+    found = content.json
+    if isinstance(found, dict) and isinstance(found.get("tools"), list):
+        return any(isinstance(tool, dict) and "shaft_diam" in tool for tool in found["tools"])
+    text = "".join(content.text[:4096].split())
+    if len(text) < 16 or not re.fullmatch(r"[A-Za-z0-9+/]+=*", text):
+        return False
+    try:
+        return base64.b64decode(text[: len(text) // 4 * 4]).lstrip().startswith(b"{")
+    except (binascii.Error, ValueError):
+        return False
+
+
+def _member(word: str) -> Callable[[Content], bool]:
+    return lambda c: c.members is not None and any(name.lower().endswith(word) for name in c.members)
+
+
+def _begins(*words: str) -> Callable[[Content], bool]:
+    return lambda c: c.head.startswith(words)
+
+
+def _page(content: Content) -> bool:
+    return content.head.startswith("<") and re.search(r"<(!doctype\s+html|html|head|body)\b", content.head) is not None
+
+
+def _estlcam(content: Content) -> bool:
+    return "estlcam" in content.head or (content.path.suffix.lower() == ".tl" and content.head.startswith("<"))
+
+
+FOREIGN = (
+    Foreign("a Vectric tool database", _sqlite(b"tool_geometry", ".vtdb"),
+            f"it has no shank, stick-out or holder; {_TOML}"),
+    Foreign("a Mastercam tool database", _sqlite(b"TlTool", ".tooldb"), _FUSION),
+    Foreign("an SQLite database", _sqlite(_SQLITE), _FUSION),
+    Foreign("a DeskProto cutter", lambda c: "[deskproto cutter]" in c.text.lower(),
+            f"it has no holder, and one cutter a file; {_TOML}"),
+    Foreign("a Kiri:Moto tool list", _kirimoto, f"it has no stick-out and no holder; {_TOML}"),
+    Foreign("a GTC package (ISO 13399)", lambda c: _member("package_meta_data.xml")(c) or _member(".p21")(c), _FUSION),
+    Foreign("a FreeCAD document", _member("document.xml"), "give the bit (.fctb) or the library (.fctl), not its shape"),
+    Foreign("a spreadsheet or office document", _member("[content_types].xml"), "save it as CSV in Fusion's columns"),
+    Foreign("an ISO 10303-21 file (STEP or ISO 13399)", _begins("iso-10303-21"), _FUSION),
+    Foreign("an Estlcam tool list", _estlcam, _TOML),
+    Foreign("MTConnect assets", lambda c: c.head.startswith("<") and "mtconnectassets" in c.head, _FUSION),
+    Foreign("a web page (HTML)", _page, "download the library itself: perhaps a log-in stands before it"),
+    Foreign("a Carbide 3D tool list", _begins("number,vendor,model,"), f"it has no holder; {_TOML}"),
+    Foreign("a CAM machine or setting of FreeCAD", lambda c: c.path.suffix.lower() == ".fcm", "give its tools (.fctl)"),
+)  # fmt: skip
+
+
+def recognised(content: Content) -> Format:
+    """The format of a file.
+
+    Raises
+    ------
+    LibraryError
+        It is none that is read; by name, where it is known.
+    """
+    if not content.data.strip(b" \t\r\n\0\xef\xbb\xbf\xff\xfe"):
+        raise LibraryError("is empty", file=content.name)
+    for form in FORMATS:
+        if form.recognises(content):
+            return form
+    for foreign in FOREIGN:
+        if foreign.recognises(content):
+            raise LibraryError(f"is {foreign.name}, which is not read: {foreign.instead}", file=content.name)
+    if content.members is not None:
+        raise LibraryError(
+            "is a zip archive without tools.json, no Fusion tool library; give what is in it", file=content.name
+        )
+    if content.head[:1] in ("{", "[") and content.json is None:
+        raise content.broken_json()
+    if content.head.startswith("<"):
+        raise LibraryError("is XML, but no HSMWorks tool library (tool-library); export it anew", file=content.name)
+    if isinstance(content.json, dict | list):
+        raise LibraryError(
+            "is JSON, but neither a Fusion library (data) nor of FreeCAD (tools, parameter, profile)", file=content.name
+        )
+    names = ", ".join(f"{form.name} ({' '.join(form.suffixes)})" for form in FORMATS)
+    raise LibraryError(f"is no tool library that is known; read are {names}", file=content.name)

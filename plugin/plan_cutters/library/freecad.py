@@ -1,0 +1,210 @@
+"""FreeCAD tools: bits (`.fctb`), libraries that list them by file (`.fctl`), and holders (`.fcholder`).
+
+A length is a text with a unit, in the writer's language: `6,0 mm`, `20.83 µm`. Without a unit it is mm, which is what FreeCAD
+itself counts in, unless the bit says that its units are imperial.
+"""
+
+import re
+from itertools import pairwise
+from pathlib import Path, PurePosixPath, PureWindowsPath
+from typing import Any
+
+from plan_cutters.domain.checks import shown
+from plan_cutters.domain.holder import Holder
+from plan_cutters.errors import CutterError, LibraryError
+from plan_cutters.library.files import Content, data_of, lines_of
+from plan_cutters.library.fusion_json import MOST_SECTIONS
+from plan_cutters.library.listed import FaultError, Found, Listed, mm, name_of, number_in, number_of, sections, whole_of
+from plan_cutters.library.records import Entry
+
+_MM = {"mm": 1.0, "µm": 1e-3, "μm": 1e-3, "um": 1e-3, "nm": 1e-6, "cm": 10.0, "dm": 100.0, "m": 1000.0, "in": 25.4,
+       '"': 25.4, "″": 25.4, "inch": 25.4, "mil": 0.0254, "thou": 0.0254, "ft": 304.8, "'": 304.8}  # fmt: skip
+_DEGREES = ("", "°", "deg", "degrees")
+_QUANTITY = re.compile(r"\s*([-+]?[\d.,]+(?:[eE][-+]?\d+)?|[-+]?(?:nan|inf(?:inity)?))\s*(\S*)\s*", re.IGNORECASE)
+#: Our name of each dimension, and the names that shapes have had for it.
+_PARAMETERS = (
+    ("DC", ("Diameter",)),
+    ("RE", ("CornerRadius", "FlatRadius", "TorusRadius")),
+    ("LCF", ("CuttingEdgeHeight", "CuttingEdgeLength")),
+    ("OAL", ("Length",)),
+    ("DMM", ("ShankDiameter", "ShaftDiameter")),
+    ("TIP", ("TipDiameter", "FlatDiameter")),
+)
+_ANGLE = "CuttingEdgeAngle"
+#: What shapes are among mills; the others stay what they are called.
+_SORTS = {
+    "endmill": "flat end mill",
+    "ballend": "ball end mill",
+    "bullnose": "bull nose end mill",
+    "torus": "bull nose end mill",
+    "vbit": "chamfer mill",
+    "v-bit": "chamfer mill",
+    "chamfer": "chamfer mill",
+}
+#: Folders in which a library's bits are looked for.
+_FOLDERS = (".", "Bit", "bit", "../Bit", "../bit", "../Bits", "../bits")
+
+
+def is_bit(content: Content) -> bool:
+    """An object with `shape` and `parameter`."""
+    found = content.json
+    return (
+        isinstance(found, dict)
+        and isinstance(found.get("parameter"), dict)
+        and ("shape" in found or "shape-type" in found)
+    )
+
+
+def is_library(content: Content) -> bool:
+    """An object whose `tools` are objects with a `path`."""
+    tools = content.json.get("tools") if isinstance(content.json, dict) else None
+    if not isinstance(tools, list):
+        return False
+    paths = [isinstance(tool, dict) and "path" in tool for tool in tools]
+    return any(paths) or (not paths and content.path.suffix.lower() == ".fctl")
+
+
+def is_holder(content: Content) -> bool:
+    """An object with a `profile`."""
+    return isinstance(content.json, dict) and isinstance(content.json.get("profile"), list)
+
+
+def read_bit(content: Content) -> Found:
+    """A bit is a library of one."""
+    return Found([_tool(content.json, "tool 1", None)])
+
+
+def read_library(content: Content) -> Found:
+    """Read it and the bits that it lists, beside it or in a folder `Bit`."""
+    found, lines = Found(), lines_of(content.text, "tools")
+    for i, item in enumerate(content.json["tools"]):
+        line = f" (line {lines[i]})" if len(lines) == len(content.json["tools"]) else ""
+        place = f"tool {i + 1}{line}"
+        try:
+            if not isinstance(item, dict) or not isinstance(item.get("path"), str):
+                raise FaultError("it has no path of a bit")
+            number = whole_of(item.get("nr"), "nr")
+            bit = _bit(content.path.parent, item["path"])
+            found.tools.append(_tool(bit.json, place, number))
+        except FaultError as fault:
+            name = name_of(item.get("path")) if isinstance(item, dict) else ""
+            found.tools.append(Entry(place, None, name, unused=str(fault), broken=True))
+    return found
+
+
+def _bit(folder: Path, path: str) -> Content:
+    """A bit by the last part of its path: nothing outside the usual folders is opened."""
+    name = PurePosixPath(PureWindowsPath(path).as_posix()).name
+    if not name.lower().endswith(".fctb"):
+        raise FaultError(f"path {shown(path)} is no .fctb file")
+    for each in (folder / place / name for place in _FOLDERS):
+        if each.is_file():
+            try:
+                bit = Content(each, data_of(each))
+            except LibraryError as error:
+                raise FaultError(f"{name} {error.cause}") from None
+            if not is_bit(bit):
+                raise FaultError(f"{name} is no FreeCAD bit")
+            return bit
+    raise FaultError("path: its bit is neither beside the library nor in Bit or ../Bit; put it there")
+
+
+def read_holder(content: Content) -> Found:
+    """Read an outline of (radius, height), counted from the holder's nose."""
+    name = name_of(content.json.get("name")) or content.path.stem
+    try:
+        return Found(holders=[_holder(content.json, name)])
+    except (FaultError, CutterError) as fault:
+        return Found(faulty=[Entry("profile", None, name, "holder", unused=str(fault), broken=True)])
+
+
+def _holder(given: dict[str, Any], name: str) -> Holder:
+    unit = given.get("units")
+    scale = _MM.get(unit) if isinstance(unit, str) else None
+    if scale is None:
+        raise FaultError(f'units is {shown(unit)}: "mm" is expected')
+    points = []
+    if len(given["profile"]) > MOST_SECTIONS:
+        raise FaultError(f"profile has {len(given['profile'])} points, more than {MOST_SECTIONS}")
+    for i, point in enumerate(given["profile"], 1):
+        if not isinstance(point, list) or len(point) != 2:
+            raise FaultError(f"profile {i} is no pair of radius and height")
+        points.append(tuple(mm(number_of(value, f"profile {i}"), scale, f"profile {i}") for value in point))
+    # The faces at both ends are part of the outline, not of its sides.
+    while points and points[0][0] == 0.0:
+        points.pop(0)
+    while points and points[-1][0] == 0.0:
+        points.pop()
+    if len(points) < 2 or points[0][1] != 0.0:
+        raise FaultError("profile must begin at its nose, at height 0, and have a length")
+    rows = []
+    for (r0, z0), (r1, z1) in pairwise(points):
+        if z1 < z0:
+            raise FaultError(f"profile falls from height {z0:g} to {z1:g}: it must rise")
+        rows.append((round(z1 - z0, 9), 2.0 * r0, 2.0 * r1))
+    return Holder(tuple(sections(rows, "profile")), name)
+
+
+def _tool(given: dict[str, Any], place: str, number: int | None) -> Listed:
+    shape = given.get("shape-type") or given.get("shape")
+    kind = re.sub(r"\.fcstd$", "", name_of(shape), flags=re.IGNORECASE)
+    kind = kind.replace("\\", "/").rpartition("/")[2]
+    tool = Listed(place, number, name_of(given.get("name")), kind, _SORTS.get(kind.lower(), ""), "mm")
+    parameters = given["parameter"]
+    imperial = isinstance(parameters.get("Units"), str) and parameters["Units"].lower() == "imperial"
+
+    def length(value: Any, field: str) -> float:
+        return _length(value, field, imperial, tool)
+
+    for key, words in _PARAMETERS:
+        present = [word for word in words if parameters.get(word) not in (None, "")]
+        tool.take(key, parameters[present[0]] if present else None, (present or words)[0], length)
+        for other in present[1:]:
+            try:
+                same = abs(mm(length(parameters[other], other), 1.0, other) - tool.values.get(key, 0.0)) <= 1e-3
+            except FaultError as fault:
+                tool.faults.append(str(fault))
+                continue
+            if not same:
+                both = f"{present[0]} is {shown(parameters[present[0]])}, {other} is {shown(parameters[other])}"
+                tool.faults.append(f"{both}: they mean the same")
+    if tool.sort == "chamfer mill":
+        tool.take("TA", parameters.get(_ANGLE), _ANGLE, _half_angle)
+    tool.words["LPR"] = "length below the holder"
+    return tool
+
+
+def _length(value: Any, field: str, imperial: bool, tool: Listed) -> float:
+    """mm of a text with a unit."""
+    if not isinstance(value, str):
+        found, unit = number_of(value, field), ""
+    else:
+        match = _QUANTITY.fullmatch(value)
+        if not match:
+            raise FaultError(f"{field} is {shown(value)}, not a length")
+        found, comma = number_in(match[1], field)
+        unit = match[2]
+        if comma:
+            tool.notes.append("decimal commas")
+    if not unit:
+        if imperial and found:
+            raise FaultError(f"{field} is {shown(value)} without a unit, and Units is Imperial: mm or in?")
+        if found:
+            tool.notes.append(f"{field} without a unit: mm, as FreeCAD counts")
+        return found
+    scale = _MM.get(unit) or _MM.get(unit.lower())
+    if scale is None:
+        raise FaultError(f"{field} is {shown(value)}: no unit of length is called {shown(unit)}")
+    if scale not in (1.0,):
+        tool.notes.append(f"{field} in {unit}")
+    return found * scale
+
+
+def _half_angle(value: Any, field: str) -> float:
+    """FreeCAD gives the whole angle of a point."""
+    if not isinstance(value, str):
+        return 0.5 * number_of(value, field)
+    match = _QUANTITY.fullmatch(value)
+    if not match or match[2].lower() not in _DEGREES:
+        raise FaultError(f"{field} is {shown(value)}, not an angle in degrees")
+    return 0.5 * number_in(match[1], field)[0]

@@ -1,0 +1,47 @@
+"""LinuxCNC tool tables, `.tbl`: numbers and diameters alone. Z is an offset of the machine and never taken for a stick-out."""
+
+import re
+
+from plan_cutters.domain.checks import shown
+from plan_cutters.library.files import Content
+from plan_cutters.library.listed import FaultError, Found, name_of, number_in, whole_of
+from plan_cutters.library.records import Entry
+
+_LINE = re.compile(r"^\s*T\s*[+-]?\d+(?:\s+[A-Z]\s*[+-]?[\d.]+)*\s*(?:;.*)?$", re.IGNORECASE)
+_WORD = re.compile(r"([A-Z])\s*([^\sA-Z;]+)", re.IGNORECASE)
+_ASKED = (
+    "LCF, LPR (stick-out), DMM and a holder are missing: a tool table has none; write the tool as TOML "
+    "(docs/tool_libraries.md)"
+)
+
+
+def is_table(content: Content) -> bool:
+    """The first line that is no comment has T and a number, then letters with numbers."""
+    lines = (line for line in content.text.splitlines() if line.strip() and not line.lstrip().startswith(";"))
+    return _LINE.match(next(lines, "")) is not None
+
+
+def read_table(content: Content) -> Found:
+    """List it: none of its tools can be judged."""
+    found = Found(notes=["the file does not say in which unit its diameters are: that of the machine"])
+    for number, line in enumerate(content.text.splitlines(), 1):
+        words, _, comment = line.partition(";")
+        if words.strip():
+            found.tools.append(_entry(words, name_of(comment), f"line {number}"))
+    return found
+
+
+def _entry(words: str, name: str, place: str) -> Entry:
+    given = {letter.upper(): value for letter, value in _WORD.findall(words)}
+    try:
+        if _WORD.sub("", words).strip() or "T" not in given:
+            raise FaultError(f"{shown(words.strip())} is no line of a tool table")
+        number = whole_of(given["T"], "T")
+        if "D" not in given:
+            return Entry(place, number, name, unused=f"D (the diameter) is missing; {_ASKED}")
+        diameter, _ = number_in(given["D"], "D")
+        if diameter < 0.0:
+            raise FaultError(f"D is {diameter:g}: a diameter cannot be negative")
+    except FaultError as fault:
+        return Entry(place, None, name, unused=str(fault), broken=True)
+    return Entry(place, number, name, unused=_ASKED, notes=(f"D {diameter:g}, in the machine's unit",))

@@ -1,0 +1,198 @@
+"""What formats hand on: a tool as it is listed, its numbers in mm and degrees, and what was wrong with them."""
+
+import math
+import unicodedata
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+from plan_cutters.domain.checks import shown
+from plan_cutters.domain.holder import Holder, Stage
+from plan_cutters.library.records import Entry
+
+#: mm in one of each, by the words that formats have for units.
+UNITS = {"millimeters": 1.0, "millimetres": 1.0, "mm": 1.0, "metric": 1.0, "inches": 25.4, "inch": 25.4, "in": 25.4}
+#: Lengths beyond this, mm, are none of a tool.
+_LONGEST = 1e4
+#: Digits kept of a length, mm: what is beyond them is the rounding of other programs and of inches.
+_DIGITS = 9
+_LONG_NAME = 120
+
+
+class FaultError(Exception):
+    """A value that cannot be read, in words that name its field."""
+
+
+def name_of(value: Any) -> str:
+    """A name on one line, without what cannot be shown."""
+    text = value if isinstance(value, str) else "" if value is None else shown(value)
+    text = " ".join("".join(" " if unicodedata.category(c)[0] in "CZ" else c for c in text).split())
+    return text if len(text) <= _LONG_NAME else f"{text[: _LONG_NAME - 3]}..."
+
+
+def unit_of(value: Any, field: str) -> tuple[str, float]:
+    """`mm` or `inch`, and mm in one of it."""
+    if value is None or value == "":
+        raise FaultError(f"{field} is missing: are its lengths millimeters or inches?")
+    scale = UNITS.get(value.strip().lower()) if isinstance(value, str) else None
+    if scale is None:
+        raise FaultError(f"{field} is {shown(value)}: millimeters or inches are read")
+    return ("mm" if scale == 1.0 else "inch"), scale
+
+
+def whole_of(value: Any, field: str) -> int | None:
+    """A tool number; None where there is none."""
+    if value is None or value == "":
+        return None
+    try:
+        found = float(value)
+        if isinstance(value, bool) or found != int(found) or not 0 <= found < 1e9:
+            raise ValueError
+    except (TypeError, ValueError, OverflowError):
+        raise FaultError(f"{field} is {shown(value)}, which is no tool number") from None
+    return int(found)
+
+
+def number_of(value: Any, field: str) -> float:
+    """A number written as one: no text, no truth value."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise FaultError(f"{field} is {shown(value)}, not a number")
+    try:
+        found = float(value)
+    except OverflowError:
+        found = math.inf
+    if not math.isfinite(found):
+        raise FaultError(f"{field} is {found:g}, which no dimension is")
+    return found
+
+
+def number_in(text: str, field: str) -> tuple[float, bool]:
+    """A number from a text, and whether it has a decimal comma."""
+    word, comma = text.strip(), False
+    if "," in word:
+        if "." in word or word.count(",") > 1:
+            raise FaultError(
+                f"{field} is {shown(text)}: a comma and a point, or several commas, can be read in two ways"
+            )
+        word, comma = word.replace(",", "."), True
+    try:
+        if "_" in word:
+            raise ValueError
+        return number_of(float(word), field), comma
+    except ValueError:
+        raise FaultError(f"{field} is {shown(text)}, not a number") from None
+
+
+def mm(value: float, scale: float, field: str) -> float:
+    """A length that may be 0, mm."""
+    found = round(value * scale, _DIGITS) + 0.0
+    if found < 0.0:
+        raise FaultError(f"{field} is {value:g}: a length cannot be negative")
+    if found > _LONGEST:
+        raise FaultError(f"{field} is {value:g}: no tool is longer than 10 m")
+    return found
+
+
+@dataclass(slots=True)
+class Listed:
+    """A tool as a file lists it, filled by the readers of formats.
+
+    Attributes
+    ----------
+    values : dict
+        By ISO 13399 name, mm and degrees; what is missing or 0 is not there. DC cutting diameter, RE corner radius, LCF flute
+        length, LPR stick-out, OAL overall length, DMM shank diameter, LN height over the tip at which the shoulder ends and DN
+        its diameter, TA half angle, TIP diameter at the tip, LF gauge length of the assembly, LH of its holder, DCX largest
+        diameter.
+    words : dict
+        What the file calls each.
+    kind : str
+        As the file words it; `sort`, if given, is what that is among `milling.MILLS`.
+    shaft : list of Stage
+        Sections that the file gives above LN (or LCF), from there up.
+    holder : Holder, optional
+    faults : list of str
+        What could not be read.
+    """
+
+    place: str
+    number: int | None = None
+    name: str = ""
+    kind: str = ""
+    sort: str = ""
+    unit: str = ""
+    scale: float = 1.0
+    values: dict[str, float] = field(default_factory=dict)
+    words: dict[str, str] = field(default_factory=dict)
+    shaft: list[Stage] = field(default_factory=list)
+    holder: Holder | None = None
+    faults: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+    def word(self, key: str) -> str:
+        """What the file calls a dimension."""
+        return self.words.get(key, key)
+
+    def said(self, key: str) -> str:
+        """A dimension as the file has it."""
+        value = self.values.get(key, 0.0)
+        return f"{self.word(key)} {value if key == 'TA' else value / self.scale:.10g}"
+
+    def take(self, key: str, value: Any, field: str, number: Any = number_of) -> None:
+        """Keep a dimension, if there is one, or what is wrong with it."""
+        self.words[key] = field
+        if value is None or value == "":
+            return
+        try:
+            found = number(value, field)
+            if key == "TA":
+                if not 0.0 <= found < 90.0:
+                    raise FaultError(f"{field} is {found:g}: a half angle lies between 0 and 90 degrees")
+            else:
+                found = mm(found, self.scale, field)
+            if found:
+                self.values[key] = found
+        except FaultError as fault:
+            self.faults.append(str(fault))
+
+    def entry(self, **more: Any) -> Entry:
+        """As a record."""
+        return Entry(
+            self.place,
+            self.number,
+            self.name,
+            self.kind,
+            self.unit,
+            notes=tuple(dict.fromkeys(self.notes)),
+            given=tuple(self.values.items()),
+            **more,
+        )
+
+
+@dataclass(slots=True)
+class Found:
+    """What a reader finds in a file."""
+
+    tools: list[Listed | Entry] = field(default_factory=list)
+    holders: list[Holder] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    #: Holders that cannot be read, as entries.
+    faulty: list[Entry] = field(default_factory=list)
+
+
+def sections(given: Iterable[tuple[float, float, float]], what: str) -> list[Stage]:
+    """Stages from (height, lower diameter, upper diameter), mm; those without a height are steps.
+
+    Raises
+    ------
+    FaultError
+        A diameter is 0.
+    """
+    found = []
+    for i, (height, lower, upper) in enumerate(given, 1):
+        if height == 0.0:
+            continue
+        if not (lower > 0.0 and upper > 0.0):
+            raise FaultError(f"{what} {i} has a diameter of 0")
+        found.append(Stage(0.5 * lower, height, 0.5 * upper))
+    return found

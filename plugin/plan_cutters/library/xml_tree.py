@@ -1,0 +1,68 @@
+"""XML with the lines of its elements, and no more: no entities, no other files, no depth without end."""
+
+from dataclasses import dataclass, field
+from typing import Any
+from xml.parsers import expat
+
+from plan_cutters.errors import LibraryError
+
+_DEEPEST, _ELEMENTS = 64, 2_000_000
+
+
+@dataclass(slots=True)
+class Element:
+    """An element: its name without a namespace's prefix, its attributes, text, children and the line in which it begins."""
+
+    tag: str
+    given: dict[str, str]
+    line: int
+    text: str = ""
+    children: list["Element"] = field(default_factory=list)
+
+    def first(self, tag: str) -> "Element | None":
+        """The first child of a name."""
+        return next((child for child in self.children if child.tag == tag), None)
+
+
+def parse(data: bytes, file: str) -> Element:
+    """The root of a document.
+
+    Raises
+    ------
+    LibraryError
+        It is not well-formed, or declares a document type or entities.
+    """
+    parser = expat.ParserCreate()
+    top = Element("", {}, 0)
+    open_, count = [top], 0
+
+    def refuse(*_: Any) -> None:
+        raise LibraryError(
+            f"line {parser.CurrentLineNumber}: it declares a document type or entities, which no tool library needs; they are "
+            "refused",
+            file=file,
+        )
+
+    def start(tag: str, given: dict[str, str]) -> None:
+        nonlocal count
+        count += 1
+        if len(open_) > _DEEPEST or count > _ELEMENTS:
+            raise LibraryError(f"line {parser.CurrentLineNumber}: its elements are too deep or too many", file=file)
+        element = Element(tag.rpartition(":")[2], given, parser.CurrentLineNumber)
+        open_[-1].children.append(element)
+        open_.append(element)
+
+    def end(_: str) -> None:
+        open_.pop()
+
+    def words(text: str) -> None:
+        open_[-1].text += text
+
+    parser.buffer_text = True
+    parser.StartDoctypeDeclHandler = parser.EntityDeclHandler = refuse
+    parser.StartElementHandler, parser.EndElementHandler, parser.CharacterDataHandler = start, end, words
+    try:
+        parser.Parse(data, True)
+    except (expat.ExpatError, ValueError) as error:
+        raise LibraryError(f"is no well-formed XML ({error}); export it anew", file=file) from None
+    return top.children[0]
