@@ -3,8 +3,7 @@
     python benchmarks/largest_radius.py [PART] [GRID]
 
 By default the 201 x 201 samples of `samples/peaks_and_valleys.step`; tolerance 0.01, 36 rotations, flat and ball ends ten radii
-long, radii from 0.5 to 60 mm in steps of 2 %. Processor time of all threads, the best of three, machine code loaded before;
-half of it is what two idle cores take.
+long, radii from 0.5 to 60 mm in steps of 2 %. Processor time of all threads, the best of three, machine code loaded before.
 """
 
 import sys
