@@ -134,16 +134,16 @@ def corner_radius(case: Case, trials: Trials) -> Change:
 def thinner(cutter: Cutter, radius: float) -> Cutter | None:
     """The same of a smaller radius: a ball stays one, another corner stays as it is, and so does what is above; but what was no
     thicker than the flutes stays so. None if there can be none."""
+
+    def slim(own: float) -> float:
+        return min(own, radius) if own <= cutter.radius + SAME else own
+
     changes: dict[str, object] = {"radius": radius}
     if cutter.corner_radius == cutter.radius:
         changes["corner_radius"] = radius
-    if cutter.shank_radius is not None and cutter.shank_radius <= cutter.radius + SAME and cutter.shape != "lollipop":
-        changes["shank_radius"] = min(cutter.shank_radius, radius)
-    if cutter.neck is not None and cutter.neck.radius <= cutter.radius + SAME:
-        ends = min(cutter.neck.radius, radius), min(cutter.neck.upper_radius, radius)
-        if cutter.neck.upper_radius > cutter.radius + SAME:
-            ends = ends[0], cutter.neck.upper_radius
-        changes["neck"] = Stage(ends[0], cutter.neck.length, ends[1])
+    if cutter.shank_radius is not None and cutter.shape != "lollipop":
+        changes["shank_radius"] = slim(cutter.shank_radius)
+    changes["neck"] = [Stage(slim(each.radius), each.length, slim(each.upper_radius)) for each in cutter.necks]
     if cutter.shape == "barrel" and cutter.corner_radius:
         # The ball at its tip is tangent to its flank, which stays as round as it is.
         inner, outer = cutter.arc_radius - radius, cutter.arc_radius - cutter.corner_radius

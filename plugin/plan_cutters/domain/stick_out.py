@@ -88,10 +88,9 @@ def held(cutter: Cutter, stick_out: float) -> Cutter:
 
 def _fixed(cutter: Cutter) -> float:
     """Height over the tip up to which nothing can be in a holder, mm: flutes, where their length is known, and neck."""
-    neck = cutter.neck.length if cutter.neck else 0.0
     if cutter.flutes is None and cutter.shape not in ("lollipop", "form"):
-        return neck
-    return flute_length(cutter) + neck
+        return cutter.neck_length
+    return flute_length(cutter) + cutter.neck_length
 
 
 def floor_of(cutter: Cutter, tolerance: float) -> float:
