@@ -16,6 +16,7 @@ from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange, unit
 from plan_cutters.errors import OptionError
+from plan_cutters.library.records import Entry, Library, libraries_of
 
 #: Gouge tolerances that can be asked for, mm.
 LEAST_TOLERANCE, MOST_TOLERANCE = 1e-4, 10.0
@@ -39,9 +40,12 @@ class Options:
     Attributes
     ----------
     cutters : tuple of Cutter
-        May be given as one cutter or a list, and texts such as `R6L80` for cutters. Empty: the built-in ones.
+        May be given as one cutter or a list, and texts such as `R6L80` for cutters, or as one library. Empty, and no libraries:
+        the built-in ones.
+    libraries : tuple of Library
+        Tool libraries, as `library.read_library` reads them, whose cutters are judged, too; may be given as one.
     holder : Holder, optional
-        Of the cutters that have none; may be given as a text such as `R15L30`.
+        Of the cutters that have none, but for those of libraries; may be given as a text such as `R15L30`.
     allowance, holder_clearance : float
         Stock left on the surface, and room asked of neck, shank and holder, for cutters that do not say so themselves.
     machine : Machine
@@ -95,6 +99,7 @@ class Options:
     """
 
     cutters: tuple[Cutter, ...] = ()
+    libraries: tuple[Library, ...] = ()
     holder: Holder | None = None
     allowance: float = 0.0
     holder_clearance: float = 0.0
@@ -151,7 +156,12 @@ class Options:
             for word, value in values.items():
                 object.__setattr__(self, word, value)
 
-        take(cutters=Cutter.each_of(self.cutters), machine=Machine.of(self.machine))
+        libraries = libraries_of(self.libraries)
+        if isinstance(self.cutters, Library):
+            take(libraries=(self.cutters, *libraries), cutters=())
+        else:
+            take(libraries=libraries, cutters=Cutter.each_of(self.cutters))
+        take(machine=Machine.of(self.machine))
         take(setup=tuple(unit(self.setup, "setup axis").tolist()), tolerance=number(self.tolerance, "tolerance"))
         take(jobs=cores() if self.jobs is None else whole(self.jobs, "jobs"))
         if self.area_budget is not None:
@@ -196,5 +206,20 @@ class Options:
     @property
     def judged(self) -> tuple[Cutter, ...]:
         """The cutters to judge, each id once, with what is asked for the whole plan."""
-        given = [c.asked(self.allowance, self.holder_clearance, self.holder) for c in self.cutters or builtin()]
-        return tuple({c.id: c for c in given}.values())
+        built_in = () if self.cutters or self.libraries else builtin()
+        given = [self._asked(c, self.holder) for c in (*self.cutters, *built_in)]
+        listed = [self._asked(c, None) for library in self.libraries for c in library]
+        return tuple({c.id: c for c in (*given, *listed)}.values())
+
+    @property
+    def sources(self) -> dict[str, tuple[tuple[Library, Entry], ...]]:
+        """By the id of a cutter to judge, where it is listed in the libraries."""
+        found: dict[str, list[tuple[Library, Entry]]] = {}
+        for library in self.libraries:
+            for cutter in library:
+                places = found.setdefault(self._asked(cutter, None).id, [])
+                places += [(library, entry) for entry in library.entries_of(cutter)]
+        return {name: tuple(places) for name, places in found.items()}
+
+    def _asked(self, cutter: Cutter, holder: Holder | None) -> Cutter:
+        return cutter.asked(self.allowance, self.holder_clearance, holder)

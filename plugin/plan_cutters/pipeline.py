@@ -17,7 +17,7 @@ from plan_cutters.answers.ask import ask
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock, Progress
 from plan_cutters.document.model import AreaEntry, CutterEntry
-from plan_cutters.document.plan import answered, plan_of, selection
+from plan_cutters.document.plan import completed, plan_of, selection
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
@@ -200,7 +200,7 @@ def assemble(
 ) -> Result:  # fmt: skip
     """The result of all cutters: the choice, the area between the samples for the one chosen, what was answered, the plan."""
     clock, answers = clock or Clock(), answers or Answers()
-    entries = answered([judged[c].entry for c in ready.cutters], answers, ready.samples)
+    entries = completed([judged[c].entry for c in ready.cutters], ready, answers)
     selected, chosen = selection(entries)
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
     best = selected or next((e.id for e in entries if not (e.inaccessible or e.undecided)), None)

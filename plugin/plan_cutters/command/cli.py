@@ -31,10 +31,7 @@ if TYPE_CHECKING:
 
 #: Options of the interface that later versions will have: asked for now, they must not be ignored.
 _NOT_BUILT = {
-    "cutters": "tool library files are not read yet; give each cutter with --cutter R6L80",
     "fixture": "fixtures are not read yet",
-    "assume_stickout": "tool library files are not read yet",
-    "skip_bad": "tool library files are not read yet",
     "cluster": "clusters are not used yet; --jobs gives threads on this machine",
 }
 
@@ -85,7 +82,13 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, asked: bool) -> No
     "read; 4 a cutter would finish all that could be judged, but something could not; 130 interrupted.",
 )
 @click.argument("parts", nargs=-1, required=True, metavar="PART...")
-@click.option("--cutters", multiple=True, metavar="FILE", hidden=True)
+@click.option(
+    "--cutters",
+    multiple=True,
+    metavar="FILE",
+    help="Tool library: Fusion .json, .tools or CSV, HSMWorks .hsmlib, FreeCAD .fctl or .fctb, or TOML; plan-cutters-tools shows "
+    "what is understood of it. Repeatable.",
+)
 @click.option(
     "--cutter",
     multiple=True,
@@ -95,8 +98,9 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, asked: bool) -> No
 )
 @click.option(
     "--holder",
-    metavar="SPEC",
-    help="Holder of the cutters given: R15L30 (radius, length); stages from the nose up joined by +, cones as R12:15L20.",
+    metavar="SPEC|FILE",
+    help="Holder of the cutters that have none: R15L30 (radius, length); stages from the nose up joined by +, cones as "
+    "R12:15L20; a file with a holder (FILE#NAME if it has several); or `none`.",
 )
 @click.option(
     "--list-cutters",
@@ -160,8 +164,8 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, asked: bool) -> No
     metavar="MM",
     help="Room asked of neck, shank and holder.  [default: 0]",
 )
-@click.option("--assume-stickout", type=float, hidden=True)
-@click.option("--skip-bad", is_flag=True, hidden=True)
+@click.option("--assume-stickout", type=float, metavar="MM", help="Stick-out of the libraries' tools that state none.")
+@click.option("--skip-bad", is_flag=True, help="Use the other tools of a library that has broken ones.")
 @click.option("-o", "--out", metavar="DIR", help="Folder for the files.  [default: <stem>-plan]")
 @click.option(
     "--formats",
@@ -265,13 +269,27 @@ def _options(given: dict[str, Any]) -> "Options":
     from plan_cutters.domain.holder import Holder
     from plan_cutters.domain.machine import Machine
     from plan_cutters.domain.posture import PostureRange
+    from plan_cutters.errors import OptionError
+    from plan_cutters.library.records import Library
     from plan_cutters.options import Options
 
     postures = PostureRange.degrees(given["tilt"], given["rotation"], given["rotation_step"])
     more = {} if given["jobs"] is None else {"jobs": given["jobs"]}
+    holder: Holder | str | None = None
+    libraries: list[Library] = []
+    if given["holder"] is not None or given["cutters"]:
+        # Who names neither need not load the readers.
+        from plan_cutters.library.read import holder_of, read_library
+
+        holder = None if given["holder"] is None else holder_of(given["holder"])
+        words = {"assume_stickout": given["assume_stickout"], "holder": holder, "skip_bad": given["skip_bad"]}
+        libraries = [read_library(file, **words) for file in given["cutters"]]
+    if not given["cutters"] and (given["assume_stickout"] is not None or given["skip_bad"]):
+        raise OptionError("--assume-stickout and --skip-bad are about the tools of a library: give it with --cutters")
     return Options(
         cutters=tuple(Cutter.parse(spec) for spec in given["cutter"]),
-        holder=None if given["holder"] is None else Holder.parse(given["holder"]),
+        libraries=tuple(libraries),
+        holder=None if isinstance(holder, str) else holder,
         allowance=given["allowance"],
         holder_clearance=given["holder_clearance"],
         machine=Machine.parse(given["machine"]),

@@ -1,12 +1,14 @@
 """What is found, in a few lines for people."""
 
 import math
+import re
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from plan_cutters.document.model import Plan
+    from plan_cutters.document.model import CutterEntry, Plan
 
 
 def written(plan: "Plan", out: Path, formats: Sequence[str]) -> list[str]:
@@ -38,25 +40,36 @@ def summary(plan: "Plan") -> None:
     console.print(f"{plan.part.file or 'part'}: {size} mm, {plan.part.faces} faces, {targets} to machine, "
                   f"{f'{ignored} ignored, ' if ignored else ''}"
                   f"{plan.samples.count} samples, gaps up to {plan.samples.max_gap_mm:.3g} mm")  # fmt: skip
-    table = Table(box=None, pad_edge=False)
-    for column in ("cutter", "feasible", "free", "accessible", "undecided", "inaccessible"):
+    for line in libraries(plan):
+        console.print(line)
+    table, names = Table(box=None, pad_edge=False), short_names(plan)
+    held = any(c.least_stick_out for c in plan.cutters)
+    for column in (
+        "cutter",
+        "feasible",
+        "free",
+        "accessible",
+        "undecided",
+        "inaccessible",
+        *(["stick-out"] if held else []),
+    ):
         table.add_column(column, justify="left" if column in ("cutter", "feasible") else "right", overflow="fold")
     for c in plan.cutters:
         word = {True: "yes", False: "no", None: "undecided"}[c.feasible]
-        table.add_row(c.id + (" *" if c.id == plan.selected else ""), word, str(c.interference_free),
-                      str(c.accessible), str(c.undecided), str(c.inaccessible))  # fmt: skip
+        table.add_row(names[c.id] + (" *" if c.id == plan.selected else ""), word, str(c.interference_free),
+                      str(c.accessible), str(c.undecided), str(c.inaccessible), *([_held(c)] if held else []))  # fmt: skip
     console.print(table)
-    console.print(f"Selected: {plan.selected or 'none'} ({plan.selection.why}).")
+    console.print(named(plan, f"Selected: {plan.selected or 'none'} ({plan.selection.why})."))
     console.print(_side(plan))
     for area in (c.area for c in plan.cutters if c.area):
         console.print(f"Between samples: {_percent(area.share)} of the target area is served with the axes found "
                       f"({area.contacts} contacts looked at).")  # fmt: skip
     for line in answered(plan):
-        console.print(line)
+        console.print(named(plan, line))
     for warning in plan.part.warnings:
         console.print(f"Warning: {warning}")
     for note in plan.notes:
-        console.print(f"Note: {note}")
+        console.print(named(plan, f"Note: {note}"))
     for face in plan.faces:
         if face.target and face.unjudged:
             console.print(f"Not judged: {face.id} ({face.unjudged}).")
@@ -64,20 +77,56 @@ def summary(plan: "Plan") -> None:
         console.print(line)
 
 
+def short_names(plan: "Plan") -> dict[str, str]:
+    """How cutters are called in a line, by their ids: as the library does, else without the holder, where that leaves them apart."""
+    listed, heads = {}, {}
+    for c in plan.cutters:
+        numbers = dict.fromkeys(f"T{s.number}" for s in c.sources if s.number is not None)
+        listed[c.id] = " ".join([*list(numbers)[:_PLACES], c.name]) if c.sources and c.name else c.id
+        heads[c.id] = c.id.partition("H")[0]
+    said, dimensions = Counter(listed.values()), Counter(heads.values())
+    return {
+        name: listed[name] if said[listed[name]] == 1 and listed[name] != name
+        else heads[name] if dimensions[heads[name]] == 1 else name
+        for name in heads
+    }  # fmt: skip
+
+
+def named(plan: "Plan", text: str) -> str:
+    """A text with cutters called as in `short_names`."""
+    names = short_names(plan)
+    # The longest first: an id may begin as another one does.
+    ids = "|".join(re.escape(name) for name in sorted(names, key=len, reverse=True))
+    return re.sub(ids, lambda found: names[found[0]], text)
+
+
+def libraries(plan: "Plan") -> list[str]:
+    """What was read of tool libraries, and what of it is not used, reason by reason."""
+    lines = []
+    for library in plan.libraries:
+        lines.append(f"{library.file} ({library.format}): {library.cutters} cutters of {library.tools} tools.")
+        lines += [f"  {note}" for note in library.notes]
+        reasons: dict[str, list[str]] = {}
+        for tool in library.unused:
+            reasons.setdefault(tool.why, []).append(f'{tool.place} "{tool.name}"' if tool.name else tool.place)
+        for why, places in reasons.items():
+            more = f" and {len(places) - _PLACES} more" if len(places) > _PLACES else ""
+            lines.append(f"  Not used: {', '.join(places[:_PLACES])}{more}: {why}.")
+    return lines
+
+
+#: Tools that are named for each reason why they are not used.
+_PLACES = 3
+
+
 def answered(plan: "Plan") -> list[str]:
     """What was asked for after the plan."""
     lines = []
     for c in plan.cutters:
         found = c.least_stick_out
-        if found is None:
-            continue
-        if found.least_mm is None:
-            lines.append(f"Least stick-out of {c.id}: not asked, {_HELD[found.limited_by]}.")
-            continue
-        why = "its flutes and neck end there"
-        if found.point is not None:
-            why = f"limited at {_place(found.point)} on {found.face} by {found.obstacle_face or 'the part'}"
-        lines.append(f"Least stick-out of {c.id}: {found.least_mm:.2f} mm instead of {found.longest_mm:g} mm; {why}.")
+        if found is not None and found.point is not None:
+            lines.append(f"{c.id} must stand out {found.least_mm:.2f} mm for the sample at {_place(found.point)} on {found.face}: "
+                         f"a shorter one's holder is stopped by {found.obstacle_face or 'the part'}.")  # fmt: skip
     for each in plan.largest_radius:
         q = {name: f"R{radius:.3g}" for name, radius in each.percentiles_mm.items()}
         if not q or each.bottleneck_mm is None or each.bottleneck_point is None:
@@ -103,8 +152,12 @@ def answered(plan: "Plan") -> list[str]:
     return lines
 
 
-#: Why no stick-out was looked for.
-_HELD = {"no holder": "it has no holder", "reaches nothing": "it reaches nothing"}
+def _held(cutter: "CutterEntry") -> str:
+    """The least stick-out, and the one it was judged with."""
+    found = cutter.least_stick_out
+    if found is None:
+        return ""
+    return found.limited_by if found.least_mm is None else f"{found.least_mm:.2f} of {found.longest_mm:g}"
 
 
 def _place(point: Sequence[float]) -> str:
@@ -162,7 +215,6 @@ def not_reached(plan: "Plan") -> list[str]:
         more = sum(count > 0 for count, _ in worst) - 3
         on += f" and {more} more" if more > 0 else ""
         undecided = f", {c.undecided} undecided" if c.undecided else ""
-        lines.append(
-            f"Not reached by {c.id}: {left} of {plan.samples.count} samples ({reasons or 'none'}{undecided}), on {on}{where}."
-        )
+        line = f"Not reached by {c.id}: {left} of {plan.samples.count} samples ({reasons or 'none'}{undecided}), on {on}{where}."
+        lines.append(named(plan, line))
     return lines

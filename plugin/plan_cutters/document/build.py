@@ -215,8 +215,9 @@ def notes(scene: Scene, options: Options, samples: SurfaceSamples, cutters: Sequ
 
 def _tool_notes(options: Options, cutters: Sequence[Cutter]) -> Iterator[str]:
     """How the cutters are judged."""
-    if not options.cutters:
-        yield "The cutters are the built-in drawer, of usual metric sizes in plain holders: give your own with --cutter."
+    if not options.cutters and not options.libraries:
+        yield ("The cutters are the built-in drawer, of usual metric sizes in plain holders: give your own with --cutter or "
+               "--cutters.")  # fmt: skip
     bare = [c.id for c in cutters if c.holder is None]
     if bare:
         yield f"{listed(bare)} {'is' if len(bare) == 1 else 'are'} judged up to the stated length, without a holder."

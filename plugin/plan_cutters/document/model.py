@@ -166,9 +166,45 @@ class StageEntry(Frozen):
     upper_radius_mm: float
 
 
+class SourceEntry(Frozen):
+    """Where a tool library lists a cutter."""
+
+    file: str
+    place: str
+    number: int | None = Field(description="in the machine's tool changer")
+    name: str
+    kind: str = Field(description="as the file words it")
+    unit: str = Field(description="that its lengths are given in; empty where the file does not say")
+    notes: list[str] = Field(description="how it was understood where that is not plain")
+
+
+class UnusedEntry(Frozen):
+    """A tool of a library that became no cutter."""
+
+    place: str
+    number: int | None
+    name: str
+    kind: str
+    why: str = Field(description="the field concerned, what is wrong with it and what to add")
+    broken: bool = Field(description="it contradicts itself or cannot be read")
+
+
+class LibraryEntry(Frozen):
+    """A tool library, and what of it was not used."""
+
+    file: str
+    format: str
+    tools: int = Field(description="that it lists")
+    cutters: int = Field(description="of different geometry that came of them")
+    holders: list[str] = Field(description="that it lists by themselves")
+    notes: list[str]
+    unused: list[UnusedEntry]
+
+
 class CutterEntry(Verdicts):
     id: str
     name: str
+    sources: list[SourceEntry] = Field(default=[], description="where tool libraries list it, all places")
     radius: float
     corner_radius: float
     length: float = Field(description="from the tip to the holder's nose, or to the end of what is checked")
@@ -245,6 +281,7 @@ class Plan(Frozen):
     faces: list[FaceEntry]
     missing: list[MissingEntry]
     reasons: list[str] = Field(description="what `reason_ID` in samples.npz counts in")
+    libraries: list[LibraryEntry] = Field(default=[], description="tool libraries that were read")
     cutters: list[CutterEntry]
     selected: str | None
     selection: Selection

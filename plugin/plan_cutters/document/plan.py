@@ -5,13 +5,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cad_io import SurfaceSamples
 from plan_cutters.document.answers import mend_entry, radius_entry, stick_out_entry
 from plan_cutters.document.build import area_notes, degrees, face_entries, missing_entries, notes, part_info, versions
+from plan_cutters.document.libraries import library_entry, source_entry
 from plan_cutters.document.model import CutterEntry, Effective, Plan, Run, SampleCounts, Selection
 from plan_cutters.document.palette import PALETTE
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE
+from plan_cutters.options import Options
 from plan_cutters.scene.prepared import Prepared
 
 RULE = "largest radius, then smaller corner radius, then shorter length, then library order, among the feasible"
@@ -28,7 +29,7 @@ def plan_of(
         part=part_info(scene),
         effective=Effective(
             cutters=[c.id for c in ready.cutters],
-            cutter_source="given" if options.cutters else "built-in",
+            cutter_source=" and ".join(_sources(options)) or "built-in",
             holder=None if options.holder is None else options.holder.id,
             allowance_mm=options.allowance,
             holder_clearance_mm=options.holder_clearance,
@@ -66,6 +67,7 @@ def plan_of(
         faces=face_entries(part, samples, choice),
         missing=missing_entries(part, around),
         reasons=list(REASONS),
+        libraries=[library_entry(library) for library in options.libraries],
         cutters=list(entries),
         selected=selected,
         selection=selection,
@@ -80,12 +82,18 @@ def plan_of(
     )
 
 
-def answered(entries: Sequence[CutterEntry], answers: Answers, samples: SurfaceSamples) -> list[CutterEntry]:
-    """The entries of cutters with what was answered about them."""
-    found = []
+def _sources(options: Options) -> list[str]:
+    """Where the cutters are from; nothing for the built-in ones."""
+    return [*(["given"] if options.cutters else []), *(library.file for library in options.libraries)]
+
+
+def completed(entries: Sequence[CutterEntry], ready: Prepared, answers: Answers) -> list[CutterEntry]:
+    """The entries of cutters with where they are listed, and what was answered about them."""
+    found, sources, samples = [], ready.options.sources, ready.samples
     for entry in entries:
         stick_out, mend = answers.stick_outs.get(entry.id), answers.mends.get(entry.id)
         more = {
+            "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
             "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples),
             "mend": None if mend is None else mend_entry(mend),
         }

@@ -1,10 +1,24 @@
 """Tool libraries: what other programs and people write about tools, read into cutters.
 
-May use: domain. `formats.py` is the table of formats, each of which is one module.
+May use: domain. `formats.py` is the table of formats, each of which is one module. Names are handed on lazily: who has no
+library loads none of them.
 """
 
-from plan_cutters.library.read import holder_of, read_library
-from plan_cutters.library.records import Entry, Library
-from plan_cutters.library.toml_out import to_toml
+from importlib import import_module
+from typing import Any
 
-__all__ = ["Entry", "Library", "holder_of", "read_library", "to_toml"]
+_HOME = {
+    "Entry": "records",
+    "Library": "records",
+    "holder_of": "read",
+    "listing": "read",
+    "read_library": "read",
+    "to_toml": "toml_out",
+}
+__all__ = sorted(_HOME)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'plan_cutters.library' has no attribute {name!r}")
+    return getattr(import_module(f"plan_cutters.library.{_HOME[name]}"), name)

@@ -2,10 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import overload
+from typing import Any, overload
 
+from plan_cutters.domain.checks import items, shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder
+from plan_cutters.errors import LibraryError
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,3 +118,14 @@ class Library(Sequence[Cutter]):
     def names(self, cutter: Cutter | str) -> tuple[str, ...]:
         """Each name of one geometry once, in the file's order."""
         return tuple(dict.fromkeys(entry.name for entry in self.entries_of(cutter) if entry.name))
+
+
+def libraries_of(given: Any) -> tuple[Library, ...]:
+    """One library or a list of such; None is an empty list."""
+    if given is None:
+        return ()
+    found = [given] if isinstance(given, Library) else items(given, "libraries", "libraries")
+    for each in found:
+        if not isinstance(each, Library):
+            raise LibraryError(f"{shown(each)} is no tool library: read_library reads a file")
+    return tuple(found)
