@@ -78,7 +78,7 @@ def summary(plan: "Plan") -> None:
 
 
 def short_names(plan: "Plan") -> dict[str, str]:
-    """How cutters are called in a line, by their ids: as the library does, else without the holder, where that leaves them apart."""
+    """How cutters are called in a line, by their ids: as a library does, or without the holder, where that tells them apart."""
     listed, heads = {}, {}
     for c in plan.cutters:
         numbers = dict.fromkeys(f"T{s.number}" for s in c.sources if s.number is not None)
@@ -125,7 +125,7 @@ def answered(plan: "Plan") -> list[str]:
     for c in plan.cutters:
         found = c.least_stick_out
         if found is not None and found.point is not None:
-            lines.append(f"{c.id} must stand out {found.least_mm:.2f} mm for the sample at {_place(found.point)} on {found.face}: "
+            lines.append(f"{c.id} must stand out {found.least_mm:.2f} mm at {_place(found.point)} on {found.face}: "
                          f"a shorter one's holder is stopped by {found.obstacle_face or 'the part'}.")  # fmt: skip
     for each in plan.largest_radius:
         q = {name: f"R{radius:.3g}" for name, radius in each.percentiles_mm.items()}
