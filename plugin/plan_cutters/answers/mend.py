@@ -85,7 +85,7 @@ def mend(
 
 def _change(thing: Thing, case: Case, trials: Trials, reach: Reach, found: dict[Thing, Change]) -> Change:
     if thing == "setup":
-        return setup(case, trials, found["tilt_limit"].left)
+        return setup(case, trials, found["tilt_limit"])
     if thing == "tolerance":
         return tolerance(case, trials, reach)
     each: dict[Thing, Callable[[Case, Trials], Change]] = {

@@ -26,25 +26,20 @@ CORNERS = (0.2, 0.3, 0.4, 0.5, 0.8, 1.0, 1.2, 1.5, 1.6, 2.0, 2.5, 3.0, 4.0, 5.0,
 
 def stick_out(case: Case, trials: Trials) -> Change:
     """The least length from the tip to the holder's nose, the flutes as they are; to `GRAIN`."""
-    cutter = case.cutter
+    cutter, lost = case.cutter, len(trials.lost)
+    now = cutter.length
     if cutter.holder is None:
-        return none(
-            "stick_out",
-            cutter.length,
-            len(trials.lost),
-            "no holder is stated, and a longer cutter only adds to what is in the way",
-        )
-    # So far out the nose is above all obstacles wherever the cutter touches it.
+        return none("stick_out", now, lost, "no holder is stated, and a longer cutter only adds to what is in the way")
+    # So far out the nose is above all obstacles wherever the cutter touches them.
     vertex = case.ready.conditions.obstacles.triangles.vertex
     size = float(np.linalg.norm(vertex.max(axis=(0, 1)) - vertex.min(axis=(0, 1))))
     highest = size + 2.0 * cutter.radius + flute_length(cutter) + (cutter.clearance or 0.0)
-    most = math.ceil((highest - cutter.length) / GRAIN)
+    most = math.ceil((highest - now) / GRAIN)
     if most < 1:
-        return none("stick_out", cutter.length, len(trials.lost),
-                   f"its {cutter.length:g} mm already hold the holder above all of the part")  # fmt: skip
+        return none("stick_out", now, lost, f"its {now:g} mm already hold the holder above all obstacles")
 
     def length(at: int) -> float:
-        return round(cutter.length + at * GRAIN, 6)
+        return round(now + at * GRAIN, 6)
 
     def steps(at: int) -> Case | None:
         made = _longer(cutter, length(at))
@@ -52,50 +47,48 @@ def stick_out(case: Case, trials: Trials) -> Change:
 
     end = steps(most)
     if end is None:
-        return none("stick_out", cutter.length, len(trials.lost), "no shank can go on above it")
+        return none("stick_out", now, lost, "no shank can go on above it")
     left = Left.by(end, trials.lost)
     if left.count:
-        return short("stick_out", cutter.length, length(most), left, f"{left.words} at every stick-out")
+        return short("stick_out", now, length(most), left, f"{left.words} at every stick-out")
     found = least(steps, most, trials)
     if found is None:
-        return none(
-            "stick_out", cutter.length, len(trials.lost), "where the holder is out of the way, something else is"
-        )
-    asked = length(found.steps)
-    return Change("stick_out", cutter.length, asked, True, 0, trials.count, _beyond(found.beyond, length), found.case.cutter,
-                  f"stand out {asked:g} mm instead of {cutter.length:g} mm", {"cutters": (found.case.cutter,)})  # fmt: skip
+        return none("stick_out", now, 0, "where the holder is out of the way, something else is", lost)
+    asked, made = length(found.steps), found.case.cutter
+    return Change("stick_out", now, asked, True, 0, lost, trials.count, _beyond(found.beyond, length), made,
+                  f"stand out {asked:g} mm instead of {now:g} mm", {"cutters": (made,)})  # fmt: skip
 
 
 def radius(case: Case, trials: Trials) -> Change:
     """The largest smaller radius, in steps of `SHARE`."""
-    cutter, tolerance = case.cutter, case.ready.conditions.tolerance
+    cutter, conditions, lost = case.cutter, case.ready.conditions, len(trials.lost)
+    now = cutter.radius
     if cutter.shape == "form":
-        return none(
-            "radius", cutter.radius, len(trials.lost), "the outline of a form cutter has no radius to change alone"
-        )
-    most = max(0, math.floor(math.log(THINNEST * tolerance / cutter.radius) / math.log(1.0 - SHARE)))
+        return none("radius", now, lost, "the outline of a form cutter has no radius to change alone")
+    most = max(0, math.floor(math.log(THINNEST * conditions.tolerance / now) / math.log(1.0 - SHARE)))
 
     def value(at: int) -> float:
-        return float(f"{cutter.radius * (1.0 - SHARE) ** at:.4g}")
+        return float(f"{now * (1.0 - SHARE) ** at:.4g}")
 
     def steps(at: int) -> Case | None:
         made = thinner(cutter, value(at))
-        return None if made is None else replace(case, cutter=made)
+        return None if made is None or not conditions.judges(made) else replace(case, cutter=made)
 
     while most and (end := steps(most)) is None:
         most -= 1
     if not most:
-        return none("radius", cutter.radius, len(trials.lost), "no thinner cutter of its proportions can exist")
+        return none("radius", now, lost, "there is no thinner cutter like it that could be judged")
     found = first(steps, most, trials)
     if found is None:
         assert end is not None
         left = Left.by(end, trials.lost)
-        why = f"with {value(most):g} mm, the least tried, {left.words}" if left.count else \
-              f"none of {most} radii down to {value(most):g} mm serves all samples"  # fmt: skip
-        return short("radius", cutter.radius, value(most), left, why)
+        why = f"none of {most} radii down to {value(most):g} mm serves all samples"
+        if left.count:
+            why = f"with {value(most):g} mm, the least tried, {left.words}"
+        return short("radius", now, value(most), left, why)
     asked, made = value(found.steps), found.case.cutter
-    return Change("radius", cutter.radius, asked, True, 0, trials.count, _beyond(found.beyond, value), made,
-                  f"a radius of {asked:g} mm instead of {cutter.radius:g} mm", {"cutters": (made,)})  # fmt: skip
+    return Change("radius", now, asked, True, 0, lost, trials.count, _beyond(found.beyond, value), made,
+                  f"a radius of {asked:g} mm instead of {now:g} mm", {"cutters": (made,)})  # fmt: skip
 
 
 def corner_radius(case: Case, trials: Trials) -> Change:
@@ -127,7 +120,7 @@ def corner_radius(case: Case, trials: Trials) -> Change:
     asked, made = value(found.steps), found.case.cutter
     words = "a flat end" if not asked else "a ball end" if asked == r else f"a corner radius of {asked:g} mm"
     was = "a flat end" if not now else "a ball end" if now == r else f"{now:g} mm"
-    return Change("corner_radius", now, asked, True, 0, trials.count, _beyond(found.beyond, value), made,
+    return Change("corner_radius", now, asked, True, 0, len(trials.lost), trials.count, _beyond(found.beyond, value), made,
                   f"{words} instead of {was}", {"cutters": (made,)})  # fmt: skip
 
 

@@ -36,20 +36,21 @@ class _Found:
     axis: Axis
     angle: float
     beyond: Axis
-    case: Case
 
 
-def setup(case: Case, trials: Trials, unlimited: int) -> Change:
+def setup(case: Case, trials: Trials, unlimited: Change) -> Change:
     """Another setup axis: of the directions tried the nearest that serves, and on the way there the first.
 
-    `unlimited`: samples that would be lost on a machine without any limit. The side of the material stays as it is.
+    `unlimited`: what a machine of another limit changes. The side of the material stays as it is.
     """
     ready = case.ready
     now: Axis = ready.scene.setup
     if ready.conditions.machine.tilt_limit is None:
         return none("setup", now, len(trials.lost), "the machine has no limit, so it turns to any axis")
-    if unlimited:
-        return none("setup", now, unlimited, f"{samples(unlimited)} lost without any limit of the axis")
+    if unlimited.left:
+        # An axis within a limit is one without.
+        why = f"{unlimited.left:,} of {unlimited.looked:,} samples are not reached without any limit of the axis"
+        return replace(none("setup", now, unlimited.left, why, unlimited.looked), helps=unlimited.helps)
     tried = [(axis, made) for axis in directions(ready, trials) if (made := _turned(case, axis)) is not None]
     found, ways = None, 0
     for axis, made in tried:
@@ -57,20 +58,19 @@ def setup(case: Case, trials: Trials, unlimited: int) -> Change:
             ways += 1
             found = _nearest(case, trials, axis, found) or found
     if found is None:
-        left = (
-            Left.by(trials.closest([made for _, made in tried]), trials.lost)
-            if tried
-            else Left(len(trials.lost), 1, "")
-        )
-        why = f"the best leaves {left.count:,}" if left.count else "each loses some samples"
-        return none("setup", now, left.count, f"none of {len(tried)} directions tried serves, {why}")
+        if not tried:
+            why = "under every other axis a plan would work on other sides of open faces"
+            return none("setup", now, len(trials.lost), why)
+        left = Left.by(trials.closest([made for _, made in tried]), trials.lost)
+        why = f"the best leaves {left.count:,} of {left.looked:,} samples" if left.count else "each loses some samples"
+        return none("setup", now, left.count, f"none of {len(tried)} directions tried serves, {why}", left.looked)
     options: dict[str, object] = {"setup": found.axis}
     more = ""
-    if found.case.ready.options.flip != ready.options.flip:
-        options["flip"] = not ready.options.flip
-        more = ", without --flip" if ready.options.flip else ", with --flip"
+    if (flip := _flip(ready, found.axis)) != ready.options.flip:
+        options["flip"] = flip
+        more = ", with --flip" if flip else ", without --flip"
     words = ",".join(f"{each:.4g}" for each in found.axis)
-    return Change("setup", now, found.axis, True, 0, trials.count, found.beyond, None,
+    return Change("setup", now, found.axis, True, 0, len(trials.lost), trials.count, found.beyond, None,
                   f"clamp it with {words} along the spindle, {found.angle:.4g} deg from now{more}", options)  # fmt: skip
 
 
@@ -86,7 +86,7 @@ def _nearest(case: Case, trials: Trials, end: Axis, found: _Found | None) -> _Fo
     step = first(lambda at: _turned(case, axis(at)), math.ceil(far / TURN - 1e-9), trials)
     if step is None:
         return None
-    return _Found(axis(step.steps), min(whole, step.steps * TURN), axis(step.beyond or 0), step.case)
+    return _Found(axis(step.steps), min(whole, step.steps * TURN), axis(step.beyond or 0))
 
 
 def directions(ready: Prepared, trials: Trials) -> list[Axis]:
@@ -131,16 +131,20 @@ def _towards(now: Axis, end: Axis, degrees: float) -> Axis:
 def _turned(case: Case, axis: Axis) -> Case | None:
     """The same under another setup axis; None if a plan would then work on other sides of open faces, flipped or not."""
     ready = case.ready
-    spindle = unit(axis, "setup axis")
-    for flip in (ready.options.flip, not ready.options.flip):
-        part = ready.scene.part
-        if (
-            ready.scene.orientation.confident
-            or (orient(part, towards=tuple(spindle.tolist()), flip=flip).sign == ready.scene.orientation.sign).all()
-        ):
-            options = replace(ready.options, setup=axis, flip=flip)
-            return replace(case, ready=replace(ready, options=options,
-                                               conditions=replace(ready.conditions, setup=spindle)))  # fmt: skip
+    if _flip(ready, axis) is None:
+        return None
+    conditions = replace(ready.conditions, setup=unit(axis, "setup axis"))
+    return replace(case, ready=replace(ready, conditions=conditions))
+
+
+def _flip(ready: Prepared, axis: Axis) -> bool | None:
+    """What to say of `flip` under a setup axis, so that faces keep the sides that they have; None if neither keeps them."""
+    scene, flip = ready.scene, ready.options.flip
+    if scene.orientation.confident:
+        return flip
+    for each in (flip, not flip):
+        if (orient(scene.part, towards=axis, flip=each).sign == scene.orientation.sign).all():
+            return each
     return None
 
 
@@ -150,9 +154,8 @@ def tolerance(case: Case, trials: Trials, reach: Reach) -> Change:
     now = ready.scene.asked
     blocked = int((reach.verdict[trials.lost] == INACCESSIBLE).sum())
     if blocked:
-        return none(
-            "tolerance", now, blocked, f"{samples(blocked)} blocked for certain, which no finer tolerance mends"
-        )
+        why = f"{samples(blocked)} blocked for certain, which no finer tolerance mends"
+        return none("tolerance", now, blocked, why)
     left, best, before = len(trials.lost), now, now
     for share in FINER:
         finer = float(f"{now * share:.6g}")
@@ -160,19 +163,18 @@ def tolerance(case: Case, trials: Trials, reach: Reach) -> Change:
             break
         closer = _closer(case, finer)
         if not trials.stopped(closer, everywhere=True) and not len(closer.judged()):
-            return Change("tolerance", now, finer, True, 0, trials.count, before, None,
+            return Change("tolerance", now, finer, True, 0, len(trials.lost), trials.count, before, None,
                           f"a tolerance of {finer:g} mm instead of {now:g} mm", {"tolerance": finer})  # fmt: skip
         still = Left.by(closer, trials.lost)
         if still.blocked:
-            return none(
-                "tolerance", now, still.count, f"with {finer:g} mm {samples(still.blocked)} blocked for certain"
-            )
+            why = f"with {finer:g} mm {samples(still.blocked)} blocked for certain"
+            return none("tolerance", now, still.count, why, still.looked)
         before = finer
         if still.count >= left:
             # Nothing was gained.
             break
         left, best = still.count, finer
-    return Change("tolerance", now, best, None, left, 0, None, None,
+    return Change("tolerance", now, None if best == now else best, None, left, len(trials.lost), 0, None, None,
                   f"is not decided: with {before:g} mm, the finest tried, {samples(left)} undecided")  # fmt: skip
 
 
@@ -203,7 +205,7 @@ def faces(case: Case, trials: Trials) -> Change:
     which = (
         ids[0] if len(ids) == 1 else f"{len(ids)} faces ({', '.join(ids[:5])}{' and others' if len(ids) > 5 else ''})"
     )
-    return Change("faces", ids, ids, True, 0, int((~out).sum()), None, None,
+    return Change("faces", ids, ids, True, 0, len(trials.lost), int((~out).sum()), None, None,
                   f"leave {which} out: {area:.4g} mm2, {100.0 * area / whole:.3g} % of the target area and {share:.3g} % of the "
                   f"samples, of which {some:.3g} % are lost",
                   {"faces": ",".join(f"F{n}" for n in rest)})  # fmt: skip

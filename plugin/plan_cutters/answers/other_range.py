@@ -33,9 +33,9 @@ def tilt_limit(case: Case, trials: Trials) -> Change:
 
     found = least(steps, math.ceil(180.0 / GRAIN) - base, trials)
     if found is None:
-        return none("tilt_limit", now, 0, "no limit was found that serves all samples")
+        return none("tilt_limit", now, 0, "no limit was found that serves all samples", len(trials.lost))
     asked, beyond = value(found.steps), None if found.beyond is None else value(found.beyond)
-    return Change("tilt_limit", now, asked, True, 0, trials.count, beyond, None,
+    return Change("tilt_limit", now, asked, True, 0, len(trials.lost), trials.count, beyond, None,
                   f"a machine that tilts by {asked:g} deg instead of {now:g} deg",
                   {"machine": found.case.ready.conditions.machine})  # fmt: skip
 
@@ -47,9 +47,8 @@ def tilt_range(case: Case, trials: Trials) -> Change:
     lowest = min(low, round(math.floor(_degrees(min(mode.low for mode in touching)) / GRAIN) * GRAIN, 6))
     highest = max(high, min(180.0, round(math.ceil(_degrees(max(mode.high for mode in touching)) / GRAIN) * GRAIN, 6)))
     if (lowest, highest) == (low, high):
-        return none(
-            "tilt_range", (low, high), len(trials.lost), "the cutter touches at no tilt beyond the range searched"
-        )
+        why = "the cutter touches at no tilt beyond the range searched"
+        return none("tilt_range", (low, high), len(trials.lost), why)
     left = Left.by(_tilts(case, (lowest, highest)), trials.lost)
     if left.count:
         return short("tilt_range", (low, high), (lowest, highest), left,
@@ -68,9 +67,9 @@ def tilt_range(case: Case, trials: Trials) -> Change:
         if step is not None:
             found.append((step.steps, value(step.steps), None if step.beyond is None else value(step.beyond)))
     if not found:
-        return none("tilt_range", (low, high), 0, "no range was found that serves all samples")
+        return none("tilt_range", (low, high), 0, "no range was found that serves all samples", len(trials.lost))
     _, asked, beyond = min(found, key=lambda each: each[0])
-    return Change("tilt_range", (low, high), asked, True, 0, trials.count, beyond, None,
+    return Change("tilt_range", (low, high), asked, True, 0, len(trials.lost), trials.count, beyond, None,
                   f"search tilts from {asked[0]:g} to {asked[1]:g} deg instead of {low:g} to {high:g} deg",
                   {"tilt": (math.radians(asked[0]), math.radians(asked[1]))})  # fmt: skip
 

@@ -36,6 +36,8 @@ _AT_RANDOM = 1024
 _REMEMBERED = 32
 #: Samples by which values are compared that all leave some.
 _COMPARED = 32
+#: Samples that are looked at to count what a value leaves that does not serve, at most.
+_LOOKED_AT = 4096
 #: How often a value that serves all samples tried, but not all, is taken further.
 _ROUNDS = 8
 
@@ -162,39 +164,45 @@ class Left:
 
     count, blocked : int
         Samples that are inaccessible or undecided, and those that are inaccessible.
+    looked : int
+        Samples looked at: some of those lost now, spread evenly, if one of these is inaccessible, else all.
     words : str
         How many samples are lost to what, the reason with the most of them first; or undecided, if all are.
     """
 
     count: int
     blocked: int
+    looked: int
     words: str
 
     @classmethod
     def by(cls, case: Case, rows: Rows) -> "Left":
         """What a case leaves of some samples."""
-        reach = case.look(rows)
+        few = rows[:: 1 + (len(rows) - 1) // _LOOKED_AT]
+        reach = case.look(few)
+        if len(few) < len(rows) and not (reach.verdict == INACCESSIBLE).any():
+            few, reach = rows, case.look(rows)
         bad = ~reach.reached
         count, blocked = int(bad.sum()), int((reach.verdict == INACCESSIBLE).sum())
-        return cls(count, blocked, reasons(reach.reason[bad]) if blocked else f"{samples(count)} undecided")
-
-    @property
-    def helps(self) -> bool | None:
-        """False, or None where none of the samples is proved to be out of reach."""
-        return False if self.blocked else None
+        of = None if len(few) == len(rows) else len(few)
+        words = reasons(reach.reason[bad], of) if blocked else f"{samples(count, of)} undecided"
+        return cls(count, blocked, len(few), words)
 
 
-def reasons(codes: NDArray[np.uint8]) -> str:
-    """How many samples are lost, and to what."""
+def reasons(codes: NDArray[np.uint8], of: int | None = None) -> str:
+    """How many samples, of how many, are lost, and to what."""
     found = [(int((codes == code).sum()), REASONS[code]) for code in np.unique(codes).tolist()]
     ranked = sorted(found, key=lambda each: (-each[0], each[1]))
     if len(ranked) == 1:
-        return f"{samples(ranked[0][0])} lost to {_WORDS[ranked[0][1]]}"
-    return f"{samples(len(codes))} lost: " + ", ".join(f"{count} to {_WORDS[reason]}" for count, reason in ranked)
+        return f"{samples(len(codes), of)} lost to {_WORDS[ranked[0][1]]}"
+    whole = ", ".join(f"{count:,} to {_WORDS[reason]}" for count, reason in ranked)
+    return f"{samples(len(codes), of)} lost ({whole})"
 
 
-def samples(count: int) -> str:
-    """A number of samples as the subject of a sentence."""
+def samples(count: int, of: int | None = None) -> str:
+    """A number of samples, of those looked at if these are not all, as the subject of a sentence and its verb."""
+    if of is not None:
+        return f"{count:,} of {of:,} samples looked at are"
     return "1 sample is" if count == 1 else f"{count:,} samples are"
 
 

@@ -34,8 +34,9 @@ class Change:
     helps : bool, optional
         True: every target sample was judged with it, and each has a posture. False: no value that was tried does that. None: it
         could not be decided, as samples stay undecided or obstacles are missing.
-    left : int
-        Of the samples that are lost now, those still inaccessible or undecided with the best value that was tried.
+    left, looked : int
+        Samples still inaccessible or undecided with the best value that was tried, of those looked at: of the samples that are
+        lost now all or, where these are thousands and there is no help, some of them, spread evenly.
     verified : int
         Target samples that were judged with `asked`.
     beyond : float or tuple, optional
@@ -53,6 +54,7 @@ class Change:
     asked: Value
     helps: bool | None
     left: int
+    looked: int
     verified: int
     beyond: Value
     cutter: Cutter | None
