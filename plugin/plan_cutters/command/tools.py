@@ -1,0 +1,219 @@
+"""`plan-cutters-tools`: what was understood of tool libraries, as a table, as JSON, as drawings and in our own format."""
+
+import contextlib
+import json
+import os
+import re
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
+
+from plan_cutters import __version__
+from plan_cutters.command.codes import USAGE, guarded
+
+if TYPE_CHECKING:
+    from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.library.records import Entry, Library
+
+
+@click.command(
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
+    epilog="Exit codes: 0 each file holds a tool that can be judged, or a holder; 2 one does not, or the command line is wrong.",
+)
+@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.option("--json", "as_json", is_flag=True, help="All that was understood, as JSON on standard output.")
+@click.option("--to-toml", metavar="FILE", help="Write the tools that can be judged in our own format.")
+@click.option("--draw", metavar="DIR", help="Draw each assembly to scale (SVG) into a folder.")
+@click.option("--assume-stickout", type=float, metavar="MM", help="Stick-out of tools that state none.")
+@click.option(
+    "--holder",
+    metavar="FILE|SPEC",
+    help="Holder of tools that have none: R15L30 (radius, length), stages from the nose up joined by +; a file with a holder "
+    "(FILE#NAME if it has several); or `none`.",
+)
+@click.option("--skip-bad", is_flag=True, help="Use the other tools of a library that has broken ones.")
+@click.option("--debug", is_flag=True, help="Show tracebacks.")
+@click.version_option(__version__, prog_name="plan-cutters-tools")
+def command(files: tuple[str, ...], **given: Any) -> int:
+    """What is understood of the tools in FILE, and why some cannot be judged.
+
+    Reads Fusion .tools, .json and CSV, HSMWorks .hsmlib, FreeCAD .fctl, .fctb and .fcholder, LinuxCNC .tbl, and TOML.
+    """
+    from plan_cutters.library.read import holder_of, listing, nothing
+
+    holder = None if given["holder"] is None else holder_of(given["holder"])
+    found, lines = [], []
+    for file in files:
+
+        def one(file: str = file) -> tuple[int, str]:
+            library = listing(
+                file, assume_stickout=given["assume_stickout"], holder=holder, skip_bad=given["skip_bad"]
+            )
+            found.append(library)
+            if not library and not (library.holders and not library.entries):
+                raise nothing(library)
+            return 0, ""
+
+        code, line = guarded(one, given["debug"])
+        if code:
+            lines.append(line.replace("plan-cutters:", "plan-cutters-tools:", 1))
+    if not lines:
+        # Nothing is written if anything was wrong.
+        if given["to_toml"] is not None:
+            _to_toml(found, Path(given["to_toml"]))
+        if given["draw"] is not None:
+            _draw(found, Path(given["draw"]))
+    if given["as_json"]:
+        click.echo(json.dumps({"libraries": [_plain(library) for library in found]}, indent=2, ensure_ascii=False))
+    else:
+        for library in found:
+            _table(library)
+    for line in lines:
+        click.echo(line, err=True)
+    return USAGE if lines else 0
+
+
+def _plain(library: "Library") -> dict[str, Any]:
+    """A library as JSON has it."""
+    return {
+        "file": library.file,
+        "format": library.format,
+        "notes": list(library.notes),
+        "cutters": [
+            {"id": cutter.id, "numbers": list(library.numbers(cutter)), "names": list(library.names(cutter)),
+             **_dimensions(cutter)}
+            for cutter in library
+        ],
+        "entries": [
+            {"place": entry.place, "number": entry.number, "name": entry.name, "type": entry.kind, "unit": entry.unit or None,
+             "cutter": None if entry.cutter is None else entry.cutter.id, "unused": entry.unused, "broken": entry.broken,
+             "notes": list(entry.notes), "given": dict(entry.given)}
+            for entry in library.entries
+        ],
+        "holders": [{"name": holder.name, "id": holder.id} for holder in library.holders],
+    }  # fmt: skip
+
+
+def _dimensions(cutter: "Cutter") -> dict[str, Any]:
+    from plan_cutters.domain.shapes import flute_length
+
+    return {
+        "shape": cutter.shape,
+        "radius": cutter.radius,
+        "corner_radius": cutter.corner_radius,
+        "length": cutter.length,
+        "flutes": flute_length(cutter),
+        "holder": None if cutter.holder is None else {"name": cutter.holder.name, "id": cutter.holder.id},
+    }
+
+
+def _table(library: "Library") -> None:
+    """A library for people: widths follow the words where the output is no terminal."""
+    from rich.console import Console
+    from rich.table import Table
+
+    if hasattr(sys.stdout, "reconfigure"):
+        # Names and frames of tables may have no place in the terminal's encoding.
+        sys.stdout.reconfigure(errors="replace")
+    console = Console(highlight=False, markup=False, width=None if sys.stdout.isatty() else 200)
+    used = sum(entry.cutter is not None for entry in library.entries)
+    console.print(f"{library.file}: {library.format}, {len(library.entries)} tools listed, {used} used, "
+                  f"{len(library)} different", soft_wrap=True)  # fmt: skip
+    for note in library.notes:
+        console.print(f"  {note}", soft_wrap=True)
+    for holder in library.holders:
+        console.print(f"  holder {holder.name}: {holder.id}", soft_wrap=True)
+    if not library.entries:
+        return
+    table = Table("", "No.", "Name", "Type", "Unit", "DC", "RE", "LCF", "Stick-out", "Shank", "Holder", "Id, or why not used")
+    for column in table.columns[5:10]:
+        column.justify = "right"
+    table.columns[-1].overflow = "fold"
+    for entry in library.entries:
+        table.add_row(*_row(entry))
+    console.print(table)
+
+
+def _row(entry: "Entry") -> list[str]:
+    given, cutter = dict(entry.given), entry.cutter
+    number = "" if entry.number is None else str(entry.number)
+    words = [entry.place, number, entry.name, entry.kind, entry.unit]
+    if cutter is None:
+        broken = "broken: " if entry.broken else "not used: "
+        sizes = [f"{given[key]:.6g}" if key in given else "" for key in ("DC", "RE", "LCF", "LPR", "DMM")]
+        return [*words, *sizes, "", "; ".join([f"{broken}{entry.unused}", *entry.notes])]
+    from plan_cutters.domain.shapes import flute_length
+
+    shank = "" if cutter.shank_radius is None else f"{2 * cutter.shank_radius:.6g}"
+    sizes = [2 * cutter.radius, cutter.corner_radius, flute_length(cutter), cutter.length]
+    holder = "none" if cutter.holder is None else cutter.holder.name or cutter.holder.id
+    return [*words, *(f"{size:.6g}" for size in sizes), shank, holder, "; ".join([cutter.id, *entry.notes])]
+
+
+@contextlib.contextmanager
+def _aside(path: Path) -> Iterator[Path]:
+    """A path to write to, which takes the place of `path` when all is written."""
+    from plan_cutters.errors import PlanError
+
+    aside = path.with_name(f".{path.name}.part")
+    try:
+        yield aside
+        os.replace(aside, path)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            aside.unlink(missing_ok=True)
+        raise PlanError(f"cannot be written: {error.strerror}", file=str(path)) from None
+
+
+def _to_toml(found: "Sequence[Library]", path: Path) -> None:
+    from plan_cutters.library import to_toml
+
+    texts = [to_toml(library) for library in found]
+    # Every part says the unit; the file says it once.
+    text = "".join([texts[0], *(part.replace('unit = "mm"\n', "", 1) for part in texts[1:])])
+    with _aside(path) as aside:
+        aside.write_text(text, encoding="utf-8")
+
+
+def _draw(found: "Sequence[Library]", folder: Path) -> None:
+    from plan_cutters.errors import PlanError
+    from plan_cutters.library.drawing import draw
+
+    drawn: dict[str, str] = {}
+    for library in found:
+        for cutter in library:
+            numbers = library.numbers(cutter)
+            words = [*(f"T{number}" for number in numbers[:1]), cutter.name or cutter.id]
+            stem = re.sub(r"[^\w.-]+", "_", " ".join(words)).strip("._")[:80] or "tool"
+            name, i = stem, 2
+            while name in drawn:
+                name, i = f"{stem}_{i}", i + 1
+            drawn[name] = draw(cutter, name=" ".join(words))
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise PlanError(f"cannot be made: {error.strerror}", file=str(folder)) from None
+    for name, text in drawn.items():
+        with _aside(folder / f"{name}.svg") as aside:
+            aside.write_text(text, encoding="utf-8")
+
+
+def main(args: Sequence[str] | None = None) -> NoReturn:
+    """Entry point of the command."""
+    words = list(sys.argv[1:] if args is None else args)
+
+    def work() -> tuple[int, str]:
+        try:
+            return int(command.main(words, prog_name="plan-cutters-tools", standalone_mode=False) or 0), ""
+        except BrokenPipeError:
+            # Whoever reads the table has seen enough.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            return 0, ""
+
+    code, line = guarded(work, "--debug" in words)
+    if line:
+        click.echo(line.replace("plan-cutters:", "plan-cutters-tools:", 1), err=True)
+    sys.exit(code)
