@@ -112,7 +112,7 @@ def test_part_without_faces(tmp_path):
         (["--faces", "7"], "F7"),
         (["--formats", "pdf"], "pdf"),
         (["--jobs", "0"], "jobs"),
-        (["--cutters", "shop.tools"], "not read yet"),
+        (["--cutters", "shop.tools"], "shop.tools: cannot be read"),
         (["--fixture", "vice.stl"], "not read yet"),
         (["--allowance", "-0.3"], "allowance -0.3"),
         (["--holder-clearance", "nan"], "holder clearance must be a number"),
