@@ -15,6 +15,7 @@ from tool_files import (
     fusion,
     in_inches,
     real,
+    section,
     write_bit,
     write_csv,
     write_hsmlib,
@@ -74,15 +75,15 @@ def test_the_18_ball_ends_are_identical_in_three_formats():
 
 def test_what_stands_between_flutes_and_holder_is_exact(tmp_path):
     tool = fusion(LB=30, shoulder_length=None, shoulder_diameter=None, shaft={"segments": [
-        {"height": 3, "lower-diameter": 6, "upper-diameter": 4}, {"height": 0, "lower-diameter": 4, "upper-diameter": 5},
-        {"height": 5, "lower-diameter": 5, "upper-diameter": 5}, {"height": 20, "lower-diameter": 7, "upper-diameter": 11}]})  # fmt: skip
+        section(3, 6, 4), section(0, 4, 5),
+        section(5, 5), section(20, 7, 11)]})  # fmt: skip
     (cutter,) = read_library(write_json(tmp_path / "a.json", [tool]))
     assert [(part, low, stage.radius, stage.length, stage.upper_radius) for part, low, stage in cutter.stages[:3]] == [
         ("neck", 12, 3, 3, 2), ("neck", 15, 2.5, 5, 2.5), ("neck", 20, 3.5, 10, 4.5)]  # fmt: skip
 
 
 def test_a_collar_wider_than_the_holder_is_a_contradiction(tmp_path):
-    tool = fusion(shaft={"segments": [{"height": 40, "lower-diameter": 30, "upper-diameter": 30}]}, OAL=80)
+    tool = fusion(shaft={"segments": [section(40, 30)]}, OAL=80)
     with pytest.raises(LibraryError, match="narrower than what it holds"):
         read_library(write_json(tmp_path / "a.json", [tool]))
 
@@ -103,7 +104,10 @@ def test_a_collar_wider_than_the_holder_is_a_contradiction(tmp_path):
         ({"kind": "wobble mill"}, '"wobble mill" is unknown'),
         ({"kind": ""}, "its type is missing"),
         ({"kind": "chamfer mill"}, "TA is missing"),
-        ({"kind": "lollipop mill", "shoulder_diameter": None, "LCF": 5, "shoulder_length": 6}, "shoulder-diameter is missing"),
+        (
+            {"kind": "lollipop mill", "shoulder_diameter": None, "LCF": 5, "shoulder_length": 6},
+            "shoulder-diameter is missing",
+        ),
     ],
 )
 def test_what_lacks_something_is_listed_with_the_field(tmp_path, change, said):
@@ -138,12 +142,15 @@ def test_what_lacks_something_is_listed_with_the_field(tmp_path, change, said):
         ({"shoulder_length": 8}, "LCF 12 is more than shoulder-length 8"),
         ({"shoulder_length": 45}, "shoulder-length 45 is more than LB 40"),
         ({"assemblyGaugeLength": 80}, "assemblyGaugeLength 80 is not holder.gaugeLength 30 and LB 40"),
-        ({"shaft": {"segments": [{"height": 60, "lower-diameter": 6, "upper-diameter": 8}]}}, "more than OAL 60"),
+        ({"shaft": {"segments": [section(60, 6, 8)]}}, "more than OAL 60"),
         ({"shaft": {"segments": [{"height": 6, "upper-diameter": 8}]}}, "lower-diameter is missing"),
         ({"shaft": {"segments": "none"}}, "no list of segments"),
-        ({"holder": HOLDER | {"segments": [{"height": 5, "lower-diameter": 0, "upper-diameter": 9}]}}, "diameter of 0"),
-        ({"holder": HOLDER | {"segments": [{"height": -5, "lower-diameter": 9, "upper-diameter": 9}]}}, "cannot be negative"),
-        ({"holder": HOLDER | {"segments": [{"height": 5, "lower-diameter": 6, "upper-diameter": 9}]}}, "narrower"),
+        ({"holder": HOLDER | {"segments": [section(5, 0, 9)]}}, "diameter of 0"),
+        (
+            {"holder": HOLDER | {"segments": [section(-5, 9)]}},
+            "cannot be negative",
+        ),
+        ({"holder": HOLDER | {"segments": [section(5, 6, 9)]}}, "narrower"),
         ({"holder": "chuck"}, "holder is 'chuck'"),
         ({"unit": "furlongs"}, "unit is 'furlongs'"),
         ({"unit": None}, "unit is missing"),
@@ -159,7 +166,9 @@ def test_what_lacks_something_is_listed_with_the_field(tmp_path, change, said):
     ],
 )
 def test_a_broken_tool_among_good_ones_is_named(tmp_path, change, said):
-    path = write_json(tmp_path / "a.json", [fusion(name="good"), fusion(**{"name": "the bad one", "number": 3} | change)])
+    path = write_json(
+        tmp_path / "a.json", [fusion(name="good"), fusion(**{"name": "the bad one", "number": 3} | change)]
+    )
     with pytest.raises(LibraryError) as error:
         read_library(path)
     text = str(error.value)
@@ -254,7 +263,7 @@ def test_assumptions_fill_what_is_missing_and_nothing_else(tmp_path):
 
 
 def test_ids_tell_stick_outs_and_holders_apart(tmp_path):
-    wide = HOLDER | {"segments": [{"height": 20, "lower-diameter": 30, "upper-diameter": 30}]}
+    wide = HOLDER | {"segments": [section(20, 30)]}
     tools = [fusion(), fusion(LB=45), fusion(holder=wide)]
     library = read_library(write_json(tmp_path / "a.json", tools))
     assert len(library) == 3
@@ -262,7 +271,7 @@ def test_ids_tell_stick_outs_and_holders_apart(tmp_path):
 
 
 def test_a_holder_of_many_sections_is_enclosed_by_fewer_and_says_so(tmp_path):
-    ribs = [{"height": 1, "lower-diameter": d, "upper-diameter": d} for i in range(40) for d in [30 + 2 * (i % 2) + 0.01 * i]]
+    ribs = [section(1, d) for i in range(40) for d in [30 + 2 * (i % 2) + 0.01 * i]]
     tool = fusion(holder={"unit": "millimeters", "segments": ribs})
     library = read_library(write_json(tmp_path / "a.json", [tool]))
     (cutter,) = library
@@ -279,9 +288,29 @@ def test_a_holder_of_many_sections_is_enclosed_by_fewer_and_says_so(tmp_path):
             assert stage.radius + stage.slope * (height - start) >= rib["lower-diameter"] / 2 - 1e-8
 
 
+def test_a_shaft_of_many_sections_is_enclosed_by_fewer_and_says_so(tmp_path):
+    """Rings on a taper: no point of them is outside what is judged."""
+    rings = [section(0.7, 5 + 0.2 * i, 5 + 0.2 * i + i % 3) for i in range(30)]
+    tool = fusion(shoulder_length=None, shoulder_diameter=None, shaft={"segments": rings}, SFDM=6,
+                  holder={"unit": "millimeters", "segments": [section(20, 30)]})  # fmt: skip
+    library = read_library(write_json(tmp_path / "a.json", [tool]))
+    (cutter,) = library
+    assert "sections of its shaft are taken as 6" in library.entries[0].notes[0]
+    above = [(low, stage) for part, low, stage in cutter.stages if part != "holder"]
+    assert len(above) <= 6
+    low = 12.0
+    for ring in rings:
+        for share in (1e-6, 0.3, 0.7, 1 - 1e-6):
+            height = low + share * ring["height"]
+            radius = 0.5 * (ring["lower-diameter"] + share * (ring["upper-diameter"] - ring["lower-diameter"]))
+            begin, stage = next((b, s) for b, s in reversed(above) if b <= height)
+            assert stage.radius + stage.slope * (height - begin) >= radius - 1e-8
+        low += ring["height"]
+
+
 def test_straight_sections_are_one(tmp_path):
-    split = HOLDER | {"segments": [{"height": 8, "lower-diameter": 24, "upper-diameter": 26.4},
-                                   {"height": 12, "lower-diameter": 26.4, "upper-diameter": 30}, HOLDER["segments"][1]]}  # fmt: skip
+    split = HOLDER | {"segments": [section(8, 24, 26.4),
+                                   section(12, 26.4, 30), HOLDER["segments"][1]]}  # fmt: skip
     library = read_library(write_json(tmp_path / "a.json", [fusion(), fusion(number=2, holder=split)]))
     assert [cutter.id for cutter in library] == [ID]
     assert library.numbers(ID) == (1, 2)
@@ -297,7 +326,7 @@ def test_inches_and_millimetres_are_the_same_cutters(tmp_path_factory, diameter,
     tool = fusion(kind, DC=diameter, RE=round(0.3 * diameter, 4), LCF=diameter + 1, shoulder_length=diameter + neck + 1,
                   LB=diameter + neck + more + 5, OAL=60, SFDM=diameter, shoulder_diameter=diameter, shaft=None,
                   holder={"unit": "millimeters", "segments": [
-                      {"height": more, "lower-diameter": diameter + nose, "upper-diameter": diameter + 2 * nose}]})  # fmt: skip
+                      section(more, diameter + nose, diameter + 2 * nose)]})  # fmt: skip
     (metric,), (inch,) = read_library(write_json(path, [tool])), read_library(write_json(path, [in_inches(tool)]))
     assert metric.id == inch.id
     assert metric == inch
@@ -407,8 +436,10 @@ def test_holders_are_found_by_file_and_name(tmp_path):
     assert holder_of(str(path)).id == "R10:12L5+R12L25"
     with pytest.raises(LibraryError, match="lists 1 holder and no tools; give it with --holder"):
         read_library(path)
-    two = write_json(tmp_path / "two.json", [HOLDER, HOLDER | {"description": "other", "segments": HOLDER["segments"][:1]}])
-    with pytest.raises(LibraryError, match='choose one as two.json#NAME: "chuck", "other"'):
+    two = write_json(
+        tmp_path / "two.json", [HOLDER, HOLDER | {"description": "other", "segments": HOLDER["segments"][:1]}]
+    )
+    with pytest.raises(LibraryError, match=r'choose one as two\.json#NAME: "chuck", "other"'):
         holder_of(str(two))
     assert holder_of(f"{two}#other").id == "R12:15L20"
     assert holder_of("R12L20").id == "R12L20"

@@ -10,16 +10,24 @@ import pytest
 
 REAL = Path(__file__).parent.parent.parent / "shared" / "data" / "tools"
 
+
+def section(height, lower, upper=None):
+    """A section of a holder or a shaft as Fusion has it."""
+    return {"height": height, "lower-diameter": lower, "upper-diameter": lower if upper is None else upper}
+
+
 #: mm; two segments of a holder and a shaft of one cone.
 HOLDER = {"type": "holder", "unit": "millimeters", "description": "chuck", "gaugeLength": 30, "segments": [
-    {"height": 20, "lower-diameter": 24, "upper-diameter": 30}, {"height": 10, "lower-diameter": 40, "upper-diameter": 40}]}  # fmt: skip
+    section(20, 24, 30), section(10, 40)]}  # fmt: skip
 GEOMETRY = {"DC": 6, "LCF": 12, "LB": 40, "OAL": 60, "SFDM": 8, "shoulder-length": 16, "shoulder-diameter": 5.6}
-SHAFT = {"segments": [{"height": 4, "lower-diameter": 5.6, "upper-diameter": 8}]}
+SHAFT = {"segments": [section(4, 5.6, 8)]}
 #: What these say.
 ID = "R3L40F12N2.8x4N2.8:4x4S4HR12:15L20+R20L10"
 
 
-def fusion(kind="flat end mill", *, number=1, holder=HOLDER, shaft=SHAFT, unit="millimeters", name="a tool", **geometry):
+def fusion(
+    kind="flat end mill", *, number=1, holder=HOLDER, shaft=SHAFT, unit="millimeters", name="a tool", **geometry
+):
     """A Fusion tool; a dimension of None is left out."""
     numbers = {key.replace("_", "-"): value for key, value in geometry.items()}
     table = {key: value for key, value in {**GEOMETRY, **numbers}.items() if value is not None}
@@ -32,7 +40,10 @@ def in_inches(tool):
 
     def turned(value):
         if isinstance(value, dict):
-            return {k: ("inches" if k == "unit" else v if k in ("TA", "post-process") else turned(v)) for k, v in value.items()}
+            return {
+                k: ("inches" if k == "unit" else v if k in ("TA", "post-process") else turned(v))
+                for k, v in value.items()
+            }
         if isinstance(value, list):
             return [turned(each) for each in value]
         return value / 25.4 if isinstance(value, int | float) and not isinstance(value, bool) else value
@@ -53,7 +64,8 @@ def write_tools(path, tools):
 
 _COLUMNS = {"tool_diameter": "DC", "tool_cornerRadius": "RE", "tool_fluteLength": "LCF", "tool_bodyLength": "LB",
             "tool_overallLength": "OAL", "tool_shaftDiameter": "SFDM", "tool_shoulderLength": "shoulder-length",
-            "tool_shoulderDiameter": "shoulder-diameter", "tool_taperAngle": "TA", "tool_tipDiameter": "tip-diameter"}  # fmt: skip
+            "tool_shoulderDiameter": "shoulder-diameter", "tool_taperAngle": "TA",
+            "tool_tipDiameter": "tip-diameter"}  # fmt: skip
 
 
 def write_csv(path, tools, *, delimiter=",", comma=False):
@@ -62,11 +74,21 @@ def write_csv(path, tools, *, delimiter=",", comma=False):
 
     def segments(item):
         rows = (item or {}).get("segments", [])
-        return "; ".join(f"H{said(s['height'])} U{said(s['upper-diameter'])} L{said(s['lower-diameter'])}" for s in rows)
+        return "; ".join(
+            f"H{said(s['height'])} U{said(s['upper-diameter'])} L{said(s['lower-diameter'])}" for s in rows
+        )
 
     out = io.StringIO()
     writer = csv.writer(out, delimiter=delimiter, lineterminator="\n")
-    names = ["tool_type", "tool_description", "tool_number", "tool_unit", *_COLUMNS, "shaft_segments", "holder_segments"]
+    names = [
+        "tool_type",
+        "tool_description",
+        "tool_number",
+        "tool_unit",
+        *_COLUMNS,
+        "shaft_segments",
+        "holder_segments",
+    ]
     writer.writerow([*(f"Label ({name})" for name in names), "CSV_TOOLS_VERSION_1"])
     for tool in tools:
         head = [tool["type"], tool["description"], tool["post-process"]["number"], tool["unit"]]
@@ -84,10 +106,14 @@ _BODY = {"diameter": "DC", "corner-radius": "RE", "flute-length": "LCF", "body-l
 def hsmlib(tools, before=""):
     lines = ['<?xml version="1.0" encoding="UTF-16"?>', before, '<tool-library xmlns="http://www.hsmworks.com/xml">']
     for tool in tools:
-        lines.append(f'<tool type="{tool["type"]}" unit="{tool["unit"]}"><description>{tool["description"]}</description>')
+        lines.append(
+            f'<tool type="{tool["type"]}" unit="{tool["unit"]}"><description>{tool["description"]}</description>'
+        )
         lines.append(f'<nc number="{tool["post-process"]["number"]}"/>')
         given = tool["geometry"]
-        lines.append("<body " + " ".join(f'{word}="{given[key]}"' for word, key in _BODY.items() if key in given) + "/>")
+        lines.append(
+            "<body " + " ".join(f'{word}="{given[key]}"' for word, key in _BODY.items() if key in given) + "/>"
+        )
         for tag in ("holder", "shaft"):
             lines.append(f"<{tag}>")
             for each in tool.get(tag, {}).get("segments", []):
@@ -107,7 +133,9 @@ def write_bit(path, shape="Endmill", **parameters):
     path.parent.mkdir(parents=True, exist_ok=True)
     given = {"Diameter": "6.0000 mm", "CuttingEdgeHeight": "12.0 mm", "Length": "60 mm", "ShankDiameter": "6.0 mm"}
     table = {key: value for key, value in {**given, **parameters}.items() if value is not None}
-    path.write_text(json.dumps({"version": 2, "name": path.stem, "shape-type": shape, "parameter": table}), encoding="utf-8")
+    path.write_text(
+        json.dumps({"version": 2, "name": path.stem, "shape-type": shape, "parameter": table}), encoding="utf-8"
+    )
     return path
 
 

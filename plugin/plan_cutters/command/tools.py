@@ -6,6 +6,7 @@ import os
 import re
 import sys
 from collections.abc import Iterator, Sequence
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -49,9 +50,7 @@ def command(files: tuple[str, ...], **given: Any) -> int:
     for file in files:
 
         def one(file: str = file) -> tuple[int, str]:
-            library = listing(
-                file, assume_stickout=given["assume_stickout"], holder=holder, skip_bad=given["skip_bad"]
-            )
+            library = listing(file, assume_stickout=given["assume_stickout"], holder=holder, skip_bad=given["skip_bad"])
             found.append(library)
             if not library and not (library.holders and not library.entries):
                 raise nothing(library)
@@ -128,7 +127,9 @@ def _table(library: "Library") -> None:
         console.print(f"  holder {holder.name}: {holder.id}", soft_wrap=True)
     if not library.entries:
         return
-    table = Table("", "No.", "Name", "Type", "Unit", "DC", "RE", "LCF", "Stick-out", "Shank", "Holder", "Id, or why not used")
+    table = Table(
+        "", "No.", "Name", "Type", "Unit", "DC", "RE", "LCF", "Stick-out", "Shank", "Holder", "Id, or why not used"
+    )
     for column in table.columns[5:10]:
         column.justify = "right"
     table.columns[-1].overflow = "fold"
@@ -148,9 +149,9 @@ def _row(entry: "Entry") -> list[str]:
     from plan_cutters.domain.shapes import flute_length
 
     shank = "" if cutter.shank_radius is None else f"{2 * cutter.shank_radius:.6g}"
-    sizes = [2 * cutter.radius, cutter.corner_radius, flute_length(cutter), cutter.length]
+    lengths = [2 * cutter.radius, cutter.corner_radius, flute_length(cutter), cutter.length]
     holder = "none" if cutter.holder is None else cutter.holder.name or cutter.holder.id
-    return [*words, *(f"{size:.6g}" for size in sizes), shank, holder, "; ".join([cutter.id, *entry.notes])]
+    return [*words, *(f"{length:.6g}" for length in lengths), shank, holder, "; ".join([cutter.id, *entry.notes])]
 
 
 @contextlib.contextmanager
@@ -180,8 +181,8 @@ def _to_toml(found: "Sequence[Library]", path: Path) -> None:
 
 def _draw(found: "Sequence[Library]", folder: Path) -> None:
     from plan_cutters.errors import PlanError
-    from plan_cutters.library.drawing import draw
 
+    draw = import_module("plan_cutters.library.drawing").draw
     drawn: dict[str, str] = {}
     for library in found:
         for cutter in library:

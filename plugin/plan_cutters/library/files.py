@@ -21,6 +21,19 @@ _FILE, _UNPACKED, _RATIO = 32 << 20, 32 << 20, 300
 _MEMBERS = 2000
 
 
+class TwiceError(ValueError):
+    """A JSON object that says something twice, and not the same."""
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        for key, value in pairs:
+            if found[key] != value:
+                raise TwiceError(f"{ascii(key)[:40]} is given twice in one object, with different values")
+    return found
+
+
 def data_of(path: str | os.PathLike[str]) -> bytes:
     """All bytes of a regular file."""
     name = Path(path).name
@@ -87,18 +100,20 @@ class Content:
         if self.head[:1] not in ("{", "["):
             return None
         try:
-            return json.loads(self.text)
+            return json.loads(self.text, object_pairs_hook=_once)
         except (ValueError, RecursionError):
             return None
 
     def broken_json(self) -> LibraryError:
         """Why what looks like JSON is none."""
         try:
-            json.loads(self.text)
+            json.loads(self.text, object_pairs_hook=_once)
         except RecursionError:
             why = "it is nested too deeply"
         except json.JSONDecodeError as error:
             why = f"line {error.lineno}, column {error.colno}: {error.msg[:1].lower()}{error.msg[1:]}"
+        except TwiceError as error:
+            why = str(error)
         except ValueError:
             why = "it has a number of thousands of digits"
         else:

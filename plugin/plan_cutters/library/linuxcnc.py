@@ -32,8 +32,11 @@ def read_table(content: Content) -> Found:
 
 
 def _entry(words: str, name: str, place: str) -> Entry:
-    given = {letter.upper(): value for letter, value in _WORD.findall(words)}
+    found = [(letter.upper(), value) for letter, value in _WORD.findall(words)]
+    given = dict(found)
     try:
+        if len(given) < len(found):
+            raise FaultError(f"{shown(words.strip())} has a letter twice")
         if _WORD.sub("", words).strip() or "T" not in given:
             raise FaultError(f"{shown(words.strip())} is no line of a tool table")
         number = whole_of(given["T"], "T")

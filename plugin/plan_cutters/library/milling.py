@@ -33,6 +33,8 @@ _OUTLINE = ("form mill", "radius mill", "thread mill", "circle segment barrel", 
 #: Kinds that finish no sculptured surface, by the words that their names have.
 _OTHERS = ("drill", "tap ", "tap", "reamer", "counter", "bore", "boring", "probe", "turning", "laser", "plasma", "waterjet",
            "depositing", "holder", "inspection", "broach", "welding")  # fmt: skip
+#: Sections between the flutes and the holder that are told apart.
+_MOST_ABOVE = 6
 #: Dimensions given twice agree up to the rounding of the file, mm and as a share.
 _ROUNDED, _SHARE = 1e-3, 1e-5
 
@@ -229,9 +231,10 @@ def _dovetail(tool: Listed) -> Cutter:
 
 
 def _face(tool: Listed) -> Cutter:
-    if "TA" in tool.values or tool.values.get("DCX", 0.0) > tool.values["DC"] + _slack(tool.values["DC"]):
-        raise UnfitError(f"{tool.said('TA')}, {tool.word('DCX')}: face mills with leaning edges are not read; write its outline "
-                         "as TOML")  # fmt: skip
+    v = tool.values
+    leans = "TA" if "TA" in v else "DCX" if v.get("DCX", 0.0) > v["DC"] + _slack(v["DC"]) else ""
+    if leans:
+        raise UnfitError(f"{tool.said(leans)}: face mills with leaning edges are not read; write its outline as TOML")
     return _end(tool, "face")
 
 
@@ -323,7 +326,14 @@ def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Stage, ...]:
         found.append(Stage(0.5 * v["DMM"], round(length - at, 9)))
         if v["DMM"] < v["DC"] - _slack(v["DC"]):
             tool.notes.append(f"{tool.said('DMM')} is thinner than {tool.said('DC')}")
-    return joined(found)
+    straight = joined(found)
+    if len(straight) <= _MOST_ABOVE:
+        return straight
+    around, wider = fewer(found, _MOST_ABOVE)
+    tool.notes.append(
+        f"the {len(straight)} sections of its shaft are taken as {len(around)} around them, up to {wider:.3g} mm wider"
+    )
+    return around
 
 
 def _standing(bare: Cutter, above: tuple[Stage, ...], length: float) -> Cutter:

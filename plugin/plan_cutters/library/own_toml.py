@@ -23,6 +23,9 @@ _TABLE = re.compile(r"^\s*\[\[\s*tool\s*\]\]", re.MULTILINE)
 _RADIANS = re.compile(r"\s*(\S+)\s*rad\s*")
 _ENDS = ("flat", "bull", "ball", "taper", "dovetail", "end")
 
+#: What pydantic puts into the place of an error for a kind that it tried.
+_KINDS = ("HolderTable", "str", "float")
+
 Number = Annotated[float, Field(allow_inf_nan=False, strict=True)]
 Section = Annotated[list[Number], Field(min_length=2, max_length=3)]
 Point = Annotated[list[Number], Field(min_length=2, max_length=2)]
@@ -114,17 +117,16 @@ def _why(error: Exception) -> str:
     """One line of what is wrong with a table."""
     if not isinstance(error, ValidationError):
         return error.cause if isinstance(error, CutterError) else str(error)
-    first = error.errors(include_url=False, include_context=False)[0]
-    words = [str(word) for word in first["loc"] if word not in ("function-after", "HolderTable")]
-    # Of a union the first part of the place is the field, the next the kind that was tried.
-    field = words[0] if words else "it"
+    # Of kinds that were tried in turn, the one that was understood the farthest.
+    first = max(error.errors(include_url=False, include_context=False), key=lambda each: len(each["loc"]))
+    words = [str(word + 1) if isinstance(word, int) else word for word in first["loc"]]
+    words = [word for word in words if (word.isidentifier() and word not in _KINDS) or word.isdigit()]
+    field = " ".join(words) or "it"
     if first["type"] == "extra_forbidden":
         return f"{words[-1]} has no meaning here"
     if first["type"] == "missing":
         return f"{words[-1]} is missing"
-    value = first["input"]
-    said = shown(value) if not isinstance(value, list | dict) else "what is given"
-    return f"{field} is {said}: {first['msg'][:1].lower()}{first['msg'][1:]}"
+    return f"{field} is {shown(first['input'])}: {first['msg'][:1].lower()}{first['msg'][1:]}"
 
 
 def _entry(table: Any, place: str, unit: Any, named: dict[str, Holder], ask: Ask) -> Entry:

@@ -63,6 +63,6 @@ def parse(data: bytes, file: str) -> Element:
     parser.StartElementHandler, parser.EndElementHandler, parser.CharacterDataHandler = start, end, words
     try:
         parser.Parse(data, True)
-    except (expat.ExpatError, ValueError) as error:
+    except (expat.ExpatError, LookupError, ValueError) as error:
         raise LibraryError(f"is no well-formed XML ({error}); export it anew", file=file) from None
     return top.children[0]
