@@ -52,7 +52,7 @@ def mend(
     >>> cutter = Cutter.parse("R6L80")
     >>> ready = prepare("samples/v_groove.step", Options(cutters=cutter, grid=9, machine="tilt:10"))
     >>> mend(ready, cutter, judge(ready, cutter)).least.why
-    'a radius of 4.921 mm instead of 6 mm'
+    'clamp it with -0.3584,0,0.9336 along the spindle, 21 deg from now'
     """
     tell = progress or (lambda done, total: None)
     trials = Trials.of(reach)
