@@ -8,10 +8,13 @@ import sqlite3
 import zipfile
 
 import pytest
-from tool_files import REAL, fusion, hsmlib, write_csv, write_hsmlib, write_json, write_tools
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from tool_files import REAL, fusion, hsmlib, write_bit, write_csv, write_hsmlib, write_json, write_tools
 
 from plan_cutters import LibraryError, PlanError
-from plan_cutters.library import read_library
+from plan_cutters.domain.drawer import builtin
+from plan_cutters.library import read_library, to_toml
 from plan_cutters.library.formats import FORMATS
 from plan_cutters.library.read import listing
 
@@ -188,6 +191,34 @@ def test_a_tool_of_hsmworks_without_or_with_a_wrong_body(tmp_path, line):
     path = tmp_path / "a.hsmlib"
     path.write_text(f"<tool-library>\n{line}\n</tool-library>")
     refused(path, r"tool 1 \(line 2\)")
+
+
+@given(st.sampled_from(["json", "tools", "csv", "hsmlib", "toml", "fctb", "tbl"]), st.data())
+@settings(max_examples=150, deadline=None)
+def test_damaged_files_end_in_one_line(tmp_path_factory, suffix, data):
+    """Whatever bytes are lost, doubled or replaced: cutters, or an error of the package."""
+    path = tmp_path_factory.mktemp("damaged") / f"a.{suffix}"
+    write = {"json": write_json, "tools": write_tools, "csv": write_csv, "hsmlib": write_hsmlib}.get(suffix)
+    if write:
+        whole = write(path, [fusion(), fusion(number=2, RE=1)]).read_bytes()
+    elif suffix == "fctb":
+        whole = write_bit(path).read_bytes()
+    else:
+        whole = (to_toml(builtin()[:3]) if suffix == "toml" else "T1 P1 D6.0 ;a\nT2 P2 D+8\n").encode()
+    for _ in range(data.draw(st.integers(1, 3))):
+        at = data.draw(st.integers(0, len(whole)))
+        new = data.draw(
+            st.sampled_from([b"", b"nan", b"-1", b"1e999", b"null", b"[]", b'"x"', b"\xff", b"\0", b"0", b"\n"])
+        )
+        whole = whole[:at] + new + whole[at + data.draw(st.integers(0, 30)) :]
+    path.write_bytes(whole)
+    try:
+        library = listing(path, assume_stickout=40, holder="R15L30", skip_bad=True)
+    except PlanError as error:
+        assert "\n" not in str(error)  # noqa: PT017
+    else:
+        assert all((entry.cutter is None) == bool(entry.unused) for entry in library.entries)
+        to_toml(library)
 
 
 def names():

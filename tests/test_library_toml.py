@@ -128,6 +128,7 @@ def test_what_is_missing_is_asked_for(tmp_path, old, new, said):
         ("DC = 12", "DC = -12", "DC is -12"),
         ("DC = 12", "DC = 1e9", "no tool is longer"),
         ("DC = 12", "DC = 12\nDX = 3", "DX has no meaning"),
+        ("DC = 12", "DC = 12\n-1 = 3", "-1 has no meaning"),
         ("DC = 12", "DC = 12\nnumber = 1.5", "number is 1.5"),
         ("DC = 12", 'DC = 12\nunit = "ell"', "unit is 'ell'"),
         ("LPR = 80", "LPR = 80\nOAL = 60", "LPR 80 is more than OAL 60"),

@@ -123,9 +123,9 @@ def _why(error: Exception) -> str:
     words = [word for word in words if (word.isidentifier() and word not in _KINDS) or word.isdigit()]
     field = " ".join(words) or "it"
     if first["type"] == "extra_forbidden":
-        return f"{words[-1]} has no meaning here"
+        return f"{shown(first['loc'][-1])} has no meaning here"
     if first["type"] == "missing":
-        return f"{words[-1]} is missing"
+        return f"{first['loc'][-1]} is missing"
     return f"{field} is {shown(first['input'])}: {first['msg'][:1].lower()}{first['msg'][1:]}"
 
 
