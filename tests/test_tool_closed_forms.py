@@ -231,3 +231,10 @@ def test_a_pocket_is_finished_by_the_balls_that_are_no_larger():
     assert {REASONS[r] for r in lost.reason[round_]} == {"local_gouge"}
     # A flat end leans with its edge; it need not stand upright.
     assert result.reaches[flat.id].reached[round_].mean() > 0.5
+
+
+def test_a_pointed_form_touches_with_its_tip():
+    """On a floor it leans from its tip to its corner, at 45 deg, and from there on it."""
+    pointed = Cutter.form([(0, 0), (3, 3), (3, 10)], length=30)
+    found = posture_map(floor(), point=(0, 0, 0), cutter=pointed, rotations=[0.0], tolerance=0.01)
+    assert_intervals(np.degrees(found.free[0]), (0, 90))

@@ -149,7 +149,7 @@ def modes(cutter: Dimensions) -> tuple[Mode, ...]:
 def _corners(outline: tuple[tuple[float, float], ...]) -> tuple[Mode, ...]:
     """The corners at which an outline can touch a plane: those of its convex hull."""
     hull: list[tuple[float, float]] = []
-    for r, h in (point for point in outline if point[0] > 0.0):
+    for r, h in outline:
         while len(hull) > 1 and _turn(hull[-2], hull[-1], (r, h)) <= 0.0:
             hull.pop()
         hull.append((r, h))
