@@ -3,6 +3,7 @@
 import functools
 import math
 from dataclasses import fields, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.pipeline import prepare
 from plan_cutters.stages.judge import judge
 
+SAMPLES = Path(__file__).parent.parent / "samples"
 LONG = (-60, 60)
 UPRIGHT = {"tilt": (0.0, 0.0)}
 
@@ -342,6 +344,22 @@ def test_batches_are_all_rows_once():
     rows = np.sort(np.random.default_rng(0).choice(10_000, 3_000, replace=False)).astype(np.int64)
     for some in (rows, rows[:17], rows[:0]):
         assert np.array_equal(np.sort(np.concatenate([np.zeros(0, np.int64), *batches(some)])), some)
+
+
+@pytest.mark.parametrize(
+    ("name", "cutter", "machine"),
+    [
+        ("peaks_and_valleys.step", Cutter.flat(radius=4, length=15, flutes=10.0, holder="R20L60"), "unlimited"),
+        ("peaks_and_valleys.step", Cutter.bull(radius=6, corner_radius=1, length=60), "tilt:10"),
+        ("pocket_top.step", Cutter.flat(radius=6, length=60), "tilt:10"),
+    ],
+)
+def test_each_change_holds_on_the_samples(name, cutter, machine):
+    found, _, planned = asked(read_part(SAMPLES / name), cutter, grid=31, machine=machine)
+    helping = [each for each in found.changes if each.helps]
+    assert helping
+    for change in helping:
+        holds(change, planned)
 
 
 def test_what_was_no_thicker_than_the_flutes_stays_so():

@@ -18,8 +18,9 @@ from plan_cutters.errors import CutterError
 GRAIN = 0.01
 #: Share of the radius that a step takes.
 SHARE = 0.02
-#: The radius is no smaller than so many tolerances: below that verdicts say nothing.
-THINNEST = 4.0
+#: The radius is no smaller than so many tolerances, below which verdicts say nothing, and than so little of the length: no cutter
+#: stands out a hundred times its diameter, and searches with needles take long.
+THINNEST, SLIMMEST = 4.0, 0.005
 #: Usual corner radii, mm; flat and ball ends are tried, too.
 CORNERS = (0.2, 0.3, 0.4, 0.5, 0.8, 1.0, 1.2, 1.5, 1.6, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0)
 
@@ -65,7 +66,8 @@ def radius(case: Case, trials: Trials) -> Change:
     now = cutter.radius
     if cutter.shape == "form":
         return none("radius", now, lost, "the outline of a form cutter has no radius to change alone")
-    most = max(0, math.floor(math.log(THINNEST * conditions.tolerance / now) / math.log(1.0 - SHARE)))
+    least_radius = max(THINNEST * conditions.tolerance, SLIMMEST * cutter.length)
+    most = max(0, math.floor(math.log(least_radius / now) / math.log(1.0 - SHARE)))
 
     def value(at: int) -> float:
         return float(f"{now * (1.0 - SHARE) ** at:.4g}")

@@ -37,7 +37,7 @@ _REMEMBERED = 32
 #: Samples by which values are compared that all leave some.
 _COMPARED = 32
 #: Samples that are looked at to count what a value leaves that does not serve, at most.
-_LOOKED_AT = 4096
+_LOOKED_AT = 1024
 #: How often a value that serves all samples tried, but not all, is taken further.
 _ROUNDS = 8
 
