@@ -107,7 +107,6 @@ def test_a_place_that_cannot_be_written_to(tmp_path):
 
 
 def test_each_assembly_is_drawn(tmp_path):
-    pytest.importorskip("plan_cutters.library.drawing")
     path = write_json(
         tmp_path / "a.json", [fusion(number=4, name="a/b: 6 mm"), fusion(number=4, name="a/b: 6 mm", LB=50)]
     )

@@ -94,7 +94,7 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, asked: bool) -> No
     multiple=True,
     metavar="SPEC",
     help="R6L80: radius 6, length 80 mm; then rc1 corner radius (rc6: ball), T5 taper (half angle, deg), F20 flutes, N5.5x40 "
-    "neck (radius x length), S6 shank radius. Repeatable; default: the built-in drawer (--list-cutters).",
+    "neck (radius x length; more of them upwards), S6 shank radius. Repeatable; default: the built-in drawer (--list-cutters).",
 )
 @click.option(
     "--holder",
