@@ -46,7 +46,7 @@ from plan_cutters.kernels.free_map import free_map
 from plan_cutters.kernels.points import local_gouge_range
 from plan_cutters.kernels.rows import Ranges
 from plan_cutters.kernels.search import probe
-from plan_cutters.scene.conditions import Conditions, contacts_of, tool_of
+from plan_cutters.scene.conditions import Conditions, contacts_of, rotary_of, tool_of
 from plan_cutters.scene.faces import select_faces
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
@@ -235,7 +235,9 @@ def maps(samples: SurfaceSamples, rows: NDArray[np.int64], obstacles: Obstacles,
     found = Maps(np.zeros((n, k, ROOM, 2)), np.zeros((n, k), np.int32), np.zeros((n, k)))
     safe = TOLERANCE - obstacles.triangles.chord_error
     tool = tool_of(assembly(CUTTER, safe, safe))
-    ranges = Ranges(np.cos(ROTATIONS), np.sin(ROTATIONS), 0.0, np.pi / 2, np.array([0.0, 0.0, 1.0]), -2.0)
+    ranges = Ranges(
+        np.cos(ROTATIONS), np.sin(ROTATIONS), 0.0, np.pi / 2, np.array([0.0, 0.0, 1.0]), -2.0, rotary_of(None)
+    )
 
     def work(places: NDArray[np.int64]) -> None:
         piece = slice(places[0], places[-1] + 1)

@@ -30,9 +30,10 @@ ENTRIES = {
         "i, b = np.zeros(1, np.int32), np.zeros(1, np.uint8)\n"
         "t, a = Tree(one, box, depth), Contacts(p, p, p, c)\n"
         "from plan_cutters.kernels.material import sheet; w = sheet(t)\n"
+        "from plan_cutters.scene.conditions import rotary_of\n"
         "s.dummy_clear(none, a, tool.piece[0], tool, w, np.zeros(1, bool))\n"
         "s.probe(none, p, p, p, p, tool, t, i, i)\n"
-        "s.search(none, a, Ranges(n, n, 0.0, 1.5, np.zeros(3), -2.0), tool, tool, w, w, Found(b, p, p, n, i, b))"
+        "s.search(none, a, Ranges(n, n, 0.0, 1.5, np.zeros(3), -2.0, rotary_of(None)), tool, tool, w, w, Found(b, p, p, n, i, b))"
     ),
     "free_tilts": (
         f"{FLAT}"

@@ -6,7 +6,7 @@ from plan_cutters import Cutter
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.kernels import free_map, lanes, tree
 from plan_cutters.kernels.rows import Contacts, Cylinder, Ranges, Tree
-from plan_cutters.scene.conditions import tool_of
+from plan_cutters.scene.conditions import rotary_of, tool_of
 
 SIZE, WAVES, HEIGHT = 40.0, (0.27, 0.23), 6.0
 
@@ -60,7 +60,7 @@ def mapped(rows, contacts, ranges, tool, built, most=8):
 
 def ranges(rotations, limit_cos=-2.0, tilt=(0.0, np.pi / 2)):
     """Postures at rotations (k,), rad, with an axis limit about z."""
-    return Ranges(np.cos(rotations), np.sin(rotations), *tilt, np.array([0, 0, 1.0]), limit_cos)
+    return Ranges(np.cos(rotations), np.sin(rotations), *tilt, np.array([0, 0, 1.0]), limit_cos, rotary_of(None))
 
 
 def flat(radius, length, depth):

@@ -7,6 +7,7 @@ import numpy as np
 from plan_cutters.kernels.arcs import axis_arcs, local_gouge
 from plan_cutters.kernels.hit import BODY, OFFSET, A, P, X, scratch, stand, tree_hit
 from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.limits import hold, limited
 from plan_cutters.kernels.material import outside, winding
 from plan_cutters.kernels.pieces import FLUTES, PART
 from plan_cutters.kernels.rows import Scratch
@@ -151,6 +152,8 @@ def permitted(contacts, row, ranges, rotation, tool, mode, f, intervals):  # typ
     if low > high:
         return 0.0, 0, 0
     count = axis_arcs(dot(ranges.setup, n), dot(ranges.setup, f), ranges.limit_cos, low, high, intervals)
+    if limited(ranges.rotary):
+        count = hold(n, f, ranges.rotary, intervals, count)
     width = 0.0
     for i in range(count):
         width += intervals[i, 1] - intervals[i, 0]

@@ -21,9 +21,21 @@ class Contacts(NamedTuple):
     curvature: Any
 
 
+class Rotary(NamedTuple):
+    """Rotary axes of a machine, in the part's frame: circle (m, 4), direction (k, 3), limit (k, 2) and tool (3,), as in
+    `domain.kinematics.Kinematics`; `tool` is zero where there is no machine. swing: how the second axis moves the tool towards
+    the first, the angle at which it is nearest, the amplitude and the middle of the cosine between the two."""
+
+    circle: Any
+    direction: Any
+    limit: Any
+    tool: Any
+    swing: Any
+
+
 class Ranges(NamedTuple):
-    """Which postures there are: cosines and sines (k,) of the rotations, tilts from and to, rad, and the axis limit: the
-    cosine `limit_cos` about the unit axis `setup` (3,), -2 for none."""
+    """Which postures there are: cosines and sines (k,) of the rotations, tilts from and to, rad, and the axis limits: the
+    cosine `limit_cos` about the unit axis `setup` (3,), -2 for none, and rotary axes."""
 
     rotation_cos: Any
     rotation_sin: Any
@@ -31,6 +43,7 @@ class Ranges(NamedTuple):
     tilt_high: float
     setup: Any
     limit_cos: float
+    rotary: Any
 
 
 class Tool(NamedTuple):

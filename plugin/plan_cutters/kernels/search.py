@@ -182,7 +182,7 @@ def first_reason(rows, contacts, ranges, tool, reason):  # type: ignore[no-untyp
 
     The other parameters are those of `search`; other reasons stay as they are.
     """
-    intervals = np.empty((8, 2))
+    intervals = np.empty((64, 2))
     f, t, e2 = np.empty(3), np.empty(3), np.empty(3)
     for row in rows:
         n, e1 = contacts.normal[row], contacts.direction_max[row]

@@ -8,10 +8,11 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Record, SurfaceSamples
 from plan_cutters.domain.assembly import Assembly, assembly
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import Reach
-from plan_cutters.kernels.rows import Contacts, Found, Ranges, Tool
+from plan_cutters.kernels.rows import Contacts, Found, Ranges, Rotary, Tool
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.scene.threads import Progress, in_chunks
@@ -68,11 +69,42 @@ class Conditions(Record):
         """What kernels take of postures and machine."""
         rotations, (low, high) = self.postures.rotations, self.postures.tilt
         return Ranges(np.cos(rotations), np.sin(rotations), max(0.0, low), min(np.pi, high), self.setup,
-                      self.machine.limit_cos)  # fmt: skip
+                      self.machine.limit_cos, rotary_of(self.kinematics))  # fmt: skip
+
+    @property
+    def kinematics(self) -> Kinematics | None:
+        """The machine's rotary axes in the part's frame; None where any tool axis within its plain limit is possible."""
+        return self.machine.kinematics(frame_of(self.setup))
 
     def upright(self, normal: Floats) -> NDArray[np.bool_]:
         """At which normals (n, 3) the machine can hold the axis along the normal, and tilt 0 was asked for."""
-        return np.asarray(self.postures.upright & (normal @ self.setup >= self.machine.limit_cos))
+        found = self.postures.upright & (normal @ self.setup >= self.machine.limit_cos)
+        kinematics = self.kinematics
+        return np.asarray(found if kinematics is None else found & kinematics.allows(normal))
+
+
+def frame_of(setup: Floats) -> Floats:
+    """A machine's X, Y and Z (3, 3), as rows, where a unit direction (3,) of the part points along its Z.
+
+    X is as near to the part's X as can be; where the part's X points along Z, Y is that of the part.
+    """
+    z = np.asarray(setup, float)
+    x = np.array([1.0, 0.0, 0.0]) - z[0] * z
+    if np.linalg.norm(x) < 1e-6:
+        x = np.cross(np.array([0.0, 1.0, 0.0]), z)
+    x /= np.linalg.norm(x)
+    return np.array([x, np.cross(z, x), z])
+
+
+def rotary_of(found: Kinematics | None) -> Rotary:
+    """Rotary axes as kernels take them."""
+    if found is None:
+        return Rotary(np.zeros((0, 4)), np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(3), np.zeros(3))
+    swing = found.swing if len(found.direction) == 2 else (0.0, 1.0, 0.0)
+    circle, direction, limit, tool = map(
+        np.ascontiguousarray, (found.circles(), found.direction, found.limit, found.tool)
+    )
+    return Rotary(circle, direction, limit, tool, np.array(swing))
 
 
 def contacts_of(samples: SurfaceSamples) -> Contacts:

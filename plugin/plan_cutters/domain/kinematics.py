@@ -1,0 +1,171 @@
+"""Rotary axes of a machine: where they turn the tool, and which angles hold a given tool axis.
+
+An axis is counted from the part to the tool, and its positive sense is that of the tool relative to the part (ISO 841): what the
+tool's direction t becomes is R(d1, angle1) R(d2, angle2) t, d1 next to the part. So all machines of two rotary axes are one:
+which of them carry the part and which the tool does not matter to the direction. A limit of either axis is a circle on the sphere of
+directions: about d1 at the end of the second axis, about R(d1, angle1) d2 at an end of the first. Between these circles nothing
+changes (`kernels.limits`).
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats, Record
+
+#: Directions this close to each other, rad, are one; axes that are as near to being parallel turn a tool like one alone.
+PARALLEL = 1e-6
+#: Angles this close to a limit are on it, rad.
+ON_LIMIT = 1e-9
+#: Tool axes this near to the direction of the axis next to the part, rad, are held only with fast turns of it: singular.
+SINGULAR = math.radians(2.0)
+
+
+def turned(direction: Floats, angle: Floats | float, vector: Floats) -> Floats:
+    """Vectors (..., 3) turned about a unit direction (3,) by angles (...,), rad."""
+    cosine, sine = np.cos(angle)[..., None], np.sin(angle)[..., None]
+    along = (vector @ direction)[..., None] * direction
+    return np.asarray(along + cosine * (vector - along) + sine * np.cross(direction, vector))
+
+
+def angle_about(direction: Floats, start: Floats, end: Floats) -> Floats:
+    """Angles (...,), rad, by which vectors (..., 3) turn about a unit direction (3,) into others."""
+    cross = np.cross(start, end) @ direction
+    return np.asarray(np.arctan2(cross, (start * end).sum(axis=-1) - (start @ direction) * (end @ direction)))
+
+
+def within(angle: Floats, low: float, high: float) -> Floats:
+    """The turn of each angle (...,) that lies between two limits, nan where none does; the one nearest to 0, where several do."""
+    turn = 2.0 * math.pi
+    near = angle - turn * np.round(angle / turn)
+    least = np.ceil((low - ON_LIMIT - near) / turn) if math.isfinite(low) else np.full(np.shape(near), -np.inf)
+    most = np.floor((high + ON_LIMIT - near) / turn) if math.isfinite(high) else np.full(np.shape(near), np.inf)
+    turns = np.minimum(np.maximum(0.0, least), most)
+    return np.asarray(np.where(least <= most, near + turn * turns, np.nan))
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Kinematics(Record):
+    """The rotary axes of a machine under one setup, all directions in one frame.
+
+    Attributes
+    ----------
+    direction : (k, 3) float
+        Unit directions of the axes at zero angles, k at most 2, the one next to the part first.
+    limit : (k, 2) float
+        Least and largest angle of each, rad; infinite: none.
+    tool : (3,) float
+        Unit direction from the tip to the spindle at zero angles.
+    """
+
+    direction: Floats
+    limit: Floats
+    tool: Floats
+
+    def seen_from(self, turn: Floats) -> "Kinematics":
+        """The same in another frame, whose coordinates a rotation (3, 3) makes of these."""
+        return Kinematics(self.direction @ turn.T, self.limit, self.tool @ turn.T)
+
+    def axis(self, angle: Floats) -> Floats:
+        """Tool axes (n, 3) at angles (n, k), rad."""
+        found = np.broadcast_to(self.tool, (len(angle), 3))
+        for k in range(len(self.direction) - 1, -1, -1):
+            found = turned(self.direction[k], angle[:, k], found)
+        return np.asarray(found)
+
+    def angles(self, axis: Floats) -> Floats:
+        """Angles (n, 2, k), rad, of the two solutions that hold tool axes (n, 3); nan where one does not, whatever the limits.
+
+        Within the limits, where another turn brings them there. A machine of fewer than two rotary axes has one solution at
+        most, the second is nan.
+        """
+        found = np.full((len(axis), 2, len(self.direction)), np.nan)
+        if len(self.direction) == 0:
+            return found
+        if len(self.direction) == 1:
+            held = np.abs(axis @ self.direction[0] - self.tool @ self.direction[0]) <= self._reach()
+            found[held, 0, 0] = angle_about(self.direction[0], self.tool, axis[held])
+            return found
+        first, second = self.direction
+        start, most, base = self.swing
+        share = (axis @ first - base) / most
+        held = np.abs(share) <= 1.0 + self._reach()
+        swing = np.arccos(np.clip(share[held], -1.0, 1.0))
+        for i, sign in enumerate((1.0, -1.0)):
+            found[held, i, 1] = start + sign * swing
+            found[held, i, 0] = angle_about(first, turned(second, found[held, i, 1], self.tool), axis[held])
+        return found
+
+    def positions(self, axis: Floats) -> tuple[Floats, NDArray[np.int8], NDArray[np.bool_]]:
+        """What holds tool axes (n, 3): both solutions (n, 2, k), rad, nan where beyond a limit; the one to take (n,), that with
+        the smaller angles, -1 for none; where (n,) the axis next to the part is near to the tool axis: singular.
+        """
+        found = self.angles(axis)
+        for k, (low, high) in enumerate(self.limit):
+            found[:, :, k] = within(found[:, :, k], low, high)
+        if len(self.direction) == 0:
+            held = np.linalg.norm(np.cross(axis, self.tool), axis=1) <= self._reach()
+            taken = np.where(held & (axis @ self.tool > 0.0), 0, -1)
+            return found, taken.astype(np.int8), np.zeros(len(axis), bool)
+        sine = np.linalg.norm(np.cross(axis, self.direction[0]), axis=1)
+        if len(self.direction) == 2:
+            # On the singular axis itself any angle of the first one serves, so one within its limits does.
+            low, high = self.limit[0]
+            still = min(max(0.0, low), high)
+            on = (sine <= PARALLEL)[:, None] & np.isfinite(found[:, :, 1])
+            found[:, :, 0] = np.where(on & ~np.isfinite(found[:, :, 0]), still, found[:, :, 0])
+        lost = np.isnan(found).any(axis=2)
+        found[lost] = np.nan
+        size = np.where(lost, np.inf, np.abs(np.where(np.isnan(found), 0.0, found)).sum(axis=2))
+        taken = np.where(lost.all(axis=1), -1, size.argmin(axis=1))
+        singular = (sine <= math.sin(SINGULAR)) if len(self.direction) == 2 else np.zeros(len(axis), bool)
+        return found, taken.astype(np.int8), singular
+
+    def allows(self, axis: Floats) -> NDArray[np.bool_]:
+        """Which tool axes (n, 3) the machine can hold."""
+        return np.asarray(self.positions(axis)[1] >= 0)
+
+    def circles(self) -> Floats:
+        """Circles (m, 4) on the sphere of directions, a unit direction and a cosine each: across them what is allowed changes."""
+        if len(self.direction) == 0:
+            return np.array([[*self.tool, math.cos(PARALLEL)]])
+        if len(self.direction) == 1:
+            first, (low, high) = self.direction[0], self.limit[0]
+            along = float(self.tool @ first)
+            rows = [[*first, along - PARALLEL], [*first, along + PARALLEL]]
+            for end in (low, high):
+                if math.isfinite(end) and high - low < 2.0 * math.pi:
+                    across = np.cross(first, turned(first, np.array(end), self.tool))
+                    rows.append([*(across / np.linalg.norm(across)), 0.0])
+            return np.array(rows)
+        first, second = self.direction
+        _, most, base = self.swing
+        rows = [[*first, base + most], [*first, base - most]]
+        for k, (low, high) in enumerate(self.limit):
+            if high - low >= 2.0 * math.pi:
+                continue
+            for end in (low, high):
+                if not math.isfinite(end):
+                    continue
+                if k == 1:
+                    rows.append([*first, float(turned(second, np.array(end), self.tool) @ first)])
+                else:
+                    rows.append([*turned(first, np.array(end), second), float(second @ self.tool)])
+        return np.array(rows)
+
+    @property
+    def swing(self) -> tuple[float, float, float]:
+        """How the second axis moves the tool towards the first and away: the angle at which it is nearest, the amplitude, the
+        middle, of the cosine between the two.
+        """
+        first, second = self.direction
+        along = float(self.tool @ second)
+        beside = self.tool - along * second
+        a, b = float(first @ beside), float(first @ np.cross(second, beside))
+        return math.atan2(b, a), math.hypot(a, b), float(first @ second) * along
+
+    def _reach(self) -> float:
+        # What rounding may take an axis out of reach by.
+        return 1e-12 if len(self.direction) == 2 else PARALLEL

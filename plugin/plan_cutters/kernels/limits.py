@@ -1,0 +1,153 @@
+"""Tilts at which a machine's rotary axes hold the tool axis: arcs between the circles at which that changes.
+
+At one rotation the tool axis runs along a great circle, a(tilt) = cos(tilt) n + sin(tilt) f. It crosses each circle of
+`domain.kinematics.Kinematics.circles` twice at most; between two crossings the machine holds all of it or nothing, which the
+angles at the middle tell.
+"""
+
+import numpy as np
+
+from plan_cutters.kernels.jit import kernel
+from plan_cutters.kernels.vectors import dot
+
+# As in `plan_cutters.domain.kinematics`, which must not load the compiler; a test holds them together.
+PARALLEL, ON_LIMIT = 1e-6, 1e-9
+#: Crossings that are kept, at the end of the room for intervals: two for each of at most six circles, and the ends.
+CROSSINGS = 16
+_TURN = 2.0 * np.pi
+
+
+@kernel
+def limited(rotary):  # type: ignore[no-untyped-def]
+    """Whether there is a machine with rotary axes, or with none that could turn the tool."""
+    return rotary.tool[0] != 0.0 or rotary.tool[1] != 0.0 or rotary.tool[2] != 0.0
+
+
+@kernel
+def _turns_within(angle, low, high):  # type: ignore[no-untyped-def]
+    """Whether an angle lies between two limits, by whole turns."""
+    if high - low >= _TURN:
+        return True
+    least = np.ceil((low - ON_LIMIT - angle) / _TURN)
+    return angle + _TURN * least <= high + ON_LIMIT
+
+
+@kernel
+def _about(d, sx, sy, sz, x, y, z):  # type: ignore[no-untyped-def]
+    """Angle by which a vector s turns about a unit direction into another; and the squared length of what turns."""
+    cx, cy, cz = sy * z - sz * y, sz * x - sx * z, sx * y - sy * x
+    along, other = d[0] * sx + d[1] * sy + d[2] * sz, d[0] * x + d[1] * y + d[2] * z
+    cross, inner = d[0] * cx + d[1] * cy + d[2] * cz, sx * x + sy * y + sz * z - along * other
+    return np.arctan2(cross, inner), cross * cross + inner * inner
+
+
+@kernel
+def holds(x, y, z, rotary):  # type: ignore[no-untyped-def]
+    """Whether the machine holds a unit tool axis."""
+    t, direction = rotary.tool, rotary.direction
+    axes = len(direction)
+    if axes == 0:
+        cx, cy, cz = y * t[2] - z * t[1], z * t[0] - x * t[2], x * t[1] - y * t[0]
+        return cx * cx + cy * cy + cz * cz <= PARALLEL * PARALLEL and x * t[0] + y * t[1] + z * t[2] > 0.0
+    first = direction[0]
+    along = first[0] * x + first[1] * y + first[2] * z
+    if axes == 1:
+        if abs(along - dot(first, t)) > PARALLEL:
+            return False
+        angle, _ = _about(first, t[0], t[1], t[2], x, y, z)
+        return _turns_within(angle, rotary.limit[0, 0], rotary.limit[0, 1])
+    second, (start, most, base) = direction[1], rotary.swing
+    share = (along - base) / most
+    if abs(share) > 1.0 + 1e-12:
+        return False
+    swing = np.arccos(min(1.0, max(-1.0, share)))
+    inner = dot(second, t)
+    for side in range(2):
+        angle = start + swing if side == 0 else start - swing
+        if not _turns_within(angle, rotary.limit[1, 0], rotary.limit[1, 1]):
+            continue
+        c, s = np.cos(angle), np.sin(angle)
+        vx = inner * second[0] + c * (t[0] - inner * second[0]) + s * (second[1] * t[2] - second[2] * t[1])
+        vy = inner * second[1] + c * (t[1] - inner * second[1]) + s * (second[2] * t[0] - second[0] * t[2])
+        vz = inner * second[2] + c * (t[2] - inner * second[2]) + s * (second[0] * t[1] - second[1] * t[0])
+        turn, size = _about(first, vx, vy, vz, x, y, z)
+        # Along the first axis any angle of it serves.
+        if size <= PARALLEL**4 or _turns_within(turn, rotary.limit[0, 0], rotary.limit[0, 1]):
+            return True
+    return False
+
+
+@kernel
+def _held_at(n, f, tilt, rotary):  # type: ignore[no-untyped-def]
+    c, s = np.cos(tilt), np.sin(tilt)
+    return holds(c * n[0] + s * f[0], c * n[1] + s * f[1], c * n[2] + s * f[2], rotary)
+
+
+@kernel
+def _crossings(n, f, low, high, rotary, intervals):  # type: ignore[no-untyped-def]
+    """Write the tilts between `low` and `high` at which what the machine holds may change, ascending; how many."""
+    base, count = len(intervals) - CROSSINGS, 0
+    for i in range(len(rotary.circle)):
+        circle = rotary.circle[i]
+        along_n = circle[0] * n[0] + circle[1] * n[1] + circle[2] * n[2]
+        along_f = circle[0] * f[0] + circle[1] * f[1] + circle[2] * f[2]
+        size = np.hypot(along_n, along_f)
+        if size == 0.0 or abs(circle[3]) > size * (1.0 + 1e-12):
+            continue
+        middle, half = np.arctan2(along_f, along_n), np.arccos(min(1.0, max(-1.0, circle[3] / size)))
+        for side in range(2):
+            tilt = middle + half if side == 0 else middle - half
+            tilt -= _TURN * np.floor((tilt - low) / _TURN)
+            if low < tilt < high and count < CROSSINGS:
+                at = base + count
+                while at > base and intervals[at - 1, 0] > tilt:
+                    intervals[at, 0] = intervals[at - 1, 0]
+                    at -= 1
+                intervals[at, 0] = tilt
+                count += 1
+    return count
+
+
+@kernel
+def hold(n, f, rotary, intervals, count):  # type: ignore[no-untyped-def]
+    """Leave of sorted intervals of tilt what the machine holds; the new count.
+
+    Parameters
+    ----------
+    n, f : (3,) float64
+        Normal and lean direction.
+    rotary : Rotary
+    intervals : (m, 2) float64, read and written
+        With room at the end: `CROSSINGS` rows, and three for each crossing and interval.
+    count : int
+    """
+    kept, base = 0, len(intervals) - CROSSINGS
+    # Those to come are put aside, for one may become several.
+    aside = base - count
+    for i in range(count - 1, -1, -1):
+        intervals[aside + i, 0], intervals[aside + i, 1] = intervals[i, 0], intervals[i, 1]
+    for i in range(count):
+        low, high = intervals[aside + i, 0], intervals[aside + i, 1]
+        found = _crossings(n, f, low, high, rotary, intervals)
+        # `open`: the last interval kept ends at `last`, and goes on if what follows is held.
+        last, going = low, False
+        for k in range(found + 1):
+            end = high if k == found else intervals[base + k, 0]
+            if _held_at(n, f, 0.5 * (last + end), rotary):
+                if going:
+                    intervals[kept - 1, 1] = end
+                else:
+                    intervals[kept, 0], intervals[kept, 1] = last, end
+                    kept += 1
+                going = True
+            else:
+                # A single tilt is held where limits meet, or where fewer than two axes turn the tool.
+                if not going and _held_at(n, f, last, rotary):
+                    intervals[kept, 0], intervals[kept, 1] = last, last
+                    kept += 1
+                going = False
+            last = end
+        if not going and _held_at(n, f, high, rotary) and high > low:
+            intervals[kept, 0], intervals[kept, 1] = high, high
+            kept += 1
+    return kept

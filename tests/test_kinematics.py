@@ -1,0 +1,227 @@
+"""Machines: the chain forward and back, limits as circles, allowed tilts against a dense scan, and machines that cannot be."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from plan_cutters.domain import kinematics as words
+from plan_cutters.domain.kinematics import Kinematics
+from plan_cutters.domain.machine import Axis, Machine
+from plan_cutters.domain.machines import builtin_machines
+from plan_cutters.errors import MachineError
+from plan_cutters.kernels import limits
+from plan_cutters.kernels.jit import entry
+from plan_cutters.scene.conditions import frame_of, rotary_of
+
+FIVE = [name for name, machine in builtin_machines().items() if len(machine.rotary) == 2]
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def of(name, setup=UP):
+    return builtin_machines()[name].kinematics(frame_of(setup))
+
+
+def chain(seed):
+    """A random machine: axes at any angle, limits of any width."""
+    rng = np.random.default_rng(seed)
+    while True:
+        first, second, tool = (v / np.linalg.norm(v) for v in rng.normal(size=(3, 3)))
+        if min(np.linalg.norm(np.cross(first, second)), np.linalg.norm(np.cross(second, tool))) > 0.05:
+            break
+    low = rng.uniform(-math.pi, 0.5, 2)
+    limit = np.stack([low, low + rng.uniform(0.05, 2 * math.pi, 2)], axis=1)
+    limit[rng.random(2) < 0.2] = (-math.inf, math.inf)
+    return Kinematics(np.array([first, second]), limit, tool)
+
+
+def directions(rng, count):
+    found = rng.normal(size=(count, 3))
+    return found / np.linalg.norm(found, axis=1)[:, None]
+
+
+def by_matrices(found, angle):
+    """The tool axis by matrices of the exponential series' closed form, one by one."""
+    vector = found.tool
+    for k in (1, 0):
+        x, y, z = found.direction[k]
+        cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+        vector = (np.eye(3) + math.sin(angle[k]) * cross + (1 - math.cos(angle[k])) * cross @ cross) @ vector
+    return vector
+
+
+def test_kernels_count_as_the_domain_does():
+    assert (limits.PARALLEL, limits.ON_LIMIT) == (words.PARALLEL, words.ON_LIMIT)
+
+
+@pytest.mark.parametrize("name", [*FIVE, *range(10)])
+def test_forward_of_inverse_is_the_axis(name):
+    found = chain(name) if isinstance(name, int) else of(name)
+    free = Kinematics(found.direction, np.full((2, 2), (-math.inf, math.inf)), found.tool)
+    axis = directions(np.random.default_rng(1), 100_000)
+    angle = free.angles(axis)
+    held = np.isfinite(angle).all(axis=2)
+    assert (held[:, 0] == held[:, 1]).all()
+    assert held.any()
+    for i in range(2):
+        assert np.abs(free.axis(angle[held[:, i], i]) - axis[held[:, i]]).max() < 1e-12
+    # What no angles hold is out of reach of the second axis.
+    along = axis @ free.direction[0]
+    _, most, base = free.swing
+    assert (held[:, 0] == (np.abs(along - base) <= most)).all()
+
+
+@pytest.mark.parametrize("name", [*FIVE, *range(10)])
+def test_the_chain_is_that_of_matrices(name):
+    found = chain(name) if isinstance(name, int) else of(name)
+    angle = np.random.default_rng(2).uniform(-4, 4, (50, 2))
+    assert np.abs(found.axis(angle) - [by_matrices(found, each) for each in angle]).max() < 1e-14
+
+
+@pytest.mark.parametrize("name", [*FIVE, *range(10)])
+def test_what_angles_within_the_limits_make_is_allowed(name):
+    """And one of the two solutions is those angles, up to whole turns."""
+    found = chain(name) if isinstance(name, int) else of(name)
+    low, high = np.clip(found.limit, -7, 7).T
+    angle = np.random.default_rng(3).uniform(low, high, (20_000, 2))
+    axis = found.axis(angle)
+    both, taken, _ = found.positions(axis)
+    assert (taken >= 0).all()
+    away = np.abs(np.remainder(both - angle[:, None] + math.pi, 2 * math.pi) - math.pi).max(axis=2)
+    sine = np.linalg.norm(np.cross(axis, found.direction[0]), axis=1)
+    assert (np.nanmin(away, axis=1) < 1e-6 / np.maximum(sine, 1e-9) + 1e-6).all()
+    chosen = both[np.arange(len(taken)), taken]
+    assert ((chosen >= found.limit[:, 0] - 2e-9) & (chosen <= found.limit[:, 1] + 2e-9)).all()
+    assert np.abs(found.axis(chosen) - axis).max() < 1e-8
+
+
+@entry
+def tilts(n, f, rotary, low, high, intervals):
+    intervals[0, 0], intervals[0, 1] = low, high
+    return limits.hold(n, f, rotary, intervals, 1)
+
+
+def allowed(found, n, f, low=0.0, high=math.pi):
+    room = np.empty((128, 2))
+    return room[: tilts(n, f, rotary_of(found), low, high, room)].copy()
+
+
+@pytest.mark.parametrize("name", [*FIVE, *range(60)])
+def test_allowed_tilts_against_a_dense_scan(name):
+    found = chain(name) if isinstance(name, int) else of(name)
+    rng = np.random.default_rng(4)
+    tilt = np.linspace(0, math.pi, 4001)
+    for n in directions(rng, 12):
+        f = np.cross(n, directions(rng, 1)[0])
+        f /= np.linalg.norm(f)
+        intervals = allowed(found, n, f)
+        assert (np.diff(intervals.ravel()) >= 0).all()
+        held = found.allows(np.cos(tilt)[:, None] * n + np.sin(tilt)[:, None] * f)
+        inside = ((tilt[:, None] >= intervals[:, 0]) & (tilt[:, None] <= intervals[:, 1])).any(axis=1)
+        near = (
+            (np.abs(tilt[:, None] - intervals.ravel()) < 1e-8).any(axis=1)
+            if len(intervals)
+            else np.zeros(len(tilt), bool)
+        )
+        assert (held == inside)[~near].all()
+        # Just beyond each end, and just within it.
+        for low, high in intervals:
+            for at, step in ((low, -1e-6), (high, 1e-6)):
+                if high - low > 1e-5 and 1e-5 < at < math.pi - 1e-5:
+                    both = found.allows(np.array([np.cos(at + s) * n + np.sin(at + s) * f for s in (step, -step)]))
+                    assert both.tolist() == [False, True]
+
+
+@given(st.floats(-math.pi, math.pi), st.floats(0.0, 3.0), st.floats(0.0, 1.5))
+@settings(max_examples=60, deadline=None)
+def test_a_tilting_table_in_closed_form(turn, most, lean):
+    """A trunnion of A -most to most and C without limits holds what is within `most` of the spindle: a cone."""
+    limit = np.array([[-math.inf, math.inf], [-most, most]])
+    found = Kinematics(np.array([[0, 0, 1.0], [1.0, 0, 0]]), limit, UP)
+    n = np.array([math.sin(lean) * math.cos(turn), math.sin(lean) * math.sin(turn), math.cos(lean)])
+    f = np.cross(np.cross(n, [0.3, -0.5, 0.8]), n)
+    f /= np.linalg.norm(f)
+    tilt = np.linspace(0, math.pi / 2, 500)
+    axis = np.cos(tilt)[:, None] * n + np.sin(tilt)[:, None] * f
+    angle = np.arccos(np.clip(axis[:, 2], -1, 1))
+    sure = np.abs(angle - most) > 1e-6
+    assert (found.allows(axis) == (angle <= most))[sure].all()
+    intervals = allowed(found, n, f, 0.0, math.pi / 2)
+    inside = ((tilt[:, None] >= intervals[:, 0]) & (tilt[:, None] <= intervals[:, 1])).any(axis=1)
+    assert (inside == (angle <= most))[sure].all()
+
+
+def test_both_solutions_at_known_angles():
+    found = of("trunnion-ac")
+    axis = turned(
+        np.array([0, 0, 1.0]), np.array(math.radians(30)), turned(np.array([1.0, 0, 0]), np.array(math.radians(20)), UP)
+    )
+    both, taken, singular = found.positions(axis[None])
+    assert np.degrees(both[0]) == pytest.approx(np.array([[30, 20], [-150, -20]]), abs=1e-9)
+    assert (taken[0], singular[0]) == (0, False)
+    # Beyond A's -30 only one is left.
+    axis = turned(
+        np.array([0, 0, 1.0]), np.array(math.radians(30)), turned(np.array([1.0, 0, 0]), np.array(math.radians(50)), UP)
+    )
+    both, taken, _ = found.positions(axis[None])
+    assert np.isnan(both[0, 1]).all()
+    assert np.degrees(both[0, 0]) == pytest.approx([30, 50], abs=1e-9)
+    # Along the axis next to the part: singular, and held.
+    both, taken, singular = found.positions(UP[None])
+    assert (taken[0] >= 0, singular[0]) == (True, True)
+
+
+def test_fewer_axes():
+    three = of("3-axis")
+    assert three.allows(np.array([UP, [0, 0.001, 1.0], -UP])).tolist() == [True, False, False]
+    n = np.array([0.0, math.sin(0.4), math.cos(0.4)])
+    (interval,) = allowed(three, n, np.array([0.0, -math.cos(0.4), math.sin(0.4)]))
+    assert interval == pytest.approx([0.4, 0.4], abs=2e-6)
+    assert len(allowed(three, n, np.array([1.0, 0.0, 0.0]))) == 0
+    four = Kinematics(np.array([[1.0, 0, 0]]), np.array([[-0.5, 2.0]]), UP)
+    assert four.allows(four.axis(np.array([[-0.5], [0.0], [1.9], [2.1]]))).tolist() == [True, True, True, False]
+    assert not four.allows(np.array([[0.1, 0, math.sqrt(0.99)]])).any()
+    intervals = allowed(four, UP, np.array([0.0, -1.0, 0.0]))
+    assert intervals == pytest.approx(np.array([[0.0, 2.0]]), abs=3e-6)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ({"direction": (0, 0, 0)}, "not all zero"),
+        ({"direction": (0, float("nan"), 1)}, "must be 3 numbers"),
+        ({"direction": (0, 1)}, "must be 3 numbers"),
+        ({"limits": (1.0, -1.0)}, "must run upwards"),
+        ({"limits": (float("nan"), 1.0)}, "must be 2 numbers"),
+        ({"kind": "linear?"}, "rotary or linear"),
+        ({"carries": "head"}, "the part or the tool"),
+        ({"name": ""}, "needs a name"),
+        ({"rate": 0}, "must be positive"),
+        ({"point": (0, 0, math.inf)}, "must be finite"),
+    ],
+)
+def test_axes_that_cannot_be(words, message):
+    with pytest.raises(MachineError, match=message):
+        Axis(**{"name": "A", "kind": "rotary", "carries": "part", "direction": (1, 0, 0)} | words)
+
+
+def axis(name, *direction, carries="part"):
+    return Axis(name, "rotary", carries, direction)
+
+
+@pytest.mark.parametrize(
+    ("axes", "message"),
+    [
+        ([axis("A", 1, 0, 0), axis("B", -1, 0, 0)], "parallel"),
+        ([axis("A", 1, 0, 0), axis("C", 0, 0, 1, carries="tool")], "lies along the tool"),
+        ([axis("C", 0, 0, 1), axis("A", 1, 0, 0), axis("B", 0, 1, 0, carries="tool")], "3 rotary axes"),
+        ([axis("A", 1, 0, 0, carries="tool"), axis("B", 0, 1, 0)], "come before"),
+        ([axis("A", 1, 0, 0), axis("A", 0, 1, 0)], "one name"),
+        ("AB", "axes"),
+    ],
+)
+def test_machines_that_cannot_be(axes, message):
+    with pytest.raises(MachineError, match=message):
+        Machine("mine", axes=axes)
