@@ -2,9 +2,9 @@
 
 An axis is counted from the part to the tool, and its positive sense is that of the tool relative to the part (ISO 841): what the
 tool's direction t becomes is R(d1, angle1) R(d2, angle2) t, d1 next to the part. So all machines of two rotary axes are one:
-which of them carry the part and which the tool does not matter to the direction. A limit of either axis is a circle on the sphere of
-directions: about d1 at the end of the second axis, about R(d1, angle1) d2 at an end of the first. Between these circles nothing
-changes (`kernels.limits`).
+which of them carry the part and which the tool does not matter to the direction. A limit of either axis is a circle on the sphere
+of directions: about d1 at the end of the second axis, about R(d1, angle1) d2 at an end of the first. Between these circles
+nothing changes (`kernels.limits`).
 """
 
 import math
@@ -119,7 +119,7 @@ class Kinematics(Record):
         lost = np.isnan(found).any(axis=2)
         found[lost] = np.nan
         size = np.where(lost, np.inf, np.abs(np.where(np.isnan(found), 0.0, found)).sum(axis=2))
-        taken = np.where(lost.all(axis=1), -1, size.argmin(axis=1))
+        taken = np.where(np.all(lost, axis=1), -1, size.argmin(axis=1))
         singular = (sine <= math.sin(SINGULAR)) if len(self.direction) == 2 else np.zeros(len(axis), bool)
         return found, taken.astype(np.int8), singular
 

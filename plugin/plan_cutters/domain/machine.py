@@ -2,73 +2,15 @@
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from cad_io.arrays import Floats
+from plan_cutters.domain.axis import Axis, Carried, direction_of
 from plan_cutters.domain.checks import items, number, radians, shown
 from plan_cutters.domain.kinematics import PARALLEL, Kinematics
 from plan_cutters.errors import MachineError
-
-Kind = Literal["rotary", "linear"]
-Carried = Literal["part", "tool"]
-
-
-@dataclass(frozen=True, slots=True)
-class Axis:
-    """One axis of a machine at zero positions, in the machine's frame (ISO 841: Z towards the spindle).
-
-    Attributes
-    ----------
-    name : str
-        `A`, `X` and so on.
-    kind : str
-        `rotary` or `linear`.
-    carries : str
-        What stands on it: the `part` or the `tool`.
-    direction : (float, float, float)
-        Unit direction; positive is the motion of the tool relative to the part, whatever moves.
-    limits : (float, float), optional
-        From, to: rad or mm. None: no limit.
-    point : (float, float, float)
-        A point of a rotary axis, mm.
-    rate : float, optional
-        Largest speed, rad/s or mm/s.
-    """
-
-    name: str
-    kind: Kind
-    carries: Carried
-    direction: tuple[float, float, float]
-    limits: tuple[float, float] | None = None
-    point: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    rate: float | None = None
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.name, str) or not self.name.strip():
-            raise MachineError(f"a machine's axis needs a name, not {shown(self.name)}")
-        what = f"axis {self.name}"
-        if self.kind not in ("rotary", "linear"):
-            raise MachineError(f"{what}: its kind is rotary or linear, not {shown(self.kind)}")
-        if self.carries not in ("part", "tool"):
-            raise MachineError(f"{what}: it carries the part or the tool, not {shown(self.carries)}")
-        object.__setattr__(self, "direction", _direction(self.direction, f"{what}: its direction"))
-        point = _numbers(self.point, f"{what}: its point", 3)
-        if not all(map(math.isfinite, point)):
-            raise MachineError(f"{what}: its point must be finite")
-        object.__setattr__(self, "point", point)
-        if self.limits is not None:
-            low, high = _numbers(self.limits, f"{what}: its limits", 2)
-            if not low <= high:
-                raise MachineError(f"{what}: its limits {low:g} to {high:g} must run upwards")
-            none = math.isinf(low) and math.isinf(high)
-            object.__setattr__(self, "limits", None if none else (low, high))
-        if self.rate is not None:
-            rate = number(self.rate, f"{what}: its rate", error=MachineError)
-            if not 0.0 < rate < math.inf:
-                raise MachineError(f"{what}: its rate must be positive")
-            object.__setattr__(self, "rate", rate)
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +45,7 @@ class Machine:
             raise MachineError(f"a machine's name must be a text, not {shown(self.name)}")
         object.__setattr__(self, "axes", tuple(items(self.axes, "a machine's axes", "axes", error=MachineError)))
         object.__setattr__(self, "notes", tuple(items(self.notes, "a machine's notes", "texts", error=MachineError)))
-        object.__setattr__(self, "tool_axis", _direction(self.tool_axis, "a machine's tool axis"))
+        object.__setattr__(self, "tool_axis", direction_of(self.tool_axis, "a machine's tool axis"))
         if not isinstance(self.fixed, bool):
             raise MachineError(f"a machine is fixed or not, not {shown(self.fixed)}")
         self._check_axes()
@@ -206,8 +148,6 @@ class Machine:
             if not 0 <= degrees <= 180:
                 raise MachineError(f"machine {text!r}: the limit lies between 0 and 180 degrees")
             return cls(text, math.radians(degrees))
-        from plan_cutters.domain.machines import builtin_machines
-
         known = builtin_machines()
         if text in known:
             return known[text]
@@ -232,16 +172,25 @@ class Machine:
         return -2.0 if self.tilt_limit is None else math.cos(self.tilt_limit)
 
 
-def _numbers(value: Any, what: str, count: int) -> tuple[float, ...]:
-    found = tuple(number(each, what, error=MachineError) for each in items(value, what, "numbers", error=MachineError))
-    if len(found) != count or any(math.isnan(each) for each in found):
-        raise MachineError(f"{what} must be {count} numbers")
-    return found
+#: Usual directions.
+X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
 
-def _direction(value: Any, what: str) -> tuple[float, float, float]:
-    x, y, z = _numbers(value, what, 3)
-    size = math.hypot(x, y, z)
-    if not 0.0 < size < math.inf:
-        raise MachineError(f"{what} must be three finite numbers that are not all zero")
-    return x / size, y / size, z / size
+def _rotary(name: str, carries: Carried, direction: tuple[float, float, float], low: float, high: float) -> Axis:
+    limits = None if math.isinf(low) else (math.radians(low), math.radians(high))
+    return Axis(name, "rotary", carries, direction, limits)
+
+
+def builtin_machines() -> dict[str, Machine]:
+    """By their names; angles of the tool relative to the part, degrees, in the names' order of axes."""
+    inf = math.inf
+    table: dict[str, tuple[Axis, ...]] = {
+        "3-axis": (),
+        "3+2": (_rotary("C", "part", Z, -inf, inf), _rotary("A", "part", X, -110.0, 110.0)),
+        "trunnion-ac": (_rotary("C", "part", Z, -inf, inf), _rotary("A", "part", X, -30.0, 120.0)),
+        "trunnion-bc": (_rotary("C", "part", Z, -inf, inf), _rotary("B", "part", Y, -110.0, 110.0)),
+        "head-table-bc": (_rotary("C", "part", Z, -inf, inf), _rotary("B", "tool", Y, -100.0, 100.0)),
+        "head-head-ca": (_rotary("C", "tool", Z, -360.0, 360.0), _rotary("A", "tool", X, -110.0, 110.0)),
+        "nutating-bc": (_rotary("C", "part", Z, -inf, inf), _rotary("B", "tool", (0.0, 1.0, 1.0), -180.0, 180.0)),
+    }
+    return {name: Machine(name, axes=axes, fixed=not axes) for name, axes in table.items()}

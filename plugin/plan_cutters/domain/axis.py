@@ -1,0 +1,82 @@
+"""One axis of a machine: rotary or linear, what it carries, its direction and its limits."""
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from plan_cutters.domain.checks import items, number, shown
+from plan_cutters.errors import MachineError
+
+Kind = Literal["rotary", "linear"]
+Carried = Literal["part", "tool"]
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """One axis of a machine at zero positions, in the machine's frame (ISO 841: Z towards the spindle).
+
+    Attributes
+    ----------
+    name : str
+        `A`, `X` and so on.
+    kind : str
+        `rotary` or `linear`.
+    carries : str
+        What stands on it: the `part` or the `tool`.
+    direction : (float, float, float)
+        Unit direction; positive is the motion of the tool relative to the part, whatever moves.
+    limits : (float, float), optional
+        From, to: rad or mm. None: no limit.
+    point : (float, float, float)
+        A point of a rotary axis, mm.
+    rate : float, optional
+        Largest speed, rad/s or mm/s.
+    """
+
+    name: str
+    kind: Kind
+    carries: Carried
+    direction: tuple[float, float, float]
+    limits: tuple[float, float] | None = None
+    point: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    rate: float | None = None
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.name, str) or not self.name.strip():
+            raise MachineError(f"a machine's axis needs a name, not {shown(self.name)}")
+        what = f"axis {self.name}"
+        if self.kind not in ("rotary", "linear"):
+            raise MachineError(f"{what}: its kind is rotary or linear, not {shown(self.kind)}")
+        if self.carries not in ("part", "tool"):
+            raise MachineError(f"{what}: it carries the part or the tool, not {shown(self.carries)}")
+        object.__setattr__(self, "direction", direction_of(self.direction, f"{what}: its direction"))
+        point = numbers_of(self.point, f"{what}: its point", 3)
+        if not all(map(math.isfinite, point)):
+            raise MachineError(f"{what}: its point must be finite")
+        object.__setattr__(self, "point", point)
+        if self.limits is not None:
+            low, high = numbers_of(self.limits, f"{what}: its limits", 2)
+            if not low <= high:
+                raise MachineError(f"{what}: its limits {low:g} to {high:g} must run upwards")
+            none = math.isinf(low) and math.isinf(high)
+            object.__setattr__(self, "limits", None if none else (low, high))
+        if self.rate is not None:
+            rate = number(self.rate, f"{what}: its rate", error=MachineError)
+            if not 0.0 < rate < math.inf:
+                raise MachineError(f"{what}: its rate must be positive")
+            object.__setattr__(self, "rate", rate)
+
+
+def numbers_of(value: Any, what: str, count: int) -> tuple[float, ...]:
+    found = tuple(number(each, what, error=MachineError) for each in items(value, what, "numbers", error=MachineError))
+    if len(found) != count or any(math.isnan(each) for each in found):
+        raise MachineError(f"{what} must be {count} numbers")
+    return found
+
+
+def direction_of(value: Any, what: str) -> tuple[float, float, float]:
+    x, y, z = numbers_of(value, what, 3)
+    size = math.hypot(x, y, z)
+    if not 0.0 < size < math.inf:
+        raise MachineError(f"{what} must be three finite numbers that are not all zero")
+    return x / size, y / size, z / size
