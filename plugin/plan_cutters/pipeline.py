@@ -16,7 +16,7 @@ from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock, Progress
-from plan_cutters.document.model import AreaEntry, CutterEntry
+from plan_cutters.document.model import AreaEntry, CutterEntry, SetupEntry
 from plan_cutters.document.plan import completed, plan_of, selection
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.checks import shown
@@ -40,6 +40,7 @@ from plan_cutters.stages.decompose import march_differs
 from plan_cutters.stages.judge import judge
 from plan_cutters.stages.posture_maps import posture_maps
 from plan_cutters.stages.select_cutters import ranked
+from plan_cutters.stages.setups import AXES, within_limits
 
 #: Samples that a plan may take.
 MOST_SAMPLES = 5_000_000
@@ -201,7 +202,9 @@ def assemble(
     """The result of all cutters: the choice, the area between the samples for the one chosen, what was answered, the plan."""
     clock, answers = clock or Clock(), answers or Answers()
     reaches = {cutter.id: each.reach for cutter, each in judged.items()}
-    entries = completed([judged[c].entry for c in ready.cutters], ready, answers, reaches)
+    within = within_limits(ready.samples, ready.cutters, ready.conditions)
+    beyond = (ready.samples.unjudged < 0) & ~within & (ready.buried < 0)
+    entries = completed([judged[c].entry for c in ready.cutters], ready, answers, reaches, beyond)
     selected, chosen = selection(entries)
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
     best = selected or next((e.id for e in entries if not (e.inaccessible or e.undecided)), None)
@@ -215,7 +218,9 @@ def assemble(
                          short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
         entries = [e.model_copy(update={"area": area}) if e.id == best else e for e in entries]
     with clock.stage("plan", shown=False):
-        document = plan_of(ready, entries, selected, chosen, started or datetime.datetime.now(datetime.UTC), answers)
+        document = plan_of(
+            ready, entries, selected, chosen, started or datetime.datetime.now(datetime.UTC), answers, _setups(ready)
+        )
     return Result(
         clock.stamp(document),
         ready.scene,
@@ -226,6 +231,19 @@ def assemble(
         ready.conditions.kinematics,
         answers,
     )
+
+
+def _setups(ready: Prepared) -> list[SetupEntry]:
+    """How much would be within the axis limits in this setup, and in each along the part's own axes."""
+    if not ready.conditions.machine.limited:
+        return []
+    judged, area = ready.samples.unjudged < 0, ready.samples.area
+    found = []
+    for axis in dict.fromkeys((ready.scene.setup, *AXES)):
+        within = within_limits(ready.samples, ready.cutters, ready.conditions, axis)
+        share = float(area[within].sum() / area[judged].sum()) if area[judged].sum() > 0.0 else 0.0
+        found.append(SetupEntry(axis=axis, within=int(within.sum()), share=min(1.0, share)))
+    return found
 
 
 def _affordable(part: Part, targets: Sequence[int], options: Options) -> None:

@@ -40,6 +40,7 @@ def summary(plan: "Plan") -> None:
     console.print(f"{plan.part.file or 'part'}: {size} mm, {plan.part.faces} faces, {targets} to machine, "
                   f"{f'{ignored} ignored, ' if ignored else ''}"
                   f"{plan.samples.count} samples, gaps up to {plan.samples.max_gap_mm:.3g} mm")  # fmt: skip
+    console.print(f"Machine {plan.machine.name}, setup {','.join(f'{x:.4g}' for x in plan.effective.setup)}.")
     for line in libraries(plan):
         console.print(line)
     table, names = Table(box=None, pad_edge=False), short_names(plan)
@@ -60,6 +61,8 @@ def summary(plan: "Plan") -> None:
                       str(c.accessible), str(c.undecided), str(c.inaccessible), *([_held(c)] if held else []))  # fmt: skip
     console.print(table)
     console.print(named(plan, f"Selected: {plan.selected or 'none'} ({plan.selection.why})."))
+    for line in setups(plan):
+        console.print(named(plan, line))
     console.print(_side(plan))
     for area in (c.area for c in plan.cutters if c.area):
         console.print(f"Between samples: {_percent(area.share)} of the target area is served with the axes found "
@@ -75,6 +78,19 @@ def summary(plan: "Plan") -> None:
             console.print(f"Not judged: {face.id} ({face.unjudged}).")
     for line in _missing(plan):
         console.print(line)
+
+
+def setups(plan: "Plan") -> list[str]:
+    """What no cutter can reach in this setup, which cutter does the rest, and how much is within the limit in other setups."""
+    lost = max((c.beyond_setup for c in plan.cutters), default=0)
+    if not lost:
+        return []
+    lines = [f"Beyond this setup: the axis limit loses {lost} of {plan.samples.count} samples for every cutter."]
+    if plan.selected_for_setup:
+        lines.append(f"For this setup: {plan.selected_for_setup}, which leaves nothing else.")
+    others = ", ".join(f"{','.join(f'{x:g}' for x in each.axis)} {_percent(each.share)}" for each in plan.setups[1:])
+    lines.append(f"Area within the limit by setup axis: {_percent(plan.setups[0].share)} now; {others}.")
+    return lines
 
 
 def short_names(plan: "Plan") -> dict[str, str]:

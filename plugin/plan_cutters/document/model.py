@@ -186,6 +186,14 @@ class MachineEntry(Frozen):
     notes: list[str]
 
 
+class SetupEntry(Frozen):
+    """How much of the target surface some cutter could touch within the axis limits, were this the setup axis."""
+
+    axis: Vector
+    within: int = Field(description="samples")
+    share: float = Field(description="of the judged samples' area, 0 to 1")
+
+
 class SourceEntry(Frozen):
     """Where a tool library lists a cutter."""
 
@@ -249,6 +257,10 @@ class CutterEntry(Verdicts):
     faces: dict[str, Verdicts]
     witnesses: list[WitnessEntry]
     area: AreaEntry | None = Field(default=None, description="of the selected cutter; null where it was not asked for")
+    beyond_setup: int = Field(
+        default=0,
+        description="samples that the axis limit alone loses for every cutter in this setup, as an underside's",
+    )
     singular: int | None = Field(
         default=None,
         description="reached samples whose posture lies within 2 deg of the rotary axis next to the part, which then turns fast; "
@@ -310,7 +322,15 @@ class Plan(Frozen):
     libraries: list[LibraryEntry] = Field(default=[], description="tool libraries that were read")
     cutters: list[CutterEntry]
     selected: str | None
+    selected_for_setup: str | None = Field(
+        default=None,
+        description="the first cutter that leaves nothing but what the axis limit loses for every cutter in this setup; null "
+        "where a cutter is selected, where none does, or where nothing is within the limit",
+    )
     selection: Selection
+    setups: list[SetupEntry] = Field(
+        default=[], description="this setup axis first; empty where any tool axis is possible"
+    )
     largest_radius: list[RadiusEntry] = Field(
         default=[],
         description="of bare flat and ball ends, whatever cutters there are; empty where it was not asked for",

@@ -4,6 +4,7 @@ import datetime
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from plan_cutters.document.answers import mend_entry, radius_entry, stick_out_entry
 from plan_cutters.document.build import area_notes, degrees, face_entries, missing_entries, notes, part_info, versions
@@ -18,6 +19,7 @@ from plan_cutters.document.model import (
     Run,
     SampleCounts,
     Selection,
+    SetupEntry,
 )
 from plan_cutters.document.palette import PALETTE
 from plan_cutters.domain.answers import Answers
@@ -32,7 +34,7 @@ RULE = "largest radius, then smaller corner radius, then shorter length, then li
 
 def plan_of(
     ready: Prepared, entries: Sequence[CutterEntry], selected: str | None, selection: Selection,
-    started: datetime.datetime, answers: Answers,
+    started: datetime.datetime, answers: Answers, setups: Sequence[SetupEntry] = (),
 ) -> Plan:  # fmt: skip
     """The plan of a part from the entries of its cutters, and what was answered after them."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
@@ -84,6 +86,8 @@ def plan_of(
         cutters=list(entries),
         selected=selected,
         selection=selection,
+        selected_for_setup=None if selected else for_setup(entries),
+        setups=list(setups),
         largest_radius=[radius_entry(found, samples) for found in answers.radius_maps],
         notes=[
             *notes(scene, options, samples, ready.cutters),
@@ -122,13 +126,16 @@ def _singular(ready: Prepared, reach: Reach | None) -> int | None:
 
 
 def completed(
-    entries: Sequence[CutterEntry], ready: Prepared, answers: Answers, reaches: Mapping[str, Reach]
-) -> list[CutterEntry]:
-    """The entries of cutters with where they are listed, and what was answered about them."""
+    entries: Sequence[CutterEntry], ready: Prepared, answers: Answers, reaches: Mapping[str, Reach],
+    beyond: NDArray[np.bool_],
+) -> list[CutterEntry]:  # fmt: skip
+    """The entries of cutters with where they are listed, what the limits lose for all (n,), and what was answered about them."""
     found, sources, samples = [], ready.options.sources, ready.samples
+    lost_to_all = int(beyond.sum())
     for entry in entries:
         stick_out, mend = answers.stick_outs.get(entry.id), answers.mends.get(entry.id)
         more = {
+            "beyond_setup": lost_to_all,
             "singular": _singular(ready, reaches.get(entry.id)),
             "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
             "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples),
@@ -136,6 +143,15 @@ def completed(
         }
         found.append(entry.model_copy(update=more))
     return found
+
+
+def for_setup(entries: Sequence[CutterEntry]) -> str | None:
+    """The first cutter that leaves nothing but what no cutter can reach in this setup."""
+    for e in entries:
+        done = e.interference_free + e.accessible
+        if done and e.beyond_setup and not e.undecided and e.inaccessible == e.beyond_setup:
+            return e.id
+    return None
 
 
 def selection(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:
