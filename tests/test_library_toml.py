@@ -154,7 +154,8 @@ def test_what_is_wrong_is_said_by_its_field(tmp_path, old, new, said):
         read(tmp_path, text)
     found = str(error.value)
     assert said in found.replace("'", "") or said in found
-    assert "tool 2 (line 10)" in found
+    line = text[: text.rindex("[[tool]]")].count("\n") + 1
+    assert f"tool 2 (line {line})" in found
     assert "\n" not in found
     assert len(read(tmp_path, text, skip_bad=True)) == 1
 
@@ -206,3 +207,36 @@ def test_assumptions(tmp_path):
 )  # fmt: skip
 def test_every_shape_by_hand(tmp_path, text, cutter):
     assert [each.id for each in read(tmp_path, f'{MM}[[tool]]\n{text}\nholder = "none"\n')] == [cutter]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('type = "flat"', 'type = "taper"', "TA is missing"),
+        ('type = "flat"', 'type = "dovetail"', "TA is missing"),
+        ('type = "flat"', 'type = "taper"\nTA = -5', "half angle lies between"),
+        ("DMM = 12", "DMM = 12\nDN = 9", "LN is missing"),
+        ("DMM = 12", "DMM = 12\nDN = 9\nneck = [[4, 5]]", "neck and DN"),
+        ("DC = 12", "DC = 0x" + "f" * 9000, "DC is a number of thousands of digits"),
+        ("DC = 12", "DC = 12\nnumber = 0x" + "f" * 9000, "number is a number of thousands of digits"),
+        ("DC = 12", "dc = 12", "DC is written so"),
+        ('"R12:15L20+R15L30"', '""', "neither none"),
+    ],
+)
+def test_what_was_silent_is_said(tmp_path, old, new, said):
+    assert old in TOOL
+    (tmp_path / "a.toml").write_text(MM + TOOL.replace(old, new), encoding="utf-8")
+    (entry,) = listing(tmp_path / "a.toml", skip_bad=True).entries
+    assert entry.cutter is None
+    assert said in entry.unused
+
+
+def test_two_holders_of_one_name_are_not_chosen_from(tmp_path):
+    rows = [f'[[holder]]\nname = "a"\npoints = [[0, {r}], [9, {r}]]\n' for r in (20, 30)]
+    path = tmp_path / "a.toml"
+    path.write_text(MM + TOOL.replace('"R12:15L20+R15L30"', '"a"') + rows[0], encoding="utf-8")
+    assert read_library(path)[0].holder.id == "R20L9"
+    path.write_text(MM + TOOL.replace('"R12:15L20+R15L30"', '"a"') + "".join(rows), encoding="utf-8")
+    tool, twice = listing(path, skip_bad=True).entries
+    assert "more than one" in tool.unused
+    assert "an earlier holder" in twice.unused

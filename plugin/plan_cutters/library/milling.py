@@ -373,11 +373,11 @@ def _held(tool: Listed, cutter: Cutter, holder: Holder, *, own: bool) -> Cutter:
     """With its holder, of as many sections as can be judged."""
     plain = Holder(joined(holder.stages), holder.name)
     fits: Any = lambda made: pieces_at_most(_with(cutter, made)) <= MOST_PIECES  # noqa: E731
-    most = len(plain.stages)
-    while not fits(plain) and most > 1:
-        most -= 1
+    # A section has three pieces at least: no more than a third of them is worth a trial.
+    most = min(len(plain.stages) - 1, MOST_PIECES // 3)
+    while not fits(plain) and most > 0:
         stages, wider = fewer(holder.stages, most)
-        plain = Holder(stages, holder.name)
+        plain, most = Holder(stages, holder.name), most - 1
         if fits(plain):
             tool.notes.append(
                 f"its holder's {len(holder.stages)} sections are taken as {len(stages)} around them, up to {wider:.3g} mm wider"

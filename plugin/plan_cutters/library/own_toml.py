@@ -18,13 +18,16 @@ from plan_cutters.library.listed import FaultError, Found, mm, name_of, unit_of
 from plan_cutters.library.milling import Ask, cause_of
 from plan_cutters.library.records import Entry
 
-_LOOKS = re.compile(r"^\s*(\[\[?\s*(tool|holder)s?\s*\]\]?\s*(#.*)?$|unit\s*=)", re.MULTILINE | re.IGNORECASE)
-_TABLE = re.compile(r"^\s*\[\[\s*tool\s*\]\]", re.MULTILINE)
+_LOOKS = re.compile(
+    r"^[ \t]*(\[\[?[ \t]*(tool|holder)s?[ \t]*\]\]?[ \t]*(#.*)?\r?$|unit[ \t]*=)", re.MULTILINE | re.IGNORECASE
+)
+_TABLE = re.compile(r"^[ \t]*\[\[[ \t]*tool[ \t]*\]\]", re.MULTILINE)
 _RADIANS = re.compile(r"\s*(\S+)\s*rad\s*")
 _ENDS = ("flat", "bull", "ball", "taper", "dovetail", "end")
 
 #: A tool's number is no larger, as in all formats.
 _LARGEST = 10**9
+_MOST = 8 << 20
 #: What pydantic puts into the place of an error for a kind that it tried.
 _KINDS = ("HolderTable", "str", "float")
 
@@ -82,6 +85,9 @@ def is_toml(content: Content) -> bool:
 
 def read_toml(content: Content, ask: Ask) -> Found:
     """Read it."""
+    if len(content.data) > _MOST:
+        # TOML is read by Python itself, some MB in a second.
+        raise LibraryError(f"is larger than {_MOST >> 20} MB: no tool library is; split it", file=content.name)
     if len(_TABLE.findall(content.text)) > MOST_TOOLS:
         raise too_many(content.name)
     try:
