@@ -234,9 +234,21 @@ def test_what_was_silent_is_said(tmp_path, old, new, said):
 def test_two_holders_of_one_name_are_not_chosen_from(tmp_path):
     rows = [f'[[holder]]\nname = "a"\npoints = [[0, {r}], [9, {r}]]\n' for r in (20, 30)]
     path = tmp_path / "a.toml"
-    path.write_text(MM + TOOL.replace('"R12:15L20+R15L30"', '"a"') + rows[0], encoding="utf-8")
-    assert read_library(path)[0].holder.id == "R20L9"
-    path.write_text(MM + TOOL.replace('"R12:15L20+R15L30"', '"a"') + "".join(rows), encoding="utf-8")
-    tool, twice = listing(path, skip_bad=True).entries
-    assert "more than one" in tool.unused
-    assert "an earlier holder" in twice.unused
+    for listed in (rows[:1], rows[:1] * 2):
+        path.write_text(MM + TOOL.replace('"R12:15L20+R15L30"', '"a"') + "".join(listed), encoding="utf-8")
+        assert read_library(path)[0].holder.id == "R20L9"
+    path.write_text(MM + TOOL.replace('"R12:15L20+R15L30"', '"a"') + "".join([*rows, rows[0]]), encoding="utf-8")
+    with pytest.raises(LibraryError, match="several different"):
+        read_library(path)
+    # A tool that does not ask for it does not mind.
+    path.write_text(MM + TOOL + "".join(rows), encoding="utf-8")
+    again = read(tmp_path, to_toml(read_library(path)))
+    assert [holder.id for holder in again.holders] == ["R20L9", "R30L9"]
+
+
+def test_a_holder_that_is_called_none_is_no_reason_to_judge_without(tmp_path):
+    holder = '[[holder]]\nname = "none"\npoints = [[0, 20], [9, 20]]\n'
+    with pytest.raises(LibraryError, match="call that otherwise"):
+        read(tmp_path, MM + TOOL.replace('"R12:15L20+R15L30"', '"none"') + holder)
+    (cutter,) = read(tmp_path, to_toml(read(tmp_path, MM + TOOL + holder)))
+    assert cutter.holder.id == "R12:15L20+R15L30"

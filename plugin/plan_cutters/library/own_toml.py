@@ -115,16 +115,9 @@ def read_toml(content: Content, ask: Ask) -> Found:
         except (ValidationError, FaultError, CutterError) as error:
             found.faulty.append(Entry(f"holder {i}", kind="holder", unused=_why(error), broken=True))
             continue
-        if holder.name == "none" or (holder.name and holder.name in named):
-            why = f"name is {shown(holder.name)}: " + (
-                "which means that there is no holder" if holder.name == "none" else "an earlier holder is called so"
-            )
-            found.faulty.append(Entry(f"holder {i}", None, holder.name, "holder", unused=why, broken=True))
-            named[holder.name] = None
-            continue
         found.holders.append(holder)
         if holder.name:
-            named[holder.name] = holder
+            named[holder.name] = holder if named.get(holder.name, holder) == holder else None
     lines = [content.text.count("\n", 0, match.start()) + 1 for match in _TABLE.finditer(content.text)]
     for i, table in enumerate(tools):
         line = f" (line {lines[i]})" if len(lines) == len(tools) else ""
@@ -266,12 +259,16 @@ class _Reading:
         if isinstance(given, HolderTable):
             return _outlined(given, _scale(given.unit)[1] if given.unit else self.scale)
         if given == "none":
+            if "none" in self.named:
+                raise FaultError(
+                    "holder 'none' means that there is none, but a [[holder]] is called so: call that otherwise"
+                )
             return None
         if given is not None:
             if given in self.named:
                 meant = self.named[given]
                 if meant is None:
-                    raise FaultError(f"holder {shown(given)}: more than one [[holder]] is called so")
+                    raise FaultError(f"holder {shown(given)}: several different [[holder]] are called so")
                 return meant
             try:
                 return Holder.parse(given)
