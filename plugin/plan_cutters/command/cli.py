@@ -285,7 +285,8 @@ def _options(given: dict[str, Any]) -> "Options":
         words = {"assume_stickout": given["assume_stickout"], "holder": holder, "skip_bad": given["skip_bad"]}
         libraries = [read_library(file, **words) for file in given["cutters"]]
     if not given["cutters"] and (given["assume_stickout"] is not None or given["skip_bad"]):
-        raise OptionError("--assume-stickout and --skip-bad are about the tools of a library: give it with --cutters")
+        word = "--skip-bad" if given["skip_bad"] else "--assume-stickout"
+        raise OptionError(f"{word} is about the tools of a library: give it with --cutters")
     return Options(
         cutters=tuple(Cutter.parse(spec) for spec in given["cutter"]),
         libraries=tuple(libraries),

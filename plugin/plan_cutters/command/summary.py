@@ -173,7 +173,10 @@ def _held(cutter: "CutterEntry") -> str:
     found = cutter.least_stick_out
     if found is None:
         return ""
-    return found.limited_by if found.least_mm is None else f"{found.least_mm:.2f} of {found.longest_mm:g}"
+    if found.least_mm is None:
+        return found.limited_by
+    end = ", flutes end" if found.limited_by == "floor" else ""
+    return f"{found.least_mm:.2f} of {found.longest_mm:g}{end}"
 
 
 def _place(point: Sequence[float]) -> str:

@@ -19,6 +19,8 @@ from plan_cutters.errors import LibraryError
 #: Most bytes of a file, of what is unpacked from it, and unpacked bytes for each packed one (beyond the first million).
 _FILE, _UNPACKED, _RATIO = 32 << 20, 32 << 20, 300
 _MEMBERS = 2000
+#: Tools that a file may list: more take more memory than a planner's computer has.
+MOST_TOOLS = 50_000
 
 
 class TwiceError(ValueError):
@@ -32,6 +34,18 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
             if found[key] != value:
                 raise TwiceError(f"{ascii(key)[:40]} is given twice in one object, with different values")
     return found
+
+
+def is_file(path: Path) -> bool:
+    """Whether there is a regular file; a name that no system takes is none."""
+    try:
+        return path.is_file()
+    except OSError:
+        return False
+
+
+def too_many(file: str) -> LibraryError:
+    return LibraryError(f"lists more than {MOST_TOOLS} tools; split it", file=file)
 
 
 def data_of(path: str | os.PathLike[str]) -> bytes:
@@ -134,7 +148,10 @@ class Content:
             ) from None
         if len(found) > _MEMBERS:
             raise LibraryError(f"is a zip archive of {len(found)} files: no tool library is", file=self.name)
-        return {each.filename: each for each in found}
+        members = {each.filename: each for each in found}
+        if len(members) < len(found):
+            raise LibraryError("is a zip archive with two files of one name; export it anew", file=self.name)
+        return members
 
     def unpacked(self, member: str) -> bytes:
         """One file of a zip archive, unless it is a bomb."""
