@@ -112,7 +112,12 @@ def run(
         return result
     with clock.stage("maps") as tell:
         cutter = next(c for c in ready.cutters if c.id == result.shown)
-        maps = posture_maps(ready.samples, cutter, ready.conditions, progress=tell)
+        reach = judged[cutter].reach
+        if ready.conditions.machine.limited:
+            reach = judge(replace(ready, conditions=ready.conditions.machineless), cutter)
+        maps = posture_maps(
+            ready.samples, cutter, ready.conditions, reach, part=ready.scene.part.sha256 or "", progress=tell
+        )
     return replace(result, plan=clock.stamp(result.plan), maps=maps)
 
 

@@ -186,6 +186,11 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, asked: bool) -> No
     help="Also write every sample's free tilt intervals at every rotation (postures.npz), for the cutter shown.",
 )
 @click.option(
+    "--postures",
+    metavar="FILE",
+    help="Answer for this machine, setup, tilts and rotations from the part's postures.npz alone, without a new search.",
+)
+@click.option(
     "--answers",
     default="",
     metavar="LIST",
@@ -246,6 +251,12 @@ def command(parts: tuple[str, ...], **given: Any) -> int:
     if len(set(outs)) < len(outs):
         raise OptionError("two parts have the same name and would write to the same folder; plan them one by one")
     options = _options(given)
+    if given["postures"] is not None:
+        if len(parts) > 1:
+            raise OptionError("--postures is about one part")
+        from plan_cutters.command.stored import stored
+
+        return stored(parts[0], given["postures"], options, given)
     codes = []
     since: float | None = began()
     for part, out in zip(parts, outs, strict=True):
