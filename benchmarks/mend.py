@@ -32,6 +32,7 @@ def cases(size: float) -> list[dict[str, Any]]:
         {"cutters": Cutter.ball(radius=r, length=8 * r, **above)},
         {"cutters": Cutter.ball(radius=12 * r, length=40 * r)},
         {"cutters": Cutter.bull(radius=2 * r, corner_radius=r / 2, length=20 * r), "machine": "tilt:8"},
+        {"cutters": Cutter.flat(radius=6 * r, length=40 * r), "machine": "tilt:2"},
     ]
 
 

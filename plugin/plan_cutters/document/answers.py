@@ -69,7 +69,8 @@ class ChangeEntry(Frozen):
     beyond: float | tuple[float, ...] | tuple[str, ...] | None = Field(
         description="a step less, which was tried and fails"
     )
-    left: int = Field(description="samples that stay lost with the best value tried")
+    left: int = Field(description="samples that stay lost with the best value tried, of those looked at")
+    looked: int = Field(description="samples that are lost now on which values were tried")
     verified: int = Field(description="target samples that were judged with `asked`")
     cutter: str | None = Field(description="id of the cutter with it, where that is another one")
     why: str
@@ -140,6 +141,7 @@ def _change_entry(found: Change) -> ChangeEntry:
         asked=_plain(found.asked),
         beyond=_plain(found.beyond),
         left=found.left,
+        looked=found.looked,
         verified=found.verified,
         cutter=None if found.cutter is None else found.cutter.id,
         why=found.why,
