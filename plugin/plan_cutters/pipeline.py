@@ -200,7 +200,8 @@ def assemble(
 ) -> Result:  # fmt: skip
     """The result of all cutters: the choice, the area between the samples for the one chosen, what was answered, the plan."""
     clock, answers = clock or Clock(), answers or Answers()
-    entries = completed([judged[c].entry for c in ready.cutters], ready, answers)
+    reaches = {cutter.id: each.reach for cutter, each in judged.items()}
+    entries = completed([judged[c].entry for c in ready.cutters], ready, answers, reaches)
     selected, chosen = selection(entries)
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
     best = selected or next((e.id for e in entries if not (e.inaccessible or e.undecided)), None)
@@ -215,9 +216,15 @@ def assemble(
         entries = [e.model_copy(update={"area": area}) if e.id == best else e for e in entries]
     with clock.stage("plan", shown=False):
         document = plan_of(ready, entries, selected, chosen, started or datetime.datetime.now(datetime.UTC), answers)
-    reaches = {cutter.id: each.reach for cutter, each in judged.items()}
     return Result(
-        clock.stamp(document), ready.scene, ready.samples, ready.surface_class, reaches, ready.options.postures, answers
+        clock.stamp(document),
+        ready.scene,
+        ready.samples,
+        ready.surface_class,
+        reaches,
+        ready.options.postures,
+        ready.conditions.kinematics,
+        answers,
     )
 
 

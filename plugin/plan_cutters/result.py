@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from cad_io import Part, SurfaceSamples
 from plan_cutters.document.model import CutterEntry, Plan
 from plan_cutters.domain.answers import Answers
+from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import Reach
 from plan_cutters.scene.scene import Scene
@@ -32,6 +33,8 @@ class Result:
     reaches : dict
         Cutter id -> Reach.
     postures : PostureRange
+    kinematics : Kinematics, optional
+        The machine's rotary axes in the part's frame; None where any tool axis within a plain limit is possible.
     answers : Answers
         What was asked for after the plan: `stick_outs`, `radius_maps`, `mends`.
     maps : PostureMaps, optional
@@ -44,6 +47,7 @@ class Result:
     surface_class: NDArray[np.uint8]
     reaches: dict[str, Reach]
     postures: PostureRange
+    kinematics: Kinematics | None = None
     answers: Answers = field(default_factory=Answers)
     maps: PostureMaps | None = None
 

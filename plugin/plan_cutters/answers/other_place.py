@@ -45,7 +45,7 @@ def setup(case: Case, trials: Trials, unlimited: Change) -> Change:
     """
     ready = case.ready
     now: Axis = ready.scene.setup
-    if ready.conditions.machine.tilt_limit is None:
+    if not ready.conditions.machine.limited:
         return none("setup", now, len(trials.lost), "the machine has no limit, so it turns to any axis")
     if unlimited.left:
         # An axis within a limit is one without.

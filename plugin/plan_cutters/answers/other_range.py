@@ -15,18 +15,18 @@ GRAIN = 0.1
 
 
 def tilt_limit(case: Case, trials: Trials) -> Change:
-    """The least limit of the machine's axis, to `GRAIN`."""
-    limit = case.ready.conditions.machine.tilt_limit
-    if limit is None:
+    """The least limit of the machine's axis, to `GRAIN`; for one whose rotary axes limit it, a machine that tilts every way."""
+    machine = case.ready.conditions.machine
+    if not machine.limited:
         return none("tilt_limit", None, len(trials.lost), "the machine has no limit")
-    now = _degrees(limit)
+    now = None if machine.turns or machine.tilt_limit is None else _degrees(machine.tilt_limit)
     left = Left.by(_within(case, machine=Machine()), trials.lost)
     if left.count:
         return short("tilt_limit", now, 180.0, left, f"without any limit {left.words}")
-    base = math.floor(now / GRAIN + 1e-6)
+    base = math.floor((now or 0.0) / GRAIN + 1e-6)
 
     def value(at: int) -> float:
-        return min(180.0, round((base + at) * GRAIN, 6)) if at else now
+        return min(180.0, round((base + at) * GRAIN, 6)) if at else now or 0.0
 
     def steps(at: int) -> Case:
         return _within(case, machine=Machine.parse(f"tilt:{value(at):.6g}"))
@@ -35,8 +35,9 @@ def tilt_limit(case: Case, trials: Trials) -> Change:
     if found is None:
         return none("tilt_limit", now, 0, "no limit was found that serves all samples", len(trials.lost))
     asked, beyond = value(found.steps), None if found.beyond is None else value(found.beyond)
+    instead = f"every way instead of {machine.name}" if now is None else f"instead of {now:g} deg"
     return Change("tilt_limit", now, asked, True, 0, len(trials.lost), trials.count, beyond, None,
-                  f"a machine that tilts by {asked:g} deg instead of {now:g} deg",
+                  f"a machine that tilts by {asked:g} deg {instead}",
                   {"machine": found.case.ready.conditions.machine})  # fmt: skip
 
 

@@ -15,7 +15,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.stick_out import StickOut, floor_of, held, outline
 from plan_cutters.domain.verdicts import ACCESSIBLE, Reach, blank
 from plan_cutters.kernels.rows import Contacts, Tool
-from plan_cutters.scene.conditions import contacts_of, found_of, tool_of
+from plan_cutters.scene.conditions import contacts_of, found_of, rotations_of, tool_of
 from plan_cutters.scene.prepared import Prepared
 from plan_cutters.scene.threads import CHUNK, in_chunks
 from plan_cutters.stages.judge import judge
@@ -83,7 +83,8 @@ def _limited(ready: Prepared, cutter: Cutter, search: "_Search", found: StickOut
         points = share @ obstacles.tree.vertex[triangle]
         depth = light.depth(points, ready.samples.point[row], normal, posture.lean[row], float(posture.tilt[row]))
         face, point = obstacles.face(triangle), np.asarray(points[int(depth.argmax())])
-    turn = float(ready.conditions.postures.rotations[posture.rotation[one][0]])
+    samples = ready.samples
+    turn = float(rotations_of(samples.normal[one], samples.direction_max[one], posture.lean[one])[0])
     return replace(found, beyond=beyond, verdict=int(shorter.verdict[0]), sample=row, tilt=float(posture.tilt[row]),
                    rotation=turn, axis=axis, lean=posture.lean[row], obstacle_face=face, obstacle_point=point)  # fmt: skip
 

@@ -200,7 +200,7 @@ def notes(scene: Scene, options: Options, samples: SurfaceSamples, cutters: Sequ
     if samples.empty:
         names = ", ".join(f"F{number}" for number, _ in samples.empty)
         notes.append(f"No verdict is about {names}: no sample could be taken there.")
-    if options.machine.tilt_limit is None:
+    if not options.machine.limited:
         notes.append("No machine was given: any tool axis counts as possible.")
     if not scene.orientation.confident:
         notes.append("Which side is material is a guess; --flip machines the other side.")

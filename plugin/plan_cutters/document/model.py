@@ -166,6 +166,26 @@ class StageEntry(Frozen):
     upper_radius_mm: float
 
 
+class RotaryEntry(Frozen):
+    """A rotary axis of the machine."""
+
+    name: str
+    carries: Literal["part", "tool"]
+    direction: Vector = Field(
+        description="in the part's frame at zero angles; positive is the tool's turn relative to the part"
+    )
+    limits_deg: tuple[float, float] | None
+
+
+class MachineEntry(Frozen):
+    """What the tool axes were limited by."""
+
+    name: str
+    tilt_limit_deg: float | None = Field(description="largest angle from the setup axis")
+    rotary: list[RotaryEntry] | None = Field(description="from the part to the tool; null: any within the limit above")
+    notes: list[str]
+
+
 class SourceEntry(Frozen):
     """Where a tool library lists a cutter."""
 
@@ -229,6 +249,11 @@ class CutterEntry(Verdicts):
     faces: dict[str, Verdicts]
     witnesses: list[WitnessEntry]
     area: AreaEntry | None = Field(default=None, description="of the selected cutter; null where it was not asked for")
+    singular: int | None = Field(
+        default=None,
+        description="reached samples whose posture lies within 2 deg of the rotary axis next to the part, which then turns fast; "
+        "null without two rotary axes",
+    )
     least_stick_out: StickOutEntry | None = Field(default=None, description="null where it was not asked for")
     mend: MendEntry | None = Field(
         default=None, description="what would make it feasible; null where it is, or where that was not asked for"
@@ -281,6 +306,7 @@ class Plan(Frozen):
     faces: list[FaceEntry]
     missing: list[MissingEntry]
     reasons: list[str] = Field(description="what `reason_ID` in samples.npz counts in")
+    machine: MachineEntry
     libraries: list[LibraryEntry] = Field(default=[], description="tool libraries that were read")
     cutters: list[CutterEntry]
     selected: str | None

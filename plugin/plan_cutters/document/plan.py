@@ -1,17 +1,29 @@
 """How everything found becomes one plan."""
 
 import datetime
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from plan_cutters.document.answers import mend_entry, radius_entry, stick_out_entry
 from plan_cutters.document.build import area_notes, degrees, face_entries, missing_entries, notes, part_info, versions
+from plan_cutters.document.frozen import vector
 from plan_cutters.document.libraries import library_entry, source_entry
-from plan_cutters.document.model import CutterEntry, Effective, Plan, Run, SampleCounts, Selection
+from plan_cutters.document.model import (
+    CutterEntry,
+    Effective,
+    MachineEntry,
+    Plan,
+    RotaryEntry,
+    Run,
+    SampleCounts,
+    Selection,
+)
 from plan_cutters.document.palette import PALETTE
 from plan_cutters.domain.answers import Answers
-from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE
+from plan_cutters.domain.kinematics import Kinematics
+from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE, Reach
 from plan_cutters.options import Options
 from plan_cutters.scene.prepared import Prepared
 
@@ -67,6 +79,7 @@ def plan_of(
         faces=face_entries(part, samples, choice),
         missing=missing_entries(part, around),
         reasons=list(REASONS),
+        machine=machine_entry(options.machine, ready.conditions.kinematics),
         libraries=[library_entry(library) for library in options.libraries],
         cutters=list(entries),
         selected=selected,
@@ -87,12 +100,36 @@ def _sources(options: Options) -> list[str]:
     return [*(["given"] if options.cutters else []), *(library.file for library in options.libraries)]
 
 
-def completed(entries: Sequence[CutterEntry], ready: Prepared, answers: Answers) -> list[CutterEntry]:
+def machine_entry(machine: Machine, kinematics: Kinematics | None) -> MachineEntry:
+    """A machine, its axes in the part's frame."""
+    rotary = None
+    if kinematics is not None:
+        rotary = [
+            RotaryEntry(name=axis.name, carries=axis.carries, direction=vector(direction),
+                        limits_deg=None if axis.limits is None else degrees(axis.limits))
+            for axis, direction in zip(machine.rotary, kinematics.direction, strict=True)
+        ]  # fmt: skip
+    limit = None if machine.tilt_limit is None else round(float(np.degrees(machine.tilt_limit)), 9)
+    return MachineEntry(name=machine.name, tilt_limit_deg=limit, rotary=rotary, notes=list(machine.notes))
+
+
+def _singular(ready: Prepared, reach: Reach | None) -> int | None:
+    """How many of the postures found lie near the rotary axis next to the part."""
+    kinematics = ready.conditions.kinematics
+    if reach is None or kinematics is None or len(kinematics.direction) < 2:
+        return None
+    return int(kinematics.positions(reach.axis[reach.reached])[2].sum())
+
+
+def completed(
+    entries: Sequence[CutterEntry], ready: Prepared, answers: Answers, reaches: Mapping[str, Reach]
+) -> list[CutterEntry]:
     """The entries of cutters with where they are listed, and what was answered about them."""
     found, sources, samples = [], ready.options.sources, ready.samples
     for entry in entries:
         stick_out, mend = answers.stick_outs.get(entry.id), answers.mends.get(entry.id)
         more = {
+            "singular": _singular(ready, reaches.get(entry.id)),
             "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
             "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples),
             "mend": None if mend is None else mend_entry(mend),

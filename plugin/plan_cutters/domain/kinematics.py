@@ -21,6 +21,8 @@ PARALLEL = 1e-6
 ON_LIMIT = 1e-9
 #: Tool axes this near to the direction of the axis next to the part, rad, are held only with fast turns of it: singular.
 SINGULAR = math.radians(2.0)
+#: Angles of a single rotary axis that are searched are so far apart, rad.
+STEP = math.radians(2.0)
 
 
 def turned(direction: Floats, angle: Floats | float, vector: Floats) -> Floats:
@@ -154,6 +156,17 @@ class Kinematics(Record):
                 else:
                     rows.append([*turned(first, np.array(end), second), float(second @ self.tool)])
         return np.array(rows)
+
+    def aims(self) -> Floats:
+        """The tool axes (a, 3) that there are where fewer than two axes turn the tool, `STEP` apart; else none."""
+        if len(self.direction) == 2:
+            return np.zeros((0, 3))
+        if len(self.direction) == 0:
+            return self.tool[None]
+        low, high = (float(np.clip(end, -math.pi, math.pi)) for end in self.limit[0])
+        whole = high - low > 2.0 * math.pi - STEP
+        count = max(1, math.ceil((high - low) / STEP))
+        return self.axis(np.linspace(low, high, count + (not whole), endpoint=not whole)[:, None])
 
     @property
     def swing(self) -> tuple[float, float, float]:

@@ -186,6 +186,7 @@ def builtin_machines() -> dict[str, Machine]:
     inf = math.inf
     table: dict[str, tuple[Axis, ...]] = {
         "3-axis": (),
+        "4-axis-a": (_rotary("A", "part", X, -inf, inf),),
         "3+2": (_rotary("C", "part", Z, -inf, inf), _rotary("A", "part", X, -110.0, 110.0)),
         "trunnion-ac": (_rotary("C", "part", Z, -inf, inf), _rotary("A", "part", X, -30.0, 120.0)),
         "trunnion-bc": (_rotary("C", "part", Z, -inf, inf), _rotary("B", "part", Y, -110.0, 110.0)),

@@ -15,6 +15,7 @@ from plan_cutters.kernels.gaps import CF, CL, COLUMNS, FIRST, GAPS, LAST, SF, SL
 from plan_cutters.kernels.hit import stand, tree_hit
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.lanes import LANES, _boxes_pass, _see, _see_leaf, _see_triangle, _triangles_pass, _turn
+from plan_cutters.kernels.limits import turn_of
 from plan_cutters.kernels.pieces import ARC, BOTTOM, HIGH, KIND, LOW, RADIUS, ROUND, SLOPE, TOP
 from plan_cutters.kernels.pieces import COLUMNS as PIECE
 from plan_cutters.kernels.planes import all_ends, boxes_clear, triangles_clear, turn_boxes, turn_triangles
@@ -371,7 +372,7 @@ def free_map(  # type: ignore[no-untyped-def]
             for lane in range(LANES):
                 _see_triangle(view.leaves[_LEAVES + 1], lane, wide.vertex, view.known[-1, lane], c, e1, e2, n)
             for rotation in range(turns):
-                cosine, sine = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
+                cosine, sine = turn_of(n, e1, ranges, rotation)
                 lean_frame(e1, e2, cosine, sine, f, t)
                 _, _, count = permitted(contacts, row, ranges, rotation, tool, mode, f, arcs)
                 if count == 0:

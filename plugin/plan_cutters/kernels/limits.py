@@ -18,6 +18,24 @@ _TURN = 2.0 * np.pi
 
 
 @kernel
+def turn_of(n, e1, ranges, rotation):  # type: ignore[no-untyped-def]
+    """Cosine and sine of a rotation, counted from direction_max e1 about the normal n."""
+    aim = ranges.rotary.aim
+    if len(aim) == 0:
+        return ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
+    a = aim[rotation]
+    x = a[0] * e1[0] + a[1] * e1[1] + a[2] * e1[2]
+    y = (
+        a[0] * (n[1] * e1[2] - n[2] * e1[1])
+        + a[1] * (n[2] * e1[0] - n[0] * e1[2])
+        + a[2] * (n[0] * e1[1] - n[1] * e1[0])
+    )
+    size = np.hypot(x, y)
+    # An axis along the normal is reached at tilt 0, whatever the rotation.
+    return (x / size, y / size) if size > 1e-12 else (1.0, 0.0)
+
+
+@kernel
 def limited(rotary):  # type: ignore[no-untyped-def]
     """Whether there is a machine with rotary axes, or with none that could turn the tool."""
     return rotary.tool[0] != 0.0 or rotary.tool[1] != 0.0 or rotary.tool[2] != 0.0

@@ -7,7 +7,7 @@ import numpy as np
 from plan_cutters.kernels.arcs import axis_arcs, local_gouge
 from plan_cutters.kernels.hit import BODY, OFFSET, A, P, X, scratch, stand, tree_hit
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.limits import hold, limited
+from plan_cutters.kernels.limits import hold, limited, turn_of
 from plan_cutters.kernels.material import outside, winding
 from plan_cutters.kernels.pieces import FLUTES, PART
 from plan_cutters.kernels.rows import Scratch
@@ -157,9 +157,9 @@ def permitted(contacts, row, ranges, rotation, tool, mode, f, intervals):  # typ
     width = 0.0
     for i in range(count):
         width += intervals[i, 1] - intervals[i, 0]
+    cosine, sine = turn_of(n, contacts.direction_max[row], ranges, rotation)
     least, most = local_gouge(
-        contacts.curvature[row, 0], contacts.curvature[row, 1], ranges.rotation_cos[rotation],
-        ranges.rotation_sin[rotation], tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE],
+        contacts.curvature[row, 0], contacts.curvature[row, 1], cosine, sine, tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE],
     )  # fmt: skip
     if np.isnan(least):
         return width, count, 0
@@ -178,7 +178,7 @@ def allowed(contacts, row, ranges, rotation, tool, mode, room):  # type: ignore[
     What each of the two leaves is booked on it.
     """
     intervals, tally = room.intervals, room.tally
-    cosine, sine = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
+    cosine, sine = turn_of(contacts.normal[row], contacts.direction_max[row], ranges, rotation)
     lean_frame(contacts.direction_max[row], room.e2, cosine, sine, room.f, room.t)
     width, before, count = permitted(contacts, row, ranges, rotation, tool, mode, room.f, intervals)
     tally[AXIS_LIMIT] += width + before * NARROWEST

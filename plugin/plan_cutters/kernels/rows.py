@@ -24,13 +24,15 @@ class Contacts(NamedTuple):
 class Rotary(NamedTuple):
     """Rotary axes of a machine, in the part's frame: circle (m, 4), direction (k, 3), limit (k, 2) and tool (3,), as in
     `domain.kinematics.Kinematics`; `tool` is zero where there is no machine. swing: how the second axis moves the tool towards
-    the first, the angle at which it is nearest, the amplitude and the middle of the cosine between the two."""
+    the first, the angle at which it is nearest, the amplitude and the middle of the cosine between the two. aim (a, 3): tool axes
+    towards which each sample's rotations lean, in place of those asked for, where fewer than two axes turn the tool."""
 
     circle: Any
     direction: Any
     limit: Any
     tool: Any
     swing: Any
+    aim: Any
 
 
 class Ranges(NamedTuple):

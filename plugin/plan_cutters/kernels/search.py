@@ -11,6 +11,7 @@ import numpy as np
 
 from plan_cutters.kernels.hit import BODY, scratch, stand, tree_hit
 from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.limits import turn_of
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
 from plan_cutters.kernels.probing import (
     AXIS_LIMIT,
@@ -62,7 +63,7 @@ def _reason(tally):  # type: ignore[no-untyped-def]
 def _write(found, row, contacts, ranges, rotation, tilt):  # type: ignore[no-untyped-def]
     """Write a posture."""
     n, e1 = contacts.normal[row], contacts.direction_max[row]
-    turn_cos, turn_sin = ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
+    turn_cos, turn_sin = turn_of(n, e1, ranges, rotation)
     cosine, sine = np.cos(tilt), np.sin(tilt)
     found.tilt[row], found.rotation[row] = tilt, rotation
     for k in range(3):
@@ -189,7 +190,8 @@ def first_reason(rows, contacts, ranges, tool, reason):  # type: ignore[no-untyp
         cross(n, e1, e2)
         axis_left, gouge_left = False, False
         for rotation in range(len(ranges.rotation_cos)):
-            lean_frame(e1, e2, ranges.rotation_cos[rotation], ranges.rotation_sin[rotation], f, t)
+            cosine, sine = turn_of(n, e1, ranges, rotation)
+            lean_frame(e1, e2, cosine, sine, f, t)
             for mode in range(len(tool.mode)):
                 _, before, left = permitted(contacts, row, ranges, rotation, tool, mode, f, intervals)
                 axis_left, gouge_left = axis_left or before > 0, gouge_left or left > 0

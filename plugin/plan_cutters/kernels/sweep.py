@@ -11,6 +11,7 @@ import numpy as np
 
 from plan_cutters.kernels.hit import deep_hit
 from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.limits import turn_of
 from plan_cutters.kernels.pieces import ARC, HIGH, KIND, LOW, RADIUS, ROUND, SCALE, SLOPE
 from plan_cutters.kernels.probing import (
     BURIED,
@@ -116,7 +117,7 @@ def _rotation(  # type: ignore[no-untyped-def]
     """`sweep` at one rotation and mode: (a tilt, -1 for none; how many points of the pool are seen from this contact)."""
     p, n, e1, e2, f, t = frame.p, frame.n, contacts.direction_max[row], room.e2, room.f, room.t
     intervals, body, tally = room.intervals, room.body, room.tally
-    turn, place = (ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]), rotation * len(tool.mode) + mode
+    turn, place = turn_of(n, e1, ranges, rotation), rotation * len(tool.mode) + mode
     count = allowed(contacts, row, ranges, rotation, tool, mode, room)
     known, kept = past.count[place], 0
     for i in range(known):

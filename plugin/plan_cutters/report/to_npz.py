@@ -11,7 +11,9 @@ import numpy as np
 def write_npz(result: Any, _split: object, path: Path) -> None:
     """Write `samples.npz`: the samples, and per cutter verdict, axis, lean and reason with its id as suffix.
 
-    Where they were asked for, its least stick-outs, too, and the largest radii with `flat` and `ball` as suffix.
+    With a machine of rotary axes, also their positions at the posture found, in degrees: both solutions, axis by axis from the
+    part to the tool, nan where one is beyond a limit, and which of them is to be taken, -1 where there is none. Where they were
+    asked for, its least stick-outs, too, and the largest radii with `flat` and `ball` as suffix.
     """
     samples = result.samples
     arrays = {
@@ -29,6 +31,9 @@ def write_npz(result: Any, _split: object, path: Path) -> None:
         arrays[f"axis_{name}"] = reach.axis
         arrays[f"lean_{name}"] = reach.lean
         arrays[f"reason_{name}"] = reach.reason
+        if result.kinematics is not None:
+            angles, taken, _ = result.kinematics.positions(reach.axis)
+            arrays[f"rotary_{name}"], arrays[f"rotary_taken_{name}"] = np.degrees(angles), taken
     for name, found in result.answers.stick_outs.items():
         if found.each is not None:
             arrays[f"stick_out_{name}"] = found.each

@@ -68,8 +68,12 @@ class Conditions(Record):
     def ranges(self) -> Ranges:
         """What kernels take of postures and machine."""
         rotations, (low, high) = self.postures.rotations, self.postures.tilt
+        rotary = rotary_of(self.kinematics)
+        if len(rotary.aim):
+            # Each sample leans towards the axes that there are: rotations asked for would miss them.
+            rotations = np.zeros(len(rotary.aim))
         return Ranges(np.cos(rotations), np.sin(rotations), max(0.0, low), min(np.pi, high), self.setup,
-                      self.machine.limit_cos, rotary_of(self.kinematics))  # fmt: skip
+                      self.machine.limit_cos, rotary)  # fmt: skip
 
     @property
     def kinematics(self) -> Kinematics | None:
@@ -81,6 +85,12 @@ class Conditions(Record):
         found = self.postures.upright & (normal @ self.setup >= self.machine.limit_cos)
         kinematics = self.kinematics
         return np.asarray(found if kinematics is None else found & kinematics.allows(normal))
+
+
+def rotations_of(normal: Floats, direction_max: Floats, lean: Floats) -> Floats:
+    """Rotations (n,) of lean directions (n, 3), rad from 0 to 2 pi."""
+    across = (lean * np.cross(normal, direction_max)).sum(axis=-1)
+    return np.asarray(np.remainder(np.arctan2(across, (lean * direction_max).sum(axis=-1)), 2.0 * np.pi))
 
 
 def frame_of(setup: Floats) -> Floats:
@@ -99,12 +109,12 @@ def frame_of(setup: Floats) -> Floats:
 def rotary_of(found: Kinematics | None) -> Rotary:
     """Rotary axes as kernels take them."""
     if found is None:
-        return Rotary(np.zeros((0, 4)), np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(3), np.zeros(3))
+        return Rotary(np.zeros((0, 4)), np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(3), np.zeros(3), np.zeros((0, 3)))
     swing = found.swing if len(found.direction) == 2 else (0.0, 1.0, 0.0)
-    circle, direction, limit, tool = map(
-        np.ascontiguousarray, (found.circles(), found.direction, found.limit, found.tool)
+    circle, direction, limit, tool, aim = map(
+        np.ascontiguousarray, (found.circles(), found.direction, found.limit, found.tool, found.aims())
     )
-    return Rotary(circle, direction, limit, tool, np.array(swing))
+    return Rotary(circle, direction, limit, tool, np.array(swing), aim)
 
 
 def contacts_of(samples: SurfaceSamples) -> Contacts:

@@ -22,7 +22,7 @@ from plan_cutters.domain.verdicts import (
 )
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.buried import cover
-from plan_cutters.scene.conditions import Conditions, contacts_of, found_of, search_postures, tool_of
+from plan_cutters.scene.conditions import Conditions, contacts_of, found_of, rotations_of, search_postures, tool_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.threads import Progress, in_chunks
 
@@ -181,7 +181,7 @@ def _witness(samples: SurfaceSamples, row: int, reach: Reach, cutter: Cutter, co
         if hit < 0
         else _deepest(obstacles.tree.vertex[hit], samples.point[row], samples.normal[row], best, shallow),
         tilt=float(best.tilt[0]),
-        rotation=float(conditions.postures.rotations[best.rotation[0]]),
+        rotation=float(rotations_of(samples.normal[at], samples.direction_max[at], best.lean)[0]),
         axis=best.axis[0],
         depth=high,
     )
@@ -196,7 +196,7 @@ def _least_depth(
     one = slice(row, row + 1)
     curvature = np.zeros((1, 2)) if reason == "local_gouge" else samples.curvature[one]
     contact = Contacts(samples.point[one], samples.normal[one], samples.direction_max[one], curvature)
-    ranges, solids, rotations = conditions.ranges, conditions.obstacles.solids, len(conditions.postures.rotations)
+    ranges, solids, rotations = conditions.ranges, conditions.obstacles.solids, len(conditions.ranges.rotation_cos)
     least, most, best = conditions.tolerance - conditions.obstacles.triangles.chord_error, _deepest_of(cutter), blank(1)
     low, high, start = least, np.nan, (0, -1.0)
     # At first among tilts that are `_COARSE` apart at all rotations, then among all tilts at the rotation found.
