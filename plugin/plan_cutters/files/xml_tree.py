@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from typing import Any
 from xml.parsers import expat
 
-from plan_cutters.errors import LibraryError
+from plan_cutters.errors import PlanError
 
 _DEEPEST, _ELEMENTS = 64, 2_000_000
 
@@ -24,12 +24,12 @@ class Element:
         return next((child for child in self.children if child.tag == tag), None)
 
 
-def parse(data: bytes, file: str) -> Element:
+def parse(data: bytes, file: str, noun: str, error: type[PlanError]) -> Element:
     """The root of a document.
 
     Raises
     ------
-    LibraryError
+    error
         It is not well-formed, or declares a document type or entities.
     """
     parser = expat.ParserCreate()
@@ -37,8 +37,8 @@ def parse(data: bytes, file: str) -> Element:
     open_, count = [top], 0
 
     def refuse(*_: Any) -> None:
-        raise LibraryError(
-            f"line {parser.CurrentLineNumber}: it declares a document type or entities, which no tool library needs; they are "
+        raise error(
+            f"line {parser.CurrentLineNumber}: it declares a document type or entities, which no {noun} needs; they are "
             "refused",
             file=file,
         )
@@ -47,7 +47,7 @@ def parse(data: bytes, file: str) -> Element:
         nonlocal count
         count += 1
         if len(open_) > _DEEPEST or count > _ELEMENTS:
-            raise LibraryError(f"line {parser.CurrentLineNumber}: its elements are too deep or too many", file=file)
+            raise error(f"line {parser.CurrentLineNumber}: its elements are too deep or too many", file=file)
         element = Element(tag.rpartition(":")[2], given, parser.CurrentLineNumber)
         open_[-1].children.append(element)
         open_.append(element)
@@ -63,6 +63,6 @@ def parse(data: bytes, file: str) -> Element:
     parser.StartElementHandler, parser.EndElementHandler, parser.CharacterDataHandler = start, end, words
     try:
         parser.Parse(data, True)
-    except (expat.ExpatError, LookupError, ValueError) as error:
-        raise LibraryError(f"is no well-formed XML ({error}); export it anew", file=file) from None
+    except (expat.ExpatError, LookupError, ValueError) as fault:
+        raise error(f"is no well-formed XML ({fault}); export it anew", file=file) from None
     return top.children[0]
