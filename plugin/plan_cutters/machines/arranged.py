@@ -13,8 +13,8 @@ def arranged(rotary: list[Axis], added: Added, notes: list[str], who: str) -> li
         raise MachineError(f"#{added.text}: its rotary axes are {', '.join(names) or 'none'}")
     if len(rotary) > 1 and not added.order:
         raise MachineError(
-            f"{who} does not say how its rotary axes {', '.join(names)} stand on each other: say it from the part to the tool, as "
-            f"FILE#{','.join(names[::-1])}, or FILE#{names[-1]}/{names[0]} where the last carries the tool"
+            f"{who} does not say how its rotary axes {', '.join(names)} stand on each other: say it from the part to the "
+            f"tool, as FILE#{','.join(names[::-1])}, or FILE#{names[-1]}/{names[0]} where the last carries the tool"
         )
     if rotary and not added.sign:
         notes.append(

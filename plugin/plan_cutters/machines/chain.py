@@ -99,7 +99,7 @@ def even(axis: Axis) -> bool:
     if axis.limits is None:
         return True
     low, high = axis.limits
-    return low == -high or abs(low + high) <= _EVEN or (axis.kind == "rotary" and high - low >= 4.0 * math.pi)
+    return low == -high or abs(low + high) <= _EVEN or (axis.kind == "rotary" and high - low >= 2.0 * math.pi)
 
 
 def linear(name: str, carries: Carried, limits: tuple[float, float] | None, rate: float | None = None) -> Axis:
@@ -127,8 +127,8 @@ def machine(name: str, axes: Sequence[Axis], notes: Sequence[str] = (), *, tool:
         last, iso = rotary[-1], ISO.get(rotary[-1].name[:1].upper())
         if abs(_dot(last.direction, tool)) > 1.0 - 1e-12 and iso is not None and abs(_dot(last.direction, iso)) < 0.5:
             raise MachineError(
-                f"axis {last.name} turns about ({', '.join(f'{v:g}' for v in last.direction)}), along the tool, which it only "
-                f"turns about itself; {last.name} turns about {'XYZ'[iso.index(1.0)]} in ISO 841: correct its direction"
+                f"axis {last.name} runs along the tool, which it only turns about itself; {last.name} turns about "
+                f"{'XYZ'[iso.index(1.0)]} in ISO 841: correct its direction"
             )
     return Machine(name, axes=tuple(axes), tool_axis=tool, notes=tuple(said), fixed=not rotary)
 

@@ -1,8 +1,8 @@
 """FreeCAD machines, `.fcm`: axes with a role each, and a parent.
 
-What its own solver does with them (Path/Base/Generator/rotation.py) decides how they are meant: positive angles of an axis that carries
-the part are those of the table's own motion, by the right-hand rule; of two axes on one side, the one about Z is the farther
-from the tool, whichever is the parent. For other pairs on one side the solver and the parents contradict each other.
+What its own solver does with them (Path/Base/Generator/rotation.py) decides how they are meant: positive angles of an axis that
+carries the part are those of the table's own motion, by the right-hand rule; of two axes on one side, the one about Z is the
+farther from the tool, whichever is the parent. For other pairs on one side the solver and the parents contradict each other.
 """
 
 from typing import Any

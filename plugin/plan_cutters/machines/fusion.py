@@ -1,7 +1,7 @@
 """Fusion machines, `.mch`: a tree of parts, from static ones over linear and rotary ones to the table and the head.
 
-Directions are those in which a part itself moves, by the right-hand rule for rotary ones. The files at hand say so of linear axes that carry the
-part; of rotary ones it is not documented, so that it must be said where it matters.
+Directions are those in which a part itself moves, by the right-hand rule for rotary ones. The files at hand say so of linear axes
+that carry the part; of rotary ones it is not documented, so that it must be said where it matters.
 """
 
 from typing import Any, NamedTuple

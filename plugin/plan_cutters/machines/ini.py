@@ -38,7 +38,8 @@ class Ini:
                 try:
                     self._take(Content.of(path), (*above, path))
                 except MachineError as error:
-                    raise MachineError(f"line {number} includes {path.name}: {error.cause}", file=error.file) from None
+                    what = f"{path.name}, which line {number} includes"
+                    raise MachineError(error.cause, file=error.file if error.file != path.name else what) from None
                 continue
             if not words or words[0] in "#;":
                 continue
@@ -86,6 +87,10 @@ def number(text: str, what: str) -> float:
     return found
 
 
+def _pin(name: str) -> str:
+    return name.replace("_", "-")
+
+
 class Hal:
     """What HAL lines set: pins and signals. Lines stand in the file, or in HAL files beside it."""
 
@@ -117,18 +122,18 @@ class Hal:
             self._line(line.partition("#")[0])
 
     def _line(self, line: str) -> None:
+        # Underscores and hyphens are one in names of pins.
         words = [word for word in line.split() if word not in ("=>", "<=", "<=>")]
+        words = [*words[:1], *(_pin(word) for word in words[1:2]), *words[2:]]
         match words:
             case ["setp", pin, value, *_]:
-                self.pins[pin] = value
-            case [pin, "=", value]:
                 self.pins[pin] = value
             case ["sets", signal, value, *_]:
                 self.signals[signal] = value
             case ["net", signal, *pins]:
-                self.signal_of.update(dict.fromkeys(pins, signal))
+                self.signal_of.update(dict.fromkeys(map(_pin, pins), signal))
             case ["linksp", signal, pin] | ["linkps", pin, signal]:
-                self.signal_of[pin] = signal
+                self.signal_of[_pin(pin)] = _pin(signal)
 
     def value(self, pin: str, default: float) -> float | None:
         """What a pin is set to, `default` where nothing sets it; None where something else feeds it."""
@@ -138,11 +143,11 @@ class Hal:
             if text is None:
                 return None
         if text is None:
-            return None if pin in self.scripts else default
+            return None if pin.rpartition(".")[2] in self.scripts else default
         match = _FROM_INI.fullmatch(text)
         if match:
             found = self.ini.one(match[1].upper(), match[2].upper())
             if found is None:
                 raise MachineError(f"{pin} is set to {shown(text)}, which the file does not have")
             text = found
-        return {"true": 1.0, "false": 0.0}.get(text.lower(), None) if text.isalpha() else number(text, pin)
+        return {"true": 1.0, "false": 0.0}.get(text.lower()) if text.isalpha() else number(text, pin)

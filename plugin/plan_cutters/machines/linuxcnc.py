@@ -29,8 +29,8 @@ class Kins(NamedTuple):
     joints : str
         Letters of the joints from 0 up, where the file does not say.
     part, tool : str
-        Letters of the rotary axes: those that carry the part, the one next to it first; those that carry the tool, the one next to
-        it last.
+        Letters of the rotary axes: those that carry the part, the one next to it first; those that carry the tool, the one next
+        to it last.
     against : str
         Letters that are counted against ISO 841.
     pin : bool
@@ -102,8 +102,8 @@ class _Reading:
         name = words[0].lower() if words else ""
         if name != TRIVIAL and name not in KINS:
             raise MachineError(
-                f"its kinematics {shown(name)} are none of those that are read ({', '.join((TRIVIAL, *KINS))}); write the machine as "
-                "TOML (docs/machines.md)"
+                f"its kinematics {shown(name)} are none of those that are read ({', '.join((TRIVIAL, *KINS))}); write the "
+                "machine as TOML (docs/machines.md)"
             )
         given = dict(word.partition("=")[::2] for word in words[1:] if "=" in word)
         return name, {key.lower(): value for key, value in given.items()}
@@ -167,11 +167,8 @@ class _Reading:
     def rate(self, letter: str) -> float | None:
         """The least of the largest speeds of an axis and its joints."""
         size = self.angle if letter in "ABC" else self.length
-        sections = [
-            f"AXIS_{letter}",
-            *(f"{k}_{i}" for i, each in enumerate(self.joints) if each == letter for k in ("JOINT", "AXIS")),
-        ]
-        found = [self.ini.number(section, "MAX_VELOCITY") for section in sections]
+        sections = [f"{kind}_{i}" for i, each in enumerate(self.joints) if each == letter for kind in ("JOINT", "AXIS")]
+        found = [self.ini.number(section, "MAX_VELOCITY") for section in (f"AXIS_{letter}", *sections)]
         speeds = [chain.scaled(each, size) for each in found if each is not None and each > 0.0]
         return min(speeds, default=None)
 
@@ -196,8 +193,8 @@ class _Reading:
         listed = [letter for letter in self.letters if letter in "ABC"]
         more = [letter for letter in listed if letter not in kins.part + kins.tool]
         if more:
-            raise MachineError(f"it has a third rotary axis, {', '.join(more)}, of which {self.name} says nothing: machines of up to "
-                               "two are judged")  # fmt: skip
+            raise MachineError(f"it has a third rotary axis, {', '.join(more)}, of which {self.name} says nothing: "
+                               "machines of up to two are judged")  # fmt: skip
         missing = [letter for letter in kins.part + kins.tool if letter not in listed]
         if missing:
             raise MachineError(f"[TRAJ]COORDINATES lacks {', '.join(missing)}, which {self.name} turns")
@@ -214,14 +211,14 @@ class _Reading:
         found = hal.value(pin, 0.0) if kins.pin else 0.0
         if found is None or (kins.pin and pin not in hal.pins and pin not in hal.signal_of and hal.missing):
             why = "something else feeds it" if found is None else f"{', '.join(hal.missing)} is not at hand"
-            raise MachineError(f"the sense of its angles hangs on {pin}, and {why}: put the HAL file beside it, or a line HALCMD = "
-                               f"setp {pin} 0 (or 1) into [HAL]")  # fmt: skip
+            raise MachineError(f"the sense of its angles hangs on {pin}, and {why}: put the HAL file beside it, or a line "
+                               f"HALCMD = setp {pin} 0 (or 1) into [HAL]")  # fmt: skip
         if found:
             self.notes.append(f"{pin} is set: its angles are counted as in ISO 841")
             return ""
         letters = " and ".join(kins.against)
         self.notes.append(
-            f"{self.name} counts {letters} against ISO 841: their directions are turned, their angles are the control's"
+            f"{self.name} counts {letters} against ISO 841: directions are turned, angles are those of the control"
         )
         return kins.against
 
@@ -231,9 +228,8 @@ class _Reading:
         def pin(name: str, default: float = 0.0) -> float:
             value = hal.value(f"{self.name}.{name}", default)
             if value is None:
-                self.notes.append(
-                    f"{self.name}.{name} is not set by the file: it is taken as {default:g}, which matters to travel alone"
-                )
+                what = f"{self.name}.{name} is not set by the file"
+                self.notes.append(f"{what}: it is taken as {default:g}, which matters to linear travel alone")
                 value = default
             return value * self.length
 

@@ -1,7 +1,7 @@
 """MTConnect devices, the answer to a `probe`: axes with their specifications.
 
-A device says which axes it has, not which stands on which, nor whether one carries the part or the tool. Names are those of ISO 841, and so are
-directions and signs.
+A device says which axes it has, not which stands on which, nor whether one carries the part or the tool. Names are those of
+ISO 841, and so are directions and signs.
 """
 
 import re
@@ -126,8 +126,8 @@ def _along(motion: Element, iso: chain.Vector, what: str, added: Added) -> chain
     if added.sign:
         return given
     raise MachineError(
-        f"{what} runs along ({', '.join(f'{v:g}' for v in given)}), not as its name has it in ISO 841, and whether that is the motion "
-        "of the part or of the tool is not said: say it as FILE#table or FILE#tool-relative"
+        f"{what} runs along ({', '.join(f'{v:g}' for v in given)}), not as its name has it in ISO 841, and whether that is the "
+        "motion of the part or of the tool is not said: say it as FILE#table or FILE#tool-relative"
     )
 
 
@@ -144,7 +144,7 @@ def _ends(element: Element, units: str, kind: str, what: str) -> tuple[float, fl
     """The least and largest value below an element."""
     values: dict[str, float | None] = {}
     for tag in ("Minimum", "Maximum"):
-        found = [each for each in _own(element, tag)]
+        found = list(_own(element, tag))
         try:
             values[tag] = chain.real(float(found[0].text), f"{what}: its {tag}") if found else None
         except ValueError:

@@ -140,7 +140,7 @@ def _axis(table: AxisTable, carries: Carried, sign: str, length: float, angle: f
             -math.inf if low is None else _size(low, size, f"{what}: its least limit"),
             math.inf if high is None else _size(high, size, f"{what}: its largest limit"),
         )
-        if math.isinf(limits[0]) and limits[0] > 0 or math.isinf(limits[1]) and limits[1] < 0:
+        if limits[0] == math.inf or limits[1] == -math.inf:
             raise MachineError(f"{what}: its limits must run upwards, from -inf to inf")
     px, py, pz = (scaled(value, length) for value in table.point or (0.0, 0.0, 0.0))
     rate = None if table.rate is None else _size(table.rate, size, f"{what}: its rate")
