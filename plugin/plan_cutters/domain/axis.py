@@ -79,4 +79,7 @@ def direction_of(value: Any, what: str) -> tuple[float, float, float]:
     size = math.hypot(x, y, z)
     if not 0.0 < size < math.inf:
         raise MachineError(f"{what} must be three finite numbers that are not all zero")
+    # One that has length 1 up to rounding stays as it is: what is written to a file is read as the same.
+    if abs(size - 1.0) <= 1e-15:
+        return x, y, z
     return x / size, y / size, z / size

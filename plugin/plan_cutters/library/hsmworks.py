@@ -5,11 +5,11 @@ from typing import Any
 
 from plan_cutters.domain.holder import Holder, Stage
 from plan_cutters.errors import CutterError, LibraryError
+from plan_cutters.files.xml_tree import Element
 from plan_cutters.library.files import MOST_TOOLS, Content, too_many
 from plan_cutters.library.fusion_json import EXPRESSIONS, MOST_SECTIONS
 from plan_cutters.library.listed import FaultError, Found, Listed, mm, name_of, number_in, sections, unit_of, whole_of
 from plan_cutters.library.records import Entry
-from plan_cutters.library.xml_tree import Element, parse
 
 #: Our name of each dimension, and the attribute of `body`.
 _BODY = (
@@ -35,7 +35,7 @@ def is_hsmlib(content: Content) -> bool:
 
 def read_hsmlib(content: Content) -> Found:
     """Read it."""
-    root = parse(content.data, content.name, content.text)
+    root = content.xml()
     if root.tag != "tool-library":
         raise LibraryError(f"is XML with the root {root.tag[:40]}, not tool-library", file=content.name)
     found, count = Found(), 0

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 from xml.parsers import expat
 
-from plan_cutters.errors import LibraryError
+from plan_cutters.errors import PlanError
 
 _DEEPEST, _ELEMENTS = 64, 2_000_000
 _DECLARED = re.compile(r"""^<\?xml[^>]*?\bencoding\s*=\s*["']([\w.-]+)["']""")
@@ -37,12 +37,12 @@ class Element:
                 waiting += element.children[::-1]
 
 
-def parse(data: bytes, file: str, text: str) -> Element:
+def parse(data: bytes, file: str, text: str, noun: str, error: type[PlanError]) -> Element:
     """The root of a document; `text` is what its bytes say, whatever it declares of their encoding.
 
     Raises
     ------
-    LibraryError
+    error
         It is not well-formed, or declares a document type or entities.
     """
     declared = _DECLARED.match(text.lstrip("\ufeff"))
@@ -56,8 +56,8 @@ def parse(data: bytes, file: str, text: str) -> Element:
     open_, count = [top], 0
 
     def refuse(*_: Any) -> None:
-        raise LibraryError(
-            f"line {parser.CurrentLineNumber}: it declares a document type or entities, which no tool library needs; they are "
+        raise error(
+            f"line {parser.CurrentLineNumber}: it declares a document type or entities, which no {noun} needs; they are "
             "refused",
             file=file,
         )
@@ -66,7 +66,7 @@ def parse(data: bytes, file: str, text: str) -> Element:
         nonlocal count
         count += 1
         if len(open_) > _DEEPEST or count > _ELEMENTS:
-            raise LibraryError(f"line {parser.CurrentLineNumber}: its elements are too deep or too many", file=file)
+            raise error(f"line {parser.CurrentLineNumber}: its elements are too deep or too many", file=file)
         element = Element(tag.rpartition(":")[2], given, parser.CurrentLineNumber)
         open_[-1].children.append(element)
         open_.append(element)
@@ -82,6 +82,6 @@ def parse(data: bytes, file: str, text: str) -> Element:
     parser.StartElementHandler, parser.EndElementHandler, parser.CharacterDataHandler = start, end, words
     try:
         parser.Parse(data, True)
-    except (expat.ExpatError, LookupError, ValueError) as error:
-        raise LibraryError(f"is no well-formed XML ({error}); export it anew", file=file) from None
+    except (expat.ExpatError, LookupError, ValueError) as fault:
+        raise error(f"is no well-formed XML ({fault}); export it anew", file=file) from None
     return top.children[0]

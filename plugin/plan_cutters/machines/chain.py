@@ -1,0 +1,137 @@
+"""From the axes that a file lists to a machine: units, limits and signs."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from plan_cutters.domain.axis import Axis, Carried, Kind
+from plan_cutters.domain.checks import shown
+from plan_cutters.domain.machine import Machine
+from plan_cutters.errors import MachineError
+
+Vector = tuple[float, float, float]
+
+#: mm.
+LENGTHS = {
+    "mm": 1.0, "millimeter": 1.0, "millimeters": 1.0, "millimetre": 1.0, "metric": 1.0,
+    "cm": 10.0, "centimeter": 10.0, "m": 1000.0, "meter": 1000.0,
+    "inch": 25.4, "inches": 25.4, "in": 25.4, "imperial": 25.4,
+}  # fmt: skip
+#: rad.
+ANGLES = {
+    "deg": math.pi / 180.0, "degree": math.pi / 180.0, "degrees": math.pi / 180.0,
+    "rad": 1.0, "radian": 1.0, "radians": 1.0,
+    "grad": math.pi / 200.0, "gon": math.pi / 200.0, "revolution": 2.0 * math.pi,
+}  # fmt: skip
+#: Directions by the names of ISO 841.
+ISO = {
+    "X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0),
+    "A": (1.0, 0.0, 0.0), "B": (0.0, 1.0, 0.0), "C": (0.0, 0.0, 1.0),
+}  # fmt: skip
+#: Limits of one axis that are both turned back to front are the same up to this, rad or mm.
+_EVEN = 1e-9
+
+
+def unit(given: Any, known: dict[str, float], what: str) -> float:
+    """The size of a unit, which must be said."""
+    if given is None or given == "":
+        raise MachineError(f"{what} is missing: say one of {', '.join(list(known)[:5])}")
+    found = known.get(given.strip().lower()) if isinstance(given, str) else None
+    if found is None:
+        raise MachineError(f"{what} {shown(given)} is not known")
+    return found
+
+
+def scaled(value: float, size: float) -> float:
+    """A number in another unit; degrees as `math.radians` turns them."""
+    return math.radians(value) if size == math.pi / 180.0 else value * size
+
+
+def real(given: Any, what: str) -> float:
+    """A finite number of a file; a text is none."""
+    if isinstance(given, bool) or not isinstance(given, int | float):
+        raise MachineError(f"{what} must be a number, not {shown(given)}")
+    try:
+        found = float(given)
+    except OverflowError:
+        found = math.inf
+    if not math.isfinite(found):
+        raise MachineError(f"{what} must be a finite number, not {shown(given)}")
+    return found
+
+
+def vector(given: Any, what: str) -> Vector:
+    """Three finite numbers of a file."""
+    if not isinstance(given, list | tuple) or len(given) != 3:
+        raise MachineError(f"{what} must be three numbers, not {shown(given)}")
+    x, y, z = (real(each, what) for each in given)
+    return x, y, z
+
+
+def opposite(direction: Vector) -> Vector:
+    x, y, z = direction
+    return -x or 0.0, -y or 0.0, -z or 0.0
+
+
+def ranged(low: float | None, high: float | None, size: float) -> tuple[float, float] | None:
+    """Limits in rad or mm, of which one may be missing."""
+    if low is None and high is None:
+        return None
+    return -math.inf if low is None else scaled(low, size), math.inf if high is None else scaled(high, size)
+
+
+def narrowed(limits: Sequence[tuple[float, float] | None], what: str) -> tuple[float, float] | None:
+    """What all of several limits allow."""
+    given = [each for each in limits if each is not None]
+    if not given:
+        return None
+    for low, high in given:
+        if low > high:
+            raise MachineError(f"{what}: its limits {low:g} to {high:g} must run upwards")
+    low, high = max(low for low, _ in given), min(high for _, high in given)
+    if low > high:
+        raise MachineError(f"{what}: its limits contradict each other, {low:g} is above {high:g}")
+    return low, high
+
+
+def even(axis: Axis) -> bool:
+    """Whether the sense in which it is counted matters to nothing that it allows."""
+    if axis.limits is None:
+        return True
+    low, high = axis.limits
+    return low == -high or abs(low + high) <= _EVEN or (axis.kind == "rotary" and high - low >= 2.0 * math.pi)
+
+
+def linear(name: str, carries: Carried, limits: tuple[float, float] | None, rate: float | None = None) -> Axis:
+    """X, Y or Z as ISO 841 has it."""
+    return Axis(name, "linear", carries, ISO[name], limits, rate=rate)
+
+
+def axis(name: str, kind: Kind, carries: Carried, direction: Vector, *, limits: tuple[float, float] | None = None,
+         point: Vector = (0.0, 0.0, 0.0), rate: float | None = None) -> Axis:  # fmt: skip
+    """An axis of a file; a speed of 0 is none."""
+    return Axis(name, kind, carries, direction, limits, point, rate or None)
+
+
+def machine(name: str, axes: Sequence[Axis], notes: Sequence[str] = (), *, tool: Vector = ISO["Z"]) -> Machine:
+    """A machine of these axes, from the part to the tool; what is unlimited is said aloud."""
+    said = list(notes)
+    for each in axes:
+        if each.limits is None:
+            said.append(f"{each.name} has no limits in the file: it is taken as unlimited")
+        elif math.isinf(each.limits[0]) or math.isinf(each.limits[1]):
+            side = "least" if math.isinf(each.limits[0]) else "largest"
+            said.append(f"{each.name} has no {side} position in the file: it is taken as unlimited there")
+    rotary = [each for each in axes if each.kind == "rotary"]
+    if rotary and len(rotary) <= 2:
+        last, iso = rotary[-1], ISO.get(rotary[-1].name[:1].upper())
+        if abs(_dot(last.direction, tool)) > 1.0 - 1e-12 and iso is not None and abs(_dot(last.direction, iso)) < 0.5:
+            raise MachineError(
+                f"axis {last.name} runs along the tool, which it only turns about itself; {last.name} turns about "
+                f"{'XYZ'[iso.index(1.0)]} in ISO 841: correct its direction"
+            )
+    return Machine(name, axes=tuple(axes), tool_axis=tool, notes=tuple(said), fixed=not rotary)
+
+
+def _dot(a: Vector, b: Vector) -> float:
+    return sum(p * q for p, q in zip(a, b, strict=True)) / math.sqrt(sum(p * p for p in a) * sum(q * q for q in b))

@@ -1,0 +1,110 @@
+"""The table of formats: what is read, and what is known well enough to say what to give instead.
+
+What a file holds decides, not how it is called.
+"""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from plan_cutters.domain.machine import Machine
+from plan_cutters.machines import freecad, fusion, linuxcnc, mtconnect, own
+from plan_cutters.machines.files import Added, Content, fault
+
+
+@dataclass(frozen=True, slots=True)
+class Format:
+    """A format that is read: its name, its usual suffixes, how its content is recognised and read."""
+
+    name: str
+    suffixes: tuple[str, ...]
+    recognises: Callable[[Content], bool]
+    read: Callable[[Content, Added], Machine]
+
+
+@dataclass(frozen=True, slots=True)
+class Foreign:
+    """What is recognised but not read: its name, its content, and what to do instead."""
+
+    name: str
+    recognises: Callable[[Content], bool]
+    instead: str
+
+
+FORMATS = (
+    Format("plan-cutters TOML", (".toml",), own.is_toml, own.read_toml),
+    Format("plan-cutters JSON", (".json",), own.is_json, own.read_json),
+    Format("FreeCAD machine", (".fcm",), freecad.is_fcm, freecad.read_fcm),
+    Format("Fusion machine", (".mch",), fusion.is_mch, fusion.read_mch),
+    Format("LinuxCNC configuration", (".ini",), linuxcnc.is_ini, linuxcnc.read_ini),
+    Format("LinuxCNC configuration", (".ini",), linuxcnc.includes, linuxcnc.read_ini),
+    Format("MTConnect probe", (".xml",), mtconnect.is_probe, mtconnect.read_probe),
+)
+
+_TOML = "write the machine as TOML (docs/machines.md)"
+
+
+def _root(*names: str) -> Callable[[Content], bool]:
+    pattern = re.compile(rf"<\s*(?:\w+:)?(?:{'|'.join(names)})\b", re.IGNORECASE)
+    return lambda c: c.head.startswith("<") and pattern.search(c.head) is not None
+
+
+def _suffix(*words: str) -> Callable[[Content], bool]:
+    return lambda c: c.path.suffix.lower() in words
+
+
+def _binary(content: Content) -> bool:
+    return (
+        content.encoded[1] in ("utf-8", "cp1252")
+        and re.search(rb"[\0-\x08\x0e-\x1f]", content.data[:65536]) is not None
+    )
+
+
+FOREIGN = (
+    Foreign("a web page (HTML)", _root("!doctype html", "html", "head", "body"),
+            "download the machine itself: perhaps a log-in stands before it"),
+    Foreign("a robot (URDF)", _root("robot"), f"no machine tool is known in it; {_TOML}"),
+    Foreign("a robot (SDF)", _root("sdf"), f"no machine tool is known in it; {_TOML}"),
+    Foreign("MTConnect data", _root("MTConnectStreams", "MTConnectAssets", "MTConnectError"),
+            "give the answer to a probe (MTConnectDevices)"),
+    Foreign("a PowerMill machine", _suffix(".mtd"), _TOML),
+    Foreign("a LinuxCNC HAL file", _suffix(".hal", ".tcl"), "give the .ini that names it"),
+    Foreign("a LinuxCNC tool table", _suffix(".tbl"), "give it with --library, and the .ini as the machine"),
+    Foreign("a Fusion tool library", lambda c: isinstance(c.json, dict) and isinstance(c.json.get("data"), list),
+            "give it with --library"),
+    Foreign("an ISO 10303-21 file (STEP)", lambda c: c.head.startswith("iso-10303-21"), _TOML),
+    Foreign("a zip archive", lambda c: c.data.startswith(b"PK\x03\x04"), "give the machine that is in it"),
+    Foreign("an SQLite database", lambda c: c.data.startswith(b"SQLite format 3\0"), _TOML),
+    Foreign("a binary file", _binary, _TOML),
+)  # fmt: skip
+
+
+def recognised(content: Content) -> Format:
+    """The format of a file.
+
+    Raises
+    ------
+    MachineError
+        It is none that is read; by name, where it is known.
+    """
+    if not content.data.strip(b" \t\r\n\0\xef\xbb\xbf\xff\xfe"):
+        raise fault(content, "is empty")
+    for foreign in FOREIGN[:1]:
+        if foreign.recognises(content):
+            raise fault(content, f"is {foreign.name}, which is not read: {foreign.instead}")
+    for form in FORMATS:
+        if form.recognises(content):
+            return form
+    for foreign in FOREIGN[1:]:
+        if foreign.recognises(content):
+            raise fault(content, f"is {foreign.name}, which is not read: {foreign.instead}")
+    if content.head[:1] in ("{", "[") and content.json is None:
+        raise content.broken_json()
+    if content.head.startswith("<"):
+        raise fault(content, "is XML, but no MTConnect probe (MTConnectDevices)")
+    if content.json is not None:
+        raise fault(
+            content, "is JSON, but no machine of Fusion (kinematics), FreeCAD (machine.axes) or ours (part_chain)"
+        )
+    names = dict.fromkeys(f"{form.name} ({' '.join(form.suffixes)})" for form in FORMATS)
+    raise fault(content, f"is no machine file that is known; read are {', '.join(names)}")

@@ -1,0 +1,213 @@
+"""Fusion machines, `.mch`: a tree of parts, from static ones over linear and rotary ones to the table and the head.
+
+Directions are those in which a part itself moves, by the right-hand rule for rotary ones. The files at hand say so of linear axes
+that carry the part; of rotary ones it is not documented, so that it must be said where it matters.
+"""
+
+from typing import Any, NamedTuple
+
+from plan_cutters.domain.axis import Axis, Carried
+from plan_cutters.domain.checks import shown
+from plan_cutters.domain.machine import Machine
+from plan_cutters.errors import MachineError
+from plan_cutters.machines import chain
+from plan_cutters.machines.files import TABLE, TOOL, Added, Content
+
+_MOST = 200
+#: Keys of a part that are understood, or that say nothing of where it can go.
+_KEYS = {
+    "attach_frame", "axis_of_rotation", "control", "direction", "display_name", "id", "name", "offset", "parts", "spindle",
+    "step_size", "tool_station", "type", "max", "min", "range", "limits", "physical_range", "home_position", "model", "solids",
+}  # fmt: skip
+_RANGES = ("range", "limits", "physical_range")
+_SUSPECT = ("min", "max", "range", "limit")
+
+
+class Frame(NamedTuple):
+    """Where a part of the tree stands: the parts above it, from the bed outward, and itself."""
+
+    parts: list[dict[str, Any]]
+    end: dict[str, Any]
+
+
+def is_mch(content: Content) -> bool:
+    """JSON with the kinematics of a machine."""
+    return _kinematics(content.json) is not None
+
+
+def _kinematics(found: Any) -> dict[str, Any] | None:
+    inner = found.get("kinematics") if isinstance(found, dict) else None
+    given = inner.get("default", inner) if isinstance(inner, dict) else None
+    return given if isinstance(given, dict) and isinstance(given.get("parts"), list) else None
+
+
+def read_mch(content: Content, added: Added) -> Machine:
+    """Read it."""
+    added.refuse(content.name, order=True)
+    given = _kinematics(content.json)
+    assert given is not None
+    units = given.get("units")
+    if not isinstance(units, dict):
+        raise MachineError("its kinematics have no units")
+    length = chain.unit(units.get("length"), chain.LENGTHS, "its unit of lengths")
+    angle = chain.unit(units.get("angle"), chain.ANGLES, "its unit of angles")
+    hand = (given.get("conventions") or {}).get("rotation", "right-handed")
+    if hand not in ("right-handed", "left-handed"):
+        raise MachineError(f"its convention of rotation {shown(hand)} is not known")
+    frames = _frames(given["parts"])
+    table, head = (_only(frames, kind) for kind in ("table", "head"))
+    notes: list[str] = []
+    control = _controls(content.json)
+    reading = _Reading(length, angle, hand == "left-handed", added.sign, control, notes)
+    axes = [*reading.axes(table.parts, "part")[::-1], *reading.axes(head.parts, "tool")]
+    _check_once(table, head)
+    tool = chain.ISO["Z"]
+    frame = head.end.get("attach_frame")
+    if isinstance(frame, dict) and frame.get("z_direction") is not None:
+        tool = chain.vector(frame["z_direction"], "the z_direction of its head")
+    if any(control.values()):
+        notes.append("its speeds are not used: their units are not documented")
+    if not any(each.kind == "rotary" and each.carries == "part" for each in axes):
+        added.refuse(content.name, sign=True)
+    return chain.machine(_name(content), axes, notes, tool=tool)
+
+
+def _name(content: Content) -> str:
+    general = content.json.get("general")
+    words = [general.get(key) for key in ("vendor", "model")] if isinstance(general, dict) else []
+    return " ".join(word for word in words if isinstance(word, str) and word) or content.path.stem
+
+
+def _controls(found: Any) -> dict[str, dict[str, Any]]:
+    """What the controller says of each part, by its id."""
+    controller = found.get("controller")
+    inner = controller.get("default", controller) if isinstance(controller, dict) else None
+    parts = inner.get("parts") if isinstance(inner, dict) else None
+    return {key: each for key, each in parts.items() if isinstance(each, dict)} if isinstance(parts, dict) else {}
+
+
+def _frames(parts: list[Any]) -> list[Frame]:
+    """All parts of the tree, those nearest to the bed first."""
+    found: list[Frame] = []
+    waiting: list[tuple[Any, list[dict[str, Any]]]] = [(each, []) for each in parts]
+    while waiting:
+        each, above = waiting.pop(0)
+        if not isinstance(each, dict):
+            raise MachineError(f"a part of its kinematics must be a table, not {shown(each)}")
+        found.append(Frame(above, each))
+        if len(found) > _MOST:
+            raise MachineError(f"its kinematics have more than {_MOST} parts: no machine has")
+        inner = each.get("parts", [])
+        if not isinstance(inner, list):
+            raise MachineError(f"part {shown(each.get('id'))}: its parts must be a list")
+        waiting += [(child, [*above, each]) for child in inner]
+    return found
+
+
+def _only(frames: list[Frame], kind: str) -> Frame:
+    found = [frame for frame in frames if frame.end.get("type") == kind]
+    if len(found) != 1:
+        count = f"{len(found)} parts" if found else "no part"
+        ids = ", ".join(shown(frame.end.get("id")) for frame in found)
+        raise MachineError(
+            f"its kinematics have {count} of type {kind}{f' ({ids})' if ids else ''}: machines of one are read"
+        )
+    return found[0]
+
+
+def _check_once(table: Frame, head: Frame) -> None:
+    """A part above both moves both, so that it moves neither against the other."""
+    for each in table.parts:
+        if any(each is other for other in head.parts) and each.get("type") in ("linear", "rotary"):
+            raise MachineError(f"axis {shown(each.get('name', each.get('id')))} carries both the table and the head")
+
+
+class _Reading:
+    """The axes of one file being read."""
+
+    def __init__(self, length: float, angle: float, left: bool, sign: str, control: dict[str, dict[str, Any]],
+                 notes: list[str]) -> None:  # fmt: skip
+        self.length, self.angle, self.left, self.sign, self.control, self.notes = (
+            length, angle, left, sign, control, notes,
+        )  # fmt: skip
+
+    def axes(self, parts: list[dict[str, Any]], carries: Carried) -> list[Axis]:
+        """The axes among the parts above a table or a head, the one next to the bed first."""
+        found = []
+        for part in parts:
+            name = part.get("name") or part.get("display_name") or part.get("id")
+            kind = part.get("type")
+            if kind in ("linear", "rotary"):
+                found.append(self.axis(part, str(name), kind, carries))
+            elif kind != "static":
+                self.notes.append(
+                    f"part {shown(name)} of type {shown(kind)} is neither linear nor rotary: it is ignored"
+                )
+        return found
+
+    def axis(self, part: dict[str, Any], name: str, kind: str, carries: Carried) -> Axis:
+        """One of them."""
+        for key in part:
+            if key not in _KEYS and any(word in key.lower() for word in _SUSPECT):
+                raise MachineError(f"axis {name}: its {shown(key)} is not understood, and may be a limit; write the machine as "
+                                   "TOML (docs/machines.md)")  # fmt: skip
+        if part.get("control", "driven") != "driven":
+            self.notes.append(f"{name} is {shown(part['control'])}, not driven: it is taken as one that can be set")
+        limits = self.limits(part, name, self.angle if kind == "rotary" else self.length)
+        if kind == "linear":
+            direction = chain.vector(part.get("direction"), f"axis {name}: its direction")
+            return chain.axis(name, "linear", carries, chain.opposite(direction) if carries == "part" else direction,
+                              limits=limits)  # fmt: skip
+        about = part.get("axis_of_rotation")
+        if not isinstance(about, dict):
+            raise MachineError(f"axis {name} has no axis_of_rotation")
+        direction = chain.vector(about.get("direction"), f"axis {name}: its direction")
+        point = chain.vector(about.get("point", [0, 0, 0]), f"axis {name}: its point")
+        place = (point[0] * self.length, point[1] * self.length, point[2] * self.length)
+        if self.left != ((carries == "part") and self.sign != TOOL):
+            direction = chain.opposite(direction)
+        found = chain.axis(name, "rotary", carries, direction, limits=limits, point=place)
+        self.check(part, found)
+        return found
+
+    def check(self, part: dict[str, Any], axis: Axis) -> None:
+        """Whether the sense of a rotary axis is known, or does not matter."""
+        control = self.control.get(str(part.get("id")), {})
+        turned, zero = control.get("reversed") is True, control.get("zero_position_offset", 0)
+        if chain.even(axis):
+            if axis.carries == "part" and not self.sign:
+                self.notes.append(
+                    f"{axis.name}: whether its positive angles are those of the table or of the tool is not said; that of the "
+                    f"table is taken, and with its limits it allows the same either way"
+                )
+        elif turned or (zero and axis.limits is not None):
+            why = "reversed" if turned else f"offset by {shown(zero)}"
+            raise MachineError(f"axis {axis.name} is {why} in the controller, and whether that is so of its limits is not known; "
+                               "write the machine as TOML (docs/machines.md)")  # fmt: skip
+        elif axis.carries == "part" and not self.sign:
+            raise MachineError(
+                f"axis {axis.name} carries the part, and whether its limits count the table's own motion is not said: say it as "
+                f"FILE#{TABLE}, or FILE#{TOOL} (ISO 841)"
+            )
+
+    def limits(self, part: dict[str, Any], name: str, size: float) -> tuple[float, float] | None:
+        """Limits of a part, under any of the names that they may have."""
+        found = []
+        for key in _RANGES:
+            given = part.get(key)
+            if given is None:
+                continue
+            if isinstance(given, list) and len(given) == 2:
+                given = dict(zip(("min", "max"), given, strict=True))
+            if not isinstance(given, dict) or not set(given) <= {"min", "max"}:
+                raise MachineError(f"axis {name}: its {key} must be min and max, not {shown(given)}")
+            found.append(self._ends(given, name, size))
+        found.append(self._ends(part, name, size))
+        return chain.narrowed(found, f"axis {name}")
+
+    def _ends(self, given: dict[str, Any], name: str, size: float) -> tuple[float, float] | None:
+        low, high = (
+            None if given.get(key) is None else chain.real(given[key], f"axis {name}: its {key}")
+            for key in ("min", "max")
+        )
+        return chain.ranged(low, high, size)

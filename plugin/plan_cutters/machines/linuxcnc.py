@@ -1,0 +1,241 @@
+"""LinuxCNC configurations, `.ini`: limits are said by the file, how the axes stand on each other by the name of its kinematics.
+
+Only kinematics whose sources were read are taken (src/emc/kinematics of LinuxCNC). Their formulas give the signs: the trunnions
+`xyzac-trt-kins` and `xyzbc-trt-kins` count both rotary axes, and `maxkins` and `5axiskins` B, against ISO 841, unless the pin
+`conventional-directions` is set, which `5axiskins` does not have.
+"""
+
+import re
+from typing import NamedTuple
+
+from plan_cutters.domain.axis import Axis
+from plan_cutters.domain.checks import shown
+from plan_cutters.domain.machine import Machine
+from plan_cutters.errors import MachineError
+from plan_cutters.machines import chain
+from plan_cutters.machines.arranged import arranged
+from plan_cutters.machines.files import Added, Content
+from plan_cutters.machines.ini import Hal, Ini
+
+_LOOKS = re.compile(r"^\s*\[\s*(KINS|TRAJ|EMCMOT|EMC|JOINT_\d|AXIS_\w)\s*\]", re.MULTILINE)
+_LETTERS = "XYZABCUVW"
+
+
+class Kins(NamedTuple):
+    """Kinematics by their formulas.
+
+    Attributes
+    ----------
+    joints : str
+        Letters of the joints from 0 up, where the file does not say.
+    part, tool : str
+        Letters of the rotary axes: those that carry the part, the one next to it first; those that carry the tool, the one next
+        to it last.
+    against : str
+        Letters that are counted against ISO 841.
+    pin : bool
+        Whether `conventional-directions` turns these.
+    """
+
+    joints: str
+    part: str
+    tool: str
+    against: str
+    pin: bool
+
+
+KINS = {
+    "xyzac-trt-kins": Kins("XYZAC", "CA", "", "AC", True),
+    "xyzbc-trt-kins": Kins("XYZBC", "CB", "", "BC", True),
+    "maxkins": Kins(_LETTERS, "C", "B", "B", True),
+    "5axiskins": Kins("XYZBCW", "", "CB", "B", False),
+}
+TRIVIAL = "trivkins"
+#: Pivots of `maxkins` and `5axiskins` over the controlled point, where nothing sets them, in units of the machine.
+_PIVOT = {"maxkins": 0.666, "5axiskins": 250.0}
+
+
+def is_ini(content: Content) -> bool:
+    """Sections of a LinuxCNC configuration."""
+    return content.head[:1] not in ("{", "<") and len(set(_LOOKS.findall(content.text))) >= 2
+
+
+def includes(content: Content) -> bool:
+    """A short configuration that includes the rest."""
+    return "#INCLUDE" in content.text and _LOOKS.search(content.text) is not None
+
+
+def read_ini(content: Content, added: Added) -> Machine:
+    """Read it."""
+    ini = Ini(content)
+    return _Reading(ini, added, content.path.stem).machine()
+
+
+class _Reading:
+    """One configuration being read."""
+
+    def __init__(self, ini: Ini, added: Added, stem: str) -> None:
+        self.ini, self.added, self.stem = ini, added, stem
+        self.notes: list[str] = []
+        self.name, self.given = self.kinematics()
+        self.length = chain.unit(ini.one("TRAJ", "LINEAR_UNITS"), chain.LENGTHS, "[TRAJ]LINEAR_UNITS")
+        self.angle = chain.unit(ini.one("TRAJ", "ANGULAR_UNITS") or "degree", chain.ANGLES, "[TRAJ]ANGULAR_UNITS")
+        self.letters = self.coordinates()
+        self.joints = self.letters_of_joints()
+
+    def kinematics(self) -> tuple[str, dict[str, str]]:
+        """The name of the kinematics, and what is given with it."""
+        text = self.ini.one("KINS", "KINEMATICS")
+        if text is None:
+            others = [
+                (name, self.ini.one(name, "KINEMATICS"))
+                for name, keys in self.ini.values.items()
+                if "KINEMATICS" in keys
+            ]
+            if len(others) != 1:
+                raise MachineError(
+                    "it names no kinematics ([KINS]KINEMATICS): how its axes stand on each other is not known"
+                )
+            section, text = others[0]
+            self.notes.append(f"its kinematics are named in [{section}], not in [KINS]")
+        words = (text or "").split()
+        name = words[0].lower() if words else ""
+        if name != TRIVIAL and name not in KINS:
+            raise MachineError(
+                f"its kinematics {shown(name)} are none of those that are read ({', '.join((TRIVIAL, *KINS))}); write the "
+                "machine as TOML (docs/machines.md)"
+            )
+        given = dict(word.partition("=")[::2] for word in words[1:] if "=" in word)
+        return name, {key.lower(): value for key, value in given.items()}
+
+    def coordinates(self) -> str:
+        """Letters of the axes that the machine has."""
+        text = self.ini.one("TRAJ", "COORDINATES") or self.given.get("coordinates")
+        if text is None:
+            raise MachineError("it names no axes ([TRAJ]COORDINATES)")
+        letters = "".join(dict.fromkeys("".join(text.upper().split())))
+        if not letters or not set(letters) <= set(_LETTERS):
+            raise MachineError(f"[TRAJ]COORDINATES is {shown(text)}: letters of {_LETTERS} are expected")
+        return letters
+
+    def letters_of_joints(self) -> str:
+        """The letter of each joint."""
+        text = self.given.get("coordinates", "").upper()
+        if not text:
+            text = KINS[self.name].joints if self.name in KINS else _LETTERS
+            if self.name == TRIVIAL and not any(key.startswith("JOINT_") for key in self.ini.values):
+                # Before there were joints, sections [AXIS_0] and on stood for them.
+                text = _LETTERS
+        for i, letter in enumerate(text):
+            for section in (f"JOINT_{i}", f"AXIS_{i}"):
+                kind = (self.ini.one(section, "TYPE") or "").upper()
+                if kind and kind != ("ANGULAR" if letter in "ABC" else "LINEAR"):
+                    raise MachineError(f"[{section}] is {kind}, but joint {i} is {letter} by its kinematics: say so, as "
+                                       f"KINEMATICS = {self.name} coordinates={self.letters}")  # fmt: skip
+        return text
+
+    def machine(self) -> Machine:
+        """All of it."""
+        name = self.ini.one("EMC", "MACHINE") or self.stem
+        extra = [letter for letter in self.letters if letter in "UVW"]
+        if extra:
+            self.notes.append(f"{', '.join(extra)}: second linear axes are not used; their travel is not counted")
+        lacking = [letter for letter in "XYZ" if letter not in self.letters]
+        if lacking:
+            self.notes.append(f"it has no axis {', '.join(lacking)}")
+        straight = [self.linear(letter) for letter in "XYZ" if letter in self.letters]
+        part, tool = self.trivial() if self.name == TRIVIAL else self.known()
+        return chain.machine(name, [*part, *straight, *tool], self.notes)
+
+    def limits(self, letter: str, trivial: bool) -> tuple[float, float] | None:
+        """Limits of an axis, in rad or mm: those of its joint, and where both mean the same those of the axis."""
+        size = self.angle if letter in "ABC" else self.length
+        sections = [f"{kind}_{i}" for i, each in enumerate(self.joints) if each == letter for kind in ("JOINT", "AXIS")]
+        given = [self.ends(section, size) for section in sections if section in self.ini.values]
+        own = self.ends(f"AXIS_{letter}", size)
+        # Of kinematics that couple axes, those of a linear axis are of the programmed place, not of the machine's.
+        if trivial or letter in "ABC" or not any(given):
+            given.append(own)
+        found = chain.narrowed(given, f"axis {letter}")
+        if len({each for each in given if each is not None}) > 1:
+            self.notes.append(f"{letter}: the limits of the axis and of its joints differ; what all allow is taken")
+        return found
+
+    def ends(self, section: str, size: float) -> tuple[float, float] | None:
+        return chain.ranged(self.ini.number(section, "MIN_LIMIT"), self.ini.number(section, "MAX_LIMIT"), size)
+
+    def rate(self, letter: str) -> float | None:
+        """The least of the largest speeds of an axis and its joints."""
+        size = self.angle if letter in "ABC" else self.length
+        sections = [f"{kind}_{i}" for i, each in enumerate(self.joints) if each == letter for kind in ("JOINT", "AXIS")]
+        found = [self.ini.number(section, "MAX_VELOCITY") for section in (f"AXIS_{letter}", *sections)]
+        speeds = [chain.scaled(each, size) for each in found if each is not None and each > 0.0]
+        return min(speeds, default=None)
+
+    def linear(self, letter: str) -> Axis:
+        return chain.linear(letter, "tool", self.limits(letter, self.name == TRIVIAL), self.rate(letter))
+
+    def rotary(self, letter: str, carries: str, against: bool, point: chain.Vector) -> Axis:
+        direction = chain.opposite(chain.ISO[letter]) if against else chain.ISO[letter]
+        return chain.axis(letter, "rotary", "part" if carries == "part" else "tool", direction,
+                          limits=self.limits(letter, False), point=point, rate=self.rate(letter))  # fmt: skip
+
+    def trivial(self) -> tuple[list[Axis], list[Axis]]:
+        """Kinematics that say nothing of how axes stand on each other."""
+        rotary = [self.rotary(letter, "part", False, (0.0, 0.0, 0.0)) for letter in self.letters if letter in "ABC"]
+        found = arranged(rotary, self.added, self.notes, TRIVIAL)
+        return [each for each in found if each.carries == "part"], [each for each in found if each.carries == "tool"]
+
+    def known(self) -> tuple[list[Axis], list[Axis]]:
+        """Kinematics of which the formulas are known."""
+        self.added.refuse(self.ini.path.name, order=True, sign=True)
+        kins = KINS[self.name]
+        listed = [letter for letter in self.letters if letter in "ABC"]
+        more = [letter for letter in listed if letter not in kins.part + kins.tool]
+        if more:
+            raise MachineError(f"it has a third rotary axis, {', '.join(more)}, of which {self.name} says nothing: "
+                               "machines of up to two are judged")  # fmt: skip
+        missing = [letter for letter in kins.part + kins.tool if letter not in listed]
+        if missing:
+            raise MachineError(f"[TRAJ]COORDINATES lacks {', '.join(missing)}, which {self.name} turns")
+        hal = Hal(self.ini)
+        against = self.against(kins, hal)
+        points = self.points(hal)
+        part = [self.rotary(letter, "part", letter in against, points[letter]) for letter in kins.part]
+        tool = [self.rotary(letter, "tool", letter in against, points[letter]) for letter in kins.tool]
+        return part, tool
+
+    def against(self, kins: Kins, hal: Hal) -> str:
+        """Letters that are counted against ISO 841."""
+        pin = f"{self.name}.conventional-directions"
+        found = hal.value(pin, 0.0) if kins.pin else 0.0
+        if found is None or (kins.pin and pin not in hal.pins and pin not in hal.signal_of and hal.missing):
+            why = "something else feeds it" if found is None else f"{', '.join(hal.missing)} is not at hand"
+            raise MachineError(f"the sense of its angles hangs on {pin}, and {why}: put the HAL file beside it, or a line "
+                               f"HALCMD = setp {pin} 0 (or 1) into [HAL]")  # fmt: skip
+        if found:
+            self.notes.append(f"{pin} is set: its angles are counted as in ISO 841")
+            return ""
+        letters = " and ".join(kins.against)
+        self.notes.append(
+            f"{self.name} counts {letters} against ISO 841: directions are turned, angles are those of the control"
+        )
+        return kins.against
+
+    def points(self, hal: Hal) -> dict[str, chain.Vector]:
+        """A point of each rotary axis, mm, for no tool length; what is fed by something else counts as 0, and is noted."""
+
+        def pin(name: str, default: float = 0.0) -> float:
+            value = hal.value(f"{self.name}.{name}", default)
+            if value is None:
+                what = f"{self.name}.{name} is not set by the file"
+                self.notes.append(f"{what}: it is taken as {default:g}, which matters to linear travel alone")
+                value = default
+            return value * self.length
+
+        if self.name in _PIVOT:
+            return {"C": (0.0, 0.0, 0.0), "B": (0.0, 0.0, pin("pivot-length", _PIVOT[self.name]))}
+        x, y, z = (pin(f"{letter}-rot-point") for letter in "xyz")
+        if self.name == "xyzac-trt-kins":
+            return {"C": (x, y, 0.0), "A": (x, y + pin("y-offset"), z + pin("z-offset"))}
+        return {"C": (x, y, 0.0), "B": (x + pin("x-offset"), y, z + pin("z-offset"))}

@@ -1,0 +1,185 @@
+"""Our own format, as TOML or JSON; `own_out` writes it."""
+
+import json
+import math
+import re
+import tomllib
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from plan_cutters.domain.axis import Axis, Carried
+from plan_cutters.domain.checks import shown
+from plan_cutters.domain.machine import Machine
+from plan_cutters.errors import MachineError
+from plan_cutters.machines.chain import ANGLES, LENGTHS, opposite, scaled
+from plan_cutters.machines.files import Added, Content
+
+FORMAT = "plan-cutters-machine"
+_LOOKS = re.compile(r"^\s*(format\s*=\s*[\"']plan-cutters-machine|\[\[\s*(part_chain|tool_chain)\s*\]\])", re.MULTILINE)
+_RADIANS = re.compile(r"\s*(\S+)\s*rad\s*")
+
+Number = Annotated[float, Field(allow_inf_nan=False, strict=True)]
+#: A text gives radians, as "0.1 rad": for angles that no number of degrees turns into.
+Size = Annotated[float, Field(strict=True)] | str
+Vector = Annotated[list[Number], Field(min_length=3, max_length=3)]
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class Units(_Table):
+    """Units of all lengths and angles."""
+
+    length: Literal["mm", "cm", "m", "inch"]
+    angle: Literal["deg", "rad"]
+
+
+class AxisTable(_Table):
+    """An axis; `limits` missing or null: none, one of them null or inf: none on that side. `rate` is a speed a second."""
+
+    axis: Annotated[str, Field(min_length=1)]
+    type: Literal["rotary", "linear"]
+    direction: Vector
+    point: Vector | None = None
+    limits: Annotated[list[Size | None], Field(min_length=2, max_length=2)] | None = None
+    rate: Size | None = None
+
+
+class MaxTool(_Table):
+    """The largest tool that fits."""
+
+    length: Number | None = None
+    diameter: Number | None = None
+
+
+class Mount(_Table):
+    """Where the part stands."""
+
+    origin: Vector | None = None
+    z: Vector | None = None
+
+
+class MachineTable(_Table):
+    """A machine: each chain runs from the bed outward."""
+
+    format: Literal["plan-cutters-machine"]
+    version: Literal[1]
+    name: str
+    units: Units
+    sign: Literal["tool-relative", "table"]
+    tool_axis: Vector = [0.0, 0.0, 1.0]
+    part_chain: list[AxisTable]
+    tool_chain: list[AxisTable]
+    tilt_limit: Size | None = None
+    fixed: bool | None = None
+    notes: list[str] = []
+    max_tool: MaxTool | None = None
+    part_mount: Mount | None = None
+
+
+def is_toml(content: Content) -> bool:
+    """TOML that names the format, or has a chain."""
+    return content.head[:1] not in ("{", "<") and _LOOKS.search(content.text) is not None
+
+
+def is_json(content: Content) -> bool:
+    """JSON that names the format, or has a chain."""
+    found = content.json
+    return isinstance(found, dict) and (found.get("format") == FORMAT or "part_chain" in found or "tool_chain" in found)
+
+
+def read_toml(content: Content, added: Added) -> Machine:
+    """Read it."""
+    try:
+        given = tomllib.loads(content.text)
+    except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
+        why = "it is nested too deeply" if isinstance(error, RecursionError) else " ".join(str(error).split())
+        raise MachineError(f"is no TOML: {why}", file=content.name) from None
+    return _machine(given, content, added)
+
+
+def read_json(content: Content, added: Added) -> Machine:
+    """Read it."""
+    return _machine(content.json, content, added)
+
+
+def _machine(given: Any, content: Content, added: Added) -> Machine:
+    added.refuse(content.name, order=True, sign=True)
+    try:
+        table = MachineTable.model_validate(given)
+    except ValidationError as error:
+        raise MachineError(_why(error), file=content.name) from None
+    length, angle = LENGTHS[table.units.length], ANGLES[table.units.angle]
+    sides: list[tuple[Carried, list[AxisTable]]] = [("part", table.part_chain[::-1]), ("tool", table.tool_chain)]
+    axes = [_axis(each, side, table.sign, length, angle) for side, chain in sides for each in chain]
+    notes = list(table.notes)
+    largest = {} if table.max_tool is None else table.max_tool.model_dump(exclude_none=True)
+    if largest:
+        words = " and ".join(f"{name} {value:g} {table.units.length}" for name, value in largest.items())
+        notes.append(f"its largest tool, {words}, is not judged")
+    if table.part_mount is not None and (
+        any(table.part_mount.origin or ()) or (table.part_mount.z or [0, 0, 1]) != [0.0, 0.0, 1.0]
+    ):
+        notes.append("its part_mount is not used: a setup says where the part stands")
+    tilt = None if table.tilt_limit is None else _size(table.tilt_limit, angle, "tilt_limit")
+    fixed = table.fixed if table.fixed is not None else not any(each.kind == "rotary" for each in axes)
+    tool = (table.tool_axis[0], table.tool_axis[1], table.tool_axis[2])
+    return Machine(table.name, tilt, tuple(axes), tool, tuple(notes), fixed)
+
+
+def _axis(table: AxisTable, carries: Carried, sign: str, length: float, angle: float) -> Axis:
+    size = angle if table.type == "rotary" else length
+    what = f"axis {table.axis}"
+    x, y, z = table.direction
+    limits = None
+    if table.limits is not None:
+        low, high = table.limits
+        limits = (
+            -math.inf if low is None else _size(low, size, f"{what}: its least limit"),
+            math.inf if high is None else _size(high, size, f"{what}: its largest limit"),
+        )
+        if limits[0] == math.inf or limits[1] == -math.inf:
+            raise MachineError(f"{what}: its limits must run upwards, from -inf to inf")
+    px, py, pz = (scaled(value, length) for value in table.point or (0.0, 0.0, 0.0))
+    rate = None if table.rate is None else _size(table.rate, size, f"{what}: its rate")
+    turned = opposite((x, y, z)) if sign == "table" and carries == "part" else (x, y, z)
+    return Axis(table.axis, table.type, carries, turned, limits, (px, py, pz), rate)
+
+
+def _size(given: float | str, size: float, what: str) -> float:
+    if isinstance(given, str):
+        match = _RADIANS.fullmatch(given)
+        try:
+            found = float(match[1]) if match else math.nan
+        except ValueError:
+            found = math.nan
+        if not math.isfinite(found) or size in LENGTHS.values():
+            raise MachineError(f"{what} is {shown(given)}: it must be a number, or an angle as 0.5 rad")
+        return found
+    if math.isnan(given):
+        raise MachineError(f"{what} must be a number, not nan")
+    return scaled(given, size)
+
+
+def _why(error: ValidationError) -> str:
+    """One line of what is wrong."""
+    first = max(error.errors(include_url=False, include_context=False), key=lambda each: len(each["loc"]))
+    words = [str(word + 1) if isinstance(word, int) else word for word in first["loc"]]
+    words = [word for word in words if word.isdigit() or (word.isidentifier() and word not in ("float", "str"))]
+    place, last = " ".join(words[:-1]), words[-1] if words else "it"
+    place = f"{place}: " if place else ""
+    if first["type"] == "extra_forbidden":
+        return f"{place}{shown(last)} has no meaning here"
+    if first["type"] == "missing":
+        hint = {
+            "units": ', as units = { length = "mm", angle = "deg" }',
+            "sign": ', "tool-relative" (ISO 841) or "table"',
+            "length": ', as length = "mm"', "angle": ', as angle = "deg"',
+            "format": f", {json.dumps(FORMAT)}", "version": ", 1",
+            "part_chain": ", [] if no axis carries the part", "tool_chain": ", [] if no axis carries the tool",
+        }.get(last, "")  # fmt: skip
+        return f"{place}{last} is missing{hint}"
+    message = first["msg"][:1].lower() + first["msg"][1:]
+    return f"{place}{last} is {shown(first['input'])}: {message}"

@@ -1,0 +1,96 @@
+"""Machines in our own format: what is written is read as the same machine, bit for bit."""
+
+import json
+import math
+from typing import Any
+
+from plan_cutters.domain.axis import Axis
+from plan_cutters.domain.machine import Machine
+from plan_cutters.machines.own import FORMAT
+
+
+def plain(machine: Machine) -> dict[str, Any]:
+    """A machine as JSON has it; angles in degrees, lengths in mm, signs as in ISO 841.
+
+    >>> plain(Machine("mill", fixed=True))["part_chain"]
+    []
+    """
+    found: dict[str, Any] = {
+        "format": FORMAT,
+        "version": 1,
+        "name": machine.name,
+        "units": {"length": "mm", "angle": "deg"},
+        "sign": "tool-relative",
+        "tool_axis": list(machine.tool_axis),
+        "fixed": machine.fixed,
+    }
+    if machine.tilt_limit is not None:
+        found["tilt_limit"] = _angle(machine.tilt_limit)
+    if machine.notes:
+        found["notes"] = list(machine.notes)
+    found["part_chain"] = [_axis(each) for each in machine.axes[::-1] if each.carries == "part"]
+    found["tool_chain"] = [_axis(each) for each in machine.axes if each.carries == "tool"]
+    return found
+
+
+def to_toml(machine: Machine) -> str:
+    """A machine as TOML.
+
+    >>> print(to_toml(Machine("mill", fixed=True)))
+    format = "plan-cutters-machine"
+    version = 1
+    name = "mill"
+    units = { length = "mm", angle = "deg" }
+    sign = "tool-relative"
+    tool_axis = [0.0, 0.0, 1.0]
+    fixed = true
+    part_chain = []
+    tool_chain = []
+    <BLANKLINE>
+    """
+    found = plain(machine)
+    chains = [(name, found[name]) for name in ("part_chain", "tool_chain")]
+    lines = [f"{key} = {_toml(value)}" for key, value in found.items() if key not in dict(chains)]
+    lines += [f"{name} = []" for name, chain in chains if not chain]
+    for name, chain in chains:
+        if chain:
+            lines += ["", "# From the bed outward."]
+        for each in chain:
+            lines += [f"[[{name}]]", *(f"{key} = {_toml(value)}" for key, value in each.items()), ""]
+    return "\n".join([*lines, ""]) if lines[-1] else "\n".join(lines)
+
+
+def _axis(axis: Axis) -> dict[str, Any]:
+    found: dict[str, Any] = {"axis": axis.name, "type": axis.kind, "direction": list(axis.direction)}
+    size = _angle if axis.kind == "rotary" else float
+    if any(axis.point):
+        found["point"] = list(axis.point)
+    if axis.limits is not None:
+        found["limits"] = [None if math.isinf(end) else size(end) for end in axis.limits]
+    if axis.rate is not None:
+        found["rate"] = size(axis.rate)
+    return found
+
+
+def _angle(angle: float) -> float | str:
+    """Degrees, where they turn into the same radians."""
+    degrees = math.degrees(angle)
+    for each in (round(degrees, 9), degrees, math.nextafter(degrees, 0.0), math.nextafter(degrees, 2.0 * degrees)):
+        if math.radians(each) == angle:
+            return each
+    return f"{angle!r} rad"
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, str):
+        clean = value.encode("utf-8", "replace").decode("utf-8")
+        return json.dumps(clean, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, dict):
+        return f"{{ {', '.join(f'{key} = {_toml(each)}' for key, each in value.items())} }}"
+    if isinstance(value, list):
+        # TOML has no null; only limits lack an end.
+        ends = ["-inf", "inf"]
+        return f"[{', '.join(ends[i] if each is None else _toml(each) for i, each in enumerate(value))}]"
+    return repr(value)
