@@ -7,6 +7,7 @@ import numpy as np
 
 from plan_cutters.document.answers import mend_entry, radius_entry, stick_out_entry
 from plan_cutters.document.build import area_notes, degrees, face_entries, missing_entries, notes, part_info, versions
+from plan_cutters.document.fixtures import fixture_entry
 from plan_cutters.document.libraries import library_entry, source_entry
 from plan_cutters.document.model import CutterEntry, Effective, Plan, Run, SampleCounts, Selection
 from plan_cutters.document.palette import PALETTE
@@ -34,6 +35,7 @@ def plan_of(
             allowance_mm=options.allowance,
             holder_clearance_mm=options.holder_clearance,
             unit=options.unit,
+            fixtures=[each.text for each in scene.fixtures],
             machine=options.machine.name,
             setup=scene.setup,
             faces=choice.asked,
@@ -67,6 +69,7 @@ def plan_of(
         faces=face_entries(part, samples, choice),
         missing=missing_entries(part, around),
         reasons=list(REASONS),
+        fixtures=[fixture_entry(each) for each in around.fixtures],
         libraries=[library_entry(library) for library in options.libraries],
         cutters=list(entries),
         selected=selected,
@@ -77,7 +80,7 @@ def plan_of(
             *choice.notes,
             *area_notes(entries, doubtful=around.doubtful),
         ],
-        legend=PALETTE,
+        legend=PALETTE if around.fixtures else {word: PALETTE[word] for word in PALETTE if word != "fixture"},
         run=Run(time=started.isoformat(timespec="seconds"), seconds={}),
     )
 
@@ -94,7 +97,7 @@ def completed(entries: Sequence[CutterEntry], ready: Prepared, answers: Answers)
         stick_out, mend = answers.stick_outs.get(entry.id), answers.mends.get(entry.id)
         more = {
             "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
-            "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples),
+            "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, ready.scene.around),
             "mend": None if mend is None else mend_entry(mend),
         }
         found.append(entry.model_copy(update=more))
