@@ -225,22 +225,23 @@ class Obstacles(Record):
 
 
 def divided(vertex: Floats, low: Floats, high: Floats, longest: float, most: int | None = None) -> Floats:
-    """Triangles (n, 3, 3) cut into four until no side is longer than asked, mm, without those whose box misses a box.
+    """Triangles (n, 3, 3) halved until no side is longer than asked, mm, without those whose box misses a box.
 
     Where there are already more than `most`, they stay as they are.
     """
     done = []
     while len(vertex):
         vertex = vertex[((vertex.max(axis=1) >= low) & (vertex.min(axis=1) <= high)).all(axis=1)]
-        side = np.linalg.norm(vertex - np.roll(vertex, -1, axis=1), axis=2).max(axis=1)
-        small = side <= longest
+        side = np.linalg.norm(vertex - np.roll(vertex, -1, axis=1), axis=2)
+        small = side.max(axis=1) <= longest
         if most is not None and len(vertex) > most:
             small[:] = True
         done.append(vertex[small])
-        a, b, c = np.moveaxis(vertex[~small], 1, 0)
-        ab, bc, ca = 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)
-        quarters = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
-        vertex = np.concatenate([np.stack(quarter, axis=1) for quarter in quarters])
+        # At the middle of the longest side: long thin triangles come out compact.
+        v, first = vertex[~small], side[~small].argmax(axis=1)
+        a, b, c = (v[np.arange(len(v)), (first + k) % 3] for k in range(3))
+        middle = 0.5 * (a + b)
+        vertex = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
     return np.ascontiguousarray(np.concatenate([np.zeros((0, 3, 3)), *done]))
 
 
