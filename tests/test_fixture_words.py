@@ -96,7 +96,7 @@ def test_turns_are_about_the_fixed_axes_x_then_y_then_z_and_the_shift_comes_last
     expected = Rotation.from_euler("xyz", [x, y, z], degrees=True)
     assert fixture.rotation == pytest.approx(expected.as_matrix(), abs=1e-12)
     points = np.array([[1.0, 2.0, 3.0], [-4.0, 0.0, 5.0]])
-    assert fixture.placed(points) == pytest.approx(expected.apply(points) + [7, -8, 9], abs=1e-12)
+    assert fixture.placed(points) == pytest.approx(expected.apply(points) + np.array([7, -8, 9]), abs=1e-12)
 
 
 def test_quarter_turns_are_exact():
@@ -113,7 +113,9 @@ def test_sizes_have_the_unit_and_places_are_mm():
 def test_options_take_one_or_many_and_tell_them_apart():
     one = Options(fixtures="table:-5").fixtures
     assert [each.text for each in one] == ["table:-5"]
-    many = Options(fixtures=["jaw.stl", "jaw.stl@0,60,0", Fixture("other/jaw.stl"), Fixture("x.stl", name="clamp")]).fixtures
+    many = Options(
+        fixtures=["jaw.stl", "jaw.stl@0,60,0", Fixture("other/jaw.stl"), Fixture("x.stl", name="clamp")]
+    ).fixtures
     assert [each.name for each in many] == ["jaw", "jaw 2", "jaw 3", "clamp"]
     assert Options(fixtures=None).fixtures == ()
     with pytest.raises(FixtureError):

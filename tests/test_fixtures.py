@@ -47,13 +47,13 @@ def test_a_wall_beside_the_contact(a, radius, length):
 
 
 def test_a_jaw_above_the_part():
-    """Its lower edge is at x = b, z = h. Leaning to it, the generator through the contact meets that edge at tan(tilt) = b / h;
-    lower than the jaw in all is the cutter from 2 R sin(tilt) + L cos(tilt) = h on."""
+    """Its lower edge is at x = b, z = h. Leaning to it, the generator through the contact reaches its side at L sin(tilt) = b,
+    above the edge; and all of the cutter is lower than the jaw from 2 R sin(tilt) + L cos(tilt) = h on."""
     part = shapes.shell(shapes.plane((-100, 100), (-100, 100)))
     radius, length, b, h = 5.0, 40.0, 10.0, 15.0
     (towards,) = free(part, Cutter.flat(radius=radius, length=length), [0], f"box:80,200,60@{b},-100,{h}")
     under = math.atan2(2 * radius, length) + math.acos(h / math.hypot(2 * radius, length))
-    assert_intervals(towards, (0, math.degrees(math.atan2(b, h))), (math.degrees(under), 90))
+    assert_intervals(towards, (0, math.degrees(math.asin(b / length))), (math.degrees(under), 90))
 
 
 #: A small plate, and a holder that comes down beside it: R 30 above L 20 of a flat R 5.
@@ -78,43 +78,51 @@ def test_a_table_askew():
     (towards,) = free(plate(), HELD, [0], f"table:{TABLE_AT}@0,0,0,0,20,0")
     # The nose's lowest point against the table's normal (sin, 0, cos).
     tilts = np.radians(np.linspace(0, 90, 200001))
-    low = 25 * np.cos(tilts + turn + math.pi / 2) + 20 * np.cos(tilts - turn)
     x, z = 25 * np.cos(tilts) + 20 * np.sin(tilts), -25 * np.sin(tilts) + 20 * np.cos(tilts)
     low = x * math.sin(turn) + z * math.cos(turn)
     first = tilts[np.flatnonzero(low < TABLE_AT)]
     assert_intervals(towards, (0, math.degrees(first[0]) if len(first) else 90))
 
 
-@pytest.mark.parametrize("cutter", ["R5L20", HELD], ids=str)
-def test_a_fixture_and_a_face_of_the_part_give_the_same_verdicts(cutter):
-    floor = shapes.plane((-300, 300), (-300, 300), (0, 0, TABLE_AT))
+@pytest.mark.parametrize(
+    ("cutter", "height", "tilts", "lost"),
+    [("R5L20", -30, (0.5, 1.2), None), (HELD, -10, (0.9, 1.1), False), (HELD, -6, (0.9, 1.1), True)],
+)
+def test_a_fixture_and_a_face_of_the_part_give_the_same_verdicts(cutter, height, tilts, lost):
+    floor = shapes.plane((-300, 300), (-300, 300), (0, 0, height))
     wall = shapes.plane((0, 60), (-40, 40), (8, 0, -5), (-1, 0, 0), (0, 0, 1))
-    options = {"cutters": cutter, "faces": "1", "grid": 9, "tilt": (0.5, math.pi / 2)} | FLAT
-    faced = plan(plate(floor, wall), **options)
-    fixed = plan(plate(), fixtures=[f"table:{TABLE_AT}", f"box:50,80,60@8,-40,-5"], **options)
+    options = {"cutters": cutter, "faces": "1", "grid": 9, "tilt": tilts, "rotation": (0, 0.5)} | FLAT
+    walled = lost is None
+    faced = plan(plate(floor, *([wall] if walled else [])), **options)
+    fixed = plan(plate(), fixtures=[f"table:{height}", *(["box:50,80,60@8,-40,-5"] if walled else [])], **options)
     (one,), (other,) = faced.reaches.values(), fixed.reaches.values()
     assert (one.verdict == other.verdict).all()
-    assert one.lost.any()
-    assert one.reached.any()
+    if walled:
+        assert one.lost.any()
+        assert one.reached.any()
+    else:
+        assert one.lost.all() if lost else one.reached.all()
+    if not one.lost.any():
+        return
     assert {REASONS[r] for r in other.reason[other.lost]} == {"fixture"}
     assert set(fixed.cutters[0].by_reason) == set(REASONS)
-    assert {w.obstacle_face for w in fixed.cutters[0].witnesses} <= {"fixture:table", "fixture:box"}
+    assert {w.obstacle_face for w in fixed.cutters[0].witnesses} & {"fixture:table", "fixture:box"}
 
 
 def moved(fixture, angle, by):
     """A fixture turned about x and shifted."""
     x, y, z, rx, ry, rz = fixture.placement
-    turned = Fixture("", (0, 0, 0, angle, 0, 0)) if False else Fixture("x.stl", (*by, angle, 0, 0))
-    assert not ry and not rz
+    turned = Fixture("x.stl", (*by, angle, 0, 0))
+    assert (ry, rz) == (0, 0)
     return replace(fixture, placement=(*turned.placed(np.array([x, y, z])).tolist(), rx + angle, 0, 0))
 
 
 @pytest.mark.parametrize(("angle", "by"), [(90, (0, 0, 0)), (37, (11, -5, 3)), (-120, (0, 40, 0))])
 def test_part_and_fixtures_moved_together_give_the_same_verdicts(angle, by):
     part = read_part(SAMPLES / "pocket_top.step")
-    held = Fixture.each_of(["box:20,60,45@62,-10,-5", "cylinder:8,30@30,-9,5", Fixture(trimesh.Trimesh(
+    held = Fixture.each_of(["box:20,60,45@60.5,-10,-5", "cylinder:8,50@30,-9,5", Fixture(trimesh.Trimesh(
         *_indexed(vises.vise((60, 40, 20), 12.0))), name="vise")])  # fmt: skip
-    options = {"cutters": "R5L30", "spacing": 4.0} | FLAT
+    options = {"cutters": "R9L30", "spacing": 4.0, "tilt": (0, 0.2)} | FLAT
     one = plan(part, fixtures=held, **options)
     shape = put(part.shape, math.radians(angle), (1, 0, 0), by)
     other = plan(shape, fixtures=[moved(each, angle, by) for each in held], **options)
@@ -218,7 +226,9 @@ def test_nothing_lies_safe_within_a_fixture(pocket):
 
 def test_cells_that_are_outside_are_so(pocket):
     """The grid about the part against the winding numbers, among fixtures that reach far beyond it."""
-    around = pocket.clamped(["table:-3", "box:30,90,60@61,-20,-2", "cylinder:9,20@30,-10,1", "box:9,9,9@300,0,0,0,0,40"]).around
+    around = pocket.clamped(
+        ["table:-3", "box:30,90,60@61,-20,-2", "cylinder:9,20@30,-10,1", "box:9,9,9@300,0,0,0,0,40"]
+    ).around
     obstacles = around.may_be
     assert not obstacles.solids.whole
     assert 0.05 < obstacles.solids.cell.mean() < 0.95
@@ -235,7 +245,7 @@ def test_cells_that_are_outside_are_so(pocket):
 
 @pytest.mark.parametrize(
     ("fixture", "depth"),
-    [("box:50,30,10@5,5,-8.5", 1.5), ("box:1,1,80@20,15,-30", 0.5), ("box:200,200,200@-100,-100,-100", 80), ("table:4", 4.0),
+    [("box:50,30,10@5,5,-8.5", 1.5), ("box:1,1,80@20,15,-30", 10), ("box:200,200,200@-100,-100,-100", 100), ("table:4", 4.0),
      ("cylinder:3,50@0,15,5", 3.0)],
 )  # fmt: skip
 def test_a_fixture_in_the_part_is_refused_with_its_depth(fixture, depth):
@@ -243,7 +253,7 @@ def test_a_fixture_in_the_part_is_refused_with_its_depth(fixture, depth):
     with pytest.raises(FixtureError, match=r"fixture:\w+ and the part stand .* mm deep in each other at") as error:
         plan(part, cutters="R4L12", fixtures=fixture, **FLAT)
     told = float(str(error.value).split("stand ")[1].split(" mm")[0])
-    assert told == pytest.approx(depth, rel=0.06)
+    assert told == pytest.approx(depth, rel=0.02)
 
 
 @pytest.mark.parametrize("gap", [0.0, 1e-9, -0.009, 0.5])
@@ -257,7 +267,7 @@ def test_fixtures_may_touch_the_part(gap):
 def test_a_fixture_through_a_sheet_has_no_depth_but_one_around_it_has():
     sheet = shapes.shell(shapes.plane((-20, 20), (-20, 20)))
     assert plan(sheet, cutters="R4L12", grid=5, fixtures="box:5,5,5@0,0,0", **FLAT).plan.fixtures
-    with pytest.raises(FixtureError, match="stand 2.5 mm deep"):
+    with pytest.raises(FixtureError, match=r"stand 2\.5 mm deep"):
         plan(sheet, cutters="R4L12", grid=5, fixtures="box:5,5,5@0,0,-2.5", **FLAT)
 
 

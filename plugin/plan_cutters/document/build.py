@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from cad_io import Part, SurfaceSamples
 from cad_io.kernel.assembly import component_of
 from plan_cutters import __version__
+from plan_cutters.document.fixtures import fixture_notes
 from plan_cutters.document.frozen import posture, vector
 from plan_cutters.document.model import (
     CutterEntry,
@@ -215,7 +216,7 @@ def notes(scene: Scene, options: Options, samples: SurfaceSamples, cutters: Sequ
             "the obstacle triangles could not be made to follow the surface more closely."
         )
     notes += _around_notes(scene.part, scene.around)
-    notes += [f"{each.name}: {note}." for each in scene.around.fixtures for note in each.notes]
+    notes += fixture_notes(scene.around.fixtures)
     return notes
 
 

@@ -1,7 +1,9 @@
 """Fixtures, as the plan file has them."""
 
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from cad_io import Part
 from cad_io.read.mesh import Mesh
 from plan_cutters.document.model import FixtureEntry
 from plan_cutters.scene.surroundings import Standing
@@ -23,3 +25,13 @@ def fixture_entry(standing: Standing) -> FixtureEntry:
         watertight=standing.body is not None,
         notes=list(standing.notes),
     )
+
+
+def fixture_notes(fixtures: Sequence[Standing]) -> Iterator[str]:
+    """What the plan must say of fixtures."""
+    for each in fixtures:
+        for note in each.notes:
+            yield f"{each.name}: {note}."
+    drawn = [each.name for each in fixtures if not isinstance(each.source, Part)]
+    if drawn:
+        yield f"Only the GLB model shows what is no CAD body: {', '.join(drawn)}."

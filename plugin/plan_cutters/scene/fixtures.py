@@ -26,6 +26,8 @@ from plan_cutters.scene.surroundings import Standing, Surroundings, surroundings
 
 #: A table reaches this much farther than the part, mm: as far as a cutter may.
 TABLE = 2000.0
+#: Of a table, models show this much beyond the part, as a share of its size.
+_SHOWN = 0.1
 #: Sides of a cylinder, at most.
 _SIDES = 720
 
@@ -104,7 +106,7 @@ def joined(around: Surroundings, fixtures: Sequence[Fixture], chord: float, kept
     standing, bodies = [], []
     for number, fixture in enumerate(fixtures, 1):
         body = _body(fixture, chord, near, kept)
-        standing.append(_standing(-number, fixture, body, read(fixture, kept)))
+        standing.append(_standing(-number, fixture, body, read(fixture, kept), near))
         bodies.append(body)
     may_be = _together(around.may_be, standing, [body.may_be for body in bodies], near)
     surely = may_be
@@ -113,15 +115,18 @@ def joined(around: Surroundings, fixtures: Sequence[Fixture], chord: float, kept
     return replace(around, may_be=may_be, surely=surely, fixtures=tuple(standing), alone=around)
 
 
-def _standing(number: int, fixture: Fixture, body: _Body, source: Part | Mesh | None) -> Standing:
+def _standing(number: int, fixture: Fixture, body: _Body, source: Part | Mesh | None, near: Floats) -> Standing:
     vertex = fixture.placed(body.surely.triangles.vertex)
     whole = Obstacles(replace(body.surely.triangles, vertex=vertex), body.surely.weight)
     enclosing = Body((number,), (1,), True, np.zeros((0, 3, 3)))
     notes = list(body.notes)
     if isinstance(source, Mesh) and not fixture.chord_error:
         notes.append("how far it is from what it stands for is not known: it counts as exact")
+    shown = whole.triangles.vertex
+    if fixture.kind == "table":
+        shown = fixture.placed(_slab(fixture, near, _SHOWN * float(np.ptp(near, axis=0).max())))
     return Standing(number, fixture, source, whole, enclosing if body.surely.weight.any() else None, body.missing,
-                    tuple(notes))  # fmt: skip
+                    tuple(notes), shown)  # fmt: skip
 
 
 def _together(own: Obstacles, standing: Sequence[Standing], bodies: Sequence[Obstacles], near: Floats) -> Obstacles:
@@ -190,12 +195,16 @@ def _of_mesh(mesh: Mesh, error: float) -> _Body:
 
 def _table(fixture: Fixture, near: Floats) -> _Body:
     """All below a height, as a slab wide enough for any cutter at the part."""
+    return _solid(_slab(fixture, near, TABLE), 0.0)
+
+
+def _slab(fixture: Fixture, near: Floats, beyond: float) -> Floats:
+    """A table in its own frame, so far beyond the part as asked, mm, and as thick."""
     corners = np.array([[near[i, 0], near[j, 1], near[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
     own = (corners - fixture.shift) @ fixture.rotation
-    half = TABLE + float(np.abs(own[:, :2]).max())
-    (height,) = fixture.sizes
-    low, high = (-half, -half, min(height, float(own[:, 2].min())) - TABLE), (half, half, height)
-    return _solid(box(np.array(low), np.array(high)), 0.0)
+    low, high = own.min(axis=0) - beyond, own.max(axis=0) + beyond
+    (high[2],) = fixture.sizes
+    return box(np.append(low[:2], min(low[2], high[2] - beyond)), high)
 
 
 def _word(fixture: Fixture, chord: float) -> _Body:

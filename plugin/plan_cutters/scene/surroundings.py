@@ -39,6 +39,8 @@ class Standing(Record):
         Faces of it that stand in the way only as a guess, with the reason and what stands in for each.
     notes : tuple of str
         What the plan must say of it.
+    shown : (n, 3, 3) float
+        Triangles to draw of it, mm.
     """
 
     number: int
@@ -48,6 +50,7 @@ class Standing(Record):
     body: Body | None
     missing: tuple[tuple[str, str, StandIn], ...]
     notes: tuple[str, ...]
+    shown: Floats
 
     @property
     def name(self) -> str:
