@@ -12,6 +12,7 @@ from plan_cutters.domain.answers import answers_of
 from plan_cutters.domain.checks import choice, flag, number, shown, whole
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.drawer import builtin
+from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange, unit
@@ -81,6 +82,9 @@ class Options:
         Of the bare flat and ball ends whose largest radius is asked for.
     unit : str, optional
         Length unit to take instead of the part's own, one of `cad_io.units.UNITS`.
+    fixtures : tuple of Fixture
+        What holds the part: obstacles, never targets. May be given as texts such as `vise.step@0,0,-20` or `table:-5`, as
+        trimesh meshes and shapes of a kernel or CAD host, or as one of these.
 
     Raises
     ------
@@ -120,6 +124,7 @@ class Options:
     answers: tuple[str, ...] = ()
     length_over_radius: float = 10.0
     unit: str | None = None
+    fixtures: tuple[Fixture, ...] = ()
 
     def __post_init__(self) -> None:
         self._check_kinds()
@@ -173,6 +178,7 @@ class Options:
         take(holder_clearance=number(self.holder_clearance, "holder clearance"))
         if self.holder is not None:
             take(holder=Holder.of(self.holder))
+        take(fixtures=Fixture.each_of(self.fixtures))
         choice(self.faces, "faces")
         choice(self.ignore, "ignore")
         if self.grid is not None:

@@ -137,8 +137,12 @@ def prepare(
         _ = whole.sewn
     with clock.stage("orient"):
         scene = Scene.of(
-            stands, setup=options.setup, flip=options.flip, tolerance=options.tolerance, ignore=options.ignore
-        )
+            stands, setup=options.setup, flip=options.flip, tolerance=options.tolerance, ignore=options.ignore,
+            fixtures=options.fixtures,
+        )  # fmt: skip
+    if scene.fixtures:
+        with clock.stage("fixtures"):
+            scene.read_fixtures(read_timeout)
     with clock.stage("sample"):
         chosen = choose(whole, options.faces, scene.ignored, scene.ignore)
         spacing: Spacing = options.spacing
@@ -165,7 +169,7 @@ def prepare(
         ahead()
         warm(contacts_of(samples), cutters[0], conditions)
     with clock.stage("bodies"):
-        within = buried(samples, scene.orientation, around.bodies, around.surely, scene.tolerance)
+        within = buried(samples, scene.orientation, around.enclosing, around.surely, scene.tolerance)
     return Prepared(scene, options, chosen, spacing, samples, surface_class, region, within, conditions, cutters)
 
 
@@ -195,8 +199,8 @@ def _judged(
     seconds = time.perf_counter() - began
     found = witnesses(samples, reach, cutter, ready.conditions, buried=ready.buried)
     marched = march_differs(samples, convex, ready.region, reach.interference_free)
-    doubtful = ready.conditions.around.doubtful
-    return Judged(reach, cutter_entry(cutter, samples, reach, found, marched, seconds, doubtful=doubtful,
+    around = ready.conditions.around
+    return Judged(reach, cutter_entry(cutter, samples, reach, found, marched, seconds, around=around,
                                        slack=ready.conditions.light(cutter).slack))  # fmt: skip
 
 

@@ -185,7 +185,7 @@ def _closer(case: Case, asked: float) -> Case:
     scene = replace(ready.scene, asked=asked)
     around = scene.surround(jobs=ready.conditions.jobs)
     conditions = replace(ready.conditions, around=around, tolerance=scene.tolerance)
-    within = buried(ready.samples, scene.orientation, around.bodies, around.surely, scene.tolerance)
+    within = buried(ready.samples, scene.orientation, around.enclosing, around.surely, scene.tolerance)
     return replace(case, ready=replace(ready, scene=scene, conditions=conditions, buried=within))
 
 

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
 #: Options of the interface that later versions will have: asked for now, they must not be ignored.
 _NOT_BUILT = {
-    "fixture": "fixtures are not read yet",
     "cluster": "clusters are not used yet; --jobs gives threads on this machine",
 }
 
@@ -136,7 +135,13 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, asked: bool) -> No
     metavar="SELECT",
     help="Faces that are neither machined nor obstacles, as construction geometry; the same words. Repeatable.",
 )
-@click.option("--fixture", multiple=True, metavar="FILE", hidden=True)
+@click.option(
+    "--fixture",
+    multiple=True,
+    metavar="FILE[@X,Y,Z[,RX,RY,RZ]][:UNIT]",
+    help="A body in the way: STEP, IGES, BREP, STL, OBJ, PLY, GLB, or `box:X,Y,Z`, `cylinder:R,H`, `table:Z`, placed in part "
+    "coordinates (mm, degrees). Repeatable.",
+)
 @click.option("--grid", type=int, metavar="N", help="N x N parameter samples a face.")
 @click.option(
     "--spacing",
@@ -320,6 +325,7 @@ def _options(given: dict[str, Any]) -> "Options":
         answers=given["answers"],
         length_over_radius=given["length_over_radius"],
         unit=given["unit"],
+        fixtures=given["fixture"],
         **more,
     )
 

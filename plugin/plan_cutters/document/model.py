@@ -56,6 +56,7 @@ class Effective(Frozen):
         default=0.0, description="room asked of neck, shank and holder, unless a cutter says otherwise"
     )
     unit: str | None = Field(default=None, description="length unit taken instead of the file's")
+    fixtures: list[str] = Field(default=[], description="as on a command line: file or word, placement, unit")
     machine: str
     setup: Vector
     faces: str
@@ -133,7 +134,7 @@ class WitnessEntry(Frozen):
     point: Vector
     face: str
     reason: str
-    obstacle_face: str | None
+    obstacle_face: str | None = Field(description="or `fixture:NAME`")
     obstacle_point: Vector | None = Field(description="a point of that face in the cutter at the best posture")
     best_posture: Posture | None
     depth_mm: float | None = Field(description="how deep the part reaches into the cutter at the best posture")
@@ -229,6 +230,22 @@ class LibraryEntry(Frozen):
     unused: list[UnusedEntry]
 
 
+class FixtureEntry(Frozen):
+    """A body that is in the way and no part of what is machined."""
+
+    name: str = Field(description="as `obstacle_face` has it: fixture:NAME")
+    file: str | None = Field(description="null for words and objects")
+    sha256: str | None
+    unit: str | None = Field(description="of lengths in the file; null: as the file says")
+    placement: tuple[float, float, float, float, float, float] = Field(
+        description="x, y, z, mm, and turns about the part's fixed x, then y, then z axis, deg, which come before the shift"
+    )
+    triangles: int
+    chord_error_mm: float = Field(description="how far they are from what they stand for; of a mesh, as stated")
+    watertight: bool = Field(description="it encloses something; else only its surface is in the way")
+    notes: list[str]
+
+
 class CutterEntry(Verdicts):
     id: str
     name: str
@@ -319,6 +336,7 @@ class Plan(Frozen):
     missing: list[MissingEntry]
     reasons: list[str] = Field(description="what `reason_ID` in samples.npz counts in")
     machine: MachineEntry
+    fixtures: list[FixtureEntry] = Field(default=[], description="what holds the part: obstacles, never targets")
     libraries: list[LibraryEntry] = Field(default=[], description="tool libraries that were read")
     cutters: list[CutterEntry]
     selected: str | None

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from plan_cutters.document.answers import mend_entry, radius_entry, stick_out_entry
 from plan_cutters.document.build import area_notes, degrees, face_entries, missing_entries, notes, part_info, versions
+from plan_cutters.document.fixtures import fixture_entry
 from plan_cutters.document.frozen import vector
 from plan_cutters.document.libraries import library_entry, source_entry
 from plan_cutters.document.model import (
@@ -48,6 +49,7 @@ def plan_of(
             allowance_mm=options.allowance,
             holder_clearance_mm=options.holder_clearance,
             unit=options.unit,
+            fixtures=[each.text for each in scene.fixtures],
             machine=options.machine.name,
             setup=scene.setup,
             faces=choice.asked,
@@ -82,6 +84,7 @@ def plan_of(
         missing=missing_entries(part, around),
         reasons=list(REASONS),
         machine=machine_entry(options.machine, ready.conditions.kinematics),
+        fixtures=[fixture_entry(each) for each in around.fixtures],
         libraries=[library_entry(library) for library in options.libraries],
         cutters=list(entries),
         selected=selected,
@@ -94,7 +97,7 @@ def plan_of(
             *choice.notes,
             *area_notes(entries, doubtful=around.doubtful),
         ],
-        legend=PALETTE,
+        legend=PALETTE if around.fixtures else {word: PALETTE[word] for word in PALETTE if word != "fixture"},
         run=Run(time=started.isoformat(timespec="seconds"), seconds={}),
     )
 
@@ -138,7 +141,7 @@ def completed(
             "beyond_setup": lost_to_all,
             "singular": _singular(ready, reaches.get(entry.id)),
             "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
-            "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples),
+            "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, ready.scene.around),
             "mend": None if mend is None else mend_entry(mend),
         }
         found.append(entry.model_copy(update=more))
