@@ -17,7 +17,7 @@ from plan_cutters.answers.ask import ask
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock, Progress
 from plan_cutters.document.model import AreaEntry, CutterEntry, SetupEntry
-from plan_cutters.document.plan import completed, plan_of, selection
+from plan_cutters.document.plan import Elsewhere, completed, plan_of, selection
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
@@ -37,6 +37,7 @@ from plan_cutters.stages.access import witnesses
 from plan_cutters.stages.between import between
 from plan_cutters.stages.classify import classify, regions
 from plan_cutters.stages.decompose import march_differs
+from plan_cutters.stages.elsewhere import in_setup
 from plan_cutters.stages.judge import judge
 from plan_cutters.stages.posture_maps import posture_maps
 from plan_cutters.stages.select_cutters import ranked
@@ -106,8 +107,9 @@ def run(
             # In the order of rank, whatever the order of work.
             earlier = {c: judged[c].reach for c in ready.cutters if c in judged}
             judged[cutter] = _judged(ready, cutter, earlier, tell)
+    elsewhere = [(axis, _elsewhere(ready, judged, axis, clock)) for axis in options.other_setups]
     answers = ask(ready, {cutter: each.reach for cutter, each in judged.items()}, clock.stage)
-    result = assemble(ready, judged, clock, started, answers)
+    result = assemble(ready, judged, clock, started, answers, elsewhere)
     if not options.posture_maps:
         return result
     with clock.stage("maps") as tell:
@@ -119,6 +121,17 @@ def run(
             ready.samples, cutter, ready.conditions, reach, part=ready.scene.part.sha256 or "", progress=tell
         )
     return replace(result, plan=clock.stamp(result.plan), maps=maps)
+
+
+def _elsewhere(
+    ready: Prepared, judged: Mapping[Cutter, "Judged"], axis: tuple[float, float, float], clock: Clock
+) -> dict[str, Reach]:
+    """What each cutter reaches in another setup."""
+    found = {}
+    for cutter, each in judged.items():
+        with clock.stage("setups") as tell:
+            found[cutter.id] = in_setup(ready, cutter, axis, each.reach, progress=tell)
+    return found
 
 
 def prepare(
@@ -207,13 +220,14 @@ def _judged(
 def assemble(
     ready: Prepared, judged: Mapping[Cutter, Judged], clock: Clock | None = None,
     started: datetime.datetime | None = None, answers: Answers | None = None,
+    elsewhere: Sequence[Elsewhere] = (),
 ) -> Result:  # fmt: skip
     """The result of all cutters: the choice, the area between the samples for the one chosen, what was answered, the plan."""
     clock, answers = clock or Clock(), answers or Answers()
     reaches = {cutter.id: each.reach for cutter, each in judged.items()}
     within = within_limits(ready.samples, ready.cutters, ready.conditions)
     beyond = (ready.samples.unjudged < 0) & ~within & (ready.buried < 0)
-    entries = completed([judged[c].entry for c in ready.cutters], ready, answers, reaches, beyond)
+    entries = completed([judged[c].entry for c in ready.cutters], ready, answers, reaches, beyond, elsewhere)
     selected, chosen = selection(entries)
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
     best = selected or next((e.id for e in entries if not (e.inaccessible or e.undecided)), None)
@@ -238,6 +252,7 @@ def assemble(
         reaches,
         ready.options.postures,
         ready.conditions.kinematics,
+        tuple((axis, dict(found)) for axis, found in elsewhere),
         answers,
     )
 

@@ -112,15 +112,18 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, asked: bool) -> No
 @click.option(
     "--machine",
     default="unlimited",
-    metavar="NAME",
-    help="`unlimited` or `tilt:DEG`, a limit of the tool axis from the setup axis.  [default: unlimited]",
+    metavar="NAME|FILE",
+    help="`unlimited`; `tilt:DEG`, a limit of the tool axis from the setup axis; a built-in machine (plan-cutters-machines lists "
+    "them); or a machine file: TOML, JSON, FreeCAD .fcm, LinuxCNC .ini, Fusion .mch, MTConnect.  [default: unlimited]",
 )
 @click.option(
     "--setup",
     type=_Vector(),
-    default="0,0,1",
+    multiple=True,
+    default=["0,0,1"],
     metavar="X,Y,Z",
-    help="Direction of the part along the machine's spindle.  [default: 0,0,1]",
+    help="Direction of the part along the machine's spindle. Repeatable: every cutter is judged in each, and what they reach "
+    "together is said.  [default: 0,0,1]",
 )
 @click.option(
     "--faces",
@@ -283,7 +286,6 @@ def command(parts: tuple[str, ...], **given: Any) -> int:
 def _options(given: dict[str, Any]) -> "Options":
     from plan_cutters.domain.cutter import Cutter
     from plan_cutters.domain.holder import Holder
-    from plan_cutters.domain.machine import Machine
     from plan_cutters.domain.posture import PostureRange
     from plan_cutters.errors import OptionError
     from plan_cutters.library.records import Library
@@ -309,8 +311,9 @@ def _options(given: dict[str, Any]) -> "Options":
         holder=None if isinstance(holder, str) else holder,
         allowance=given["allowance"],
         holder_clearance=given["holder_clearance"],
-        machine=Machine.parse(given["machine"]),
-        setup=given["setup"],
+        machine=given["machine"],
+        setup=given["setup"][0],
+        other_setups=given["setup"][1:],
         faces=given["faces"],
         ignore=given["ignore"],
         grid=given["grid"],

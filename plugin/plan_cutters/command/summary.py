@@ -40,7 +40,7 @@ def summary(plan: "Plan") -> None:
     console.print(f"{plan.part.file or 'part'}: {size} mm, {plan.part.faces} faces, {targets} to machine, "
                   f"{f'{ignored} ignored, ' if ignored else ''}"
                   f"{plan.samples.count} samples, gaps up to {plan.samples.max_gap_mm:.3g} mm")  # fmt: skip
-    console.print(f"Machine {plan.machine.name}, setup {','.join(f'{x:.4g}' for x in plan.effective.setup)}.")
+    console.print(f"Machine {plan.machine.name}, setup {_axis(plan.effective.setup)}.")
     for line in libraries(plan):
         console.print(line)
     table, names = Table(box=None, pad_edge=False), short_names(plan)
@@ -82,15 +82,30 @@ def summary(plan: "Plan") -> None:
 
 def setups(plan: "Plan") -> list[str]:
     """What no cutter can reach in this setup, which cutter does the rest, and how much is within the limit in other setups."""
+    lines = []
+    count = 1 + len(plan.effective.other_setups)
+    if count > 1 and plan.selected_over_setups is None:
+        best = min(plan.cutters, key=lambda c: c.lost_in_all or 0)
+        lines.append(
+            f"Over the {count} setups no cutter reaches every sample: {best.id} loses {best.lost_in_all} in all of them."
+        )
+    elif count > 1:
+        best = next(c for c in plan.cutters if c.id == plan.selected_over_setups)
+        each = "; ".join(f"{_axis(s.axis)}: {s.interference_free + s.accessible}" for s in best.setups)
+        lines.append(f"Over the {count} setups {best.id} reaches every sample ({each}).")
     lost = max((c.beyond_setup for c in plan.cutters), default=0)
     if not lost:
-        return []
-    lines = [f"Beyond this setup: the axis limit loses {lost} of {plan.samples.count} samples for every cutter."]
+        return lines
+    lines += [f"Beyond this setup: the axis limit loses {lost} of {plan.samples.count} samples for every cutter."]
     if plan.selected_for_setup:
         lines.append(f"For this setup: {plan.selected_for_setup}, which leaves nothing else.")
-    others = ", ".join(f"{','.join(f'{x:g}' for x in each.axis)} {_percent(each.share)}" for each in plan.setups[1:])
+    others = ", ".join(f"{_axis(each.axis)} {_percent(each.share)}" for each in plan.setups[1:])
     lines.append(f"Area within the limit by setup axis: {_percent(plan.setups[0].share)} now; {others}.")
     return lines
+
+
+def _axis(axis: Sequence[float]) -> str:
+    return ",".join(f"{x:.4g}" for x in axis)
 
 
 def short_names(plan: "Plan") -> dict[str, str]:

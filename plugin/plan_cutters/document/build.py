@@ -67,7 +67,8 @@ def degrees(pair: tuple[float, float]) -> tuple[float, float]:
     return round(float(np.degrees(pair[0])), 9), round(float(np.degrees(pair[1])), 9)
 
 
-def _counts(verdict: NDArray[np.uint8]) -> dict[str, Any]:
+def counts(verdict: NDArray[np.uint8]) -> dict[str, Any]:
+    """How many samples have each verdict."""
     names = {INTERFERENCE_FREE: "interference_free", ACCESSIBLE: "accessible", INACCESSIBLE: "inaccessible",
              UNDECIDED: "undecided", UNJUDGED: "unjudged"}  # fmt: skip
     return {name: int((verdict == code).sum()) for code, name in names.items()}
@@ -78,9 +79,9 @@ def cutter_entry(
     *, around: Surroundings, slack: float,
 ) -> CutterEntry:  # fmt: skip
     """What a cutter reaches, and why not where it does not, among what is `around`; `slack` as in `Assembly`."""
-    counts = _counts(reach.verdict)
+    mine = counts(reach.verdict)
     # What is missing from the obstacles can only be in the way of more.
-    feasible = False if counts["inaccessible"] else None if counts["undecided"] or around.doubtful else True
+    feasible = False if mine["inaccessible"] else None if mine["undecided"] or around.doubtful else True
     lost, unsure = reach.verdict == INACCESSIBLE, reach.verdict == UNDECIDED
     return CutterEntry(
         id=cutter.id,
@@ -107,12 +108,10 @@ def cutter_entry(
         slack_mm=slack,
         feasible=feasible,
         march_differs=march_differs,
-        **counts,
+        **mine,
         by_reason={name: int((lost & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
         undecided_by_reason={name: int((unsure & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
-        faces={
-            f"F{n}": Verdicts(**_counts(reach.verdict[samples.face == n])) for n in np.unique(samples.face).tolist()
-        },
+        faces={f"F{n}": Verdicts(**counts(reach.verdict[samples.face == n])) for n in np.unique(samples.face).tolist()},
         witnesses=[_witness_entry(w, samples, around) for w in found],
         seconds=seconds,
     )
@@ -210,6 +209,11 @@ def notes(scene: Scene, options: Options, samples: SurfaceSamples, cutters: Sequ
         notes.append("No machine was given: any tool axis counts as possible.")
     if not scene.orientation.confident:
         notes.append("Which side is material is a guess; --flip machines the other side.")
+        if other := scene.turned:
+            notes.append(
+                f"The setup axis decides the side of open faces: with 0,0,1 as setup {listed(other)} would be machined on the "
+                "other side."
+            )
     if scene.tolerance > 1.001 * scene.asked:
         notes.append(
             f"The tolerance was raised from {scene.asked:g} to {scene.tolerance:.3g} mm: "

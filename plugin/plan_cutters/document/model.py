@@ -59,6 +59,7 @@ class Effective(Frozen):
     fixtures: list[str] = Field(default=[], description="as on a command line: file or word, placement, unit")
     machine: str
     setup: Vector
+    other_setups: list[Vector] = Field(default=[], description="in which every cutter was judged, too")
     faces: str
     ignore: list[str] = Field(default=[], description="faces that are neither targets nor obstacles, as asked for")
     target_faces: list[str]
@@ -195,6 +196,12 @@ class SetupEntry(Frozen):
     share: float = Field(description="of the judged samples' area, 0 to 1")
 
 
+class SetupReach(Verdicts):
+    """What a cutter reaches in one setup."""
+
+    axis: Vector
+
+
 class SourceEntry(Frozen):
     """Where a tool library lists a cutter."""
 
@@ -274,6 +281,12 @@ class CutterEntry(Verdicts):
     faces: dict[str, Verdicts]
     witnesses: list[WitnessEntry]
     area: AreaEntry | None = Field(default=None, description="of the selected cutter; null where it was not asked for")
+    setups: list[SetupReach] = Field(
+        default=[], description="where several setups were asked for: what it reaches in each, the plan's own first"
+    )
+    lost_in_all: int | None = Field(
+        default=None, description="samples that it reaches in none of these setups; null where one was asked for"
+    )
     beyond_setup: int = Field(
         default=0,
         description="samples that the axis limit alone loses for every cutter in this setup, as an underside's",
@@ -340,6 +353,10 @@ class Plan(Frozen):
     libraries: list[LibraryEntry] = Field(default=[], description="tool libraries that were read")
     cutters: list[CutterEntry]
     selected: str | None
+    selected_over_setups: str | None = Field(
+        default=None,
+        description="where several setups were asked for: the first cutter that reaches every judged sample in one or another",
+    )
     selected_for_setup: str | None = Field(
         default=None,
         description="the first cutter that leaves nothing but what the axis limit loses for every cutter in this setup; null "

@@ -2,12 +2,22 @@
 
 import datetime
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.document.answers import mend_entry, radius_entry, stick_out_entry
-from plan_cutters.document.build import area_notes, degrees, face_entries, missing_entries, notes, part_info, versions
+from plan_cutters.document.build import (
+    area_notes,
+    counts,
+    degrees,
+    face_entries,
+    missing_entries,
+    notes,
+    part_info,
+    versions,
+)
 from plan_cutters.document.fixtures import fixture_entry
 from plan_cutters.document.frozen import vector
 from plan_cutters.document.libraries import library_entry, source_entry
@@ -21,6 +31,7 @@ from plan_cutters.document.model import (
     SampleCounts,
     Selection,
     SetupEntry,
+    SetupReach,
 )
 from plan_cutters.document.palette import PALETTE
 from plan_cutters.domain.answers import Answers
@@ -52,6 +63,7 @@ def plan_of(
             fixtures=[each.text for each in scene.fixtures],
             machine=options.machine.name,
             setup=scene.setup,
+            other_setups=list(options.other_setups),
             faces=choice.asked,
             ignore=list(choice.ignore),
             target_faces=[f"F{n}" for n in choice.targets],
@@ -89,6 +101,7 @@ def plan_of(
         cutters=list(entries),
         selected=selected,
         selection=selection,
+        selected_over_setups=None if around.doubtful else next((e.id for e in entries if e.lost_in_all == 0), None),
         selected_for_setup=None if selected else for_setup(entries),
         setups=list(setups),
         largest_radius=[radius_entry(found, samples) for found in answers.radius_maps],
@@ -120,6 +133,22 @@ def machine_entry(machine: Machine, kinematics: Kinematics | None) -> MachineEnt
     return MachineEntry(name=machine.name, tilt_limit_deg=limit, rotary=rotary, notes=list(machine.notes))
 
 
+#: A setup axis, and what each cutter reaches there by its id.
+Elsewhere = tuple[tuple[float, float, float], Mapping[str, Reach]]
+
+
+def _over_setups(
+    ready: Prepared, name: str, reaches: Mapping[str, Reach], elsewhere: Sequence[Elsewhere]
+) -> dict[str, Any]:
+    """What a cutter reaches in each of several setups, and in none of them."""
+    if not elsewhere:
+        return {}
+    each = [(ready.scene.setup, reaches[name]), *((axis, found[name]) for axis, found in elsewhere)]
+    lost = np.logical_and.reduce([reach.lost for _, reach in each])
+    entries = [SetupReach(axis=axis, **counts(reach.verdict)) for axis, reach in each]
+    return {"setups": entries, "lost_in_all": int(lost.sum())}
+
+
 def _singular(ready: Prepared, reach: Reach | None) -> int | None:
     """How many of the postures found lie near the rotary axis next to the part."""
     kinematics = ready.conditions.kinematics
@@ -130,7 +159,7 @@ def _singular(ready: Prepared, reach: Reach | None) -> int | None:
 
 def completed(
     entries: Sequence[CutterEntry], ready: Prepared, answers: Answers, reaches: Mapping[str, Reach],
-    beyond: NDArray[np.bool_],
+    beyond: NDArray[np.bool_], elsewhere: Sequence[Elsewhere] = (),
 ) -> list[CutterEntry]:  # fmt: skip
     """The entries of cutters with where they are listed, what the limits lose for all (n,), and what was answered about them."""
     found, sources, samples = [], ready.options.sources, ready.samples
@@ -138,6 +167,7 @@ def completed(
     for entry in entries:
         stick_out, mend = answers.stick_outs.get(entry.id), answers.mends.get(entry.id)
         more = {
+            **_over_setups(ready, entry.id, reaches, elsewhere),
             "beyond_setup": lost_to_all,
             "singular": _singular(ready, reaches.get(entry.id)),
             "sources": [source_entry(*place) for place in sources.get(entry.id, ())],

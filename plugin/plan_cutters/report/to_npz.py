@@ -35,6 +35,11 @@ def write_npz(result: Any, _split: object, path: Path) -> None:
         if result.kinematics is not None:
             angles, taken, _ = result.kinematics.positions(reach.axis)
             arrays[f"rotary_{name}"], arrays[f"rotary_taken_{name}"] = np.degrees(angles), taken
+    if result.elsewhere:
+        arrays["setups"] = np.array([result.scene.setup, *(axis for axis, _ in result.elsewhere)])
+        for name, reach in result.reaches.items():
+            each = [reach, *(found[name] for _, found in result.elsewhere)]
+            arrays[f"reached_in_{name}"] = np.stack([one.reached for one in each], axis=1)
     for name, found in result.answers.stick_outs.items():
         if found.each is not None:
             arrays[f"stick_out_{name}"] = found.each

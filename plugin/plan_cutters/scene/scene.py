@@ -118,6 +118,14 @@ class Scene(Record):
         return scene
 
     @property
+    def turned(self) -> tuple[str, ...]:
+        """Faces whose side is a guess towards the setup axis, and would be the other one with the part's own Z as setup."""
+        other = orient(self.part, towards=(0.0, 0.0, 1.0), flip=self.flip).sign
+        return tuple(
+            f.id for f, one, two in zip(self.part.faces, self.orientation.sign, other, strict=True) if one != two
+        )
+
+    @property
     def options(self) -> dict[str, Any]:
         """What was asked for, as options of a plan."""
         return {"setup": self.setup, "flip": self.flip, "ignore": self.ignore, "tolerance": self.asked,
