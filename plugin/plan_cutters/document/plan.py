@@ -71,7 +71,7 @@ def plan_of(
         cutters=list(entries),
         selected=selected,
         selection=selection,
-        largest_radius=[radius_entry(found, samples) for found in answers.radius_maps],
+        largest_radius=[radius_entry(found, samples, doubtful=around.doubtful) for found in answers.radius_maps],
         notes=[
             *notes(scene, options, samples, ready.cutters),
             *choice.notes,
@@ -89,12 +89,12 @@ def _sources(options: Options) -> list[str]:
 
 def completed(entries: Sequence[CutterEntry], ready: Prepared, answers: Answers) -> list[CutterEntry]:
     """The entries of cutters with where they are listed, and what was answered about them."""
-    found, sources, samples = [], ready.options.sources, ready.samples
+    found, sources, samples, doubtful = [], ready.options.sources, ready.samples, ready.conditions.around.doubtful
     for entry in entries:
         stick_out, mend = answers.stick_outs.get(entry.id), answers.mends.get(entry.id)
         more = {
             "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
-            "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples),
+            "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, doubtful=doubtful),
             "mend": None if mend is None else mend_entry(mend),
         }
         found.append(entry.model_copy(update=more))
