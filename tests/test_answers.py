@@ -8,6 +8,7 @@ import pytest
 from tool_files import fusion, write_json
 
 from plan_cutters import Cutter, Options, plan
+from plan_cutters.command.summary import _radius, _up
 from plan_cutters.domain.answers import ANSWERS, answers_of
 from plan_cutters.errors import LibraryError, OptionError
 from plan_cutters.library import read_library
@@ -22,7 +23,7 @@ HELD = [
 
 @pytest.fixture(scope="module")
 def answered():
-    return plan(PART, cutters=HELD, grid=21, area_budget=0, answers="all", length_over_radius=8)
+    return plan(PART, cutters=HELD, grid=21, area_budget=0, answers="all,stick-out-map", length_over_radius=8)
 
 
 def test_the_plan_has_all_that_was_asked(answered, tmp_path):
@@ -82,7 +83,19 @@ def test_lengths_that_no_cutter_has(ratio):
 def test_words_of_answers():
     assert answers_of(None) == answers_of("") == ()
     assert answers_of(" Mend , stick-out ") == ("stick-out", "mend")
-    assert answers_of(("all",)) == ANSWERS
+    assert answers_of(("all",)) == ("stick-out", "radius", "mend")
+    assert answers_of("all,stick-out-map") == ANSWERS
+
+
+def test_what_is_said_is_never_rounded_the_wrong_way():
+    assert [_radius(r) for r in (1.94996, 4.9458, 119.91, 0.0123456, 2.0)] == [
+        "R1.94",
+        "R4.94",
+        "R119",
+        "R0.0123",
+        "R2",
+    ]
+    assert [_up(h) for h in (7.8926, 7.89, 12.0, 0.001)] == ["7.90", "7.89", "12.00", "0.01"]
 
 
 def test_where_a_cutter_is_listed(tmp_path):

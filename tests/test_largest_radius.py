@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import reference
 import shapes
-from cad_parts import box, cut, rod
+from cad_parts import ball, box, cut, rod
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
@@ -363,3 +363,12 @@ def test_percentiles_by_equal_areas_are_those_by_number(radii):
     for q, radius in by_number.items():
         assert (found.radius <= radius).mean() >= q / 100 - 1e-9
         assert (found.radius < radius).mean() <= q / 100 + 1e-9
+
+
+def test_a_part_smaller_than_the_usual_least_radius():
+    """A pocket of radius 0.03 in a block of 0.1 mm: balls that fit in it are tried without being asked for."""
+    part = cut(box(0.1, 0.1, 0.05), ball(0.03, (0.05, 0.05, 0.05)))
+    stands = ready(part, cutters="R0.01L0.2", grid=4, faces="all", tolerance=0.0005)
+    found = largest_radius(stands, "ball")
+    assert found.least < 0.01
+    assert 0.03 / 1.02 - 0.0005 < found.radius[found.bottleneck] <= 0.03 + 0.0005

@@ -419,3 +419,14 @@ def test_open_faces_keep_their_side_when_the_setup_turns():
     )
     assert again.cutters[0].feasible
     assert np.allclose(again.samples.normal, ready.samples.normal)
+
+
+def test_what_stays_undecided_is_not_told_to_be_of_no_help():
+    """Under a limit that is not all there is to it, the answer of another axis is that of no limit: in words, too."""
+    _, by, _ = asked(lidded(), "R3L40", machine="tilt:30", faces="all", grid=4)
+    assert by["tilt_limit"].helps is None
+    assert by["setup"].helps is None
+    for change in by.values():
+        assert change.why.startswith("does not help") == (change.helps is False)
+        if change.helps is None and change.asked is None:
+            assert change.why.startswith("is not decided")

@@ -19,8 +19,8 @@ from plan_cutters.scene.threads import Progress, in_chunks
 if TYPE_CHECKING:
     from plan_cutters.kernels.radius import Ladder
 
-#: Smallest radius that is looked at unless one is asked for, mm.
-_LEAST = 0.1
+#: Smallest radius that is looked at unless one is asked for, mm; of small parts this share of the largest.
+_LEAST, _SHARE = 0.1, 0.01
 #: Steps and lengths over radius that can be asked for.
 _STEPS, _RATIOS = (0.001, 1.0), (0.1, 1000.0)
 #: Radii that are tried, at most.
@@ -45,8 +45,8 @@ def largest_radius(
     step : float, optional
         By which share each radius that is tried is larger than the one before.
     least, most : float, optional
-        Radii to try, from and to, mm. The least is 0.1 by default, or what the tolerance lets be judged if that is more; the
-        most is half the longest side of the part's box.
+        Radii to try, from and to, mm. The most is half the longest side of the part's box by default; the least is 0.1, or a
+        hundredth of the most if that is less, or what the tolerance lets be judged if that is more.
     progress : callable, optional
         Told how many pieces of the work are done, of how many.
 
@@ -94,8 +94,9 @@ def _cutters(
         raise OptionError(f"step of radii {step:g} must lie between {_STEPS[0]:g} and {_STEPS[1]:g}")
     conditions, part = ready.conditions, ready.scene.part
     finest = 4.0 * conditions.tolerance / min(1.0, ratio) * (1.0 + 1e-9)
-    first = max(_LEAST, finest) if least is None else number(least, "least radius")
-    last = max(first, 0.5 * max(part.size)) if most is None else number(most, "largest radius")
+    half = 0.5 * max(part.size) if most is None else number(most, "largest radius")
+    first = max(min(_LEAST, _SHARE * half), finest) if least is None else number(least, "least radius")
+    last = max(first, half) if most is None else half
     if not 0.0 < first <= last < math.inf:
         raise OptionError(f"radii to try, from {first:g} to {last:g} mm, must be positive and ascend", file=part.file)
     steps = int(math.log(last / first) / math.log1p(step) + 1e-9)

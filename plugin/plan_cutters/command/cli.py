@@ -203,7 +203,8 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, asked: bool) -> No
     default="",
     metavar="LIST",
     help="Answer more: stick-out (how short each cutter can be held), stick-out-map (that for every sample, too), radius (the "
-    "largest flat and ball end that reaches each sample), mend (what would make each cutter that fails feasible), or all.",
+    "largest flat and ball end that reaches each sample), mend (what would make each cutter that fails feasible), or all "
+    "(without the map).",
 )
 @click.option(
     "--length-over-radius",

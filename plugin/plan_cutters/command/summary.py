@@ -156,21 +156,25 @@ def answered(plan: "Plan") -> list[str]:
     for c in plan.cutters:
         found = c.least_stick_out
         if found is not None and found.point is not None:
-            lines.append(f"{c.id} must stand out {found.least_mm:.2f} mm at {_place(found.point)} on {found.face}: "
+            lines.append(f"{c.id} must stand out {_up(found.least_mm)} mm at {_place(found.point)} on {found.face}: "
                          f"a shorter one's holder is stopped by {found.obstacle_face or 'the part'}.")  # fmt: skip
     for each in plan.largest_radius:
-        q = {name: f"R{radius:.3g}" for name, radius in each.percentiles_mm.items()}
-        if not q or each.bottleneck_mm is None or each.bottleneck_point is None:
+        if not each.percentiles_mm or each.bottleneck_mm is None or each.bottleneck_point is None:
             continue
-        where = f"{_place(each.bottleneck_point)} on {each.bottleneck_face}"
-        all_of_it = f"R{each.bottleneck_mm:.3g} reaches every sample" if each.bottleneck_mm else (
+        most = f"{_radius(each.most_mm)}, the largest tried"
+        narrowest = f"{_place(each.bottleneck_point)} on {each.bottleneck_face}"
+        whole = f"{_radius(each.bottleneck_mm)} reaches every sample" if each.bottleneck_mm else (
             f"not even R{each.least_mm:.3g} reaches {each.below} samples"
         )  # fmt: skip
-        least = (
-            f"R{each.most_mm:.3g}, the largest tried" if each.reason is None else f"{where} ({_spoken(each.reason)})"
+        middle = each.percentiles_mm["50"]
+        half = f"takes {_radius(middle)} or more" if middle else f"takes less than R{each.least_mm:.3g}"
+        least = most if each.reason is None else f"{narrowest} ({_spoken(each.reason)})"
+        lines.append(f"Largest {each.shape} end, {each.length_over_radius:g} radii long: {whole}, half of the area {half}; "
+                     f"the narrowest: {least}.")  # fmt: skip
+    if plan.missing and (plan.largest_radius or any(c.least_stick_out for c in plan.cutters)):
+        lines.append(
+            "Stick-outs and largest radii hold unless a face is in the way that is missing from the obstacles."
         )
-        lines.append(f"Largest {each.shape} end, {each.length_over_radius:g} radii long: {all_of_it}, half of the area takes "
-                     f"{q['50']} or more; the narrowest: {least}.")  # fmt: skip
     for c in plan.cutters:
         if c.mend is None:
             continue
@@ -191,7 +195,18 @@ def _held(cutter: "CutterEntry") -> str:
     if found.least_mm is None:
         return found.limited_by
     end = ", flutes end" if found.limited_by == "floor" else ""
-    return f"{found.least_mm:.2f} of {found.longest_mm:g}{end}"
+    return f"{_up(found.least_mm)} of {found.longest_mm:g}{end}"
+
+
+def _up(length: float | None) -> str:
+    """A length that must not be less, rounded up."""
+    return f"{math.ceil(100.0 * (length or 0.0) - 1e-9) / 100.0:.2f}"
+
+
+def _radius(radius: float) -> str:
+    """A radius that must not be more, rounded down to three digits."""
+    digit = 10.0 ** (math.floor(math.log10(radius)) - 2)
+    return f"R{math.floor(radius / digit + 1e-9) * digit:.4g}"
 
 
 def _place(point: Sequence[float]) -> str:

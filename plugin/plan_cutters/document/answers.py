@@ -33,6 +33,7 @@ class StickOutEntry(Frozen):
     posture: Posture | None = Field(description="with the least stick-out, at that sample")
     obstacle_face: str | None = Field(description="in the way of a holder that comes lower at that posture")
     obstacle_point: Vector | None
+    doubtful: bool = Field(default=False, description="obstacles are missing, which might ask for more")
     step_mm: float | None = Field(default=None, description="of the least stick-outs of all samples, in samples.npz")
 
 
@@ -49,6 +50,7 @@ class RadiusEntry(Frozen):
     )
     below: int = Field(description="samples that not even the least one reaches")
     no_less: int = Field(description="samples that the largest one reaches: theirs is no less")
+    doubtful: bool = Field(default=False, description="obstacles are missing, which might leave less")
     bottleneck_mm: float | None = Field(description="the smallest of all samples; 0: not even the least one reaches it")
     bottleneck_face: str | None
     bottleneck_point: Vector | None
@@ -102,11 +104,12 @@ def stick_out_entry(found: StickOut, samples: SurfaceSamples, around: Surroundin
         posture=None if found.axis is None else posture(found.tilt, found.rotation, found.axis),
         obstacle_face=around.called(found.obstacle_face) if found.obstacle_face else None,
         obstacle_point=None if found.obstacle_point is None else vector(found.obstacle_point),
+        doubtful=around.doubtful,
         step_mm=None if found.each is None else found.step,
     )
 
 
-def radius_entry(found: RadiusMap, samples: SurfaceSamples) -> RadiusEntry:
+def radius_entry(found: RadiusMap, samples: SurfaceSamples, *, doubtful: bool = False) -> RadiusEntry:
     """A map of largest radii."""
     row = found.bottleneck
     reason = None if row is None or found.reason[row] == NO_REASON else REASONS[found.reason[row]]
@@ -119,6 +122,7 @@ def radius_entry(found: RadiusMap, samples: SurfaceSamples) -> RadiusEntry:
         percentiles_mm={str(q): radius for q, radius in found.percentiles(samples.area).items()},
         below=int(found.less.sum()),
         no_less=int(found.no_less.sum()),
+        doubtful=doubtful,
         bottleneck_mm=None if row is None else float(found.radius[row]),
         bottleneck_face=None if row is None else f"F{samples.face[row]}",
         bottleneck_point=None if row is None else vector(samples.point[row]),

@@ -104,7 +104,7 @@ def plan_of(
         selected_over_setups=None if around.doubtful else next((e.id for e in entries if e.lost_in_all == 0), None),
         selected_for_setup=None if selected else for_setup(entries),
         setups=list(setups),
-        largest_radius=[radius_entry(found, samples) for found in answers.radius_maps],
+        largest_radius=[radius_entry(found, samples, doubtful=around.doubtful) for found in answers.radius_maps],
         notes=[
             *notes(scene, options, samples, ready.cutters),
             *choice.notes,

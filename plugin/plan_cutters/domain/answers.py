@@ -16,7 +16,8 @@ ANSWERS = ("stick-out", "stick-out-map", "radius", "mend")
 
 
 def answers_of(given: Any) -> tuple[str, ...]:
-    """Words of ANSWERS, each once and in that order; `all` for all of them; a text may hold several, joined by commas.
+    """Words of ANSWERS, each once and in that order; `all` for all but the map of stick-outs, which takes long; a text may hold
+    several, joined by commas.
 
     Raises
     ------
@@ -38,7 +39,9 @@ def answers_of(given: Any) -> tuple[str, ...]:
     found = {word.strip().lower() if isinstance(word, str) else word for word in words}
     for word in sorted(found - {*ANSWERS, "all"}, key=str):
         raise OptionError(f"answers: {shown(word)} is none of {', '.join(ANSWERS)} and all")
-    return ANSWERS if "all" in found else tuple(word for word in ANSWERS if word in found)
+    if "all" in found:
+        found |= {*ANSWERS} - {"stick-out-map"}
+    return tuple(word for word in ANSWERS if word in found)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
