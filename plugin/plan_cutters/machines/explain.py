@@ -77,7 +77,7 @@ def solutions(machine: Machine, axis: Floats) -> list[Solution]:
     found, taken, _ = kinematics.positions((axis / np.linalg.norm(axis))[None])
     names = [each.name for each in machine.rotary]
     rows = [
-        Solution(dict(zip(names, map(float, found[0, i]), strict=True)), i == taken[0])
+        Solution(dict(zip(names, map(float, found[0, i]), strict=True)), bool(i == taken[0]))
         for i in range(2)
         if (i == taken[0] or names) and np.isfinite(found[0, i]).all() and taken[0] >= 0
     ]
