@@ -57,7 +57,9 @@ def existence(result: Any, obstacles: Obstacles, cutter: Cutter) -> tuple[float,
 def all_maps(result: Any, obstacles: Obstacles, cutter: Cutter) -> None:
     """Posture maps of all samples at 72 rotations."""
     wall, processor = time.perf_counter(), time.process_time()
-    maps = posture_maps(result.samples, cutter, given(obstacles, PostureRange(step=np.radians(5))))
+    maps = posture_maps(
+        result.samples, cutter, given(obstacles, PostureRange(step=np.radians(5))), result.reaches[cutter.id]
+    )
     wide = np.degrees(maps.undecided)
     print(f"posture maps, {wide.shape[1]} rotations: {time.perf_counter() - wall:.1f} s "
           f"(processor {time.process_time() - processor:.1f}), {len(maps.free)} intervals")  # fmt: skip

@@ -161,6 +161,10 @@ def test_kernels_and_reach_speak_of_the_same_verdicts():
         assert getattr(search, name) == getattr(reach, name)
     words = ("axis_limit", "local_gouge", "rear_gouge", "collision", "buried", "neck", "shank", "holder")
     assert [reach.REASONS[getattr(search, word.upper())] for word in words] == list(words)
+    # Told afterwards, by a search without fixtures: kernels do not write it.
+    own = ("axis_limit", "local_gouge", "buried", "tolerance", "fixture")
+    assert [reach.REASONS[getattr(reach, word.upper())] for word in own] == list(own)
+    assert all(not hasattr(search, word) for word in ("TOLERANCE", "FIXTURE"))
 
 
 def test_local_gouge_bound():

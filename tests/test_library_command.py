@@ -114,3 +114,28 @@ def test_each_assembly_is_drawn(tmp_path):
     names = sorted(each.name for each in (tmp_path / "drawn").iterdir())
     assert names == ["T4_a_b_6_mm.svg", "T4_a_b_6_mm_2.svg"]
     assert all("<svg" in (tmp_path / "drawn" / name).read_text(encoding="utf-8") for name in names)
+
+
+def test_a_narrow_terminal_shows_lines_in_place_of_a_table(tmp_path, monkeypatch):
+    import io
+    import sys
+
+    from plan_cutters.command import tools
+    from plan_cutters.library.read import listing
+
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    path = write_json(tmp_path / "a.json", [fusion(number=7), fusion("drill")])
+    shown = {}
+    for columns in (80, 200):
+        monkeypatch.setenv("COLUMNS", str(columns))
+        monkeypatch.setattr(sys, "stdout", Terminal())
+        tools._table(listing(path))
+        shown[columns] = sys.stdout.getvalue()
+    assert "Stick-out" in shown[200]
+    assert 'T7 "a tool" flat end mill' in shown[80]
+    assert "DC 6, RE 0, LCF 12, Stick-out 40, Shank 8, Holder chuck (mm in the file)" in " ".join(shown[80].split())
+    assert max(map(len, shown[80].splitlines())) <= 80
+    assert len(shown[80].splitlines()) <= 12

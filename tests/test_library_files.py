@@ -14,6 +14,7 @@ from tool_files import REAL, fusion, hsmlib, write_bit, write_csv, write_hsmlib,
 
 from plan_cutters import LibraryError, PlanError
 from plan_cutters.domain.drawer import builtin
+from plan_cutters.domain.holder import Stage
 from plan_cutters.library import read_library, to_toml
 from plan_cutters.library.formats import FORMATS
 from plan_cutters.library.read import listing
@@ -58,7 +59,11 @@ HTML = "<!DOCTYPE html>\n<html><head><title>Sign in</title></head><body></body><
         ("a.hsmlib", "<shop/>", "no HSMWorks tool library"),
         ("a.csv", "Type (tool_type),Diameter (tool_diameter),Unit (tool_unit)\n", "Fusion CSV: lists no tools"),
         ("a.csv", "Type (tool_type),Number (tool_number)\nflat end mill,3\n", r"no column \(tool_diameter\)"),
-        ("a.csv", "a,b\n1,2\n", "no tool library that is known"),
+        ("a.csv", "a,b\n1,2\n", "a table .CSV. without Fusion's columns"),
+        ("a.csv", "Type (tool_type),Diameter (tool_diameter),Unit (tool_unit),D2 (tool_diameter)\n", "twice"),
+        ("a.toml", '[[tools]]\nunit = "mm"\n', "'tools' has no meaning"),
+        ("a.toml", "# none yet\n", "plan-cutters TOML: lists no tools"),
+        ("a.toml", "[[tool]]\nDC = 12,5\n", "decimal point"),
         ("a.toml", 'unit = "mm"\n', "plan-cutters TOML: lists no tools"),
         ("a.toml", "[[tool]]\nDC = \n", "is no TOML"),
         ("a.tbl", "; nothing\n", "no tool library that is known"),
@@ -251,3 +256,46 @@ def test_every_real_file_is_read_or_refused_by_name(name):
 
 def test_the_errors_are_of_the_package():
     assert issubclass(LibraryError, PlanError)
+
+
+def _cheap(kind):
+    many = 50_001
+    if kind == "json":
+        return "a.json", b'{"data":[' + b"{}," * many + b"{}]}"
+    if kind == "fctl":
+        return "a.fctl", b'{"tools":[{"path":"a"}' + b",{}" * many + b"]}"
+    if kind == "csv":
+        return "a.csv", b"(tool_type),(tool_diameter),(tool_unit)\n" + b"x\n" * many
+    if kind == "tbl":
+        return "a.tbl", b"T1\n" * (many + 1)
+    if kind == "hsmlib":
+        return "a.hsmlib", b"<tool-library>" + b"<tool/>" * many + b"</tool-library>"
+    return "a.toml", b"[[tool]]\n" * many
+
+
+@pytest.mark.parametrize("kind", ["json", "fctl", "csv", "tbl", "hsmlib", "toml"])
+def test_more_tools_than_memory_are_refused(tmp_path, kind):
+    name, content = _cheap(kind)
+    (tmp_path / name).write_bytes(content)
+    refused(tmp_path / name, "lists more than 50000 tools")
+
+
+def test_two_members_of_one_name_are_refused(tmp_path):
+    with zipfile.ZipFile(tmp_path / "a.tools", "w") as archive:
+        archive.writestr("tools.json", '{"data": []}')
+        archive.writestr("twice.json", '{"data": []}')
+    data = (tmp_path / "a.tools").read_bytes()
+    (tmp_path / "a.tools").write_bytes(data.replace(b"twice.json", b"tools.json"))
+    refused(tmp_path / "a.tools", "two files of one name")
+
+
+def test_sections_are_enclosed_by_a_work_that_grows_slowly(monkeypatch):
+    # Each merge looks at its two neighbours alone.
+    from plan_cutters.library import outlines
+
+    calls, plain = [], outlines._enclosing
+    monkeypatch.setattr(outlines, "_enclosing", lambda stages: calls.append(1) or plain(stages))
+    stages = [Stage(15.0 + (i * 7) % 5, 1.0 + 1e-3 * i, 15.5 + (i * 11) % 5) for i in range(200)]
+    found, _ = outlines.fewer(stages, 12)
+    assert len(found) <= 12
+    assert len(calls) <= 3 * len(stages)

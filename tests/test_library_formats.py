@@ -23,7 +23,7 @@ from tool_files import (
     write_tools,
 )
 
-from plan_cutters import Cutter, LibraryError, Options
+from plan_cutters import Cutter, CutterError, LibraryError, Options
 from plan_cutters.domain.shapes import MOST_PIECES, pieces_at_most
 from plan_cutters.library import holder_of, read_library
 from plan_cutters.library.read import listing
@@ -473,3 +473,118 @@ def test_a_library_is_a_list_of_cutters(tmp_path):
     assert Options(cutters=library).judged == tuple(library)
     assert library.file == "a.json"
     assert (GEOMETRY["LB"], SHAFT["segments"][0]["height"]) == (40, 4)
+
+
+@pytest.mark.parametrize(("ball", "half", "DC"), [(1 / 16, 5.5, 0.0568), (1 / 8, 3.5, 0.1176)])
+def test_tapered_balls_of_a_maker_are_balls(tmp_path, ball, half, DC):
+    # A maker lists these by the ball's diameter and the whole angle, and their Fusion files by DC, rounded to 1e-4 inch.
+    tool = fusion("tapered mill", unit="inches", holder=None, shaft=None, DC=DC, RE=ball / 2, TA=half, LCF=1, LB=1.5, OAL=3,
+                  SFDM=0.5, shoulder_length=None, shoulder_diameter=None)  # fmt: skip
+    (cutter,) = read_library(write_json(tmp_path / "a.json", [tool]), holder="none")
+    assert cutter.corner_radius == cutter.radius == pytest.approx(12.7 * ball, abs=1e-3)
+    assert math.degrees(cutter.taper) == pytest.approx(half)
+
+
+def test_a_tapered_mill_that_is_no_ball_says_so(tmp_path):
+    tool = fusion("tapered mill", DC=2, RE=1, TA=5, shoulder_length=None, shoulder_diameter=None, shaft=None)
+    (entry,) = read_library(write_json(tmp_path / "a.json", [tool])).entries
+    assert entry.cutter.radius > entry.cutter.corner_radius == 1.0
+    (said,) = (note for note in entry.notes if "keeps a flat" in note)
+    # With the diameter that the note gives it is a ball.
+    tool["geometry"]["DC"] = float(said.rpartition(" ")[2])
+    (ball,) = read_library(write_json(tmp_path / "b.json", [tool]))
+    assert ball.radius == ball.corner_radius == pytest.approx(1.0, abs=1e-4)
+
+
+def test_two_diameters_at_a_tip_are_not_chosen_from(tmp_path):
+    tool = fusion("tapered mill", DC=6, tip_diameter=2, TA=5, shoulder_length=None, shoulder_diameter=None, shaft=None)
+    (entry,) = listing(write_json(tmp_path / "a.json", [tool])).entries
+    assert entry.cutter is None
+    assert not entry.broken
+    assert "DC 6 and tip-diameter 2" in entry.unused
+
+
+def test_flutes_wider_than_the_shank_are_noted(tmp_path):
+    tool = fusion("tapered mill", DC=2, TA=30, shoulder_length=None, shoulder_diameter=None, shaft=None, holder=None)
+    (entry,) = listing(write_json(tmp_path / "a.json", [tool]), holder="none").entries
+    wide = 2 + 2 * 12 * math.tan(math.radians(30))
+    assert f"SFDM 8 is thinner than its flutes where they end, {wide:.6g}" in entry.notes
+
+
+def test_a_kind_that_only_sounds_like_a_tap_is_unknown(tmp_path):
+    tools = [fusion("tapered ball end mill"), fusion("tap right hand")]
+    tapered, tap = listing(write_json(tmp_path / "a.json", tools)).entries
+    assert "is unknown" in tapered.unused
+    assert "not a mill" in tap.unused
+
+
+def _hsmlib(tmp_path, **more):
+    return write_hsmlib(tmp_path / "a.hsmlib", [fusion()], **more)
+
+
+def test_hsmworks_text_in_another_encoding_than_it_declares(tmp_path):
+    path = _hsmlib(tmp_path)
+    text = path.read_bytes().decode("utf-16" if path.read_bytes()[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8")
+    body = text.partition("?>")[2] if text.startswith("<?xml") else text
+    for declared, encoding in (
+        ("UTF-16", "utf-8"),
+        ("UTF-8", "utf-16"),
+        ("UTF-16", "utf-16-be"),
+        ("UTF-8", "utf-8-sig"),
+    ):
+        path.write_bytes(f'<?xml version="1.0" encoding="{declared}"?>{body}'.encode(encoding))
+        assert [cutter.id for cutter in read_library(path)] == [ID]
+
+
+def test_hsmworks_tools_in_groups_are_listed(tmp_path):
+    path = _hsmlib(tmp_path)
+    raw = path.read_bytes()
+    text = raw.decode("utf-16" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8")
+    text = text.partition("?>")[2] if text.startswith("<?xml") else text
+    text = text.replace("<tool ", "<group><tool ", 1).replace("</tool>", "</tool></group>", 1)
+    path.write_text(text, encoding="utf-8")
+    assert [cutter.id for cutter in read_library(path)] == [ID]
+
+
+def test_hsmworks_holder_in_its_own_unit(tmp_path):
+    body = ('body-length="2" diameter="0.5" flute-length="1" shaft-diameter="0.5" overall-length="4" '
+            'assembly-gauge-length="3"')  # fmt: skip
+    holder = '<holder unit="millimeters" gauge-length="25.4"><section length="25.4" diameter="30"/></holder>'
+    path = tmp_path / "a.hsmlib"
+    path.write_text(
+        f'<tool-library><tool type="flat end mill" unit="inches"><body {body}/>{holder}</tool></tool-library>'
+    )
+    assert [cutter.id for cutter in read_library(path)] == ["R6.35L50.8F25.4S6.35HR15L25.4"]
+
+
+def test_a_csv_that_says_its_separator(tmp_path):
+    path = write_csv(tmp_path / "a.csv", [fusion()], delimiter=";", comma=True)
+    path.write_text("sep=;\r\n" + path.read_text(encoding="utf-8"), encoding="utf-8")
+    assert [cutter.id for cutter in read_library(path)] == [ID]
+
+
+def test_names_of_files_that_no_system_takes(tmp_path):
+    (tmp_path / "a.fctl").write_text(json.dumps({"tools": [{"nr": 1, "path": "x" * 5000 + ".fctb"}]}))
+    (entry,) = listing(tmp_path / "a.fctl", skip_bad=True).entries
+    assert entry.broken
+    assert "put it there" in entry.unused
+    with pytest.raises(CutterError, match="not of the form"):
+        holder_of("R15L30" * 1000)
+    with pytest.raises(LibraryError, match="is no file"):
+        holder_of(str(tmp_path / "none.fcholder"))
+
+
+def test_what_a_bit_has_beyond_its_shape_is_noted(tmp_path):
+    bit = {"version": 2, "name": "b", "shape": "endmill.fcstd", "parameter": {
+        "Diameter": "6 mm", "CuttingEdgeHeight": "20 mm", "Length": "60 mm", "ShankDiameter": "6 mm", "NeckLength": "9 mm",
+        "NeckDiameter": "0 mm"}}  # fmt: skip
+    path = tmp_path / "a.fctb"
+    path.write_text(json.dumps(bit))
+    (entry,) = listing(path, assume_stickout=40.0, holder="none").entries
+    assert "NeckLength 9 mm is not used" in entry.notes
+    assert not any("NeckDiameter" in note for note in entry.notes)
+    for wrong in ('1/4"', "6 M"):
+        bit["parameter"]["Diameter"] = wrong
+        path.write_text(json.dumps(bit))
+        with pytest.raises(LibraryError, match="Diameter is"):
+            read_library(path, assume_stickout=40.0, holder="none")

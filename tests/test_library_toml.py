@@ -154,7 +154,8 @@ def test_what_is_wrong_is_said_by_its_field(tmp_path, old, new, said):
         read(tmp_path, text)
     found = str(error.value)
     assert said in found.replace("'", "") or said in found
-    assert "tool 2 (line 10)" in found
+    line = text[: text.rindex("[[tool]]")].count("\n") + 1
+    assert f"tool 2 (line {line})" in found
     assert "\n" not in found
     assert len(read(tmp_path, text, skip_bad=True)) == 1
 
@@ -206,3 +207,48 @@ def test_assumptions(tmp_path):
 )  # fmt: skip
 def test_every_shape_by_hand(tmp_path, text, cutter):
     assert [each.id for each in read(tmp_path, f'{MM}[[tool]]\n{text}\nholder = "none"\n')] == [cutter]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('type = "flat"', 'type = "taper"', "TA is missing"),
+        ('type = "flat"', 'type = "dovetail"', "TA is missing"),
+        ('type = "flat"', 'type = "taper"\nTA = -5', "half angle lies between"),
+        ("DMM = 12", "DMM = 12\nDN = 9", "LN is missing"),
+        ("DMM = 12", "DMM = 12\nDN = 9\nneck = [[4, 5]]", "neck and DN"),
+        ("DC = 12", "DC = 0x" + "f" * 9000, "DC is a number of thousands of digits"),
+        ("DC = 12", "DC = 12\nnumber = 0x" + "f" * 9000, "number is a number of thousands of digits"),
+        ("DC = 12", "dc = 12", "DC is written so"),
+        ('"R12:15L20+R15L30"', '""', "neither none"),
+    ],
+)
+def test_what_was_silent_is_said(tmp_path, old, new, said):
+    assert old in TOOL
+    (tmp_path / "a.toml").write_text(MM + TOOL.replace(old, new), encoding="utf-8")
+    (entry,) = listing(tmp_path / "a.toml", skip_bad=True).entries
+    assert entry.cutter is None
+    assert said in entry.unused
+
+
+def test_two_holders_of_one_name_are_not_chosen_from(tmp_path):
+    rows = [f'[[holder]]\nname = "a"\npoints = [[0, {r}], [9, {r}]]\n' for r in (20, 30)]
+    path = tmp_path / "a.toml"
+    for listed in (rows[:1], rows[:1] * 2):
+        path.write_text(MM + TOOL.replace('"R12:15L20+R15L30"', '"a"') + "".join(listed), encoding="utf-8")
+        assert read_library(path)[0].holder.id == "R20L9"
+    path.write_text(MM + TOOL.replace('"R12:15L20+R15L30"', '"a"') + "".join([*rows, rows[0]]), encoding="utf-8")
+    with pytest.raises(LibraryError, match="several different"):
+        read_library(path)
+    # A tool that does not ask for it does not mind.
+    path.write_text(MM + TOOL + "".join(rows), encoding="utf-8")
+    again = read(tmp_path, to_toml(read_library(path)))
+    assert [holder.id for holder in again.holders] == ["R20L9", "R30L9"]
+
+
+def test_a_holder_that_is_called_none_is_no_reason_to_judge_without(tmp_path):
+    holder = '[[holder]]\nname = "none"\npoints = [[0, 20], [9, 20]]\n'
+    with pytest.raises(LibraryError, match="call that otherwise"):
+        read(tmp_path, MM + TOOL.replace('"R12:15L20+R15L30"', '"none"') + holder)
+    (cutter,) = read(tmp_path, to_toml(read(tmp_path, MM + TOOL + holder)))
+    assert cutter.holder.id == "R12:15L20+R15L30"

@@ -1,15 +1,22 @@
 """Posture maps of all samples: against single probes, the one-point map and the closed forms; the same for any threads."""
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 import waves
+from test_cli import run
 
 from cad_io.tessellate import tessellate
-from plan_cutters import Cutter, plan, posture_map
+from plan_cutters import Cutter, Options, plan, posture_map
+from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, UNDECIDED
+from plan_cutters.errors import OptionError
 from plan_cutters.kernels.search import probe
+from plan_cutters.pipeline import prepare
 from plan_cutters.scene.obstacles import Obstacles
+from plan_cutters.stages.judge import judge
+from plan_cutters.stages.posture_maps import PostureMaps
 
 SAMPLES = Path(__file__).parent.parent / "samples"
 CUTTER = Cutter.flat(radius=5, length=60)
@@ -98,3 +105,66 @@ def test_the_command_writes_them(tmp_path):
     assert done.returncode in (0, 1), done.stderr
     arrays = np.load(tmp_path / "out" / "postures.npz")
     assert arrays["offset_R8L90"][-1] == len(arrays["free_R8L90"])
+
+
+@pytest.mark.parametrize("setup", [(0, 0, 1), (1, 0.3, 0.2)])
+@pytest.mark.parametrize("machine", ["unlimited", "tilt:25", "trunnion-ac", "nutating-bc"])
+def test_another_machine_needs_no_search(found, machine, setup):
+    """What the maps decide is what a search with that machine finds; what they leave open is said."""
+    conditions, cutter = found.maps, CUTTER
+    ready = prepare(found.part, Options(cutters=cutter, spacing=6.0, area_budget=0, machine=machine, setup=setup))
+    searched, masked = judge(ready, cutter), conditions.within(machine, setup)
+    decided = masked.verdict != UNDECIDED
+    assert (masked.verdict == searched.verdict)[decided].all()
+    assert decided.mean() > 0.8
+    assert not (searched.reached & (masked.verdict == INACCESSIBLE)).any()
+    kinematics = ready.conditions.kinematics
+    if kinematics is not None:
+        assert kinematics.allows(masked.axis[masked.reached]).all()
+    # The posture is a free one of the maps.
+    for row in np.flatnonzero(masked.verdict == ACCESSIBLE)[::37].tolist():
+        place = row * len(conditions.rotations) + int(masked.rotation[row])
+        free = conditions.free[conditions.offset[place] : conditions.offset[place + 1]]
+        assert ((free[:, 0] <= masked.tilt[row]) & (masked.tilt[row] <= free[:, 1])).any()
+
+
+def test_maps_do_not_depend_on_the_machine(found):
+    other = plan(found.part, cutters=[CUTTER], spacing=6.0, area_budget=0, posture_maps=True, machine="tilt:25").maps
+    assert other == found.maps
+
+
+def test_ranges_within_those_of_the_maps(found):
+    few = found.maps.within(tilt=(0.3, 0.4), rotation=(0.0, 1.0))
+    reached = few.verdict == ACCESSIBLE
+    assert reached.any()
+    assert ((few.tilt[reached] >= 0.3) & (few.tilt[reached] <= 0.4)).all()
+    assert (found.maps.rotations[few.rotation[reached]] <= 1.0).all()
+    for words in ({"tilt": (0.3, 3.0)}, {"rotation": (0.01, 0.02)}, {"machine": "3-axis"}, {"setup": (0, 0, 0)}):
+        with pytest.raises(OptionError):
+            found.maps.within(**words)
+
+
+def test_stored_maps_answer_on_the_command_line(tmp_path):
+    """The same counts as a search; refused for another part or cutter."""
+    words = ["--cutter", CUTTER.id, "--spacing", "6", "--area-budget", "0", "--formats", "npz", "--posture-maps"]
+    part = tmp_path / "part.step"
+    part.write_bytes((SAMPLES / "pocket_top.step").read_bytes())
+    assert run(part, *words, "-o", "out", cwd=tmp_path).returncode in (0, 1)
+    maps = "out/postures.npz"
+    done = run(part, "--postures", maps, "--machine", "trunnion-ac", "--json", "-", cwd=tmp_path)
+    assert done.returncode in (0, 1), done.stderr
+    counts = json.loads(done.stdout)["samples"]
+    stored = PostureMaps.load(tmp_path / maps)
+    reach = stored.within("trunnion-ac")
+    assert counts["accessible"] == (reach.verdict == ACCESSIBLE).sum()
+    part.write_bytes(part.read_bytes() + b"\n")
+    for asked, message in (([], "another part"), (["--cutter", "R1L9"], "another part")):
+        refused = run(part, "--postures", maps, *asked, cwd=tmp_path)
+        assert refused.returncode == 2
+        assert message in refused.stderr
+    refused = run(SAMPLES / "pocket_top.step", "--postures", maps, "--cutter", "R1L9", cwd=tmp_path)
+    assert refused.returncode == 2
+    assert "which was not asked for" in refused.stderr
+    refused = run(part, "--postures", part, cwd=tmp_path)
+    assert refused.returncode == 2
+    assert "no posture maps" in refused.stderr

@@ -1,6 +1,7 @@
 """Least stick-out: closed forms, a slow twin, laws, and that the search says the same at the value and just below it."""
 
 import math
+from dataclasses import replace
 
 import cad_parts
 import numpy as np
@@ -13,8 +14,9 @@ from test_tool_closed_forms import floor, wall
 from plan_cutters import Cutter, Options
 from plan_cutters.answers.stick_out import BEYOND, EXACT, least_stick_out
 from plan_cutters.domain.assembly import assembly
+from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.stick_out import floor_of, held, outline
-from plan_cutters.domain.verdicts import ACCESSIBLE, INTERFERENCE_FREE
+from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED
 from plan_cutters.errors import CutterError
 from plan_cutters.pipeline import prepare
 from plan_cutters.stages.judge import judge
@@ -123,8 +125,55 @@ def test_every_sample_agrees_with_a_slow_twin():
         assert high - 0.01 <= found.each[row] <= high + 0.5
         assert judge(ready, held(cutter, float(found.each[row])), np.array([row])).reached[0]
     assert found.least == pytest.approx(max(found.each[rows]), abs=0.5)
-    assert found.least <= max(found.each[rows]) + EXACT
+    assert found.least <= max(found.each[rows]) + BEYOND
     assert found.least > found.floor
+
+
+def undercut():
+    """A block with a pocket that is wider than its mouth."""
+    whole = cad_parts.cut(cad_parts.box(60, 60, 50), cad_parts.box(40, 40, 30, (10, 10, 10)))
+    return cad_parts.cut(whole, cad_parts.box(20, 40, 30, (20, 10, 30)))
+
+
+def beside_a_wall():
+    return cad_parts.compound(floor(-8.0, 8.0), wall(9.0, 0.0, 39.0959, -1))
+
+
+@pytest.mark.parametrize(
+    ("part", "cutter", "options"),
+    [
+        (undercut, {"spec": "R4.329892926L32.36271038rc3.846910513F17.08663416", "holder": "R10:8L6+R16L9+R12L8"},
+         {"grid": 3, "machine": "tilt:44"}),
+        (undercut, {"spec": "R2.748679295L20.96405785rc2.748679295T7.695966687F3.602612681", "holder": "R9:14L12+R20L10"},
+         {"grid": 3, "machine": "tilt:70"}),
+        (beside_a_wall, {"spec": "R1.584514072L16.65287811T13.40908979F2.946779381N1.287101045x1.091786895",
+                         "holder": "R12:25L10"}, {"grid": 6}),
+    ],
+    ids=["bull", "taper", "neck"],
+)  # fmt: skip
+def test_a_judgement_says_the_same_where_a_hair_of_tilts_is_left(part, cutter, options):
+    """With the least stick-out of each sample it is reached, and with less than the least of all it is not."""
+    cutter = replace(Cutter.parse(cutter["spec"]), holder=Holder.parse(cutter["holder"]))
+    ready = prepare(part(), Options(cutters=(cutter,), faces="all", area_budget=0, jobs=1, **options))
+    found = least_stick_out(ready, cutter, judge(ready, cutter), step=0.5)
+    assert found.verdict in (INACCESSIBLE, UNDECIDED)
+    certain(found, ready, cutter)
+    for row in np.flatnonzero(~np.isnan(found.each)).tolist():
+        assert judge(ready, held(cutter, float(found.each[row])), np.array([row])).reached[0]
+
+
+@pytest.mark.parametrize("clearance", [0.0, 1.0])
+def test_what_is_in_the_way_is_in_the_holder(clearance):
+    """Of triangles as long as the part the very point that stops a shorter one."""
+    cutter = Cutter.ball(radius=2, length=50, flutes=5, holder="R12:20L30", clearance=clearance)
+    ready = prepare(
+        "samples/v_groove.step", Options(cutters=(cutter,), machine="tilt:45", grid=13, area_budget=0, jobs=1)
+    )
+    found = least_stick_out(ready, cutter, judge(ready, cutter))
+    light, row = ready.conditions.light(held(cutter, found.beyond)), found.sample
+    samples = ready.samples
+    deep = light.depth(found.obstacle_point[None], samples.point[row], samples.normal[row], found.lean, found.tilt)
+    assert 0.0 < deep[0] <= BEYOND + EXACT
 
 
 def test_the_same_on_any_number_of_threads():

@@ -48,6 +48,16 @@ class _Mesh(NamedTuple):
     triangle: NDArray[np.uint32]
 
 
+class Other(NamedTuple):
+    """A body that is none of the part: its name, corners (n, 3, 3) mm in part coordinates counter-clockwise from outside, sRGB
+    colour, and facts for its node's `extras`."""
+
+    name: str
+    vertex: Floats
+    rgb: tuple[float, float, float]
+    extras: dict[str, Any]
+
+
 class _Drawn(NamedTuple):
     """A piece as vertex attributes: by name, arrays of n vertices; and its triangles (m, 3)."""
 
@@ -64,6 +74,7 @@ def write_gltf(
     piece_extras: Callable[[Piece], dict[str, Any]],
     deflection: float | None = None,
     merged: bool = False,
+    others: Sequence[Other] = (),
 ) -> tuple[int, ...]:
     """Write all pieces as triangles; those `beside` the part in the place of their face.
 
@@ -85,6 +96,8 @@ def write_gltf(
     merged : bool
         One node and mesh for everything: `extras` of the node holds a list of the faces' facts, and each vertex its
         face number as `_FACE`.
+    others : sequence of Other
+        Bodies beside the part, a node each below `fixtures`.
 
     Returns
     -------
@@ -102,12 +115,13 @@ def write_gltf(
         if not any(mesh for _, mesh in meshes):
             raise WriteError("the CAD kernel made no triangle of the part", file=str(path))
         pieces = [piece for piece, _ in meshes]
-        drawn = [_draw(piece, mesh, style) if mesh else None for piece, mesh in meshes]
+        drawn = [_draw(mesh, style(piece).rgb) if mesh else None for piece, mesh in meshes]
         glb = _Glb()
         if merged:
             _fill_merged(glb, pieces, drawn, extras)
         else:
             _fill(glb, pieces, drawn, style, extras, piece_extras)
+        _fill_others(glb, others)
         temporary.write_bytes(glb.bytes())
     return tuple(sorted({piece.face for piece, mesh in meshes if mesh is None}))
 
@@ -187,8 +201,8 @@ def _mesh(face: Any, meshed: Any, labels: FaceLabels | None) -> dict[int, _Mesh]
     return meshes
 
 
-def _draw(piece: Piece, mesh: _Mesh, style: Callable[[Piece], Style]) -> _Drawn:
-    light = np.round(np.array([*linear(style(piece).rgb), 1.0]) * 65535).astype(np.uint16)
+def _draw(mesh: _Mesh, rgb: tuple[float, float, float]) -> _Drawn:
+    light = np.round(np.array([*linear(rgb), 1.0]) * 65535).astype(np.uint16)
     attributes: dict[str, NDArray[Any]] = {
         "POSITION": _y_up(mesh.point * _METRE),
         "NORMAL": _y_up(mesh.normal),
@@ -227,6 +241,21 @@ def _fill_merged(
     glb.node({"name": "part", "extras": {"faces": facts}, **glb.mesh("part", _Drawn(attributes, triangle))})
 
 
+def _fill_others(glb: "_Glb", others: Sequence[Other]) -> None:
+    """Bodies with flat facets; those without a facet have a node without a mesh."""
+    root = glb.node({"name": "fixtures"}) if others else 0
+    for other in others:
+        corner = (other.vertex * _METRE).astype(np.float32)
+        normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]).astype(float)
+        length = np.linalg.norm(normal, axis=1)
+        kept = length > 0
+        points = other.vertex[kept].reshape(-1, 3)
+        unit = np.repeat(normal[kept] / length[kept, None], 3, axis=0)
+        mesh = _Mesh(points, unit, np.arange(len(points), dtype=np.uint32).reshape(-1, 3))
+        drawn = glb.mesh(other.name, _draw(mesh, other.rgb) if kept.any() else None)
+        glb.node({"name": other.name, "extras": other.extras, **drawn}, root)
+
+
 class _Glb:
     """The file as it grows."""
 
@@ -235,10 +264,13 @@ class _Glb:
         self.views: list[dict[str, Any]] = []
         self.accessors: list[dict[str, Any]] = []
         self.nodes: list[dict[str, Any]] = []
+        self.roots: list[int] = []
         self.meshes: list[dict[str, Any]] = []
 
     def node(self, node: dict[str, Any], parent: int | None = None) -> int:
-        if parent is not None:
+        if parent is None:
+            self.roots.append(len(self.nodes))
+        else:
             self.nodes[parent].setdefault("children", []).append(len(self.nodes))
         self.nodes.append(node)
         return len(self.nodes) - 1
@@ -275,7 +307,7 @@ class _Glb:
         document = {
             "asset": {"version": "2.0", "generator": "plan-cutters"},
             "scene": 0,
-            "scenes": [{"nodes": [0]}],
+            "scenes": [{"nodes": self.roots}],
             "nodes": self.nodes,
             "meshes": self.meshes,
             # White: vertex colours are multiplied by it. Open shells are looked at from both sides.

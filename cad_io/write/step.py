@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
+from OCP.gp import gp_Trsf
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
 from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
@@ -28,7 +29,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Shell
 from OCP.TopTools import TopTools_IndexedMapOfShape
 from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
 
-from cad_io.arrays import Style
+from cad_io.arrays import Floats, Style
 from cad_io.errors import WriteError
 from cad_io.kernel import edges_of, explore, faces, shape_map, silence, translated
 from cad_io.kernel.assembly import Node
@@ -42,6 +43,16 @@ TIME_STAMP = "2000-01-01T00:00:00"
 ORIGIN = "plan-cutters"
 
 
+class Other(NamedTuple):
+    """A body that is none of the part: its name, shape, place (3, 4) in part coordinates (a rotation and a shift, mm), and sRGB
+    colour."""
+
+    name: str
+    shape: Any
+    place: Floats
+    rgb: tuple[float, float, float]
+
+
 def write_step(
     split: Split,
     path: str | Path,
@@ -51,6 +62,7 @@ def write_step(
     tree: Sequence[Node] = (),
     layers: Mapping[int, Sequence[str]] | None = None,
     schema: str = "AP242DIS",
+    others: Sequence[Other] = (),
 ) -> None:
     """Write all pieces, coloured and named, in the products that they belong to.
 
@@ -70,6 +82,8 @@ def write_step(
         Face number -> layers of the face.
     schema : str
         The kernel's name of an application protocol: `AP242DIS`, `AP214IS`, `AP203`.
+    others : sequence of Other
+        Bodies beside the part, a product each.
 
     Raises
     ------
@@ -83,6 +97,8 @@ def write_step(
             document = TDocStd_Document(TCollection_ExtendedString("BinXCAF"))
             filled = _Document(document, style, layers or {}, product, file)
             filled.fill(split, tree)
+            if others:
+                filled.add(others)
             writer = STEPCAFControl_Writer()
             writer.SetColorMode(True)
             writer.SetNameMode(True)
@@ -150,6 +166,18 @@ class _Document:
             )
         for root in tree:
             self.node(root, root.place, mine)
+        self.shapes.UpdateAssemblies()
+
+    def add(self, others: Sequence[Other]) -> None:
+        """Products beside the part's, each of one colour."""
+        for other in others:
+            move = gp_Trsf()
+            move.SetValues(*(float(value) for value in other.place.ravel()))
+            whole = compound([other.shape.Moved(TopLoc_Location(move))])
+            label = self.shapes.AddShape(whole, False)
+            _name(label, other.name)
+            self.colours.SetColor(label, Quantity_Color(*other.rgb, Quantity_TOC_sRGB), XCAFDoc_ColorSurf)
+            self.faces += sum(_exact(face) for face in faces(whole))
         self.shapes.UpdateAssemblies()
 
     def node(self, node: Node, place: TopLoc_Location, mine: dict[int, list["_Body"]]) -> Any:

@@ -13,6 +13,7 @@ _HOME = {
     "Holder": "domain.holder",
     "Stage": "domain.holder",
     "Machine": "domain.machine",
+    "Fixture": "domain.fixture",
     "Options": "options",
     "Scene": "scene.scene",
     "PostureRange": "domain.posture",
@@ -24,6 +25,7 @@ _HOME = {
     "PlanError": "errors",
     "CutterError": "errors",
     "MachineError": "errors",
+    "FixtureError": "errors",
     "LibraryError": "errors",
     "OptionError": "errors",
 }

@@ -29,6 +29,10 @@ class MachineError(OptionError):
     """A machine is unknown or contradicts itself."""
 
 
+class FixtureError(OptionError):
+    """A fixture cannot exist, or cannot stand where it is asked to."""
+
+
 class LibraryError(PlanError):
     """A tool library cannot be read, or holds no tool that can be used."""
 

@@ -9,9 +9,10 @@ from typing import Any
 
 from cad_io.units import UNITS
 from plan_cutters.domain.answers import answers_of
-from plan_cutters.domain.checks import choice, flag, number, shown, whole
+from plan_cutters.domain.checks import choice, flag, items, number, shown, whole
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.drawer import builtin
+from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange, unit
@@ -20,6 +21,15 @@ from plan_cutters.library.records import Entry, Library, libraries_of
 
 #: Gouge tolerances that can be asked for, mm.
 LEAST_TOLERANCE, MOST_TOLERANCE = 1e-4, 10.0
+
+
+def _machine(given: Any) -> Machine:
+    """A machine, or what a text names: a file is read only where it is none of the names."""
+    if isinstance(given, str | os.PathLike) and given != "unlimited":
+        from plan_cutters.machines.read import machine_of
+
+        return machine_of(given)
+    return Machine.of(given)
 
 
 def cores() -> int:
@@ -49,9 +59,11 @@ class Options:
     allowance, holder_clearance : float
         Stock left on the surface, and room asked of neck, shank and holder, for cutters that do not say so themselves.
     machine : Machine
-        May be given as a text such as `tilt:60`.
+        May be given as a text: `tilt:60`, the name of a built-in one, or a machine file.
     setup : tuple of float
         Direction of the part along the machine's spindle at zero angles; kept with length 1.
+    other_setups : tuple of (float, float, float)
+        More setup axes, in which every cutter is judged as well; the sides of open faces stay those of `setup`.
     faces : str or objects, optional
         Target faces, in the words of the command line, or as numbers, or as objects of the kernel or a CAD host. Default:
         the faces picked on the object that the part was made from; where none were, `sculptured`.
@@ -81,6 +93,9 @@ class Options:
         Of the bare flat and ball ends whose largest radius is asked for.
     unit : str, optional
         Length unit to take instead of the part's own, one of `cad_io.units.UNITS`.
+    fixtures : tuple of Fixture
+        What holds the part: obstacles, never targets. May be given as texts such as `vise.step@0,0,-20` or `table:-5`, as
+        trimesh meshes and shapes of a kernel or CAD host, or as one of these.
 
     Raises
     ------
@@ -105,6 +120,7 @@ class Options:
     holder_clearance: float = 0.0
     machine: Machine = field(default_factory=Machine)
     setup: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    other_setups: tuple[tuple[float, float, float], ...] = ()
     faces: Any = None
     ignore: Any = ()
     grid: int | None = None
@@ -120,6 +136,7 @@ class Options:
     answers: tuple[str, ...] = ()
     length_over_radius: float = 10.0
     unit: str | None = None
+    fixtures: tuple[Fixture, ...] = ()
 
     def __post_init__(self) -> None:
         self._check_kinds()
@@ -161,7 +178,9 @@ class Options:
             take(libraries=(self.cutters, *libraries), cutters=())
         else:
             take(libraries=libraries, cutters=Cutter.each_of(self.cutters))
-        take(machine=Machine.of(self.machine))
+        take(machine=_machine(self.machine))
+        setups = items(self.other_setups, "other setups", "directions")
+        take(other_setups=tuple(tuple(unit(each, "setup axis").tolist()) for each in setups))
         take(setup=tuple(unit(self.setup, "setup axis").tolist()), tolerance=number(self.tolerance, "tolerance"))
         take(jobs=cores() if self.jobs is None else whole(self.jobs, "jobs"))
         if self.area_budget is not None:
@@ -173,6 +192,7 @@ class Options:
         take(holder_clearance=number(self.holder_clearance, "holder clearance"))
         if self.holder is not None:
             take(holder=Holder.of(self.holder))
+        take(fixtures=Fixture.each_of(self.fixtures))
         choice(self.faces, "faces")
         choice(self.ignore, "ignore")
         if self.grid is not None:

@@ -16,8 +16,8 @@ from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock, Progress
-from plan_cutters.document.model import AreaEntry, CutterEntry
-from plan_cutters.document.plan import completed, plan_of, selection
+from plan_cutters.document.model import AreaEntry, CutterEntry, SetupEntry
+from plan_cutters.document.plan import Elsewhere, completed, plan_of, selection
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
@@ -37,9 +37,11 @@ from plan_cutters.stages.access import witnesses
 from plan_cutters.stages.between import between
 from plan_cutters.stages.classify import classify, regions
 from plan_cutters.stages.decompose import march_differs
+from plan_cutters.stages.elsewhere import in_setup
 from plan_cutters.stages.judge import judge
 from plan_cutters.stages.posture_maps import posture_maps
 from plan_cutters.stages.select_cutters import ranked
+from plan_cutters.stages.setups import AXES, within_limits
 
 #: Samples that a plan may take.
 MOST_SAMPLES = 5_000_000
@@ -105,14 +107,31 @@ def run(
             # In the order of rank, whatever the order of work.
             earlier = {c: judged[c].reach for c in ready.cutters if c in judged}
             judged[cutter] = _judged(ready, cutter, earlier, tell)
+    elsewhere = [(axis, _elsewhere(ready, judged, axis, clock)) for axis in options.other_setups]
     answers = ask(ready, {cutter: each.reach for cutter, each in judged.items()}, clock.stage)
-    result = assemble(ready, judged, clock, started, answers)
+    result = assemble(ready, judged, clock, started, answers, elsewhere)
     if not options.posture_maps:
         return result
     with clock.stage("maps") as tell:
         cutter = next(c for c in ready.cutters if c.id == result.shown)
-        maps = posture_maps(ready.samples, cutter, ready.conditions, progress=tell)
+        reach = judged[cutter].reach
+        if ready.conditions.machine.limited:
+            reach = judge(replace(ready, conditions=ready.conditions.machineless), cutter)
+        maps = posture_maps(
+            ready.samples, cutter, ready.conditions, reach, part=ready.scene.part.sha256 or "", progress=tell
+        )
     return replace(result, plan=clock.stamp(result.plan), maps=maps)
+
+
+def _elsewhere(
+    ready: Prepared, judged: Mapping[Cutter, "Judged"], axis: tuple[float, float, float], clock: Clock
+) -> dict[str, Reach]:
+    """What each cutter reaches in another setup."""
+    found = {}
+    for cutter, each in judged.items():
+        with clock.stage("setups") as tell:
+            found[cutter.id] = in_setup(ready, cutter, axis, each.reach, progress=tell)
+    return found
 
 
 def prepare(
@@ -131,8 +150,12 @@ def prepare(
         _ = whole.sewn
     with clock.stage("orient"):
         scene = Scene.of(
-            stands, setup=options.setup, flip=options.flip, tolerance=options.tolerance, ignore=options.ignore
-        )
+            stands, setup=options.setup, flip=options.flip, tolerance=options.tolerance, ignore=options.ignore,
+            fixtures=options.fixtures,
+        )  # fmt: skip
+    if scene.fixtures:
+        with clock.stage("fixtures"):
+            scene.read_fixtures(read_timeout)
     with clock.stage("sample"):
         chosen = choose(whole, options.faces, scene.ignored, scene.ignore)
         spacing: Spacing = options.spacing
@@ -159,7 +182,7 @@ def prepare(
         ahead()
         warm(contacts_of(samples), cutters[0], conditions)
     with clock.stage("bodies"):
-        within = buried(samples, scene.orientation, around.bodies, around.surely, scene.tolerance)
+        within = buried(samples, scene.orientation, around.enclosing, around.surely, scene.tolerance)
     return Prepared(scene, options, chosen, spacing, samples, surface_class, region, within, conditions, cutters)
 
 
@@ -189,19 +212,22 @@ def _judged(
     seconds = time.perf_counter() - began
     found = witnesses(samples, reach, cutter, ready.conditions, buried=ready.buried)
     marched = march_differs(samples, convex, ready.region, reach.interference_free)
-    doubtful = ready.conditions.around.doubtful
-    return Judged(reach, cutter_entry(cutter, samples, reach, found, marched, seconds, doubtful=doubtful,
+    around = ready.conditions.around
+    return Judged(reach, cutter_entry(cutter, samples, reach, found, marched, seconds, around=around,
                                        slack=ready.conditions.light(cutter).slack))  # fmt: skip
 
 
 def assemble(
     ready: Prepared, judged: Mapping[Cutter, Judged], clock: Clock | None = None,
     started: datetime.datetime | None = None, answers: Answers | None = None,
+    elsewhere: Sequence[Elsewhere] = (),
 ) -> Result:  # fmt: skip
     """The result of all cutters: the choice, the area between the samples for the one chosen, what was answered, the plan."""
     clock, answers = clock or Clock(), answers or Answers()
     reaches = {cutter.id: each.reach for cutter, each in judged.items()}
-    entries = completed([judged[c].entry for c in ready.cutters], ready, answers, reaches)
+    within = within_limits(ready.samples, ready.cutters, ready.conditions)
+    beyond = (ready.samples.unjudged < 0) & ~within & (ready.buried < 0)
+    entries = completed([judged[c].entry for c in ready.cutters], ready, answers, reaches, beyond, elsewhere)
     selected, chosen = selection(entries)
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
     best = selected or next((e.id for e in entries if not (e.inaccessible or e.undecided)), None)
@@ -215,7 +241,9 @@ def assemble(
                          short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
         entries = [e.model_copy(update={"area": area}) if e.id == best else e for e in entries]
     with clock.stage("plan", shown=False):
-        document = plan_of(ready, entries, selected, chosen, started or datetime.datetime.now(datetime.UTC), answers)
+        document = plan_of(
+            ready, entries, selected, chosen, started or datetime.datetime.now(datetime.UTC), answers, _setups(ready)
+        )
     return Result(
         clock.stamp(document),
         ready.scene,
@@ -224,8 +252,22 @@ def assemble(
         reaches,
         ready.options.postures,
         ready.conditions.kinematics,
+        tuple((axis, dict(found)) for axis, found in elsewhere),
         answers,
     )
+
+
+def _setups(ready: Prepared) -> list[SetupEntry]:
+    """How much would be within the axis limits in this setup, and in each along the part's own axes."""
+    if not ready.conditions.machine.limited:
+        return []
+    judged, area = ready.samples.unjudged < 0, ready.samples.area
+    found = []
+    for axis in dict.fromkeys((ready.scene.setup, *AXES)):
+        within = within_limits(ready.samples, ready.cutters, ready.conditions, axis)
+        share = float(area[within].sum() / area[judged].sum()) if area[judged].sum() > 0.0 else 0.0
+        found.append(SetupEntry(axis=axis, within=int(within.sum()), share=min(1.0, share)))
+    return found
 
 
 def _affordable(part: Part, targets: Sequence[int], options: Options) -> None:

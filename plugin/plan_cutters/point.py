@@ -17,7 +17,6 @@ from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import OptionError
 from plan_cutters.scene.conditions import tools
 from plan_cutters.scene.scene import Scene
-from plan_cutters.scene.surroundings import surroundings
 from plan_cutters.stages.posture_map import SETTLED, Ask, PostureMap, complement, moved, posture_map_of
 
 #: Width (rad) below which a range of tilts stays undecided: with a tolerance, and for the nominal answer.
@@ -59,7 +58,7 @@ def posture_map(
         Gouge tolerance, mm; default that of the Scene, or 0.01. 0: the nominal answer, obstacles refined until the ends
         settle; not certified.
     **scene
-        `setup`, `flip` and `ignore`, as `Scene.of` takes them; the point is not projected to ignored faces.
+        `setup`, `flip`, `ignore` and `fixtures`, as `Scene.of` takes them; the point is not projected to ignored faces.
 
     Raises
     ------
@@ -100,7 +99,7 @@ def posture_map(
     chord = min(_FIRST_CHORD, 1e-3 * cutter.radius)
     before: PostureMap | None = None
     for _ in range(_ROUNDS):
-        around = surroundings(stage.part, chord, ignored=stage.ignored)
+        around = stage.surround_closer(chord)
         triangles = around.surely.triangles
         # Twice the chord error: next to the contact, where the true clearance is zero, triangles must not count,
         # local gouging does.

@@ -35,6 +35,8 @@ class Result:
     postures : PostureRange
     kinematics : Kinematics, optional
         The machine's rotary axes in the part's frame; None where any tool axis within a plain limit is possible.
+    elsewhere : tuple
+        Of each other setup its axis, and what each cutter reaches there: cutter id -> Reach.
     answers : Answers
         What was asked for after the plan: `stick_outs`, `radius_maps`, `mends`.
     maps : PostureMaps, optional
@@ -48,6 +50,7 @@ class Result:
     reaches: dict[str, Reach]
     postures: PostureRange
     kinematics: Kinematics | None = None
+    elsewhere: tuple[tuple[tuple[float, float, float], dict[str, Reach]], ...] = ()
     answers: Answers = field(default_factory=Answers)
     maps: PostureMaps | None = None
 

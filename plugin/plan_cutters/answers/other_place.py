@@ -50,7 +50,8 @@ def setup(case: Case, trials: Trials, unlimited: Change) -> Change:
     if unlimited.left:
         # An axis within a limit is one without.
         why = f"{unlimited.left:,} of {unlimited.looked:,} samples are not reached without any limit of the axis"
-        return replace(none("setup", now, unlimited.left, why, unlimited.looked), helps=unlimited.helps)
+        change = none("setup", now, unlimited.left, why, unlimited.looked)
+        return change if unlimited.helps is False else replace(change, helps=None, why=f"is not decided: {why}")
     tried = [(axis, made) for axis in directions(ready, trials) if (made := _turned(case, axis)) is not None]
     found, ways = None, 0
     for axis, made in tried:
@@ -184,7 +185,7 @@ def _closer(case: Case, asked: float) -> Case:
     scene = replace(ready.scene, asked=asked)
     around = scene.surround(jobs=ready.conditions.jobs)
     conditions = replace(ready.conditions, around=around, tolerance=scene.tolerance)
-    within = buried(ready.samples, scene.orientation, around.bodies, around.surely, scene.tolerance)
+    within = buried(ready.samples, scene.orientation, around.enclosing, around.surely, scene.tolerance)
     return replace(case, ready=replace(ready, scene=scene, conditions=conditions, buried=within))
 
 

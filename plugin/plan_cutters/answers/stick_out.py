@@ -24,8 +24,11 @@ from plan_cutters.stages.judge import judge
 EXACT, BEYOND = 0.005, 0.01
 #: Samples all over the part that are looked at first, so that the others meet a stick-out that is nearly enough.
 _FIRST = 400
-#: Intervals of tilt narrower than this are passed over, rad: where they are left, the search that judges finds a posture.
-_NARROWEST = 1.7e-4
+#: Intervals of tilt narrower than this are passed over, rad: as in the search that judges.
+_NARROWEST = 1e-5
+
+#: Grids by which the deepest point of a triangle is found, each a fifth as wide as the one before.
+_CLOSER = 10
 
 Progress = Callable[[int, int], None]
 
@@ -62,6 +65,7 @@ def least_stick_out(
         # A holder that is not convex, or an interval of tilts as fine as the search: what is lost there needs more.
         longer, row = max((search.one(row, least)[0], row) for row in lost.tolist())
         least, limiting = min(longest, max(longer, least + EXACT)), row
+    least, limiting = search.lowered(rows, least, limiting)
     each = None if step is None else search.each(rows, step)
     found = StickOut(least, search.floor, longest, "floor" if limiting < 0 else "obstacle", served=len(rows), each=each,
                      step=step or np.nan)  # fmt: skip
@@ -79,14 +83,27 @@ def _limited(ready: Prepared, cutter: Cutter, search: "_Search", found: StickOut
     face, point = None, None
     if triangle >= 0:
         light = ready.conditions.light(held(cutter, beyond))
-        share = np.array([(i, j, 20 - i - j) for i in range(21) for j in range(21 - i)]) / 20
-        points = share @ obstacles.tree.vertex[triangle]
-        depth = light.depth(points, ready.samples.point[row], normal, posture.lean[row], float(posture.tilt[row]))
-        face, point = obstacles.face(triangle), np.asarray(points[int(depth.argmax())])
+        face = obstacles.face(triangle)
+        point = _deepest(
+            obstacles.tree.vertex[triangle],
+            lambda at: light.depth(at, ready.samples.point[row], normal, posture.lean[row], float(posture.tilt[row])),
+        )
     samples = ready.samples
     turn = float(rotations_of(samples.normal[one], samples.direction_max[one], posture.lean[one])[0])
     return replace(found, beyond=beyond, verdict=int(shorter.verdict[0]), sample=row, tilt=float(posture.tilt[row]),
                    rotation=turn, axis=axis, lean=posture.lean[row], obstacle_face=face, obstacle_point=point)  # fmt: skip
+
+
+def _deepest(triangle: Floats, depth: Callable[[Floats], Floats]) -> Floats:
+    """The point of a triangle that is deepest in something: the best of a grid, and of grids about that one, ever finer."""
+    corner, sides = triangle[0], triangle[1:] - triangle[0]
+    grid = np.stack(np.meshgrid(np.linspace(-1, 1, 21), np.linspace(-1, 1, 21)), axis=-1).reshape(-1, 2)
+    best, width = np.zeros(2), 1.0
+    for _ in range(_CLOSER):
+        share = np.vstack([best, best + width * grid])
+        share = share[(share >= 0.0).all(axis=1) & (share.sum(axis=1) <= 1.0)]
+        best, width = share[int(depth(corner + share @ sides).argmax())], 0.2 * width
+    return np.asarray(corner + best @ sides)
 
 
 class _Search:
@@ -159,6 +176,27 @@ class _Search:
         in_chunks(work, left, self.conditions.jobs, chunk=1)
         return [lost[k] for k in sorted(lost)]
 
+    def lowered(self, rows: NDArray[np.int64], least: float, limiting: int) -> tuple[float, int]:
+        """The same, or less as long as a judgement `BEYOND` below it still finds postures everywhere, as it starts elsewhere."""
+        while limiting >= 0 and least > self.floor:
+            shorter = held(self.cutter, max(self.floor, least - BEYOND))
+            if not judge(self.ready, shorter, np.array([limiting])).reached[0]:
+                break
+            reach = judge(self.ready, shorter)
+            lost = rows[~reach.reached[rows]]
+            if len(lost):
+                limiting = int(lost[0])
+                self.keep(judge(self.ready, held(self.cutter, least)), limiting)
+                break
+            least = shorter.length
+            self.keep(reach, limiting)
+        return least, -1 if least <= self.floor else limiting
+
+    def keep(self, reach: Reach, row: int) -> None:
+        """Take over the posture of a sample."""
+        for name in ("axis", "lean", "tilt", "rotation"):
+            getattr(self.found, name)[row] = getattr(reach, name)[row]
+
     def one(self, row: int, lost: float) -> tuple[float, int]:
         """The least stick-out of one sample, and the sample; the one given and -1 where that is enough.
 
@@ -190,13 +228,18 @@ class _Search:
             getattr(self.found, name)[row] = getattr(best, name)[0]
         return True
 
+    def with_room(self, rows: NDArray[np.int64], posture: Reach) -> Floats:
+        """What known postures ask for and `BEYOND` more, (m,): just there no other tilt is left, and a search would miss them."""
+        needed = self.needed(rows, posture)[0][rows]
+        return np.where(needed > self.floor, np.minimum(needed + BEYOND, self.cutter.length), needed)
+
     def each(self, rows: NDArray[np.int64], step: float) -> Floats:
         """The least stick-out (n,) of each of some samples to a step, nan for the others."""
         from plan_cutters.kernels.search import until_lost
 
         ranges, solids = self.conditions.ranges, self.conditions.obstacles.solids
         best = np.full(len(self.ready.samples), np.nan)
-        best[rows] = self.needed(rows, self.found)[0][rows]
+        best[rows] = self.with_room(rows, self.found)
         low, high = np.full(len(best), -1), np.zeros(len(best), np.int64)
         high[rows] = np.ceil((best[rows] - self.floor) / step - 1e-9)
         while len(left := rows[high[rows] - low[rows] > 1]):
@@ -211,8 +254,9 @@ class _Search:
 
                 in_chunks(work, some, self.conditions.jobs)
                 reached = some[found.verdict[some] == ACCESSIBLE]
-                needed = self.needed(reached, found)[0][reached]
-                best[reached] = np.minimum(np.minimum(best[reached], self.floor + level * step), needed)
+                best[reached] = np.minimum(
+                    np.minimum(best[reached], self.floor + level * step), self.with_room(reached, found)
+                )
                 high[reached] = np.minimum(level, np.ceil((best[reached] - self.floor) / step - 1e-9))
                 low[some[found.verdict[some] != ACCESSIBLE]] = level
                 self.progress(len(rows) - len(left), len(rows))

@@ -44,7 +44,7 @@ _ROUNDS = 8
 #: What stands in the way, in words that follow "lost to".
 _WORDS = {"axis_limit": "the axis limit", "local_gouge": "local gouging", "rear_gouge": "rear gouging", "collision": "collision",
           "buried": "a body around them", "tolerance": "the tolerance", "neck": "the neck", "shank": "the shank",
-          "holder": "the holder"}  # fmt: skip
+          "holder": "the holder", "fixture": "the fixtures"}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
 #: Options of the interface that later versions will have: asked for now, they must not be ignored.
 _NOT_BUILT = {
-    "fixture": "fixtures are not read yet",
     "cluster": "clusters are not used yet; --jobs gives threads on this machine",
 }
 
@@ -113,15 +112,18 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, asked: bool) -> No
 @click.option(
     "--machine",
     default="unlimited",
-    metavar="NAME",
-    help="`unlimited` or `tilt:DEG`, a limit of the tool axis from the setup axis.  [default: unlimited]",
+    metavar="NAME|FILE",
+    help="`unlimited`; `tilt:DEG`, a limit of the tool axis from the setup axis; a built-in machine (plan-cutters-machines lists "
+    "them); or a machine file: TOML, JSON, FreeCAD .fcm, LinuxCNC .ini, Fusion .mch, MTConnect.  [default: unlimited]",
 )
 @click.option(
     "--setup",
     type=_Vector(),
-    default="0,0,1",
+    multiple=True,
+    default=["0,0,1"],
     metavar="X,Y,Z",
-    help="Direction of the part along the machine's spindle.  [default: 0,0,1]",
+    help="Direction of the part along the machine's spindle. Repeatable: every cutter is judged in each, and what they reach "
+    "together is said.  [default: 0,0,1]",
 )
 @click.option(
     "--faces",
@@ -136,7 +138,13 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, asked: bool) -> No
     metavar="SELECT",
     help="Faces that are neither machined nor obstacles, as construction geometry; the same words. Repeatable.",
 )
-@click.option("--fixture", multiple=True, metavar="FILE", hidden=True)
+@click.option(
+    "--fixture",
+    multiple=True,
+    metavar="FILE[@X,Y,Z[,RX,RY,RZ]][:UNIT]",
+    help="A body in the way: STEP, IGES, BREP, STL, OBJ, PLY, GLB, or `box:X,Y,Z`, `cylinder:R,H`, `table:Z`, placed in part "
+    "coordinates (mm, degrees). Repeatable.",
+)
 @click.option("--grid", type=int, metavar="N", help="N x N parameter samples a face.")
 @click.option(
     "--spacing",
@@ -184,6 +192,11 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, asked: bool) -> No
     "--posture-maps",
     is_flag=True,
     help="Also write every sample's free tilt intervals at every rotation (postures.npz), for the cutter shown.",
+)
+@click.option(
+    "--postures",
+    metavar="FILE",
+    help="Answer for this machine, setup, tilts and rotations from the part's postures.npz alone, without a new search.",
 )
 @click.option(
     "--answers",
@@ -246,6 +259,12 @@ def command(parts: tuple[str, ...], **given: Any) -> int:
     if len(set(outs)) < len(outs):
         raise OptionError("two parts have the same name and would write to the same folder; plan them one by one")
     options = _options(given)
+    if given["postures"] is not None:
+        if len(parts) > 1:
+            raise OptionError("--postures is about one part")
+        from plan_cutters.command.stored import stored
+
+        return stored(parts[0], given["postures"], options, given)
     codes = []
     since: float | None = began()
     for part, out in zip(parts, outs, strict=True):
@@ -267,7 +286,6 @@ def command(parts: tuple[str, ...], **given: Any) -> int:
 def _options(given: dict[str, Any]) -> "Options":
     from plan_cutters.domain.cutter import Cutter
     from plan_cutters.domain.holder import Holder
-    from plan_cutters.domain.machine import Machine
     from plan_cutters.domain.posture import PostureRange
     from plan_cutters.errors import OptionError
     from plan_cutters.library.records import Library
@@ -285,15 +303,17 @@ def _options(given: dict[str, Any]) -> "Options":
         words = {"assume_stickout": given["assume_stickout"], "holder": holder, "skip_bad": given["skip_bad"]}
         libraries = [read_library(file, **words) for file in given["cutters"]]
     if not given["cutters"] and (given["assume_stickout"] is not None or given["skip_bad"]):
-        raise OptionError("--assume-stickout and --skip-bad are about the tools of a library: give it with --cutters")
+        word = "--skip-bad" if given["skip_bad"] else "--assume-stickout"
+        raise OptionError(f"{word} is about the tools of a library: give it with --cutters")
     return Options(
         cutters=tuple(Cutter.parse(spec) for spec in given["cutter"]),
         libraries=tuple(libraries),
         holder=None if isinstance(holder, str) else holder,
         allowance=given["allowance"],
         holder_clearance=given["holder_clearance"],
-        machine=Machine.parse(given["machine"]),
-        setup=given["setup"],
+        machine=given["machine"],
+        setup=given["setup"][0],
+        other_setups=given["setup"][1:],
         faces=given["faces"],
         ignore=given["ignore"],
         grid=given["grid"],
@@ -308,6 +328,7 @@ def _options(given: dict[str, Any]) -> "Options":
         answers=given["answers"],
         length_over_radius=given["length_over_radius"],
         unit=given["unit"],
+        fixtures=given["fixture"],
         **more,
     )
 

@@ -15,7 +15,7 @@ FEASIBLE, NONE_FEASIBLE, USAGE, UNREADABLE, NOT_ALL_JUDGED = 0, 1, 2, 3, 4
 
 def code_of(plan: "Plan") -> int:
     """The exit code that a plan asks for."""
-    if plan.selected is None:
+    if plan.selected is None and plan.selected_over_setups is None:
         # What is missing from the obstacles leaves open whether a cutter that nothing else stops is stopped by it.
         doubtful = plan.missing and any(c.feasible is None for c in plan.cutters)
         return NOT_ALL_JUDGED if doubtful else NONE_FEASIBLE

@@ -40,6 +40,7 @@ def summary(plan: "Plan") -> None:
     console.print(f"{plan.part.file or 'part'}: {size} mm, {plan.part.faces} faces, {targets} to machine, "
                   f"{f'{ignored} ignored, ' if ignored else ''}"
                   f"{plan.samples.count} samples, gaps up to {plan.samples.max_gap_mm:.3g} mm")  # fmt: skip
+    console.print(f"Machine {plan.machine.name}, setup {_axis(plan.effective.setup)}.")
     for line in libraries(plan):
         console.print(line)
     table, names = Table(box=None, pad_edge=False), short_names(plan)
@@ -60,6 +61,8 @@ def summary(plan: "Plan") -> None:
                       str(c.accessible), str(c.undecided), str(c.inaccessible), *([_held(c)] if held else []))  # fmt: skip
     console.print(table)
     console.print(named(plan, f"Selected: {plan.selected or 'none'} ({plan.selection.why})."))
+    for line in setups(plan):
+        console.print(named(plan, line))
     console.print(_side(plan))
     for area in (c.area for c in plan.cutters if c.area):
         console.print(f"Between samples: {_percent(area.share)} of the target area is served with the axes found "
@@ -75,6 +78,34 @@ def summary(plan: "Plan") -> None:
             console.print(f"Not judged: {face.id} ({face.unjudged}).")
     for line in _missing(plan):
         console.print(line)
+
+
+def setups(plan: "Plan") -> list[str]:
+    """What no cutter can reach in this setup, which cutter does the rest, and how much is within the limit in other setups."""
+    lines = []
+    count = 1 + len(plan.effective.other_setups)
+    if count > 1 and plan.selected_over_setups is None:
+        best = min(plan.cutters, key=lambda c: c.lost_in_all or 0)
+        lines.append(
+            f"Over the {count} setups no cutter reaches every sample: {best.id} loses {best.lost_in_all} in all of them."
+        )
+    elif count > 1:
+        best = next(c for c in plan.cutters if c.id == plan.selected_over_setups)
+        each = "; ".join(f"{_axis(s.axis)}: {s.interference_free + s.accessible}" for s in best.setups)
+        lines.append(f"Over the {count} setups {best.id} reaches every sample ({each}).")
+    lost = max((c.beyond_setup for c in plan.cutters), default=0)
+    if not lost:
+        return lines
+    lines += [f"Beyond this setup: the axis limit loses {lost} of {plan.samples.count} samples for every cutter."]
+    if plan.selected_for_setup:
+        lines.append(f"For this setup: {plan.selected_for_setup}, which leaves nothing else.")
+    others = ", ".join(f"{_axis(each.axis)} {_percent(each.share)}" for each in plan.setups[1:])
+    lines.append(f"Area within the limit by setup axis: {_percent(plan.setups[0].share)} now; {others}.")
+    return lines
+
+
+def _axis(axis: Sequence[float]) -> str:
+    return ",".join(f"{x:.4g}" for x in axis)
 
 
 def short_names(plan: "Plan") -> dict[str, str]:
@@ -157,7 +188,10 @@ def _held(cutter: "CutterEntry") -> str:
     found = cutter.least_stick_out
     if found is None:
         return ""
-    return found.limited_by if found.least_mm is None else f"{found.least_mm:.2f} of {found.longest_mm:g}"
+    if found.least_mm is None:
+        return found.limited_by
+    end = ", flutes end" if found.limited_by == "floor" else ""
+    return f"{found.least_mm:.2f} of {found.longest_mm:g}{end}"
 
 
 def _place(point: Sequence[float]) -> str:

@@ -24,9 +24,10 @@ REPORT, MEMORY, BEGAN = "PLAN_CUTTERS_REPORT", "PLAN_CUTTERS_MEMORY", "PLAN_CUTT
 #: Exit code of an interrupted run.
 INTERRUPTED = 130
 #: Stages in which the kernel works on what the file says, and how many times the limit of reading each may take.
-LIMITED = {"read": 1.0, "measure": 5.0, "sew": 5.0, "orient": 5.0, "sample": 5.0, "tessellate": 5.0, "write": 5.0}
-_WORK = {"measure": "measuring of faces", "sew": "sewing", "orient": "search for the inside", "sample": "sampling",
-         "tessellate": "tessellation", "write": "splitting and writing"}  # fmt: skip
+LIMITED = {"read": 1.0, "measure": 5.0, "sew": 5.0, "orient": 5.0, "fixtures": 5.0, "sample": 5.0, "tessellate": 5.0,
+           "write": 5.0}  # fmt: skip
+_WORK = {"measure": "measuring of faces", "sew": "sewing", "orient": "search for the inside", "fixtures": "reading of fixtures",
+         "sample": "sampling", "tessellate": "tessellation", "write": "splitting and writing"}  # fmt: skip
 
 
 class Supervised(Exception):

@@ -16,8 +16,15 @@ from plan_cutters import __version__
 from plan_cutters.command.codes import USAGE, guarded
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from plan_cutters.domain.cutter import Cutter
     from plan_cutters.library.records import Entry, Library
+
+
+_COLUMNS = ("", "No.", "Name", "Type", "Unit", "DC", "RE", "LCF", "Stick-out", "Shank", "Holder", "Id, or why not used")
+#: Columns of a terminal in which the table would fall into pieces.
+_NARROW = 130
 
 
 @click.command(
@@ -119,23 +126,38 @@ def _table(library: "Library") -> None:
         sys.stdout.reconfigure(errors="replace")
     console = Console(highlight=False, markup=False, width=None if sys.stdout.isatty() else 200)
     used = sum(entry.cutter is not None for entry in library.entries)
-    console.print(f"{library.file}: {library.format}, {len(library.entries)} tools listed, {used} used, "
-                  f"{len(library)} different", soft_wrap=True)  # fmt: skip
+    tools = "1 tool" if len(library.entries) == 1 else f"{len(library.entries)} tools"
+    console.print(f"{library.file}: {library.format}, {tools} listed, {used} used, {len(library)} different",
+                  soft_wrap=True)  # fmt: skip
     for note in library.notes:
         console.print(f"  {note}", soft_wrap=True)
     for holder in library.holders:
         console.print(f"  holder {holder.name}: {holder.id}", soft_wrap=True)
     if not library.entries:
         return
-    table = Table(
-        "", "No.", "Name", "Type", "Unit", "DC", "RE", "LCF", "Stick-out", "Shank", "Holder", "Id, or why not used"
-    )
+    if console.width < _NARROW:
+        for entry in library.entries:
+            _listed(console, _row(entry))
+        return
+    table = Table(*_COLUMNS)
     for column in table.columns[5:10]:
         column.justify = "right"
     table.columns[-1].overflow = "fold"
     for entry in library.entries:
         table.add_row(*_row(entry))
     console.print(table)
+
+
+def _listed(console: "Console", row: list[str]) -> None:
+    """A tool where a table has no room: a line of names, a line of dimensions, and its id or why it is not used."""
+    from rich.padding import Padding
+
+    place, number, name, kind, unit, *sizes, why = row
+    console.print(" ".join(word for word in (place, number and f"T{number}", name and f'"{name}"', kind) if word))
+    said = [f"{word} {size}" for word, size in zip(_COLUMNS[5:11], sizes, strict=True) if size]
+    if said:
+        console.print(Padding(f"{', '.join(said)}{f' ({unit} in the file)' if unit else ''}", (0, 0, 0, 4)))
+    console.print(Padding(why, (0, 0, 0, 4)), overflow="fold")
 
 
 def _row(entry: "Entry") -> list[str]:

@@ -11,6 +11,7 @@ from plan_cutters.domain.change import Change, Mend, Value
 from plan_cutters.domain.radius_map import RadiusMap
 from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.domain.verdicts import INACCESSIBLE, NO_REASON, REASONS, UNDECIDED
+from plan_cutters.scene.surroundings import Surroundings
 
 #: Of a verdict on what lies just beyond an answer.
 _WORDS: dict[int, Literal["inaccessible", "undecided"]] = {INACCESSIBLE: "inaccessible", UNDECIDED: "undecided"}
@@ -85,7 +86,7 @@ class MendEntry(Frozen):
     changes: list[ChangeEntry]
 
 
-def stick_out_entry(found: StickOut, samples: SurfaceSamples) -> StickOutEntry:
+def stick_out_entry(found: StickOut, samples: SurfaceSamples, around: Surroundings) -> StickOutEntry:
     """A least stick-out."""
     limited, none = found.sample >= 0, np.isnan(found.least)
     return StickOutEntry(
@@ -99,7 +100,7 @@ def stick_out_entry(found: StickOut, samples: SurfaceSamples) -> StickOutEntry:
         face=f"F{samples.face[found.sample]}" if limited else None,
         point=vector(samples.point[found.sample]) if limited else None,
         posture=None if found.axis is None else posture(found.tilt, found.rotation, found.axis),
-        obstacle_face=f"F{found.obstacle_face}" if found.obstacle_face else None,
+        obstacle_face=around.called(found.obstacle_face) if found.obstacle_face else None,
         obstacle_point=None if found.obstacle_point is None else vector(found.obstacle_point),
         step_mm=None if found.each is None else found.step,
     )

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from cad_io import Part, SurfaceSamples
 from cad_io.kernel.assembly import component_of
 from plan_cutters import __version__
+from plan_cutters.document.fixtures import fixture_notes
 from plan_cutters.document.frozen import posture, vector
 from plan_cutters.document.model import (
     CutterEntry,
@@ -52,6 +53,11 @@ def missing_entries(part: Part, around: Surroundings) -> list[MissingEntry]:
                      stand_in="none" if each.box is None else "box")
         for each in around.lost
     ]  # fmt: skip
+    found += [
+        MissingEntry(face=None, entity=None, name=f"{each.name} {face}".strip(), why=why, stand_in=how)
+        for each in around.fixtures
+        for face, why, how in each.missing
+    ]
     return found
 
 
@@ -61,7 +67,8 @@ def degrees(pair: tuple[float, float]) -> tuple[float, float]:
     return round(float(np.degrees(pair[0])), 9), round(float(np.degrees(pair[1])), 9)
 
 
-def _counts(verdict: NDArray[np.uint8]) -> dict[str, Any]:
+def counts(verdict: NDArray[np.uint8]) -> dict[str, Any]:
+    """How many samples have each verdict."""
     names = {INTERFERENCE_FREE: "interference_free", ACCESSIBLE: "accessible", INACCESSIBLE: "inaccessible",
              UNDECIDED: "undecided", UNJUDGED: "unjudged"}  # fmt: skip
     return {name: int((verdict == code).sum()) for code, name in names.items()}
@@ -69,12 +76,12 @@ def _counts(verdict: NDArray[np.uint8]) -> dict[str, Any]:
 
 def cutter_entry(
     cutter: Cutter, samples: SurfaceSamples, reach: Reach, found: Sequence[Witness], march_differs: int, seconds: float,
-    *, doubtful: bool, slack: float,
+    *, around: Surroundings, slack: float,
 ) -> CutterEntry:  # fmt: skip
-    """What a cutter reaches, and why not where it does not; `doubtful`: obstacles are missing; `slack` as in `Assembly`."""
-    counts = _counts(reach.verdict)
+    """What a cutter reaches, and why not where it does not, among what is `around`; `slack` as in `Assembly`."""
+    mine = counts(reach.verdict)
     # What is missing from the obstacles can only be in the way of more.
-    feasible = False if counts["inaccessible"] else None if counts["undecided"] or doubtful else True
+    feasible = False if mine["inaccessible"] else None if mine["undecided"] or around.doubtful else True
     lost, unsure = reach.verdict == INACCESSIBLE, reach.verdict == UNDECIDED
     return CutterEntry(
         id=cutter.id,
@@ -101,18 +108,16 @@ def cutter_entry(
         slack_mm=slack,
         feasible=feasible,
         march_differs=march_differs,
-        **counts,
+        **mine,
         by_reason={name: int((lost & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
         undecided_by_reason={name: int((unsure & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
-        faces={
-            f"F{n}": Verdicts(**_counts(reach.verdict[samples.face == n])) for n in np.unique(samples.face).tolist()
-        },
-        witnesses=[_witness_entry(w, samples) for w in found],
+        faces={f"F{n}": Verdicts(**counts(reach.verdict[samples.face == n])) for n in np.unique(samples.face).tolist()},
+        witnesses=[_witness_entry(w, samples, around) for w in found],
         seconds=seconds,
     )
 
 
-def _witness_entry(witness: Witness, samples: SurfaceSamples) -> WitnessEntry:
+def _witness_entry(witness: Witness, samples: SurfaceSamples, around: Surroundings) -> WitnessEntry:
     best = None
     if witness.tilt is not None and witness.rotation is not None and witness.axis is not None:
         best = posture(witness.tilt, witness.rotation, witness.axis)
@@ -120,7 +125,7 @@ def _witness_entry(witness: Witness, samples: SurfaceSamples) -> WitnessEntry:
         point=vector(samples.point[witness.sample]),
         face=f"F{samples.face[witness.sample]}",
         reason=witness.reason,
-        obstacle_face=None if not witness.obstacle_face else f"F{witness.obstacle_face}",
+        obstacle_face=None if not witness.obstacle_face else around.called(witness.obstacle_face),
         obstacle_point=None if witness.obstacle_point is None else vector(witness.obstacle_point),
         best_posture=best,
         depth_mm=witness.depth,
@@ -204,12 +209,18 @@ def notes(scene: Scene, options: Options, samples: SurfaceSamples, cutters: Sequ
         notes.append("No machine was given: any tool axis counts as possible.")
     if not scene.orientation.confident:
         notes.append("Which side is material is a guess; --flip machines the other side.")
+        if other := scene.turned:
+            notes.append(
+                f"The setup axis decides the side of open faces: with 0,0,1 as setup {listed(other)} would be machined on the "
+                "other side."
+            )
     if scene.tolerance > 1.001 * scene.asked:
         notes.append(
             f"The tolerance was raised from {scene.asked:g} to {scene.tolerance:.3g} mm: "
             "the obstacle triangles could not be made to follow the surface more closely."
         )
     notes += _around_notes(scene.part, scene.around)
+    notes += fixture_notes(scene.around.fixtures)
     return notes
 
 
@@ -235,7 +246,7 @@ def _tool_notes(options: Options, cutters: Sequence[Cutter]) -> Iterator[str]:
 def _around_notes(part: Part, around: Surroundings) -> Iterator[str]:
     """What stands in the way otherwise than the file has it."""
     skins = {number for body in around.bodies if body.closed for number in body.faces}
-    present = set(np.unique(around.may_be.triangles.face).tolist())
+    present = set(np.unique((around.alone or around).may_be.triangles.face).tolist())
     sheets = [f.id for f in part.faces if f.number in present - skins]
     if sheets and skins:
         yield (f"{listed(sheets)} enclose{'s' if len(sheets) == 1 else ''} no material: only the surface is in the way, "

@@ -56,8 +56,10 @@ class Effective(Frozen):
         default=0.0, description="room asked of neck, shank and holder, unless a cutter says otherwise"
     )
     unit: str | None = Field(default=None, description="length unit taken instead of the file's")
+    fixtures: list[str] = Field(default=[], description="as on a command line: file or word, placement, unit")
     machine: str
     setup: Vector
+    other_setups: list[Vector] = Field(default=[], description="in which every cutter was judged, too")
     faces: str
     ignore: list[str] = Field(default=[], description="faces that are neither targets nor obstacles, as asked for")
     target_faces: list[str]
@@ -133,7 +135,7 @@ class WitnessEntry(Frozen):
     point: Vector
     face: str
     reason: str
-    obstacle_face: str | None
+    obstacle_face: str | None = Field(description="or `fixture:NAME`")
     obstacle_point: Vector | None = Field(description="a point of that face in the cutter at the best posture")
     best_posture: Posture | None
     depth_mm: float | None = Field(description="how deep the part reaches into the cutter at the best posture")
@@ -186,6 +188,20 @@ class MachineEntry(Frozen):
     notes: list[str]
 
 
+class SetupEntry(Frozen):
+    """How much of the target surface some cutter could touch within the axis limits, were this the setup axis."""
+
+    axis: Vector
+    within: int = Field(description="samples")
+    share: float = Field(description="of the judged samples' area, 0 to 1")
+
+
+class SetupReach(Verdicts):
+    """What a cutter reaches in one setup."""
+
+    axis: Vector
+
+
 class SourceEntry(Frozen):
     """Where a tool library lists a cutter."""
 
@@ -221,6 +237,22 @@ class LibraryEntry(Frozen):
     unused: list[UnusedEntry]
 
 
+class FixtureEntry(Frozen):
+    """A body that is in the way and no part of what is machined."""
+
+    name: str = Field(description="as `obstacle_face` has it: fixture:NAME")
+    file: str | None = Field(description="null for words and objects")
+    sha256: str | None
+    unit: str | None = Field(description="of lengths in the file; null: as the file says")
+    placement: tuple[float, float, float, float, float, float] = Field(
+        description="x, y, z, mm, and turns about the part's fixed x, then y, then z axis, deg, which come before the shift"
+    )
+    triangles: int
+    chord_error_mm: float = Field(description="how far they are from what they stand for; of a mesh, as stated")
+    watertight: bool = Field(description="it encloses something; else only its surface is in the way")
+    notes: list[str]
+
+
 class CutterEntry(Verdicts):
     id: str
     name: str
@@ -249,6 +281,16 @@ class CutterEntry(Verdicts):
     faces: dict[str, Verdicts]
     witnesses: list[WitnessEntry]
     area: AreaEntry | None = Field(default=None, description="of the selected cutter; null where it was not asked for")
+    setups: list[SetupReach] = Field(
+        default=[], description="where several setups were asked for: what it reaches in each, the plan's own first"
+    )
+    lost_in_all: int | None = Field(
+        default=None, description="samples that it reaches in none of these setups; null where one was asked for"
+    )
+    beyond_setup: int = Field(
+        default=0,
+        description="samples that the axis limit alone loses for every cutter in this setup, as an underside's",
+    )
     singular: int | None = Field(
         default=None,
         description="reached samples whose posture lies within 2 deg of the rotary axis next to the part, which then turns fast; "
@@ -307,10 +349,23 @@ class Plan(Frozen):
     missing: list[MissingEntry]
     reasons: list[str] = Field(description="what `reason_ID` in samples.npz counts in")
     machine: MachineEntry
+    fixtures: list[FixtureEntry] = Field(default=[], description="what holds the part: obstacles, never targets")
     libraries: list[LibraryEntry] = Field(default=[], description="tool libraries that were read")
     cutters: list[CutterEntry]
     selected: str | None
+    selected_over_setups: str | None = Field(
+        default=None,
+        description="where several setups were asked for: the first cutter that reaches every judged sample in one or another",
+    )
+    selected_for_setup: str | None = Field(
+        default=None,
+        description="the first cutter that leaves nothing but what the axis limit loses for every cutter in this setup; null "
+        "where a cutter is selected, where none does, or where nothing is within the limit",
+    )
     selection: Selection
+    setups: list[SetupEntry] = Field(
+        default=[], description="this setup axis first; empty where any tool axis is possible"
+    )
     largest_radius: list[RadiusEntry] = Field(
         default=[],
         description="of bare flat and ball ends, whatever cutters there are; empty where it was not asked for",

@@ -10,6 +10,7 @@ PALETTE = {
     "check": "#BFBFBF",
     "ignored": "#BFBFBF",
     "mixed": "#E69F00",
+    "fixture": "#0072B2",
 }
 LABELS = tuple(PALETTE)
 

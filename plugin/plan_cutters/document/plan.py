@@ -2,11 +2,23 @@
 
 import datetime
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from plan_cutters.document.answers import mend_entry, radius_entry, stick_out_entry
-from plan_cutters.document.build import area_notes, degrees, face_entries, missing_entries, notes, part_info, versions
+from plan_cutters.document.build import (
+    area_notes,
+    counts,
+    degrees,
+    face_entries,
+    missing_entries,
+    notes,
+    part_info,
+    versions,
+)
+from plan_cutters.document.fixtures import fixture_entry
 from plan_cutters.document.frozen import vector
 from plan_cutters.document.libraries import library_entry, source_entry
 from plan_cutters.document.model import (
@@ -18,6 +30,8 @@ from plan_cutters.document.model import (
     Run,
     SampleCounts,
     Selection,
+    SetupEntry,
+    SetupReach,
 )
 from plan_cutters.document.palette import PALETTE
 from plan_cutters.domain.answers import Answers
@@ -32,7 +46,7 @@ RULE = "largest radius, then smaller corner radius, then shorter length, then li
 
 def plan_of(
     ready: Prepared, entries: Sequence[CutterEntry], selected: str | None, selection: Selection,
-    started: datetime.datetime, answers: Answers,
+    started: datetime.datetime, answers: Answers, setups: Sequence[SetupEntry] = (),
 ) -> Plan:  # fmt: skip
     """The plan of a part from the entries of its cutters, and what was answered after them."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
@@ -46,8 +60,10 @@ def plan_of(
             allowance_mm=options.allowance,
             holder_clearance_mm=options.holder_clearance,
             unit=options.unit,
+            fixtures=[each.text for each in scene.fixtures],
             machine=options.machine.name,
             setup=scene.setup,
+            other_setups=list(options.other_setups),
             faces=choice.asked,
             ignore=list(choice.ignore),
             target_faces=[f"F{n}" for n in choice.targets],
@@ -80,17 +96,21 @@ def plan_of(
         missing=missing_entries(part, around),
         reasons=list(REASONS),
         machine=machine_entry(options.machine, ready.conditions.kinematics),
+        fixtures=[fixture_entry(each) for each in around.fixtures],
         libraries=[library_entry(library) for library in options.libraries],
         cutters=list(entries),
         selected=selected,
         selection=selection,
+        selected_over_setups=None if around.doubtful else next((e.id for e in entries if e.lost_in_all == 0), None),
+        selected_for_setup=None if selected else for_setup(entries),
+        setups=list(setups),
         largest_radius=[radius_entry(found, samples) for found in answers.radius_maps],
         notes=[
             *notes(scene, options, samples, ready.cutters),
             *choice.notes,
             *area_notes(entries, doubtful=around.doubtful),
         ],
-        legend=PALETTE,
+        legend=PALETTE if around.fixtures else {word: PALETTE[word] for word in PALETTE if word != "fixture"},
         run=Run(time=started.isoformat(timespec="seconds"), seconds={}),
     )
 
@@ -113,6 +133,22 @@ def machine_entry(machine: Machine, kinematics: Kinematics | None) -> MachineEnt
     return MachineEntry(name=machine.name, tilt_limit_deg=limit, rotary=rotary, notes=list(machine.notes))
 
 
+#: A setup axis, and what each cutter reaches there by its id.
+Elsewhere = tuple[tuple[float, float, float], Mapping[str, Reach]]
+
+
+def _over_setups(
+    ready: Prepared, name: str, reaches: Mapping[str, Reach], elsewhere: Sequence[Elsewhere]
+) -> dict[str, Any]:
+    """What a cutter reaches in each of several setups, and in none of them."""
+    if not elsewhere:
+        return {}
+    each = [(ready.scene.setup, reaches[name]), *((axis, found[name]) for axis, found in elsewhere)]
+    lost = np.logical_and.reduce([reach.lost for _, reach in each])
+    entries = [SetupReach(axis=axis, **counts(reach.verdict)) for axis, reach in each]
+    return {"setups": entries, "lost_in_all": int(lost.sum())}
+
+
 def _singular(ready: Prepared, reach: Reach | None) -> int | None:
     """How many of the postures found lie near the rotary axis next to the part."""
     kinematics = ready.conditions.kinematics
@@ -122,20 +158,33 @@ def _singular(ready: Prepared, reach: Reach | None) -> int | None:
 
 
 def completed(
-    entries: Sequence[CutterEntry], ready: Prepared, answers: Answers, reaches: Mapping[str, Reach]
-) -> list[CutterEntry]:
-    """The entries of cutters with where they are listed, and what was answered about them."""
+    entries: Sequence[CutterEntry], ready: Prepared, answers: Answers, reaches: Mapping[str, Reach],
+    beyond: NDArray[np.bool_], elsewhere: Sequence[Elsewhere] = (),
+) -> list[CutterEntry]:  # fmt: skip
+    """The entries of cutters with where they are listed, what the limits lose for all (n,), and what was answered about them."""
     found, sources, samples = [], ready.options.sources, ready.samples
+    lost_to_all = int(beyond.sum())
     for entry in entries:
         stick_out, mend = answers.stick_outs.get(entry.id), answers.mends.get(entry.id)
         more = {
+            **_over_setups(ready, entry.id, reaches, elsewhere),
+            "beyond_setup": lost_to_all,
             "singular": _singular(ready, reaches.get(entry.id)),
             "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
-            "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples),
+            "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, ready.scene.around),
             "mend": None if mend is None else mend_entry(mend),
         }
         found.append(entry.model_copy(update=more))
     return found
+
+
+def for_setup(entries: Sequence[CutterEntry]) -> str | None:
+    """The first cutter that leaves nothing but what no cutter can reach in this setup."""
+    for e in entries:
+        done = e.interference_free + e.accessible
+        if done and e.beyond_setup and not e.undecided and e.inaccessible == e.beyond_setup:
+            return e.id
+    return None
 
 
 def selection(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:

@@ -86,6 +86,9 @@ def shown(value: Any) -> str:
     """A value in an error, on one line: itself where that is short, else its type."""
     if isinstance(value, Real) and not isinstance(value, int):
         return f"{float(value):g}"
+    if isinstance(value, int) and abs(value) >= 1 << 10_000:
+        # Python refuses to write out more than some thousands of digits.
+        return "a number of thousands of digits"
     if value is None or isinstance(value, str | int):
         return " ".join(reprlib.repr(str(value) if isinstance(value, str) else value).split())
     return f"a value of type {type(value).__name__}"

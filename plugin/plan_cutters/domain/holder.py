@@ -99,7 +99,7 @@ class Holder:
             match = _STAGE.fullmatch(word.strip())
             if not match:
                 raise CutterError(
-                    f"holder {spec!r} is not of the form R15L30 (radius 15 mm, length 30 mm), stages joined by +"
+                    f"holder {shown(spec)} is not of the form R15L30 (radius 15 mm, length 30 mm), stages joined by +"
                 )
             upper = float(match["upper"]) if match["upper"] else math.nan
             found.append(Stage(float(match["radius"]), float(match["length"]), upper))

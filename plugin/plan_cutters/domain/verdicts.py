@@ -12,9 +12,12 @@ INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 2
 CONVEX, CONCAVE, SADDLE = 0, 1, 2
 
 #: Why no posture is left, in the order in which the attributes are applied; `Reach.reason` is an index into it.
-#: `buried`: under or within a body; `tolerance`: that is too coarse for the cutter, which is undecided everywhere then.
-REASONS = ("axis_limit", "local_gouge", "rear_gouge", "collision", "buried", "tolerance", "neck", "shank", "holder")
-BURIED, TOLERANCE, NO_REASON = 4, 5, 255
+#: `buried`: under or within a body; `tolerance`: that is too coarse for the cutter, which is undecided everywhere then;
+#: `fixture`: without the fixtures the sample would be reached.
+REASONS = (
+    "axis_limit", "local_gouge", "rear_gouge", "collision", "buried", "tolerance", "neck", "shank", "holder", "fixture",
+)  # fmt: skip
+AXIS_LIMIT, LOCAL_GOUGE, BURIED, TOLERANCE, FIXTURE, NO_REASON = 0, 1, 4, 5, 9, 255
 
 Bytes = NDArray[np.uint8]
 
@@ -74,7 +77,7 @@ class Witness(Record):
     reason : str
         One of REASONS.
     obstacle_face : int, optional
-        Face that is in the way at that posture.
+        Face that is in the way at that posture; negative for a fixture (`Surroundings.called`).
     obstacle_point : (3,) float, optional
         Point of it that lies in the cutter.
     tilt, rotation : float, optional

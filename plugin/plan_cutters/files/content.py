@@ -118,7 +118,7 @@ class Content:
 
     def xml(self) -> Element:
         """The root of the XML that it holds."""
-        return parse(self.data, self.name, self.noun, self.error)
+        return parse(self.data, self.name, self.text, self.noun, self.error)
 
     def broken_json(self) -> PlanError:
         """Why what looks like JSON is none."""
@@ -150,7 +150,10 @@ class Content:
             ) from None
         if len(found) > _MEMBERS:
             raise self.error(f"is a zip archive of {len(found)} files: no {self.noun} is", file=self.name)
-        return {each.filename: each for each in found}
+        members = {each.filename: each for each in found}
+        if len(members) < len(found):
+            raise self.error("is a zip archive with two files of one name; export it anew", file=self.name)
+        return members
 
     def unpacked(self, member: str) -> bytes:
         """One file of a zip archive, unless it is a bomb."""

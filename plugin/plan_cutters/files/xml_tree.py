@@ -1,5 +1,7 @@
 """XML with the lines of its elements, and no more: no entities, no other files, no depth without end."""
 
+import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 from xml.parsers import expat
@@ -7,6 +9,7 @@ from xml.parsers import expat
 from plan_cutters.errors import PlanError
 
 _DEEPEST, _ELEMENTS = 64, 2_000_000
+_DECLARED = re.compile(r"""^<\?xml[^>]*?\bencoding\s*=\s*["']([\w.-]+)["']""")
 
 
 @dataclass(slots=True)
@@ -23,16 +26,32 @@ class Element:
         """The first child of a name."""
         return next((child for child in self.children if child.tag == tag), None)
 
+    def below(self, tags: tuple[str, ...]) -> Iterator["Element"]:
+        """Elements of some names, in whatever group they stand, but not in each other."""
+        waiting = self.children[::-1]
+        while waiting:
+            element = waiting.pop()
+            if element.tag in tags:
+                yield element
+            else:
+                waiting += element.children[::-1]
 
-def parse(data: bytes, file: str, noun: str, error: type[PlanError]) -> Element:
-    """The root of a document.
+
+def parse(data: bytes, file: str, text: str, noun: str, error: type[PlanError]) -> Element:
+    """The root of a document; `text` is what its bytes say, whatever it declares of their encoding.
 
     Raises
     ------
     error
         It is not well-formed, or declares a document type or entities.
     """
-    parser = expat.ParserCreate()
+    declared = _DECLARED.match(text.lstrip("\ufeff"))
+    wide = 0 in data[:4] or data[:2] in (b"\xff\xfe", b"\xfe\xff")
+    if declared and declared[1].lower().startswith("utf-16") != wide:
+        # Saved by an editor in another encoding than it still declares.
+        parser, data = expat.ParserCreate("utf-8"), text.encode("utf-8", "replace")
+    else:
+        parser = expat.ParserCreate()
     top = Element("", {}, 0)
     open_, count = [top], 0
 

@@ -7,8 +7,9 @@ angles at the middle tell.
 
 import numpy as np
 
-from plan_cutters.kernels.jit import kernel
-from plan_cutters.kernels.vectors import dot
+from plan_cutters.kernels.arcs import axis_arcs
+from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.vectors import cross, dot, lean_frame
 
 # As in `plan_cutters.domain.kinematics`, which must not load the compiler; a test holds them together.
 PARALLEL, ON_LIMIT = 1e-6, 1e-9
@@ -169,3 +170,22 @@ def hold(n, f, rotary, intervals, count):  # type: ignore[no-untyped-def]
             intervals[kept, 0], intervals[kept, 1] = high, high
             kept += 1
     return kept
+
+
+@entry
+def any_axis(rows, normal, direction_max, ranges, low, high, held):  # type: ignore[no-untyped-def]
+    """Write whether the axis limits leave any tilt between two, rad, at any rotation: held (n,) of the samples `rows`."""
+    intervals, e2, f, t = np.empty((64, 2)), np.empty(3), np.empty(3), np.empty(3)
+    for row in rows:
+        n, e1 = normal[row], direction_max[row]
+        cross(n, e1, e2)
+        held[row] = False
+        for rotation in range(len(ranges.rotation_cos)):
+            cosine, sine = turn_of(n, e1, ranges, rotation)
+            lean_frame(e1, e2, cosine, sine, f, t)
+            count = axis_arcs(dot(ranges.setup, n), dot(ranges.setup, f), ranges.limit_cos, low, high, intervals)
+            if limited(ranges.rotary):
+                count = hold(n, f, ranges.rotary, intervals, count)
+            if count > 0:
+                held[row] = True
+                break

@@ -30,7 +30,7 @@ class Solids(NamedTuple):
     tree. weight (n,) int8: how often a triangle
     counts in the winding number, negative where its corners run the other way round. moment (nodes, 8): of the triangles
     below a node. cell (i, j, k) uint8, 1 where a cell is surely outside, with its origin (3,) and size, mm; none where
-    nothing encloses anything.
+    nothing encloses anything. whole: all beyond the cells is outside.
     """
 
     tree: Tree
@@ -39,12 +39,13 @@ class Solids(NamedTuple):
     cell: Any
     origin: Any
     size: float
+    whole: bool
 
 
 def sheet(tree: Tree) -> Solids:
     """Triangles that enclose nothing."""
     none = np.zeros((0, 0, 0), np.uint8)
-    return Solids(tree, np.zeros(len(tree.vertex), np.int8), np.zeros((0, MOMENTS)), none, np.zeros(3), 1.0)
+    return Solids(tree, np.zeros(len(tree.vertex), np.int8), np.zeros((0, MOMENTS)), none, np.zeros(3), 1.0, True)
 
 
 @entry
@@ -124,7 +125,7 @@ def outside(x, y, z, solids):  # type: ignore[no-untyped-def]
         return True
     i, j, k = x - solids.origin[0], y - solids.origin[1], z - solids.origin[2]
     if i < 0.0 or j < 0.0 or k < 0.0 or i >= nx * solids.size or j >= ny * solids.size or k >= nz * solids.size:
-        return True
+        return solids.whole
     if not (i == i and j == j and k == k):
         return False
     row, column, layer = int(i / solids.size), int(j / solids.size), int(k / solids.size)

@@ -1,13 +1,17 @@
 """Files that are tool libraries, or should be."""
 
 import os
+from pathlib import Path
 from typing import ClassVar
 
 from plan_cutters.errors import LibraryError, PlanError
 from plan_cutters.files import content
 from plan_cutters.files.content import lines_of
 
-__all__ = ["Content", "data_of", "lines_of"]
+__all__ = ["MOST_TOOLS", "Content", "data_of", "is_file", "lines_of", "too_many"]
+
+#: Tools that a file may list: more take more memory than a planner's computer has.
+MOST_TOOLS = 50_000
 
 
 class Content(content.Content):
@@ -20,3 +24,15 @@ class Content(content.Content):
 def data_of(path: str | os.PathLike[str]) -> bytes:
     """All bytes of a regular file."""
     return content.data_of(path, Content.noun, Content.error)
+
+
+def is_file(path: Path) -> bool:
+    """Whether there is a regular file; a name that no system takes is none."""
+    try:
+        return path.is_file()
+    except OSError:
+        return False
+
+
+def too_many(file: str) -> LibraryError:
+    return LibraryError(f"lists more than {MOST_TOOLS} tools; split it", file=file)

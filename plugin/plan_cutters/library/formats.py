@@ -105,6 +105,8 @@ FOREIGN = (
     Foreign("MTConnect assets", lambda c: c.head.startswith("<") and "mtconnectassets" in c.head, _FUSION),
     Foreign("a web page (HTML)", _page, "download the library itself: perhaps a log-in stands before it"),
     Foreign("a Carbide 3D tool list", _begins("number,vendor,model,"), f"it has no holder; {_TOML}"),
+    Foreign("a table (CSV) without Fusion's columns", lambda c: c.path.suffix.lower() in (".csv", ".tsv"),
+            f"columns as Type (tool_type), Diameter (tool_diameter) and Unit (tool_unit) are read; {_TOML}"),
     Foreign("a CAM machine or setting of FreeCAD", lambda c: c.path.suffix.lower() == ".fcm", "give its tools (.fctl)"),
 )  # fmt: skip
 
@@ -135,7 +137,8 @@ def recognised(content: Content) -> Format:
         raise LibraryError("is XML, but no HSMWorks tool library (tool-library); export it anew", file=content.name)
     if isinstance(content.json, dict | list):
         raise LibraryError(
-            "is JSON, but neither a Fusion library (data) nor of FreeCAD (tools, parameter, profile)", file=content.name
+            'is JSON, but neither a Fusion library ({"data": [tools]}) nor of FreeCAD (tools, parameter, profile)',
+            file=content.name,
         )
     names = ", ".join(f"{form.name} ({' '.join(form.suffixes)})" for form in FORMATS)
     raise LibraryError(f"is no tool library that is known; read are {names}", file=content.name)

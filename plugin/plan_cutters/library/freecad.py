@@ -12,7 +12,7 @@ from typing import Any
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.holder import Holder
 from plan_cutters.errors import CutterError, LibraryError
-from plan_cutters.library.files import Content, data_of, lines_of
+from plan_cutters.library.files import MOST_TOOLS, Content, data_of, is_file, lines_of, too_many
 from plan_cutters.library.fusion_json import MOST_SECTIONS
 from plan_cutters.library.listed import FaultError, Found, Listed, mm, name_of, number_in, number_of, sections, whole_of
 from plan_cutters.library.records import Entry
@@ -20,7 +20,7 @@ from plan_cutters.library.records import Entry
 _MM = {"mm": 1.0, "µm": 1e-3, "μm": 1e-3, "um": 1e-3, "nm": 1e-6, "cm": 10.0, "dm": 100.0, "m": 1000.0, "in": 25.4,
        '"': 25.4, "″": 25.4, "inch": 25.4, "mil": 0.0254, "thou": 0.0254, "ft": 304.8, "'": 304.8}  # fmt: skip
 _DEGREES = ("", "°", "deg", "degrees")
-_QUANTITY = re.compile(r"\s*([-+]?[\d.,]+(?:[eE][-+]?\d+)?|[-+]?(?:nan|inf(?:inity)?))\s*(\S*)\s*", re.IGNORECASE)
+_QUANTITY = re.compile(r"\s*([-+]?[\d.,]+(?:[eE][-+]?\d+)?|[-+]?(?:nan|inf(?:inity)?))\s*([^\s/]*)\s*", re.IGNORECASE)
 #: Our name of each dimension, and the names that shapes have had for it.
 _PARAMETERS = (
     ("DC", ("Diameter",)),
@@ -31,6 +31,8 @@ _PARAMETERS = (
     ("TIP", ("TipDiameter", "FlatDiameter")),
 )
 _ANGLE = "CuttingEdgeAngle"
+#: What these shapes have no place for in their drawing.
+_IGNORED = ("NeckDiameter", "NeckLength", _ANGLE)
 #: What shapes are among mills; the others stay what they are called.
 _SORTS = {
     "endmill": "flat end mill",
@@ -76,6 +78,8 @@ def read_bit(content: Content) -> Found:
 
 def read_library(content: Content) -> Found:
     """Read it and the bits that it lists, beside it or in a folder `Bit`."""
+    if len(content.json["tools"]) > MOST_TOOLS:
+        raise too_many(content.name)
     found, lines = Found(), lines_of(content.text, "tools")
     for i, item in enumerate(content.json["tools"]):
         line = f" (line {lines[i]})" if len(lines) == len(content.json["tools"]) else ""
@@ -98,7 +102,7 @@ def _bit(folder: Path, path: str) -> Content:
     if not name.lower().endswith(".fctb"):
         raise FaultError(f"path {shown(path)} is no .fctb file")
     for each in (folder / place / name for place in _FOLDERS):
-        if each.is_file():
+        if is_file(each):
             try:
                 bit = Content(each, data_of(each))
             except LibraryError as error:
@@ -168,6 +172,11 @@ def _tool(given: dict[str, Any], place: str, number: int | None) -> Listed:
             if not same:
                 both = f"{present[0]} is {shown(parameters[present[0]])}, {other} is {shown(parameters[other])}"
                 tool.faults.append(f"{both}: they mean the same")
+    for word in _IGNORED if tool.sort else ():
+        if word != _ANGLE or tool.sort != "chamfer mill":
+            given_ = str(parameters.get(word) or "")
+            if re.search("[1-9]", given_):
+                tool.notes.append(f"{word} {given_[:40]} is not used")
     if tool.sort == "chamfer mill":
         tool.take("TA", parameters.get(_ANGLE), _ANGLE, _half_angle)
     tool.words["LPR"] = "length below the holder"
@@ -181,7 +190,7 @@ def _length(value: Any, field: str, imperial: bool, tool: Listed) -> float:
     else:
         match = _QUANTITY.fullmatch(value)
         if not match:
-            raise FaultError(f"{field} is {shown(value)}, not a length")
+            raise FaultError(f"{field} is {shown(value)}, not a length as 6.35 mm or 0.25 in")
         found, comma = number_in(match[1], field)
         unit = match[2]
         if comma:
@@ -192,7 +201,8 @@ def _length(value: Any, field: str, imperial: bool, tool: Listed) -> float:
         if found:
             tool.notes.append(f"{field} without a unit: mm, as FreeCAD counts")
         return found
-    scale = _MM.get(unit) or _MM.get(unit.lower())
+    # A capital M is a million, not a metre.
+    scale = _MM.get(unit) or (_MM.get(unit.lower()) if len(unit) > 1 else None)
     if scale is None:
         raise FaultError(f"{field} is {shown(value)}: no unit of length is called {shown(unit)}")
     if scale not in (1.0,):
@@ -203,8 +213,14 @@ def _length(value: Any, field: str, imperial: bool, tool: Listed) -> float:
 def _half_angle(value: Any, field: str) -> float:
     """FreeCAD gives the whole angle of a point."""
     if not isinstance(value, str):
-        return 0.5 * number_of(value, field)
+        return _half(number_of(value, field), field)
     match = _QUANTITY.fullmatch(value)
     if not match or match[2].lower() not in _DEGREES:
         raise FaultError(f"{field} is {shown(value)}, not an angle in degrees")
-    return 0.5 * number_in(match[1], field)[0]
+    return _half(number_in(match[1], field)[0], field)
+
+
+def _half(angle: float, field: str) -> float:
+    if not 0.0 <= angle < 180.0:
+        raise FaultError(f"{field} is {angle:g}: the angle of a point lies between 0 and 180 degrees")
+    return 0.5 * angle

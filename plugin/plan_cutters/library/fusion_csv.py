@@ -7,7 +7,7 @@ import re
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.holder import Holder, Stage
 from plan_cutters.errors import CutterError, LibraryError
-from plan_cutters.library.files import Content
+from plan_cutters.library.files import MOST_TOOLS, Content, too_many
 from plan_cutters.library.fusion_json import MOST_SECTIONS
 from plan_cutters.library.listed import FaultError, Found, Listed, mm, name_of, number_in, sections, unit_of, whole_of
 from plan_cutters.library.records import Entry
@@ -31,15 +31,25 @@ _NAME = re.compile(r"\((\w+)\)\s*$")
 _SECTION = re.compile(r"H\s*(\S+)\s+U\s*(\S+)\s+L\s*(\S+)")
 
 
+#: What some programs write before the header, for spreadsheets.
+_SEPARATOR = re.compile(r"\"?sep=(.)\"?[ \t]*\r?\n", re.IGNORECASE)
+
+
+def _table_of(content: Content) -> str:
+    text = content.text.lstrip("\ufeff \r\n")
+    said = _SEPARATOR.match(text)
+    return text[said.end() :] if said else text
+
+
 def is_csv(content: Content) -> bool:
     """A first line with columns `(tool_type)` and `(tool_diameter)`."""
-    first = content.text.lstrip("﻿ \r\n").partition("\n")[0]
+    first = _table_of(content).partition("\n")[0]
     return "(tool_type)" in first and "(tool_" in first.replace("(tool_type)", "")
 
 
 def read_csv(content: Content) -> Found:
     """Read it; commas, semicolons or tabs part the columns."""
-    text = content.text.lstrip("﻿ \r\n")
+    text = _table_of(content)
     first = text.partition("\n")[0]
     rows = csv.reader(io.StringIO(text), delimiter=max(",;\t", key=first.count))
     found = Found()
@@ -51,7 +61,12 @@ def read_csv(content: Content) -> Found:
         for needed in ("tool_type", "tool_diameter", "tool_unit"):
             if needed not in header:
                 raise LibraryError(f"has no column ({needed}); export it anew, with all columns", file=content.name)
+        twice = sorted({name for name in header if name and header.count(name) > 1})
+        if twice:
+            raise LibraryError(f"has the column ({shown(twice[0])[1:-1]}) twice; keep one of them", file=content.name)
         for i, row in enumerate(rows, 1):
+            if i > MOST_TOOLS:
+                raise too_many(content.name)
             if not any(cell.strip() for cell in row):
                 continue
             place = f"row {i} (line {rows.line_num})"

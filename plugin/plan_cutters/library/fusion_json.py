@@ -6,7 +6,7 @@ from typing import Any
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.holder import Holder
 from plan_cutters.errors import CutterError, LibraryError
-from plan_cutters.library.files import Content, lines_of
+from plan_cutters.library.files import MOST_TOOLS, Content, lines_of, too_many
 from plan_cutters.library.listed import FaultError, Found, Listed, mm, name_of, number_of, sections, unit_of, whole_of
 from plan_cutters.library.records import Entry
 
@@ -54,6 +54,8 @@ def read_zip(content: Content) -> Found:
 
 def read_json(content: Content) -> Found:
     """Read `.json`."""
+    if len(content.json["data"]) > MOST_TOOLS:
+        raise too_many(content.name)
     found, lines = Found(), lines_of(content.text, "data")
     for i, item in enumerate(content.json["data"]):
         line = f" (line {lines[i]})" if len(lines) == len(content.json["data"]) and max(lines) > 1 else ""

@@ -6,7 +6,7 @@ from typing import Any
 from plan_cutters.domain.holder import Holder, Stage
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.files.xml_tree import Element
-from plan_cutters.library.files import Content
+from plan_cutters.library.files import MOST_TOOLS, Content, too_many
 from plan_cutters.library.fusion_json import EXPRESSIONS, MOST_SECTIONS
 from plan_cutters.library.listed import FaultError, Found, Listed, mm, name_of, number_in, sections, unit_of, whole_of
 from plan_cutters.library.records import Entry
@@ -39,9 +39,11 @@ def read_hsmlib(content: Content) -> Found:
     if root.tag != "tool-library":
         raise LibraryError(f"is XML with the root {root.tag[:40]}, not tool-library", file=content.name)
     found, count = Found(), 0
-    for element in root.children:
+    for element in root.below(("tool", "holder")):
         if element.tag == "tool":
             count += 1
+            if count > MOST_TOOLS:
+                raise too_many(content.name)
             found.tools.append(_tool(element, f"tool {count} (line {element.line})"))
         elif element.tag == "holder":
             try:
@@ -50,7 +52,7 @@ def read_hsmlib(content: Content) -> Found:
             except (FaultError, CutterError) as fault:
                 name = name_of(element.given.get("description"))
                 found.faulty.append(Entry(f"line {element.line}", None, name, "holder", unused=str(fault), broken=True))
-    if any(element.first("expressions") is not None for element in root.children):
+    if any(element.first("expressions") is not None for element in root.below(("tool", "holder"))):
         found.notes.append(EXPRESSIONS)
     return found
 
@@ -82,6 +84,8 @@ def _tool(element: Element, place: str) -> Listed:
         )
         tool.holder = tried(lambda: _holder(holder, scale), None)
         tool.take("LH", holder.given.get("gauge-length"), "holder gauge-length", _number)
+        if "LH" in tool.values:
+            tool.values["LH"] = round(tool.values["LH"] / tool.scale * scale, 9)
     return tool
 
 

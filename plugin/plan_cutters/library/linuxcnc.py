@@ -3,11 +3,11 @@
 import re
 
 from plan_cutters.domain.checks import shown
-from plan_cutters.library.files import Content
+from plan_cutters.library.files import MOST_TOOLS, Content, too_many
 from plan_cutters.library.listed import FaultError, Found, name_of, number_in, whole_of
 from plan_cutters.library.records import Entry
 
-_LINE = re.compile(r"^\s*T\s*[+-]?\d+(?:\s+[A-Z]\s*[+-]?[\d.]+)*\s*(?:;.*)?$", re.IGNORECASE)
+_LINE = re.compile(r"^\s*T\s*[+-]?\d+(?:\s+[A-Z]\s*[+-]?[\d.,]+)*\s*(?:;.*)?$", re.IGNORECASE)
 _WORD = re.compile(r"([A-Z])\s*([^\sA-Z;]+)", re.IGNORECASE)
 _ASKED = (
     "LCF, LPR (stick-out), DMM and a holder are missing: a tool table has none; write the tool as TOML "
@@ -25,6 +25,8 @@ def read_table(content: Content) -> Found:
     """List it: none of its tools can be judged."""
     found = Found(notes=["the file does not say in which unit its diameters are: that of the machine"])
     for number, line in enumerate(content.text.splitlines(), 1):
+        if number > MOST_TOOLS:
+            raise too_many(content.name)
         words, _, comment = line.partition(";")
         if words.strip():
             found.tools.append(_entry(words, name_of(comment), f"line {number}"))

@@ -1,6 +1,7 @@
 """A listed tool becomes a cutter, or says why it does not: what is missing is never invented, what is said twice must agree."""
 
 import math
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, Literal
@@ -8,7 +9,7 @@ from typing import Any, Literal
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.dimensions import Dimensions
 from plan_cutters.domain.holder import Holder, Stage
-from plan_cutters.domain.shapes import MOST_PIECES, SAME, pieces_at_most
+from plan_cutters.domain.shapes import MOST_PIECES, SAME, pieces_at_most, top_radius
 from plan_cutters.errors import CutterError
 from plan_cutters.library.listed import Listed
 from plan_cutters.library.outlines import fewer, joined, up_to
@@ -31,8 +32,9 @@ _OUTLINE = ("form mill", "radius mill", "thread mill", "circle segment barrel", 
             "circle segment taper", "slitting saw", "slittingsaw", "fillet", "radius", "dovetail", "thread-mill", "threadmill",
             "taperedballnose", "taperballnose", "custom")  # fmt: skip
 #: Kinds that finish no sculptured surface, by the words that their names have.
-_OTHERS = ("drill", "tap ", "tap", "reamer", "counter", "bore", "boring", "probe", "turning", "laser", "plasma", "waterjet",
-           "depositing", "holder", "inspection", "broach", "welding")  # fmt: skip
+_OTHERS = re.compile(
+    r"drill|\btap\b|ream|counter|bore|boring|probe|turning|laser|plasma|waterjet|deposit|holder|inspect|broach|weld"
+)
 #: Sections between the flutes and the holder that are told apart.
 _MOST_ABOVE = 6
 #: Dimensions given twice agree up to the rounding of the file, mm and as a share.
@@ -68,11 +70,11 @@ def entry_of(tool: Listed, ask: Ask) -> Entry:
     except UnfitError as why:
         return tool.entry(unused=str(why), broken=why.broken)
     except CutterError as error:
-        return tool.entry(unused=_cause(error), broken=True)
+        return tool.entry(unused=cause_of(error), broken=True)
     return tool.entry(cutter=cutter)
 
 
-def _cause(error: CutterError) -> str:
+def cause_of(error: CutterError) -> str:
     """What is wrong, without the id of a cutter that cannot exist."""
     head, colon, rest = error.cause.partition(": ")
     return rest if colon and head.startswith("cutter ") else error.cause
@@ -90,7 +92,7 @@ def _sort(tool: Listed) -> str:
         raise UnfitError(
             f"{said}: its dimensions here do not say its outline; write it as TOML (docs/tool_libraries.md)"
         )
-    if any(word in kind for word in _OTHERS):
+    if _OTHERS.search(kind):
         raise UnfitError(f"{said}: not a mill that finishes surfaces")
     raise UnfitError(f"{said} is unknown; read are {', '.join(MILLS)}")
 
@@ -201,12 +203,19 @@ def _end(tool: Listed, promise: str) -> Cutter:
     if "TA" in tool.values:
         tool.notes.append(f'called "{tool.kind}", but {tool.said("TA")}: read as tapered')
         return _leaning(tool, math.radians(tool.values["TA"]))
+    if tool.values.get("TIP", 0.0) and abs(tool.values["TIP"] - tool.values["DC"]) > _slack(radius):
+        tool.notes.append(f"{tool.said('TIP')} is not used: there is no {tool.word('TA')}")
     return Cutter(radius, flutes, _ball(tool, radius, promise), tool.name, flutes=flutes)
 
 
 def _leaning(tool: Listed, taper: float) -> Cutter:
     """The diameter of a leaning flank is given at the tip, as if there were no corner."""
-    corner, flutes = tool.values.get("RE", 0.0), tool.values["LCF"]
+    corner, flutes, tip = tool.values.get("RE", 0.0), tool.values["LCF"], tool.values.get("TIP")
+    if tip is not None and abs(tip - tool.values["DC"]) > _slack(tip):
+        raise UnfitError(
+            f"{tool.said('DC')} and {tool.said('TIP')}: which of them is the diameter at its tip? Give that as "
+            f"{tool.word('DC')}, and no {tool.word('TIP')}"
+        )
     radius = 0.5 * tool.values["DC"] + corner * (1.0 - (1.0 - math.sin(taper)) / math.cos(taper))
     if corner > radius + _slack(radius):
         raise UnfitError(
@@ -214,6 +223,14 @@ def _leaning(tool: Listed, taper: float) -> Cutter:
         )
     if abs(corner - radius) <= _slack(radius):
         radius = corner = max(radius, corner)
+    elif abs(corner - 0.5 * tool.values["DC"]) <= _slack(corner):
+        # A half diameter is meant as a ball more often than not: as one it would be given with a smaller diameter.
+        ball = 2.0 * corner * (1.0 - math.sin(taper)) / math.cos(taper)
+        flat = 2.0 * (radius - corner) / tool.scale
+        tool.notes.append(
+            f"{tool.said('RE')} is half of {tool.said('DC')}, but its tip keeps a flat {flat:.4g} wide: "
+            f"a ball under {tool.said('TA')} deg has {tool.word('DC')} {ball / tool.scale:.6g}"
+        )
     return Cutter(radius, flutes, corner, tool.name, flutes=flutes, taper=taper)
 
 
@@ -326,6 +343,9 @@ def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Stage, ...]:
         found.append(Stage(0.5 * v["DMM"], round(length - at, 9)))
         if v["DMM"] < v["DC"] - _slack(v["DC"]):
             tool.notes.append(f"{tool.said('DMM')} is thinner than {tool.said('DC')}")
+        elif v["DMM"] < 2.0 * top_radius(bare) - _slack(v["DMM"]):
+            wide = 2.0 * top_radius(bare) / tool.scale
+            tool.notes.append(f"{tool.said('DMM')} is thinner than its flutes where they end, {wide:.6g}")
     straight = joined(found)
     if len(straight) <= _MOST_ABOVE:
         return straight
@@ -353,11 +373,11 @@ def _held(tool: Listed, cutter: Cutter, holder: Holder, *, own: bool) -> Cutter:
     """With its holder, of as many sections as can be judged."""
     plain = Holder(joined(holder.stages), holder.name)
     fits: Any = lambda made: pieces_at_most(_with(cutter, made)) <= MOST_PIECES  # noqa: E731
-    most = len(plain.stages)
-    while not fits(plain) and most > 1:
-        most -= 1
+    # A section has three pieces at least: no more than a third of them is worth a trial.
+    most = min(len(plain.stages) - 1, MOST_PIECES // 3)
+    while not fits(plain) and most > 0:
         stages, wider = fewer(holder.stages, most)
-        plain = Holder(stages, holder.name)
+        plain, most = Holder(stages, holder.name), most - 1
         if fits(plain):
             tool.notes.append(
                 f"its holder's {len(holder.stages)} sections are taken as {len(stages)} around them, up to {wider:.3g} mm wider"
@@ -365,7 +385,7 @@ def _held(tool: Listed, cutter: Cutter, holder: Holder, *, own: bool) -> Cutter:
     try:
         return replace(cutter, holder=plain)
     except CutterError as error:
-        raise UnfitError(_cause(error), broken=own) from None
+        raise UnfitError(cause_of(error), broken=own) from None
 
 
 def _with(cutter: Cutter, holder: Holder) -> Dimensions:

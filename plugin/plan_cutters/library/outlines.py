@@ -24,14 +24,19 @@ def _merged(stages: Sequence[Stage], most: int, free: float) -> tuple[tuple[Stag
     # Each section with what it stands for, so that what is added is measured against the truth.
     found = [(stage, [stage]) for stage in stages]
     worst = 0.0
+    both = [_enclosing([*a, *b]) for (_, a), (_, b) in pairwise(found)]
     while len(found) > 1:
-        both = [_enclosing([*a, *b]) for (_, a), (_, b) in pairwise(found)]
         i = min(range(len(both)), key=lambda k: both[k][1])
         stage, added = both[i]
         if added > free and (most == 0 or len(found) <= most):
             break
         worst = max(worst, added)
         found[i : i + 2] = [(stage, [*found[i][1], *found[i + 1][1]])]
+        del both[i]
+        # Only what it now stands beside is new.
+        for k in (i - 1, i):
+            if 0 <= k < len(both):
+                both[k] = _enclosing([*found[k][1], *found[k + 1][1]])
     return tuple(stage for stage, _ in found), worst if worst > free else 0.0
 
 

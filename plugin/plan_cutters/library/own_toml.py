@@ -13,16 +13,21 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder, Stage
 from plan_cutters.domain.shapes import SAME, flute_length
 from plan_cutters.errors import CutterError, LibraryError
-from plan_cutters.library.files import Content
+from plan_cutters.library.files import MOST_TOOLS, Content, too_many
 from plan_cutters.library.listed import FaultError, Found, mm, name_of, unit_of
-from plan_cutters.library.milling import Ask
+from plan_cutters.library.milling import Ask, cause_of
 from plan_cutters.library.records import Entry
 
-_LOOKS = re.compile(r"^\s*(\[\[?\s*(tool|holder)\s*\]\]?\s*(#.*)?$|unit\s*=)", re.MULTILINE)
-_TABLE = re.compile(r"^\s*\[\[\s*tool\s*\]\]", re.MULTILINE)
+_LOOKS = re.compile(
+    r"^[ \t]*(\[\[?[ \t]*(tool|holder)s?[ \t]*\]\]?[ \t]*(#.*)?\r?$|unit[ \t]*=)", re.MULTILINE | re.IGNORECASE
+)
+_TABLE = re.compile(r"^[ \t]*\[\[[ \t]*tool[ \t]*\]\]", re.MULTILINE)
 _RADIANS = re.compile(r"\s*(\S+)\s*rad\s*")
 _ENDS = ("flat", "bull", "ball", "taper", "dovetail", "end")
 
+#: A tool's number is no larger, as in all formats.
+_LARGEST = 10**9
+_MOST = 8 << 20
 #: What pydantic puts into the place of an error for a kind that it tried.
 _KINDS = ("HolderTable", "str", "float")
 
@@ -45,7 +50,7 @@ class ToolTable(BaseModel):
     """A tool: ISO 13399 names where there are such."""
 
     model_config = ConfigDict(extra="forbid")
-    number: Annotated[int, Field(strict=True, ge=0)] | None = None
+    number: Annotated[int, Field(strict=True, ge=0, lt=_LARGEST)] | None = None
     name: str = ""
     type: Literal["flat", "bull", "ball", "taper", "dovetail", "end", "lollipop", "barrel", "lens", "form"]
     unit: str | None = None
@@ -57,7 +62,7 @@ class ToolTable(BaseModel):
     DMM: Number | Literal["same"] | None = None
     DN: Number | None = None
     LN: Number | None = None
-    TA: Number | str = 0.0
+    TA: Number | str | None = None
     PRFRAD: Number = 0.0
     profile_height: Number = 0.0
     neck: list[Section] = []
@@ -72,17 +77,23 @@ class LackError(Exception):
 
 
 def is_toml(content: Content) -> bool:
-    """Tables `[[tool]]` or `[[holder]]`, or a unit."""
-    return content.head[:1] not in ("{", "<") and _LOOKS.search(content.text) is not None
+    """Tables `[[tool]]` or `[[holder]]`, or a unit; what is called so may have none of them yet."""
+    if content.head[:1] in ("{", "<") or content.members is not None:
+        return False
+    return _LOOKS.search(content.text) is not None or content.path.suffix.lower() == ".toml"
 
 
 def read_toml(content: Content, ask: Ask) -> Found:
     """Read it."""
+    if len(content.data) > _MOST:
+        # TOML is read by Python itself, some MB in a second.
+        raise LibraryError(f"is larger than {_MOST >> 20} MB: no tool library is; split it", file=content.name)
+    if len(_TABLE.findall(content.text)) > MOST_TOOLS:
+        raise too_many(content.name)
     try:
         given = tomllib.loads(content.text)
     except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
-        why = "it is nested too deeply" if isinstance(error, RecursionError) else " ".join(str(error).split())
-        raise LibraryError(f"is no TOML: {why}", file=content.name) from None
+        raise LibraryError(f"is no TOML: {_syntax(error)}", file=content.name) from None
     for key in given:
         if key not in ("unit", "tool", "holder"):
             raise LibraryError(
@@ -92,7 +103,11 @@ def read_toml(content: Content, ask: Ask) -> Found:
     for key, tables in (("tool", tools), ("holder", holders)):
         if not isinstance(tables, list):
             raise LibraryError(f"{key} is one table: write [[{key}]], with two brackets", file=content.name)
-    found, named = Found(), {}
+    if len(tools) > MOST_TOOLS or len(holders) > MOST_TOOLS:
+        raise too_many(content.name)
+    found = Found()
+    # None: the name means more than one.
+    named: dict[str, Holder | None] = {}
     for i, table in enumerate(holders, 1):
         try:
             model = HolderTable.model_validate(table)
@@ -101,12 +116,25 @@ def read_toml(content: Content, ask: Ask) -> Found:
             found.faulty.append(Entry(f"holder {i}", kind="holder", unused=_why(error), broken=True))
             continue
         found.holders.append(holder)
-        named[holder.name] = holder
+        if holder.name:
+            named[holder.name] = holder if named.get(holder.name, holder) == holder else None
     lines = [content.text.count("\n", 0, match.start()) + 1 for match in _TABLE.finditer(content.text)]
     for i, table in enumerate(tools):
         line = f" (line {lines[i]})" if len(lines) == len(tools) else ""
         found.tools.append(_entry(table, f"tool {i + 1}{line}", given.get("unit"), named, ask))
     return found
+
+
+def _syntax(error: Exception) -> str:
+    """Why a text is no TOML, and what it mostly is."""
+    if isinstance(error, RecursionError):
+        return "it is nested too deeply"
+    if not isinstance(error, tomllib.TOMLDecodeError):
+        return "it has a number of thousands of digits"
+    why = " ".join(str(error).split())
+    if "Expected newline" in why or "Invalid value" in why:
+        why += '; numbers have a decimal point and no unit (12.5), words have quotes ("mm")'
+    return why
 
 
 def _scale(unit: Any) -> tuple[str, float]:
@@ -116,26 +144,38 @@ def _scale(unit: Any) -> tuple[str, float]:
 def _why(error: Exception) -> str:
     """One line of what is wrong with a table."""
     if not isinstance(error, ValidationError):
-        return error.cause if isinstance(error, CutterError) else str(error)
+        return cause_of(error) if isinstance(error, CutterError) else str(error)
     # Of kinds that were tried in turn, the one that was understood the farthest.
     first = max(error.errors(include_url=False, include_context=False), key=lambda each: len(each["loc"]))
     words = [str(word + 1) if isinstance(word, int) else word for word in first["loc"]]
     words = [word for word in words if (word.isidentifier() and word not in _KINDS) or word.isdigit()]
     field = " ".join(words) or "it"
     if first["type"] == "extra_forbidden":
-        return f"{shown(first['loc'][-1])} has no meaning here"
+        return f"{shown(first['loc'][-1])} has no meaning here{_meant(first['loc'][-1])}"
+    if not first["loc"]:
+        return f"it is {shown(first['input'])}, not a table"
     if first["type"] == "missing":
         return f"{first['loc'][-1]} is missing"
     return f"{field} is {shown(first['input'])}: {first['msg'][:1].lower()}{first['msg'][1:]}"
 
 
-def _entry(table: Any, place: str, unit: Any, named: dict[str, Holder], ask: Ask) -> Entry:
+def _meant(word: Any) -> str:
+    """The key that is written almost so."""
+    for key in (*ToolTable.model_fields, *HolderTable.model_fields):
+        if key.lower() == str(word).lower():
+            return f"; {key} is written so"
+    return ""
+
+
+def _entry(table: Any, place: str, unit: Any, named: dict[str, Holder | None], ask: Ask) -> Entry:
     number = name = None
     if isinstance(table, dict):
         number, name = table.get("number"), table.get("name")
     made: dict[str, Any] = {
         "place": place,
-        "number": number if isinstance(number, int) and not isinstance(number, bool) else None,
+        "number": number
+        if isinstance(number, int) and not isinstance(number, bool) and 0 <= number < _LARGEST
+        else None,
         "name": name_of(name),
     }
     notes: list[str] = []
@@ -181,7 +221,8 @@ def _stages(rows: list[Section], scale: float, field: str) -> list[Stage]:
 class _Reading:
     """One tool being read."""
 
-    def __init__(self, model: ToolTable, scale: float, named: dict[str, Holder], ask: Ask, notes: list[str]) -> None:
+    def __init__(self, model: ToolTable, scale: float, named: dict[str, Holder | None], ask: Ask,
+                 notes: list[str]) -> None:  # fmt: skip
         self.model, self.scale, self.named, self.ask, self.notes = model, scale, named, ask, notes
 
     def value(self, field: str) -> float:
@@ -218,10 +259,17 @@ class _Reading:
         if isinstance(given, HolderTable):
             return _outlined(given, _scale(given.unit)[1] if given.unit else self.scale)
         if given == "none":
+            if "none" in self.named:
+                raise FaultError(
+                    "holder 'none' means that there is none, but a [[holder]] is called so: call that otherwise"
+                )
             return None
         if given is not None:
             if given in self.named:
-                return self.named[given]
+                meant = self.named[given]
+                if meant is None:
+                    raise FaultError(f"holder {shown(given)}: several different [[holder]] are called so")
+                return meant
             try:
                 return Holder.parse(given)
             except CutterError:
@@ -238,7 +286,11 @@ class _Reading:
 
     def taper(self) -> float:
         """Half angle, rad; negative for a dovetail."""
-        given = self.model.TA
+        given, kind = self.model.TA, self.model.type
+        if given is None:
+            if kind in ("taper", "dovetail"):
+                raise LackError("TA is missing: the angle of its flank from the axis, degrees")
+            return 0.0
         if isinstance(given, str):
             match = _RADIANS.fullmatch(given)
             try:
@@ -249,14 +301,27 @@ class _Reading:
                 raise FaultError(f"TA is {shown(given)}: a half angle in degrees, or as 0.0873 rad")
         else:
             found = math.radians(given)
-        return -abs(found) if self.model.type == "dovetail" else found
+        if kind in ("taper", "dovetail") and not 0.0 < found < math.pi / 2:
+            raise FaultError(
+                f"TA is {given}: a half angle lies between 0 and 90 degrees; of a dovetail it is positive, too"
+            )
+        if found and kind in ("flat", "bull", "ball"):
+            self.notes.append(
+                f'called "{kind}", but TA is {given}: read as {"tapered" if found > 0.0 else "a dovetail"}'
+            )
+        return -found if kind == "dovetail" else found
 
     def necks(self) -> list[Stage]:
         if self.model.neck:
-            if self.model.LN is not None:
-                raise FaultError("neck and LN: give one of them")
+            twice = "LN" if self.model.LN is not None else "DN" if self.model.DN is not None else ""
+            if twice and (twice == "LN" or self.model.type != "lollipop"):
+                raise FaultError(f"neck and {twice}: give one of them")
             return _stages(self.model.neck, self.scale, "neck")
-        if not self.value("LN") or self.model.type == "lollipop":
+        if self.model.type == "lollipop":
+            return []
+        if not self.value("LN"):
+            if self.value("DN"):
+                raise LackError("LN is missing: the length of its neck of DN")
             return []
         return [Stage(0.5 * self.needed("DN", "the diameter of its neck of LN"), self.value("LN"))]
 
@@ -284,7 +349,7 @@ class _Reading:
         else:
             radius = 0.5 * self.needed("DC", "the cutting diameter")
         length, necks = self.stickout(), self.necks()
-        corner = radius if shape == "lollipop" else self.corner(radius)
+        corner = self.corner(radius)
         flutes = self.flutes(shape, necks, length)
         shank: float | None = None
         if shape == "lollipop":
@@ -303,6 +368,10 @@ class _Reading:
 
     def corner(self, radius: float) -> float:
         corner, kind = self.value("RE"), self.model.type
+        if kind == "lollipop":
+            if corner and abs(corner - radius) > 1e-3:
+                raise FaultError(f"RE {self.model.RE:g} is not half of DC {self.model.DC:g}: that of its ball")
+            return radius
         if kind == "ball" and not corner:
             self.notes.append("no RE: half of DC")
             return radius

@@ -7,13 +7,14 @@ from typing import Any, Literal
 
 from plan_cutters.domain.holder import Holder, positive
 from plan_cutters.errors import CutterError, LibraryError
-from plan_cutters.library.files import Content, data_of
-from plan_cutters.library.formats import recognised
+from plan_cutters.library.files import Content, data_of, is_file
+from plan_cutters.library.formats import FORMATS, recognised
 from plan_cutters.library.milling import Ask, entry_of
 from plan_cutters.library.records import Entry, Library
 
 #: How many reasons an error names, of all.
 _NAMED = 3
+_SUFFIXES = {suffix for form in FORMATS for suffix in form.suffixes}
 
 
 def read_library(path: str | os.PathLike[str], *, assume_stickout: float | None = None,
@@ -127,9 +128,11 @@ def holder_of(given: Any) -> Holder | str:
         return Holder.parse(given)
     except CutterError:
         file, mark, name = given.rpartition("#")
-        if not mark or not Path(file).is_file():
+        if not mark or not is_file(Path(file)):
             file, name = given, ""
-        if not Path(file).is_file():
+        if not is_file(Path(file)):
+            if Path(file).suffix.lower() in _SUFFIXES:
+                raise LibraryError("is no file; give one with a holder, or R15L30", file=file) from None
             raise
     found = listing(file, skip_bad=True)
     known = {holder.id: holder for holder in found.holders}

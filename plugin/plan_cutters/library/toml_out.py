@@ -101,7 +101,8 @@ def to_toml(cutters: Library | Iterable[Cutter]) -> str:
         return "\n".join([*lines, ""])
     lines.insert(0, f"# From {name_of(cutters.file)} ({cutters.format})")
     for holder in cutters.holders:
-        lines += ["", "[[holder]]", f"name = {_text(holder.name)}", f"stages = {_rows(holder.stages)}"]
+        name = "" if holder.name == "none" else holder.name
+        lines += ["", "[[holder]]", f"name = {_text(name)}", f"stages = {_rows(holder.stages)}"]
     for entry in cutters.entries:
         if entry.cutter is None:
             lines += ["", f"# Not used: {name_of(entry.label)}: {name_of(entry.unused)}"]

@@ -12,8 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import FaceGrid, FaceLabels, Style
+from cad_io.part import Part
 from cad_io.split import split
 from cad_io.write import write_gltf
+from cad_io.write.gltf import Other as Drawn
+from cad_io.write.step import Other as Product
 from cad_io.write.step import write_step as write_cad
 from plan_cutters.document.model import SplitEntry
 from plan_cutters.document.palette import LABELS, rgb
@@ -99,8 +102,15 @@ def _styles(result: Any) -> Callable[[Any], Style]:
 def write_step(result: Any, split: Any, path: Path, *, schema: str = "ap242") -> None:
     """Write `annotated.step`: the input's products and layers, each piece a face named `F<number>_<verdict>`."""
     part = result.part
+    others = [
+        Product(
+            each.name, each.source.shape, np.column_stack([each.fixture.rotation, each.fixture.shift]), rgb("fixture")
+        )
+        for each in result.scene.around.fixtures
+        if isinstance(each.source, Part)
+    ]
     write_cad(split, path, _styles(result), product=_product(result), tree=part.tree, layers=part.layers,
-              schema=SCHEMAS[schema])  # fmt: skip
+              schema=SCHEMAS[schema], others=others)  # fmt: skip
 
 
 def write_glb(result: Any, split: Any, path: Path, *, merged: bool = False) -> None:
@@ -134,6 +144,10 @@ def write_glb(result: Any, split: Any, path: Path, *, merged: bool = False) -> N
         extras=extras,
         piece_extras=lambda p: {"face": f"F{p.face}", "verdict": _verdict(p), "cutter": shown.id},
         merged=merged,
+        others=[
+            Drawn(each.name, each.shown, rgb("fixture"), entry.model_dump(mode="json"))
+            for each, entry in zip(result.scene.around.fixtures, result.plan.fixtures, strict=True)
+        ],
     )
 
 

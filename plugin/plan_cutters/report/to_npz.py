@@ -1,6 +1,7 @@
 """Samples and verdicts as arrays, for anyone who wants to check a posture."""
 
 import io
+import json
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -34,6 +35,11 @@ def write_npz(result: Any, _split: object, path: Path) -> None:
         if result.kinematics is not None:
             angles, taken, _ = result.kinematics.positions(reach.axis)
             arrays[f"rotary_{name}"], arrays[f"rotary_taken_{name}"] = np.degrees(angles), taken
+    if result.elsewhere:
+        arrays["setups"] = np.array([result.scene.setup, *(axis for axis, _ in result.elsewhere)])
+        for name, reach in result.reaches.items():
+            each = [reach, *(found[name] for _, found in result.elsewhere)]
+            arrays[f"reached_in_{name}"] = np.stack([one.reached for one in each], axis=1)
     for name, found in result.answers.stick_outs.items():
         if found.each is not None:
             arrays[f"stick_out_{name}"] = found.each
@@ -46,10 +52,17 @@ def write_npz(result: Any, _split: object, path: Path) -> None:
 
 
 def write_postures(result: Any, _split: object, path: Path) -> None:
-    """Write `postures.npz`: the free tilts of every sample at every rotation, as in PostureMaps, for the cutter shown."""
+    """Write `postures.npz`: the free tilts of every sample at every rotation, as in PostureMaps, for the cutter shown.
+
+    Whatever the machine: `PostureMaps.load` reads it, and `within` answers for another machine or setup.
+    """
     maps, name = result.maps, result.shown
-    _write({"rotation": maps.rotations, f"offset_{name}": maps.offset, f"free_{name}": maps.free,
-            f"undecided_{name}": maps.undecided}, path)  # fmt: skip
+    about = {"format": "plan-cutters-postures", "version": 1, "cutter": maps.cutter, "part": maps.part, "tilt": maps.tilt,
+             "tolerance": maps.tolerance}  # fmt: skip
+    _write({"about": np.array(json.dumps(about)), "rotation": maps.rotations, "normal": maps.normal,
+            "direction_max": maps.direction_max, f"offset_{name}": maps.offset, f"free_{name}": maps.free,
+            f"undecided_{name}": maps.undecided, f"verdict_{name}": maps.verdict,
+            f"reason_{name}": maps.reason}, path)  # fmt: skip
 
 
 def _write(arrays: dict[str, Any], path: Path) -> None:

@@ -68,7 +68,7 @@ def buried(
         vertex = surely.triangles.vertex[mine]
         within = ((point >= vertex.min(axis=(0, 1))) & (point <= vertex.max(axis=(0, 1)))).all(axis=1)
         # A contact on the outer side of a skin is not within that.
-        outer = [n for n, side in zip(body.faces, body.sign, strict=True) if orientation.sign[n - 1] == side]
+        outer = [n for n, side in zip(body.faces, body.sign, strict=True) if n > 0 and orientation.sign[n - 1] == side]
         rows = np.flatnonzero(open_rows & within & (result < 0) & ~np.isin(samples.face, outer))
         if len(rows):
             found = np.zeros(len(rows), bool)

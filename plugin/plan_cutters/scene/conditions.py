@@ -1,6 +1,6 @@
 """What every stage judges a cutter under, and the search for a posture that several of them ask for."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,13 +67,12 @@ class Conditions(Record):
     @property
     def ranges(self) -> Ranges:
         """What kernels take of postures and machine."""
-        rotations, (low, high) = self.postures.rotations, self.postures.tilt
-        rotary = rotary_of(self.kinematics)
-        if len(rotary.aim):
-            # Each sample leans towards the axes that there are: rotations asked for would miss them.
-            rotations = np.zeros(len(rotary.aim))
-        return Ranges(np.cos(rotations), np.sin(rotations), max(0.0, low), min(np.pi, high), self.setup,
-                      self.machine.limit_cos, rotary)  # fmt: skip
+        return ranges_of(self.machine, self.setup, self.postures)
+
+    @property
+    def machineless(self) -> "Conditions":
+        """The same without limits of any machine."""
+        return replace(self, machine=Machine())
 
     @property
     def kinematics(self) -> Kinematics | None:
@@ -85,6 +84,18 @@ class Conditions(Record):
         found = self.postures.upright & (normal @ self.setup >= self.machine.limit_cos)
         kinematics = self.kinematics
         return np.asarray(found if kinematics is None else found & kinematics.allows(normal))
+
+
+def ranges_of(machine: Machine, setup: Floats, postures: PostureRange) -> Ranges:
+    """What kernels take of postures and machine."""
+    rotations, (low, high) = postures.rotations, postures.tilt
+    rotary = rotary_of(machine.kinematics(frame_of(setup)))
+    if len(rotary.aim):
+        # Each sample leans towards the axes that there are: rotations asked for would miss them.
+        rotations = np.zeros(len(rotary.aim))
+    return Ranges(
+        np.cos(rotations), np.sin(rotations), max(0.0, low), min(np.pi, high), setup, machine.limit_cos, rotary
+    )
 
 
 def rotations_of(normal: Floats, direction_max: Floats, lean: Floats) -> Floats:

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 #: Cells along the longest side of the grid that tells what is surely outside.
 _CELLS = 64
+#: Among fixtures, the grid goes this much of the part's longest side beyond it.
+_AROUND = 0.5
 #: Share of the tolerance that the obstacles' chord error may take, and what is asked of the tessellation.
 CHORD_SHARE, CHORD_ASKED = 0.25, 0.2
 
@@ -44,6 +46,8 @@ class Obstacles(Record):
         Boxes of skins that are not quite closed: nothing in them is surely outside.
     gap : float
         Widest gap between triangles of neighbouring faces, mm, that is no way out of a body.
+    near : (2, 3) float, optional
+        Box about the part, where fixtures stand around it: there the grid of cells is as fine as without them.
 
     Raises
     ------
@@ -55,6 +59,7 @@ class Obstacles(Record):
     weight: NDArray[np.int8] = field(default_factory=lambda: np.zeros(0, np.int8))
     open_boxes: Floats = field(default_factory=lambda: np.zeros((0, 2, 3)))
     gap: float = 0.0
+    near: Floats | None = None
 
     def __post_init__(self) -> None:
         if not len(self.triangles):
@@ -91,28 +96,70 @@ class Obstacles(Record):
             return sheet(self.tree)
         return Solids(self.tree, weight, moments(self.tree.vertex, weight, self.tree.depth), *self._cells())
 
-    def _cells(self) -> tuple[NDArray[np.uint8], Floats, float]:
-        """Cells (i, j, k), 1 where one is surely outside; the grid's origin (3,) and the size of a cell, mm."""
+    def _cells(self) -> tuple[NDArray[np.uint8], Floats, float, bool]:
+        """Cells (i, j, k), 1 where one is surely outside; the grid's origin (3,), the size of a cell, mm, and whether nothing
+        lies beyond the grid."""
         from plan_cutters.kernels.material import mark_skin
 
         vertex, grow = self.tree.vertex, self.triangles.chord_error + self.gap
         low, high = vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))
         grow += 1e-9 * float(np.abs([low, high]).max())
         extent = float((high - low).max())
+        whole = True
+        if self.near is not None:
+            extent = float(np.ptp(self.near, axis=0).max())
+            first, last = self.near[0] - _AROUND * extent, self.near[1] + _AROUND * extent
+            whole = bool((low >= first).all() and (high <= last).all())
+            low, high = np.maximum(low, first), np.minimum(high, last)
         if not grow < extent / 8:
             # Skins so loose leave no cell that is surely outside, but for what is beyond all of them.
-            return np.zeros((1, 1, 1), np.uint8), low - 0.5 * extent, 2.0 * extent + 1e-9
+            return np.zeros((1, 1, 1), np.uint8), low - 0.5 * extent, 2.0 * extent + 1e-9, whole and self.near is None
         size = max(extent / _CELLS, 4.0 * grow)
         origin = low - 1.5 * size
         cell = np.zeros(tuple(np.ceil((high - origin) / size + 1.5).astype(int)), np.uint8)
+        if self.near is not None:
+            # Of a large one that stands askew, the kernel would look at every cell of the box around it.
+            vertex = divided(vertex, low - grow - 2.0 * size, high + grow + 2.0 * size, 8.0 * size)
         mark_skin(vertex, grow, origin, size, cell)
         # What is connected with the corner, past every skin, is outside.
         region, _ = ndimage.label(cell == 0)
-        outside = region == region[0, 0, 0]
+        outside = region == region[0, 0, 0] if whole else self._open_air(region, origin, size)
         for box in self.open_boxes:
             first, last = (np.clip((corner - origin) / size, 0, None).astype(int) for corner in box)
             outside[first[0] : last[0] + 1, first[1] : last[1] + 1, first[2] : last[2] + 1] = False
-        return outside.astype(np.uint8), origin, size
+        return outside.astype(np.uint8), origin, size, whole
+
+    def _open_air(self, region: NDArray[np.int32], origin: Floats, size: float) -> NDArray[np.bool_]:
+        """Cells (i, j, k) that are outside, of connected regions of a grid beyond which fixtures reach.
+
+        Where a region leaves the grid the part is all within it, so fixtures alone may enclose it there; and these are closed.
+        """
+        from plan_cutters.kernels.material import MAYBE_INSIDE, windings
+
+        rim = np.ones(region.shape, bool)
+        rim[1:-1, 1:-1, 1:-1] = False
+        numbers, first = np.unique(np.where(rim, region, 0), return_index=True)
+        point = origin + (np.stack(np.unravel_index(first, region.shape), axis=1) + 0.5) * size
+        mine = self.triangles.face < 0
+        fixtures = Obstacles(
+            replace(self.triangles, vertex=self.triangles.vertex[mine], face=self.triangles.face[mine]),
+            self.weight[mine],
+        )
+        found = np.zeros(len(point))
+        if fixtures.weight.any():
+            windings(np.ascontiguousarray(point), fixtures._everywhere, found)
+        return np.isin(region, numbers[(numbers > 0) & (found < MAYBE_INSIDE)])
+
+    @property
+    def _everywhere(self) -> "Solids":
+        """The tree and what its triangles enclose, with no cell that is surely outside."""
+        from plan_cutters.kernels.material import Solids, moments
+
+        weight = np.ascontiguousarray(self.weight[self._built[0]])
+        unknown = np.zeros((1, 1, 1), np.uint8)
+        return Solids(
+            self.tree, weight, moments(self.tree.vertex, weight, self.tree.depth), unknown, np.zeros(3), 1.0, False
+        )
 
     @cached_property
     def wide_tree(self) -> "WideTree":
@@ -151,7 +198,9 @@ class Obstacles(Record):
         """The triangles of one body."""
         mine = np.isin(self.triangles.face, body.faces)
         triangles = replace(self.triangles, vertex=self.triangles.vertex[mine], face=self.triangles.face[mine])
-        return Obstacles(triangles, weights(triangles, [body]))
+        # A fixture is one body whatever it consists of, and its triangles know what they count.
+        weight = self.weight[mine] if min(body.faces) < 0 else weights(triangles, [body])
+        return Obstacles(triangles, weight)
 
     def holds(
         self, tool: Assembly, contact: Floats, normal: Floats, lean: Floats, tilt: Floats, *, surely: bool = False
@@ -173,6 +222,27 @@ class Obstacles(Record):
         out = np.empty(len(point))
         windings(np.ascontiguousarray(point), self.solids, out)
         return np.asarray(out >= SURELY_INSIDE if surely else ~(out < MAYBE_INSIDE))
+
+
+def divided(vertex: Floats, low: Floats, high: Floats, longest: float, most: int | None = None) -> Floats:
+    """Triangles (n, 3, 3) halved until no side is longer than asked, mm, without those whose box misses a box.
+
+    Where there are already more than `most`, they stay as they are.
+    """
+    done = []
+    while len(vertex):
+        vertex = vertex[((vertex.max(axis=1) >= low) & (vertex.min(axis=1) <= high)).all(axis=1)]
+        side = np.linalg.norm(vertex - np.roll(vertex, -1, axis=1), axis=2)
+        small = side.max(axis=1) <= longest
+        if most is not None and len(vertex) > most:
+            small[:] = True
+        done.append(vertex[small])
+        # At the middle of the longest side: long thin triangles come out compact.
+        v, first = vertex[~small], side[~small].argmax(axis=1)
+        a, b, c = (v[np.arange(len(v)), (first + k) % 3] for k in range(3))
+        middle = 0.5 * (a + b)
+        vertex = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+    return np.ascontiguousarray(np.concatenate([np.zeros((0, 3, 3)), *done]))
 
 
 def weights(triangles: Triangles, found: Sequence[Body]) -> NDArray[np.int8]:

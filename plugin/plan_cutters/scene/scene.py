@@ -1,6 +1,6 @@
 """A part as it stands to be judged: its faces' sides, what is in the way, and the tolerance that can be kept."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,15 +10,18 @@ from cad_io.arrays import Record
 from cad_io.part.orient import orient
 from cad_io.tessellate.triangles import At
 from plan_cutters.domain.checks import flag, number
+from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.posture import unit
 from plan_cutters.errors import OptionError
 from plan_cutters.options import MOST_TOLERANCE, Options
 from plan_cutters.scene.faces import ignored_faces, ignored_words
+from plan_cutters.scene.fixtures import Kept, joined, read
 from plan_cutters.scene.obstacles import CHORD_ASKED, kept_tolerance
+from plan_cutters.scene.overlap import refuse_overlaps
 from plan_cutters.scene.surroundings import Surroundings, surroundings
 
 #: The options of a plan that are a scene's.
-_DEFAULTS = {word: getattr(Options(), word) for word in ("setup", "flip", "ignore", "tolerance")}
+_DEFAULTS = {word: getattr(Options(), word) for word in ("setup", "flip", "ignore", "tolerance", "fixtures")}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -40,6 +43,8 @@ class Scene(Record):
         Their numbers, ascending.
     asked : float
         The gouge tolerance that was asked for, mm.
+    fixtures : tuple of Fixture
+        What holds the part: obstacles, never targets.
     """
 
     part: Part
@@ -49,6 +54,7 @@ class Scene(Record):
     ignore: tuple[str, ...]
     ignored: tuple[int, ...]
     asked: float
+    fixtures: tuple[Fixture, ...] = ()
 
     @classmethod
     def of(cls, part: Any, **options: Any) -> "Scene":
@@ -58,7 +64,8 @@ class Scene(Record):
         ----------
         part : Scene, Part, path, TopoDS_Shape, CadQuery or build123d object
         **options
-            `setup`, `flip`, `ignore` and `tolerance`, as in `Options`; for a Scene, none but its own.
+            `setup`, `flip`, `ignore`, `tolerance` and `fixtures`, as in `Options`; for a Scene, none but its own, but for
+            fixtures: with others it is another scene of the same triangles of the part.
 
         Raises
         ------
@@ -83,33 +90,85 @@ class Scene(Record):
         if not 0 < tolerance <= MOST_TOLERANCE:
             raise OptionError(f"tolerance {tolerance:g} must lie between 0 and {MOST_TOLERANCE:g} mm")
         setup: Any = tuple(unit(given["setup"], "setup axis").tolist())
+        fixtures = Fixture.each_of(given["fixtures"])
         if isinstance(part, Scene):
             ignore = ignored_words(part.part, given["ignore"])
             asked = {"setup": setup, "flip": flip, "tolerance": tolerance, "ignore": ignore}
-            for word in options:
+            for word in [each for each in options if each != "fixtures"]:
                 own = part.options[word]
                 if not (np.allclose(own, setup, atol=1e-12) if word == "setup" else own == asked[word]):
                     raise OptionError(f"the scene was made with {word}={own!r}: give another one there")
-            return part
+            return part.clamped(fixtures) if "fixtures" in options else part
         whole = part if isinstance(part, Part) else read_part(part)
         words = ignored_words(whole, given["ignore"])
         ignored = tuple(sorted(ignored_faces(whole, words)))
-        return cls(whole, orient(whole, towards=setup, flip=flip), setup, flip, words, ignored, tolerance)
+        return cls(whole, orient(whole, towards=setup, flip=flip), setup, flip, words, ignored, tolerance,
+                   fixtures)  # fmt: skip
+
+    def clamped(self, fixtures: Any) -> "Scene":
+        """The same part with other fixtures, given as in `Options`: it is not tessellated again."""
+        others = Fixture.each_of(fixtures)
+        if others == self.fixtures:
+            return self
+        scene = replace(self, fixtures=others)
+        shared: dict[str, Any] = {word: self.__dict__[word] for word in ("_alone", "_kept") if word in self.__dict__}
+        if "_around" in self.__dict__:
+            shared.setdefault("_alone", self.around.alone or self.around)
+        scene.__dict__.update(shared)
+        return scene
+
+    @property
+    def turned(self) -> tuple[str, ...]:
+        """Faces whose side is a guess towards the setup axis, and would be the other one with the part's own Z as setup."""
+        other = orient(self.part, towards=(0.0, 0.0, 1.0), flip=self.flip).sign
+        return tuple(
+            f.id for f, one, two in zip(self.part.faces, self.orientation.sign, other, strict=True) if one != two
+        )
 
     @property
     def options(self) -> dict[str, Any]:
         """What was asked for, as options of a plan."""
-        return {"setup": self.setup, "flip": self.flip, "ignore": self.ignore, "tolerance": self.asked}
+        return {"setup": self.setup, "flip": self.flip, "ignore": self.ignore, "tolerance": self.asked,
+                "fixtures": self.fixtures}  # fmt: skip
+
+    @property
+    def _sources(self) -> Kept:
+        """What was read of fixtures."""
+        kept: Kept = self.__dict__.setdefault("_kept", {})
+        return kept
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Fixtures are read again where they are needed.
+        return {word: value for word, value in self.__dict__.items() if word != "_kept"}
+
+    def read_fixtures(self, timeout: float) -> None:
+        """Read the fixtures' files, before any work is done; `timeout`: the most seconds that a faulty one may take."""
+        for each in self.fixtures:
+            read(each, self._sources, timeout=timeout)
 
     def surround(self, at: At = lambda whose, face: None, *, jobs: int = 1) -> Surroundings:
         """What is, and what may be, in the way; if there is any work to do, `at` is told whose goes on at which face, and `jobs`
-        faces are worked on at a time."""
+        faces are worked on at a time.
+
+        Raises
+        ------
+        FixtureError
+            A fixture stands in the part.
+        """
         if "_around" not in self.__dict__:
-            self.__dict__["_around"] = surroundings(
-                self.part, CHORD_ASKED * self.asked, ignored=self.ignored, jobs=jobs, at=at
-            )
+            chord = CHORD_ASKED * self.asked
+            if "_alone" not in self.__dict__:
+                self.__dict__["_alone"] = surroundings(self.part, chord, ignored=self.ignored, jobs=jobs, at=at)
+            around = joined(self.__dict__["_alone"], self.fixtures, chord, self._sources)
+            kept = kept_tolerance(self.asked, around.surely.triangles.chord_error)
+            refuse_overlaps(around, kept)
+            self.__dict__["_around"] = around
         found: Surroundings = self.__dict__["_around"]
         return found
+
+    def surround_closer(self, chord: float) -> Surroundings:
+        """The same, with triangles for another chord error, mm, which are not kept."""
+        return joined(surroundings(self.part, chord, ignored=self.ignored), self.fixtures, chord, self._sources)
 
     @property
     def around(self) -> Surroundings:

@@ -8,14 +8,54 @@ import numpy as np
 from cad_io import Part
 from cad_io.arrays import Floats, LostFace, Record, Triangles
 from cad_io.part.bodies import Body, bodies
+from cad_io.read.mesh import Mesh
 from cad_io.tessellate import tessellate
 from cad_io.tessellate.stand_ins import StandIn, stand_ins
 from cad_io.tessellate.triangles import At
+from plan_cutters.domain.fixture import Fixture
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.scene.obstacles import Obstacles, weights
 
 #: Triangles of a loose face that are looked at to tell whether it lies on a body, about.
 _LOOKED_AT = 50
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Standing(Record):
+    """A fixture where it stands.
+
+    Attributes
+    ----------
+    number : int
+        Face number of all its triangles, negative.
+    fixture : Fixture
+    source : Part or Mesh, optional
+        What was read of it; None for words.
+    obstacles : Obstacles
+        Its own, in part coordinates.
+    body : Body, optional
+        That it surely encloses something.
+    missing : tuple of (str, str, str)
+        Faces of it that stand in the way only as a guess, with the reason and what stands in for each.
+    notes : tuple of str
+        What the plan must say of it.
+    shown : (n, 3, 3) float
+        Triangles to draw of it, mm.
+    """
+
+    number: int
+    fixture: Fixture
+    source: Part | Mesh | None
+    obstacles: Obstacles
+    body: Body | None
+    missing: tuple[tuple[str, str, StandIn], ...]
+    notes: tuple[str, ...]
+    shown: Floats
+
+    @property
+    def name(self) -> str:
+        """As obstacles are called in plans."""
+        return f"fixture:{self.fixture.name}"
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -37,6 +77,10 @@ class Surroundings(Record):
         Faces of no body that lie on the faces of one, as construction geometry does.
     lost : tuple of LostFace
         Faces of the file that the part does not have; those it has in another form are in `missing`.
+    fixtures : tuple of Standing
+        Fixtures that stand among the obstacles; nothing else here is about them.
+    alone : Surroundings, optional
+        The part's own, without the fixtures; None where there are none.
     """
 
     may_be: Obstacles
@@ -45,11 +89,22 @@ class Surroundings(Record):
     missing: tuple[tuple[int, str, StandIn], ...]
     on_bodies: tuple[int, ...] = ()
     lost: tuple[LostFace, ...] = ()
+    fixtures: tuple[Standing, ...] = ()
+    alone: "Surroundings | None" = None
 
     @property
     def doubtful(self) -> bool:
         """Whether something that may be in the way is not known well enough to call any posture safe beyond doubt."""
-        return bool(self.missing or self.lost)
+        return bool(self.missing or self.lost or any(each.missing for each in self.fixtures))
+
+    @property
+    def enclosing(self) -> tuple[Body, ...]:
+        """What encloses something: the part's bodies, then fixtures."""
+        return (*self.bodies, *(each.body for each in self.fixtures if each.body is not None))
+
+    def called(self, face: int) -> str:
+        """The name of a face number: `F12`, or `fixture:vise`."""
+        return f"F{face}" if face >= 0 else self.fixtures[-face - 1].name
 
     @classmethod
     def sheet(cls, obstacles: Obstacles) -> "Surroundings":

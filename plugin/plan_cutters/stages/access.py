@@ -9,9 +9,12 @@ from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.domain.assembly import Assembly, assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import (
+    AXIS_LIMIT,
     BURIED,
+    FIXTURE,
     INACCESSIBLE,
     INTERFERENCE_FREE,
+    LOCAL_GOUGE,
     REASONS,
     TOLERANCE,
     UNDECIDED,
@@ -84,7 +87,23 @@ def access(
         wanted &= ~follows
     light, heavy = conditions.light(cutter), conditions.heavy(cutter)
     search_postures(contacts, np.flatnonzero(wanted), light, heavy, conditions, reach, progress, fixed=True)
+    if conditions.around.alone is not None:
+        searched = wanted | (buried >= len(conditions.around.bodies) if buried is not None else False)
+        handed = judged & (reach.reason == FIXTURE)
+        _for_fixtures(contacts, np.flatnonzero((searched & reach.lost) | handed), cutter, conditions, reach)
     return reach
+
+
+def _for_fixtures(
+    contacts: Contacts, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, reach: Reach
+) -> None:
+    """Of lost samples, tell those that are lost to fixtures from those that would be lost without them, too."""
+    if conditions.around.alone is None:
+        return
+    rows = rows[~np.isin(reach.reason[rows], (AXIS_LIMIT, LOCAL_GOUGE))]
+    bare, found = replace(conditions, around=conditions.around.alone), blank(len(reach.verdict))
+    search_postures(contacts, rows, bare.light(cutter), bare.heavy(cutter), bare, found, fixed=True)
+    reach.reason[rows] = np.where(found.reached[rows], FIXTURE, found.reason[rows])
 
 
 def _first_reasons(
@@ -127,7 +146,8 @@ def witnesses(
                 looked[row] = _witness(samples, row, reach, cutter, alone)
             else:
                 around = conditions.around
-                looked[row] = _covered(samples, row, around.surely.skin_of(around.bodies[body]))
+                skin = around.surely.skin_of(around.enclosing[body])
+                looked[row] = _covered(samples, row, REASONS[reach.reason[row]], skin)
 
     in_chunks(work, np.array([row for group in picked for row in group], np.int64), conditions.jobs, chunk=1)
     found: list[Witness] = []
@@ -149,7 +169,7 @@ def _witness(samples: SurfaceSamples, row: int, reach: Reach, cutter: Cutter, co
     if reason == "tolerance":
         return nothing
     if reason == "buried":
-        return _covered(samples, row, conditions.around.surely)
+        return _covered(samples, row, reason, conditions.around.surely)
     found = _least_depth(samples, row, reason, cutter, replace(conditions, around=conditions.around.skins))
     if found is None:
         return nothing
@@ -225,11 +245,11 @@ def _deepest_of(cutter: Cutter) -> float:
     )
 
 
-def _covered(samples: SurfaceSamples, row: int, skin: Obstacles) -> Witness:
+def _covered(samples: SurfaceSamples, row: int, reason: str, skin: Obstacles) -> Witness:
     """What a sample lies within is the witness: where the way out along the normal leaves it."""
     way_out = cover(samples.point[row], samples.normal[row], skin)
     face, point = (None, None) if way_out is None else (way_out.face, way_out.point)
-    return Witness(row, REASONS[BURIED], face, point, None, None, None, None)
+    return Witness(row, reason, face, point, None, None, None, None)
 
 
 def _deepest(triangle: Floats, contact: Floats, normal: Floats, posture: Reach, tool: Assembly) -> Floats:

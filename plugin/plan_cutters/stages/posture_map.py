@@ -222,7 +222,12 @@ def _both(a: Floats, b: Floats) -> list[tuple[float, float]]:
 
 
 def _named(around: Surroundings) -> tuple[str, ...]:
-    return (*(f"F{number}: {why}" for number, why, _ in around.missing), *(str(each) for each in around.lost))
+    fixtures = (f"{each.name} {face}: {why}" for each in around.fixtures for face, why, _ in each.missing)
+    return (
+        *(f"F{number}: {why}" for number, why, _ in around.missing),
+        *(str(each) for each in around.lost),
+        *fixtures,
+    )
 
 
 def _merged(parts: Floats, kind: int) -> Floats:

@@ -1,0 +1,247 @@
+"""Fixtures: what holds the part and stands in the way, how it is written on a command line, and where it is placed."""
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import PurePath, PureWindowsPath
+from typing import Any
+
+import numpy as np
+
+from cad_io.arrays import Floats
+from cad_io.units import UNITS
+from plan_cutters.domain.checks import number, numbers, shown
+from plan_cutters.errors import FixtureError
+
+#: Simple fixtures by words: what each number is.
+WORDS = {"box": "x,y,z", "cylinder": "r,h", "table": "z"}
+_WORD = re.compile(rf"({'|'.join(WORDS)}):(.*)", re.IGNORECASE | re.DOTALL)
+#: Suffixes of files that are known, and what they are.
+CAD = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
+MESH = (".stl", ".obj", ".ply", ".glb")
+_FORM = "FILE[@x,y,z[,rx,ry,rz]][:UNIT], box:x,y,z, cylinder:r,h or table:z"
+#: Lengths beyond this, mm, are rather a mistake.
+_FARTHEST = 1e6
+_NOWHERE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Fixture:
+    """A body that is in the way: a vise, a clamp, a table, the rest of the stock. Never a target.
+
+    Attributes
+    ----------
+    source : str or object
+        Path of a STEP, IGES, BREP, STL, OBJ, PLY or GLB file; `box:x,y,z` (its least corner at the origin), `cylinder:r,h` (it
+        stands on the origin, along z), `table:z` (all that is below the height z, as far as any cutter goes); or an object:
+        a kernel shape, a CadQuery or build123d object, a `cad_io.Part`, a trimesh mesh.
+    placement : tuple of float
+        x, y, z, mm, and rx, ry, rz, degrees, in part coordinates: turned about the part's fixed x axis, then about its y axis,
+        then about its z axis, all through the origin, then shifted. Three numbers are a shift alone.
+    unit : str, optional
+        What lengths in the source are in, one of `cad_io.units.UNITS`. Default: what the format says; mm for STL, OBJ, PLY and
+        words. A placement is in mm always.
+    name : str
+        For people and plans; default the file's stem, the word, or `fixture`.
+    chord_error : float
+        How far a mesh may be from what it stands for, mm. No file says so, so it is 0 unless it is given.
+
+    Raises
+    ------
+    FixtureError
+        A number has no meaning, or the source is nothing that can be a fixture.
+
+    Examples
+    --------
+    >>> vise = Fixture.parse("jaws/vise.stl@0,-30,5,0,0,90:in")
+    >>> vise.name, vise.unit, vise.placement
+    ('vise', 'in', (0.0, -30.0, 5.0, 0.0, 0.0, 90.0))
+    >>> Fixture.parse("box:40,20,0")
+    Traceback (most recent call last):
+    plan_cutters.errors.FixtureError: fixture 'box:40,20,0': its sizes x,y,z must be positive numbers, not 0
+    """
+
+    source: Any
+    placement: tuple[float, ...] = _NOWHERE
+    unit: str | None = None
+    name: str = ""
+    chord_error: float = 0.0
+
+    def __post_init__(self) -> None:
+        if isinstance(self.source, PurePath):
+            object.__setattr__(self, "source", str(self.source))
+        if self.source is None or isinstance(self.source, bool | int | float) or self.source == "":
+            raise FixtureError(f"{shown(self.source)} is no fixture: give {_FORM}, or a body")
+        placement = numbers(self.placement, "a fixture's placement")
+        object.__setattr__(self, "placement", _placed(placement, str(self)))
+        if self.unit is not None and self.unit not in UNITS:
+            raise FixtureError(f"{self}: no length unit is called {shown(self.unit)}; give one of {', '.join(UNITS)}")
+        if not isinstance(self.name, str):
+            raise FixtureError(f"a fixture's name must be a text, not {shown(self.name)}")
+        error = number(self.chord_error, "a fixture's chord error", error=FixtureError)
+        if not 0.0 <= error < math.inf:
+            raise FixtureError(f"{self}: its chord error must be 0 or a positive number of mm, not {error:g}")
+        object.__setattr__(self, "chord_error", error)
+        object.__setattr__(self, "name", self.name or self._named())
+        _ = self.sizes
+
+    def __str__(self) -> str:
+        said = self.source if isinstance(self.source, str) else type(self.source).__name__
+        return f"fixture {said!r}"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Fixture):
+            return NotImplemented
+        same = self.source is other.source or (isinstance(self.source, str) and self.source == other.source)
+        return same and self._rest == other._rest
+
+    def __hash__(self) -> int:
+        return hash((self.source if isinstance(self.source, str) else id(self.source), self._rest))
+
+    @property
+    def _rest(self) -> tuple[Any, ...]:
+        return self.placement, self.unit, self.name, self.chord_error
+
+    def _named(self) -> str:
+        if not isinstance(self.source, str):
+            return "fixture"
+        # A path of Windows is one on every system: its slashes are in no other name.
+        return self.kind or PureWindowsPath(self.source).stem or self.source
+
+    @property
+    def kind(self) -> str:
+        """The word that it is given by; empty for files and objects."""
+        found = _WORD.fullmatch(self.source) if isinstance(self.source, str) else None
+        return found[1].lower() if found else ""
+
+    @property
+    def sizes(self) -> tuple[float, ...]:
+        """Numbers of a word, mm; none for files and objects."""
+        found = _WORD.fullmatch(self.source) if isinstance(self.source, str) else None
+        if found is None:
+            return ()
+        kind, form = found[1].lower(), WORDS[found[1].lower()]
+        sizes = _numbers(found[2], f"{self}: its {'height' if kind == 'table' else 'sizes'}", form)
+        if len(sizes) != form.count(",") + 1:
+            raise FixtureError(f"{self}: {kind} takes {form}, not {len(sizes)} number{'s'[: len(sizes) != 1]}")
+        for size in sizes:
+            if size <= 0.0 and kind != "table":
+                raise FixtureError(f"{self}: its sizes {form} must be positive numbers, not {size:g}")
+            if abs(size) * UNITS[self.unit or "mm"] > _FARTHEST:
+                raise FixtureError(f"{self}: {size:g} is beyond {_FARTHEST:g} mm; is its unit right?")
+        return tuple(size * UNITS[self.unit or "mm"] for size in sizes)
+
+    @property
+    def shift(self) -> Floats:
+        """(3,) mm."""
+        return np.array(self.placement[:3])
+
+    @property
+    def rotation(self) -> Floats:
+        """Matrix (3, 3): a point of the source goes to `rotation @ point + shift`."""
+        x, y, z = (math.radians(angle) for angle in self.placement[3:])
+        (a, b), (c, d), (e, f) = ((_cos(t), _sin(t)) for t in (x, y, z))
+        about_x = np.array([[1, 0, 0], [0, a, -b], [0, b, a]])
+        about_y = np.array([[c, 0, d], [0, 1, 0], [-d, 0, c]])
+        about_z = np.array([[e, -f, 0], [f, e, 0], [0, 0, 1]])
+        return np.asarray(about_z @ about_y @ about_x)
+
+    @property
+    def text(self) -> str:
+        """As on a command line; of an object, what it is instead of a file."""
+        what = self.source if isinstance(self.source, str) else f"<{type(self.source).__name__}>"
+        used = self.placement if any(self.placement[3:]) else self.placement[:3]
+        at = "@" + ",".join(f"{each:.10g}" for each in used) if any(used) else ""
+        return f"{what}{at}{f':{self.unit}' if self.unit else ''}"
+
+    @classmethod
+    def parse(cls, text: str) -> "Fixture":
+        """Read a text as on the command line. Whether a file exists is seen when it is read.
+
+        What follows the last `@` is the placement, unless it holds a slash or ends as a file that is known; a word of letters
+        after the last `:` is the unit. A file whose own name looks like that is given with a placement and a unit.
+
+        Raises
+        ------
+        FixtureError
+        """
+        if not isinstance(text, str):
+            raise FixtureError(f"{shown(text)} is no fixture: give a Fixture or a text {_FORM}")
+        rest, unit = text.strip(), None
+        head, colon, tail = rest.rpartition(":")
+        drive = len(head) == 1 and head.isalpha()
+        if colon and not drive and head.lower() not in WORDS and (tail.isalpha() or not tail):
+            if tail not in UNITS:
+                raise FixtureError(
+                    f"fixture {text!r}: no length unit is called {tail!r}; give one of {', '.join(UNITS)}"
+                )
+            rest, unit = head, tail
+        head, at, tail = rest.rpartition("@")
+        if not at or re.search(r"[/\\]", tail) or tail.lower().endswith((*CAD, *MESH)):
+            return cls(rest, unit=unit)
+        if not head:
+            raise FixtureError(f"fixture {text!r}: there is nothing before the @; give {_FORM}")
+        return cls(head, _numbers(tail, f"fixture {text!r}: its placement", "x,y,z or x,y,z,rx,ry,rz"), unit)
+
+    @classmethod
+    def of(cls, given: Any) -> "Fixture":
+        """A fixture, or what `parse` makes of a text, or an object where it is."""
+        if isinstance(given, cls):
+            return given
+        if isinstance(given, str):
+            return cls.parse(given)
+        return cls(given)
+
+    @classmethod
+    def each_of(cls, given: Any) -> tuple["Fixture", ...]:
+        """One fixture, text or object, or a list of such, each with a name of its own."""
+        if given is None:
+            return ()
+        found = [cls.of(each) for each in (given if isinstance(given, list | tuple) else [given])]
+        return tuple(replace(each, name=name) for each, name in zip(found, _told_apart(found), strict=True))
+
+    def placed(self, points: Floats) -> Floats:
+        """Points (..., 3) of the source in part coordinates, mm."""
+        return np.ascontiguousarray(points @ self.rotation.T + self.shift)
+
+
+def _told_apart(found: Sequence[Fixture]) -> list[str]:
+    """Their names, the later ones of the same with a number."""
+    names: list[str] = []
+    for each in found:
+        name, count = each.name, 2
+        while name in names:
+            name, count = f"{each.name} {count}", count + 1
+        names.append(name)
+    return names
+
+
+def _numbers(text: str, what: str, form: str) -> tuple[float, ...]:
+    try:
+        found = tuple(float(word) for word in text.split(","))
+    except ValueError:
+        raise FixtureError(f"{what} {text!r} is not of the form {form}") from None
+    if not all(math.isfinite(each) for each in found):
+        raise FixtureError(f"{what} {text!r} must be finite numbers {form}")
+    return found
+
+
+def _placed(given: tuple[float, ...], which: str) -> tuple[float, ...]:
+    if len(given) not in (3, 6):
+        raise FixtureError(f"{which}: a placement is x,y,z or x,y,z,rx,ry,rz, not {len(given)} numbers")
+    if not all(abs(each) <= _FARTHEST for each in given):
+        raise FixtureError(f"{which}: a placement must be finite numbers of mm and degrees, up to {_FARTHEST:g}")
+    return tuple(float(each) for each in (*given, 0.0, 0.0, 0.0)[:6])
+
+
+def _cos(angle: float) -> float:
+    """Cosine, exact at quarter turns, so that a fixture turned by 90 degrees keeps its planes."""
+    return _sin(angle + 0.5 * math.pi)
+
+
+def _sin(angle: float) -> float:
+    quarter = angle / (0.5 * math.pi)
+    if abs(quarter - round(quarter)) < 1e-12:
+        return (0.0, 1.0, 0.0, -1.0)[round(quarter) % 4]
+    return math.sin(angle)

@@ -1,0 +1,64 @@
+"""A machine laid over free tilts that are known: which samples it reaches, without any search."""
+
+import numpy as np
+
+from plan_cutters.kernels.arcs import axis_arcs
+from plan_cutters.kernels.jit import entry
+from plan_cutters.kernels.limits import hold, limited
+from plan_cutters.kernels.search import ACCESSIBLE, INACCESSIBLE, UNDECIDED
+from plan_cutters.kernels.vectors import cross, dot, lean_frame
+
+
+@entry
+def mask(rows, normal, direction_max, ranges, turns, offset, free, undecided, found):  # type: ignore[no-untyped-def]
+    """Decide samples by their free tilts: the first rotation with any that the machine holds serves.
+
+    Parameters
+    ----------
+    rows : (m,) int64
+    normal, direction_max : (n, 3) float64
+    ranges : Ranges
+        Of as many rotations as the maps have, and the tilts asked for.
+    turns : (t,) int64
+        Rotations that are asked for.
+    offset, free, undecided
+        As in `PostureMaps`.
+    found : Found, written
+        ACCESSIBLE with the middle of the widest interval; UNDECIDED where only tilts that are not decided may be left; else
+        INACCESSIBLE.
+    """
+    intervals, e2, f, t = np.empty((64, 2)), np.empty(3), np.empty(3), np.empty(3)
+    count = len(ranges.rotation_cos)
+    for row in rows:
+        n, e1 = normal[row], direction_max[row]
+        cross(n, e1, e2)
+        verdict = INACCESSIBLE
+        for rotation in turns:
+            place = row * count + rotation
+            unsure = undecided[row, rotation] > 0.0
+            if offset[place] == offset[place + 1] and not unsure:
+                continue
+            lean_frame(e1, e2, ranges.rotation_cos[rotation], ranges.rotation_sin[rotation], f, t)
+            held = axis_arcs(dot(ranges.setup, n), dot(ranges.setup, f), ranges.limit_cos, ranges.tilt_low, ranges.tilt_high,
+                             intervals)  # fmt: skip
+            if limited(ranges.rotary):
+                held = hold(n, f, ranges.rotary, intervals, held)
+            if held == 0:
+                continue
+            widest, tilt = -1.0, 0.0
+            for i in range(offset[place], offset[place + 1]):
+                for k in range(held):
+                    low, high = max(free[i, 0], intervals[k, 0]), min(free[i, 1], intervals[k, 1])
+                    if high - low > widest:
+                        widest, tilt = high - low, 0.5 * (low + high)
+            if widest >= 0.0:
+                verdict = ACCESSIBLE
+                c, s = np.cos(tilt), np.sin(tilt)
+                found.tilt[row], found.rotation[row] = tilt, rotation
+                for k in range(3):
+                    found.lean[row, k] = f[k]
+                    found.axis[row, k] = c * n[k] + s * f[k]
+                break
+            if unsure:
+                verdict = UNDECIDED
+        found.verdict[row] = verdict

@@ -1,0 +1,246 @@
+"""Fixtures in the scene: read once, placed, and joined with what stands around the part.
+
+The part's own surroundings stay as they are and are kept beside the joined ones: another fixture costs another tree, but no
+tessellation.
+"""
+
+import math
+from collections.abc import MutableMapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cad_io import Part, read_part
+from cad_io.arrays import Floats, Record, Triangles
+from cad_io.errors import ReadError
+from cad_io.part.bodies import Body
+from cad_io.read.mesh import Mesh, is_mesh, read_mesh
+from cad_io.read.read import TIMEOUT
+from cad_io.tessellate.stand_ins import StandIn
+from plan_cutters.domain.fixture import CAD, MESH, Fixture
+from plan_cutters.errors import UnjudgeableError
+from plan_cutters.scene.obstacles import Obstacles
+from plan_cutters.scene.surroundings import Standing, Surroundings, surroundings
+
+#: A table reaches this much farther than the part, mm: as far as a cutter may.
+TABLE = 2000.0
+#: Of a table, models show this much beyond the part, as a share of its size.
+_SHOWN = 0.1
+#: Sides of a cylinder, at most.
+_SIDES = 720
+
+#: What was read of each fixture's source, whatever its place; and its triangles, by the chord error asked for, too.
+Kept = MutableMapping[Any, Any]
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class _Body(Record):
+    """A fixture's triangles in its own frame, with what they enclose: perhaps, and surely."""
+
+    may_be: Obstacles
+    surely: Obstacles
+    missing: tuple[tuple[str, str, StandIn], ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def read(fixture: Fixture, kept: Kept, *, timeout: float = TIMEOUT) -> Part | Mesh | None:
+    """What a fixture's source holds; None for words.
+
+    Raises
+    ------
+    ReadError
+        It cannot be read, or holds nothing that could be in the way.
+    """
+    if fixture.kind:
+        return None
+    source = fixture.source
+    key = (source if isinstance(source, str) else id(source), fixture.unit)
+    if key not in kept:
+        # An object is kept with it: another one must not come to have its number.
+        kept[key] = _read(fixture, timeout), source
+    found: Part | Mesh = kept[key][0]
+    return found
+
+
+def _read(fixture: Fixture, timeout: float) -> Part | Mesh:
+    source = fixture.source
+    if not isinstance(source, str):
+        if is_mesh(source):
+            return read_mesh(source, fixture.unit)
+        return read_part(source, unit=fixture.unit)
+    suffix = Path(source).suffix.lower()
+    if suffix in MESH:
+        return read_mesh(source, fixture.unit)
+    if suffix not in CAD:
+        what = f"{suffix!r} is no format of fixtures" if suffix else "its name does not say its format"
+        raise ReadError(
+            f"{what}: give STEP, IGES, BREP, STL, OBJ, PLY or GLB, or box:, cylinder: or table:", file=source
+        )
+    return read_part(source, unit=fixture.unit, timeout=timeout)
+
+
+def joined(around: Surroundings, fixtures: Sequence[Fixture], chord: float, kept: Kept) -> Surroundings:
+    """What stands around a part with fixtures.
+
+    Parameters
+    ----------
+    around : Surroundings
+        Of the part alone.
+    fixtures : sequence of Fixture
+    chord : float
+        Chord error to ask for, mm.
+    kept : mapping, changed
+        What is known of fixtures by their sources: it is not found again.
+
+    Raises
+    ------
+    ReadError, UnjudgeableError
+        A fixture cannot be read, or has no triangles.
+    """
+    if not fixtures:
+        return around
+    vertex = around.may_be.triangles.vertex
+    near = np.array([vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))])
+    standing, bodies = [], []
+    for number, fixture in enumerate(fixtures, 1):
+        body = _body(fixture, chord, near, kept)
+        standing.append(_standing(-number, fixture, body, read(fixture, kept), near))
+        bodies.append(body)
+    may_be = _together(around.may_be, standing, [body.may_be for body in bodies], near)
+    surely = may_be
+    if around.surely is not around.may_be or any(body.surely is not body.may_be for body in bodies):
+        surely = _together(around.surely, standing, [body.surely for body in bodies], near)
+    return replace(around, may_be=may_be, surely=surely, fixtures=tuple(standing), alone=around)
+
+
+def _standing(number: int, fixture: Fixture, body: _Body, source: Part | Mesh | None, near: Floats) -> Standing:
+    vertex = fixture.placed(body.surely.triangles.vertex)
+    whole = Obstacles(replace(body.surely.triangles, vertex=vertex), body.surely.weight)
+    enclosing = Body((number,), (1,), True, np.zeros((0, 3, 3)))
+    notes = list(body.notes)
+    if isinstance(source, Mesh) and not fixture.chord_error:
+        notes.append("how far it is from what it stands for is not known: it counts as exact")
+    shown = whole.triangles.vertex
+    if fixture.kind == "table":
+        shown = fixture.placed(_slab(fixture, near, _SHOWN * float(np.ptp(near, axis=0).max())))
+    return Standing(number, fixture, source, whole, enclosing if body.surely.weight.any() else None, body.missing,
+                    tuple(notes), shown)  # fmt: skip
+
+
+def _together(own: Obstacles, standing: Sequence[Standing], bodies: Sequence[Obstacles], near: Floats) -> Obstacles:
+    """One set of obstacles, with one tree."""
+    vertex, face, weight = [own.triangles.vertex], [own.triangles.face], [own.weight]
+    boxes, gaps, errors = [own.open_boxes], [own.gap], [own.triangles.chord_error]
+    measured = list(own.triangles.measured)
+    for each, body in zip(standing, bodies, strict=True):
+        vertex.append(each.fixture.placed(body.triangles.vertex))
+        face.append(np.full(len(body.triangles), each.number, np.int32))
+        weight.append(body.weight)
+        gaps.append(body.gap)
+        errors.append(body.triangles.chord_error)
+        measured += [each.number] * bool(body.triangles.measured)
+        for low, high in body.open_boxes:
+            corners = np.array(
+                [[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
+            )
+            placed = each.fixture.placed(corners)
+            boxes.append(np.array([[placed.min(axis=0), placed.max(axis=0)]]))
+    triangles = Triangles(
+        np.concatenate(vertex), np.concatenate(face), max(errors), own.triangles.missing, tuple(measured)
+    )
+    return Obstacles(triangles, np.concatenate(weight), np.concatenate(boxes), max(gaps), near)
+
+
+def _body(fixture: Fixture, chord: float, near: Floats, kept: Kept) -> _Body:
+    """A fixture in its own frame, as close to what it stands for as is asked."""
+    if fixture.kind == "table":
+        return _table(fixture, near)
+    source = read(fixture, kept)
+    if isinstance(source, Mesh):
+        return _of_mesh(source, fixture.chord_error)
+    key = (fixture.source if isinstance(fixture.source, str) else id(fixture.source), fixture.unit, chord)
+    if key not in kept:
+        kept[key] = _word(fixture, chord) if source is None else _of_part(source, fixture, chord)
+    found: _Body = kept[key]
+    return found
+
+
+def _of_part(part: Part, fixture: Fixture, chord: float) -> _Body:
+    try:
+        around = surroundings(part, chord)
+    except UnjudgeableError as error:
+        raise UnjudgeableError(error.cause, file=f"{fixture}") from None
+    missing: list[tuple[str, str, StandIn]] = [(f"F{number}", why, how) for number, why, how in around.missing]
+    missing += [
+        (str(each.entity or each.name), each.why, "none" if each.box is None else "box") for each in around.lost
+    ]
+    notes = [] if around.surely.weight.any() else ["encloses nothing: only its surface is in the way"]
+    return _Body(around.may_be, around.surely, tuple(missing), (*part.warnings, *notes))
+
+
+def _of_mesh(mesh: Mesh, error: float) -> _Body:
+    found, notes = mesh.skins, list(mesh.notes)
+    if found.open and found.closed:
+        notes.append(f"{found.open} of its {found.open + found.closed} skins are not watertight: of these, only the surface "
+                     "is in the way, not what may lie within")  # fmt: skip
+    elif found.open:
+        notes.append("is not watertight and encloses nothing: only its surface is in the way, not what may lie within")
+    if found.turned:
+        notes.append(f"{found.turned} of its skins run the wrong way round: what lies within counts as material")
+    whole = Obstacles(_triangles(mesh.vertex, error), found.weight)
+    return _Body(whole, whole, (), tuple(notes))
+
+
+def _table(fixture: Fixture, near: Floats) -> _Body:
+    """All below a height, as a slab wide enough for any cutter at the part."""
+    return _solid(_slab(fixture, near, TABLE), 0.0)
+
+
+def _slab(fixture: Fixture, near: Floats, beyond: float) -> Floats:
+    """A table in its own frame, so far beyond the part as asked, mm, and as thick."""
+    corners = np.array([[near[i, 0], near[j, 1], near[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+    own = (corners - fixture.shift) @ fixture.rotation
+    low, high = own.min(axis=0) - beyond, own.max(axis=0) + beyond
+    (high[2],) = fixture.sizes
+    return box(np.append(low[:2], min(low[2], high[2] - beyond)), high)
+
+
+def _word(fixture: Fixture, chord: float) -> _Body:
+    """A box or a cylinder by its sizes."""
+    if fixture.kind == "box":
+        return _solid(box(np.zeros(3), np.array(fixture.sizes)), 0.0)
+    radius, height = fixture.sizes
+    # The chord of a side is this far from the arc.
+    sides = math.ceil(math.pi / math.acos(max(0.0, 1.0 - min(1.0, chord / radius))))
+    sides = min(max(sides, 8), _SIDES)
+    return _solid(cylinder(radius, height, sides), radius * (1.0 - math.cos(math.pi / sides)))
+
+
+def _solid(vertex: Floats, error: float) -> _Body:
+    whole = Obstacles(_triangles(vertex, error), np.ones(len(vertex), np.int8))
+    return _Body(whole, whole)
+
+
+def _triangles(vertex: Floats, error: float) -> Triangles:
+    return Triangles(vertex, np.zeros(len(vertex), np.int32), error, ())
+
+
+def box(low: Floats, high: Floats) -> Floats:
+    """Triangles (12, 3, 3) of a box, counter-clockwise from outside."""
+    corner = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)])
+    sides = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    split = [(a, b, c) for a, b, c, _ in sides] + [(a, c, d) for a, _, c, d in sides]
+    return np.asarray((low + corner * (high - low))[np.array(split)])
+
+
+def cylinder(radius: float, height: float, sides: int) -> Floats:
+    """Triangles (4 sides, 3, 3) of a prism in a cylinder that stands on the origin, counter-clockwise from outside."""
+    turn = 2.0 * np.pi * np.arange(sides) / sides
+    x, y = radius * np.cos(turn), radius * np.sin(turn)
+    a = np.stack([x, y, np.zeros(sides)], axis=1)
+    b, up = np.roll(a, -1, axis=0), np.array([0.0, 0.0, height])
+    middle = np.zeros((sides, 3))
+    parts = [(a, b, b + up), (a, b + up, a + up), (b, a, middle), (a + up, b + up, middle + up)]
+    return np.concatenate([np.stack(part, axis=1) for part in parts])

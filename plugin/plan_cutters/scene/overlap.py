@@ -1,0 +1,106 @@
+"""Does a fixture stand in the part? They may touch; what is deeper than triangles and tolerance can be off is a mistake."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cad_io.arrays import Floats, Record
+from plan_cutters.errors import FixtureError
+from plan_cutters.scene.obstacles import Obstacles, divided
+from plan_cutters.scene.surroundings import Standing, Surroundings
+
+#: Points are looked at this share apart of the box that a fixture and the part have in common; and at most about so many.
+_APART, _MOST = 1 / 64, 200_000
+#: The depth is found to this share of itself, at first of about so many points.
+_PRECISION, _FEW = 0.002, 400
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Overlap(Record):
+    """Where a fixture and the part are deepest in each other, of the points looked at.
+
+    Attributes
+    ----------
+    depth : float
+        mm: a ball of this radius about `point` is all in the one, and `point` is of the other's surface.
+    point : (3,) float
+    """
+
+    depth: float
+    point: Floats
+
+
+def refuse_overlaps(around: Surroundings, tolerance: float) -> None:
+    """Refuse fixtures that stand in the part.
+
+    Raises
+    ------
+    FixtureError
+        It names the fixture, the depth and the place.
+    """
+    part = (around.alone or around).surely
+    for each in around.fixtures:
+        found = overlap(part, each, tolerance)
+        if found is not None:
+            x, y, z = (f"{value + 0.0:.4g}" for value in np.round(found.point, 6))
+            raise FixtureError(f"{each.name} and the part stand {found.depth:.3g} mm deep in each other at {x},{y},{z} mm: check "
+                               "its placement and its unit")  # fmt: skip
+
+
+def overlap(part: Obstacles, standing: Standing, tolerance: float) -> Overlap | None:
+    """How deep a fixture stands in a part, or the part in it; None where they touch at most.
+
+    Only what is closed has an inside: two surfaces that enclose nothing are not compared.
+
+    Parameters
+    ----------
+    part : Obstacles
+        The part alone, with what it surely encloses.
+    standing : Standing
+    tolerance : float
+        Depth that is no fault, mm, beside the chord errors of both.
+    """
+    fixture = standing.obstacles
+    deep = tolerance + part.triangles.chord_error + fixture.triangles.chord_error
+    ends = [(o.triangles.vertex.min(axis=(0, 1)), o.triangles.vertex.max(axis=(0, 1))) for o in (part, fixture)]
+    low, high = np.max([a for a, _ in ends], axis=0), np.min([b for _, b in ends], axis=0)
+    if (high - low < 0).any():
+        return None
+    apart = max(_APART * float(np.linalg.norm(high - low)), deep)
+    found = [_deepest(_points(one, low, high, apart), other, deep) for one, other in ((fixture, part), (part, fixture))]
+    return max((each for each in found if each is not None), key=lambda each: each.depth, default=None)
+
+
+def _points(obstacles: Obstacles, low: Floats, high: Floats, apart: float) -> Floats:
+    """Points (n, 3) of triangles within a box, no farther apart than asked, if they are not too many."""
+    small = divided(obstacles.triangles.vertex, low, high, apart, _MOST)
+    points = np.concatenate([*np.moveaxis(small, 1, 0), small.mean(axis=1)])
+    return points[((points >= low) & (points <= high)).all(axis=1)]
+
+
+def _deepest(points: Floats, solid: Obstacles, least: float) -> Overlap | None:
+    """The point (of n, 3) that is deepest in what obstacles enclose; None if none is deeper than a least depth, mm."""
+    from plan_cutters.kernels.material import far_inside
+
+    def within(points: Floats, clear: float) -> Floats:
+        inside = np.zeros(len(points), bool)
+        if len(points):
+            far_inside(points, clear, solid.solids, inside)
+        return np.ascontiguousarray(points[inside])
+
+    if not solid.weight.any():
+        return None
+    left, low, point = within(np.ascontiguousarray(points), least), least, None
+    while len(left):
+        # Of some, the deepest; then only what is deeper.
+        few = left[:: 1 + len(left) // _FEW]
+        while len(deeper := within(few, 2.0 * low)):
+            few, low = deeper, 2.0 * low
+        high = 2.0 * low
+        while high - low > _PRECISION * low:
+            middle = 0.5 * (low + high)
+            deeper = within(few, middle)
+            few, low, high = (deeper, middle, high) if len(deeper) else (few, low, middle)
+        point = few[0]
+        left, low = within(left, high), high
+    return None if point is None else Overlap(low, point)

@@ -1,0 +1,47 @@
+"""The same part in another setup: postures that its machine holds there, too, are not searched again."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.verdicts import ACCESSIBLE, Reach, blank
+from plan_cutters.scene.conditions import frame_of
+from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.threads import Progress
+from plan_cutters.stages.judge import judge
+
+
+def in_setup(
+    ready: Prepared,
+    cutter: Cutter,
+    setup: tuple[float, float, float],
+    reach: Reach,
+    *,
+    progress: Progress | None = None,
+) -> Reach:
+    """What a cutter reaches in another setup.
+
+    Parameters
+    ----------
+    ready : Prepared
+    cutter : Cutter
+    setup : (float, float, float)
+        Unit direction of the part along the machine's spindle at zero angles. The side of open faces stays as it is.
+    reach : Reach
+        What it reaches in the setup of `ready`.
+    """
+    axis = np.array(setup)
+    machine, known = ready.conditions.machine, blank(len(ready.samples))
+    kinematics = machine.kinematics(frame_of(axis))
+    rows = np.flatnonzero(reach.reached)
+    held = reach.axis[rows] @ axis >= machine.limit_cos
+    # Where fewer than two axes turn the tool, rotations are numbered by the axes that there are in a setup.
+    if kinematics is not None:
+        held &= kinematics.allows(reach.axis[rows]) & (len(machine.rotary) == 2)
+    rows = rows[held]
+    known.verdict[rows] = ACCESSIBLE
+    for name in ("axis", "lean", "tilt", "rotation"):
+        getattr(known, name)[rows] = getattr(reach, name)[rows]
+    other = replace(ready, conditions=replace(ready.conditions, setup=axis))
+    return judge(other, cutter, known=known, progress=progress)

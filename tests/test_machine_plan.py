@@ -1,0 +1,117 @@
+"""A machine in a plan: postures that it holds, positions of its axes, and what the axis limit alone loses."""
+
+import json
+import math
+
+import cad_parts
+import numpy as np
+import pytest
+import shapes
+from test_tool_closed_forms import floor, wall
+
+from plan_cutters import Cutter, Machine, Options, plan
+from plan_cutters.domain.axis import Axis
+from plan_cutters.domain.machine import builtin_machines
+from plan_cutters.domain.verdicts import REASONS
+from plan_cutters.pipeline import prepare
+from plan_cutters.scene.conditions import frame_of
+from plan_cutters.stages.judge import judge
+from plan_cutters.stages.setups import within_limits
+
+CUTTER = Cutter.flat(radius=2, length=40)
+
+
+@pytest.mark.parametrize("name", sorted(builtin_machines()))
+@pytest.mark.parametrize("setup", [(0, 0, 1), (1, -2, 0.5)])
+def test_postures_found_are_held(name, setup, tmp_path):
+    found = plan("samples/blade.step", cutters=CUTTER, machine=name, setup=setup, grid=13, area_budget=0)
+    reach = found.reaches[CUTTER.id]
+    assert reach.reached.any()
+    machine = builtin_machines()[name]
+    kinematics = machine.kinematics(frame_of(np.array(setup) / np.linalg.norm(setup)))
+    assert kinematics.allows(reach.axis[reach.reached]).all()
+    found.write(tmp_path, ["json", "npz"])
+    with np.load(tmp_path / "samples.npz") as arrays:
+        angles, taken = np.radians(arrays[f"rotary_{CUTTER.id}"]), arrays[f"rotary_taken_{CUTTER.id}"]
+    assert angles.shape == (len(found.samples), 2, len(machine.rotary))
+    assert ((taken >= 0) == reach.reached).all()
+    rows = np.flatnonzero(reach.reached)
+    if machine.rotary:
+        # The chain forward, at the positions given, is the axis given.
+        held = kinematics.axis(angles[rows, taken[rows]])
+        assert np.abs(held - reach.axis[rows]).max() < 2e-6
+    entry = json.loads((tmp_path / "plan.json").read_text())["machine"]
+    assert (entry["name"], len(entry["rotary"])) == (name, len(machine.rotary))
+
+
+def test_a_machine_holds_no_more_than_none_and_no_less_than_its_cone():
+    """A trunnion of 8 deg about the spindle, its table turning on, is a plain limit of 8 deg: the same verdicts."""
+    tilting = Axis("A", "rotary", "part", (1, 0, 0), (-math.radians(8), math.radians(8)))
+    axes = (Axis("C", "rotary", "part", (0, 0, 1)), tilting)
+    reaches = []
+    for machine in (Machine("table", axes=axes), Machine.parse("tilt:8"), Machine()):
+        ready = prepare(
+            "samples/peaks_and_valleys.step", Options(cutters=CUTTER, grid=21, machine=machine, area_budget=0)
+        )
+        reaches.append(judge(ready, CUTTER))
+    table, cone, free = reaches
+    assert (table.reached == cone.reached).all()
+    assert (table.verdict == cone.verdict).all()
+    assert (free.reached | ~table.reached).all()
+    assert free.reached.sum() > table.reached.sum() > 0
+
+
+def test_an_underside_does_not_change_the_choice():
+    """A plate's underside is beyond a limit of 60 deg: the cutter that leaves nothing else is told for this setup."""
+    block = cad_parts.box(20, 20, 6)
+    found = plan(
+        block, cutters=[CUTTER, Cutter.flat(radius=1, length=30)], faces="all", machine="tilt:60", grid=4, area_budget=0
+    )
+    document = found.plan
+    under = [
+        face.id
+        for face in document.faces
+        if found.samples.normal[found.samples.face == int(face.id[1:]), 2].max() < -0.9
+    ]
+    (entry, _) = document.cutters
+    assert len(under) == 1
+    assert entry.beyond_setup == 16 == entry.inaccessible == entry.faces[under[0]].inaccessible
+    assert entry.by_reason["axis_limit"] == 16
+    assert (document.selected, document.selected_for_setup) == (None, entry.id)
+    shares = {each.axis: each.within for each in document.setups}
+    # Sides are reached at tilt 90 from a spindle along Z, which is 60 deg off at best: not beyond, for a flank cuts there.
+    assert shares[(0.0, 0.0, 1.0)] == shares[(0.0, 0.0, -1.0)] == len(found.samples) - 16
+    assert document.setups[0].axis == (0.0, 0.0, 1.0)
+
+
+def test_no_limit_loses_nothing():
+    document = plan(cad_parts.box(20, 20, 6), cutters=CUTTER, faces="all", grid=3, area_budget=0).plan
+    assert (document.cutters[0].beyond_setup, document.selected_for_setup, document.setups) == (0, None, [])
+    assert document.machine.rotary is None
+
+
+def test_what_is_within_the_limits_is_what_some_cutter_could_touch():
+    """A slow twin: no sample beyond is reached by any cutter, each within has an axis in the cone about its normal."""
+    part = shapes.bowl(15.0)
+    cutters = (Cutter.flat(radius=0.5, length=60), Cutter.ball(radius=0.5, length=60))
+    ready = prepare(
+        part, Options(cutters=cutters, faces="all", machine="tilt:20", tilt=(0.0, 0.5), grid=9, area_budget=0)
+    )
+    within = within_limits(ready.samples, ready.cutters, ready.conditions)
+    away = np.arccos(np.clip(ready.samples.normal @ [0, 0, 1.0], -1, 1))
+    sure = np.abs(away - math.radians(20) - 0.5) > 0.02
+    # Rotations are 10 deg apart: the one towards the spindle is missed by 5 deg at most.
+    assert (within == (away < math.radians(20) + 0.5))[sure].all()
+    for cutter in cutters:
+        reach = judge(ready, cutter)
+        assert not (reach.reached & ~within).any()
+        assert (reach.reason[~within] == REASONS.index("axis_limit")).all()
+
+
+def test_three_axes_on_a_floor_by_a_wall():
+    """The one axis that there is serves the floor up to the wall, and the sculptured slope where it is not too steep."""
+    part = cad_parts.compound(shapes.plane((-10, 0), (-5, 5)), wall(0.0, 0.0, 30.0, -1), floor(-200, 0))
+    found = plan(part, cutters=CUTTER, faces=[1], machine="3-axis", grid=3, area_budget=0)
+    reach = found.reaches[CUTTER.id]
+    assert reach.reached.all()
+    assert np.abs(reach.axis - [0, 0, 1]).max() < 2e-6

@@ -1,0 +1,22 @@
+"""Machine vises as triangle meshes: a bed and two jaws, each a closed body, of as many triangles as wanted."""
+
+import numpy as np
+
+from plan_cutters.scene.fixtures import box
+from plan_cutters.scene.obstacles import divided
+
+
+def block(low, high, longest=np.inf):
+    """A box as triangles (n, 3, 3) with no side longer than `longest`."""
+    low, high = np.array(low, float), np.array(high, float)
+    return divided(box(low, high), low - 1, high + 1, longest)
+
+
+def vise(size, depth=15.0, jaw=30.0, longest=np.inf):
+    """Around a part from the origin to `size`, its jaws along y and up to `depth`."""
+    x, y, _ = size
+    return np.concatenate([
+        block((-jaw, -3 * jaw, -40), (x + jaw, y + 3 * jaw, 0), longest),
+        block((-jaw, -jaw, 0), (x + jaw, 0, depth), longest),
+        block((-jaw, y, 0), (x + jaw, y + jaw, depth), longest),
+    ])  # fmt: skip
