@@ -94,12 +94,12 @@ def narrowed(limits: Sequence[tuple[float, float] | None], what: str) -> tuple[f
     return low, high
 
 
-def even(axis: Axis) -> bool:
-    """Whether the sense in which it is counted matters to nothing that it allows."""
-    if axis.limits is None:
+def even(limits: tuple[float, float] | None, *, turns: bool) -> bool:
+    """Whether the sense in which an axis is counted matters to nothing that it allows."""
+    if limits is None:
         return True
-    low, high = axis.limits
-    return low == -high or abs(low + high) <= _EVEN or (axis.kind == "rotary" and high - low >= 2.0 * math.pi)
+    low, high = limits
+    return low == -high or abs(low + high) <= _EVEN or (turns and high - low >= 2.0 * math.pi)
 
 
 def linear(name: str, carries: Carried, limits: tuple[float, float] | None, rate: float | None = None) -> Axis:
@@ -130,7 +130,7 @@ def machine(name: str, axes: Sequence[Axis], notes: Sequence[str] = (), *, tool:
                 f"axis {last.name} runs along the tool, which it only turns about itself; {last.name} turns about "
                 f"{'XYZ'[iso.index(1.0)]} in ISO 841: correct its direction"
             )
-    return Machine(name, axes=tuple(axes), tool_axis=tool, notes=tuple(said), fixed=not rotary)
+    return Machine(name, axes=tuple(axes), tool_axis=tool, notes=tuple(dict.fromkeys(said)), fixed=not rotary)
 
 
 def _dot(a: Vector, b: Vector) -> float:

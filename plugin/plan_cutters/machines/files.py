@@ -60,11 +60,8 @@ class Added(NamedTuple):
                 words.append(word.strip())
         part, _, tool = ",".join(words).partition("/")
         sides = [tuple(word.strip().upper() for word in side.split(",") if word.strip()) for side in (part, tool)]
-        if (
-            not (sides[0] or sides[1] or sign)
-            or "/" in tool
-            or len(set(sides[0] + sides[1])) < len(sides[0] + sides[1])
-        ):
+        names = sides[0] + sides[1]
+        if not (names or sign) or len(set(names)) < len(names) or not all(name.isalnum() for name in names):
             raise MachineError(
                 f"{shown('#' + text)} says nothing of a machine: give its rotary axes from the part to the tool, as #C,A, or "
                 f"#C/B where C carries the part and B the tool; or how angles of a table are counted, #{TABLE} or #{TOOL}"

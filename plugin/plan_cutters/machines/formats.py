@@ -54,10 +54,7 @@ def _suffix(*words: str) -> Callable[[Content], bool]:
 
 
 def _binary(content: Content) -> bool:
-    return (
-        content.encoded[1] in ("utf-8", "cp1252")
-        and re.search(rb"[\0-\x08\x0e-\x1f]", content.data[:65536]) is not None
-    )
+    return re.search(r"[\0-\x08\x0e-\x1f]", content.text[:65536]) is not None
 
 
 FOREIGN = (

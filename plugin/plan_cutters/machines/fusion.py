@@ -174,7 +174,7 @@ class _Reading:
         """Whether the sense of a rotary axis is known, or does not matter."""
         control = self.control.get(str(part.get("id")), {})
         turned, zero = control.get("reversed") is True, control.get("zero_position_offset", 0)
-        if chain.even(axis):
+        if chain.even(axis.limits, turns=True):
             if axis.carries == "part" and not self.sign:
                 self.notes.append(
                     f"{axis.name}: whether its positive angles are those of the table or of the tool is not said; that of the "

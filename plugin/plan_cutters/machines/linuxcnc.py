@@ -211,8 +211,12 @@ class _Reading:
         found = hal.value(pin, 0.0) if kins.pin else 0.0
         if found is None or (kins.pin and pin not in hal.pins and pin not in hal.signal_of and hal.missing):
             why = "something else feeds it" if found is None else f"{', '.join(hal.missing)} is not at hand"
-            raise MachineError(f"the sense of its angles hangs on {pin}, and {why}: put the HAL file beside it, or a line "
-                               f"HALCMD = setp {pin} 0 (or 1) into [HAL]")  # fmt: skip
+            if not all(chain.even(self.limits(letter, False), turns=True) for letter in kins.against):
+                raise MachineError(f"the sense of its angles hangs on {pin}, and {why}: put the HAL file beside it, or a line "
+                                   f"HALCMD = setp {pin} 0 (or 1) into [HAL]")  # fmt: skip
+            self.notes.append(
+                f"the sense of its angles hangs on {pin}, and {why}: with its limits it allows the same either way"
+            )
         if found:
             self.notes.append(f"{pin} is set: its angles are counted as in ISO 841")
             return ""

@@ -130,33 +130,36 @@ def _machine(given: Any, content: Content, added: Added) -> Machine:
 
 
 def _axis(table: AxisTable, carries: Carried, sign: str, length: float, angle: float) -> Axis:
-    size = angle if table.type == "rotary" else length
+    turns = table.type == "rotary"
+    size = angle if turns else length
     what = f"axis {table.axis}"
     x, y, z = table.direction
     limits = None
     if table.limits is not None:
         low, high = table.limits
         limits = (
-            -math.inf if low is None else _size(low, size, f"{what}: its least limit"),
-            math.inf if high is None else _size(high, size, f"{what}: its largest limit"),
+            -math.inf if low is None else _size(low, size, f"{what}: its least limit", turns),
+            math.inf if high is None else _size(high, size, f"{what}: its largest limit", turns),
         )
         if limits[0] == math.inf or limits[1] == -math.inf:
             raise MachineError(f"{what}: its limits must run upwards, from -inf to inf")
     px, py, pz = (scaled(value, length) for value in table.point or (0.0, 0.0, 0.0))
-    rate = None if table.rate is None else _size(table.rate, size, f"{what}: its rate")
+    rate = None if table.rate is None else _size(table.rate, size, f"{what}: its rate", turns)
     turned = opposite((x, y, z)) if sign == "table" and carries == "part" else (x, y, z)
     return Axis(table.axis, table.type, carries, turned, limits, (px, py, pz), rate)
 
 
-def _size(given: float | str, size: float, what: str) -> float:
+def _size(given: float | str, size: float, what: str, turns: bool = True) -> float:
     if isinstance(given, str):
         match = _RADIANS.fullmatch(given)
         try:
             found = float(match[1]) if match else math.nan
         except ValueError:
             found = math.nan
-        if not math.isfinite(found) or size in LENGTHS.values():
-            raise MachineError(f"{what} is {shown(given)}: it must be a number, or an angle as 0.5 rad")
+        if not math.isfinite(found) or not turns:
+            raise MachineError(
+                f"{what} is {shown(given)}: it must be a number{', or an angle as 0.5 rad' if turns else ''}"
+            )
         return found
     if math.isnan(given):
         raise MachineError(f"{what} must be a number, not nan")

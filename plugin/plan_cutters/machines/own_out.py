@@ -53,11 +53,10 @@ def to_toml(machine: Machine) -> str:
     lines = [f"{key} = {_toml(value)}" for key, value in found.items() if key not in dict(chains)]
     lines += [f"{name} = []" for name, chain in chains if not chain]
     for name, chain in chains:
-        if chain:
-            lines += ["", "# From the bed outward."]
-        for each in chain:
-            lines += [f"[[{name}]]", *(f"{key} = {_toml(value)}" for key, value in each.items()), ""]
-    return "\n".join([*lines, ""]) if lines[-1] else "\n".join(lines)
+        for i, each in enumerate(chain):
+            lines += ["", *([] if i else ["# From the bed outward."]), f"[[{name}]]"]
+            lines += [f"{key} = {_toml(value)}" for key, value in each.items()]
+    return "\n".join([*lines, ""])
 
 
 def _axis(axis: Axis) -> dict[str, Any]:

@@ -1,0 +1,254 @@
+"""`plan-cutters-machines`: the machines that are built in, and what is understood of a machine file."""
+
+import contextlib
+import json
+import math
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
+
+from plan_cutters import __version__
+from plan_cutters.command.codes import USAGE, guarded
+
+if TYPE_CHECKING:
+    from plan_cutters.domain.machine import Machine
+
+_SELF = "plan-cutters-machines"
+
+
+@click.command(
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
+    epilog="Exit codes: 0 each machine is understood; 2 one is not, or the command line is wrong.",
+)
+@click.argument("machines", nargs=-1, metavar="[FILE|NAME]...")
+@click.option("--json", "as_json", is_flag=True, help="All that was understood, as JSON on standard output.")
+@click.option("--to-toml", metavar="FILE", help="Write the machine in our own format.")
+@click.option(
+    "--angles", metavar="X,Y,Z", help="Angles that hold this tool axis, from the tip to the spindle: both solutions."
+)
+@click.option("--axis", metavar="A=DEG,C=DEG", help="The tool axis at these angles; those not named are 0.")
+@click.option("--debug", is_flag=True, help="Show tracebacks.")
+@click.version_option(__version__, prog_name=_SELF)
+def command(machines: tuple[str, ...], **given: Any) -> int:
+    """What is understood of each machine: a built-in one by its name, or a file.
+
+    Reads our own TOML and JSON, FreeCAD .fcm, LinuxCNC .ini, Fusion .mch, and MTConnect probes. Where a file does not say how
+    rotary axes stand on each other, add it: FILE#C,A (from the part to the tool), FILE#C/B (C carries the part, B the tool).
+    Without an argument, the machines that are built in are listed.
+    """
+    from plan_cutters.domain.machine import builtin_machines
+    from plan_cutters.errors import OptionError
+    from plan_cutters.machines.read import source_of
+
+    if not machines and (given["to_toml"] or given["angles"] or given["axis"]):
+        raise OptionError("which machine? give a name or a file")
+    if given["to_toml"] is not None and len(machines) != 1:
+        raise OptionError("--to-toml writes one machine: give one")
+    axis = None if given["angles"] is None else _vector(given["angles"])
+    turned = None if given["axis"] is None else _angles(given["axis"])
+    found: list[dict[str, Any]] = []
+    read: list[Machine] = []
+    lines = []
+    for name in machines or tuple(builtin_machines()):
+
+        def one(name: str = name) -> tuple[int, str]:
+            machine, form = source_of(name)
+            found.append(_facts(name, form, machine, axis, turned))
+            read.append(machine)
+            return 0, ""
+
+        code, line = guarded(one, given["debug"])
+        if code:
+            lines.append(line.replace("plan-cutters:", f"{_SELF}:", 1))
+    if read and not lines and given["to_toml"] is not None:
+        _write(read[0], Path(given["to_toml"]))
+    if given["as_json"]:
+        click.echo(json.dumps({"machines": found}, indent=2, ensure_ascii=False))
+    elif not machines:
+        _list(read)
+    else:
+        for facts, machine in zip(found, read, strict=True):
+            _explain(facts, machine)
+    for line in lines:
+        click.echo(line, err=True)
+    return USAGE if lines else 0
+
+
+def _vector(text: str) -> tuple[float, float, float]:
+    from plan_cutters.errors import OptionError
+
+    try:
+        x, y, z = (float(word) for word in text.split(","))
+    except ValueError:
+        raise OptionError(f"--angles {text!r}: a tool axis is three numbers, as 0,0,1") from None
+    if not (math.isfinite(x) and math.isfinite(y) and math.isfinite(z)) or math.hypot(x, y, z) < 1e-9:
+        raise OptionError(f"--angles {text!r}: a tool axis is three finite numbers that are not all zero")
+    return x, y, z
+
+
+def _angles(text: str) -> dict[str, float]:
+    """Angles, rad, by the names of the axes."""
+    from plan_cutters.errors import OptionError
+
+    found: dict[str, float] = {}
+    for word in text.split(","):
+        name, _, value = word.partition("=")
+        try:
+            degrees = float(value)
+        except ValueError:
+            degrees = math.nan
+        if not name.strip() or not math.isfinite(degrees) or name.strip() in found:
+            raise OptionError(f"--axis {text!r}: angles are given in degrees, each axis once, as A=30,C=10")
+        found[name.strip()] = math.radians(degrees)
+    return found
+
+
+def _facts(name: str, form: str, machine: "Machine", axis: Any, turned: Any) -> dict[str, Any]:
+    """What is told of one machine, as JSON has it."""
+    import numpy as np
+
+    from plan_cutters.machines.explain import share, singular, solutions, tool_axis
+    from plan_cutters.machines.own_out import plain
+
+    held, near = share(machine)
+    cone = singular(machine)
+    found: dict[str, Any] = {
+        "given": name,
+        "format": form or "built in",
+        "machine": plain(machine),
+        "share_of_directions": held,
+        "singular_cone_deg": None if cone is None else math.degrees(cone),
+        "singular_share": near,
+    }
+    if axis is not None:
+        found["angles"] = {
+            "tool_axis": list(axis),
+            "solutions": [
+                {"deg": {key: math.degrees(angle) for key, angle in each.angles.items()}, "taken": each.taken}
+                for each in solutions(machine, np.array(axis))
+            ],
+        }
+    if turned is not None:
+        held_axis, beyond = tool_axis(machine, turned)
+        found["axis"] = {
+            "deg": {key: math.degrees(angle) for key, angle in turned.items()},
+            "tool_axis": [float(value) for value in held_axis],
+            "beyond_limits": beyond,
+        }
+    return found
+
+
+def _console() -> Any:
+    from rich.console import Console
+
+    if hasattr(sys.stdout, "reconfigure"):
+        # Names and frames of tables may have no place in the terminal's encoding.
+        sys.stdout.reconfigure(errors="replace")
+    return Console(highlight=False, markup=False, width=None if sys.stdout.isatty() else 200)
+
+
+def _list(machines: "Sequence[Machine]") -> None:
+    from rich.table import Table
+
+    from plan_cutters.machines.explain import limits_text, share, share_text
+
+    table = Table("Name", "Rotary axes from the part to the tool", "Share of directions")
+    table.columns[-1].justify = "right"
+    for machine in machines:
+        axes = [f"{axis.name} ({axis.carries}, {limits_text(axis)})" for axis in machine.rotary]
+        table.add_row(machine.name, ", ".join(axes) or "none", share_text(machine, share(machine).held))
+    console = _console()
+    console.print(table)
+    console.print(
+        "Others: unlimited, tilt:DEG (within DEG of the setup axis), or a machine file. Names explain one.",
+        soft_wrap=True,
+    )
+
+
+def _explain(facts: dict[str, Any], machine: "Machine") -> None:
+    """A machine for people."""
+    from rich.table import Table
+
+    from plan_cutters.machines.explain import limits_text, summary, vector_text
+
+    console = _console()
+
+    def say(text: str) -> None:
+        console.print(text, soft_wrap=True)
+
+    title = facts["given"] if machine.name == facts["given"] else f"{facts['given']}: {machine.name}"
+    say(f"{title} ({facts['format']})")
+    for line in summary(machine):
+        say(f"  {line}")
+    if machine.axes:
+        table = Table("From the part", "Carries", "Moves", "Limits", "Through (mm)", "Speed")
+        for axis in machine.axes:
+            rotary = axis.kind == "rotary"
+            rate = (
+                ""
+                if axis.rate is None
+                else f"{math.degrees(axis.rate) if rotary else axis.rate:.6g} {'deg' if rotary else 'mm'}/s"
+            )
+            moves = f"{'about' if rotary else 'along'} {vector_text(axis.direction)}"
+            table.add_row(
+                axis.name, axis.carries, moves, limits_text(axis), vector_text(axis.point) if rotary else "", rate
+            )
+        console.print(table)
+        say("  Directions are those of the tool relative to the part (ISO 841), at zero positions.")
+    if machine.turns:
+        say(f"  At zero positions the tool axis is {vector_text(machine.tool_axis)}, from the tip to the spindle.")
+    for note in machine.notes:
+        say(f"  note: {note}")
+    if "angles" in facts:
+        _solutions(facts["angles"], say)
+    if "axis" in facts:
+        told = facts["axis"]
+        at = ", ".join(f"{name} {angle:.6g} deg" for name, angle in told["deg"].items())
+        beyond = f"; beyond the limits: {', '.join(told['beyond_limits'])}" if told["beyond_limits"] else ""
+        say(f"  At {at} the tool axis is ({', '.join(f'{value:.9g}' for value in told['tool_axis'])}){beyond}.")
+
+
+def _solutions(told: dict[str, Any], say: Any) -> None:
+    axis = f"({', '.join(f'{value:g}' for value in told['tool_axis'])})"
+    if not told["solutions"]:
+        say(f"  No position within the limits holds the tool axis {axis}.")
+    for each in told["solutions"]:
+        angles = ", ".join(f"{name} {angle + 0.0:.6f} deg" for name, angle in each["deg"].items())
+        taken = " (taken: the smaller turns)" if each["taken"] and len(told["solutions"]) > 1 else ""
+        say(f"  The tool axis {axis} is held{f' at {angles}' if angles else ''}{taken}.")
+
+
+def _write(machine: "Machine", path: Path) -> None:
+    from plan_cutters.errors import PlanError
+    from plan_cutters.machines import to_toml
+
+    aside = path.with_name(f".{path.name}.part")
+    try:
+        aside.write_text(to_toml(machine), encoding="utf-8")
+        os.replace(aside, path)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            aside.unlink(missing_ok=True)
+        raise PlanError(f"cannot be written: {error.strerror}", file=str(path)) from None
+
+
+def main(args: Sequence[str] | None = None) -> NoReturn:
+    """Entry point of the command."""
+    words = list(sys.argv[1:] if args is None else args)
+
+    def work() -> tuple[int, str]:
+        try:
+            return int(command.main(words, prog_name=_SELF, standalone_mode=False) or 0), ""
+        except BrokenPipeError:
+            # Whoever reads the table has seen enough.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            return 0, ""
+
+    code, line = guarded(work, "--debug" in words)
+    if line:
+        click.echo(line.replace("plan-cutters:", f"{_SELF}:", 1), err=True)
+    sys.exit(code)
