@@ -115,3 +115,58 @@ def test_three_axes_on_a_floor_by_a_wall():
     reach = found.reaches[CUTTER.id]
     assert reach.reached.all()
     assert np.abs(reach.axis - [0, 0, 1]).max() < 2e-6
+
+
+def test_several_setups_reach_more_together(tmp_path):
+    """On a machine of three axes each setup reaches what a plan with it reaches; together they are what any of them does."""
+    axes = [(0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0)]
+    found = plan(
+        "samples/blade.step",
+        cutters=CUTTER,
+        machine="3-axis",
+        setup=axes[0],
+        other_setups=axes[1:],
+        grid=13,
+        area_budget=0,
+    )
+    alone = [
+        plan("samples/blade.step", cutters=CUTTER, machine="3-axis", setup=axis, grid=13, area_budget=0).reaches[
+            CUTTER.id
+        ]
+        for axis in axes
+    ]
+    (entry,) = found.plan.cutters
+    assert [each.axis for each in entry.setups] == axes
+    for each, reach in zip(entry.setups, alone, strict=True):
+        assert each.accessible + each.interference_free == reach.reached.sum()
+    together = np.logical_or.reduce([reach.reached for reach in alone])
+    assert entry.lost_in_all == (~together).sum()
+    assert together.sum() > max(reach.reached.sum() for reach in alone)
+    assert found.plan.selected_over_setups == (CUTTER.id if together.all() else None)
+    found.write(tmp_path, ["npz"])
+    with np.load(tmp_path / "samples.npz") as arrays:
+        assert arrays["setups"].tolist() == [list(axis) for axis in axes]
+        assert (arrays[f"reached_in_{CUTTER.id}"] == np.stack([reach.reached for reach in alone], axis=1)).all()
+
+
+@pytest.mark.parametrize("machine", ["tilt:40", "trunnion-ac"])
+def test_another_setup_finds_what_a_plan_with_it_finds(machine):
+    """Postures that are handed over are held there, and none is missed."""
+    found = plan(
+        "samples/blade.step", cutters=CUTTER, machine=machine, other_setups=[(0, 1, 0.2)], grid=13, area_budget=0
+    )
+    ((axis, reaches),) = found.elsewhere
+    alone = plan("samples/blade.step", cutters=CUTTER, machine=machine, setup=(0, 1, 0.2), grid=13, area_budget=0)
+    assert (reaches[CUTTER.id].reached == alone.reaches[CUTTER.id].reached).all()
+    reach, machine = reaches[CUTTER.id], Machine.of(machine)
+    held = reach.axis[reach.reached] @ np.array(axis) >= machine.limit_cos - 1e-9
+    assert held.all()
+    kinematics = machine.kinematics(frame_of(np.array(axis)))
+    assert kinematics is None or kinematics.allows(reach.axis[reach.reached]).all()
+
+
+def test_a_turned_setup_says_that_it_turns_open_faces():
+    """A plane's side is a guess towards the setup axis: from below it is the other one, and the plan says so."""
+    notes = [plan(shapes.plane((-5, 5), (-5, 5)), cutters=CUTTER, setup=setup, grid=3, area_budget=0).plan.notes
+             for setup in ((0, 0, 1), (0, 0, -1))]  # fmt: skip
+    assert [any("decides the side of open faces" in note for note in each) for each in notes] == [False, True]
