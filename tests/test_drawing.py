@@ -254,24 +254,21 @@ def test_two_drawings_in_one_page_share_no_id():
     assert sum(map(len, ids)) == len(set().union(*ids))
 
 
-def test_stages_without_number_are_counted_and_told_in_full():
-    many = Holder(tuple(Stage(15 + i % 3, 1.5 + 0.01 * i) for i in range(100)))
-    cutter = Cutter.flat(radius=5, length=50, flutes=20, holder=many)
-    root = read(draw(cutter))
+def test_as_many_stages_as_can_be_judged_are_told_apart():
+    many = Holder(tuple(Stage(15 + i % 3, 1.5 + 0.01 * i) for i in range(17)))
+    root = read(draw(Cutter.flat(radius=5, length=50, flutes=20, holder=many)))
     check_words_apart(root)
-    shown = sum(text.startswith("holder ") for text in words(root)) - 1
-    (left,) = (re.findall(r"^… (\d+) more stages:$", t)[0] for t in words(root) if t.startswith("… "))
-    assert shown + int(left) == 100
-    assert "holder 100 Ø30 × 2.49" in root.find(f"{SVG}desc").text
+    assert sum(text.startswith("holder ") for text in words(root)) >= 17
+    assert "holder 17 Ø32 × 1.66" in root.find(f"{SVG}desc").text
 
 
 def test_forms_of_many_points_are_told_in_full():
-    points = [(0, 0), *((3 + math.sin(i), 0.25 * i) for i in range(200))]
+    points = [(0, 0), *((3 + math.sin(i), 0.25 * i) for i in range(50))]
     root = read(draw(Cutter.form(points, length=80)))
     check_words_apart(root)
-    assert "form of 201 points: Ø at height" in words(root)
-    assert "… and 189 more" in words(root)
-    assert f"Ø{length(2 * points[-1][0])} at height 49.75" in root.find(f"{SVG}desc").text
+    assert "form of 51 points: Ø at height" in words(root)
+    assert "… and 39 more" in words(root)
+    assert f"Ø{length(2 * points[-1][0])} at height 12.25" in root.find(f"{SVG}desc").text
 
 
 @pytest.mark.parametrize("path", [CAT40], ids=lambda path: path.name)

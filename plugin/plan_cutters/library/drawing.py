@@ -74,18 +74,17 @@ def draw(cutter: Cutter, *, name: str = "") -> str:
     enlarged = _DETAIL[1] + 2 * LINE if zoom else 0.0
     columns = _columns(spans, scale)
     wide, tall = scale * line.widest, scale * line.height
-    shown = _fitting(notes, high + _BELOW - enlarged)
     right = _MARGIN + len(columns) * _COLUMN + _GAP + 2 * wide + _GAP + _LEADER
     width = max(_LEAST, right + beside + _MARGIN)
     # A sheet is no narrower than its title: the view stands in its middle.
     right = 0.5 * (width + right - beside - _MARGIN)
     top = _MARGIN + _ABOVE
-    bottom = top + max(tall + _BELOW, sum(map(_height, shown)) + enlarged)
+    bottom = top + max(tall + _BELOW, sum(map(_height, notes)) + enlarged)
     view = _View(right - _LEADER - _GAP - wide, top + tall, scale)
     _assembly(sheet, line, view)
     _lengths(sheet, columns, line, view)
     _across(sheet, cutter, view)
-    _leaders(sheet, shown, view, wide, (right, top, bottom - enlarged))
+    _leaders(sheet, notes, view, wide, (right, top, bottom - enlarged))
     if zoom:
         _detail(sheet, cutter, line, view, zoom, (right, bottom - _DETAIL[1]))
     end = _block(sheet, (title, cutter.id), facts, line.parts, scale, bottom + 3.0, width)
@@ -138,17 +137,6 @@ def _columns(spans: list[Span], scale: float) -> list[list[tuple[Span, str]]]:
 
 def _height(note: Note) -> float:
     return LINE * len(note.lines) + 0.8
-
-
-def _fitting(notes: list[Note], room: float) -> list[Note]:
-    """The notes for which there is room, from the tip up, and how many there are besides."""
-    if sum(map(_height, notes)) <= room:
-        return notes
-    count = 1
-    while count < len(notes) and sum(map(_height, notes[: count + 1])) + 2 * LINE + 0.8 <= room:
-        count += 1
-    rest = Note(notes[count].at, [f"… {len(notes) - count} more stages:", "see description"])
-    return [*notes[:count], rest]
 
 
 def _silhouette(segments: tuple[Segment, ...], view: _View) -> str:
