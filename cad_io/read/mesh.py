@@ -111,6 +111,8 @@ def _content(file: str) -> bytes:
         return Path(file).read_bytes()
     except FileNotFoundError:
         raise ReadError("no such file", file=file) from None
+    except MemoryError:
+        raise ReadError("is too large for the memory allowed: give more, or a coarser mesh", file=file) from None
     except (OSError, ValueError) as error:
         raise ReadError(f"cannot be read: {getattr(error, 'strerror', None) or error}", file=file) from None
 

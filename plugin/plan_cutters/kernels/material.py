@@ -248,7 +248,9 @@ def far_inside(points, clear, solids, inside):  # type: ignore[no-untyped-def]
     stack = np.empty(64, np.int64)
     for row in range(len(points)):
         x, y, z = points[row, 0], points[row, 1], points[row, 2]
-        inside[row] = winding(x, y, z, solids, stack) >= SURELY_INSIDE and not _touches(x, y, z, clear, solids, stack)
+        # The quicker answers first.
+        inside[row] = not outside(x, y, z, solids) and not _touches(x, y, z, clear, solids, stack)
+        inside[row] = inside[row] and winding(x, y, z, solids, stack) >= SURELY_INSIDE
 
 
 @kernel
