@@ -2,8 +2,8 @@
 
     python benchmarks/fixtures.py [SPACING]
 
-Processor seconds of all threads, the best of five, in turn, machine code loaded before; and how many boxes and triangles the search
-tests, counted on every 20th sample without the compiler. A jaw stands on either side of the part, 9 mm below its top.
+Processor seconds of all threads, the best of five, in turn, machine code loaded before; and how many boxes and triangles the
+search tests, counted on every 20th sample without the compiler. A jaw stands on either side of the part, 9 mm below its top.
 """
 
 import sys
@@ -23,8 +23,8 @@ from plan_cutters.stages.judge import judge
 
 ROOT = Path(__file__).parent.parent
 sys.path.append(str(ROOT / "tests"))
-from test_counts import counted
-from vises import vise
+from test_counts import counted  # noqa: E402
+from vises import vise  # noqa: E402
 
 PART, CUTTERS = ROOT / "samples" / "pocket_top.step", ("R3L40", "R6L60", "R3L40F10S3HR15L40", "R6L60rc6")
 WANTED, EACH, ROUNDS = 50_000, 20, 5
@@ -35,7 +35,9 @@ def vise_of(triangles: int) -> Fixture:
     longest = 100.0
     while len(found := vise((60.0, 40.0, 24.5), 15.5, longest=longest)) < triangles:
         longest *= 0.97
-    return Fixture(trimesh.Trimesh(found.reshape(-1, 3), np.arange(3 * len(found)).reshape(-1, 3), process=False), name="vise")
+    return Fixture(
+        trimesh.Trimesh(found.reshape(-1, 3), np.arange(3 * len(found)).reshape(-1, 3), process=False), name="vise"
+    )
 
 
 def work(ready: Prepared, cutter: Cutter) -> dict[str, int]:
@@ -62,7 +64,9 @@ def main() -> None:
     held = vise_of(WANTED)
     began = time.process_time()
     _ = scene.around.may_be.solids
-    print(f"part alone: {len(scene.around.may_be.triangles)} triangles, {time.process_time() - began:.2f} s to tessellate and build")
+    print(
+        f"part alone: {len(scene.around.may_be.triangles)} triangles, {time.process_time() - began:.2f} s to tessellate and build"
+    )
     cases: dict[str, list[Fixture | str]] = {
         "part alone": [], "vise": [held], "table": ["table:0"], "vise and table": [held, "table:-40"],
     }  # fmt: skip
@@ -87,8 +91,9 @@ def main() -> None:
         counts = {name: work(ready[name], cutter) for name in cases}
         none = counts["part alone"]
         for name in cases:
+            more = 100 * (best[name] / best["part alone"] - 1)
             boxes, triangles = (100 * (counts[name][word] / none[word] - 1) for word in ("boxes", "triangles"))
-            print(f"| {text} | {name} | {best[name]:.2f} | {100 * (best[name] / best['part alone'] - 1):+.0f} % | {boxes:+.1f} % | "
+            print(f"| {text} | {name} | {best[name]:.2f} | {more:+.0f} % | {boxes:+.1f} % | "
                   f"{triangles:+.1f} % | {int(reach[name].lost.sum())} |", flush=True)  # fmt: skip
 
 
