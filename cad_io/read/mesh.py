@@ -123,6 +123,8 @@ def _triangles(data: bytes, kind: str, file: str) -> Floats:
 
     if not data.strip():
         raise ReadError("is empty", file=file)
+    if kind == "stl" and len(data) != 84 + 50 * int.from_bytes(data[80:84], "little") and b"endsolid" not in data:
+        raise ReadError("is not a whole STL file: its end is missing; export it again", file=file)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
