@@ -117,6 +117,7 @@ def test_part_without_faces(tmp_path):
         (["--assume-stickout", 30], "give it with --cutters"),
         (["--holder", "er16.fcholder"], "er16.fcholder"),
         (["--answers", "radii"], "radii"),
+        (["--fixture", "box:1,2"], "box takes x,y,z"),
         (["--allowance", "-0.3"], "allowance -0.3"),
         (["--holder-clearance", "nan"], "holder clearance must be a number"),
         (["--holder", "R15"], "R15L30"),

@@ -111,6 +111,8 @@ def _content(file: str) -> bytes:
         return Path(file).read_bytes()
     except FileNotFoundError:
         raise ReadError("no such file", file=file) from None
+    except MemoryError:
+        raise ReadError("is too large for the memory allowed: give more, or a coarser mesh", file=file) from None
     except (OSError, ValueError) as error:
         raise ReadError(f"cannot be read: {getattr(error, 'strerror', None) or error}", file=file) from None
 
@@ -121,6 +123,8 @@ def _triangles(data: bytes, kind: str, file: str) -> Floats:
 
     if not data.strip():
         raise ReadError("is empty", file=file)
+    if kind == "stl" and len(data) != 84 + 50 * int.from_bytes(data[80:84], "little") and b"endsolid" not in data:
+        raise ReadError("is not a whole STL file: its end is missing; export it again", file=file)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

@@ -30,7 +30,7 @@ class Solids(NamedTuple):
     tree. weight (n,) int8: how often a triangle
     counts in the winding number, negative where its corners run the other way round. moment (nodes, 8): of the triangles
     below a node. cell (i, j, k) uint8, 1 where a cell is surely outside, with its origin (3,) and size, mm; none where
-    nothing encloses anything. whole: all beyond the cells is outside.
+    nothing encloses anything. whole: the cells hold all that encloses; end (2, 3): corners of a box that does.
     """
 
     tree: Tree
@@ -40,12 +40,22 @@ class Solids(NamedTuple):
     origin: Any
     size: float
     whole: bool
+    end: Any
 
 
 def sheet(tree: Tree) -> Solids:
     """Triangles that enclose nothing."""
     none = np.zeros((0, 0, 0), np.uint8)
-    return Solids(tree, np.zeros(len(tree.vertex), np.int8), np.zeros((0, MOMENTS)), none, np.zeros(3), 1.0, True)
+    return Solids(
+        tree,
+        np.zeros(len(tree.vertex), np.int8),
+        np.zeros((0, MOMENTS)),
+        none,
+        np.zeros(3),
+        1.0,
+        True,
+        np.zeros((2, 3)),
+    )
 
 
 @entry
@@ -125,6 +135,9 @@ def outside(x, y, z, solids):  # type: ignore[no-untyped-def]
         return True
     i, j, k = x - solids.origin[0], y - solids.origin[1], z - solids.origin[2]
     if i < 0.0 or j < 0.0 or k < 0.0 or i >= nx * solids.size or j >= ny * solids.size or k >= nz * solids.size:
+        low, high = solids.end[0], solids.end[1]
+        if x < low[0] or y < low[1] or z < low[2] or x > high[0] or y > high[1] or z > high[2]:
+            return True
         return solids.whole
     if not (i == i and j == j and k == k):
         return False
@@ -248,7 +261,9 @@ def far_inside(points, clear, solids, inside):  # type: ignore[no-untyped-def]
     stack = np.empty(64, np.int64)
     for row in range(len(points)):
         x, y, z = points[row, 0], points[row, 1], points[row, 2]
-        inside[row] = winding(x, y, z, solids, stack) >= SURELY_INSIDE and not _touches(x, y, z, clear, solids, stack)
+        # The quicker answers first.
+        inside[row] = not outside(x, y, z, solids) and not _touches(x, y, z, clear, solids, stack)
+        inside[row] = inside[row] and winding(x, y, z, solids, stack) >= SURELY_INSIDE
 
 
 @kernel

@@ -23,6 +23,8 @@ OFFSET_OF, RISE, TILT_FROM, TILT_TO, OVER_TIP = 0, 1, 2, 3, 4
 NARROWEST = 1.7e-4
 #: Intervals that one rotation may fall into; widest first, a search has not been seen to need ten.
 _ROOM = 256
+#: A point of a tool's axis is surely among the cells, and mostly past those of the skin at its tip, so many of them up.
+_LOW = 8.0
 #: By how much a posture within a body is turned to find the others there, at first, rad.
 _TURN = 0.2
 
@@ -92,6 +94,14 @@ def inside(body, tool, mode, solids, stack):  # type: ignore[no-untyped-def]
     z = body[P + 2] + high * body[A + 2] - body[OFFSET] * body[X + 2]
     if outside(x, y, z, solids):
         return 0.0
+    if not solids.whole:
+        # Above the cells: a point that is low enough to be among them.
+        height = min(tool.inner, _LOW * solids.size) - tool.mode[mode, OVER_TIP]
+        x = body[P] + height * body[A] - body[OFFSET] * body[X]
+        y = body[P + 1] + height * body[A + 1] - body[OFFSET] * body[X + 1]
+        z = body[P + 2] + height * body[A + 2] - body[OFFSET] * body[X + 2]
+        if outside(x, y, z, solids):
+            return 0.0
     height = tool.inner - tool.mode[mode, OVER_TIP]
     x = body[P] + height * body[A] - body[OFFSET] * body[X]
     y = body[P + 1] + height * body[A + 1] - body[OFFSET] * body[X + 1]

@@ -94,7 +94,17 @@ class Obstacles(Record):
         weight = np.ascontiguousarray(self.weight[self._built[0]])
         if not weight.any():
             return sheet(self.tree)
-        return Solids(self.tree, weight, moments(self.tree.vertex, weight, self.tree.depth), *self._cells())
+        return Solids(self.tree, weight, moments(self.tree.vertex, weight, self.tree.depth), *self._cells(),
+                      self._end)  # fmt: skip
+
+    @property
+    def _end(self) -> Floats:
+        """Corners (2, 3) of a box around all that may enclose something."""
+        vertex, grow = self.triangles.vertex, self.triangles.chord_error + self.gap
+        low, high = vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))
+        grow += 1e-9 * float(np.abs([low, high]).max())
+        boxes = self.open_boxes.reshape(-1, 2, 3)
+        return np.array([np.min([low - grow, *boxes[:, 0]], axis=0), np.max([high + grow, *boxes[:, 1]], axis=0)])
 
     def _cells(self) -> tuple[NDArray[np.uint8], Floats, float, bool]:
         """Cells (i, j, k), 1 where one is surely outside; the grid's origin (3,), the size of a cell, mm, and whether nothing
@@ -156,10 +166,9 @@ class Obstacles(Record):
         from plan_cutters.kernels.material import Solids, moments
 
         weight = np.ascontiguousarray(self.weight[self._built[0]])
-        unknown = np.zeros((1, 1, 1), np.uint8)
-        return Solids(
-            self.tree, weight, moments(self.tree.vertex, weight, self.tree.depth), unknown, np.zeros(3), 1.0, False
-        )
+        unknown, end = np.zeros((1, 1, 1), np.uint8), np.array([[-np.inf] * 3, [np.inf] * 3])
+        found = moments(self.tree.vertex, weight, self.tree.depth)
+        return Solids(self.tree, weight, found, unknown, np.zeros(3), 1.0, False, end)
 
     @cached_property
     def wide_tree(self) -> "WideTree":

@@ -98,9 +98,9 @@ def _for_fixtures(
     contacts: Contacts, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, reach: Reach
 ) -> None:
     """Of lost samples, tell those that are lost to fixtures from those that would be lost without them, too."""
-    if conditions.around.alone is None:
-        return
     rows = rows[~np.isin(reach.reason[rows], (AXIS_LIMIT, LOCAL_GOUGE))]
+    if conditions.around.alone is None or not len(rows):
+        return
     bare, found = replace(conditions, around=conditions.around.alone), blank(len(reach.verdict))
     search_postures(contacts, rows, bare.light(cutter), bare.heavy(cutter), bare, found, fixed=True)
     reach.reason[rows] = np.where(found.reached[rows], FIXTURE, found.reason[rows])
