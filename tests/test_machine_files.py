@@ -72,7 +72,8 @@ def test_real_machines_are_understood(path, added, order, expected):
     assert "".join(axis.name for axis in machine.rotary) == order
     assert expected.items() <= limits(machine).items()
     unlimited = [axis.name for axis in machine.axes if axis.limits is None]
-    assert all(any(f"{name} has no limits" in note for note in machine.notes) for name in unlimited)
+    said = [note for note in machine.notes if note.startswith("no limits in the file for")]
+    assert said == ([f"no limits in the file for {', '.join(unlimited)}: taken as unlimited"] if unlimited else [])
 
 
 @pytest.mark.parametrize(
@@ -319,7 +320,7 @@ def test_a_probe_is_read_by_its_names_and_units(tmp_path):
     machine = read_machine(write(tmp_path, "probe.xml", text), "C,A")
     assert limits(machine) == {"C": None, "A": (-30, 120), "X": (0, 254), "Z": (-100, math.inf)}
     assert machine.rotary[1].rate == math.radians(40)
-    for words in ("X2 is none of", "S is a spindle", "Z has no largest position", "C has no limits"):
+    for words in ("X2 is none of", "S is a spindle", "Z has no largest position", "no limits in the file for C:"):
         assert any(words in note for note in machine.notes), words
     for c, a in ANGLES:
         assert held_by(machine, (c, a)) == pytest.approx(turn(Z, c) @ turn(X, a) @ Z, abs=1e-12)
@@ -419,6 +420,14 @@ def test_a_table_counted_by_itself_is_the_tool_counted_backwards(tmp_path):
         assert part @ held_by(table, (c, a)) == pytest.approx(Z, abs=1e-12)
 
 
+def test_the_sample_of_the_documentation_is_read(tmp_path):
+    page = (Path(__file__).parent.parent / "docs" / "machines.md").read_text()
+    sample = page.partition("```toml\n")[2].partition("```")[0]
+    machine = read_machine(write(tmp_path, "mill.toml", sample))
+    assert limits(machine) == {"C": None, "A": (-30, 120), "Z": (-300, 0)}
+    assert machine.rotary[1].rate == math.radians(25)
+
+
 # Bad input
 
 AC = [rotary("A", X), rotary("C", Z)]
@@ -494,6 +503,8 @@ BAD = [
     ("twice.ini", ini("trivkins", "XYZ", "[AXIS_X]", "MIN_LIMIT = 3"), "given as '-500' and as '3'"),
     ("self.ini", "#INCLUDE self.ini\n" + ini("trivkins", "XYZ"), "it includes itself"),
     ("joint.ini", ini("trivkins", "XYZA", "[JOINT_3]", "TYPE = LINEAR"), "JOINT_3. is LINEAR, but joint 3 is A"),
+    ("lost.ini", ini("trivkins", "XYZC", "[JOINT_3]", "MIN_LIMIT = -9"), "which axis .JOINT_3. is of is not known"),
+    ("old.ini", ini("5axiskins", "XYZBC", "[AXIS_3]", "MIN_LIMIT = -9"), "which axis .AXIS_3. is of is not known"),
     ("apart.ini", ini("trivkins", "XYZA", "[JOINT_3]", "MIN_LIMIT = 600"), "contradict each other"),
     ("order.ini#A,C", ini("trivkins", "XYZAB"), "its rotary axes are A, B"),
     ("known.ini#C,A", ini("xyzac-trt-kins", "XYZAC"), "leave out #C,A"),

@@ -116,12 +116,13 @@ def axis(name: str, kind: Kind, carries: Carried, direction: Vector, *, limits: 
 def machine(name: str, axes: Sequence[Axis], notes: Sequence[str] = (), *, tool: Vector = ISO["Z"]) -> Machine:
     """A machine of these axes, from the part to the tool; what is unlimited is said aloud."""
     said = list(notes)
+    free = [each.name for each in axes if each.limits is None]
+    if free:
+        said.append(f"no limits in the file for {', '.join(free)}: taken as unlimited")
     for each in axes:
-        if each.limits is None:
-            said.append(f"{each.name} has no limits in the file: it is taken as unlimited")
-        elif math.isinf(each.limits[0]) or math.isinf(each.limits[1]):
-            side = "least" if math.isinf(each.limits[0]) else "largest"
-            said.append(f"{each.name} has no {side} position in the file: it is taken as unlimited there")
+        for i, side in enumerate(("least", "largest")):
+            if each.limits is not None and math.isinf(each.limits[i]):
+                said.append(f"{each.name} has no {side} position in the file: it is taken as unlimited there")
     rotary = [each for each in axes if each.kind == "rotary"]
     if rotary and len(rotary) <= 2:
         last, iso = rotary[-1], ISO.get(rotary[-1].name[:1].upper())

@@ -121,11 +121,15 @@ class _Reading:
     def letters_of_joints(self) -> str:
         """The letter of each joint."""
         text = self.given.get("coordinates", "").upper()
+        sections = [key for key in self.ini.values if re.fullmatch(r"(JOINT|AXIS)_\d", key)]
         if not text:
             text = KINS[self.name].joints if self.name in KINS else _LETTERS
-            if self.name == TRIVIAL and not any(key.startswith("JOINT_") for key in self.ini.values):
-                # Before there were joints, sections [AXIS_0] and on stood for them.
-                text = _LETTERS
+            numbered = [key for key in sections if key.startswith("AXIS")]
+            lost = [key for key in sections if int(key[-1]) >= len(text) or text[int(key[-1])] not in self.letters]
+            # Before there were joints, axes were numbered; maxkins numbers all nine, used or not.
+            if (self.name == TRIVIAL and lost) or (self.name in KINS and len(text) < len(_LETTERS) and numbered):
+                raise MachineError(f"which axis [{(lost or numbered)[0]}] is of is not known: say so, as KINEMATICS = "
+                                   f"{self.name} coordinates={self.letters}")  # fmt: skip
         for i, letter in enumerate(text):
             for section in (f"JOINT_{i}", f"AXIS_{i}"):
                 kind = (self.ini.one(section, "TYPE") or "").upper()
