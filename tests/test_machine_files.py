@@ -502,7 +502,7 @@ BAD = [
     ("hal.ini", ini("maxkins", "XYZBC", "[HAL]", "HALFILE = lost.hal", limits=(-9, 8)), "lost.hal is not at hand"),
     ("twice.ini", ini("trivkins", "XYZ", "[AXIS_X]", "MIN_LIMIT = 3"), "given as '-500' and as '3'"),
     ("self.ini", "#INCLUDE self.ini\n" + ini("trivkins", "XYZ"), "it includes itself"),
-    ("joint.ini", ini("trivkins", "XYZA", "[JOINT_3]", "TYPE = LINEAR"), "JOINT_3. is LINEAR, but joint 3 is A"),
+    ("joint.ini", ini("trivkins", "XYZA", "[JOINT_3]", "TYPE = LINEAR"), "JOINT_3. is 'LINEAR', but joint 3 is A"),
     ("lost.ini", ini("trivkins", "XYZC", "[JOINT_3]", "MIN_LIMIT = -9"), "which axis .JOINT_3. is of is not known"),
     ("old.ini", ini("5axiskins", "XYZBC", "[AXIS_3]", "MIN_LIMIT = -9"), "which axis .AXIS_3. is of is not known"),
     ("apart.ini", ini("trivkins", "XYZA", "[JOINT_3]", "MIN_LIMIT = 600"), "contradict each other"),

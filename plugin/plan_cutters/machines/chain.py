@@ -131,7 +131,7 @@ def machine(name: str, axes: Sequence[Axis], notes: Sequence[str] = (), *, tool:
                 f"axis {last.name} runs along the tool, which it only turns about itself; {last.name} turns about "
                 f"{'XYZ'[iso.index(1.0)]} in ISO 841: correct its direction"
             )
-    return Machine(name, axes=tuple(axes), tool_axis=tool, notes=tuple(dict.fromkeys(said)), fixed=not rotary)
+    return Machine(name[:200], axes=tuple(axes), tool_axis=tool, notes=tuple(dict.fromkeys(said)), fixed=not rotary)
 
 
 def _dot(a: Vector, b: Vector) -> float:

@@ -32,7 +32,7 @@ class Ini:
             words = line.strip()
             include = _INCLUDE.match(words)
             if include:
-                path = content.path.parent / include[1].strip()
+                path = content.path.parent / include[1].strip()[:200]
                 if any(_same(path, each) for each in above):
                     raise MachineError(f"{content.name}, line {number}: it includes itself by {path.name}")
                 try:

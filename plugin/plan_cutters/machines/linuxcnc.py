@@ -134,7 +134,7 @@ class _Reading:
             for section in (f"JOINT_{i}", f"AXIS_{i}"):
                 kind = (self.ini.one(section, "TYPE") or "").upper()
                 if kind and kind != ("ANGULAR" if letter in "ABC" else "LINEAR"):
-                    raise MachineError(f"[{section}] is {kind}, but joint {i} is {letter} by its kinematics: say so, as "
+                    raise MachineError(f"[{section}] is {shown(kind)}, but joint {i} is {letter} by its kinematics: say so, as "
                                        f"KINEMATICS = {self.name} coordinates={self.letters}")  # fmt: skip
         return text
 
