@@ -80,7 +80,11 @@ def test_what_encloses():
     opened = skins(block[1:])
     assert (opened.closed, opened.open, opened.weight.any()) == (0, 1, False)
     # Two that touch along an edge, one apart, and an open one.
+<<<<<<< HEAD
     beside = vises.block([*LOW, 4, 6, 0], [*HIGH, 4, 6, 0])
+=======
+    beside = vises.block(LOW + np.array([4, 6, 0]), HIGH + np.array([4, 6, 0]))
+>>>>>>> w-fixture
     found = skins(np.concatenate([block, beside, block + 50.0, block[1:] - 50.0]))
     assert (found.closed, found.open) == (2, 1)
     assert (found.weight[:36] == 1).all()
@@ -159,8 +163,9 @@ def test_the_command_refuses_in_one_line(tmp_path, words, code, said):
 
 def test_the_command_names_and_draws_fixtures(tmp_path):
     solid(np.array([61.0, -5, 0]), np.array([80.0, 45, 70])).export(tmp_path / "jaw.stl")
-    done = run(SAMPLES / "pocket_top.step", "--cutter", "R9L40", "--spacing", "3", "--tilt", "0:10", "--formats", "json,glb,merged",
-               "--fixture", "jaw.stl", "--fixture", "table:0", "-o", "out", cwd=tmp_path)  # fmt: skip
+    done = run(SAMPLES / "pocket_top.step", "--cutter", "R9L40", "--spacing", "3", "--tilt", "0:10",
+               "--formats", "json,glb,merged", "--fixture", "jaw.stl", "--fixture", "table:0",
+               "-o", "out", cwd=tmp_path)  # fmt: skip
     assert done.returncode == 1, done.stderr
     assert "fixture:jaw: STL files name no unit: mm was assumed." in done.stderr
     document = json.loads((tmp_path / "out/plan.json").read_text())

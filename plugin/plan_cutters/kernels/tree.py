@@ -257,6 +257,35 @@ def _corners(vertex, order, corner):  # type: ignore[no-untyped-def]
 
 
 @entry
+def build_apart(vertex, own, away):  # type: ignore[no-untyped-def]
+    """As `build`, but triangles from the row `own` on are kept apart from those before it as far as halving lets: they are put in
+    order as if they stood `away`, mm, farther along x."""
+    n = len(vertex)
+    depth = 0
+    while (n >> depth) > LEAF:
+        depth += 1
+    lows, highs = np.empty(_LANES), np.empty(_LANES)
+    order = np.arange(n).astype(np.int32)
+    centre = np.empty((3, n))
+    _middles(vertex, centre)
+    for i in range(own, n):
+        centre[0, i] += away
+    _sort(order, centre, depth, lows, highs)
+    corner = np.empty((9, n))
+    _corners(vertex, order, corner)
+    # The centres have served: their room is that of the normals.
+    normal = centre
+    _normals(corner, normal)
+    box = np.empty(((2 << depth) - 1, 16))
+    room = _Room(
+        np.empty((depth + 1, 2, 3)), np.empty((depth + 1, 2, 3)), np.empty(3), np.empty((3, 3)), np.empty(3), np.empty(3),
+        np.empty((3, _LANES)), np.empty((3, _LANES)),
+    )  # fmt: skip
+    _bounds(corner, normal, depth, box, room)
+    return order, box, depth
+
+
+@entry
 def build(vertex):  # type: ignore[no-untyped-def]
     """Order triangles and bound them.
 
@@ -274,24 +303,4 @@ def build(vertex):  # type: ignore[no-untyped-def]
     depth : int
         Level of the leaves; there are 2 ** depth of them.
     """
-    n = len(vertex)
-    depth = 0
-    while (n >> depth) > LEAF:
-        depth += 1
-    lows, highs = np.empty(_LANES), np.empty(_LANES)
-    order = np.arange(n).astype(np.int32)
-    centre = np.empty((3, n))
-    _middles(vertex, centre)
-    _sort(order, centre, depth, lows, highs)
-    corner = np.empty((9, n))
-    _corners(vertex, order, corner)
-    # The centres have served: their room is that of the normals.
-    normal = centre
-    _normals(corner, normal)
-    box = np.empty(((2 << depth) - 1, 16))
-    room = _Room(
-        np.empty((depth + 1, 2, 3)), np.empty((depth + 1, 2, 3)), np.empty(3), np.empty((3, 3)), np.empty(3), np.empty(3),
-        np.empty((3, _LANES)), np.empty((3, _LANES)),
-    )  # fmt: skip
-    _bounds(corner, normal, depth, box, room)
-    return order, box, depth
+    return build_apart(vertex, len(vertex), 0.0)

@@ -75,9 +75,15 @@ class Obstacles(Record):
 
     @cached_property
     def _built(self) -> tuple[Ints, Floats, int]:
-        from plan_cutters.kernels.tree import build
+        from plan_cutters.kernels.tree import build, build_apart
 
-        order, box, depth = build(np.ascontiguousarray(self.triangles.vertex))
+        vertex = np.ascontiguousarray(self.triangles.vertex)
+        if self.near is None:
+            order, box, depth = build(vertex)
+        else:
+            # Near the part a search looks at its own triangles nearly alone.
+            own, away = int((self.triangles.face >= 0).sum()), 10.0 * float(np.ptp(vertex, axis=(0, 1)).max())
+            order, box, depth = build_apart(vertex, own, away)
         return order, box, int(depth)
 
     @cached_property
