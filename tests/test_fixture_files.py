@@ -80,11 +80,7 @@ def test_what_encloses():
     opened = skins(block[1:])
     assert (opened.closed, opened.open, opened.weight.any()) == (0, 1, False)
     # Two that touch along an edge, one apart, and an open one.
-<<<<<<< HEAD
-    beside = vises.block([*LOW, 4, 6, 0], [*HIGH, 4, 6, 0])
-=======
     beside = vises.block(LOW + np.array([4, 6, 0]), HIGH + np.array([4, 6, 0]))
->>>>>>> w-fixture
     found = skins(np.concatenate([block, beside, block + 50.0, block[1:] - 50.0]))
     assert (found.closed, found.open) == (2, 1)
     assert (found.weight[:36] == 1).all()
