@@ -210,3 +210,22 @@ def test_the_schema_is_that_of_the_model():
 
     stored = json.loads((Path(plan_cutters.__file__).parent / "plan.schema.json").read_text())
     assert stored == schema()
+
+
+def test_models_with_fixtures_pass_the_khronos_validator(tmp_path):
+    import os
+    import subprocess
+    from pathlib import Path
+
+    root = Path(__file__).parent.parent
+    assert (root / "node_modules" / "gltf-validator").is_dir(), "run: sh setup.sh dev"
+    held = [solid(np.array([61.0, 0, 0]), np.array([70.0, 9, 9])), "cylinder:5,20@30,-8,0", "table:0"]
+    result = plan(SAMPLES / "pocket_top.step", cutters="R3L40", spacing=6.0, fixtures=held, area_budget=0)
+    result.write(tmp_path, ["glb", "merged"])
+    for name in ("annotated.glb", "merged.glb"):
+        done = subprocess.run(
+            ["node", str(root / "tests" / "gltf_validate.js"), str(tmp_path / name)],
+            capture_output=True, text=True, check=True, env={**os.environ, "NODE_PATH": str(root / "node_modules")},
+        )  # fmt: skip
+        issues = json.loads(done.stdout)
+        assert (issues["numErrors"], issues["numWarnings"]) == (0, 0), issues

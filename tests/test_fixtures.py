@@ -1,6 +1,7 @@
 """Fixtures in the way: closed forms, the same obstacle as a face of the part, moved together, what is lost to them and why."""
 
 import math
+import pickle
 from dataclasses import replace
 from pathlib import Path
 
@@ -290,6 +291,9 @@ def test_objects_of_the_kernel_and_hosts(pocket):
     assert [(e.name, e.file, e.triangles >= 12, e.watertight) for e in result.plan.fixtures] == [
         ("fixture:fixture", None, True, True), ("fixture:fixture 2", None, True, True), ("fixture:post", None, True, True),
     ]  # fmt: skip
+    again = pickle.loads(pickle.dumps(result))
+    assert again.plan == result.plan
+    assert plan(again.scene, cutters="R3L25", spacing=5.0, **FLAT).reaches == result.reaches
 
 
 def test_a_compound_holds_its_part_by_its_own_solids():

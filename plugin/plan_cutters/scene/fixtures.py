@@ -64,6 +64,14 @@ def read(fixture: Fixture, kept: Kept, *, timeout: float = TIMEOUT) -> Part | Me
     return found
 
 
+def packable(fixture: Fixture, kept: Kept) -> Fixture:
+    """The same fixture without a kernel's shape, which cannot be pickled: with the part that was made of it."""
+    if isinstance(fixture.source, str | Part):
+        return fixture
+    source = read(fixture, kept)
+    return replace(fixture, source=source, unit=None) if isinstance(source, Part) else fixture
+
+
 def _read(fixture: Fixture, timeout: float) -> Part | Mesh:
     source = fixture.source
     if not isinstance(source, str):
@@ -106,7 +114,7 @@ def joined(around: Surroundings, fixtures: Sequence[Fixture], chord: float, kept
     standing, bodies = [], []
     for number, fixture in enumerate(fixtures, 1):
         body = _body(fixture, chord, near, kept)
-        standing.append(_standing(-number, fixture, body, read(fixture, kept), near))
+        standing.append(_standing(-number, packable(fixture, kept), body, read(fixture, kept), near))
         bodies.append(body)
     may_be = _together(around.may_be, standing, [body.may_be for body in bodies], near)
     surely = may_be

@@ -15,7 +15,7 @@ from plan_cutters.domain.posture import unit
 from plan_cutters.errors import OptionError
 from plan_cutters.options import MOST_TOLERANCE, Options
 from plan_cutters.scene.faces import ignored_faces, ignored_words
-from plan_cutters.scene.fixtures import Kept, joined, read
+from plan_cutters.scene.fixtures import Kept, joined, packable, read
 from plan_cutters.scene.obstacles import CHORD_ASKED, kept_tolerance
 from plan_cutters.scene.overlap import refuse_overlaps
 from plan_cutters.scene.surroundings import Surroundings, surroundings
@@ -138,8 +138,9 @@ class Scene(Record):
         return kept
 
     def __getstate__(self) -> dict[str, Any]:
-        # Fixtures are read again where they are needed.
-        return {word: value for word, value in self.__dict__.items() if word != "_kept"}
+        # Files of fixtures are read again where they are needed.
+        state = {word: value for word, value in self.__dict__.items() if word != "_kept"}
+        return state | {"fixtures": tuple(packable(each, self._sources) for each in self.fixtures)}
 
     def read_fixtures(self, timeout: float) -> None:
         """Read the fixtures' files, before any work is done; `timeout`: the most seconds that a faulty one may take."""
