@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from machine_files import tool_in_part
 from test_cli import SAMPLES, assert_one_line, run
+from tool_reference import KINDS, Reference, random_cutter
 
 from plan_cutters import Cutter, Machine, Options, plan
 from plan_cutters.domain.axis import Axis
@@ -130,46 +131,28 @@ def test_linear_axes_in_one_plane_are_not_known():
     assert found.outside.tolist() == [False, False]
 
 
-CUTTERS = {
-    "flat": CUTTER,
-    "bull": Cutter.bull(radius=5, corner_radius=1, length=50, allowance=0.3),
-    "ball": Cutter.ball(radius=3, length=40),
-    "barrel": Cutter.barrel(radius=5, flank_radius=60, tip_radius=1, length=60, flutes=20),
-    "lens": Cutter.lens(radius=6, bottom_radius=20, corner_radius=1, length=60, flutes=20),
-}
-
-
-@pytest.mark.parametrize("name", CUTTERS)
-def test_the_tip_is_where_the_cutter_touches_the_plane(name):
-    """Of the solid of revolution that stands on that tip, the lowest point along the normal is the contact."""
-    cutter, random = CUTTERS[name], np.random.default_rng(5)
-    reach = blank(40)
-    touching = [mode for mode in modes(cutter) if mode.high > mode.low]
-    picked = [touching[k % len(touching)] for k in range(40)]
-    reach.tilt[:] = [random.uniform(mode.low, mode.high) for mode in picked]
-    turn = random.uniform(0, 7, 40)
-    reach.lean[:] = np.stack([np.cos(turn), np.sin(turn), 0 * turn], axis=1)
-    normal = np.tile(Z, (40, 1))
-    tilt = reach.tilt[:, None]
-    reach.axis[:] = np.cos(tilt) * normal + np.sin(tilt) * reach.lean
-    point = random.uniform(-9, 9, (40, 3))
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("seed", range(3))
+def test_the_tip_is_where_the_outline_touches(kind, seed):
+    """Against a twin that finds the lowest point of a leaning outline."""
+    random = np.random.default_rng(seed)
+    cutter = random_cutter(random, kind)
+    twin, touching = Reference(cutter), [mode for mode in modes(cutter) if mode.high > mode.low + 1e-3]
+    reach = blank(30)
+    for k in range(30):
+        mode = touching[k % len(touching)]
+        reach.tilt[k] = random.uniform(mode.low + 1e-4, mode.high - 1e-4)
+    normal = random.normal(size=(30, 3))
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    lean = np.cross(normal, random.normal(size=(30, 3)))
+    reach.lean[:] = lean / np.linalg.norm(lean, axis=1)[:, None]
+    reach.axis[:] = np.cos(reach.tilt)[:, None] * normal + np.sin(reach.tilt)[:, None] * reach.lean
+    point = random.uniform(-9, 9, (30, 3))
     tip = tips(cutter, point, normal, reach)
-    for k in range(40):
-        depth = -(normal[k] @ (tip[k] - point[k]))
-        lowest, where = math.inf, None
-        across = reach.lean[k] * np.cos(reach.tilt[k]) - normal[k] * np.sin(reach.tilt[k])
-        for mode in modes(cutter):
-            # The round of each centre is tangent to the plane below it.
-            centre = tip[k] + mode.offset * across + mode.height * reach.axis[k]
-            if mode.low - 1e-9 <= reach.tilt[k] <= mode.high + 1e-9:
-                low = centre - (mode.radius + (cutter.allowance or 0.0)) * normal[k]
-                lowest, where = min((lowest, where), (low[2], low), key=lambda each: each[0])
-        assert np.abs(where - point[k]).max() < 1e-9
-        assert math.isfinite(depth)
-    if name == "ball":
-        assert np.allclose(tip, point + 3 * normal - 3 * reach.axis, atol=1e-12)
-    if name == "flat":
-        assert np.allclose(np.linalg.norm(tip - point, axis=1), 2.0)
+    for k in range(30):
+        expected, rows = twin.frame(point[k], normal[k], reach.lean[k], reach.tilt[k])
+        assert np.abs(rows[2] - reach.axis[k]).max() < 1e-12
+        assert np.abs(tip[k] - expected).max() < 1e-6
 
 
 def test_a_plan_says_which_samples_are_beyond_the_travel(tmp_path):
@@ -186,12 +169,13 @@ def test_a_plan_says_which_samples_are_beyond_the_travel(tmp_path):
         found = arrays[f"travel_{cutter.id}"]
     samples, rows = known.samples, np.flatnonzero(reach.reached)
     assert len(rows)
-    expected = samples.point[rows] + 3 * samples.normal[rows] + (-1, -2, 34)
+    expected = samples.point[rows] + 3 * samples.normal[rows] + 37 * reach.axis[rows] - (1, 2, 3)
     assert np.abs(found[rows] - expected).max() < 1e-9
+    assert np.abs(reach.axis[rows] - Z).max() < 2e-6
     assert np.isnan(found[~reach.reached]).all()
     entry = json.loads((tmp_path / "plan.json").read_text())["cutters"][0]["travel"]
     over = np.abs(expected[:, 1]) - 50
-    assert entry["outside"] == entry["axes"][1]["outside"] == int((over > 1e-6).sum()) > 0
+    assert entry["outside"] == entry["axes"][1]["outside"] == int((over > 1e-4).sum()) > 0
     assert entry["judged"] == len(rows)
     assert [each["axis"] for each in entry["worst"]] == ["Y"]
     assert math.isclose(entry["worst"][0]["beyond_mm"], over.max(), abs_tol=1e-9)
@@ -215,7 +199,7 @@ def test_why_travel_is_not_judged():
 def test_turning_the_part_is_turning_the_machine(x):
     """The part's `x` along the machine's X is the same as a machine whose axes are turned about the spindle."""
     frame = frame_of(np.array(Z), np.array(Placement(x=x).x))
-    limits = (math.radians(-10), math.radians(35))
+    limits = (math.radians(20), math.radians(50))
     along = tuple(frame.T @ (1, 0, 0))
     axes = [
         (
@@ -225,9 +209,9 @@ def test_turning_the_part_is_turning_the_machine(x):
         for way, own in ((X, False), (along, True))
     ]
     words = {"cutters": CUTTER, "grid": 13, "area_budget": 0}
-    placed = plan("samples/blade.step", machine=Machine("m", axes=axes[0]), setup=Placement(x=x), **words)
-    turned = plan("samples/blade.step", machine=Machine("m", axes=axes[1]), **words)
-    plain = plan("samples/blade.step", machine=Machine("m", axes=axes[0]), **words)
+    placed = plan("samples/peaks_and_valleys.step", machine=Machine("m", axes=axes[0]), setup=Placement(x=x), **words)
+    turned = plan("samples/peaks_and_valleys.step", machine=Machine("m", axes=axes[1]), **words)
+    plain = plan("samples/peaks_and_valleys.step", machine=Machine("m", axes=axes[0]), **words)
     verdicts = [each.reaches[CUTTER.id].verdict for each in (placed, turned, plain)]
     assert (verdicts[0] == verdicts[1]).all()
     assert (verdicts[0] != verdicts[2]).any()
@@ -271,7 +255,8 @@ def write(folder, text, name="vise.toml"):
 
 
 def test_a_setup_file(tmp_path):
-    text = 'unit = "in"\nz = [0, 0, 3]\nx = [0, 2, 1]\norigin = [1, -2, 0.5]\nclamped = "F2,F3"\nfixtures = ["table:-5:mm", "jaw.stl"]\n'
+    text = 'unit = "in"\nz = [0, 0, 3]\nx = [0, 2, 1]\norigin = [1, -2, 0.5]\nclamped = "F2,F3"\n'
+    text += 'fixtures = ["table:-5:mm", "jaw.stl"]\n'
     found = read_setup(write(tmp_path, text))
     assert (found.z, found.x, found.file) == (Z, Y, "vise.toml")
     assert np.allclose(found.origin, (25.4, -50.8, 12.7), atol=1e-12)
@@ -284,7 +269,7 @@ def test_a_setup_file(tmp_path):
     ("text", "cause"),
     [
         ("axis = [0, 0, 1]", "unit is missing, as unit"),
-        ('unit = "furlong"\naxis = [0, 0, 1]', "no length unit is called furlong"),
+        ('unit = "furlong"\naxis = [0, 0, 1]', "no length unit is called 'furlong'"),
         ('unit = "mm"', "axis is missing"),
         ('unit = "mm"\naxis = [0, 0, 0]', "not all zero"),
         ('unit = "mm"\naxis = [0, 0, 1]\nz = [0, 0, 1]', "two names"),
@@ -334,7 +319,7 @@ def test_clamped_faces_are_no_targets_and_fixtures_are_in_the_way(tmp_path):
         tmp_path,
         'unit = "mm"\naxis = [0, 0, 1]\norigin = [0, 0, 5]\nclamped = ["F1", "F3"]\nfixtures = ["table:-50"]\n',
     )
-    done = run(SAMPLES / "v_groove.step", "--cutter", "R2rc2L30", "--setup", "vise.toml", "--faces", "all", "--grid", "5",
+    done = run(SAMPLES / "v_groove.step", "--cutter", "R2L30rc2", "--setup", "vise.toml", "--faces", "all", "--grid", "5",
                "--json", "-", "--area-budget", "0", cwd=tmp_path)  # fmt: skip
     assert done.returncode in (0, 1), done.stderr
     found = json.loads(done.stdout)
@@ -347,7 +332,7 @@ def test_clamped_faces_are_no_targets_and_fixtures_are_in_the_way(tmp_path):
         "clamped": ["F1", "F3"],
     }
     assert "2 faces are clamped and therefore no targets: F1, F3." in found["notes"]
-    assert [each["name"] for each in found["fixtures"]] == ["table"]
+    assert [each["name"] for each in found["fixtures"]] == ["fixture:table"]
 
 
 def test_clamped_faces_that_leave_none():

@@ -1,8 +1,9 @@
 """Linear travel: where a machine's linear axes stand at postures that were found, and how far that is beyond their limits.
 
 The control point is the holder's nose: how far it is from the tip is all that is known of how long a tool is held. With every
-axis at zero it lies at the machine's zero. From the part over the bed to the tool each axis moves what comes after it: at positions
-q it is at base + J q, base and the columns of J given by the rotary axes alone, so q follows from where the nose must be.
+axis at zero it lies at the machine's zero. From the part over the bed to the tool each axis moves what comes after it: at
+positions q it is at base + J q, base and the columns of J given by the rotary axes alone, so q follows from where the nose must
+be.
 """
 
 import math
@@ -19,8 +20,8 @@ from plan_cutters.domain.placement import Placement, frame_of
 from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.verdicts import Reach
 
-#: Positions this close to a limit are on it, mm.
-ON_LIMIT = 1e-6
+#: Positions this close to a limit are on it, mm: a tool axis is held up to an angle of `kinematics.PARALLEL`.
+ON_LIMIT = 1e-4
 #: Linear axes whose directions span less than this, as the volume of unit vectors, do not move a tool to every point.
 _FLAT = 1e-6
 
@@ -132,8 +133,8 @@ def _positions(machine: Machine, angle: Floats, nose: Floats) -> Floats:
         base = base + np.einsum("nij,nj->ni", turn, point - point @ rows)
         turn, k = turn @ np.swapaxes(rows, 1, 2), k + 1
     across = np.stack(ways, axis=2)
-    volume = np.abs(np.linalg.det(across))
-    solvable = volume > _FLAT
+    solvable = np.isfinite(across).all(axis=(1, 2))
+    solvable[solvable] = np.abs(np.linalg.det(across[solvable])) > _FLAT
     found = np.full(nose.shape, np.nan)
     found[solvable] = np.linalg.solve(across[solvable], (nose - base)[solvable, :, None])[:, :, 0]
     return found

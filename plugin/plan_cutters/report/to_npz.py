@@ -14,8 +14,8 @@ def write_npz(result: Any, _split: object, path: Path) -> None:
 
     With a machine of rotary axes, also their positions at the posture found, in degrees: both solutions, axis by axis from the
     part to the tool, nan where one is beyond a limit, and which of them is to be taken, -1 where there is none. Where linear
-    travel is judged, also the positions of the linear axes, mm, in the machine's order, for the solution to be taken. Where they were
-    asked for, its least stick-outs, too, and the largest radii with `flat` and `ball` as suffix.
+    travel is judged, also the positions of the linear axes, mm, in the machine's order, for the solution to be taken. Where they
+    were asked for, its least stick-outs, too, and the largest radii with `flat` and `ball` as suffix.
     """
     samples = result.samples
     arrays = {
