@@ -99,6 +99,34 @@ def test_positions_against_homogeneous_matrices(machine):
         assert np.abs(held[:3, 2] - frame @ axis[row]).max() < 1e-6
 
 
+@pytest.mark.parametrize("seed", range(40))
+def test_positions_of_random_chains(seed):
+    """Up to two rotary axes anywhere among three skew linear ones, no direction along any other, in a skew setup."""
+    random = np.random.default_rng(seed)
+    kinds = random.permutation(["linear"] * 3 + ["rotary"] * int(random.integers(0, 3)))
+    split, names, axes = random.integers(0, len(kinds) + 1), {"linear": list("XYZ"), "rotary": list("AB")}, []
+    for k, kind in enumerate(kinds):
+        carries, point = "part" if k < split else "tool", tuple(random.uniform(-200, 200, 3))
+        limits = (-100, 100) if kind == "linear" else None
+        axes.append(Axis(names[kind].pop(0), str(kind), carries, tuple(random.normal(size=3)), limits, point))
+    tool = tuple(random.normal(size=3))
+    machine = Machine("skew", axes=tuple(axes), fixed="rotary" not in kinds, tool_axis=tool)
+    placement = Placement(tuple(random.normal(size=3)), tuple(random.normal(size=3)), tuple(random.uniform(-50, 50, 3)))
+    frame = frame_of(np.array(placement.z), np.array(placement.x))
+    kinematics = machine.kinematics(frame)
+    axis = kinematics.axis(random.uniform(-3, 3, (20, len(machine.rotary))))
+    tip = random.uniform(-80, 80, (20, 3))
+    found = travel(machine, placement, tip, axis, 33.0)
+    angles = kinematics.positions(axis)[0]
+    assert (found.taken >= 0).all()
+    for row in range(20):
+        at = {a.name: v for a, v in zip(machine.rotary, angles[row, found.taken[row]], strict=True)}
+        at |= {a.name: v for a, v in zip(machine.linear, found.position[row], strict=True)}
+        held = tool_in_part(machine, at)
+        assert np.abs(held[:3, 3] - frame @ (tip[row] + 33.0 * axis[row] - placement.origin)).max() < 1e-8
+        assert np.abs(held[:3, :3] @ machine.tool_axis - frame @ axis[row]).max() < 1e-7
+
+
 def test_of_two_solutions_the_one_within_the_travel_is_taken():
     """A table that swings to either side brings the part to +Y or -Y: where one is beyond the travel, the other is taken."""
     axis = np.array([[math.sin(0.5), 0.0, math.cos(0.5)]])
