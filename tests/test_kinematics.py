@@ -11,10 +11,11 @@ from plan_cutters.domain import kinematics as words
 from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.machine import Machine, builtin_machines
+from plan_cutters.domain.placement import frame_of
 from plan_cutters.errors import MachineError
 from plan_cutters.kernels import limits
 from plan_cutters.kernels.jit import entry
-from plan_cutters.scene.conditions import frame_of, rotary_of
+from plan_cutters.scene.conditions import rotary_of
 
 FIVE = [name for name, machine in builtin_machines().items() if len(machine.rotary) == 2]
 UP = np.array([0.0, 0.0, 1.0])

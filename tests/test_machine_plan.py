@@ -12,9 +12,9 @@ from test_tool_closed_forms import floor, wall
 from plan_cutters import Cutter, Machine, Options, plan
 from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.machine import builtin_machines
+from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import REASONS
 from plan_cutters.pipeline import prepare
-from plan_cutters.scene.conditions import frame_of
 from plan_cutters.stages.judge import judge
 from plan_cutters.stages.setups import within_limits
 

@@ -15,6 +15,7 @@ from plan_cutters.domain.drawer import builtin
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange, unit
 from plan_cutters.errors import OptionError
 from plan_cutters.library.records import Entry, Library, libraries_of
@@ -30,6 +31,24 @@ def _machine(given: Any) -> Machine:
 
         return machine_of(given)
     return Machine.of(given)
+
+
+def _setup(given: Any, placed: Placement | None) -> tuple[tuple[float, float, float], Placement | None]:
+    """A setup axis, and what more is known of the setup: a text or path is a setup file."""
+    if isinstance(given, str | os.PathLike):
+        from plan_cutters.machines.setups import read_setup
+
+        given = read_setup(given)
+    if isinstance(given, Placement):
+        return given.z, given
+    x, y, z = unit(given, "setup axis").tolist()
+    if placed is None:
+        return (x, y, z), None
+    if not isinstance(placed, Placement):
+        raise OptionError(f"a placement must be a Placement, not {shown(placed)}")
+    if not placed.stands_as((x, y, z)):
+        raise OptionError("the setup axis and the placement disagree: give the placement as the setup")
+    return placed.z, placed
 
 
 def cores() -> int:
@@ -61,9 +80,11 @@ class Options:
     machine : Machine
         May be given as a text: `tilt:60`, the name of a built-in one, or a machine file.
     setup : tuple of float
-        Direction of the part along the machine's spindle at zero angles; kept with length 1.
+        Direction of the part along the machine's spindle at zero angles; kept with length 1. May be given as a Placement or a
+        setup file: then it is kept as `placement`, too, and its fixtures are added to `fixtures`.
     other_setups : tuple of (float, float, float)
-        More setup axes, in which every cutter is judged as well; the sides of open faces stay those of `setup`.
+        More setup axes, in which every cutter is judged as well; the sides of open faces stay those of `setup`. May be given in
+        the same ways, without fixtures and clamped faces of their own.
     faces : str or objects, optional
         Target faces, in the words of the command line, or as numbers, or as objects of the kernel or a CAD host. Default:
         the faces picked on the object that the part was made from; where none were, `sculptured`.
@@ -96,6 +117,10 @@ class Options:
     fixtures : tuple of Fixture
         What holds the part: obstacles, never targets. May be given as texts such as `vise.step@0,0,-20` or `table:-5`, as
         trimesh meshes and shapes of a kernel or CAD host, or as one of these.
+    placement : Placement, optional
+        How the part stands in `setup`, where more than the axis is known.
+    other_placements : tuple of (Placement or None)
+        The same of each of `other_setups`; empty where none says more than its axis.
 
     Raises
     ------
@@ -137,6 +162,8 @@ class Options:
     length_over_radius: float = 10.0
     unit: str | None = None
     fixtures: tuple[Fixture, ...] = ()
+    placement: Placement | None = None
+    other_placements: tuple[Placement | None, ...] = ()
 
     def __post_init__(self) -> None:
         self._check_kinds()
@@ -179,9 +206,8 @@ class Options:
         else:
             take(libraries=libraries, cutters=Cutter.each_of(self.cutters))
         take(machine=_machine(self.machine))
-        setups = items(self.other_setups, "other setups", "directions")
-        take(other_setups=tuple(tuple(unit(each, "setup axis").tolist()) for each in setups))
-        take(setup=tuple(unit(self.setup, "setup axis").tolist()), tolerance=number(self.tolerance, "tolerance"))
+        self._place(take)
+        take(tolerance=number(self.tolerance, "tolerance"))
         take(jobs=cores() if self.jobs is None else whole(self.jobs, "jobs"))
         if self.area_budget is not None:
             take(area_budget=whole(self.area_budget, "area budget"))
@@ -192,7 +218,6 @@ class Options:
         take(holder_clearance=number(self.holder_clearance, "holder clearance"))
         if self.holder is not None:
             take(holder=Holder.of(self.holder))
-        take(fixtures=Fixture.each_of(self.fixtures))
         choice(self.faces, "faces")
         choice(self.ignore, "ignore")
         if self.grid is not None:
@@ -203,6 +228,26 @@ class Options:
             raise OptionError(f"unit must be one of {', '.join(UNITS)}, not {shown(self.unit)}")
         postures = self.postures
         take(tilt=postures.tilt, rotation=postures.rotation, rotation_step=postures.step)
+
+    def _place(self, take: Any) -> None:
+        """Setups as axes, and what more is known of them as placements."""
+        axis, placed = _setup(self.setup, self.placement)
+        fixtures = Fixture.each_of(self.fixtures)
+        if placed is not None and placed is not self.placement:
+            fixtures = Fixture.each_of([*fixtures, *(each for each in placed.fixtures if each not in fixtures)])
+        take(setup=axis, placement=placed, fixtures=fixtures)
+        given = items(self.other_setups, "other setups", "directions")
+        places = items(self.other_placements, "other placements", "placements") or [None] * len(given)
+        if len(places) != len(given):
+            raise OptionError(f"{len(places)} other placements were given for {len(given)} other setups")
+        others = [_setup(each, place) for each, place in zip(given, places, strict=True)]
+        for place in [place for _, place in others if place is not None]:
+            if place.clamped or any(each not in fixtures for each in place.fixtures):
+                raise OptionError("only the first setup can have clamped faces and fixtures; plan the others each by itself",
+                                  file=place.file or None)  # fmt: skip
+        known = any(place is not None for _, place in others)
+        take(other_setups=tuple(axis for axis, _ in others))
+        take(other_placements=tuple(place for _, place in others) if known else ())
 
     @classmethod
     def of(cls, words: Mapping[str, Any]) -> "Options":

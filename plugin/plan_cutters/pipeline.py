@@ -16,8 +16,10 @@ from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock, Progress
+from plan_cutters.document.frozen import Vector
 from plan_cutters.document.model import AreaEntry, CutterEntry, SetupEntry
 from plan_cutters.document.plan import Elsewhere, completed, plan_of, selection
+from plan_cutters.document.travel import travels
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
@@ -107,7 +109,11 @@ def run(
             # In the order of rank, whatever the order of work.
             earlier = {c: judged[c].reach for c in ready.cutters if c in judged}
             judged[cutter] = _judged(ready, cutter, earlier, tell)
-    elsewhere = [(axis, _elsewhere(ready, judged, axis, clock)) for axis in options.other_setups]
+    places = options.other_placements or (None,) * len(options.other_setups)
+    others = [
+        (axis, None if place is None else place.x) for axis, place in zip(options.other_setups, places, strict=True)
+    ]
+    elsewhere = [(axis, _elsewhere(ready, judged, axis, x, clock)) for axis, x in others]
     answers = ask(ready, {cutter: each.reach for cutter, each in judged.items()}, clock.stage)
     result = assemble(ready, judged, clock, started, answers, elsewhere)
     if not options.posture_maps:
@@ -124,13 +130,13 @@ def run(
 
 
 def _elsewhere(
-    ready: Prepared, judged: Mapping[Cutter, "Judged"], axis: tuple[float, float, float], clock: Clock
+    ready: Prepared, judged: Mapping[Cutter, "Judged"], axis: Vector, x: Vector | None, clock: Clock
 ) -> dict[str, Reach]:
     """What each cutter reaches in another setup."""
     found = {}
     for cutter, each in judged.items():
         with clock.stage("setups") as tell:
-            found[cutter.id] = in_setup(ready, cutter, axis, each.reach, progress=tell)
+            found[cutter.id] = in_setup(ready, cutter, axis, each.reach, x=x, progress=tell)
     return found
 
 
@@ -157,7 +163,7 @@ def prepare(
         with clock.stage("fixtures"):
             scene.read_fixtures(read_timeout)
     with clock.stage("sample"):
-        chosen = choose(whole, options.faces, scene.ignored, scene.ignore)
+        chosen = choose(whole, options.faces, scene.ignored, scene.ignore, options.placement)
         spacing: Spacing = options.spacing
         if options.grid is None and options.spacing is None:
             spacing = default_spacing(whole, scene.orientation, chosen.targets, cutters)
@@ -173,9 +179,11 @@ def prepare(
         )
     with clock.stage("tessellate"):
         around = scene.surround(at, jobs=options.jobs)
+    along = None if options.placement is None else options.placement.x
     conditions = Conditions(
-        options.machine, np.array(scene.setup), options.postures, around, scene.tolerance, options.jobs
-    )
+        options.machine, np.array(scene.setup), options.postures, around, scene.tolerance, options.jobs,
+        None if along is None else np.array(along),
+    )  # fmt: skip
     with clock.stage("tree"):
         _ = around.may_be.solids, around.surely.solids
     with clock.stage("compile"):
@@ -227,7 +235,8 @@ def assemble(
     reaches = {cutter.id: each.reach for cutter, each in judged.items()}
     within = within_limits(ready.samples, ready.cutters, ready.conditions)
     beyond = (ready.samples.unjudged < 0) & ~within & (ready.buried < 0)
-    entries = completed([judged[c].entry for c in ready.cutters], ready, answers, reaches, beyond, elsewhere)
+    moved = travels(ready.options, ready.samples, {cutter: each.reach for cutter, each in judged.items()})
+    entries = completed([judged[c].entry for c in ready.cutters], ready, answers, reaches, beyond, elsewhere, moved)
     selected, chosen = selection(entries)
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
     best = selected or next((e.id for e in entries if not (e.inaccessible or e.undecided)), None)
@@ -254,6 +263,7 @@ def assemble(
         ready.conditions.kinematics,
         tuple((axis, dict(found)) for axis, found in elsewhere),
         answers,
+        travels=moved,
     )
 
 
@@ -264,7 +274,9 @@ def _setups(ready: Prepared) -> list[SetupEntry]:
     judged, area = ready.samples.unjudged < 0, ready.samples.area
     found = []
     for axis in dict.fromkeys((ready.scene.setup, *AXES)):
-        within = within_limits(ready.samples, ready.cutters, ready.conditions, axis)
+        within = within_limits(
+            ready.samples, ready.cutters, ready.conditions, None if axis == ready.scene.setup else axis
+        )
         share = float(area[within].sum() / area[judged].sum()) if area[judged].sum() > 0.0 else 0.0
         found.append(SetupEntry(axis=axis, within=int(within.sum()), share=min(1.0, share)))
     return found

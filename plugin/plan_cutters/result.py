@@ -12,6 +12,7 @@ from plan_cutters.document.model import CutterEntry, Plan
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.posture import PostureRange
+from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import Reach
 from plan_cutters.scene.scene import Scene
 from plan_cutters.stages.posture_maps import PostureMaps
@@ -41,6 +42,8 @@ class Result:
         What was asked for after the plan: `stick_outs`, `radius_maps`, `mends`.
     maps : PostureMaps, optional
         Every free tilt, for the cutter `shown`, where that was asked for.
+    travels : dict
+        Cutter id -> Travel: where the linear axes stand; empty where that is not judged.
     """
 
     plan: Plan
@@ -53,6 +56,7 @@ class Result:
     elsewhere: tuple[tuple[tuple[float, float, float], dict[str, Reach]], ...] = ()
     answers: Answers = field(default_factory=Answers)
     maps: PostureMaps | None = None
+    travels: dict[str, Travel] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return (

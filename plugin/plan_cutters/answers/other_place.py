@@ -134,7 +134,7 @@ def _turned(case: Case, axis: Axis) -> Case | None:
     ready = case.ready
     if _flip(ready, axis) is None:
         return None
-    conditions = replace(ready.conditions, setup=unit(axis, "setup axis"))
+    conditions = replace(ready.conditions, setup=unit(axis, "setup axis"), x=None)
     return replace(case, ready=replace(ready, conditions=conditions))
 
 

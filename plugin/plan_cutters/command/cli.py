@@ -48,16 +48,18 @@ class _Range(click.ParamType):
         return low, high
 
 
-class _Vector(click.ParamType):
-    """A direction x,y,z."""
+class _Setup(click.ParamType):
+    """A direction x,y,z, or a setup file."""
 
-    name = "X,Y,Z"
+    name = "X,Y,Z|FILE"
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...]:
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...] | str:
         try:
             x, y, z = (float(part) for part in value.split(","))
         except ValueError:
-            self.fail(f"{value!r} is not of the form x,y,z, as 0,0,1", param, ctx)
+            if value.lower().endswith(".toml") or os.path.isfile(value):
+                return str(value)
+            self.fail(f"{value!r} is not of the form x,y,z, as 0,0,1, nor a setup file", param, ctx)
         return x, y, z
 
 
@@ -118,12 +120,12 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, asked: bool) -> No
 )
 @click.option(
     "--setup",
-    type=_Vector(),
+    type=_Setup(),
     multiple=True,
     default=["0,0,1"],
-    metavar="X,Y,Z",
-    help="Direction of the part along the machine's spindle. Repeatable: every cutter is judged in each, and what they reach "
-    "together is said.  [default: 0,0,1]",
+    metavar="X,Y,Z|FILE",
+    help="Direction of the part along the machine's spindle, or a setup file (TOML) that says where the part stands. Repeatable: "
+    "every cutter is judged in each, and what they reach together is said.  [default: 0,0,1]",
 )
 @click.option(
     "--faces",

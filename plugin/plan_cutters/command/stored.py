@@ -38,9 +38,14 @@ def stored(part: str, postures: str, options: "Options", given: dict[str, Any]) 
                           "--posture-maps", file=name)  # fmt: skip
     if options.cutters and maps.cutter not in {cutter.id for cutter in options.judged}:
         raise OptionError(f"its posture maps are of cutter {maps.cutter}, which was not asked for", file=name)
+    place = options.placement
+    if place is not None and (place.clamped or place.fixtures):
+        raise OptionError("posture maps keep the faces and fixtures that they were made with: leave out clamped and fixtures",
+                          file=place.file)  # fmt: skip
     low, high = (np.clip(end, *maps.tilt) for end in options.tilt)
     rotation = None if options.rotation[1] - options.rotation[0] > 2 * np.pi - 1e-9 else options.rotation
-    reach = maps.within(options.machine, options.setup, tilt=(low, high), rotation=rotation, jobs=options.jobs)
+    reach = maps.within(options.machine, options.setup, tilt=(low, high), rotation=rotation, jobs=options.jobs,
+                        x=None if place is None else place.x)  # fmt: skip
     words = {INTERFERENCE_FREE: "interference_free", ACCESSIBLE: "accessible", UNDECIDED: "undecided",
              INACCESSIBLE: "inaccessible", UNJUDGED: "unjudged"}  # fmt: skip
     counts = {word: int((reach.verdict == code).sum()) for code, word in words.items()}

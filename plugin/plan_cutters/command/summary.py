@@ -63,6 +63,8 @@ def summary(plan: "Plan") -> None:
     console.print(named(plan, f"Selected: {plan.selected or 'none'} ({plan.selection.why})."))
     for line in setups(plan):
         console.print(named(plan, line))
+    for line in _travel(plan):
+        console.print(named(plan, line))
     console.print(_side(plan))
     for area in (c.area for c in plan.cutters if c.area):
         console.print(f"Between samples: {_percent(area.share)} of the target area is served with the axes found "
@@ -102,6 +104,14 @@ def setups(plan: "Plan") -> list[str]:
     others = ", ".join(f"{_axis(each.axis)} {_percent(each.share)}" for each in plan.setups[1:])
     lines.append(f"Area within the limit by setup axis: {_percent(plan.setups[0].share)} now; {others}.")
     return lines
+
+
+def _travel(plan: "Plan") -> Sequence[str]:
+    """Whether the machine's linear axes reach what the cutter shown reaches."""
+    from plan_cutters.document.travel import travel_lines
+
+    best = max(plan.cutters, key=lambda c: (c.id == plan.selected, c.interference_free + c.accessible))
+    return travel_lines(best.travel, best.id)
 
 
 def _axis(axis: Sequence[float]) -> str:

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from plan_cutters.document.answers import MendEntry, RadiusEntry, StickOutEntry
 from plan_cutters.document.frozen import Frozen, Posture, Vector
+from plan_cutters.document.travel import PlacementEntry, TravelEntry
 
 FORMAT_VERSION = 1
 
@@ -59,7 +60,11 @@ class Effective(Frozen):
     fixtures: list[str] = Field(default=[], description="as on a command line: file or word, placement, unit")
     machine: str
     setup: Vector
+    placement: PlacementEntry | None = Field(default=None, description="null where the axis alone was given")
     other_setups: list[Vector] = Field(default=[], description="in which every cutter was judged, too")
+    other_placements: list[PlacementEntry | None] = Field(
+        default=[], description="of these; empty where axes alone were given"
+    )
     faces: str
     ignore: list[str] = Field(default=[], description="faces that are neither targets nor obstacles, as asked for")
     target_faces: list[str]
@@ -295,6 +300,9 @@ class CutterEntry(Verdicts):
         default=None,
         description="reached samples whose posture lies within 2 deg of the rotary axis next to the part, which then turns fast; "
         "null without two rotary axes",
+    )
+    travel: TravelEntry | None = Field(
+        default=None, description="null where linear travel is not judged: see the notes"
     )
     least_stick_out: StickOutEntry | None = Field(default=None, description="null where it was not asked for")
     mend: MendEntry | None = Field(

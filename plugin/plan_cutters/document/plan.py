@@ -34,9 +34,11 @@ from plan_cutters.document.model import (
     SetupReach,
 )
 from plan_cutters.document.palette import PALETTE
+from plan_cutters.document.travel import placement_entry, travel_entry, travel_notes
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE, Reach
 from plan_cutters.options import Options
 from plan_cutters.scene.prepared import Prepared
@@ -63,7 +65,9 @@ def plan_of(
             fixtures=[each.text for each in scene.fixtures],
             machine=options.machine.name,
             setup=scene.setup,
+            placement=placement_entry(options.placement),
             other_setups=list(options.other_setups),
+            other_placements=[placement_entry(each) for each in options.other_placements],
             faces=choice.asked,
             ignore=list(choice.ignore),
             target_faces=[f"F{n}" for n in choice.targets],
@@ -108,6 +112,7 @@ def plan_of(
         notes=[
             *notes(scene, options, samples, ready.cutters),
             *choice.notes,
+            *travel_notes(options),
             *area_notes(entries, doubtful=around.doubtful),
         ],
         legend=PALETTE if around.fixtures else {word: PALETTE[word] for word in PALETTE if word != "fixture"},
@@ -159,17 +164,19 @@ def _singular(ready: Prepared, reach: Reach | None) -> int | None:
 
 def completed(
     entries: Sequence[CutterEntry], ready: Prepared, answers: Answers, reaches: Mapping[str, Reach],
-    beyond: NDArray[np.bool_], elsewhere: Sequence[Elsewhere] = (),
+    beyond: NDArray[np.bool_], elsewhere: Sequence[Elsewhere] = (), travels: Mapping[str, Travel] | None = None,
 ) -> list[CutterEntry]:  # fmt: skip
     """The entries of cutters with where they are listed, what the limits lose for all (n,), and what was answered about them."""
     found, sources, samples = [], ready.options.sources, ready.samples
     lost_to_all = int(beyond.sum())
     for entry in entries:
+        moved = (travels or {}).get(entry.id)
         stick_out, mend = answers.stick_outs.get(entry.id), answers.mends.get(entry.id)
         more = {
             **_over_setups(ready, entry.id, reaches, elsewhere),
             "beyond_setup": lost_to_all,
             "singular": _singular(ready, reaches.get(entry.id)),
+            "travel": None if moved is None else travel_entry(ready.options.machine, moved, reaches[entry.id], samples),
             "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
             "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, ready.scene.around),
             "mend": None if mend is None else mend_entry(mend),

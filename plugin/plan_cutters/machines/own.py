@@ -110,7 +110,7 @@ def _machine(given: Any, content: Content, added: Added) -> Machine:
     try:
         table = MachineTable.model_validate(given)
     except ValidationError as error:
-        raise MachineError(_why(error), file=content.name) from None
+        raise MachineError(explained(error), file=content.name) from None
     length, angle = LENGTHS[table.units.length], ANGLES[table.units.angle]
     sides: list[tuple[Carried, list[AxisTable]]] = [("part", table.part_chain[::-1]), ("tool", table.tool_chain)]
     axes = [_axis(each, side, table.sign, length, angle) for side, chain in sides for each in chain]
@@ -166,7 +166,7 @@ def _size(given: float | str, size: float, what: str, turns: bool = True) -> flo
     return scaled(given, size)
 
 
-def _why(error: ValidationError) -> str:
+def explained(error: ValidationError) -> str:
     """One line of what is wrong."""
     first = max(error.errors(include_url=False, include_context=False), key=lambda each: len(each["loc"]))
     words = [str(word + 1) if isinstance(word, int) else word for word in first["loc"]]
@@ -177,6 +177,7 @@ def _why(error: ValidationError) -> str:
         return f"{place}{shown(last)} has no meaning here"
     if first["type"] == "missing":
         hint = {
+            "unit": ', as unit = "mm"',
             "units": ', as units = { length = "mm", angle = "deg" }',
             "sign": ', "tool-relative" (ISO 841) or "table"',
             "length": ', as length = "mm"', "angle": ', as angle = "deg"',

@@ -13,8 +13,9 @@ def write_npz(result: Any, _split: object, path: Path) -> None:
     """Write `samples.npz`: the samples, and per cutter verdict, axis, lean and reason with its id as suffix.
 
     With a machine of rotary axes, also their positions at the posture found, in degrees: both solutions, axis by axis from the
-    part to the tool, nan where one is beyond a limit, and which of them is to be taken, -1 where there is none. Where they were
-    asked for, its least stick-outs, too, and the largest radii with `flat` and `ball` as suffix.
+    part to the tool, nan where one is beyond a limit, and which of them is to be taken, -1 where there is none. Where linear
+    travel is judged, also the positions of the linear axes, mm, in the machine's order, for the solution to be taken. Where they
+    were asked for, its least stick-outs, too, and the largest radii with `flat` and `ball` as suffix.
     """
     samples = result.samples
     arrays = {
@@ -34,6 +35,8 @@ def write_npz(result: Any, _split: object, path: Path) -> None:
         arrays[f"reason_{name}"] = reach.reason
         if result.kinematics is not None:
             angles, taken, _ = result.kinematics.positions(reach.axis)
+            if name in result.travels:
+                arrays[f"travel_{name}"], taken = result.travels[name].position, result.travels[name].taken
             arrays[f"rotary_{name}"], arrays[f"rotary_taken_{name}"] = np.degrees(angles), taken
     if result.elsewhere:
         arrays["setups"] = np.array([result.scene.setup, *(axis for axis, _ in result.elsewhere)])

@@ -10,6 +10,7 @@ from plan_cutters.domain.assembly import Assembly, assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import Reach
 from plan_cutters.kernels.rows import Contacts, Found, Ranges, Rotary, Tool
@@ -34,6 +35,8 @@ class Conditions(Record):
         Gouge tolerance that is kept, mm.
     jobs : int
         Threads.
+    x : (3,) float, optional
+        Unit direction of the part along the machine's X, as `Placement` has it.
     """
 
     machine: Machine
@@ -42,6 +45,7 @@ class Conditions(Record):
     around: Surroundings
     tolerance: float
     jobs: int
+    x: Floats | None = None
 
     @property
     def obstacles(self) -> Obstacles:
@@ -67,7 +71,7 @@ class Conditions(Record):
     @property
     def ranges(self) -> Ranges:
         """What kernels take of postures and machine."""
-        return ranges_of(self.machine, self.setup, self.postures)
+        return ranges_of(self.machine, self.setup, self.postures, self.x)
 
     @property
     def machineless(self) -> "Conditions":
@@ -77,7 +81,7 @@ class Conditions(Record):
     @property
     def kinematics(self) -> Kinematics | None:
         """The machine's rotary axes in the part's frame; None where any tool axis within its plain limit is possible."""
-        return self.machine.kinematics(frame_of(self.setup))
+        return self.machine.kinematics(frame_of(self.setup, self.x))
 
     def upright(self, normal: Floats) -> NDArray[np.bool_]:
         """At which normals (n, 3) the machine can hold the axis along the normal, and tilt 0 was asked for."""
@@ -86,10 +90,10 @@ class Conditions(Record):
         return np.asarray(found if kinematics is None else found & kinematics.allows(normal))
 
 
-def ranges_of(machine: Machine, setup: Floats, postures: PostureRange) -> Ranges:
+def ranges_of(machine: Machine, setup: Floats, postures: PostureRange, x: Floats | None = None) -> Ranges:
     """What kernels take of postures and machine."""
     rotations, (low, high) = postures.rotations, postures.tilt
-    rotary = rotary_of(machine.kinematics(frame_of(setup)))
+    rotary = rotary_of(machine.kinematics(frame_of(setup, x)))
     if len(rotary.aim):
         # Each sample leans towards the axes that there are: rotations asked for would miss them.
         rotations = np.zeros(len(rotary.aim))
@@ -102,19 +106,6 @@ def rotations_of(normal: Floats, direction_max: Floats, lean: Floats) -> Floats:
     """Rotations (n,) of lean directions (n, 3), rad from 0 to 2 pi."""
     across = (lean * np.cross(normal, direction_max)).sum(axis=-1)
     return np.asarray(np.remainder(np.arctan2(across, (lean * direction_max).sum(axis=-1)), 2.0 * np.pi))
-
-
-def frame_of(setup: Floats) -> Floats:
-    """A machine's X, Y and Z (3, 3), as rows, where a unit direction (3,) of the part points along its Z.
-
-    X is as near to the part's X as can be; where the part's X points along Z, Y is that of the part.
-    """
-    z = np.asarray(setup, float)
-    x = np.array([1.0, 0.0, 0.0]) - z[0] * z
-    if np.linalg.norm(x) < 1e-6:
-        x = np.cross(np.array([0.0, 1.0, 0.0]), z)
-    x /= np.linalg.norm(x)
-    return np.array([x, np.cross(z, x), z])
 
 
 def rotary_of(found: Kinematics | None) -> Rotary:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from cad_io.arrays import FaceInfo
 from plan_cutters.domain.checks import choice
+from plan_cutters.domain.placement import Placement
 from plan_cutters.errors import OptionError
 
 if TYPE_CHECKING:
@@ -46,7 +47,9 @@ class Chosen:
     notes: tuple[str, ...]
 
 
-def choose(part: "Part", faces: Any, ignored: Collection[int], ignore: tuple[str, ...]) -> Chosen:
+def choose(
+    part: "Part", faces: Any, ignored: Collection[int], ignore: tuple[str, ...], placed: Placement | None = None
+) -> Chosen:  # fmt: skip
     """Target and ignored faces of a part.
 
     Parameters
@@ -58,6 +61,8 @@ def choose(part: "Part", faces: Any, ignored: Collection[int], ignore: tuple[str
         Faces to leave out.
     ignore : tuple of str
         The words for these.
+    placed : Placement, optional
+        Whose clamped faces are left out of the targets.
 
     Raises
     ------
@@ -75,6 +80,14 @@ def choose(part: "Part", faces: Any, ignored: Collection[int], ignore: tuple[str
         notes.append(
             f"{len(ignored)} faces are ignored, neither targets nor obstacles: {_some(f'F{n}' for n in sorted(ignored))}."
         )
+    if placed is not None and placed.clamped:
+        held = frozenset().union(*(_selected(part.faces, text, part.tree, placed.where) for text in placed.clamped))
+        left = tuple(n for n in targets if n not in held)
+        if not left:
+            raise OptionError(f"{placed.where} {_brief(', '.join(placed.clamped))} leaves no target face")
+        if lost := [f"F{n}" for n in targets if n in held]:
+            notes.append(f"{len(lost)} faces are clamped and therefore no targets: {_some(lost)}.")
+        targets = left
     return Chosen(targets, tuple(sorted(ignored)), asked, ignore, tuple(notes))
 
 

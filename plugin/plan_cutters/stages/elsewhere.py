@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import ACCESSIBLE, Reach, blank
-from plan_cutters.scene.conditions import frame_of
 from plan_cutters.scene.prepared import Prepared
 from plan_cutters.scene.threads import Progress
 from plan_cutters.stages.judge import judge
@@ -18,6 +18,7 @@ def in_setup(
     setup: tuple[float, float, float],
     reach: Reach,
     *,
+    x: tuple[float, float, float] | None = None,
     progress: Progress | None = None,
 ) -> Reach:
     """What a cutter reaches in another setup.
@@ -30,10 +31,12 @@ def in_setup(
         Unit direction of the part along the machine's spindle at zero angles. The side of open faces stays as it is.
     reach : Reach
         What it reaches in the setup of `ready`.
+    x : (float, float, float), optional
+        Unit direction of the part along the machine's X there, as `Placement` has it.
     """
-    axis = np.array(setup)
+    axis, across = np.array(setup), None if x is None else np.array(x)
     machine, known = ready.conditions.machine, blank(len(ready.samples))
-    kinematics = machine.kinematics(frame_of(axis))
+    kinematics = machine.kinematics(frame_of(axis, across))
     rows = np.flatnonzero(reach.reached)
     held = reach.axis[rows] @ axis >= machine.limit_cos
     # Where fewer than two axes turn the tool, rotations are numbered by the axes that there are in a setup.
@@ -43,5 +46,5 @@ def in_setup(
     known.verdict[rows] = ACCESSIBLE
     for name in ("axis", "lean", "tilt", "rotation"):
         getattr(known, name)[rows] = getattr(reach, name)[rows]
-    other = replace(ready, conditions=replace(ready.conditions, setup=axis))
+    other = replace(ready, conditions=replace(ready.conditions, setup=axis, x=across))
     return judge(other, cutter, known=known, progress=progress)

@@ -14,7 +14,8 @@ from cad_io.arrays import Floats, Record, SurfaceSamples
 from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
-from plan_cutters.domain.posture import lean, unit
+from plan_cutters.domain.placement import Placement, frame_of
+from plan_cutters.domain.posture import lean
 from plan_cutters.domain.verdicts import INACCESSIBLE, INTERFERENCE_FREE, REASONS, UNDECIDED, UNJUDGED, Reach, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.kernels.rows import Ranges
@@ -22,7 +23,6 @@ from plan_cutters.scene.conditions import (
     Conditions,
     contacts_of,
     found_of,
-    frame_of,
     require_finite,
     rotary_of,
     tool_of,
@@ -82,7 +82,7 @@ class PostureMaps(Record):
 
     def within(
         self, machine: Any = None, setup: Any = (0.0, 0.0, 1.0), *, tilt: tuple[float, float] | None = None,
-        rotation: tuple[float, float] | None = None, jobs: int = 1,
+        rotation: tuple[float, float] | None = None, jobs: int = 1, x: Any = None,
     ) -> Reach:  # fmt: skip
         """What the cutter reaches on another machine, or in another setup, without a new search.
 
@@ -96,6 +96,8 @@ class PostureMaps(Record):
             Ranges within those of the maps, rad; rotations from the first to the second.
         jobs : int
             Threads.
+        x : (float, float, float), optional
+            Direction of the part along the machine's X, as `Placement` has it.
 
         Returns
         -------
@@ -110,7 +112,9 @@ class PostureMaps(Record):
         """
         from plan_cutters.kernels.mask import mask
 
-        machine, axis = Machine.of(machine), unit(setup, "setup axis")
+        machine, place = Machine.of(machine), Placement(setup, x)
+        axis = np.array(place.z)
+        frame = frame_of(axis, None if place.x is None else np.array(place.x))
         if machine.turns and len(machine.rotary) < 2:
             raise OptionError(f"posture maps say nothing of {machine.name}: with fewer than two rotary axes each sample needs "
                               "rotations of its own; plan the part with it")  # fmt: skip
@@ -123,7 +127,7 @@ class PostureMaps(Record):
             turns = turns[(self.rotations >= first - _END) & (self.rotations <= last + _END)]
         if not len(turns):
             raise OptionError("the posture maps have none of the rotations asked for")
-        rotary = rotary_of(machine.kinematics(frame_of(axis)))
+        rotary = rotary_of(machine.kinematics(frame))
         ranges = Ranges(np.cos(self.rotations), np.sin(self.rotations), low, high, axis, machine.limit_cos, rotary)
         reach = blank(len(self.verdict))
         found = found_of(reach)
@@ -135,7 +139,7 @@ class PostureMaps(Record):
         in_chunks(lambda piece: mask(piece, *maps, found), rows, jobs)
         upright = self.verdict == INTERFERENCE_FREE
         if low <= _END and upright.any():
-            kinematics = machine.kinematics(frame_of(axis))
+            kinematics = machine.kinematics(frame)
             upright &= self.normal @ axis >= machine.limit_cos
             if kinematics is not None:
                 upright[upright] = kinematics.allows(self.normal[upright])

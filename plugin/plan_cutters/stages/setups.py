@@ -34,7 +34,7 @@ def within_limits(
     from plan_cutters.kernels.limits import any_axis
 
     if setup is not None:
-        conditions = replace(conditions, setup=np.array(setup))
+        conditions = replace(conditions, setup=np.array(setup), x=None)
     ranges, held, rows = conditions.ranges, np.zeros(len(samples), bool), np.flatnonzero(samples.unjudged < 0)
     touching = [mode for cutter in cutters for mode in modes(cutter)]
     low = max(ranges.tilt_low, min(mode.low for mode in touching))

@@ -1,0 +1,132 @@
+"""Where the part stands, and the linear travel that a cutter needs there, as the plan file has them."""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+from pydantic import Field
+
+from cad_io import SurfaceSamples
+from plan_cutters.document.frozen import Frozen, Vector, vector
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.placement import Placement
+from plan_cutters.domain.travel import Travel, tips, travel, unjudged
+from plan_cutters.domain.verdicts import Reach
+from plan_cutters.options import Options
+
+
+class PlacementEntry(Frozen):
+    """How the part stands in a setup, where more than the axis was given."""
+
+    file: str | None
+    x: Vector | None = Field(
+        description="direction of the part along the machine's X; null: as near to the part's X as can be"
+    )
+    origin_mm: Vector | None = Field(description="point of the part at the machine's zero; null: not known")
+    clamped: list[str] = Field(description="faces that are held, in the words for faces: no targets")
+
+
+class AxisTravel(Frozen):
+    """What the postures found ask of a linear axis."""
+
+    name: str
+    limits_mm: tuple[float | None, float | None] = Field(description="null: no limit on that side")
+    least_mm: float | None = Field(description="least position needed; null where no sample is reached")
+    most_mm: float | None
+    outside: int = Field(description="reached samples at which it is beyond its limits")
+
+
+class BeyondTravel(Frozen):
+    """The sample at which an axis is farthest beyond its limits."""
+
+    point: Vector
+    face: str
+    axis: str
+    beyond_mm: float
+
+
+class TravelEntry(Frozen):
+    """Linear travel at the postures found, of the holder's nose: a second check that changes no verdict."""
+
+    judged: int = Field(description="reached samples at which the positions were found")
+    unknown: int = Field(description="reached samples at which they were not: there linear axes are in one plane")
+    outside: int = Field(description="reached samples at which an axis is beyond its limits")
+    axes: list[AxisTravel]
+    worst: list[BeyondTravel] = Field(
+        description="one for each axis that is ever beyond its limits, the farthest first"
+    )
+
+
+def placement_entry(placement: Placement | None) -> PlacementEntry | None:
+    """How a part stands."""
+    if placement is None:
+        return None
+    return PlacementEntry(
+        file=placement.file or None, x=placement.x, origin_mm=placement.origin, clamped=list(placement.clamped)
+    )
+
+
+def travels(options: Options, samples: SurfaceSamples, reaches: Mapping[Cutter, Reach]) -> dict[str, Travel]:
+    """By the id of a cutter where the linear axes stand; empty where that is not judged."""
+    placement = options.placement
+    if placement is None or unjudged(options.machine, placement) is not None:
+        return {}
+    return {
+        cutter.id: travel(
+            options.machine, placement, tips(cutter, samples.point, samples.normal, reach), reach.axis, cutter.length
+        )
+        for cutter, reach in reaches.items()
+    }
+
+
+def travel_entry(machine: Machine, found: Travel, reach: Reach, samples: SurfaceSamples) -> TravelEntry:
+    """What a cutter asks of the linear axes."""
+    known = reach.reached & np.isfinite(found.position).all(axis=1)
+    axes, worst = [], []
+    for k, axis in enumerate(machine.linear):
+        position, beyond = found.position[known, k], np.where(known, found.beyond[:, k], 0.0)
+        low, high = (end if np.isfinite(end) else None for end in axis.limits or (np.inf, np.inf))
+        least, most = (float(position.min()), float(position.max())) if len(position) else (None, None)
+        axes.append(AxisTravel(name=axis.name, limits_mm=(low, high), least_mm=least, most_mm=most,
+                               outside=int((beyond > 0.0).sum())))  # fmt: skip
+        if len(beyond) and beyond.max() > 0.0:
+            at = int(beyond.argmax())
+            worst.append(BeyondTravel(point=vector(samples.point[at]), face=f"F{samples.face[at]}", axis=axis.name,
+                                      beyond_mm=float(beyond[at])))  # fmt: skip
+    return TravelEntry(
+        judged=int(known.sum()),
+        unknown=int((reach.reached & ~known).sum()),
+        outside=int((found.outside & known).sum()),
+        axes=axes,
+        worst=sorted(worst, key=lambda each: -each.beyond_mm),
+    )
+
+
+def travel_notes(options: Options) -> Iterator[str]:
+    """Why linear travel is not judged, or what it is judged of."""
+    why = unjudged(options.machine, options.placement)
+    if why:
+        yield f"Linear travel is not judged: {why}."
+    if why is None:
+        yield "Linear travel is that of the holder's nose at the postures found; it changes no verdict."
+    if why is None and options.other_setups:
+        yield "Linear travel is judged in the first setup alone."
+
+
+def travel_lines(entry: TravelEntry | None, name: str) -> Sequence[str]:
+    """What people are told of the cutter that is shown."""
+    if entry is None:
+        return []
+    lines = []
+    if entry.outside:
+        each = "; ".join(
+            f"{w.axis} by up to {w.beyond_mm:.4g} mm, at ({', '.join(f'{x:.4g}' for x in w.point)}) on {w.face}"
+            for w in entry.worst
+        )
+        lines.append(f"Beyond the travel: at {entry.outside} of {entry.judged} samples reached by {name} the posture found needs "
+                     f"more than the machine's: {each}.")  # fmt: skip
+    elif entry.judged:
+        lines.append(f"Within the travel: all {entry.judged} postures found for {name} whose positions are known.")
+    if entry.unknown:
+        lines.append(f"Travel of {name} is not known at {entry.unknown} samples: linear axes are in one plane there.")
+    return lines

@@ -1,0 +1,114 @@
+"""Setup files: where a part stands in a machine, as TOML that people write."""
+
+import os
+import tomllib
+from pathlib import Path
+from typing import ClassVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from cad_io.units import UNITS
+from plan_cutters.domain.checks import shown
+from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.placement import Placement
+from plan_cutters.errors import OptionError, PlanError
+from plan_cutters.files import content
+from plan_cutters.machines.chain import scaled
+from plan_cutters.machines.own import Vector, explained
+
+
+class Content(content.Content):
+    """A file that may be a setup file."""
+
+    noun: ClassVar[str] = "setup file"
+    error: ClassVar[type[PlanError]] = OptionError
+
+
+class SetupTable(BaseModel):
+    """A setup; `axis` is another name of `z`, `origin` is in `unit`, the other words are those of the command line."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    unit: str
+    axis: Vector | None = None
+    z: Vector | None = None
+    x: Vector | None = None
+    origin: Vector | None = None
+    clamped: str | list[str] = []
+    fixtures: list[str] = []
+
+
+def read_setup(path: str | os.PathLike[str]) -> Placement:
+    """The placement that a setup file describes.
+
+    Parameters
+    ----------
+    path : path
+        TOML: `unit` of its lengths, one of `cad_io.units.UNITS`; `axis` or `z`, and `x`: directions of the part along the
+        machine's Z and X; `origin`; `clamped`, in the words of `--faces`; `fixtures`, in those of `--fixture`: files are looked
+        for in the setup file's folder.
+
+    Raises
+    ------
+    OptionError
+        The file is none, or contradicts itself.
+
+    Examples
+    --------
+    >>> read_setup("none.toml")
+    Traceback (most recent call last):
+    plan_cutters.errors.OptionError: none.toml: cannot be read: No such file or directory
+    """
+    read = Content.of(Path(path))
+    try:
+        return _placement(_table(read), read)
+    except OptionError as error:
+        if error.file == read.name:
+            raise
+        raise type(error)(error.cause, file=read.name) from None
+
+
+def _table(read: Content) -> SetupTable:
+    if read.head.startswith("<"):
+        raise OptionError('is a web page or XML, no setup file: give TOML, as unit = "mm" and axis = [0, 0, 1]')
+    try:
+        return SetupTable.model_validate(tomllib.loads(read.text))
+    except ValidationError as error:
+        raise OptionError(explained(error)) from None
+    except RecursionError:
+        raise OptionError("is no TOML: it is nested too deeply") from None
+    except ValueError as error:
+        raise OptionError(f"is no TOML: {' '.join(str(error).split())}") from None
+
+
+def _placement(table: SetupTable, read: Content) -> Placement:
+    if table.unit not in UNITS:
+        raise OptionError(f"no length unit is called {shown(table.unit)}; give one of {', '.join(UNITS)}")
+    if table.axis is not None and table.z is not None:
+        raise OptionError("axis and z are two names of one direction: leave out one of them")
+    z = table.z if table.axis is None else table.axis
+    if z is None:
+        raise OptionError(
+            "its axis is missing, as axis = [0, 0, 1]: the direction of the part along the machine's spindle"
+        )
+    origin = None if table.origin is None else _three([scaled(each, UNITS[table.unit]) for each in table.origin])
+    clamped = (table.clamped,) if isinstance(table.clamped, str) else tuple(table.clamped)
+    fixtures = tuple(_fixture(text, table.unit, read.path.parent) for text in table.fixtures)
+    return Placement(_three(z), None if table.x is None else _three(table.x), origin, clamped, fixtures, read.name)
+
+
+def _three(found: list[float]) -> tuple[float, float, float]:
+    return found[0], found[1], found[2]
+
+
+def _fixture(text: str, unit: str, folder: Path) -> Fixture:
+    found = Fixture.parse(text)
+    if unit != "mm" and ((found.kind and found.unit is None) or any(found.placement[:3])):
+        # Lengths of words are mm unless they say otherwise, placements always: beside other lengths of the file that misleads.
+        raise OptionError(
+            f"{found}: in a file of other units than mm, a word must say its unit, as table:-5:mm, and a placement, "
+            "which is in mm, is left out"
+        )
+    if found.kind or Path(found.source).is_absolute():
+        return found
+    return Fixture(str(folder / found.source), found.placement, found.unit, found.name)
