@@ -145,7 +145,10 @@ def libraries(plan: "Plan") -> list[str]:
     """What was read of tool libraries, and what of it is not used, reason by reason."""
     lines = []
     for library in plan.libraries:
-        lines.append(f"{library.file} ({library.format}): {library.cutters} cutters of {library.tools} tools.")
+        cutters, tools = (
+            f"{n} {word}{'' if n == 1 else 's'}" for n, word in ((library.cutters, "cutter"), (library.tools, "tool"))
+        )
+        lines.append(f"{library.file} ({library.format}): {cutters} of {tools}.")
         lines += [f"  {note}" for note in library.notes]
         reasons: dict[str, list[str]] = {}
         for tool in library.unused:

@@ -86,7 +86,12 @@ def choose(
         if not left:
             raise OptionError(f"{placed.where} {_brief(', '.join(placed.clamped))} leaves no target face")
         if lost := [f"F{n}" for n in targets if n in held]:
-            notes.append(f"{len(lost)} faces are clamped and therefore no targets: {_some(lost)}.")
+            what = (
+                "1 face is clamped and therefore no target"
+                if len(lost) == 1
+                else f"{len(lost)} faces are clamped and therefore no targets"
+            )
+            notes.append(f"{what}: {_some(lost)}.")
         targets = left
     return Chosen(targets, tuple(sorted(ignored)), asked, ignore, tuple(notes))
 
