@@ -1,4 +1,4 @@
-"""Which of my cutters can finish this surface? Flat-end cutter accessibility before any toolpath exists.
+"""Which of my cutters can finish this surface? Cutter accessibility before any toolpath exists.
 
 Names are handed on lazily: importing the package loads neither the CAD kernel nor the compiler.
 """
@@ -13,6 +13,8 @@ _HOME = {
     "Holder": "domain.holder",
     "Stage": "domain.holder",
     "Machine": "domain.machine",
+    "Axis": "domain.axis",
+    "Placement": "domain.placement",
     "Fixture": "domain.fixture",
     "Options": "options",
     "Scene": "scene.scene",
@@ -21,6 +23,7 @@ _HOME = {
     "Result": "result",
     "posture_map": "point",
     "PostureMap": "stages.posture_map",
+    "PostureMaps": "stages.posture_maps",
     "Plan": "document.model",
     "PlanError": "errors",
     "CutterError": "errors",
