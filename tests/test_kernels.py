@@ -9,13 +9,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from reference import depth_in_cutter, posture, random_frame, triangle_points
 
+from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.kernels import free_tilts, hit, probing, search, tree
 from plan_cutters.kernels.arcs import point_arc
 from plan_cutters.kernels.material import sheet
 from plan_cutters.kernels.points import axis_intervals, local_gouge_range
 from plan_cutters.kernels.rows import Contacts, Frame, Tree
-from plan_cutters.scene.conditions import found_of
+from plan_cutters.scene.conditions import found_of, ranges_of
 
 SCRATCH = hit.scratch()
 
@@ -144,7 +146,7 @@ def test_axis_arcs_are_where_the_axis_is_within_the_cone(n, f, limit, setup):
     e1 = np.cross(n, [1, 0, 0] if abs(n[0]) < 0.7 else [0, 1, 0])
     e1 /= np.linalg.norm(e1)
     _, lean = posture(n, e1, 0.0, f)
-    intervals = axis_intervals(float(setup @ n), float(setup @ lean), math.cos(limit), 0.0, math.pi / 2)
+    intervals = axis_intervals(n, lean, ranges_of(Machine(tilt_limit=limit), setup, PostureRange()))
     tilts = np.linspace(0, math.pi / 2, 400)
     angle = np.cos(tilts) * (n @ setup) + np.sin(tilts) * (lean @ setup) - math.cos(limit)
     within = np.zeros(len(tilts), bool)

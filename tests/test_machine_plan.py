@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import cad_parts
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 import shapes
 from test_tool_closed_forms import floor, wall
 
-from plan_cutters import Cutter, Machine, Options, plan
+from plan_cutters import Cutter, Machine, Options, plan, posture_map
 from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.machine import builtin_machines
 from plan_cutters.domain.placement import frame_of
@@ -59,6 +60,25 @@ def test_a_machine_holds_no_more_than_none_and_no_less_than_its_cone():
     assert (table.verdict == cone.verdict).all()
     assert (free.reached | ~table.reached).all()
     assert free.reached.sum() > table.reached.sum() > 0
+
+
+def test_the_map_of_one_point_knows_the_machine():
+    """The same free tilts as under the plain limit that it amounts to; and none that it cannot hold."""
+    tilting = Axis("A", "rotary", "part", (1, 0, 0), (-math.radians(8), math.radians(8)))
+    table = Machine("table", axes=(Axis("C", "rotary", "part", (0, 0, 1)), tilting))
+    asked = {"point": (0, 0, 0), "cutter": CUTTER, "rotations": [0.0, 0.7, 2.0], "setup": (0.05, 0, 1)}
+    one, other = (posture_map(floor(), machine=machine, **asked) for machine in (table, "tilt:8"))
+    for mine, theirs in zip(one.free + one.axis_limit, other.free + other.axis_limit, strict=True):
+        assert mine == pytest.approx(theirs, abs=1e-6)
+    assert all(len(intervals) for intervals in one.axis_limit)
+    uneven = replace(tilting, limits=(0.0, math.radians(30)))
+    machine = Machine("uneven", axes=(replace(table.axes[0], limits=(-1.0, 1.0)), uneven))
+    found = posture_map(floor(), machine=machine, **asked)
+    kinematics = machine.kinematics(frame_of(np.array(asked["setup"]) / np.linalg.norm(asked["setup"])))
+    assert any(len(intervals) for intervals in found.free)
+    for i, intervals in enumerate(found.free):
+        for tilt in intervals.ravel().tolist():
+            assert kinematics.allows(found.axis(i, tilt)[None])[0]
 
 
 def test_an_underside_does_not_change_the_choice():

@@ -25,11 +25,13 @@ from cad_io import read_part
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Machine, plan
 from plan_cutters.domain.assembly import assembly
+from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import INACCESSIBLE
 from plan_cutters.kernels import hit, search
 from plan_cutters.kernels.arcs import point_arc
 from plan_cutters.kernels.points import axis_intervals, local_gouge_range
 from plan_cutters.kernels.rows import Frame
+from plan_cutters.scene.conditions import ranges_of
 from plan_cutters.scene.obstacles import Obstacles
 
 ROUNDING = 1e-13
@@ -175,7 +177,7 @@ def test_axis_arcs_by_the_angle_itself(n, f, m, limit):
     setup = np.array([math.cos(m), math.sin(m), 0.0])
     _, lean = posture(normal, first, 0.0, f)
     bound = math.cos(limit)
-    intervals = axis_intervals(float(setup @ normal), float(setup @ lean), bound, 0.0, RIGHT)
+    intervals = axis_intervals(normal, lean, ranges_of(Machine(tilt_limit=limit), setup, PostureRange()))
     ends = intervals.ravel()[:, None] + np.array([-1e-6, -1e-9, 0.0, 1e-9, 1e-6])
     tilts = np.clip(np.concatenate([np.linspace(0, RIGHT, 181), ends.ravel()]), 0, RIGHT)
     cosine = np.cos(tilts) * (normal @ setup) + np.sin(tilts) * (lean @ setup)

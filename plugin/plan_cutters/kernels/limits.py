@@ -172,6 +172,17 @@ def hold(n, f, rotary, intervals, count):  # type: ignore[no-untyped-def]
     return kept
 
 
+@kernel
+def held_tilts(n, f, ranges, low, high, intervals):  # type: ignore[no-untyped-def]
+    """Write the tilts between two, rad, at which the machine holds the axis, by its plain limit and its rotary axes; how many
+    intervals.
+
+    `n`, `f` and `intervals` as for `hold`.
+    """
+    count = axis_arcs(dot(ranges.setup, n), dot(ranges.setup, f), ranges.limit_cos, low, high, intervals)
+    return hold(n, f, ranges.rotary, intervals, count) if limited(ranges.rotary) else count
+
+
 @entry
 def any_axis(rows, normal, direction_max, ranges, low, high, held):  # type: ignore[no-untyped-def]
     """Write whether the axis limits leave any tilt between two, rad, at any rotation: held (n,) of the samples `rows`."""
@@ -183,9 +194,6 @@ def any_axis(rows, normal, direction_max, ranges, low, high, held):  # type: ign
         for rotation in range(len(ranges.rotation_cos)):
             cosine, sine = turn_of(n, e1, ranges, rotation)
             lean_frame(e1, e2, cosine, sine, f, t)
-            count = axis_arcs(dot(ranges.setup, n), dot(ranges.setup, f), ranges.limit_cos, low, high, intervals)
-            if limited(ranges.rotary):
-                count = hold(n, f, ranges.rotary, intervals, count)
-            if count > 0:
+            if held_tilts(n, f, ranges, low, high, intervals) > 0:
                 held[row] = True
                 break

@@ -2,11 +2,10 @@
 
 import numpy as np
 
-from plan_cutters.kernels.arcs import axis_arcs
 from plan_cutters.kernels.jit import entry
-from plan_cutters.kernels.limits import hold, limited
+from plan_cutters.kernels.limits import held_tilts
 from plan_cutters.kernels.search import ACCESSIBLE, INACCESSIBLE, UNDECIDED
-from plan_cutters.kernels.vectors import cross, dot, lean_frame
+from plan_cutters.kernels.vectors import cross, lean_frame
 
 
 @entry
@@ -39,10 +38,7 @@ def mask(rows, normal, direction_max, ranges, turns, offset, free, undecided, fo
             if offset[place] == offset[place + 1] and not unsure:
                 continue
             lean_frame(e1, e2, ranges.rotation_cos[rotation], ranges.rotation_sin[rotation], f, t)
-            held = axis_arcs(dot(ranges.setup, n), dot(ranges.setup, f), ranges.limit_cos, ranges.tilt_low, ranges.tilt_high,
-                             intervals)  # fmt: skip
-            if limited(ranges.rotary):
-                held = hold(n, f, ranges.rotary, intervals, held)
+            held = held_tilts(n, f, ranges, ranges.tilt_low, ranges.tilt_high, intervals)
             if held == 0:
                 continue
             widest, tilt = -1.0, 0.0

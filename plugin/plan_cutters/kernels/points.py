@@ -2,7 +2,10 @@
 
 import numpy as np
 
-from plan_cutters.kernels.arcs import axis_arcs, local_gouge
+from cad_io.arrays import Floats
+from plan_cutters.kernels.arcs import local_gouge
+from plan_cutters.kernels.limits import held_tilts
+from plan_cutters.kernels.rows import Ranges
 
 
 def local_gouge_range(
@@ -15,7 +18,7 @@ def local_gouge_range(
     return float(least), float(most)
 
 
-def axis_intervals(along_n: float, along_f: float, limit_cos: float, low: float, high: float) -> np.ndarray:
-    """Tilts (k, 2) within [low, high] that an axis limit allows; arguments as in `arcs.axis_arcs`."""
-    out = np.empty((3, 2))
-    return out[: axis_arcs(along_n, along_f, limit_cos, low, high, out)].copy()
+def axis_intervals(normal: Floats, lean: Floats, ranges: Ranges) -> Floats:
+    """Tilts (k, 2) within those asked for that a machine's limits leave at a normal and a lean direction (3,)."""
+    out = np.empty((64, 2))
+    return out[: held_tilts(normal, lean, ranges, ranges.tilt_low, ranges.tilt_high, out)].copy()

@@ -4,15 +4,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.arcs import axis_arcs, local_gouge
+from plan_cutters.kernels.arcs import local_gouge
 from plan_cutters.kernels.hit import BODY, OFFSET, A, P, X, scratch, stand, tree_hit
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.limits import hold, limited, turn_of
+from plan_cutters.kernels.limits import held_tilts, turn_of
 from plan_cutters.kernels.material import outside, winding
 from plan_cutters.kernels.pieces import FLUTES, PART
 from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.tool_arcs import ARCS, arc_about, closed, forbidden
-from plan_cutters.kernels.vectors import dot, lean_frame
+from plan_cutters.kernels.vectors import lean_frame
 
 # As in `plan_cutters.domain.verdicts`, which must not load the compiler; a test holds them together.
 AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, COLLISION, BURIED, NECK, SHANK, HOLDER, ATTRIBUTES = 0, 1, 2, 3, 4, 6, 7, 8, 9
@@ -161,9 +161,7 @@ def permitted(contacts, row, ranges, rotation, tool, mode, f, intervals):  # typ
     low, high = max(ranges.tilt_low, tool.mode[mode, TILT_FROM]), min(ranges.tilt_high, tool.mode[mode, TILT_TO])
     if low > high:
         return 0.0, 0, 0
-    count = axis_arcs(dot(ranges.setup, n), dot(ranges.setup, f), ranges.limit_cos, low, high, intervals)
-    if limited(ranges.rotary):
-        count = hold(n, f, ranges.rotary, intervals, count)
+    count = held_tilts(n, f, ranges, low, high, intervals)
     width = 0.0
     for i in range(count):
         width += intervals[i, 1] - intervals[i, 0]

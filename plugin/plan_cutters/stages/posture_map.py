@@ -14,8 +14,8 @@ from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.pieces import FLUTES, HOLDER, NECK, SHANK
-from plan_cutters.domain.posture import lean
-from plan_cutters.scene.conditions import tool_of
+from plan_cutters.domain.posture import PostureRange, lean
+from plan_cutters.scene.conditions import ranges_of, tool_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 
@@ -117,6 +117,7 @@ def posture_map_of(
 
     contact, cutter, (low, high) = ask.contact, ask.cutter, ask.tilt
     p, n, e1 = contact.point[0], contact.normal[0], contact.direction_max[0]
+    ranges = ranges_of(ask.machine, ask.setup, PostureRange(ask.tilt))
     whole, (light, heavy) = around.may_be, tools
     near, far = _rear(whole.triangles, p, n, cutter.radius)
     alone = {"rear_gouge": (near, light.only(FLUTES)), "collision": (far, light.only(FLUTES)),
@@ -130,7 +131,7 @@ def posture_map_of(
         f = lean(n, e1, float(rotation))
         bounds = _gouge_bounds(contact.curvature[0], float(rotation), light)
         gouge[i] = (bounds[:, 0].min(), bounds[:, 1].max()) if len(bounds) else (np.nan, np.nan)
-        allowed = axis_intervals(float(ask.setup @ n), float(ask.setup @ f), ask.machine.limit_cos, low, high)
+        allowed = axis_intervals(n, f, ranges)
         axis.append(complement(allowed, low, high))
         no_contact.append(complement(touching, low, high))
         for word, (obstacles, tool) in alone.items():
