@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cad_io import Part, read_part
 from cad_io.read.read import TIMEOUT
@@ -251,7 +252,13 @@ def assemble(
         entries = [e.model_copy(update={"area": area}) if e.id == best else e for e in entries]
     with clock.stage("plan", shown=False):
         document = plan_of(
-            ready, entries, selected, chosen, started or datetime.datetime.now(datetime.UTC), answers, _setups(ready)
+            ready,
+            entries,
+            selected,
+            chosen,
+            started or datetime.datetime.now(datetime.UTC),
+            answers,
+            _setups(ready, within),
         )
     return Result(
         clock.stamp(document),
@@ -267,16 +274,15 @@ def assemble(
     )
 
 
-def _setups(ready: Prepared) -> list[SetupEntry]:
-    """How much would be within the axis limits in this setup, and in each along the part's own axes."""
+def _setups(ready: Prepared, here: NDArray[np.bool_]) -> list[SetupEntry]:
+    """How much is within the axis limits in this setup, `here` (n,), and would be in each along the part's own axes."""
     if not ready.conditions.machine.limited:
         return []
     judged, area = ready.samples.unjudged < 0, ready.samples.area
     found = []
     for axis in dict.fromkeys((ready.scene.setup, *AXES)):
-        within = within_limits(
-            ready.samples, ready.cutters, ready.conditions, None if axis == ready.scene.setup else axis
-        )
+        own = axis == ready.scene.setup
+        within = here if own else within_limits(ready.samples, ready.cutters, ready.conditions, axis)
         share = float(area[within].sum() / area[judged].sum()) if area[judged].sum() > 0.0 else 0.0
         found.append(SetupEntry(axis=axis, within=int(within.sum()), share=min(1.0, share)))
     return found

@@ -4,6 +4,7 @@
 """
 
 import math
+import re
 import reprlib
 from collections.abc import Iterable, Mapping, Set
 from numbers import Integral, Real
@@ -13,6 +14,7 @@ import numpy as np
 
 from plan_cutters.errors import OptionError
 
+_RADIANS = re.compile(r"\s*(\S+)\s*rad\s*")
 #: Added to limits of angles, for what is left when degrees were turned into single-precision radians.
 _ROUNDING = 1e-6
 
@@ -92,3 +94,13 @@ def shown(value: Any) -> str:
     if value is None or isinstance(value, str | int):
         return " ".join(reprlib.repr(str(value) if isinstance(value, str) else value).split())
     return f"a value of type {type(value).__name__}"
+
+
+def radians_said(text: str) -> float:
+    """An angle that is written as `0.5 rad`; nan for any other text, and for one that is not finite."""
+    match = _RADIANS.fullmatch(text)
+    try:
+        found = float(match[1]) if match else math.nan
+    except ValueError:
+        return math.nan
+    return found if math.isfinite(found) else math.nan

@@ -7,39 +7,20 @@ import base64
 import binascii
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from plan_cutters.errors import LibraryError
+from plan_cutters.files.formats import Foreign, Format, is_blank, refused, unknown
 from plan_cutters.library import freecad, fusion_csv, fusion_json, hsmworks, linuxcnc, own_toml
 from plan_cutters.library.files import Content
 from plan_cutters.library.listed import Found
 from plan_cutters.library.milling import Ask
 
 
-@dataclass(frozen=True, slots=True)
-class Format:
-    """A format that is read: its name, its usual suffixes, how its content is recognised and read."""
-
-    name: str
-    suffixes: tuple[str, ...]
-    recognises: Callable[[Content], bool]
-    read: Callable[[Content, Ask], Found]
-
-
-@dataclass(frozen=True, slots=True)
-class Foreign:
-    """What is recognised but not read: its name, its content, and what to do instead."""
-
-    name: str
-    recognises: Callable[[Content], bool]
-    instead: str
-
-
 def _plain(read: Callable[[Content], Found]) -> Callable[[Content, Ask], Found]:
     return lambda content, _: read(content)
 
 
-FORMATS = (
+FORMATS: tuple[Format[Ask, Found], ...] = (
     Format("Fusion tools (zip)", (".tools",), fusion_json.is_zip, _plain(fusion_json.read_zip)),
     Format("Fusion JSON", (".json",), fusion_json.is_json, _plain(fusion_json.read_json)),
     Format("Fusion CSV", (".csv",), fusion_csv.is_csv, _plain(fusion_csv.read_csv)),
@@ -111,7 +92,7 @@ FOREIGN = (
 )  # fmt: skip
 
 
-def recognised(content: Content) -> Format:
+def recognised(content: Content) -> Format[Ask, Found]:
     """The format of a file.
 
     Raises
@@ -119,14 +100,12 @@ def recognised(content: Content) -> Format:
     LibraryError
         It is none that is read; by name, where it is known.
     """
-    if not content.data.strip(b" \t\r\n\0\xef\xbb\xbf\xff\xfe"):
+    if is_blank(content):
         raise LibraryError("is empty", file=content.name)
     for form in FORMATS:
         if form.recognises(content):
             return form
-    for foreign in FOREIGN:
-        if foreign.recognises(content):
-            raise LibraryError(f"is {foreign.name}, which is not read: {foreign.instead}", file=content.name)
+    refused(content, FOREIGN)
     if content.members is not None:
         raise LibraryError(
             "is a zip archive without tools.json, no Fusion tool library; give what is in it", file=content.name
@@ -140,5 +119,4 @@ def recognised(content: Content) -> Format:
             'is JSON, but neither a Fusion library ({"data": [tools]}) nor of FreeCAD (tools, parameter, profile)',
             file=content.name,
         )
-    names = ", ".join(f"{form.name} ({' '.join(form.suffixes)})" for form in FORMATS)
-    raise LibraryError(f"is no tool library that is known; read are {names}", file=content.name)
+    raise unknown(content, FORMATS)

@@ -79,27 +79,20 @@ def _tool(item: dict[str, Any], place: str) -> Listed:
     name = name_of(item.get("description")) or name_of(item.get("product-id"))
     tool = Listed(place, name=name, kind=name_of(item.get("type")))
 
-    def tried(make: Any, otherwise: Any) -> Any:
-        try:
-            return make()
-        except (FaultError, CutterError) as fault:
-            tool.faults.append(str(fault))
-            return otherwise
-
-    tool.unit, tool.scale = tried(lambda: unit_of(item.get("unit"), "unit"), ("", 1.0))
-    post = tried(lambda: _table(item, "post-process"), {})
-    tool.number = tried(lambda: whole_of(post.get("number"), "post-process.number"), None)
-    geometry = tried(lambda: _table(item, "geometry"), {})
+    tool.unit, tool.scale = tool.tried(lambda: unit_of(item.get("unit"), "unit"), ("", 1.0))
+    post = tool.tried(lambda: _table(item, "post-process"), {})
+    tool.number = tool.tried(lambda: whole_of(post.get("number"), "post-process.number"), None)
+    geometry = tool.tried(lambda: _table(item, "geometry"), {})
     for key, word in GEOMETRY:
         tool.take(key, geometry.get(word), word)
-    shaft = tried(lambda: _table(item, "shaft"), {})
+    shaft = tool.tried(lambda: _table(item, "shaft"), {})
     if shaft.get("segments"):
-        tool.shaft = tried(lambda: _sections(shaft, tool.scale, "shaft.segments"), [])
-    holder = tried(lambda: _table(item, "holder"), {})
+        tool.shaft = tool.tried(lambda: _sections(shaft, tool.scale, "shaft.segments"), [])
+    holder = tool.tried(lambda: _table(item, "holder"), {})
     if holder.get("segments"):
         # A holder has its own unit.
-        scale = tried(lambda: unit_of(holder.get("unit", item.get("unit")), "holder.unit")[1], tool.scale)
-        tool.holder = tried(lambda: _holder(holder, scale, "holder.segments"), None)
+        scale = tool.tried(lambda: unit_of(holder.get("unit", item.get("unit")), "holder.unit")[1], tool.scale)
+        tool.holder = tool.tried(lambda: _holder(holder, scale, "holder.segments"), None)
         tool.take("LH", holder.get("gaugeLength"), "holder.gaugeLength")
         if "LH" in tool.values:
             tool.values["LH"] = round(tool.values["LH"] / tool.scale * scale, 9)

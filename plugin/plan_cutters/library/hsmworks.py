@@ -1,7 +1,6 @@
 """HSMWorks tool libraries, `.hsmlib`: XML, mostly in UTF-16, of the same tools as Fusion has."""
 
 import re
-from typing import Any
 
 from plan_cutters.domain.holder import Holder, Stage
 from plan_cutters.errors import CutterError, LibraryError
@@ -61,28 +60,21 @@ def _tool(element: Element, place: str) -> Listed:
     description = element.first("description")
     tool = Listed(place, name=name_of(description.text if description else ""), kind=name_of(element.given.get("type")))
 
-    def tried(make: Any, otherwise: Any) -> Any:
-        try:
-            return make()
-        except (FaultError, CutterError) as fault:
-            tool.faults.append(str(fault))
-            return otherwise
-
-    tool.unit, tool.scale = tried(lambda: unit_of(element.given.get("unit"), "unit"), ("", 1.0))
+    tool.unit, tool.scale = tool.tried(lambda: unit_of(element.given.get("unit"), "unit"), ("", 1.0))
     nc, body, holder, shaft = (element.first(tag) for tag in ("nc", "body", "holder", "shaft"))
     if nc is not None:
-        tool.number = tried(lambda: whole_of(nc.given.get("number"), "nc number"), None)
+        tool.number = tool.tried(lambda: whole_of(nc.given.get("number"), "nc number"), None)
     for key, word in _BODY:
         tool.take(key, body.given.get(word) if body else None, word, _number)
     if shaft is not None:
-        tool.shaft = tried(lambda: _sections(shaft, tool.scale, "shaft section"), [])
+        tool.shaft = tool.tried(lambda: _sections(shaft, tool.scale, "shaft section"), [])
     if holder is not None and holder.first("section") is not None:
         scale = (
-            tried(lambda: unit_of(holder.given["unit"], "holder unit")[1], 1.0)
+            tool.tried(lambda: unit_of(holder.given["unit"], "holder unit")[1], 1.0)
             if "unit" in holder.given
             else tool.scale
         )
-        tool.holder = tried(lambda: _holder(holder, scale), None)
+        tool.holder = tool.tried(lambda: _holder(holder, scale), None)
         tool.take("LH", holder.given.get("gauge-length"), "holder gauge-length", _number)
         if "LH" in tool.values:
             tool.values["LH"] = round(tool.values["LH"] / tool.scale * scale, 9)

@@ -2,12 +2,13 @@
 
 import math
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.holder import Holder, Stage
+from plan_cutters.errors import CutterError
 from plan_cutters.library.records import Entry
 
 #: mm in one of each, by the words that formats have for units.
@@ -128,6 +129,14 @@ class Listed:
     holder: Holder | None = None
     faults: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+
+    def tried(self, make: Callable[[], Any], otherwise: Any) -> Any:
+        """What is made of a part of the tool; where that cannot be read, the fault is kept and `otherwise` stands for it."""
+        try:
+            return make()
+        except (FaultError, CutterError) as fault:
+            self.faults.append(str(fault))
+            return otherwise
 
     def word(self, key: str) -> str:
         """What the file calls a dimension."""

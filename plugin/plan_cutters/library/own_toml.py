@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from plan_cutters.domain.checks import shown
+from plan_cutters.domain.checks import radians_said, shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder, Stage
 from plan_cutters.domain.shapes import SAME, flute_length
@@ -22,7 +22,6 @@ _LOOKS = re.compile(
     r"^[ \t]*(\[\[?[ \t]*(tool|holder)s?[ \t]*\]\]?[ \t]*(#.*)?\r?$|unit[ \t]*=)", re.MULTILINE | re.IGNORECASE
 )
 _TABLE = re.compile(r"^[ \t]*\[\[[ \t]*tool[ \t]*\]\]", re.MULTILINE)
-_RADIANS = re.compile(r"\s*(\S+)\s*rad\s*")
 _ENDS = ("flat", "bull", "ball", "taper", "dovetail", "end")
 
 #: A tool's number is no larger, as in all formats.
@@ -292,12 +291,8 @@ class _Reading:
                 raise LackError("TA is missing: the angle of its flank from the axis, degrees")
             return 0.0
         if isinstance(given, str):
-            match = _RADIANS.fullmatch(given)
-            try:
-                found = float(match[1]) if match else math.nan
-            except ValueError:
-                found = math.nan
-            if not math.isfinite(found):
+            found = radians_said(given)
+            if math.isnan(found):
                 raise FaultError(f"TA is {shown(given)}: a half angle in degrees, or as 0.0873 rad")
         else:
             found = math.radians(given)

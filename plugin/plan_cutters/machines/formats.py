@@ -5,33 +5,13 @@ What a file holds decides, not how it is called.
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from plan_cutters.domain.machine import Machine
+from plan_cutters.files.formats import Foreign, Format, is_blank, refused, unknown
 from plan_cutters.machines import freecad, fusion, linuxcnc, mtconnect, own
 from plan_cutters.machines.files import Added, Content, fault
 
-
-@dataclass(frozen=True, slots=True)
-class Format:
-    """A format that is read: its name, its usual suffixes, how its content is recognised and read."""
-
-    name: str
-    suffixes: tuple[str, ...]
-    recognises: Callable[[Content], bool]
-    read: Callable[[Content, Added], Machine]
-
-
-@dataclass(frozen=True, slots=True)
-class Foreign:
-    """What is recognised but not read: its name, its content, and what to do instead."""
-
-    name: str
-    recognises: Callable[[Content], bool]
-    instead: str
-
-
-FORMATS = (
+FORMATS: tuple[Format[Added, Machine], ...] = (
     Format("plan-cutters TOML", (".toml",), own.is_toml, own.read_toml),
     Format("plan-cutters JSON", (".json",), own.is_json, own.read_json),
     Format("FreeCAD machine", (".fcm",), freecad.is_fcm, freecad.read_fcm),
@@ -66,9 +46,9 @@ FOREIGN = (
             "give the answer to a probe (MTConnectDevices)"),
     Foreign("a PowerMill machine", _suffix(".mtd"), _TOML),
     Foreign("a LinuxCNC HAL file", _suffix(".hal", ".tcl"), "give the .ini that names it"),
-    Foreign("a LinuxCNC tool table", _suffix(".tbl"), "give it with --library, and the .ini as the machine"),
+    Foreign("a LinuxCNC tool table", _suffix(".tbl"), "give the .ini as the machine; its tools go with --cutters"),
     Foreign("a Fusion tool library", lambda c: isinstance(c.json, dict) and isinstance(c.json.get("data"), list),
-            "give it with --library"),
+            "give it with --cutters"),
     Foreign("an ISO 10303-21 file (STEP)", lambda c: c.head.startswith("iso-10303-21"), _TOML),
     Foreign("a zip archive", lambda c: c.data.startswith(b"PK\x03\x04"), "give the machine that is in it"),
     Foreign("an SQLite database", lambda c: c.data.startswith(b"SQLite format 3\0"), _TOML),
@@ -76,7 +56,7 @@ FOREIGN = (
 )  # fmt: skip
 
 
-def recognised(content: Content) -> Format:
+def recognised(content: Content) -> Format[Added, Machine]:
     """The format of a file.
 
     Raises
@@ -84,17 +64,13 @@ def recognised(content: Content) -> Format:
     MachineError
         It is none that is read; by name, where it is known.
     """
-    if not content.data.strip(b" \t\r\n\0\xef\xbb\xbf\xff\xfe"):
+    if is_blank(content):
         raise fault(content, "is empty")
-    for foreign in FOREIGN[:1]:
-        if foreign.recognises(content):
-            raise fault(content, f"is {foreign.name}, which is not read: {foreign.instead}")
+    refused(content, FOREIGN[:1])
     for form in FORMATS:
         if form.recognises(content):
             return form
-    for foreign in FOREIGN[1:]:
-        if foreign.recognises(content):
-            raise fault(content, f"is {foreign.name}, which is not read: {foreign.instead}")
+    refused(content, FOREIGN[1:])
     if content.head[:1] in ("{", "[") and content.json is None:
         raise content.broken_json()
     if content.head.startswith("<"):
@@ -103,5 +79,4 @@ def recognised(content: Content) -> Format:
         raise fault(
             content, "is JSON, but no machine of Fusion (kinematics), FreeCAD (machine.axes) or ours (part_chain)"
         )
-    names = dict.fromkeys(f"{form.name} ({' '.join(form.suffixes)})" for form in FORMATS)
-    raise fault(content, f"is no machine file that is known; read are {', '.join(names)}")
+    raise unknown(content, FORMATS)

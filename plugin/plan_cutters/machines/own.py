@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from plan_cutters.domain.axis import Axis, Carried
-from plan_cutters.domain.checks import shown
+from plan_cutters.domain.checks import radians_said, shown
 from plan_cutters.domain.machine import Machine
 from plan_cutters.errors import MachineError
 from plan_cutters.machines.chain import ANGLES, LENGTHS, opposite, scaled
@@ -17,7 +17,6 @@ from plan_cutters.machines.files import Added, Content
 
 FORMAT = "plan-cutters-machine"
 _LOOKS = re.compile(r"^\s*(format\s*=\s*[\"']plan-cutters-machine|\[\[\s*(part_chain|tool_chain)\s*\]\])", re.MULTILINE)
-_RADIANS = re.compile(r"\s*(\S+)\s*rad\s*")
 
 Number = Annotated[float, Field(allow_inf_nan=False, strict=True)]
 #: A text gives radians, as "0.1 rad": for angles that no number of degrees turns into.
@@ -151,12 +150,8 @@ def _axis(table: AxisTable, carries: Carried, sign: str, length: float, angle: f
 
 def _size(given: float | str, size: float, what: str, turns: bool = True) -> float:
     if isinstance(given, str):
-        match = _RADIANS.fullmatch(given)
-        try:
-            found = float(match[1]) if match else math.nan
-        except ValueError:
-            found = math.nan
-        if not math.isfinite(found) or not turns:
+        found = radians_said(given)
+        if math.isnan(found) or not turns:
             raise MachineError(
                 f"{what} is {shown(given)}: it must be a number{', or an angle as 0.5 rad' if turns else ''}"
             )

@@ -31,15 +31,19 @@ def within_limits(
     setup : (float, float, float), optional
         Another setup axis than that of the conditions, a unit direction.
     """
-    from plan_cutters.kernels.limits import any_axis
-
     if setup is not None:
         conditions = replace(conditions, setup=np.array(setup), x=None)
     ranges, held, rows = conditions.ranges, np.zeros(len(samples), bool), np.flatnonzero(samples.unjudged < 0)
     touching = [mode for cutter in cutters for mode in modes(cutter)]
     low = max(ranges.tilt_low, min(mode.low for mode in touching))
     high = min(ranges.tilt_high, max(mode.high for mode in touching))
-    if low <= high:
-        in_chunks(lambda piece: any_axis(piece, samples.normal, samples.direction_max, ranges, low, high, held), rows,
-                  conditions.jobs)  # fmt: skip
+    if low > high:
+        return held
+    if not conditions.machine.limited:
+        held[rows] = True
+        return held
+    from plan_cutters.kernels.limits import any_axis
+
+    in_chunks(lambda piece: any_axis(piece, samples.normal, samples.direction_max, ranges, low, high, held), rows,
+              conditions.jobs)  # fmt: skip
     return held
