@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters.domain.axis import Axis, Carried, direction_of
@@ -120,6 +121,12 @@ class Machine:
             np.array(self.tool_axis),
         )
         return found.seen_from(np.asarray(setup).T)
+
+    def allows(self, axis: Floats, setup: Floats) -> NDArray[np.bool_]:
+        """Which tool axes (n, 3) of the part it can hold, by its plain limit and its rotary axes; `setup` as for `kinematics`."""
+        held = axis @ setup[2] >= self.limit_cos
+        found = self.kinematics(setup)
+        return np.asarray(held if found is None else held & found.allows(axis))
 
     @classmethod
     def parse(cls, text: str) -> "Machine":

@@ -85,9 +85,7 @@ class Conditions(Record):
 
     def upright(self, normal: Floats) -> NDArray[np.bool_]:
         """At which normals (n, 3) the machine can hold the axis along the normal, and tilt 0 was asked for."""
-        found = self.postures.upright & (normal @ self.setup >= self.machine.limit_cos)
-        kinematics = self.kinematics
-        return np.asarray(found if kinematics is None else found & kinematics.allows(normal))
+        return self.machine.allows(normal, frame_of(self.setup, self.x)) & self.postures.upright
 
 
 def ranges_of(machine: Machine, setup: Floats, postures: PostureRange, x: Floats | None = None) -> Ranges:

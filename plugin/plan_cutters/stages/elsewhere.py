@@ -36,13 +36,10 @@ def in_setup(
     """
     axis, across = np.array(setup), None if x is None else np.array(x)
     machine, known = ready.conditions.machine, blank(len(ready.samples))
-    kinematics = machine.kinematics(frame_of(axis, across))
     rows = np.flatnonzero(reach.reached)
-    held = reach.axis[rows] @ axis >= machine.limit_cos
     # Where fewer than two axes turn the tool, rotations are numbered by the axes that there are in a setup.
-    if kinematics is not None:
-        held &= kinematics.allows(reach.axis[rows]) & (len(machine.rotary) == 2)
-    rows = rows[held]
+    few = machine.turns and len(machine.rotary) < 2
+    rows = rows[:0] if few else rows[machine.allows(reach.axis[rows], frame_of(axis, across))]
     known.verdict[rows] = ACCESSIBLE
     for name in ("axis", "lean", "tilt", "rotation"):
         getattr(known, name)[rows] = getattr(reach, name)[rows]

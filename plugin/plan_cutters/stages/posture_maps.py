@@ -139,10 +139,7 @@ class PostureMaps(Record):
         in_chunks(lambda piece: mask(piece, *maps, found), rows, jobs)
         upright = self.verdict == INTERFERENCE_FREE
         if low <= _END and upright.any():
-            kinematics = machine.kinematics(frame)
-            upright &= self.normal @ axis >= machine.limit_cos
-            if kinematics is not None:
-                upright[upright] = kinematics.allows(self.normal[upright])
+            upright[upright] = machine.allows(self.normal[upright], frame)
             reach.verdict[upright] = INTERFERENCE_FREE
             reach.axis[upright], reach.lean[upright] = self.normal[upright], self.direction_max[upright]
             reach.tilt[upright], reach.rotation[upright] = 0.0, 0
