@@ -2,7 +2,7 @@
 
 import { Matrix4, OrthographicCamera, Vector3 } from "three";
 import type { Vec } from "./meta.ts";
-import { across, cross, DEG, dot, mixed, plus, RAD, unit } from "./vectors.ts";
+import { across, cross, DEG, dot, mixed, plus, RAD, scaled, unit } from "./vectors.ts";
 
 export interface Aim {
   target: Vec;
@@ -31,6 +31,7 @@ export class Turntable {
   aim: Aim;
   private aspect = 1;
   private flight = 0;
+  private moved = false;
   private readonly x: Vec;
   private readonly y: Vec;
 
@@ -41,22 +42,40 @@ export class Turntable {
     /** Radius of all that is drawn, mm. */
     readonly radius: number,
     private readonly changed: () => void,
+    /** All vertices, three numbers each: what is to fit into the picture. */
+    private readonly vertices: () => Float32Array,
   ) {
     const first = x ?? (Math.abs(z[2]) > 0.9 ? [1, 0, 0] : across(z));
     this.x = unit(plus(first as Vec, z, -dot(first as Vec, z)));
     this.y = cross(z, this.x);
-    this.aim = this.fitted(-50, 32);
+    this.aim = { target: centre, turn: -50, rise: 32, half: radius };
     this.apply();
   }
 
+  /** All that is drawn, just within the picture. */
   fitted(turn: number, rise: number): Aim {
-    return { target: this.centre, turn, rise, half: this.radius * 1.06 * Math.max(1, 1 / this.aspect) };
+    const { up, right } = this.frame({ target: this.centre, turn, rise, half: 1 });
+    const vertices = this.vertices();
+    if (!vertices.length) return { target: this.centre, turn, rise, half: this.radius };
+    let [left, bottom, most, top] = [Infinity, Infinity, -Infinity, -Infinity];
+    for (let i = 0; i < vertices.length; i += 3) {
+      const x = vertices[i] * right[0] + vertices[i + 1] * right[1] + vertices[i + 2] * right[2];
+      const y = vertices[i] * up[0] + vertices[i + 1] * up[1] + vertices[i + 2] * up[2];
+      if (x < left) left = x;
+      if (x > most) most = x;
+      if (y < bottom) bottom = y;
+      if (y > top) top = y;
+    }
+    const shift = (along: Vec, to: number): Vec => scaled(along, to - dot(this.centre, along));
+    const middle = plus(plus(this.centre, shift(right, (left + most) / 2)), shift(up, (bottom + top) / 2));
+    const half = 0.53 * Math.max(top - bottom, (most - left) / this.aspect, 1e-3 * this.radius);
+    return { target: middle, turn, rise, half };
   }
 
   resize(aspect: number): void {
-    const whole = this.aim.half / Math.max(1, 1 / this.aspect);
+    // Until one has moved, all of it is in the picture.
     this.aspect = aspect;
-    this.aim = { ...this.aim, half: whole * Math.max(1, 1 / aspect) };
+    if (!this.moved) this.aim = this.fitted(this.aim.turn, this.aim.rise);
     this.apply();
   }
 
@@ -110,6 +129,7 @@ export class Turntable {
   }
 
   set(part: Partial<Aim>): void {
+    this.moved = true;
     cancelAnimationFrame(this.flight);
     this.aim = { ...this.aim, ...part };
     this.apply();
@@ -117,6 +137,7 @@ export class Turntable {
 
   /** Go there in a short flight, or at once where the system asks for no motion. */
   fly(part: Partial<Aim>): void {
+    this.moved = true;
     cancelAnimationFrame(this.flight);
     const from = this.aim;
     const to = { ...from, ...part };

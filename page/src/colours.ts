@@ -66,8 +66,8 @@ export const spoken = (word: string): string => WORDS[word] ?? word.replaceAll("
 /** Causes: what forbids a posture, on the map and on the surface. */
 export const CAUSES: Record<string, [string, Pattern]> = {
   free: ["#009E73", "plain"],
-  axis_limit: ["#5b6470", "lines"],
-  no_contact: ["#c3c7cc", "plain"],
+  axis_limit: ["#a9b1b9", "lines"],
+  no_contact: ["#d7dade", "plain"],
   local_gouge: ["#D55E00", "hatch"],
   rear_gouge: ["#E69F00", "back"],
   collision: ["#b5446e", "cross"],

@@ -1,6 +1,7 @@
 // The tables and lists of the page, made alive: cutters switch, spots fly the camera, faces light up.
 
 import type { App } from "./app.ts";
+import { spoken } from "./colours.ts";
 import { button, el } from "./dom.ts";
 import type { Vec } from "./meta.ts";
 
@@ -110,7 +111,7 @@ export class SpotList {
     this.app.select(spot.sample, spot);
     item.scrollIntoView({ block: "nearest" });
     flyTo(this.app, spot.point, this.app.samples.normal(spot.sample));
-    this.app.say(`Spot ${this.at + 1} of ${this.mine.length}, ${spot.face}: ${spot.text}`);
+    this.app.say(`Spot ${this.at + 1} of ${this.mine.length}: ${spot.face}, ${spoken(spot.reason)}`);
   }
 }
 

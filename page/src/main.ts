@@ -6,6 +6,7 @@ import { Clip } from "./clip.ts";
 import { colourOf, modesOf } from "./colours.ts";
 import { readArrays, readMeta } from "./decode.ts";
 import { button, el } from "./dom.ts";
+import { borders } from "./edges.ts";
 import { helpDialog, listenKeys } from "./keys.ts";
 import { legend } from "./legend.ts";
 import { enhanceCutters, FaceTable, SpotList } from "./lists.ts";
@@ -20,6 +21,8 @@ import { Stills } from "./print.ts";
 import { Samples } from "./samples.ts";
 import { Stage } from "./stage.ts";
 import { ToolView } from "./tool.ts";
+
+const NONE = new Float32Array();
 
 async function start(): Promise<void> {
   const viewer = document.getElementById("viewer");
@@ -43,8 +46,9 @@ async function start(): Promise<void> {
 
   const meta = readMeta();
   let stage: Stage;
+  let drawn: Drawn | null = null;
   try {
-    stage = new Stage(canvas, meta);
+    stage = new Stage(canvas, meta, () => drawn?.position ?? NONE);
   } catch {
     frame.remove();
     viewer.classList.add("without");
@@ -55,7 +59,7 @@ async function start(): Promise<void> {
   const arrays = await readArrays(meta);
   performance.mark("decoded");
   const samples = new Samples(meta, arrays);
-  const drawn = new Drawn(meta, arrays);
+  drawn = new Drawn(meta, arrays);
   const part = new PartView(drawn, arrays, colourOf(meta, "check"), colourOf(meta, "fixture"));
   const tool = new ToolView();
   stage.add(part.group, tool.group);
@@ -89,9 +93,10 @@ async function start(): Promise<void> {
   );
   frame.append(marks.root as unknown as Node, legend(app), measure.output, under);
   viewer.prepend(toolbar);
-  viewer.append(panel.root, stills.root, help);
+  viewer.append(panel.root);
+  viewer.append(stills.root, help);
   app.repaint();
-  stage.draw();
+  stage.resize();
   performance.mark("drawn");
 
   listen(app, measure, (text) => {
@@ -102,8 +107,12 @@ async function start(): Promise<void> {
   new FaceTable(app);
   listenKeys(app, { spots, clip, measure, help, glass: setGlass, tool: setTool });
   // The tree over the triangles is what a click needs: once it is there the page answers.
-  void drawn.tree;
+  void app.drawn.tree;
   performance.mark("interactive");
+  setTimeout(() => {
+    stage.add(borders(app.drawn));
+    stage.request();
+  }, 0);
   document.documentElement.dataset.ready = "yes";
   // For scripts that ask the page: tests, and people at the console.
   Object.assign(window, { review: app });

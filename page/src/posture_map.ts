@@ -11,8 +11,8 @@ import { turned } from "./vectors.ts";
 
 const LEFT = 30;
 const BOTTOM = 30;
-const TOP = 6;
-const RIGHT = 6;
+const TOP = 10;
+const RIGHT = 10;
 const HEIGHT = 226;
 
 export class PosturePanel {
@@ -22,6 +22,7 @@ export class PosturePanel {
   private readonly about = el("p", { class: "about" });
   private readonly kind = el("p", { class: "kind" });
   private readonly line = el("p", { id: "posture-line", "aria-live": "polite" });
+  private readonly witness = el("p", { class: "hint" });
   private readonly legend = el("ul", { class: "legend", "aria-label": "Legend of the posture map" });
   private readonly rows = el("tbody");
   private readonly intervals: HTMLElement;
@@ -43,7 +44,7 @@ export class PosturePanel {
     );
     this.empty.append("Click the surface, or press Enter in the picture, to see the postures of the cutter at a sample.");
     const found = button("Posture found", () => this.back(), { id: "found-posture" });
-    this.body.append(this.about, this.kind, this.canvas, this.line, found, this.legend, this.intervals);
+    this.body.append(this.about, this.kind, this.canvas, this.line, this.witness, found, this.legend, this.intervals);
     this.root.append(this.title, this.empty, this.body);
     this.body.hidden = true;
     this.canvas.addEventListener("pointermove", (event) => this.point(event));
@@ -126,14 +127,14 @@ export class PosturePanel {
       const found = this.app.samples.posture(this.app.cutter.id, sample.row);
       const here = found && Math.abs(found.tilt - posture.tilt) < 0.02 && apart(found.rotation, posture.rotation) < 0.02;
       const sure = state.state === "free" ? (here ? ", the posture found" : state.certified ? "" : " (approximate)") : "";
-      const witness = this.app.atWitness() ? `; witness: ${this.app.spot!.text}` : "";
       this.line.textContent =
         `tilt ${degrees(posture.tilt)} deg, rotation ${degrees(posture.rotation)} deg: ` +
-        wording(this.app, state.state, met) + sure + witness;
+        wording(this.app, state.state, met) + sure;
       this.line.dataset.state = state.state;
     } else {
       this.line.textContent = "";
     }
+    this.witness.textContent = this.app.atWitness() ? this.app.spot!.text : "";
     this.draw();
   }
 

@@ -17,6 +17,7 @@ export class Stage {
   constructor(
     readonly canvas: HTMLCanvasElement,
     meta: Meta,
+    vertices: () => Float32Array,
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, stencil: true, powerPreference: "default" });
     this.renderer.setClearAlpha(0);
@@ -28,6 +29,7 @@ export class Stage {
       mixed(low, 0.5, high, 0.5),
       Math.max(1e-6, distance(low, high) / 2),
       () => this.request(),
+      vertices,
     );
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);
     this.resize();
@@ -60,7 +62,7 @@ export class Stage {
     return this.canvas.toDataURL("image/png");
   }
 
-  private resize(): void {
+  resize(): void {
     const box = this.canvas.parentElement!.getBoundingClientRect();
     const [width, height] = [Math.max(1, Math.floor(box.width)), Math.max(1, Math.floor(box.height))];
     const ratio = Math.min(2, devicePixelRatio || 1);
