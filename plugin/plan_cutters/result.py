@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from cad_io import Part, SurfaceSamples
 from plan_cutters.document.model import CutterEntry, Plan
 from plan_cutters.domain.answers import Answers
+from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.travel import Travel
@@ -44,6 +45,8 @@ class Result:
         Every free tilt, for the cutter `shown`, where that was asked for.
     travels : dict
         Cutter id -> Travel: where the linear axes stand; empty where that is not judged.
+    tools : dict
+        Cutter id -> Cutter.
     """
 
     plan: Plan
@@ -57,6 +60,7 @@ class Result:
     answers: Answers = field(default_factory=Answers)
     maps: PostureMaps | None = None
     travels: dict[str, Travel] = field(default_factory=dict)
+    tools: dict[str, Cutter] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return (
@@ -89,7 +93,7 @@ class Result:
         write_plan(self.plan, Path(path))
 
     def write(
-        self, out: str | Path, formats: Sequence[str] = ("json", "step", "glb", "npz"), *, step_schema: str = "ap242"
+        self, out: str | Path, formats: Sequence[str] = ("json", "html", "step", "glb", "npz"), *, step_schema: str = "ap242"
     ) -> Plan:
         """Write files into the folder `out`, each whole or not at all, the plan and the samples first.
 
@@ -100,7 +104,7 @@ class Result:
         ----------
         out : path-like
         formats : sequence of str
-            Of `json`, `step`, `glb`, `npz` and `merged` (a GLB of one mesh, for parts of thousands of faces).
+            Of `json`, `html` (the review page), `step`, `glb`, `npz` and `merged` (a GLB of one mesh, for parts of thousands of faces).
         step_schema : str
             Application protocol of the STEP file: `ap242`, `ap214` or `ap203`.
 

@@ -18,6 +18,7 @@ from plan_cutters.errors import OptionError, PlanError
 PLAN = "plan.json"
 #: Format -> (file name, module, function).
 _WRITERS = {
+    "html": ("review.html", "page", "write_html"),
     "step": ("annotated.step", "models", "write_step"),
     "glb": ("annotated.glb", "models", "write_glb"),
     "merged": ("merged.glb", "models", "write_merged"),
@@ -25,7 +26,7 @@ _WRITERS = {
     "postures": ("postures.npz", "to_npz", "write_postures"),
 }
 #: What the CAD kernel has a part in, the easier ones first.
-_MODELS = ("glb", "merged", "step")
+_MODELS = ("html", "glb", "merged", "step")
 FORMATS = ("json", *(f for f in _WRITERS if f != "postures"))
 #: What is written unless asked otherwise; `merged` is for parts of thousands of faces.
 DEFAULT_FORMATS = tuple(f for f in FORMATS if f != "merged")
@@ -193,7 +194,7 @@ def write_all(
         split = None
         for name in models:
             try:
-                if split is None:
+                if split is None and name != "html":
                     if onlooker:
                         onlooker.begins("split")
                     with clock.stage("split", shown=False):
