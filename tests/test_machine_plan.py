@@ -15,6 +15,7 @@ from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.machine import builtin_machines
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import REASONS
+from plan_cutters.machines import to_toml
 from plan_cutters.pipeline import prepare
 from plan_cutters.stages.judge import judge
 from plan_cutters.stages.setups import within_limits
@@ -79,6 +80,16 @@ def test_the_map_of_one_point_knows_the_machine():
     for i, intervals in enumerate(found.free):
         for tilt in intervals.ravel().tolist():
             assert kinematics.allows(found.axis(i, tilt)[None])[0]
+
+
+def test_the_map_of_one_point_takes_a_machine_file(tmp_path):
+    file = tmp_path / "mill.toml"
+    file.write_text(to_toml(Machine.parse("trunnion-ac")))
+    asked = {"point": (0, 0, 0), "cutter": CUTTER, "rotations": [0.3], "setup": (-1, 0, 0)}
+    named, read = (posture_map(floor(), machine=machine, **asked) for machine in ("trunnion-ac", file))
+    assert len(named.axis_limit[0])
+    np.testing.assert_array_equal(named.free[0], read.free[0])
+    np.testing.assert_array_equal(named.axis_limit[0], read.axis_limit[0])
 
 
 def test_an_underside_does_not_change_the_choice():

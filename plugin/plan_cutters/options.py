@@ -24,7 +24,7 @@ from plan_cutters.library.records import Entry, Library, libraries_of
 LEAST_TOLERANCE, MOST_TOLERANCE = 1e-4, 10.0
 
 
-def _machine(given: Any) -> Machine:
+def machine_given(given: Any) -> Machine:
     """A machine, or what a text names: a file is read only where it is none of the names."""
     if isinstance(given, str | os.PathLike) and given != "unlimited":
         from plan_cutters.machines.read import machine_of
@@ -205,7 +205,7 @@ class Options:
             take(libraries=(self.cutters, *libraries), cutters=())
         else:
             take(libraries=libraries, cutters=Cutter.each_of(self.cutters))
-        take(machine=_machine(self.machine))
+        take(machine=machine_given(self.machine))
         self._place(take)
         take(tolerance=number(self.tolerance, "tolerance"))
         take(jobs=cores() if self.jobs is None else whole(self.jobs, "jobs"))

@@ -222,7 +222,7 @@ def _judged(
     found = witnesses(samples, reach, cutter, ready.conditions, buried=ready.buried)
     marched = march_differs(samples, convex, ready.region, reach.interference_free)
     around = ready.conditions.around
-    return Judged(reach, cutter_entry(cutter, samples, reach, found, marched, seconds, around=around,
+    return Judged(reach, cutter_entry(cutter, samples, reach, found, marched, seconds, part=ready.scene.part, around=around,
                                        slack=ready.conditions.light(cutter).slack))  # fmt: skip
 
 
@@ -271,6 +271,8 @@ def assemble(
         tuple((axis, dict(found)) for axis, found in elsewhere),
         answers,
         travels=moved,
+        tools={cutter.id: cutter for cutter in ready.cutters},
+        conditions=ready.conditions,
     )
 
 

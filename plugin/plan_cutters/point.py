@@ -15,6 +15,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import OptionError
+from plan_cutters.options import machine_given
 from plan_cutters.scene.conditions import tools
 from plan_cutters.scene.scene import Scene
 from plan_cutters.stages.posture_map import SETTLED, Ask, PostureMap, complement, moved, posture_map_of
@@ -53,7 +54,7 @@ def posture_map(
     tilt : tuple of float
         Range, rad, within 0 to pi.
     machine : Machine or str, optional
-        A text as `tilt:60` (degrees). Default: no axis limit.
+        A text as `tilt:60` (degrees), the name of a built-in one, or a machine file. Default: no axis limit.
     tolerance : float, optional
         Gouge tolerance, mm; default that of the Scene, or 0.01. 0: the nominal answer, obstacles refined until the ends
         settle; not certified.
@@ -75,7 +76,7 @@ def posture_map(
     >>> [np.degrees(tilts).round(1).tolist() for tilts in found.free]
     [[[27.6, 61.4]], []]
     """
-    cutter, machine = Cutter.of(cutter), Machine.of(machine)
+    cutter, machine = Cutter.of(cutter), machine_given(machine)
     place = numbers(point, "point", 3)
     each = (rotations,) if isinstance(rotations, Real) else rotations
     turns = [radians(turn, "rotation", 2 * np.pi) for turn in numbers(each, "rotations")]

@@ -3,10 +3,8 @@
 import platform
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cad_io import Part, SurfaceSamples
 from cad_io.kernel.assembly import component_of
@@ -21,18 +19,15 @@ from plan_cutters.document.model import (
     PartInfo,
     SewingInfo,
     StageEntry,
-    Verdicts,
     WitnessEntry,
 )
+from plan_cutters.document.shares import counts, face_verdicts, whole_share
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.shapes import flute_length, modes
 from plan_cutters.domain.verdicts import (
-    ACCESSIBLE,
     INACCESSIBLE,
-    INTERFERENCE_FREE,
     REASONS,
     UNDECIDED,
-    UNJUDGED,
     Reach,
     Witness,
 )
@@ -67,22 +62,16 @@ def degrees(pair: tuple[float, float]) -> tuple[float, float]:
     return round(float(np.degrees(pair[0])), 9), round(float(np.degrees(pair[1])), 9)
 
 
-def counts(verdict: NDArray[np.uint8]) -> dict[str, Any]:
-    """How many samples have each verdict."""
-    names = {INTERFERENCE_FREE: "interference_free", ACCESSIBLE: "accessible", INACCESSIBLE: "inaccessible",
-             UNDECIDED: "undecided", UNJUDGED: "unjudged"}  # fmt: skip
-    return {name: int((verdict == code).sum()) for code, name in names.items()}
-
-
 def cutter_entry(
     cutter: Cutter, samples: SurfaceSamples, reach: Reach, found: Sequence[Witness], march_differs: int, seconds: float,
-    *, around: Surroundings, slack: float,
+    *, part: Part, around: Surroundings, slack: float,
 ) -> CutterEntry:  # fmt: skip
     """What a cutter reaches, and why not where it does not, among what is `around`; `slack` as in `Assembly`."""
     mine = counts(reach.verdict)
     # What is missing from the obstacles can only be in the way of more.
     feasible = False if mine["inaccessible"] else None if mine["undecided"] or around.doubtful else True
     lost, unsure = reach.verdict == INACCESSIBLE, reach.verdict == UNDECIDED
+    faces = face_verdicts(samples, reach)
     return CutterEntry(
         id=cutter.id,
         name=cutter.name,
@@ -111,7 +100,8 @@ def cutter_entry(
         **mine,
         by_reason={name: int((lost & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
         undecided_by_reason={name: int((unsure & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
-        faces={f"F{n}": Verdicts(**counts(reach.verdict[samples.face == n])) for n in np.unique(samples.face).tolist()},
+        faces=faces,
+        area_share=whole_share(faces, samples, part),
         witnesses=[_witness_entry(w, samples, around) for w in found],
         seconds=seconds,
     )

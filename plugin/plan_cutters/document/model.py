@@ -9,6 +9,7 @@ from pydantic import Field
 
 from plan_cutters.document.answers import MendEntry, RadiusEntry, StickOutEntry
 from plan_cutters.document.frozen import Frozen, Posture, Vector
+from plan_cutters.document.shares import AreaShare, FaceVerdicts, Verdicts
 from plan_cutters.document.travel import PlacementEntry, TravelEntry
 
 FORMAT_VERSION = 1
@@ -99,14 +100,6 @@ class SampleCounts(Frozen):
     saddle: int
     unjudged: int
     regions: int
-
-
-class Verdicts(Frozen):
-    interference_free: int = 0
-    accessible: int = 0
-    inaccessible: int = 0
-    undecided: int = 0
-    unjudged: int = 0
 
 
 class FaceEntry(Frozen):
@@ -283,7 +276,12 @@ class CutterEntry(Verdicts):
     march_differs: int = Field(description="convex samples on which the seed's boundary march gives another answer")
     by_reason: dict[str, int] = Field(description="inaccessible samples by reason")
     undecided_by_reason: dict[str, int]
-    faces: dict[str, Verdicts]
+    faces: dict[str, FaceVerdicts]
+    area_share: AreaShare = Field(
+        default=AreaShare(),
+        description="of the target faces' area, faces without samples (unjudged) included and those of unknown area not; what "
+        "the samples stand for, not what is shown between them: that is in `area`",
+    )
     witnesses: list[WitnessEntry]
     area: AreaEntry | None = Field(default=None, description="of the selected cutter; null where it was not asked for")
     setups: list[SetupReach] = Field(

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from plan_cutters.document.answers import mend_entry, radius_entry, stick_out_entry
 from plan_cutters.document.build import (
     area_notes,
-    counts,
     degrees,
     face_entries,
     missing_entries,
@@ -34,6 +33,7 @@ from plan_cutters.document.model import (
     SetupReach,
 )
 from plan_cutters.document.palette import PALETTE
+from plan_cutters.document.shares import counts
 from plan_cutters.document.travel import placement_entry, travel_entry, travel_notes
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.kinematics import Kinematics

@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Record, SurfaceSamples
 from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement, frame_of
 from plan_cutters.domain.posture import lean
 from plan_cutters.domain.verdicts import INACCESSIBLE, INTERFERENCE_FREE, REASONS, UNDECIDED, UNJUDGED, Reach, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.kernels.rows import Ranges
+from plan_cutters.options import machine_given
 from plan_cutters.scene.conditions import (
     Conditions,
     contacts_of,
@@ -89,7 +89,7 @@ class PostureMaps(Record):
         Parameters
         ----------
         machine : Machine or str, optional
-            No limit by default.
+            A name or a file will do. No limit by default.
         setup : (float, float, float)
             Direction of the part along the machine's spindle at zero angles.
         tilt, rotation : (float, float), optional
@@ -112,7 +112,7 @@ class PostureMaps(Record):
         """
         from plan_cutters.kernels.mask import mask
 
-        machine, place = Machine.of(machine), Placement(setup, x)
+        machine, place = machine_given(machine), Placement(setup, x)
         axis = np.array(place.z)
         frame = frame_of(axis, None if place.x is None else np.array(place.x))
         if machine.turns and len(machine.rotary) < 2:

@@ -1,0 +1,24 @@
+"""`<!-- help: plan-cutters -->` in a page becomes what that command prints with `--help`, so that the page cannot grow old."""
+
+import re
+from importlib.metadata import entry_points
+from typing import Any
+
+from click import Command
+from click.testing import CliRunner
+
+
+def on_page_markdown(markdown: str, **_: Any) -> str:
+    return re.sub(r"<!-- help: (\S+) -->", lambda found: f"```text\n{_help(found[1])}```", markdown)
+
+
+def _help(name: str) -> str:
+    (script,) = entry_points(group="console_scripts", name=name)
+    module = __import__(script.module, fromlist=["command"])
+    command: Command = module.command
+    result = CliRunner(env={"COLUMNS": "100", "NO_COLOR": "1", "TERM": "dumb"}).invoke(
+        command, ["--help"], prog_name=name
+    )
+    if result.exit_code:
+        raise RuntimeError(f"{name} --help: {result.output or result.exception}")
+    return result.output
