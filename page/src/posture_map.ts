@@ -129,13 +129,20 @@ export class PosturePanel {
       const sure = state.state === "free" ? (here ? ", the posture found" : state.certified ? "" : " (approximate)") : "";
       this.line.textContent =
         `tilt ${degrees(posture.tilt)} deg, rotation ${degrees(posture.rotation)} deg: ` +
-        wording(this.app, state.state, met) + sure;
+        (this.app.atWitness() ? this.witnessed() : wording(this.app, state.state, met) + sure);
       this.line.dataset.state = state.state;
     } else {
       this.line.textContent = "";
     }
     this.witness.textContent = this.app.atWitness() ? this.app.spot!.text : "";
     this.draw();
+  }
+
+  /** What the plan says of its witness goes before what the drawn triangles say. */
+  private witnessed(): string {
+    const { reason, depth_mm, obstacle_face } = this.app.spot!;
+    const depth = depth_mm === null ? "" : `, ${figure(depth_mm)} mm too deep in ${obstacle_face ?? "the part"}`;
+    return `${spoken(reason)}${depth} (the best posture there is)`;
   }
 
   // Places in the drawing.
