@@ -82,7 +82,8 @@ export class PosturePanel {
     );
     this.kind.textContent = this.map.certified
       ? "Free postures are certified. What forbids the others comes from the drawn triangles."
-      : "Approximate: this map comes from the drawn triangles. It is not certified.";
+      : "Approximate: this map comes from the drawn triangles and overlooks what reaches less than " +
+        `${figure(this.app.liveTool().spared, 2)} mm into the tool. It is not certified.`;
     if (this.app.meta.rotary) this.kind.textContent += " The limits of the machine's rotary axes are not in it.";
     this.kind.classList.toggle("approximate", !this.map.certified);
     this.draw();
@@ -303,7 +304,7 @@ export class PosturePanel {
         const causes = [...map.causes(column)].sort((a, b) => b[1] - a[1]).map(([state]) => spoken(state));
         return el(
           "tr",
-          { "data-rotation": rotation, "data-certified": map.certified !== null },
+          { "data-rotation": rotation, "data-certified": String(map.certified !== null) },
           el("th", { scope: "row" }, degrees(rotation)),
           el("td", {}, free.join("; ") || "none"),
           el("td", {}, causes.join(", ")),
