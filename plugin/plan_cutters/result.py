@@ -48,7 +48,7 @@ class Result:
         Every free tilt, for the cutter `shown`, where that was asked for.
     travels : dict
         Cutter id -> Travel: where the linear axes stand; empty where that is not judged.
-    judged : dict
+    tools : dict
         Cutter id -> Cutter, from the most wanted down.
     conditions : Conditions, optional
         What all cutters were judged under.
@@ -65,7 +65,7 @@ class Result:
     answers: Answers = field(default_factory=Answers)
     maps: PostureMaps | None = None
     travels: dict[str, Travel] = field(default_factory=dict)
-    judged: dict[str, Cutter] = field(default_factory=dict)
+    tools: dict[str, Cutter] = field(default_factory=dict)
     conditions: Conditions | None = None
 
     def __repr__(self) -> str:
@@ -97,7 +97,7 @@ class Result:
         """How far the cutter `shown` keeps from everything at the postures found, where it does not cut."""
         if self.conditions is None:
             raise ValueError("this result was made without what its cutters were judged under")
-        return clearances(self.samples, self.judged[self.shown], self.reaches[self.shown], self.conditions)
+        return clearances(self.samples, self.tools[self.shown], self.reaches[self.shown], self.conditions)
 
     def to_json(self, path: str | Path) -> None:
         """Write the plan alone."""
@@ -106,7 +106,11 @@ class Result:
         write_plan(self.plan, Path(path))
 
     def write(
-        self, out: str | Path, formats: Sequence[str] = ("json", "step", "glb", "npz"), *, step_schema: str = "ap242"
+        self,
+        out: str | Path,
+        formats: Sequence[str] = ("json", "html", "step", "glb", "npz"),
+        *,
+        step_schema: str = "ap242",
     ) -> Plan:
         """Write files into the folder `out`, each whole or not at all, the plan and the samples first.
 
@@ -117,8 +121,9 @@ class Result:
         ----------
         out : path-like
         formats : sequence of str
-            Of `json`, `step`, `glb`, `npz`, `merged` (a GLB of one mesh, for parts of thousands of faces), `png` (the part with
-            its verdicts, four views), and `csv`, `vtk` and `regions` (tool axes for CAM: `docs/cam_outputs.md`).
+            Of `json`, `html` (the review page), `step`, `glb`, `npz`, `merged` (a GLB of one mesh, for parts of thousands of
+            faces), `png` (the part with its verdicts, four views), and `csv`, `vtk` and `regions` (tool axes for CAM:
+            `docs/cam_outputs.md`).
         step_schema : str
             Application protocol of the STEP file: `ap242`, `ap214` or `ap203`.
 

@@ -18,6 +18,7 @@ from plan_cutters.errors import OptionError, PlanError
 PLAN = "plan.json"
 #: Format -> (file name, module, function).
 _WRITERS = {
+    "html": ("review.html", "page", "write_html"),
     "step": ("annotated.step", "models", "write_step"),
     "glb": ("annotated.glb", "models", "write_glb"),
     "merged": ("merged.glb", "models", "write_merged"),
@@ -31,10 +32,10 @@ _WRITERS = {
 #: What is shown on faces that are split along the verdicts: the CAD kernel has a part in it.
 _MODELS = ("glb", "merged", "png", "step")
 #: What follows the plan and the arrays, the easier ones first.
-_LATER = ("csv", "vtk", "regions", *_MODELS)
+_LATER = ("html", "csv", "vtk", "regions", *_MODELS)
 FORMATS = ("json", *(f for f in _WRITERS if f != "postures"))
 #: What is written unless asked otherwise (`docs/decisions/0017-formats-on-request.md`).
-DEFAULT_FORMATS = ("json", "step", "glb", "npz")
+DEFAULT_FORMATS = ("json", "html", "step", "glb", "npz")
 
 
 def read_formats(text: str) -> tuple[str, ...]:
