@@ -202,8 +202,8 @@ def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: 
         f"{cutter.id} at ({_text(_round(found.point))}) on {face} of {Path(given['part']).name}",
         f"Normal ({_text(_round(found.normal))}), rotation 0 towards ({_text(_round(found.direction_max))}); curvatures "
         f"{curvature} 1/mm, concave positive{moved}.",
-        f"Machine {Path(given['machine']).name}, setup {given['setup']}; {proved}; rotations {given['rotation_step']:g} deg apart: nothing "
-        "is said between them.",
+        f"Machine {Path(given['machine']).name}, setup {given['setup']}; {proved}; rotations {given['rotation_step']:g} deg "
+        "apart: nothing is said between them.",
     ]
     if found.missing:
         lines.append(
