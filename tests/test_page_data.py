@@ -15,7 +15,6 @@ from cad_io.arrays import FaceGrid
 from cad_io.part import Part
 from plan_cutters import plan
 from plan_cutters.domain.posture import lean
-from plan_cutters.report.page import write
 from plan_cutters.report.page.atlas import sheet_of
 from plan_cutters.report.page.encode import COARSE, FILTERS, FINE, Stored, filtered, halves, joined, octahedral
 from plan_cutters.report.page.stored_maps import stored
