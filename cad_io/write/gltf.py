@@ -95,7 +95,7 @@ def write_gltf(
     """
     with aside(path) as temporary:
         with translated("meshing", error=WriteError, file=str(path)):
-            meshes = list(_meshes(split, deflection))
+            meshes = list(meshes_of(split, deflection))
         if not any(mesh for _, mesh in meshes):
             raise WriteError("the CAD kernel made no triangle of the part", file=str(path))
         pieces = [piece for piece, _ in meshes]
@@ -121,8 +121,12 @@ def linear(rgb: tuple[float, float, float]) -> list[float]:
     return [round(float(x), 6) for x in light]
 
 
-def _meshes(split: Split, deflection: float | None) -> Iterator[tuple[Piece, Mesh | None]]:
-    """All that is shown; of a face that could not be split, the triangles of each label as a piece."""
+def meshes_of(split: Split, deflection: float | None = None) -> Iterator[tuple[Piece, Mesh | None]]:
+    """All that is shown of a split part, piece by piece, with triangles to draw it; None where the kernel made none.
+
+    Of a face that could not be split, the triangles of each label are a piece. `deflection`: chord error, mm; default FINE times
+    the part's diagonal.
+    """
     # A copy without triangles: the part is not to carry ours, and finer ones that it carries would change the file.
     whole = compound([split.shape, *(p.shape for beside in split.beside.values() for p in beside)])
     copy = BRepBuilderAPI_Copy(whole, False, False)

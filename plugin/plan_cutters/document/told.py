@@ -1,7 +1,6 @@
-"""What people are told of a plan, wherever they read it: shares in percent, names of cutters, the worst faces."""
+"""What people are told of a plan, wherever they read it: shares in percent, reasons, the worst faces."""
 
-from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from plan_cutters.document.model import CutterEntry, FaceEntry, Plan, WitnessEntry
@@ -10,8 +9,6 @@ from plan_cutters.document.shares import AreaShare, Verdicts
 #: Verdicts, from best to worst.
 VERDICTS = ("interference_free", "accessible", "undecided", "inaccessible", "unjudged")
 _REACHED, _LOST = ("interference_free", "accessible"), ("inaccessible", "undecided")
-#: Numbers in the tool changer that are named.
-_PLACES = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,18 +97,3 @@ def worst_faces(plan: Plan, cutter: CutterEntry, most: int = 5) -> tuple[list[Wo
             )
         )
     return found, len(ranked)
-
-
-def short_names(plan: Plan) -> Mapping[str, str]:
-    """How cutters are called in a line, by their ids: as a library does, or without the holder, where that tells them apart."""
-    listed, heads = {}, {}
-    for c in plan.cutters:
-        numbers = dict.fromkeys(f"T{s.number}" for s in c.sources if s.number is not None)
-        listed[c.id] = " ".join([*list(numbers)[:_PLACES], c.name]) if c.sources and c.name else c.id
-        heads[c.id] = c.id.partition("H")[0]
-    said, dimensions = Counter(listed.values()), Counter(heads.values())
-    return {
-        name: listed[name] if said[listed[name]] == 1 and listed[name] != name
-        else heads[name] if dimensions[heads[name]] == 1 else name
-        for name in heads
-    }  # fmt: skip

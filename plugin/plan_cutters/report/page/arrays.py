@@ -68,7 +68,7 @@ def scalar_arrays(result: Any) -> tuple[Arrays, list[dict[str, Any]]]:
         if stick_out.each is not None:
             key = f"stick_out.{name}"
             found[f"scalar.{key}"] = Stored.of(halves(stick_out.each, "up"))
-            told.append(_scalar(key, f"least stick-out of {name}", "mm", stick_out.each, cutter=name))
+            told.append(_scalar(key, "least stick-out", "mm", stick_out.each, cutter=name))
     return found, told
 
 

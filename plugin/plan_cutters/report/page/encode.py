@@ -4,6 +4,7 @@
 """
 
 import base64
+import math
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -30,7 +31,7 @@ def filtered(array: NDArray[Any], name: str) -> bytes:
     """The bytes of an array under a filter: differences by column, columns one after the other, planes of bytes."""
     size = array.dtype.itemsize
     bits: NDArray[Any] = np.ascontiguousarray(array.astype(array.dtype.newbyteorder("<"))).view(f"<u{size}")
-    bits = bits.reshape(len(array), -1)
+    bits = bits.reshape(len(array), math.prod(array.shape[1:]))
     for _ in range({"delta": 1, "delta2": 2}.get(name.removesuffix("_z"), 0)):
         bits = np.concatenate([bits[:1], bits[1:] - bits[:-1]])
     if name.endswith("_z"):

@@ -7,6 +7,8 @@ import numpy as np
 from cad_io.arrays import Floats
 from plan_cutters.document.build import degrees
 from plan_cutters.document.model import CutterEntry
+from plan_cutters.document.names import short_names
+from plan_cutters.document.palette import CAUSES
 from plan_cutters.document.shares import counts
 from plan_cutters.document.told import VERDICTS
 from plan_cutters.domain.cutter import Cutter
@@ -26,7 +28,7 @@ def meta_of(
     result: Any, surface: Surface, atlas: Atlas, box: tuple[Floats, Floats], spots: list[Spot]
 ) -> dict[str, Any]:
     """All of it but the arrays, and what was left out of them."""
-    plan, effective = result.plan, result.plan.effective
+    plan, effective, names = result.plan, result.plan.effective, short_names(result.plan)
     low, high = box
     return {
         "format": FORMAT,
@@ -45,6 +47,7 @@ def meta_of(
         "reasons": plan.reasons,
         "verdicts": {str(code): word for code, word in WORDS.items()},
         "colours": plan.legend,
+        "cause_colours": CAUSES,
         "rotation_deg": np.degrees(result.postures.rotations).round(6).tolist(),
         "tilt_deg": list(degrees(result.postures.tilt)),
         "tilt_limit_deg": plan.machine.tilt_limit_deg,
@@ -56,7 +59,8 @@ def meta_of(
             for i, standing in enumerate(result.scene.around.fixtures)
         ],
         "cutters": [
-            _cutter(entry, result.tools[entry.id], counts(result.reaches[entry.id].verdict)) for entry in plan.cutters
+            _cutter(names[entry.id], entry, result.tools[entry.id], counts(result.reaches[entry.id].verdict))
+            for entry in plan.cutters
         ],
         "spots": [_spot(each) for each in spots],
     }
@@ -79,10 +83,10 @@ def _face(entry: Any, surface: Surface) -> dict[str, Any]:
     }
 
 
-def _cutter(entry: CutterEntry, cutter: Cutter, found: dict[str, Any]) -> dict[str, Any]:
+def _cutter(name: str, entry: CutterEntry, cutter: Cutter, found: dict[str, Any]) -> dict[str, Any]:
     return {
         "id": entry.id,
-        "name": entry.name or entry.id,
+        "name": name,
         "feasible": entry.feasible,
         "radius": entry.radius,
         "corner_radius": entry.corner_radius,

@@ -3,7 +3,8 @@
 from typing import Any, NamedTuple
 
 from plan_cutters.document.model import CutterEntry, FaceEntry, Plan
-from plan_cutters.document.told import VERDICTS, main_reason, part_of, reached, short_names, worst_faces
+from plan_cutters.document.names import named, short_names
+from plan_cutters.document.told import VERDICTS, main_reason, part_of, reached, worst_faces
 from plan_cutters.report.page import words
 from plan_cutters.report.page.facts import Spot
 
@@ -32,6 +33,7 @@ def of(result: Any, spots: list[Spot], more: dict[str, int], drawing: Drawing, l
         "title": title,
         "why": why,
         "names": names,
+        "named": lambda text: named(plan, text),
         "shown": shown,
         "cutters": [_cutter(plan, c) for c in plan.cutters],
         "failing": [(c, *worst_faces(plan, c)) for c in first if c.inaccessible + c.undecided][:_CUTTERS],
@@ -65,7 +67,7 @@ def _cutter(plan: Plan, entry: CutterEntry) -> dict[str, Any]:
         "bars": bars,
         "shares": [(said, share) for said, share in each if share != "0 %"],
         "reason": main_reason(entry.area_share),
-        "helping": [change.why for change in entry.mend.changes if change.helps] if entry.mend else [],
+        "helping": [named(plan, change.why) for change in entry.mend.changes if change.helps] if entry.mend else [],
     }
 
 

@@ -223,6 +223,6 @@ def limit(found: StickOutEntry) -> str:
 def between(found: AreaEntry) -> str:
     """What is known between the samples."""
     if found.share == 1.0:
-        return "the axes found serve all of the area."
+        return "all of the area is proved safe, too, with the axes found."
     share = percent(found.share, some=found.share > 0.0, whole=False)
-    return f"the axes found are shown to serve {share} of the area, each kept up to the next one; of the rest that is not known."
+    return f"{share} of the area is proved safe with the axes found; the rest is not proved, which does not mean unsafe."

@@ -3,10 +3,11 @@
 import base64
 import hashlib
 import json
+import math
 import re
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import jinja2
 import numpy as np
@@ -27,11 +28,21 @@ from plan_cutters.report.page.tables import Drawing
 LARGEST, LARGEST_WITHOUT = 8_000_000, 2_500_000
 #: Triangles that are drawn, about.
 TRIANGLES = 60_000
-#: What the page may say of arrays and of what was left out, bytes.
-_TOLD = 4096
 #: Maps of fewer than one in so many samples are rather left out.
 _WIDEST_STRIDE = 64
 _HERE = Path(__file__).parent
+
+
+class Left(NamedTuple):
+    """Sentences on what is left out of a page to keep its size: about cutters that are not shown, and about maps."""
+
+    others: str
+    maps: str
+
+
+_SMALLER = ", to keep this page below {:g} MB"
+_OTHERS = "Postures are stored for the cutter shown alone, to keep this page small; samples.npz has all."
+_NO_MAPS = "Certified posture maps are not stored" + _SMALLER + "; postures.npz has all."
 
 
 def write_html(result: Any, _split: object, path: Path) -> None:
@@ -87,47 +98,40 @@ def page(
     meta = {**meta_of(result, surface, atlas, box, spots), "drawn_chord_mm": faces.deflection, "scalars": told}
     about = Drawing(faces.deflection, faces.missing)
 
-    def made(kept: Arrays, maps_told: dict[str, Any] | None, left: list[str]) -> bytes:
-        entries, data = joined(kept)
-        for each in meta["cutters"]:
-            each["has_posture"] = f"tilt.{each['id']}" in entries
-        shown = tables.of(result, spots, more, about, left)
-        return _rendered({**meta, "maps": maps_told, "arrays": entries}, data, shown)
-
     where = np.arange(len(result.samples)) if rows is None else rows
     largest = largest or (LARGEST if maps is not None and rows is None else LARGEST_WITHOUT)
-    room = largest - len(made(base, None, [])) - _TOLD
-    found, left = _maps(maps, where, 1), []
-    if size_of(others) + size_of(found) > room and others:
-        others = {}
-        left.append("Postures are stored for the cutter shown alone, to keep this page small; samples.npz has all.")
-    stride = 1
-    while found and size_of(others) + size_of(found) > room:
-        stride = max(stride + 1, int(stride * size_of(found) / max(room, 1)))
+    found, stride, left = _maps(maps, where, 1), 1, Left("", "")
+
+    def made() -> bytes:
+        entries, data = joined({**base, **others, **found})
+        for each in meta["cutters"]:
+            each["has_posture"] = f"tilt.{each['id']}" in entries
+        told = None
+        if maps is not None:
+            told = {"cutter": maps.cutter, "count": len(where[::stride]) if found else 0, "of": len(result.samples),
+                    "step_deg": round(result.plan.effective.rotation_step_deg, 9), "why": left.maps or None}  # fmt: skip
+        shown = tables.of(result, spots, more, about, [why for why in left if why])
+        return _rendered({**meta, "maps": told, "arrays": entries}, data, shown)
+
+    data = made()
+    if len(data) > largest and others:
+        others, left = {}, left._replace(others=_OTHERS)
+        data = made()
+    while len(data) > largest and found:
+        room = largest - len(data) + size_of(found)
+        stride = max(stride + 1, math.ceil(stride * size_of(found) / max(room, 1)))
         found = _maps(maps, where, stride) if stride <= _WIDEST_STRIDE else {}
-    maps_told = None
-    if maps is not None:
-        why = _why(stride, found, largest)
-        left += [why] if why else []
-        maps_told = {"cutter": maps.cutter, "count": len(where[::stride]) if found else 0, "of": len(result.samples),
-                     "step_deg": result.plan.effective.rotation_step_deg, "why": why or None}  # fmt: skip
-    return made({**base, **others, **found}, maps_told, left)
+        left = left._replace(maps=_why(stride, largest) if found else _NO_MAPS.format(largest / 1e6))
+        data = made()
+    return data
 
 
 def _maps(maps: Any, where: NDArray[np.int64], stride: int) -> Arrays:
     return {} if maps is None else arrays.map_arrays(maps, where, np.arange(0, len(where), stride))
 
 
-def _why(stride: int, found: Arrays, largest: int) -> str:
-    """Why posture maps are missing; empty where none is."""
-    if found and stride == 1:
-        return ""
-    what = (
-        f"Certified posture maps are stored for one in {stride} samples"
-        if found
-        else "Certified posture maps are not stored"
-    )
-    return f"{what}, to keep this page below {largest / 1e6:g} MB; postures.npz has all."
+def _why(stride: int, largest: int) -> str:
+    return f"Certified posture maps are stored for one in {stride} samples{_SMALLER.format(largest / 1e6)}; postures.npz has all."
 
 
 def _together(each: Iterable[Arrays]) -> Arrays:
