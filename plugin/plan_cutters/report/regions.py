@@ -55,7 +55,8 @@ def axis_regions(result: Any) -> AxisRegions:
             Region(
                 id=i, axis=int(number[rows[0]]), tilt_deg=_span(tilt), clearance_mm=least, samples=len(rows),
                 area_mm2=float(samples.area[rows].sum()), low=vector(point.min(axis=0)), high=vector(point.max(axis=0)),
-                faces=_faces(rows, samples), found=_found(rows, samples, reach), free=None if free is None else free.of(rows), rows=_runs(rows),
+                faces=_faces(rows, samples), found=_found(rows, samples, reach), free=None if free is None else free.of(rows),
+                rows=_runs(rows),
             )
         )  # fmt: skip
     whole = float(samples.area.sum())
