@@ -1,10 +1,11 @@
-"""What CAM takes: tool axes as CSV and VTK, clearances, regions of one axis, posture maps; against dense points and brute force."""
+"""What CAM takes: axes as CSV and VTK, clearances, regions of one axis, posture maps; against dense points and brute force."""
 
 import csv
 import json
 import math
 import re
 import shutil
+from itertools import pairwise
 from pathlib import Path
 
 import jsonschema
@@ -42,7 +43,7 @@ def to_band(q, w, low, high, lower, upper):
     corners = np.array([[0.0, low], [lower, low], [upper, high], [0.0, high]])
     inside = (w >= low) & (w <= high) & (q <= lower + (upper - lower) * (w - low) / (high - low))
     best = np.full(q.shape, np.inf)
-    for a, b in zip(corners[:3], corners[1:], strict=True):
+    for a, b in pairwise(corners):
         side = b - a
         share = np.clip(((q - a[0]) * side[0] + (w - a[1]) * side[1]) / (side @ side), 0.0, 1.0)
         best = np.minimum(best, np.hypot(q - a[0] - share * side[0], w - a[1] - share * side[1]))
