@@ -3,7 +3,10 @@
 import os
 import re
 import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO
 
 from cad_io.errors import ReadError
 
@@ -35,6 +38,21 @@ def load(file: str) -> tuple[str, bytes]:
     ReadError
         There is no such file, or it is not one that can be read.
     """
+    with _opened(file) as stream:
+        kind = sniff(stream.read(_HEAD), file)
+        stream.seek(0)
+        return kind, stream.read()
+
+
+def kind(file: str) -> str:
+    """Kind of a CAD file by its start alone, as `sniff` tells it; errors as of `load`."""
+    with _opened(file) as stream:
+        return sniff(stream.read(_HEAD), file)
+
+
+@contextmanager
+def _opened(file: str) -> Iterator[BinaryIO]:
+    """A file, open; what goes wrong about it is a ReadError."""
     try:
         mode = os.stat(file).st_mode
         if stat.S_ISDIR(mode):
@@ -43,9 +61,7 @@ def load(file: str) -> tuple[str, bytes]:
             # The kernel opens it once more, and some have no end.
             raise ReadError("is a pipe or a device, not a file: save its content in a file", file=file)
         with open(file, "rb") as stream:
-            kind = sniff(stream.read(_HEAD), file)
-            stream.seek(0)
-            return kind, stream.read()
+            yield stream
     except FileNotFoundError:
         raise ReadError("no such file", file=file) from None
     except MemoryError:

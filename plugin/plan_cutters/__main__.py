@@ -1,3 +1,3 @@
-from plan_cutters.command.cli import main
+from plan_cutters.command.entry import plan_cutters
 
-main()
+plan_cutters()

@@ -22,6 +22,8 @@ from plan_cutters.library.records import Entry, Library, libraries_of
 
 #: Gouge tolerances that can be asked for, mm.
 LEAST_TOLERANCE, MOST_TOLERANCE = 1e-4, 10.0
+#: Longest length that can be asked for, mm: longer ones are rather a mistake. Most threads.
+_LONGEST, _MOST_JOBS = 1e6, 1024
 
 
 def machine_given(given: Any) -> Machine:
@@ -171,24 +173,26 @@ class Options:
             raise OptionError("give a grid or a spacing, not both")
         if self.grid is not None and not 2 <= self.grid <= 5000:
             raise OptionError(f"grid {self.grid} must lie between 2 and 5000 samples a side")
-        if self.spacing is not None and not (math.isfinite(self.spacing) and self.spacing > 0):
-            raise OptionError(f"spacing {self.spacing:g} must be a positive number of mm")
+        if self.spacing is not None and not 0.0 < self.spacing <= _LONGEST:
+            raise OptionError(f"spacing {self.spacing:g} must be a positive number of mm, at most {_LONGEST:g}")
         if not LEAST_TOLERANCE <= self.tolerance <= MOST_TOLERANCE:
             raise OptionError(
                 f"tolerance {self.tolerance:g} must lie between {LEAST_TOLERANCE:g} and {MOST_TOLERANCE:g} mm"
             )
         for word in ("allowance", "holder_clearance"):
             value = getattr(self, word)
-            if not 0.0 <= value < math.inf:
-                raise OptionError(f"{word.replace('_', ' ')} {value:g} must be 0 or a positive number of mm")
+            if not 0.0 <= value <= _LONGEST:
+                raise OptionError(
+                    f"{word.replace('_', ' ')} {value:g} must be 0 or a positive number of mm, at most {_LONGEST:g}"
+                )
         if not 1.0 <= self.length_over_radius <= 1000.0:
             raise OptionError(f"length over radius {self.length_over_radius:g} must lie between 1 and 1000")
         if self.unit is not None and self.unit not in UNITS:
             raise OptionError(f"unit {self.unit!r} is not one of {', '.join(UNITS)}")
         if self.area_budget is not None and self.area_budget < 0:
             raise OptionError(f"area budget {self.area_budget} must not be negative")
-        if self.jobs < 1:
-            raise OptionError(f"jobs {self.jobs} must be at least 1")
+        if not 1 <= self.jobs <= _MOST_JOBS:
+            raise OptionError(f"jobs {self.jobs} must be at least 1 and at most {_MOST_JOBS}")
         for cutter in self.judged:
             if not cutter.large_enough(self.tolerance):
                 raise OptionError(f"tolerance {self.tolerance:g} mm is too coarse for cutter {cutter.id}")

@@ -296,7 +296,7 @@ def _affordable(part: Part, targets: Sequence[int], options: Options) -> None:
     if options.grid is not None:
         wanted = len(targets) * float(options.grid) ** 2
     elif options.spacing is not None:
-        wanted = sum(part.faces[n - 1].area for n in targets) / options.spacing**2
+        wanted = sum(part.faces[n - 1].area for n in targets) / options.spacing / options.spacing
     if wanted > MOST_SAMPLES:
         raise OptionError(
             f"that would take about {wanted:.2g} samples, at most {MOST_SAMPLES:.0e} are taken: sample more coarsely, "

@@ -1,16 +1,24 @@
 """Exit codes, and what ends in which."""
 
+import contextlib
+import os
+import signal
+import sys
 import traceback
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
+from plan_cutters.command import terminal
 from plan_cutters.command.supervise import INTERRUPTED, Supervised
 
 if TYPE_CHECKING:
     from plan_cutters.document.model import Plan
 
 FEASIBLE, NONE_FEASIBLE, USAGE, UNREADABLE, NOT_ALL_JUDGED = 0, 1, 2, 3, 4
+#: Standard output was closed by its reader: as a shell counts the signal that ends other programs then.
+READER_GONE = 141
 
 
 def code_of(plan: "Plan") -> int:
@@ -33,10 +41,12 @@ def guarded(work: Any, debug: bool) -> tuple[int, str]:
         return int(code), str(line)
     except (Exception, KeyboardInterrupt) as error:
         if debug:
-            traceback.print_exc()
+            terminal.emit(traceback.format_exc())
         match error:
             case KeyboardInterrupt():
                 return INTERRUPTED, "plan-cutters: interrupted; no file is half-written"
+            case terminal.ReaderGone():
+                return READER_GONE, ""
             case Supervised():
                 return UNREADABLE, f"plan-cutters: {error}"
             case MemoryError():
@@ -54,3 +64,27 @@ def guarded(work: Any, debug: bool) -> tuple[int, str]:
                     UNREADABLE,
                     f"plan-cutters: internal error ({type(error).__name__}: {error}); --debug shows where",
                 )
+
+
+def ended(name: str, words: Sequence[str], work: Callable[[], int]) -> NoReturn:
+    """Run a command with its words to its end, whatever becomes of the streams that it writes to."""
+
+    def all_of_it() -> tuple[int, str]:
+        try:
+            code = work()
+            if sys.stdout is not None:
+                sys.stdout.flush()
+            return code, ""
+        except click.NoSuchOption as error:
+            files = [word for word in words if word.startswith("-") and os.path.exists(word)]
+            hint = f"; for the file, write ./{files[0]}" if files else ""
+            raise click.UsageError(f"{error.format_message().rstrip('.')}{hint}") from None
+
+    terminal.keep_streams()
+    code, line = guarded(lambda: terminal.handing_out(all_of_it), "--debug" in words)
+    if line:
+        terminal.error(line.replace("plan-cutters:", f"{name}:", 1))
+    # All is said: an interrupt has nothing left to end.
+    with contextlib.suppress(ValueError):
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+    sys.exit(code)

@@ -1,18 +1,17 @@
 """One part: planned, written, summarised; and what is said when its models could not be made to an end."""
 
 import gc
-import sys
+import time
 import traceback
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import click
-
+from plan_cutters.command import terminal
 from plan_cutters.command.codes import UNREADABLE, code_of
-from plan_cutters.command.progress import Progress
+from plan_cutters.command.progress import Display, Teller
 from plan_cutters.command.summary import not_reached, summary, written
-from plan_cutters.command.supervise import INTERRUPTED, Unfinished, report, report_work
+from plan_cutters.command.supervise import INTERRUPTED, Unfinished, is_child, report, report_work
 
 if TYPE_CHECKING:
     from plan_cutters.document.model import Plan
@@ -20,20 +19,22 @@ if TYPE_CHECKING:
 
 
 def one_part(
-    part: str, out: Path, options: "Options", given: dict[str, Any], began: float | None = None
+    part: str, out: Path | None, options: "Options", given: dict[str, Any], began: float | None = None
 ) -> tuple[int, str]:
-    """Plan one part; exit code and a line about it. `began`: when the command did, for the first part (`time.monotonic`)."""
-    from plan_cutters.report import DEFAULT_FORMATS, PLAN, Staging, file_name, read_formats, write_all
+    """Plan one part into a folder, None for none; exit code and a line about it.
+
+    `began`: when the command did, for the first part (`time.monotonic`).
+    """
+    from plan_cutters.report.folder import DEFAULT_FORMATS, PLAN, Staging, file_name, read_formats, write_all
     from plan_cutters.report.to_json import dumps, explain
 
-    to_stdout = given["json_out"] == "-"
-    # The plan on standard output: files only where they are asked for.
-    default = () if to_stdout and given["out"] is None else DEFAULT_FORMATS
-    formats = read_formats(given["formats"]) if given["formats"] else default
+    formats = DEFAULT_FORMATS if given["formats"] is None else read_formats(given["formats"])
+    formats = formats if out else ()
     report("part", part)
-    staging = Staging(out, lambda folder: report("staging", str(folder))) if formats else None
-    watch = Onlooker(out, given)
+    staging = Staging(out, lambda folder: report("staging", str(folder))) if out else None
+    watch = Onlooker(out, options, given, began)
     try:
+        watch.tell("start", 0, 1)
         ahead = _compiling(options, given["quiet"])
         import plan_cutters.report.models  # noqa: F401  all that takes time to load is loaded in the stage `start`
         from cad_io.kernel.limited import KERNEL_THREADS
@@ -43,32 +44,30 @@ def one_part(
         KERNEL_THREADS.set(options.jobs)
         gc.freeze()
         gc.enable()
-        with Progress(given["quiet"]) as tell:
-            clock = Clock(tell, began=began)
-            result = run(part, options, clock, read_timeout=given["read_timeout"], at=report_work, ahead=ahead)
+        clock = Clock(watch.tell, began=began)
+        result = run(part, options, clock, read_timeout=given["read_timeout"], at=report_work, ahead=ahead)
         document = result.plan
-        if not formats:
+        if out is None:
             watch.summarise(document)
         else:
-            with watch:
-                document = write_all(result, out, formats, staging, step_schema=given["step_schema"], onlooker=watch,
-                                     clock=clock)  # fmt: skip
+            watch.tell("files", 0, 1)
+            document = write_all(result, out, formats, staging, step_schema=given["step_schema"], onlooker=watch,
+                                 clock=clock)  # fmt: skip
     except KeyboardInterrupt:
-        if watch.plan is None:
+        if watch.plan is None or out is None:
             raise
         explain(out / PLAN, "interrupted")
         return INTERRUPTED, f"plan-cutters: interrupted; the plan is in {out}, not all models are"
     finally:
+        watch.end()
         if staging:
             staging.discard()
-    if to_stdout:
-        sys.stdout.write(dumps(document))
-        sys.stdout.flush()
+    if given["json_out"] == "-":
+        terminal.hand_out(dumps(document))
     if not given["quiet"]:
-        for line in (*written(document, out, formats), *not_reached(document)):
-            click.echo(line, err=True)
+        terminal.say(*written(document, out, formats), *not_reached(document, verbose=given["verbose"]))
     for name, why in document.not_written.items():
-        click.echo(f"plan-cutters: {file_name(name)} was not written: {why}", err=True)
+        terminal.error(f"plan-cutters: {file_name(name)} was not written: {why}")
     return code_of(document), ""
 
 
@@ -78,42 +77,44 @@ def _compiling(options: "Options", quiet: bool) -> Callable[[], None]:
 
     wait = begin(options.posture_maps) if options.jobs > 1 else None
     if wait is not None and not quiet:
-        click.echo("compiling for this machine, once: the first plan takes about half a minute longer", err=True)
+        terminal.say("Compiling for this machine, once: the first plan takes about half a minute longer.")
     return wait or (lambda: None)
 
 
 class Onlooker:
-    """Shows what is found as soon as it is safe on disk, and tells the parent how far it is."""
+    """Shows what is found as soon as it is safe on disk, and tells how far the work is."""
 
-    def __init__(self, out: Path, given: dict[str, Any]) -> None:
+    def __init__(self, out: Path | None, options: "Options", given: dict[str, Any], began: float | None) -> None:
         self.out, self.given = out, given
         self.plan: Plan | None = None
-        self.progress = Progress(given["quiet"])
-        self.tell: Any = None
-
-    def __enter__(self) -> "Onlooker":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.progress.__exit__()
+        self.display = None
+        if not is_child():
+            self.display = Display(given["quiet"], len(options.judged), began or time.monotonic(), itself=True)
+        self.tell = Teller(self.display)
 
     def summarise(self, plan: "Plan") -> None:
+        self.end()
         if not self.given["quiet"]:
-            summary(plan)
+            summary(plan, verbose=self.given["verbose"])
 
     def safe(self, plan: "Plan") -> None:
         self.plan = plan
-        report("safe", f"{code_of(plan)} {self.out.absolute()}")
+        if self.out is not None:
+            report("safe", f"{code_of(plan)} {self.out.absolute()}")
         self.summarise(plan)
 
     def begins(self, what: str) -> None:
         # Each step has the whole limit of the stage.
-        self.tell = self.tell or self.progress.__enter__()
         self.tell("write", 0, 1)
 
     def failed(self, what: str, error: Exception) -> None:
         if self.given["debug"]:
-            traceback.print_exception(error)
+            terminal.emit("".join(traceback.format_exception(error)))
+
+    def end(self) -> None:
+        """Leave the line to others."""
+        if self.display is not None:
+            self.display.clear()
 
 
 def without_models(ended: Unfinished, given: dict[str, Any]) -> int:
@@ -123,11 +124,11 @@ def without_models(ended: Unfinished, given: dict[str, Any]) -> int:
 
     path = ended.out / PLAN
     missing = ", ".join(map(file_name, explain(path, str(ended)))) or "a model"
-    click.echo(f"plan-cutters: {missing} in {ended.out}: not written: {ended}", err=True)
+    terminal.error(f"plan-cutters: {missing} in {ended.out}: not written: {ended}")
     if given["json_out"] == "-" and path.is_file():
-        click.echo(path.read_text(encoding="utf-8"), nl=False)
+        terminal.hand_out(path.read_text(encoding="utf-8"))
     left = given["parts"][ended.parts :]
     if left and ended.code != INTERRUPTED:
-        click.echo(f"plan-cutters: not planned: {', '.join(left)}", err=True)
+        terminal.error(f"plan-cutters: not planned: {', '.join(left)}")
         return max(ended.code, UNREADABLE)
     return ended.code

@@ -1,43 +1,166 @@
-"""How far the work is: a bar on a terminal, plain lines otherwise, and word to the parent process."""
+"""How far the work is: one line with a bar and a clock on a terminal, a line now and then otherwise.
 
-import sys
+The process that waits draws it: the clock runs on while the CAD kernel holds the other one.
+"""
+
+import contextlib
+import time
 from typing import Any
 
-import click
-
+from plan_cutters.command import terminal
 from plan_cutters.command.supervise import report
 
+#: What stages are called; several may be one to the user. A stage that is none of these is the judging of a cutter.
+_WORDS = {
+    "start": "starting",
+    "read": "reading the part",
+    "measure": "reading the part",
+    "sew": "reading the part",
+    "orient": "reading the part",
+    "fixtures": "reading the fixtures",
+    "sample": "taking samples",
+    "classify": "taking samples",
+    "tessellate": "meshing what is in the way",
+    "tree": "meshing what is in the way",
+    "compile": "loading the search",
+    "bodies": "loading the search",
+    "setups": "judging in the other setups",
+    "stick-out": "asking for the least stick-out",
+    "stick-out-map": "asking for the least stick-out",
+    "radius": "asking for the largest radius",
+    "mend": "asking what would help",
+    "area": "looking between the samples",
+    "maps": "mapping all postures",
+    "files": "writing the plan and the samples",
+    "write": "writing the models",
+}
+#: Where there is no terminal, seconds between two lines about the same work: in the first minute, and later.
+_SOON, _LATER = 5.0, 30.0
+#: Seconds between two words of how much of a stage is done.
+_OFTEN = 0.1
 
-class Progress:
-    """A context that tells each stage; nothing is shown where `quiet`."""
 
-    def __init__(self, quiet: bool) -> None:
-        self.quiet = quiet
+class Display:
+    """Shows what is told.
+
+    Parameters
+    ----------
+    quiet : bool
+        Show no progress; texts for people are shown all the same.
+    cutters : int
+        How many are judged.
+    began : float
+        When the command began (`time.monotonic`).
+    itself : bool
+        Draw without being ticked.
+    """
+
+    def __init__(self, quiet: bool, cutters: int, began: float, *, itself: bool = False) -> None:
+        self.quiet, self.cutters, self.began, self.itself = quiet, cutters, began, itself
+        self.words, self.said, self.spoke = "", "", 0.0
+        self.judged: dict[str, None] = {}
+        self.name = "start"
+        self.share: float | None = None
         self.bar: Any = None
-        self.tasks: dict[str, Any] = {}
-        self.told: set[str] = set()
+        self.task: Any = None
 
-    def __enter__(self) -> Any:
-        if not self.quiet and sys.stderr.isatty():
-            from rich.console import Console
-            from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    def begins(self, part: str) -> None:
+        self.judged, self.said = {}, ""
 
-            self.bar = Progress(TextColumn("{task.description:>10}"), BarColumn(), TimeElapsedColumn(),
-                                console=Console(stderr=True), transient=True)  # fmt: skip
+    def stage(self, name: str) -> None:
+        self.name, self.share = name, None
+        if name not in _WORDS:
+            self.judged.setdefault(name)
+            self.share = (len(self.judged) - 1) / max(self.cutters, len(self.judged))
+        words, before = _WORDS.get(name, "judging the cutters"), self.words
+        self.words = words
+        self._show(words != before)
+
+    def at(self, done: int, total: int) -> None:
+        if total > 1:
+            self.share = done / total
+            if self.name not in _WORDS:
+                self.share = (len(self.judged) - 1 + self.share) / max(self.cutters, len(self.judged))
+        self.tick()
+
+    def say(self, text: str) -> None:
+        self.clear()
+        terminal.emit(text)
+
+    def tick(self) -> None:
+        self._show(False)
+
+    def clear(self) -> None:
+        """Take the line away; the next word draws it again."""
+        if self.bar is not None:
+            with contextlib.suppress(OSError, ValueError):
+                self.bar.stop()
+            self.bar = None
+
+    @property
+    def line(self) -> str:
+        """What is being done."""
+        if self.name in _WORDS:
+            return self.words
+        name = terminal.clean(self.name.partition("H")[0])
+        many = max(self.cutters, len(self.judged))
+        return f"judging {name} ({len(self.judged)} of {many})" if many > 1 else f"judging {name}"
+
+    def _show(self, news: bool) -> None:
+        if self.quiet or not self.words:
+            return
+        if terminal.is_terminal():
+            with contextlib.suppress(OSError, ValueError):
+                self._draw()
+            return
+        now = time.monotonic()
+        wait = _SOON if now - self.began < 60.0 else _LATER
+        if news or (now - self.spoke > wait):
+            share = "" if self.share is None or news else f", {100.0 * self.share:.0f} %"
+            terminal.emit(f"{now - self.began:7.1f} s  {self.words if news else self.line}{share}\n")
+            self.spoke = now
+
+    def _draw(self) -> None:
+        if self.bar is None:
+            from rich.progress import BarColumn, Progress, ProgressColumn, TextColumn
+            from rich.table import Column
+            from rich.text import Text
+
+            began = self.began
+
+            class Clock(ProgressColumn):
+                def render(self, task: Any) -> Text:
+                    seconds = int(time.monotonic() - began)
+                    return Text(f"{seconds // 60}:{seconds % 60:02d}", style="progress.elapsed")
+
+            doing = TextColumn(
+                "{task.description}", markup=False, table_column=Column(no_wrap=True, overflow="ellipsis")
+            )
+            much = TextColumn("{task.fields[percent]}", markup=False)
+            self.bar = Progress(doing, BarColumn(bar_width=20), much, Clock(), console=terminal.console(),
+                                transient=True, auto_refresh=self.itself)  # fmt: skip
             self.bar.start()
-        return self.tell
+            self.task = self.bar.add_task(self.line, total=None, percent="")
+        percent = "" if self.share is None else f"{100.0 * self.share:3.0f} %"
+        total = None if self.share is None else 1.0
+        self.bar.update(self.task, description=self.line, total=total, completed=self.share or 0.0, percent=percent)
+        self.bar.refresh()
 
-    def tell(self, stage: str, done: int, total: int) -> None:
+
+class Teller:
+    """Tells each stage to the parent process, or to a display where there is none."""
+
+    def __init__(self, display: Display | None) -> None:
+        self.display = display
+        self.told = 0.0
+
+    def __call__(self, stage: str, done: int, total: int) -> None:
         if done == 0:
             report("stage", stage)
-        if self.bar is not None:
-            if stage not in self.tasks:
-                self.tasks[stage] = self.bar.add_task(stage, total=total)
-            self.bar.update(self.tasks[stage], completed=done, total=total)
-        elif not self.quiet and stage not in self.told:
-            self.told.add(stage)
-            click.echo(f"{stage} ...", err=True)
-
-    def __exit__(self, *_: object) -> None:
-        if self.bar is not None:
-            self.bar.stop()
+            if self.display is not None:
+                self.display.stage(stage)
+        elif 0 < done < total and time.monotonic() - self.told > _OFTEN:
+            self.told = time.monotonic()
+            report("at", f"{done} {total}")
+            if self.display is not None:
+                self.display.at(done, total)

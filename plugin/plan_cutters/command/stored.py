@@ -2,11 +2,10 @@
 
 import hashlib
 import json
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import click
+from plan_cutters.command import terminal
 
 if TYPE_CHECKING:
     from plan_cutters.options import Options
@@ -52,15 +51,17 @@ def stored(part: str, postures: str, options: "Options", given: dict[str, Any]) 
     if given["json_out"] == "-":
         answer = {"format": "plan-cutters-stored", "part": Path(part).name, "cutter": maps.cutter,
                   "machine": options.machine.name, "setup": options.setup, "samples": counts}  # fmt: skip
-        sys.stdout.write(json.dumps(answer, indent=2) + "\n")
-        sys.stdout.flush()
+        terminal.hand_out(json.dumps(answer, indent=2) + "\n")
     if not given["quiet"]:
         axis = ",".join(f"{x:.4g}" for x in options.setup)
         said = ", ".join(f"{count} {word.replace('_', ' ')}" for word, count in counts.items() if count)
-        click.echo(
-            f"{Path(part).name}: {maps.cutter} on {options.machine.name}, setup {axis}, by {name}: {said}", err=True
+        terminal.say(
+            terminal.clean(
+                f"{Path(part).name}: {maps.cutter} on {options.machine.name}, setup {axis}, by {name}: {said}"
+            )
         )
         if counts["undecided"]:
-            click.echo("What is undecided here, a plan with this machine may decide: the maps leave narrow bands of tilt open.",
-                       err=True)  # fmt: skip
+            terminal.say(
+                "What is undecided here, a plan with this machine may decide: the maps leave narrow bands of tilt open."
+            )
     return _LEFT if counts["inaccessible"] or counts["undecided"] else _REACHED

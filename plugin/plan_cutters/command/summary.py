@@ -1,88 +1,110 @@
-"""What is found, in a few lines for people."""
+"""What is found, for people: which cutter to take, how far each gets, where the one shown fails, what is not sure."""
 
-import math
-import re
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from rich.text import Text
+
+from plan_cutters.command.answered import answered
+from plan_cutters.command.headline import between, headline
+from plan_cutters.command.rows import cell, cutter_rows, lost_percent, percent, shown, take, worst_faces
+from plan_cutters.command.terminal import say
+from plan_cutters.document.names import named, short_names
 
 if TYPE_CHECKING:
     from plan_cutters.document.model import CutterEntry, Plan
 
+#: Lines of one kind that are said unless all are asked for: warnings, obstacles that are missing, cutters that do not reach.
+_LINES, _OTHERS = 5, 3
+#: Tools that are named for each reason why they are not used, and places of a tool.
+_PLACES = 3
 
-def written(plan: "Plan", out: Path, formats: Sequence[str]) -> list[str]:
+
+def summary(plan: "Plan", *, verbose: bool = False) -> None:
+    """Say what is found, but not what is not reached: that comes last."""
+    names = short_names(plan)
+    targets, ignored = len(plan.effective.target_faces), sum(f.ignored for f in plan.faces)
+    faces = f"{plan.part.faces} faces, {targets} to machine{f', {ignored} ignored' if ignored else ''}"
+    say(
+        "",
+        *headline(plan, names),
+        *between(plan),
+        cell(f"{faces}; {plan.samples.count} samples, at most {plan.samples.max_gap_mm:.3g} mm apart; machine "
+             f"{plan.machine.name}, setup {_axis(plan.effective.setup)}."),
+        "",
+        *cutter_rows(plan, names, verbose=verbose),
+        *_unjudged_share(plan),
+        *_apart(worst_faces(plan, names[shown(plan).id])),
+        *_apart([cell(named(plan, line)) for line in (*setups(plan, verbose=verbose), *_travel(plan, verbose=verbose))]),
+        *_apart([cell(named(plan, line)) for line in answered(plan)]),
+        *_apart([*_unsure(plan, verbose=verbose), *(_details(plan) if verbose else ())]),
+    )  # fmt: skip
+
+
+def written(plan: "Plan", out: Path | None, formats: Sequence[str]) -> list[Any]:
     """What is in the output, and which faces the models show otherwise than split in their place."""
-    from plan_cutters.report import left_over
+    from plan_cutters.report.folder import left_over
 
     lines = []
-    written = [*sorted(f.name for f in plan.files.values()), *(["plan.json"] if "json" in formats else [])]
-    if written:
-        lines.append(f"Written: {', '.join(written)} in {out}")
+    files = [*(["plan.json"] if "json" in formats else []), *sorted(f.name for f in plan.files.values())]
+    if files:
+        lines.append(f"Written to {out}: {', '.join(files)} ({plan.run.total:.0f} s in all).")
     for face, entry in plan.split.items():
         if entry.rung != "contour":
             how = "split beside the part" if entry.rung == "beside" else "one piece in the STEP, by samples in the GLB"
             lines.append(f"Not split in its place: {face} ({entry.why}): {how}.")
-    if formats and (old := left_over(out, plan, formats)):
+    if out is not None and formats and (old := left_over(out, plan, formats)):
         lines.append(f"Left over from an earlier run, or not ours: {', '.join(old)} in {out}")
     return lines
 
 
-def summary(plan: "Plan") -> None:
-    """What is found, but not what is not reached: that comes last."""
-    from rich.console import Console
-    from rich.table import Table
-
-    console = Console(stderr=True, highlight=False, soft_wrap=True, markup=False)
-    size = " x ".join(f"{s:.4g}" for s in plan.part.size_mm)
-    targets = len(plan.effective.target_faces)
-    ignored = sum(f.ignored for f in plan.faces)
-    console.print(f"{plan.part.file or 'part'}: {size} mm, {plan.part.faces} faces, {targets} to machine, "
-                  f"{f'{ignored} ignored, ' if ignored else ''}"
-                  f"{plan.samples.count} samples, gaps up to {plan.samples.max_gap_mm:.3g} mm")  # fmt: skip
-    console.print(f"Machine {plan.machine.name}, setup {_axis(plan.effective.setup)}.")
-    for line in libraries(plan):
-        console.print(line)
-    table, names = Table(box=None, pad_edge=False), short_names(plan)
-    held = any(c.least_stick_out for c in plan.cutters)
-    for column in (
-        "cutter",
-        "feasible",
-        "free",
-        "accessible",
-        "undecided",
-        "inaccessible",
-        *(["stick-out"] if held else []),
-    ):
-        table.add_column(column, justify="left" if column in ("cutter", "feasible") else "right", overflow="fold")
+def not_reached(plan: "Plan", *, verbose: bool = False) -> list[str]:
+    """What the larger cutters than the one to take (or all) leave, and why: of many those that come nearest."""
+    larger: list[CutterEntry] = []
     for c in plan.cutters:
-        word = {True: "yes", False: "no", None: "undecided"}[c.feasible]
-        table.add_row(names[c.id] + (" *" if c.id == plan.selected else ""), word, str(c.interference_free),
-                      str(c.accessible), str(c.undecided), str(c.inaccessible), *([_held(c)] if held else []))  # fmt: skip
-    console.print(table)
-    console.print(named(plan, f"Selected: {plan.selected or 'none'} ({plan.selection.why})."))
-    for line in setups(plan):
-        console.print(named(plan, line))
-    for line in _travel(plan):
-        console.print(named(plan, line))
-    console.print(_side(plan))
-    for area in (c.area for c in plan.cutters if c.area):
-        console.print(f"Between samples: {_percent(area.share)} of the target area is served with the axes found "
-                      f"({area.contacts} contacts looked at).")  # fmt: skip
-    for line in answered(plan):
-        console.print(named(plan, line))
-    for warning in plan.part.warnings:
-        console.print(f"Warning: {warning}")
-    for note in plan.notes:
-        console.print(named(plan, f"Note: {note}"))
-    for face in plan.faces:
-        if face.target and face.unjudged:
-            console.print(f"Not judged: {face.id} ({face.unjudged}).")
-    for line in _missing(plan):
-        console.print(line)
+        if c.id == plan.selected:
+            break
+        if c.inaccessible + c.undecided:
+            larger.append(c)
+    near = larger
+    if not verbose and len(larger) > _OTHERS:
+        near = sorted(larger, key=lambda c: (c.id != take(plan), c.inaccessible + c.undecided))[:_OTHERS]
+    lines = [named(plan, _lost(plan, c)) for c in larger if c in near]
+    if rest := [c for c in larger if c not in near]:
+        ends = [min(rest, key=_lost_share), max(rest, key=_lost_share)]
+        least, most = (lost_percent(c, c.area_share) for c in ends)
+        which = "larger cutter" if plan.selected else "cutter"
+        lines.insert(0, f"{len(rest)} more {which}{'s leave' if len(rest) > 1 else ' leaves'} "
+                        f"{least if least == most else f'{least} to {most}'} of the area: -v or plan.json say why.")  # fmt: skip
+    return lines
 
 
-def setups(plan: "Plan") -> list[str]:
+def _lost_share(c: "CutterEntry") -> float:
+    return c.area_share.inaccessible + c.area_share.undecided
+
+
+def _lost(plan: "Plan", c: "CutterEntry") -> str:
+    """What a cutter leaves: how much, why, on which faces, and the worst place."""
+    left = c.inaccessible + c.undecided
+    reasons = sorted(c.area_share.lost_by.items(), key=lambda item: -item[1])
+    why = ", ".join(f"{name.replace('_', ' ')} {percent(share, some=True, whole=False)}" for name, share in reasons)
+    if c.undecided:
+        why += f"; {percent(c.area_share.undecided, some=True, whole=False)} is undecided"
+    worst = sorted(((v.inaccessible + v.undecided, name) for name, v in c.faces.items()), key=lambda x: -x[0])
+    on = ", ".join(name for count, name in worst[:_PLACES] if count)
+    more = sum(count > 0 for count, _ in worst) - _PLACES
+    on += f" and {more} more" if more > 0 else ""
+    deepest = max((w for w in c.witnesses if w.depth_mm is not None), key=lambda w: w.depth_mm or 0, default=None)
+    where = ""
+    if deepest and deepest.depth_mm is not None:
+        place = ", ".join(f"{x:.4g}" for x in deepest.point)
+        where = f"; on {deepest.face} at ({place}) the best posture is {deepest.depth_mm:.3g} mm too deep"
+    return (f"Not reached by {c.id}: {lost_percent(c, c.area_share)} of the area, {left} of {plan.samples.count} samples "
+            f"({why or 'none'}), on {on}{where}.")  # fmt: skip
+
+
+def setups(plan: "Plan", *, verbose: bool = True) -> list[str]:
     """What no cutter can reach in this setup, which cutter does the rest, and how much is within the limit in other setups."""
     lines = []
     count = 1 + len(plan.effective.other_setups)
@@ -99,135 +121,79 @@ def setups(plan: "Plan") -> list[str]:
     if not lost:
         return lines
     lines += [f"Beyond this setup: the axis limit loses {lost} of {plan.samples.count} samples for every cutter."]
-    if plan.selected_for_setup:
+    if plan.selected_for_setup and verbose:
         lines.append(f"For this setup: {plan.selected_for_setup}, which leaves nothing else.")
-    others = ", ".join(f"{_axis(each.axis)} {_percent(each.share)}" for each in plan.setups[1:])
-    lines.append(f"Area within the limit by setup axis: {_percent(plan.setups[0].share)} now; {others}.")
+    shares = [
+        (_axis(s.axis), percent(s.share, some=bool(s.within), whole=s.within == _judged(plan))) for s in plan.setups
+    ]
+    others = ", ".join(f"{axis} {share}" for axis, share in shares[1:])
+    lines.append(f"Area within the limit by setup axis: {shares[0][1]} now; {others}.")
     return lines
 
 
-def _travel(plan: "Plan") -> Sequence[str]:
+def _judged(plan: "Plan") -> int:
+    return plan.samples.count - plan.samples.unjudged
+
+
+def _travel(plan: "Plan", *, verbose: bool) -> Sequence[str]:
     """Whether the machine's linear axes reach what the cutter shown reaches."""
     from plan_cutters.document.travel import travel_lines
 
-    best = max(plan.cutters, key=lambda c: (c.id == plan.selected, c.interference_free + c.accessible))
-    return travel_lines(best.travel, best.id)
+    best = shown(plan)
+    lines = travel_lines(best.travel, best.id)
+    return lines if verbose else [line for line in lines if not line.startswith("Within")]
 
 
 def _axis(axis: Sequence[float]) -> str:
     return ",".join(f"{x:.4g}" for x in axis)
 
 
-def short_names(plan: "Plan") -> dict[str, str]:
-    """How cutters are called in a line, by their ids: as a library does, or without the holder, where that tells them apart."""
-    listed, heads = {}, {}
-    for c in plan.cutters:
-        numbers = dict.fromkeys(f"T{s.number}" for s in c.sources if s.number is not None)
-        listed[c.id] = " ".join([*list(numbers)[:_PLACES], c.name]) if c.sources and c.name else c.id
-        heads[c.id] = c.id.partition("H")[0]
-    said, dimensions = Counter(listed.values()), Counter(heads.values())
-    return {
-        name: listed[name] if said[listed[name]] == 1 and listed[name] != name
-        else heads[name] if dimensions[heads[name]] == 1 else name
-        for name in heads
-    }  # fmt: skip
+def _apart(lines: Sequence[Any]) -> list[Any]:
+    """A paragraph, set apart, if there is any."""
+    return ["", *lines] if lines else []
 
 
-def named(plan: "Plan", text: str) -> str:
-    """A text with cutters called as in `short_names`."""
-    names = short_names(plan)
-    # The longest first: an id may begin as another one does.
-    ids = "|".join(re.escape(name) for name in sorted(names, key=len, reverse=True))
-    return re.sub(ids, lambda found: names[found[0]], text)
+def _unjudged_share(plan: "Plan") -> list[str]:
+    share, count = plan.cutters[0].area_share.unjudged, plan.samples.unjudged
+    if not share and not count:
+        return []
+    return [f"  Besides, {percent(share, some=True, whole=False)} of the area could not be judged, for any cutter."]
 
 
-def libraries(plan: "Plan") -> list[str]:
-    """What was read of tool libraries, and what of it is not used, reason by reason."""
-    lines = []
+def _unsure(plan: "Plan", *, verbose: bool) -> list[Text]:
+    """Warnings, obstacles that are missing, what was not judged, and what else makes a verdict unsure."""
+    most = 10**9 if verbose else _LINES
+    lines = _first([Text.assemble(("Warning: ", "bold yellow"), cell(w)) for w in plan.part.warnings], "warnings", most)
+    lines += _first([_marked("Not judged:", f"{f.id} ({f.unjudged}).") for f in plan.faces if f.target and f.unjudged],
+                    "faces that are not judged", most)  # fmt: skip
+    lines += _first(list(_missing(plan)), "missing obstacles", most)
+    if verbose or not plan.part.orientation.confident:
+        lines.append(cell(_side(plan)))
     for library in plan.libraries:
-        cutters, tools = (
-            f"{n} {word}{'' if n == 1 else 's'}" for n, word in ((library.cutters, "cutter"), (library.tools, "tool"))
-        )
-        lines.append(f"{library.file} ({library.format}): {cutters} of {tools}.")
-        lines += [f"  {note}" for note in library.notes]
-        reasons: dict[str, list[str]] = {}
-        for tool in library.unused:
-            reasons.setdefault(tool.why, []).append(f'{tool.place} "{tool.name}"' if tool.name else tool.place)
-        for why, places in reasons.items():
-            more = f" and {len(places) - _PLACES} more" if len(places) > _PLACES else ""
-            lines.append(f"  Not used: {', '.join(places[:_PLACES])}{more}: {why}.")
+        lines += [cell(line) for line in libraries_of(library, verbose=verbose)]
+    areas = {c.id for c in plan.cutters if c.area}
+    # Said in other words above.
+    told = ("Verdicts are about samples;", *(f"{name} {word}" for name in areas for word in ("reaches", "serves")))
+    lines += [cell(named(plan, f"Note: {note}")) for note in plan.notes if verbose or not note.startswith(told)]
     return lines
 
 
-#: Tools that are named for each reason why they are not used.
-_PLACES = 3
+def _first(lines: list[Text], what: str, most: int) -> list[Text]:
+    more = len(lines) - most
+    return [*lines[:most], *([Text(f"  and {more} more {what}: -v or plan.json.")] if more > 0 else [])]
 
 
-def answered(plan: "Plan") -> list[str]:
-    """What was asked for after the plan."""
-    lines = []
-    for c in plan.cutters:
-        found = c.least_stick_out
-        if found is not None and found.point is not None:
-            lines.append(f"{c.id} must stand out {_up(found.least_mm)} mm at {_place(found.point)} on {found.face}: "
-                         f"a shorter one's holder is stopped by {found.obstacle_face or 'the part'}.")  # fmt: skip
-    for each in plan.largest_radius:
-        if not each.percentiles_mm or each.bottleneck_mm is None or each.bottleneck_point is None:
-            continue
-        most = f"{_radius(each.most_mm)}, the largest tried"
-        narrowest = f"{_place(each.bottleneck_point)} on {each.bottleneck_face}"
-        whole = f"{_radius(each.bottleneck_mm)} reaches every sample" if each.bottleneck_mm else (
-            f"not even R{each.least_mm:.3g} reaches {each.below} samples"
-        )  # fmt: skip
-        middle = each.percentiles_mm["50"]
-        half = f"takes {_radius(middle)} or more" if middle else f"takes less than R{each.least_mm:.3g}"
-        least = most if each.reason is None else f"{narrowest} ({_spoken(each.reason)})"
-        lines.append(f"Largest {each.shape} end, {each.length_over_radius:g} radii long: {whole}, half of the area {half}; "
-                     f"the narrowest: {least}.")  # fmt: skip
-    if plan.missing and (plan.largest_radius or any(c.least_stick_out for c in plan.cutters)):
-        lines.append(
-            "Stick-outs and largest radii hold unless a face is in the way that is missing from the obstacles."
-        )
-    for c in plan.cutters:
-        if c.mend is None:
-            continue
-        helping = [change.why for change in c.mend.changes if change.helps]
-        unsure = [change.why for change in c.mend.changes if change.helps is None]
-        text = "; or ".join(helping) if helping else c.mend.why or "no change of one thing was found to help"
-        lines.append(f"What would make {c.id} finish: {text}.")
-        if unsure and not helping:
-            lines.append(f"  Not decided: {'; '.join(unsure)}.")
-    return lines
+def _marked(word: str, rest: str) -> Text:
+    return Text.assemble((f"{word} ", "bold yellow"), cell(rest))
 
 
-def _held(cutter: "CutterEntry") -> str:
-    """The least stick-out, and the one it was judged with."""
-    found = cutter.least_stick_out
-    if found is None:
-        return ""
-    if found.least_mm is None:
-        return found.limited_by
-    end = ", flutes end" if found.limited_by == "floor" else ""
-    return f"{_up(found.least_mm)} of {found.longest_mm:g}{end}"
-
-
-def _up(length: float | None) -> str:
-    """A length that must not be less, rounded up."""
-    return f"{math.ceil(100.0 * (length or 0.0) - 1e-9) / 100.0:.2f}"
-
-
-def _radius(radius: float) -> str:
-    """A radius that must not be more, rounded down to three digits."""
-    digit = 10.0 ** (math.floor(math.log10(radius)) - 2)
-    return f"R{math.floor(radius / digit + 1e-9) * digit:.4g}"
-
-
-def _place(point: Sequence[float]) -> str:
-    return f"({', '.join(f'{x:.4g}' for x in point)})"
-
-
-def _spoken(reason: str) -> str:
-    return reason.replace("_", " ")
+def _missing(plan: "Plan") -> Iterator[Text]:
+    """Which obstacles are missing, so that no cutter is feasible beyond doubt."""
+    where = {"none": "nothing stands for it", "box": "the box around it stands for it",
+             "triangles": "its own triangles stand for it", "edges": "its edges stand for it"}  # fmt: skip
+    for m in plan.missing:
+        which = m.face or m.entity or m.name or "a face of the file"
+        yield _marked("Missing obstacle:", f"{which} ({m.why}; {where[m.stand_in]}).")
 
 
 def _side(plan: "Plan") -> str:
@@ -241,42 +207,42 @@ def _side(plan: "Plan") -> str:
     return line
 
 
-def _missing(plan: "Plan") -> list[str]:
-    """Which obstacles are missing, so that no cutter is feasible beyond doubt."""
-    where = {"none": "nothing stands for it", "box": "the box around it stands for it",
-             "triangles": "its own triangles stand for it", "edges": "its edges stand for it"}  # fmt: skip
-    return [
-        f"Missing obstacle: {m.face or m.entity or 'a face of the file'} ({m.why}; {where[m.stand_in]})."
-        for m in plan.missing
-    ]
-
-
-def _percent(share: float) -> str:
-    """Rounded down, so that 100 % is all of it."""
-    return f"{math.floor(1e4 * share) / 100:g} %"
-
-
-def not_reached(plan: "Plan") -> list[str]:
-    """What the larger cutters than the selected (or all) leave, and why."""
-    lines = []
+def _details(plan: "Plan") -> Iterator[Text]:
+    """What only those want who ask for all."""
+    size = " x ".join(f"{s:.4g}" for s in plan.part.size_mm)
+    e = plan.effective
+    yield cell(f"Part: {size} mm, {plan.part.solids} solids, SHA-256 {plan.part.sha256}.")
+    yield cell(named(plan, f"Choice: {plan.selection.why}; by {plan.selection.rule}."))
+    yield cell(f"Samples: {plan.samples.convex} convex, {plan.samples.concave} concave, {plan.samples.saddle} saddle, "
+               f"{plan.samples.unjudged} not judged, in {plan.samples.regions} regions.")  # fmt: skip
+    yield cell(f"Searched: tilts {e.tilt_deg[0]:g} to {e.tilt_deg[1]:g} deg, rotations {e.rotation_deg[0]:g} to "
+               f"{e.rotation_deg[1]:g} deg every {e.rotation_step_deg:g} deg; tolerance {e.tolerance_mm:.4g} mm, of which "
+               f"{e.chord_error_mm:.3g} mm for {e.obstacle_triangles} obstacle triangles.")  # fmt: skip
     for c in plan.cutters:
-        if c.id == plan.selected:
-            break
-        if not c.inaccessible + c.undecided:
-            continue
-        reasons = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in c.by_reason.items() if count)
-        deepest = max((w for w in c.witnesses if w.depth_mm is not None), key=lambda w: w.depth_mm or 0, default=None)
-        where = ""
-        if deepest and deepest.depth_mm is not None:
-            x, y, z = deepest.point
-            where = (f"; at ({x:.4g}, {y:.4g}, {z:.4g}) on {deepest.face} the best posture is "
-                     f"{deepest.depth_mm:.3g} mm too deep")  # fmt: skip
-        left = c.inaccessible + c.undecided
-        worst = sorted(((v.inaccessible + v.undecided, name) for name, v in c.faces.items()), key=lambda x: -x[0])
-        on = ", ".join(f"{name} ({count})" for count, name in worst[:3] if count)
-        more = sum(count > 0 for count, _ in worst) - 3
-        on += f" and {more} more" if more > 0 else ""
-        undecided = f", {c.undecided} undecided" if c.undecided else ""
-        line = f"Not reached by {c.id}: {left} of {plan.samples.count} samples ({reasons or 'none'}{undecided}), on {on}{where}."
-        lines.append(named(plan, line))
+        if c.area:
+            yield cell(
+                f"Between samples of {c.id}: {c.area.contacts} contacts were looked at, {c.area.left} cells are not proved."
+            )
+    yield cell(f"Versions: {', '.join(f'{name} {number}' for name, number in plan.versions.items())}.")
+    slow = sorted(plan.run.seconds.items(), key=lambda item: -item[1])[:6]
+    yield cell(f"Seconds: {', '.join(f'{name} {seconds:.1f}' for name, seconds in slow)}.")
+
+
+def libraries_of(library: Any, *, verbose: bool) -> list[str]:
+    """What was read of a tool library, and what of it is not used, reason by reason."""
+    cutters, tools = (
+        f"{n} {word}{'' if n == 1 else 's'}" for n, word in ((library.cutters, "cutter"), (library.tools, "tool"))
+    )
+    unused = len(library.unused)
+    more = f"; {unused} {'is' if unused == 1 else 'are'} not used (-v says why)" if unused and not verbose else ""
+    lines = [f"{library.file} ({library.format}): {cutters} of {tools}{more}."]
+    if not verbose:
+        return lines
+    lines += [f"  {note}" for note in library.notes]
+    reasons: dict[str, list[str]] = {}
+    for tool in library.unused:
+        reasons.setdefault(tool.why, []).append(f'{tool.place} "{tool.name}"' if tool.name else tool.place)
+    for why, places in reasons.items():
+        left = f" and {len(places) - _PLACES} more" if len(places) > _PLACES else ""
+        lines.append(f"  Not used: {', '.join(places[:_PLACES])}{left}: {why}.")
     return lines

@@ -13,14 +13,18 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Protocol
 
 #: Environment variables by which the child knows its number of the pipe to report on, its memory limit in bytes, and when
 #: the command began.
 REPORT, MEMORY, BEGAN = "PLAN_CUTTERS_REPORT", "PLAN_CUTTERS_MEMORY", "PLAN_CUTTERS_BEGAN"
+#: One line at a time: stages tell from their threads.
+_TELLING = threading.Lock()
 #: Exit code of an interrupted run.
 INTERRUPTED = 130
 #: Stages in which the kernel works on what the file says, and how many times the limit of reading each may take.
@@ -101,13 +105,22 @@ def keep_output() -> None:
 
 
 def report(word: str, text: str) -> None:
-    """Tell the parent, if there is one: `part FILE`, `staging FOLDER`, `stage NAME`, `work WHOSE FACE`, `safe CODE FOLDER`,
-    `done CODE`.
+    """Tell the parent, if there is one: `part FILE`, `staging FOLDER`, `stage NAME`, `at DONE TOTAL`, `work WHOSE FACE`,
+    `say TEXT`, `safe CODE FOLDER`, `done CODE`.
 
-    `safe`: the plan of this part is in the folder, models follow; `done`: so are they.
+    `say`: for people; `safe`: the plan of this part is in the folder, models follow; `done`: so are they.
     """
-    if is_child():
-        os.write(int(os.environ[REPORT]), f"{word} {text}\n".encode())
+    if not is_child():
+        return
+    # Names of files may hold line ends, and bytes that are no text.
+    line = f"{word} ".encode() + text.encode("unicode_escape") + b"\n"
+    try:
+        with _TELLING:
+            while line:
+                line = line[os.write(int(os.environ[REPORT]), line) :]
+    except BrokenPipeError:
+        # Who asked for the plan is gone, killed in a way that could not be passed on.
+        raise KeyboardInterrupt from None
 
 
 def report_work(whose: str, face: int) -> None:
@@ -120,7 +133,26 @@ def default_memory() -> int:
     return int(0.75 * os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
 
 
-def supervise(words: Sequence[str], *, read_timeout: float, memory: int) -> int:
+class Display(Protocol):
+    """What shows the user how far the child is."""
+
+    def begins(self, part: str) -> None:
+        """Another part is begun."""
+
+    def stage(self, name: str) -> None:
+        """Another stage is begun."""
+
+    def at(self, done: int, total: int) -> None:
+        """So much of the stage is done."""
+
+    def say(self, text: str) -> None:
+        """A text for people, ready to be written."""
+
+    def tick(self) -> None:
+        """A little time has passed."""
+
+
+def supervise(words: Sequence[str], *, read_timeout: float, memory: int, display: Display | None = None) -> int:
     """Run the command in a child.
 
     Parameters
@@ -131,6 +163,8 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int) -> int:
         Seconds that reading one part may take; the limits of later stages follow from it.
     memory : int
         Bytes of address space that the child may use.
+    display : Display, optional
+        Told what the child tells.
 
     Returns
     -------
@@ -144,23 +178,27 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int) -> int:
     """
     here, there = os.pipe()
     environment = {**os.environ, REPORT: str(there), MEMORY: str(memory), BEGAN: str(began())}
-    watch = _Watch(here, read_timeout)
-    # A session of its own: an interrupt from the terminal reaches the child once, through us.
-    child = subprocess.Popen([sys.executable, "-m", "plan_cutters", *words], env=environment, pass_fds=(there,),
-                             start_new_session=True)  # fmt: skip
+    watch = _Watch(here, read_timeout, display)
+    child: subprocess.Popen[bytes] | None = None
     asked: list[int] = []
 
     def stop(number: int, _: object) -> None:
         # Ask once; a child that has not begun, or is deep in the kernel when asked again, has nothing to tidy itself.
         asked.append(number)
-        if len(asked) > 1 or watch.stage == "start":
-            os.killpg(child.pid, signal.SIGKILL)
-        else:
+        if child is not None and (len(asked) > 1 or watch.stage == "start"):
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(child.pid, signal.SIGKILL)
+        elif child is not None:
             child.send_signal(signal.SIGINT)
 
-    previous = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
-    os.close(there)
+    previous = {number: signal.signal(number, stop) for number in _stopping()}
     try:
+        # A session of its own: an interrupt from the terminal reaches the child once, through us.
+        child = subprocess.Popen([sys.executable, "-m", "plan_cutters", *words], env=environment, pass_fds=(there,),
+                                 start_new_session=True)  # fmt: skip
+        if asked:  # before there was anyone to tell
+            raise KeyboardInterrupt
+        os.close(there)
         while child.poll() is None:
             watch.listen(0.2)
             if watch.over:  # neither the child nor a copy of it holds the other end: it has ended, or is about to
@@ -168,8 +206,11 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int) -> int:
                     child.wait(0.2)
             if watch.late():
                 raise watch.ended(*watch.verdict())
+            if display is not None:
+                display.tick()
     finally:
-        _end(child)
+        if child is not None:
+            _end(child)
         # What it said last counts, too: a folder is named before it exists.
         watch.listen(0.0)
         watch.clear()
@@ -188,6 +229,14 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int) -> int:
                       "the file may be damaged: export it again")  # fmt: skip
 
 
+def _stopping() -> list[int]:
+    """Signals that end a run in order: an interrupt, a request to end, and a terminal that is closed, unless `nohup` was used."""
+    found = [signal.SIGINT, signal.SIGTERM]
+    if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:
+        found.append(signal.SIGHUP)
+    return [int(number) for number in found]
+
+
 def _end(child: "subprocess.Popen[bytes]") -> None:
     """Kill the child and the copies that it has made of itself for the kernel: a session of its own."""
     with contextlib.suppress(ProcessLookupError):
@@ -198,8 +247,8 @@ def _end(child: "subprocess.Popen[bytes]") -> None:
 class _Watch:
     """What the child has told so far."""
 
-    def __init__(self, pipe: int, read_timeout: float) -> None:
-        self.pipe, self.read_timeout = pipe, read_timeout
+    def __init__(self, pipe: int, read_timeout: float, display: Display | None = None) -> None:
+        self.pipe, self.read_timeout, self.display = pipe, read_timeout, display
         self.part, self.stage, self.since = "part", "start", time.monotonic()
         self.work = ""
         self.staging: set[str] = set()
@@ -216,7 +265,8 @@ class _Watch:
                 return
             *lines, self.rest = (self.rest + data).split(b"\n")
             for line in lines:
-                word, _, text = line.decode(errors="replace").partition(" ")
+                word, _, text = line.decode("unicode_escape").partition(" ")
+                self._show(word, text)
                 if word == "stage":
                     self.stage, self.since, self.work = text, time.monotonic(), ""
                 elif word == "work":
@@ -230,6 +280,20 @@ class _Watch:
                     self.code, self.safe = max(self.code, int(text)), None
                 elif word == "staging":
                     self.staging.add(text)
+
+    def _show(self, word: str, text: str) -> None:
+        if self.display is None:
+            return
+        match word:
+            case "part":
+                self.display.begins(text)
+            case "stage":
+                self.display.stage(text)
+            case "at":
+                done, _, total = text.partition(" ")
+                self.display.at(int(done), int(total))
+            case "say":
+                self.display.say(text)
 
     @property
     def limit(self) -> float:

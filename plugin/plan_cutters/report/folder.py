@@ -8,12 +8,15 @@ from collections.abc import Callable, Collection, Sequence
 from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from cad_io.errors import CadIoError
-from plan_cutters.document.clock import Clock
-from plan_cutters.document.model import FileEntry, Plan
 from plan_cutters.errors import OptionError, PlanError
+
+if TYPE_CHECKING:
+    # What formats there are is asked before anything heavy is loaded.
+    from plan_cutters.document.clock import Clock
+    from plan_cutters.document.model import Plan
 
 PLAN = "plan.json"
 #: Format -> (file name, module, function).
@@ -98,7 +101,7 @@ class Staging:
 class Onlooker(Protocol):
     """Told of the writing as it goes on."""
 
-    def safe(self, plan: Plan) -> None:
+    def safe(self, plan: "Plan") -> None:
         """The plan and the arrays are in the output; models follow."""
 
     def begins(self, what: str) -> None:
@@ -116,8 +119,8 @@ def write_all(
     *,
     step_schema: str = "ap242",
     onlooker: Onlooker | None = None,
-    clock: Clock | None = None,
-) -> Plan:
+    clock: "Clock | None" = None,
+) -> "Plan":
     """Write the formats asked for into the folder `out`, each file whole or not at all.
 
     The arrays and the plan come first; the plan is replaced as each other file is added. What fails or ends the process in
@@ -149,9 +152,12 @@ def write_all(
     PlanError
         The folder cannot be written to.
     """
+    from plan_cutters.document.clock import Clock
+
     read_formats(",".join(formats))
     clock = clock or Clock.after(result.plan.run)
     with clock.stage("start", shown=False):
+        from plan_cutters.document.model import FileEntry
         from plan_cutters.report.models import SCHEMAS, rungs, split_result
         from plan_cutters.report.to_json import PENDING, write_plan
 
@@ -171,7 +177,7 @@ def write_all(
                 writer(result, split, staging.folder / file, **more)
                 files[name] = FileEntry(name=file, sha256=_sha256(staging.folder / file))
 
-        def put() -> Plan:
+        def put() -> "Plan":
             plan = document.model_copy(
                 update={
                     "files": {name: files[name] for name in _WRITERS if name in files},
@@ -248,7 +254,7 @@ def _clear(out: Path) -> None:
                     path.unlink()
 
 
-def left_over(out: Path, plan: Plan, formats: Collection[str]) -> list[str]:
+def left_over(out: Path, plan: "Plan", formats: Collection[str]) -> list[str]:
     """Files in the output that have names of ours, but are not of this plan."""
     mine = {entry.name for entry in plan.files.values()} | ({PLAN} if "json" in formats else set())
     return [name for name in (PLAN, *_names()) if name not in mine and (out / name).is_file()]

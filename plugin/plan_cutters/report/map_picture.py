@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from cad_io.arrays import Floats
+from plan_cutters.document.palette import CAUSES as COLOURS
+from plan_cutters.document.palette import PALETTE
 from plan_cutters.report.sheet import figure, save
 
 #: Letters of a line.
@@ -27,18 +29,18 @@ class Cause:
 
 #: In this order each counts for what is forbidden: the first one that does is drawn.
 CAUSES = (
-    Cause("no_contact", "no contact", "#E5E5E5", "."),
-    Cause("axis_limit", "axis limit", "#9A9A9A", "--"),
-    Cause("local_gouge", "local gouge", "#E69F00", "//"),
-    Cause("rear_gouge", "rear gouge", "#D55E00", "\\\\"),
-    Cause("collision", "collision (flutes)", "#CC79A7", "xx"),
-    Cause("neck", "neck", "#882255", "||"),
-    Cause("shank", "shank", "#0072B2", "++"),
-    Cause("holder", "holder", "#332288", "oo"),
-    Cause("buried", "within a body", "#5C3A21", "**"),
+    Cause("no_contact", "no contact", COLOURS["no_contact"], "."),
+    Cause("axis_limit", "axis limit", COLOURS["axis_limit"], "--"),
+    Cause("local_gouge", "local gouge", COLOURS["local_gouge"], "//"),
+    Cause("rear_gouge", "rear gouge", COLOURS["rear_gouge"], "\\\\"),
+    Cause("collision", "collision (flutes)", COLOURS["collision"], "xx"),
+    Cause("neck", "neck", COLOURS["neck"], "||"),
+    Cause("shank", "shank", COLOURS["shank"], "++"),
+    Cause("holder", "holder", COLOURS["holder"], "oo"),
+    Cause("buried", "within a body", COLOURS["buried"], "**"),
 )
-FREE = Cause("free", "free", "#009E73", "")
-UNDECIDED = Cause("undecided", "undecided", "#F0E442", "..")
+FREE = Cause("free", "free", PALETTE["interference_free"], "")
+UNDECIDED = Cause("undecided", "undecided", PALETTE["undecided"], "..")
 #: What is neither free nor undecided, and nothing alone forbids: within the bounds of the search.
 OTHER = Cause("other", "not free", "#555555", "")
 

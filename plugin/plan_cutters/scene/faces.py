@@ -1,7 +1,7 @@
 """Which faces are to be machined and which are left out: the words of `--faces` and `--ignore`, and objects of CAD hosts."""
 
 import re
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from numbers import Integral
 from typing import TYPE_CHECKING, Any
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 _WORDS = "sculptured, all, numbers as F3,7-12, component:NAME, name:REGEX, color:#RRGGBB, or one of them after a ! for all others"
 _RANGE = r"[Ff]?[0-9]+(?:\s*-\s*[Ff]?[0-9]+)?"
 _NUMBERS = re.compile(rf"{_RANGE}(?:\s*,\s*{_RANGE})*")
+_COLOUR = re.compile(r"colou?r:#([0-9a-fA-F]{6})")
 #: Digits of a number that are looked at: more than any part has faces.
 _DIGITS = 12
 #: Components that an error lists, and characters of a selection that it repeats.
@@ -151,12 +152,33 @@ def _none_sculptured(faces: Iterable[FaceInfo]) -> bool:
     return all(f.shape != "sculptured" or f.unjudged for f in faces)
 
 
+def grammar(text: str, option: str) -> None:
+    """Whether a text is a selection at all, whatever the part: an OptionError that names the option, if not."""
+    where, plain = f"{option} {_brief(text)}", text.strip().removeprefix("!").strip()
+    if plain in ("all", "sculptured") or plain.startswith("component:") or _COLOUR.fullmatch(plain):
+        return
+    if plain.startswith("name:"):
+        try:
+            re.compile(plain.removeprefix("name:"))
+        except (re.error, RecursionError, OverflowError) as error:
+            raise OptionError(f"{where}: not a regular expression ({error})") from None
+    elif _NUMBERS.fullmatch(plain):
+        for item, first, last, _ in _ends(plain):
+            if first > last:
+                raise OptionError(f"{where}: {item} runs backwards")
+            if not first:
+                raise OptionError(f"{where}: faces are numbered from 1")
+    else:
+        raise OptionError(f"{where}: give {_WORDS}")
+
+
 def _selected(faces: Sequence[FaceInfo], text: str, tree: "Sequence[Node]", option: str) -> set[int]:
     """Numbers that a text selects: the one grammar of face selections."""
     where = f"{option} {_brief(text)}"
     word = text.strip()
     plain = word.removeprefix("!").strip()
     every = {f.number for f in faces}
+    grammar(text, option)
     if plain == "all":
         chosen = every
     elif plain == "sculptured":
@@ -164,18 +186,13 @@ def _selected(faces: Sequence[FaceInfo], text: str, tree: "Sequence[Node]", opti
     elif plain.startswith("component:"):
         chosen = _of_component(tree, plain.removeprefix("component:"), where)
     elif plain.startswith("name:"):
-        try:
-            pattern = re.compile(plain.removeprefix("name:"))
-        except re.error as error:
-            raise OptionError(f"{where}: not a regular expression ({error})") from None
+        pattern = re.compile(plain.removeprefix("name:"))
         chosen = {f.number for f in faces if pattern.search(f.name)}
-    elif match := re.fullmatch(r"colou?r:#([0-9a-fA-F]{6})", plain):
+    elif match := _COLOUR.fullmatch(plain):
         wanted = tuple(bytes.fromhex(match[1]))
         chosen = {f.number for f in faces if f.colour and tuple(round(255 * c) for c in f.colour) == wanted}
-    elif _NUMBERS.fullmatch(plain):
-        chosen = _numbered(plain, len(faces), where)
     else:
-        raise OptionError(f"{where}: give {_WORDS}")
+        chosen = _numbered(plain, len(faces), where)
     # All but what a mistyped name selects would be everything.
     found = bool(chosen) or plain == "sculptured"
     if word != plain:
@@ -188,17 +205,20 @@ def _selected(faces: Sequence[FaceInfo], text: str, tree: "Sequence[Node]", opti
 def _numbered(word: str, count: int, where: str) -> set[int]:
     """Numbers in a list of numbers and ranges, none beyond `count`."""
     found: set[int] = set()
+    for _, first, last, ends in _ends(word):
+        for end, number in zip(ends, (first, last), strict=True):
+            if not 1 <= number <= count:
+                raise OptionError(f"{where}: there is no face F{_brief(end)}; the part has F1 to F{count}")
+        found.update(range(first, last + 1))
+    return found
+
+
+def _ends(word: str) -> Iterator[tuple[str, int, int, tuple[str, str]]]:
+    """Each item of a list of numbers and ranges, where it begins and ends, as numbers and as written."""
     for item in word.split(","):
         ends = [end.strip().lstrip("Ff").lstrip("0") or "0" for end in item.split("-")]
         # No more digits than can count: neither a huge number nor a huge range is ever built.
-        first, last = int(ends[0][:_DIGITS]), int(ends[-1][:_DIGITS])
-        for end, number in ((ends[0], first), (ends[-1], last)):
-            if not 1 <= number <= count:
-                raise OptionError(f"{where}: there is no face F{_brief(end)}; the part has F1 to F{count}")
-        if first > last:
-            raise OptionError(f"{where}: {item.strip()} runs backwards")
-        found.update(range(first, last + 1))
-    return found
+        yield item.strip(), int(ends[0][:_DIGITS]), int(ends[-1][:_DIGITS]), (ends[0], ends[-1])
 
 
 def _of_component(tree: "Sequence[Node]", name: str, where: str) -> set[int]:

@@ -1,0 +1,72 @@
+"""What was asked for after the plan, in lines for people."""
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from plan_cutters.document.model import Plan
+
+
+def answered(plan: "Plan") -> list[str]:
+    """A line or two for each answer."""
+    lines = []
+    for c in plan.cutters:
+        found = c.least_stick_out
+        if found is None:
+            continue
+        if found.least_mm is None:
+            lines.append(f"Stick-out of {c.id}: not looked for ({found.limited_by}).")
+            continue
+        why = "" if found.limited_by == "floor" else f", by {found.obstacle_face or 'the part'}"
+        at = f" at {_place(found.point)} on {found.face}" if found.point is not None else ""
+        limit = (
+            "its flutes and neck end there"
+            if found.limited_by == "floor"
+            else f"a shorter one's holder is stopped{at}{why}"
+        )
+        lines.append(
+            f"Stick-out of {c.id}: at least {up(found.least_mm)} mm of the {found.longest_mm:g} mm judged: {limit}."
+        )
+    for each in plan.largest_radius:
+        if not each.percentiles_mm or each.bottleneck_mm is None or each.bottleneck_point is None:
+            continue
+        most = f"{radius(each.most_mm)}, the largest tried"
+        narrowest = f"{_place(each.bottleneck_point)} on {each.bottleneck_face}"
+        whole = f"{radius(each.bottleneck_mm)} reaches every sample" if each.bottleneck_mm else (
+            f"not even R{each.least_mm:.3g} reaches {each.below} samples"
+        )  # fmt: skip
+        middle = each.percentiles_mm["50"]
+        half = f"takes {radius(middle)} or more" if middle else f"takes less than R{each.least_mm:.3g}"
+        least = most if each.reason is None else f"{narrowest} ({each.reason.replace('_', ' ')})"
+        lines.append(f"Largest {each.shape} end, {each.length_over_radius:g} radii long: {whole}, half of the area {half}; "
+                     f"the narrowest: {least}.")  # fmt: skip
+    if plan.missing and (plan.largest_radius or any(c.least_stick_out for c in plan.cutters)):
+        lines.append(
+            "Stick-outs and largest radii hold unless a face is in the way that is missing from the obstacles."
+        )
+    for c in plan.cutters:
+        if c.mend is None:
+            continue
+        helping = [change.why for change in c.mend.changes if change.helps]
+        unsure = [change.why for change in c.mend.changes if change.helps is None]
+        text = "; or ".join(helping) if helping else c.mend.why or "no change of one thing was found to help"
+        lines.append(f"What would make {c.id} finish: {text}.")
+        if unsure and not helping:
+            lines.append(f"  Not decided: {'; '.join(unsure)}.")
+    return lines
+
+
+def up(length: float) -> str:
+    """A length that must not be less, rounded up."""
+    return f"{math.ceil(100.0 * length - 1e-9) / 100.0:.2f}"
+
+
+def radius(most: float) -> str:
+    """A radius that must not be more, rounded down to three digits."""
+    digit = 10.0 ** (math.floor(math.log10(most)) - 2)
+    return f"R{math.floor(most / digit + 1e-9) * digit:.4g}"
+
+
+def _place(point: Sequence[float]) -> str:
+    return f"({', '.join(f'{x:.4g}' for x in point)})"

@@ -1,0 +1,198 @@
+"""What the words of the command line ask for, looked at before anything heavy is loaded and any process is started.
+
+Cheap questions come first: files before numbers, so that a name that is mistyped costs nothing.
+"""
+
+import math
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from cad_io.errors import CadIoError, ReadError
+
+if TYPE_CHECKING:
+    from plan_cutters.options import Options
+
+#: Options of the interface that later versions will have: asked for now, they must not be ignored.
+_NOT_BUILT = {
+    "cluster": "clusters are not used yet; --jobs gives threads on this machine",
+}
+#: Bytes of memory below which nothing can be planned.
+LEAST_MEMORY = 2e9
+
+
+def check(parts: Sequence[str], given: dict[str, Any]) -> "tuple[Options, list[CadIoError]]":
+    """Options, and why some of several parts cannot be read.
+
+    Raises
+    ------
+    CadIoError
+        No part can be read, or a fixture cannot.
+    PlanError
+        An option has no meaning, or a library or machine file cannot be used.
+    """
+    _words(parts, given)
+    faults = _faults(parts)
+    if len(faults) == len(parts):
+        raise faults[0]
+    if given["postures"] is None:
+        for out in folders(parts, given):
+            _writable(out)
+    options = options_of(given)
+    _selections(options)
+    for fixture in options.fixtures:
+        if isinstance(fixture.source, str) and not fixture.kind:
+            _fixture(fixture.source)
+    return options, faults
+
+
+def folders(parts: Sequence[str], given: dict[str, Any]) -> list[Path]:
+    """The output folder of each part; none where only standard output is written."""
+    from plan_cutters.errors import OptionError
+
+    if given["json_out"] == "-" and given["out"] is None and given["formats"] is None:
+        return []
+    if given["out"] is not None and len(parts) > 1:
+        outs = [Path(given["out"]) / f"{Path(p).stem}-plan" for p in parts]
+    else:
+        outs = [Path(given["out"] or f"{Path(p).stem}-plan") for p in parts]
+    if len(set(outs)) < len(outs):
+        twice = next(str(out) for out in outs if outs.count(out) > 1)
+        raise OptionError(
+            f"two parts have the same name and would write to the same folder, {twice}; plan them one by one"
+        )
+    return outs
+
+
+def _words(parts: Sequence[str], given: dict[str, Any]) -> None:
+    """Options that need no file and no number to be read."""
+    from plan_cutters.errors import OptionError
+    from plan_cutters.report.folder import read_formats
+
+    for name, why in _NOT_BUILT.items():
+        if given[name] not in (None, (), False):
+            raise OptionError(f"--{name.replace('_', '-')}: {why}")
+    if given["formats"] is not None:
+        read_formats(given["formats"])
+    if given["json_out"] not in (None, "-"):
+        raise OptionError("--json takes -, for standard output; --formats json writes plan.json into the folder")
+    if given["json_out"] and len(parts) > 1:
+        raise OptionError("--json - writes one plan: give one part, or -o DIR --formats json for a file of each")
+    if given["json_out"] and sys.stdout is None:
+        raise OptionError("--json -: standard output is closed")
+    if given["out"] == "":
+        raise OptionError("-o: the folder has no name")
+    if "" in parts:
+        raise OptionError("PART: a file has no name")
+    if given["postures"] is not None and len(parts) > 1:
+        raise OptionError("--postures is about one part")
+    if given["postures"] is not None and not os.path.isfile(given["postures"]):
+        raise OptionError("no such file, or it is no file", file=given["postures"])
+    if not 0.0 < given["read_timeout"] < math.inf:
+        raise OptionError("--read-timeout must be a positive number of seconds")
+    if given["memory"] is not None and not LEAST_MEMORY <= given["memory"] * 1e9 < 1e18:
+        raise OptionError("--memory must be at least 2 GB")
+
+
+def _faults(parts: Sequence[str]) -> list[CadIoError]:
+    """Why parts cannot be read, as far as their first bytes tell."""
+    from cad_io.read.sniff import kind
+
+    found: list[CadIoError] = []
+    for part in parts:
+        try:
+            kind(part)
+        except CadIoError as error:
+            found.append(error)
+    return found
+
+
+def _writable(out: Path) -> None:
+    """An error where a folder can surely not be written."""
+    from plan_cutters.errors import PlanError
+
+    if out.exists() and not out.is_dir():
+        raise PlanError("the output must be a folder, this is a file; give another with -o", file=str(out))
+    # What grows stands beside the folder, and then in it; folders that are not there are made.
+    there = next(folder for folder in out.absolute().parents if folder.exists() or folder == folder.parent)
+    for folder in (there, *([out] if out.exists() else [])):
+        if not folder.is_dir() or not os.access(folder, os.W_OK | os.X_OK):
+            why = "Permission denied" if folder.is_dir() else "Not a directory"
+            raise PlanError(f"cannot write there ({why}); give another folder with -o", file=str(out))
+
+
+def _selections(options: "Options") -> None:
+    from plan_cutters.scene.faces import grammar
+
+    given = options.ignore if isinstance(options.ignore, list | tuple) else (options.ignore,)
+    for option, text in (("--faces", options.faces), *(("--ignore", each) for each in given)):
+        if isinstance(text, str):
+            grammar(text, option)
+
+
+def _fixture(file: str) -> None:
+    """An error for the file of a fixture that is missing, empty or of no format that fixtures have."""
+    from cad_io.read.sniff import kind
+    from plan_cutters.domain.fixture import CAD, MESH
+
+    suffix = Path(file).suffix.lower()
+    if suffix in CAD:
+        kind(file)
+    elif suffix in MESH:
+        if not os.path.exists(file):
+            raise ReadError("no such file", file=file)
+        if not os.path.isfile(file):
+            raise ReadError("is not a file", file=file)
+
+
+def options_of(given: dict[str, Any]) -> "Options":
+    """The options of a plan, from the words of the command line; a PlanError for what has no meaning."""
+    from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.domain.holder import Holder
+    from plan_cutters.domain.posture import PostureRange
+    from plan_cutters.errors import OptionError
+    from plan_cutters.library.records import Library
+    from plan_cutters.options import Options
+
+    postures = PostureRange.degrees(given["tilt"], given["rotation"], given["rotation_step"])
+    more = {} if given["jobs"] is None else {"jobs": given["jobs"]}
+    holder: Holder | str | None = None
+    libraries: list[Library] = []
+    if given["holder"] is not None or given["cutters"]:
+        # Who names neither need not load the readers.
+        from plan_cutters.library.read import holder_of, read_library
+
+        holder = None if given["holder"] is None else holder_of(given["holder"])
+        words = {"assume_stickout": given["assume_stickout"], "holder": holder, "skip_bad": given["skip_bad"]}
+        libraries = [read_library(file, **words) for file in given["cutters"]]
+    if not given["cutters"] and (given["assume_stickout"] is not None or given["skip_bad"]):
+        word = "--skip-bad" if given["skip_bad"] else "--assume-stickout"
+        raise OptionError(f"{word} is about the tools of a library: give it with --cutters")
+    return Options(
+        cutters=tuple(Cutter.parse(spec) for spec in given["cutter"]),
+        libraries=tuple(libraries),
+        holder=None if isinstance(holder, str) else holder,
+        allowance=given["allowance"],
+        holder_clearance=given["holder_clearance"],
+        machine=given["machine"],
+        setup=given["setup"][0],
+        other_setups=given["setup"][1:],
+        faces=given["faces"],
+        ignore=given["ignore"],
+        grid=given["grid"],
+        spacing=given["spacing"],
+        tilt=postures.tilt,
+        rotation=postures.rotation,
+        rotation_step=postures.step,
+        tolerance=given["tolerance"],
+        flip=given["flip"],
+        area_budget=given["area_budget"],
+        posture_maps=given["posture_maps"],
+        answers=given["answers"],
+        length_over_radius=given["length_over_radius"],
+        unit=given["unit"],
+        fixtures=given["fixture"],
+        **more,
+    )

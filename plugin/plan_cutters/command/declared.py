@@ -1,0 +1,229 @@
+"""The options of `plan-cutters`, in the groups that help shows."""
+
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+from cad_io.units import UNITS
+from plan_cutters import __version__
+from plan_cutters.command import values
+from plan_cutters.command.grouped import heading
+from plan_cutters.command.values import File, Folder, Range, Setup, Words
+
+EXAMPLES = (
+    ("plan-cutters blade.step", "The sculptured faces, with the built-in cutters:"),
+    (
+        "plan-cutters blade.step --cutter R6L80 --cutter R3L60rc3 --holder R15L40",
+        "Two cutters, flat and ball, in a holder:",
+    ),
+    ("plan-cutters mould.step --cutters shop.tools --machine trunnion-ac", "Your tool library on a machine:"),
+    ("plan-cutters mould.step --faces F3,7-12 --fixture vise.stl@0,0,-20", "Some faces, the part in a vise:"),
+    (
+        "plan-cutters blade.step --cutter R6L80 --answers stick-out,mend",
+        "How short it can be held, and what would help:",
+    ),
+    ("plan-cutters blade.step --cutter R6L80 --json - --quiet", "For a script, the plan on standard output:"),
+)
+CODES = (
+    ("0", "a cutter finishes every judged sample"),
+    ("1", "none does; the plan says where and why"),
+    ("2", "the command line, a library or a machine file is wrong"),
+    ("3", "the part or a fixture cannot be read, or holds nothing to judge"),
+    ("4", "a cutter would finish all that could be judged, but something could not, or obstacles are missing"),
+    ("130", "interrupted; nothing is half-written"),
+)
+
+
+def _list_cutters(ctx: click.Context, param: click.Parameter, asked: bool) -> None:
+    """Print the built-in drawer, one cutter a line, and end."""
+    if not asked or ctx.resilient_parsing:
+        return
+    from plan_cutters.domain.drawer import builtin
+
+    click.echo(
+        "Built-in cutters: usual metric sizes in plain holders, for a first look; nobody's tools. Lengths in mm."
+    )
+    for cutter in builtin():
+        click.echo(f"{cutter.id:36}  {cutter.name}")
+    ctx.exit()
+
+
+_cutters, _machine, _faces = heading("Cutters"), heading("Machine and setup"), heading("Faces")
+_samples, _postures = heading("Sampling and tolerances"), heading("Postures")
+_output, _answers, _run = heading("Output"), heading("Answers"), heading("Run")
+
+_OPTIONS = (
+    _cutters(
+        "--cutter",
+        type=Words("SPEC", values.cutter_ids),
+        multiple=True,
+        help="R6L80: radius 6, length 80 mm; then rc1 corner radius (rc6: ball), T5 taper (half angle, deg), F20 flutes, "
+        "N5.5x40 neck (radius x length; more of them upwards), S6 shank radius. Repeatable.  [default: the built-in drawer]",
+    ),
+    _cutters(
+        "--cutters",
+        type=File("FILE"),
+        multiple=True,
+        help="Tool library: Fusion .json, .tools or CSV, HSMWorks .hsmlib, FreeCAD .fctl or .fctb, or TOML; "
+        "plan-cutters-tools shows what is understood of it. Repeatable.",
+    ),
+    _cutters(
+        "--holder",
+        type=File("SPEC|FILE"),
+        help="Holder of the cutters that have none: R15L30 (radius, length); stages from the nose up joined by +, cones as "
+        "R12:15L20; a file with a holder (FILE#NAME if it has several); or `none`.",
+    ),
+    _cutters("--assume-stickout", type=float, metavar="MM", help="Stick-out of the libraries' tools that state none."),
+    _cutters("--skip-bad", is_flag=True, help="Use the other tools of a library that has broken ones."),
+    _cutters(
+        "--list-cutters",
+        is_flag=True,
+        is_eager=True,
+        expose_value=False,
+        callback=_list_cutters,
+        help="List the built-in cutters and exit.",
+    ),
+    _machine(
+        "--machine",
+        default="unlimited",
+        type=Words("NAME|FILE", values.machine_names, files=True),
+        help="`unlimited`; `tilt:DEG`, a limit of the tool axis from the setup axis; a built-in machine "
+        "(plan-cutters-machines lists them); or a machine file: TOML, JSON, FreeCAD .fcm, LinuxCNC .ini, Fusion .mch, "
+        "MTConnect.  [default: unlimited]",
+    ),
+    _machine(
+        "--setup",
+        type=Setup(),
+        multiple=True,
+        default=["0,0,1"],
+        help="Direction of the part along the machine's spindle, or a setup file (TOML) that says where the part stands. "
+        "Repeatable: every cutter is judged in each, and what they reach together is said.  [default: 0,0,1]",
+    ),
+    _machine(
+        "--fixture",
+        type=File("FILE[@X,Y,Z[,RX,RY,RZ]][:UNIT]"),
+        multiple=True,
+        help="A body in the way: STEP, IGES, BREP, STL, OBJ, PLY, GLB, or `box:X,Y,Z`, `cylinder:R,H`, `table:Z`, placed in "
+        "part coordinates (mm, degrees). Repeatable.",
+    ),
+    _faces(
+        "--faces",
+        default="sculptured",
+        type=Words("SELECT", values.face_words),
+        help="`sculptured`, `all`, `F3,7-12`, `component:NAME`, `name:REGEX` or `color:#RRGGBB`, after a `!` all but these; "
+        "the others are obstacles.  [default: sculptured]",
+    ),
+    _faces(
+        "--ignore",
+        type=Words("SELECT", values.face_words),
+        multiple=True,
+        help="Faces that are neither machined nor obstacles, as construction geometry; the same words. Repeatable.",
+    ),
+    _faces("--flip", is_flag=True, help="Machine the other side of open shells and loose faces."),
+    _faces(
+        "--unit",
+        type=click.Choice(list(UNITS)),
+        help="What lengths in the part's file are in, where it says so wrongly.  [default: what it says]",
+    ),
+    _samples(
+        "--spacing",
+        type=float,
+        metavar="MM",
+        help="Samples at most this far apart.  [default: from curvature, the smallest cutter and a budget]",
+    ),
+    _samples("--grid", type=int, metavar="N", help="N x N parameter samples a face, instead."),
+    _samples(
+        "--area-budget",
+        type=int,
+        metavar="N",
+        help="Contacts to look at between the samples of the selected cutter; 0: samples alone.  [default: 24 a sample, at "
+        "most 100000]",
+    ),
+    _samples("--tolerance", type=float, default=0.01, metavar="MM", help="Gouge tolerance.  [default: 0.01]"),
+    _samples("--allowance", type=float, default=0.0, metavar="MM", help="Stock left on the surface.  [default: 0]"),
+    _samples(
+        "--holder-clearance",
+        type=float,
+        default=0.0,
+        metavar="MM",
+        help="Room asked of neck, shank and holder.  [default: 0]",
+    ),
+    _postures(
+        "--tilt", type=Range(), default="0:90", help="Tilts to search, degrees from the normal.  [default: 0:90]"
+    ),
+    _postures(
+        "--rotation",
+        type=Range(),
+        default="0:360",
+        help="Rotations to search, degrees from the direction of the largest curvature.  [default: 0:360]",
+    ),
+    _postures(
+        "--rotation-step", type=float, default=10.0, metavar="DEG", help="Step between rotations.  [default: 10]"
+    ),
+    _postures(
+        "--posture-maps",
+        is_flag=True,
+        help="Also write every sample's free tilt intervals at every rotation (postures.npz), for the cutter shown.",
+    ),
+    _postures(
+        "--postures",
+        type=File("FILE"),
+        help="Answer for this machine, setup, tilts and rotations from the part's postures.npz alone, without a new search.",
+    ),
+    _output("-o", "--out", type=Folder("DIR"), help="Folder for the files.  [default: <part>-plan]"),
+    _output(
+        "--formats",
+        type=Words("LIST", values.formats, listed=True),
+        help=f"Of {', '.join(values.formats())}; merged is a GLB of one mesh, for parts of thousands of faces.  "
+        f"[default: {','.join(values.default_formats())}]",
+    ),
+    _output(
+        "--step-schema",
+        type=click.Choice(["ap242", "ap214", "ap203"]),
+        default="ap242",
+        help="Application protocol of the STEP file.  [default: ap242]",
+    ),
+    _output(
+        "--json",
+        "json_out",
+        type=Words("-", lambda: ("-",)),
+        help="The plan of one part on standard output, nothing else there; files only where -o names a folder.",
+    ),
+    _output("-v", "--verbose", is_flag=True, help="Say all that the summary leaves to plan.json."),
+    _output("--quiet", is_flag=True, help="No progress and no summary: errors alone."),
+    _answers(
+        "--answers",
+        default="",
+        type=Words("LIST", values.answers, listed=True),
+        help="Answer more: stick-out (how short each cutter can be held), stick-out-map (that for every sample, too), radius "
+        "(the largest flat and ball end that reaches each sample), mend (what would make each cutter that fails feasible), or "
+        "all (without the map).",
+    ),
+    _answers(
+        "--length-over-radius",
+        type=float,
+        default=10.0,
+        metavar="N",
+        help="Of the ends whose largest radius is asked for.  [default: 10]",
+    ),
+    _run("--jobs", type=int, metavar="N", help="Threads.  [default: all cores]"),
+    click.option("--cluster", metavar="ADDRESS", hidden=True),
+    _run(
+        "--read-timeout",
+        type=float,
+        default=120.0,
+        metavar="S",
+        help="Seconds that reading a part may take; later stages of the CAD kernel five times as long.  [default: 120]",
+    ),
+    _run("--memory", type=float, metavar="GB", help="Most memory to use.  [default: 3/4 of the machine's]"),
+    _run("--debug", is_flag=True, help="Show tracebacks."),
+    click.version_option(__version__, prog_name="plan-cutters"),
+)
+
+
+def options(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Declare all of them."""
+    for option in reversed(_OPTIONS):
+        function = option(function)
+    return function

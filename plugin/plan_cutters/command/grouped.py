@@ -1,0 +1,85 @@
+"""Help in groups: options that belong together under one heading, and examples at the end."""
+
+import os
+import shutil
+from collections.abc import Sequence
+from typing import Any
+
+import click
+
+#: Width of the column of names; what is longer has a line of its own.
+_NAMES = 22
+#: Widest that help is set.
+WIDEST = 100
+
+
+class Grouped(click.Option):
+    """An option under a heading of the help."""
+
+    def __init__(self, *words: Any, group: str = "", **more: Any) -> None:
+        super().__init__(*words, **more)
+        self.group = group
+
+
+def heading(title: str) -> Any:
+    """What declares options under a heading: `click.option` with a group."""
+
+    def option(*words: str, **more: Any) -> Any:
+        return click.option(*words, cls=Grouped, group=title, **more)
+
+    return option
+
+
+class Command(click.Command):
+    """A command whose help has headings in the order in which they are declared, then examples and exit codes.
+
+    Parameters
+    ----------
+    examples : sequence of (str, str)
+        A command line, and what it does.
+    codes : sequence of (str, str)
+        Exit codes, and what they mean.
+    """
+
+    def __init__(
+        self, *words: Any, examples: Sequence[tuple[str, str]] = (), codes: Sequence[tuple[str, str]] = (), **more: Any
+    ) -> None:
+        more["context_settings"] = {"help_option_names": ["-h", "--help"]}
+        super().__init__(*words, **more)
+        self.examples, self.codes = examples, codes
+
+    def make_context(self, *words: Any, **more: Any) -> click.Context:
+        # 80 columns where the output is no terminal.
+        settings = {"terminal_width": min(WIDEST, shutil.get_terminal_size().columns) - 1, "color": colour()}
+        return super().make_context(*words, **{**settings, **more})
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        groups: dict[str, list[tuple[str, str]]] = {}
+        title = "Options"
+        for param in self.get_params(ctx):
+            record, title = param.get_help_record(ctx), getattr(param, "group", title)
+            if record is not None and not isinstance(param, click.Argument):
+                # As wide as all others, so that the text begins in one column throughout.
+                groups.setdefault(title, []).append((record[0].ljust(_NAMES), record[1]))
+        for title, records in groups.items():
+            with formatter.section(_bold(title)):
+                formatter.write_dl(records, col_max=_NAMES)
+
+    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        if self.examples:
+            with formatter.section(_bold("Examples")):
+                for line, what in self.examples:
+                    formatter.write_text(what)
+                    formatter.write(f"{'':{formatter.current_indent + 2}}{click.style(line, fg='cyan')}\n")
+        if self.codes:
+            with formatter.section(_bold("Exit codes")):
+                formatter.write_dl(self.codes)
+
+
+def colour() -> bool | None:
+    """Whether output has colours: never where the environment asks for none, else where it goes to a terminal (None)."""
+    return False if os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb" else None
+
+
+def _bold(title: str) -> str:
+    return click.style(title, bold=True)

@@ -1,0 +1,99 @@
+"""The first words of the summary: which cutter to take, or why none, and what that means between the samples."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from rich.text import Text
+
+from plan_cutters.command.rows import cell, lost_percent, percent
+
+if TYPE_CHECKING:
+    from plan_cutters.document.model import CutterEntry, Plan
+
+_MARKS = {True: "bold green", False: "bold red", None: "bold yellow"}
+
+
+def headline(plan: "Plan", names: Mapping[str, str]) -> list[Text]:
+    """Which cutter to take, with what holder, and why; or why none."""
+    entries = {c.id: c for c in plan.cutters}
+    part, setups = plan.part.file or "the part", 1 + len(plan.effective.other_setups)
+    if plan.selected:
+        c = entries[plan.selected]
+        which = (
+            "reaches every sample"
+            if len(entries) == 1
+            else f"is the largest of {len(entries)} that reaches every sample"
+        )
+        return [_marked(f"Take {names[c.id]}", True, f" for {part}: {_described(c)}. It {which}.")]
+    if plan.selected_over_setups:
+        c = entries[plan.selected_over_setups]
+        return [_marked(f"Take {names[c.id]}", True, f" for {part}, in {setups} setups: {_described(c)}. Together they reach "
+                        "every sample; no setup does alone.")]  # fmt: skip
+    if plan.selected_for_setup:
+        c = entries[plan.selected_for_setup]
+        return [_marked(f"Take {names[c.id]} in this setup", None, f" of {part}: {_described(c)}. It leaves only what the axis "
+                        f"limit keeps from every cutter, {lost_percent(c, c.area_share)} of the area: that needs another "
+                        "setup.")]  # fmt: skip
+    best = min(plan.cutters, key=lambda c: c.inaccessible + c.undecided)
+    left = best.inaccessible + best.undecided
+    name = names[best.id]
+    if not left:
+        return [_marked(f"No cutter is sure for {part}", None, f". {name} reaches every sample that could be judged, but "
+                        "obstacles are missing (below) that may be in its way.")]  # fmt: skip
+    which = "It" if len(entries) == 1 else f"{name} comes nearest: it"
+    if best.inaccessible == 0:
+        return [_marked(f"No cutter is sure for {part}", None, f". {_only(entries, name)}{which} leaves "
+                        f"{_left(plan, best)} undecided: neither safe nor blocked to the tolerance.")]  # fmt: skip
+    return [
+        _marked(f"No cutter finishes {part}", False, f". {_only(entries, name)}{which} leaves {_left(plan, best)}.")
+    ]
+
+
+def between(plan: "Plan") -> list[str]:
+    """What is known of the area between the samples, and what that means."""
+    lines = []
+    for c in plan.cutters:
+        if c.area is None:
+            continue
+        if c.area.feasible:
+            lines.append("Between the samples, too, all of the area is proved safe with the tool axes found.")
+            continue
+        share = percent(c.area.share, some=c.area.share > 0.0, whole=False)
+        rest = percent(1.0 - c.area.share, some=True, whole=False)
+        lines.append(
+            f"Between the samples, {share} of the area is proved safe with the tool axis kept as it was found. The other "
+            f"{rest} is not proved, which does not mean unsafe: the tool axis has to turn there from one sample to the next, or the "
+            "samples are too far apart. Check it in simulation, or ask for more (--spacing, --area-budget)."
+        )
+    return lines
+
+
+def _left(plan: "Plan", c: "CutterEntry") -> str:
+    lost = c.inaccessible + c.undecided
+    return f"{lost_percent(c, c.area_share)} of the area ({lost} of {plan.samples.count} samples)"
+
+
+def _only(entries: Mapping[str, "CutterEntry"], name: str) -> str:
+    return f"{name} was judged. " if len(entries) == 1 else f"{len(entries)} cutters were judged. "
+
+
+def _marked(text: str, good: bool | None, rest: str) -> Text:
+    return Text.assemble(cell(text, _MARKS[good]), cell(rest))
+
+
+def _described(c: "CutterEntry") -> str:
+    """A cutter in words: shape, radius, how far it stands out of what."""
+    if c.shape != "end":
+        what = c.shape if c.shape in ("lollipop", "barrel", "lens") else "form cutter"
+    elif c.corner_radius <= 0.0:
+        what = "flat end"
+    else:
+        what = "ball end" if c.corner_radius >= c.radius else f"bull nose with corners of {c.corner_radius:.4g} mm"
+    taper = f", taper {c.taper_deg:.4g} deg" if c.taper_deg else ""
+    holder = [stage for stage in c.stages if stage.part == "holder"]
+    if not holder:
+        held = f"judged without a holder, {c.length:.5g} mm up from its tip"
+    else:
+        widest = max(max(stage.radius_mm, stage.upper_radius_mm) for stage in holder)
+        held = f"{c.length:.5g} mm out of its holder, which is up to R{widest:.4g} wide"
+    return f"{what} R{c.radius:.5g}{taper}, {held}"

@@ -1,0 +1,175 @@
+"""Tables of the summary: a row for each cutter, and the worst faces of one; lists where a terminal is too narrow for them."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from rich.table import Table
+from rich.text import Text
+
+from plan_cutters.command.terminal import clean, console
+
+if TYPE_CHECKING:
+    from plan_cutters.document.model import CutterEntry, Plan
+    from plan_cutters.document.shares import AreaShare, Verdicts
+
+#: Verdicts, what a column calls them.
+WORDS = {
+    "interference_free": "free",
+    "accessible": "accessible",
+    "undecided": "undecided",
+    "inaccessible": "inaccessible",
+}
+#: Rows that are shown unless all are asked for, and faces.
+MOST_ROWS, WORST = 40, 5
+#: Columns below which there is no room for a table.
+_NARROW = 72
+#: Widest that the name of a cutter is shown beside its numbers.
+_NAME = 22
+_WORDS = {True: "yes", False: "no", None: "undecided"}
+_COLOURS = {True: "green", False: "red", None: "yellow"}
+
+
+def cell(text: str, style: str = "") -> Text:
+    """A text from a file, for a table or a paragraph."""
+    return Text(clean(text), style)
+
+
+def percent(share: float, *, some: bool, whole: bool) -> str:
+    """A share in percent: 100 only where it is the whole, and 0 only where there is nothing of it.
+
+    Examples
+    --------
+    >>> percent(0.00001, some=True, whole=False), percent(0.99999, some=True, whole=False)
+    ('<0.1 %', '>99.9 %')
+    """
+    if whole:
+        return "100 %"
+    if not some and not share:
+        return "0 %"
+    text = f"{100.0 * share:.1f}"
+    return {"0.0": "<0.1 %", "100.0": ">99.9 %"}.get(text, f"{text} %")
+
+
+def percents(counts: "Verdicts", share: "AreaShare") -> dict[str, str]:
+    """Each verdict's share of the area, as it is shown."""
+    words = [*WORDS, "unjudged"]
+    there = {word: bool(getattr(counts, word)) or getattr(share, word) > 0.0 for word in words}
+    return {
+        word: percent(
+            getattr(share, word), some=there[word], whole=there[word] and not any(there[w] for w in words if w != word)
+        )
+        for word in words
+    }
+
+
+def lost_percent(counts: "Verdicts", share: "AreaShare") -> str:
+    """The share of the area that is inaccessible or undecided, as it is shown."""
+    lost = counts.inaccessible + counts.undecided
+    others = counts.interference_free + counts.accessible + counts.unjudged
+    return percent(
+        share.inaccessible + share.undecided, some=bool(lost), whole=bool(lost) and not others and not share.unjudged
+    )
+
+
+def shown(plan: "Plan") -> "CutterEntry":
+    """The cutter that the models show: the selected, else the one that reaches the most samples."""
+    best = max(plan.cutters, key=lambda c: c.interference_free + c.accessible)
+    return next((c for c in plan.cutters if c.id == plan.selected), best)
+
+
+def cutter_rows(plan: "Plan", names: Mapping[str, str], *, verbose: bool) -> list[Any]:
+    """A row for each cutter, of many the best alone, and how many more there are."""
+    taken, rows = take(plan), list(plan.cutters)
+    if not verbose and len(rows) > MOST_ROWS:
+        rank = sorted(rows, key=lambda c: (c.id != taken, c.area_share.inaccessible + c.area_share.undecided))
+        kept = {c.id for c in rank[:MOST_ROWS]}
+        rows = [c for c in rows if c.id in kept]
+    found: list[Any] = ["Share of the area to machine, by the verdict of its samples:"]
+    width = console().width
+    if width < _NARROW:
+        found += [_listed(c, names[c.id], c.id == taken) for c in rows]
+    else:
+        table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
+        short = _distinct([clean(names[c.id]) for c in rows], _NAME)
+        for name in ("  cutter", "feasible", *WORDS.values()):
+            table.add_column(name, justify="left" if name in ("  cutter", "feasible") else "right", no_wrap=True)
+        for c, name in zip(rows, short, strict=True):
+            mine = percents(c, c.area_share)
+            style = "bold" if c.id == taken else ""
+            table.add_row(Text(f"{'>' if c.id == taken else ' '} {name}", style), Text(_WORDS[c.feasible], _COLOURS[c.feasible]),
+                          *(mine[word] for word in WORDS))  # fmt: skip
+        found.append(table)
+    if len(rows) < len(plan.cutters):
+        found.append(f"  and {len(plan.cutters) - len(rows)} more cutters that reach less: -v or plan.json.")
+    return found
+
+
+def take(plan: "Plan") -> str | None:
+    """Id of the cutter that the first line says to take."""
+    return plan.selected or plan.selected_over_setups or plan.selected_for_setup
+
+
+def _listed(c: "CutterEntry", name: str, taken: bool) -> Text:
+    mine = percents(c, c.area_share)
+    said = ", ".join(f"{word} {mine[key]}" for key, word in WORDS.items() if mine[key] != "0 %")
+    return Text.assemble(cell(f"{'>' if taken else ' '} {name}: ", "bold" if taken else ""),
+                         (_WORDS[c.feasible], _COLOURS[c.feasible]), f"; {said}")  # fmt: skip
+
+
+def worst_faces(plan: "Plan", name: str) -> list[Any]:
+    """Where the cutter shown fails: the faces on which it leaves the most area."""
+    c, areas = shown(plan), {f.id: f.area_mm2 for f in plan.faces}
+    lost = {face: v.area_share.inaccessible + v.area_share.undecided for face, v in c.faces.items()
+            if v.inaccessible + v.undecided}  # fmt: skip
+    if not lost:
+        return []
+    worst = sorted(lost, key=lambda face: (-lost[face] * areas[face], -lost[face], int(face[1:])))[:WORST]
+    which = f"the {len(worst)} worst of {len(lost)} faces" if len(lost) > len(worst) else (
+        f"{len(lost)} face{'s' if len(lost) > 1 else ''}"
+    )  # fmt: skip
+    lines: list[Any] = [cell(f"Where {name} fails, {which}:")]
+    rows = [_row(c, face, areas[face]) for face in worst]
+    if console().width < _NARROW:
+        return lines + [cell(_said(*row)) for row in rows]
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
+    for title in ("  face", "mm2", "not reached", "mainly", "mm too deep", "in the way"):
+        right = title in ("mm2", "not reached", "mm too deep")
+        table.add_column(title, justify="right" if right else "left", no_wrap=title != "in the way", overflow="fold")
+    for face, area, share, reason, depth, obstacle in rows:
+        table.add_row(f"  {face}", area, share, reason, depth, cell(obstacle))
+    return [*lines, table]
+
+
+def _said(face: str, area: str, share: str, reason: str, depth: str, obstacle: str) -> str:
+    """A face in a line."""
+    deep = f", {depth} mm too deep" if depth != "-" else ""
+    way = f", {obstacle} in the way" if obstacle != "-" else ""
+    return f"  {face} ({area} mm2): {share} not reached, mainly {reason}{deep}{way}"
+
+
+def _row(c: "CutterEntry", face: str, area: float) -> tuple[str, str, str, str, str, str]:
+    """Face, area, share that is not reached, main reason, depth, what is in the way."""
+    verdicts = c.faces[face]
+    mine = [w for w in c.witnesses if w.face == face]
+    by = verdicts.area_share.lost_by
+    reason = max(by, key=lambda name: by[name]) if by else mine[0].reason if mine else "?"
+    fitting = [w for w in mine if w.reason == reason] or mine
+    deepest = max(fitting, key=lambda w: w.depth_mm or 0.0, default=None)
+    depth = "-" if deepest is None or deepest.depth_mm is None else f"{deepest.depth_mm:.3g}"
+    way = "-" if deepest is None or deepest.obstacle_face is None else deepest.obstacle_face
+    return face, f"{area:.4g}", lost_percent(verdicts, verdicts.area_share), reason.replace("_", " "), depth, way
+
+
+def _distinct(names: Sequence[str], most: int) -> list[str]:
+    """Names no longer than `most`, each still another one's: the middle is left out, or a number tells them apart.
+
+    Examples
+    --------
+    >>> _distinct(["R6L80", "a long ball nose R3", "a long ball nose R4"], 13)
+    ['R6L80', 'a lon...se R3', 'a lon...se R4']
+    """
+    short = [name if len(name) <= most else f"{name[: (most - 2) // 2]}...{name[-(most - 3) // 2 :]}" for name in names]
+    return [
+        text if short.count(text) == 1 or names[i] == text else f"{text[: most - len(str(i)) - 2]}#{i + 1}"
+        for i, text in enumerate(short)
+    ]

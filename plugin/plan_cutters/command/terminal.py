@@ -1,0 +1,147 @@
+"""What people read on standard error: wrapped, coloured where that helps, and free of what could steer a terminal."""
+
+import contextlib
+import errno
+import os
+import sys
+import unicodedata
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from plan_cutters.command.supervise import is_child, report
+from plan_cutters.errors import PlanError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.text import Text
+
+#: Columns that nothing for people is wider than, and that are there where the output is no terminal.
+COLUMNS = 80
+#: Categories of characters that a terminal may obey, or that have no form of their own: controls, lone surrogates, breaks.
+_OBEYED = frozenset({"Cc", "Cs", "Zl", "Zp"})
+#: Those that turn the direction of what follows.
+_TURNING = frozenset("\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
+
+
+#: What goes wrong with a stream that is written to.
+_OF_STREAMS = frozenset({errno.EPIPE, errno.ENOSPC, errno.EIO, errno.EBADF, errno.EFBIG})
+
+
+class ReaderGone(Exception):
+    """Whoever read our standard output has closed it."""
+
+
+def clean(text: str) -> str:
+    r"""A text with what a terminal would obey written out; names in files may hold anything.
+
+    Examples
+    --------
+    >>> clean("rim\n\x1b[2Jgone")
+    'rim\\n\\x1b[2Jgone'
+    """
+    return "".join(
+        c.encode("unicode_escape").decode() if unicodedata.category(c) in _OBEYED or c in _TURNING else c for c in text
+    )
+
+
+def is_terminal() -> bool:
+    """Whether standard error goes to a terminal that can redraw a line."""
+    with contextlib.suppress(OSError, ValueError, AttributeError):
+        return sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
+    return False
+
+
+def console() -> "Console":
+    """Where everything for people is set; no wider than COLUMNS."""
+    from rich.console import Console
+
+    found = Console(stderr=True, highlight=False, markup=False, emoji=False)
+    found.width = min(COLUMNS, found.width) if is_terminal() else COLUMNS
+    return found
+
+
+def say(*what: Any) -> None:
+    """Set paragraphs (str or Text, wrapped, later lines indented) and tables on standard error."""
+    page = console()
+    with page.capture() as caught:
+        for each in what:
+            if not each:
+                page.print()
+            elif isinstance(each, str) or hasattr(each, "plain"):
+                for line in wrapped(clean(each) if isinstance(each, str) else each, page):
+                    page.print(line, no_wrap=True, overflow="ignore", crop=False)
+            else:
+                page.print(each)
+    emit("".join(f"{line.rstrip()}\n" for line in caught.get().splitlines()))
+
+
+def wrapped(what: "str | Text", page: "Console", indent: int = 2) -> "list[Text]":
+    """The lines of a paragraph, all but the first indented; what stands before its first word indents all."""
+    from rich.text import Text
+
+    text = Text(what) if isinstance(what, str) else what
+    before = len(text.plain) - len(text.plain.lstrip(" "))
+    rest, lines = text[before:], list["Text"]()
+    while rest.plain:
+        margin = before + (indent if lines else 0)
+        line = rest.wrap(page, max(10, page.width - margin), overflow="fold")[0]
+        line.rstrip()
+        lines.append(Text(" " * margin).append_text(line))
+        rest = rest[len(line.plain) :]
+        rest = rest[len(rest.plain) - len(rest.plain.lstrip(" ")) :]
+    return lines
+
+
+def error(line: str) -> None:
+    """One line about what went wrong, never wrapped: scripts look for it."""
+    emit(f"{clean(line)}\n")
+
+
+def emit(text: str) -> None:
+    """Write on standard error; the child lets its parent do it, which may be drawing there."""
+    if is_child():
+        report("say", text)
+        return
+    # Where no one can read it, the files and the exit code still say all.
+    with contextlib.suppress(OSError, ValueError, AttributeError):
+        sys.stderr.write(text)
+        sys.stderr.flush()
+
+
+def hand_out(text: str) -> None:
+    """Write on standard output, for programs to read; errors as of `handing_out`."""
+    handing_out(lambda: (sys.stdout.write(text), sys.stdout.flush()))
+
+
+def handing_out(work: Callable[[], Any]) -> Any:
+    """Do what writes on standard output.
+
+    Raises
+    ------
+    ReaderGone
+        It was closed by its reader.
+    PlanError
+        It cannot be written.
+    """
+    try:
+        return work()
+    except OSError as error:
+        if error.errno not in _OF_STREAMS or error.filename is not None:
+            raise  # it was about a file
+        # What is left in its buffer must not fail once more at the end.
+        with contextlib.suppress(OSError, ValueError, AttributeError):
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, sys.stdout.fileno())
+            os.close(nowhere)
+        if isinstance(error, BrokenPipeError):
+            raise ReaderGone from None
+        raise PlanError(f"cannot be written: {error.strerror}", file="standard output") from None
+
+
+def keep_streams() -> None:
+    """Open those of the three standard streams that are closed: what we open must not take their numbers."""
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free

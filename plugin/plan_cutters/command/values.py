@@ -1,0 +1,121 @@
+"""What options take, read without the CAD kernel, and what a shell may offer for each."""
+
+import os
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import click
+from click.shell_completion import CompletionItem
+
+#: The same as a type of click: completed by the shell itself, which knows about `~` and blanks.
+_FILE, _FOLDER = CompletionItem("", type="file"), CompletionItem("", type="dir")
+
+
+class Words(click.ParamType):
+    """A text for which a shell offers words, and files where none of them fits.
+
+    Parameters
+    ----------
+    name : str
+        What help calls it.
+    offered : callable
+        The words; asked only when a shell asks.
+    files : bool
+        Whether a file may be given, too.
+    listed : bool
+        Whether it is a list of words, parted by commas.
+    """
+
+    def __init__(
+        self, name: str, offered: Callable[[], Iterable[str]] = tuple, *, files: bool = False, listed: bool = False
+    ) -> None:
+        self.name, self.offered, self.files, self.listed = name, offered, files, listed
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        return str(value)
+
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        before, comma, last = incomplete.rpartition(",") if self.listed else ("", "", incomplete)
+        given = before.split(",")
+        found = [CompletionItem(f"{before}{comma}{word}") for word in self.offered()
+                 if word.startswith(last) and word not in given]  # fmt: skip
+        return found or ([_FILE] if self.files else [])
+
+
+class File(Words):
+    """A path, completed as a file."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(name, files=True)
+
+
+class Folder(Words):
+    """A path, completed as a folder."""
+
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        return [_FOLDER]
+
+
+class Range(click.ParamType):
+    """Two numbers of degrees, MIN:MAX."""
+
+    name = "MIN:MAX"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, float]:
+        try:
+            low, high = (float(part) for part in value.split(":"))
+        except ValueError:
+            self.fail(f"{value!r} is not of the form MIN:MAX in degrees, as 0:60", param, ctx)
+        return low, high
+
+
+class Setup(click.ParamType):
+    """A direction x,y,z, or a setup file."""
+
+    name = "X,Y,Z|FILE"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...] | str:
+        try:
+            x, y, z = (float(part) for part in value.split(","))
+        except ValueError:
+            if value.lower().endswith(".toml") or os.path.isfile(value):
+                return str(value)
+            self.fail(f"{value!r} is not of the form x,y,z, as 0,0,1, nor a setup file", param, ctx)
+        return x, y, z
+
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        return [_FILE]
+
+
+def machine_names() -> Sequence[str]:
+    from plan_cutters.domain.machine import builtin_machines
+
+    return ["unlimited", "tilt:", *builtin_machines()]
+
+
+def cutter_ids() -> Sequence[str]:
+    from plan_cutters.domain.drawer import builtin
+
+    return [cutter.id for cutter in builtin()]
+
+
+def formats() -> Sequence[str]:
+    from plan_cutters.report.folder import FORMATS
+
+    return FORMATS
+
+
+def default_formats() -> Sequence[str]:
+    from plan_cutters.report.folder import DEFAULT_FORMATS
+
+    return DEFAULT_FORMATS
+
+
+def answers() -> Sequence[str]:
+    from plan_cutters.domain.answers import ANSWERS
+
+    return [*ANSWERS, "all"]
+
+
+def face_words() -> Sequence[str]:
+    return ("sculptured", "all", "component:", "name:", "color:#")
