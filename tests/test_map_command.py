@@ -85,7 +85,11 @@ def test_colours_stand_where_the_map_says(capsys, tmp_path):
 
 def test_every_tilt_has_one_colour():
     found = posture_map(
-        GROOVE, point=(3, 5, 0.988), cutter="R6L40F8S5", rotations=np.linspace(0, 6, 7), machine="tilt:50"
+        GROOVE,
+        point=nearest(read_part(GROOVE), (3, 5, 0.988))[0],
+        cutter="R6L40F8S5",
+        rotations=np.linspace(0, 6, 7),
+        machine="tilt:50",
     )
     shares = forbidden(found, 0.0, math.pi / 2)
     assert set(shares) == {*(cause.name for cause in CAUSES), "undecided", "other"}
