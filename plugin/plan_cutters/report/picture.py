@@ -249,14 +249,14 @@ def _words(sheet: Any, result: Any, there: set[int], fixtures: bool) -> None:
     taken = (
         "is selected"
         if result.selected == result.shown
-        else "is not feasible: it is shown because it reaches the most samples"
+        else "is shown because it reaches the most samples; none is selected"
     )
     size = " x ".join(f"{x:.4g}" for x in plan.part.size_mm)
     sheet.text(0.18 / _SHEET[0], 1.0 - 0.16 / _SHEET[1], shorten(f"{part}: {name}", 120), fontsize=12, va="top")
     setup = ", ".join(f"{x:.4g}" for x in plan.effective.setup)
     under = (
-        f"This cutter {taken}. Part {size} mm. Machine {plan.effective.machine}, setup axis ({setup}), gouge tolerance {plan.effective.tolerance_mm:.3g} mm, "
-        f"{plan.samples.count} samples."
+        f"This cutter {taken}. Part {size} mm. Machine {plan.effective.machine}, setup axis ({setup}), gouge tolerance "
+        f"{plan.effective.tolerance_mm:.3g} mm, {plan.samples.count} samples."
     )
     sheet.text(0.18 / _SHEET[0], 1.0 - 0.48 / _SHEET[1], fill(under, 190), fontsize=8.5, va="top")
     handles = []
