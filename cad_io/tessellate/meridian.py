@@ -91,9 +91,9 @@ def meridian(part: Part, origin: Sequence[float], direction: Sequence[float], ch
                 meshed.append(face.number)
             if found is None:
                 loose.append(face.number)
-            for (q, w, r, h), own in found or ():
+            for (q, w, r, h), on_body in found or ():
                 lines.append((q, w, r, h) if w <= h else (r, h, q, w))
-                exact.append(own)
+                exact.append(on_body)
     off = 0.0 if all(exact) else chord
     line, own, foot = (
         np.array(lines).reshape(-1, 4),

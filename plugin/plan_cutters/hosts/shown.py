@@ -55,7 +55,8 @@ def shown(
         No posture is known there.
     """
     names = _Names()
-    name = names.of(product(result))
+    roots = result.part.tree
+    name = names.of((len(roots) == 1 and roots[0].name) or product(result))
     groups: dict[str, list[Shown]] = {word: [] for word in ("targets", "check faces", "ignored faces", "fixtures")}
     for word in groups:
         names.of(word)
