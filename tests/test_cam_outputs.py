@@ -79,7 +79,7 @@ def test_a_clearance_is_never_more_than_the_distance_and_little_less(peaks, spec
     if spec:
         cutter = Cutter.parse(spec)
         result = plan("samples/peaks_and_valleys.step", cutters=cutter, grid=21, area_budget=0)
-    cutter, reach = result.tools[result.shown], result.reaches[result.shown]
+    cutter, reach = result.judged(result.shown), result.reaches[result.shown]
     found, points = result.clearances, dense(result, 0.8)
     tip = tips(cutter, result.samples.point, result.samples.normal, reach)
     rows = np.flatnonzero(reach.reached)[:: max(1, int(reach.reached.sum()) // 25)]

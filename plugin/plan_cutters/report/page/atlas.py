@@ -4,6 +4,7 @@ A vertex carries its place in the atlas; the page rounds the place of each pixel
 around each sample. Faces that were sampled without a grid have a texel a sample, and each of their triangles stands for one.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -15,17 +16,21 @@ from scipy.spatial import cKDTree
 from cad_io.arrays import FaceGrid, Floats, Ints, SurfaceSamples
 from cad_io.write.drawn import Mesh
 
-#: Largest width and height: a place is a whole number of 16ths of a texel in 16 bits, of which the last one says that there is none.
+#: Largest width and height: a place is counted in 16ths of a texel in 16 bits; the last number says that there is none.
 _LONGEST = 4094
 STEPS, NOWHERE = 16, 65535
+#: Lines this far from equal steps, in steps, count as equal ones; other lines get steps of their least distance, at most so many
+#: times more.
+_EVEN, _FINER = 0.05, 8
 
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """The samples of one face as they lie in the atlas: rows of them (h, w), and the lines of its grid, if it has one."""
+    """The samples of one face as they lie in the atlas (h, w): rows along u, columns along v. Where it has a grid, the ends of u
+    and of v."""
 
     index: Ints
-    grid: tuple[Floats, Floats] | None
+    ends: tuple[tuple[float, float], tuple[float, float]] | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +53,7 @@ class Atlas:
 
 
 def sheet_of(grid: FaceGrid) -> Sheet:
-    """A face's grid with its seams at both ends, and no node without a sample."""
+    """A face's grid with its seams at both ends, at equal steps, and no node without a sample."""
     known = grid.index >= 0
     _, (i, j) = distance_transform_edt(~known, return_indices=True)
     index, u, v = grid.index[i, j], grid.u, grid.v
@@ -56,7 +61,20 @@ def sheet_of(grid: FaceGrid) -> Sheet:
         u, index = np.append(u, grid.span[1]), np.vstack([index, index[:1]])
     if grid.closed_v:
         v, index = np.append(v, grid.span[3]), np.hstack([index, index[:, :1]])
-    return Sheet(index.astype(np.int32), (u, v))
+    rows, columns = _even(u), _even(v)
+    ends = ((float(u[0]), float(u[-1])), (float(v[0]), float(v[-1])))
+    return Sheet(index[np.ix_(rows, columns)].astype(np.int32), ends)
+
+
+def _even(line: Floats) -> NDArray[np.intp]:
+    """The nearest grid line (k,) at each of k equal steps from the first to the last: so many that each line is one."""
+    count, span = len(line), line[-1] - line[0]
+    if np.abs((line - line[0]) / span * (count - 1) - np.arange(count)).max() < _EVEN:
+        return np.arange(count)
+    cell = np.diff(np.concatenate([line[:1], 0.5 * (line[1:] + line[:-1]), line[-1:]]))[1:-1].min(initial=span)
+    steps = min(int(np.ceil(span / cell)) + 1, _FINER * count, max(count, _LONGEST - 1))
+    at = np.linspace(line[0], line[-1], steps)
+    return np.searchsorted(0.5 * (line[1:] + line[:-1]), at)
 
 
 def _list_of(rows: NDArray[np.int64]) -> Sheet:
@@ -78,7 +96,7 @@ def atlas_of(samples: SurfaceSamples) -> Atlas:
         sheets[number] = sheet_of(grid) if grid is not None and fits else _list_of(rows)
     size = {number: sheet.index.shape for number, sheet in sheets.items()}
     area = sum(h * w for h, w in size.values())
-    width = min(_LONGEST, max([w for _, w in size.values()] + [int(np.ceil(1.1 * np.sqrt(area)))], default=1))
+    width = min(_LONGEST, max(*(w for _, w in size.values()), math.ceil(1.1 * math.sqrt(area)), 1))
     corner, row, column, high = {}, 0, 0, 0
     for number in sorted(sheets, key=lambda n: (-size[n][0], n)):
         h, w = size[number]
@@ -101,10 +119,9 @@ def placed_in(
     if sheet is None:
         return mesh, np.full((len(mesh.point), 2), NOWHERE, np.uint16)
     row, column = atlas.corner[number]
-    if sheet.grid is not None:
-        at = [np.interp(_near(mesh.uv[:, k], sheet.grid[k], period[k]), sheet.grid[k], np.arange(len(sheet.grid[k])))
-              for k in (1, 0)]  # fmt: skip
-        place = np.stack(at, axis=1) + (column, row)
+    if sheet.ends is not None:
+        at = [_share(mesh.uv[:, k], sheet.ends[k], period[k]) * (sheet.index.shape[k] - 1) for k in (1, 0)]
+        place = np.stack(at, axis=1) + np.array([column, row])
         return mesh, np.round(STEPS * place).astype(np.uint16)
     rows = np.flatnonzero(samples.face == number)
     corner = mesh.triangle.reshape(-1)
@@ -116,8 +133,8 @@ def placed_in(
     return apart, np.repeat((STEPS * place).astype(np.uint16), 3, axis=0)
 
 
-def _near(at: Floats, line: Floats, period: float) -> Floats:
-    """Parameters moved by whole periods to where the grid lies."""
-    if not period:
-        return at
-    return at - np.round((at.mean() - 0.5 * (line[0] + line[-1])) / period) * period
+def _share(at: Floats, ends: tuple[float, float], period: float) -> Floats:
+    """Where parameters lie between ends, 0 to 1; moved by whole periods to there."""
+    low, high = ends
+    turns = np.round((at.mean() - 0.5 * (low + high)) / period) * period if period else 0.0
+    return np.clip((at - turns - low) / (high - low), 0.0, 1.0)

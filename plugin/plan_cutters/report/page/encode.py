@@ -4,8 +4,10 @@
 """
 
 import base64
+import math
 import zlib
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -17,6 +19,8 @@ from cad_io.arrays import Floats
 FILTERS = ("", "delta", "delta_z", "delta2_z")
 _TYPES = {"u1": np.uint8, "u2": np.uint16, "u4": np.uint32, "i2": np.int16, "i4": np.int32, "f2": np.float16}
 _WORD = {np.dtype(kind): word for word, kind in _TYPES.items()}
+#: Filters are tried on so many rows.
+_TRIED = 65536
 #: Quantised coordinates run from 0 to this.
 MOST = 65535
 #: Octahedral coordinates of normals, each from -1 to 1, are counted in these steps.
@@ -27,7 +31,7 @@ def filtered(array: NDArray[Any], name: str) -> bytes:
     """The bytes of an array under a filter: differences by column, columns one after the other, planes of bytes."""
     size = array.dtype.itemsize
     bits: NDArray[Any] = np.ascontiguousarray(array.astype(array.dtype.newbyteorder("<"))).view(f"<u{size}")
-    bits = bits.reshape(len(array), -1)
+    bits = bits.reshape(len(array), math.prod(array.shape[1:]))
     for _ in range({"delta": 1, "delta2": 2}.get(name.removesuffix("_z"), 0)):
         bits = np.concatenate([bits[:1], bits[1:] - bits[:-1]])
     if name.endswith("_z"):
@@ -37,49 +41,49 @@ def filtered(array: NDArray[Any], name: str) -> bytes:
     return column.view(np.uint8).reshape(-1, size).T.tobytes()
 
 
-def deflated(data: bytes, level: int = 9) -> bytes:
-    """A raw deflate stream (RFC 1951)."""
+@dataclass(frozen=True, slots=True)
+class Stored:
+    """An array as it is put into the stream: how to read it, its bytes, and a piece of deflate stream that ends at a byte."""
+
+    dtype: str
+    shape: tuple[int, ...]
+    filter: str
+    size: int
+    piece: bytes
+
+    @classmethod
+    def of(cls, array: NDArray[Any]) -> "Stored":
+        """An array under the filter with which its beginning comes out smallest."""
+        tried = [len(_piece(filtered(array[:_TRIED], each), 6)) for each in FILTERS]
+        chosen = FILTERS[int(np.argmin(tried))]
+        data = filtered(array, chosen)
+        return cls(_WORD[array.dtype], array.shape, chosen, len(data), _piece(data, 9))
+
+
+def _piece(data: bytes, level: int) -> bytes:
     made = zlib.compressobj(level, zlib.DEFLATED, -15)
-    return made.compress(data) + made.flush()
+    return made.compress(data) + made.flush(zlib.Z_FULL_FLUSH)
 
 
-class Stream:
-    """Arrays as they are put one after the other into the stream.
-
-    Attributes
-    ----------
-    entries : dict
-        Name -> where it is and how to read it, for the page.
-    """
-
-    def __init__(self) -> None:
-        self.entries: dict[str, dict[str, Any]] = {}
-        self._sizes: dict[str, int] = {}
-        self._bytes = bytearray()
-
-    def add(self, name: str, array: NDArray[Any]) -> None:
-        """Put an array in, under the filter with which it comes out smallest."""
-        tried = [(filtered(array, each), each) for each in FILTERS]
-        sizes = [len(deflated(data, 6)) for data, _ in tried]
-        data, chosen = tried[int(np.argmin(sizes))]
-        self._sizes[name] = min(sizes)
-        self.entries[name] = {
-            "dtype": _WORD[array.dtype],
-            "shape": list(array.shape),
-            "filter": chosen,
-            "offset": len(self._bytes),
-            "bytes": len(data),
+def joined(arrays: Mapping[str, Stored]) -> tuple[dict[str, dict[str, Any]], str]:
+    """What the page is told of arrays, and all of them as base64 of one raw deflate stream (RFC 1951)."""
+    entries, offset = {}, 0
+    for name, each in arrays.items():
+        entries[name] = {
+            "dtype": each.dtype,
+            "shape": list(each.shape),
+            "filter": each.filter,
+            "offset": offset,
+            "bytes": each.size,
         }
-        self._bytes += data
+        offset += each.size
+    end = zlib.compressobj(9, zlib.DEFLATED, -15).flush()
+    return entries, base64.b64encode(b"".join(each.piece for each in arrays.values()) + end).decode("ascii")
 
-    @property
-    def sizes(self) -> Mapping[str, int]:
-        """Bytes that each array takes about, deflated."""
-        return self._sizes
 
-    def text(self) -> str:
-        """All of it as base64 of one deflate stream."""
-        return base64.b64encode(deflated(bytes(self._bytes))).decode("ascii")
+def size_of(arrays: Mapping[str, Stored]) -> int:
+    """Bytes that arrays take in the page."""
+    return 4 * (sum(len(each.piece) for each in arrays.values()) + 4) // 3
 
 
 def placed(point: Floats, low: Floats, high: Floats) -> NDArray[np.uint16]:
@@ -126,7 +130,12 @@ def turned(direction: Floats, normal: Floats) -> NDArray[np.int16]:
     return np.round(angle / np.pi * FINE).astype(np.int16)
 
 
-def halves(array: Floats) -> NDArray[np.float16]:
-    """16-bit floats; what is too large for them as the largest one."""
-    most = float(np.finfo(np.float16).max)
-    return np.clip(array, -most, most).astype(np.float16)
+def halves(array: Floats, toward: str = "nearest") -> NDArray[np.float16]:
+    """16-bit floats, the nearest ones or none that is larger (`down`) or less (`up`); what is too large as the largest one."""
+    most = np.finfo(np.float16).max
+    found = np.clip(array, -float(most), float(most)).astype(np.float16)
+    if toward == "down":
+        return np.where(found > array, np.nextafter(found, -most), found)
+    if toward == "up":
+        return np.where(found < np.minimum(array, float(most)), np.nextafter(found, most), found)
+    return found

@@ -1,6 +1,7 @@
 """Posture maps as the page has them: rounded so that nothing is shown free that is not."""
 
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +12,21 @@ END, UNDECIDED = 0.1, 0.5
 _ROUNDING = 1e-6
 
 
-class StoredMaps(NamedTuple):
-    """Rows (c,) of samples, ascending; per rotation (c, k) the number of free intervals and the tilts left undecided, half degrees
-    rounded up; intervals (sum, 2), tenths of degrees, from rounded up and to rounded down."""
+@dataclass(frozen=True, slots=True)
+class StoredMaps:
+    """Maps of c samples at k rotations.
+
+    Attributes
+    ----------
+    row : (c,) uint32
+        Samples, ascending.
+    count : (c, k) uint8
+        Free intervals.
+    end : (sum of count, 2) uint16
+        From (rounded up) and to (rounded down), in tenths of degrees; sample by sample, rotation by rotation.
+    undecided : (c, k) uint8
+        Tilts left undecided, in half degrees, rounded up; 255 is that or more.
+    """
 
     row: NDArray[np.uint32]
     count: NDArray[np.uint8]
