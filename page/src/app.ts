@@ -157,15 +157,21 @@ export class App {
     return Math.abs(posture.tilt - spot.tilt_deg) < 0.02 && turn < 0.02;
   }
 
-  hover(owner: Owner | null): void {
-    if (owner === this.hot) return;
+  /** Told of the face under the pointer; from a list, it is lit up in the picture. */
+  hover(owner: Owner | null, lit = false): void {
+    if (owner === this.hot && lit === this.lit) return;
     this.hot = owner;
     this.emit("hot");
-    this.light();
+    if (this.lit !== lit || lit) {
+      this.lit = lit;
+      this.light();
+    }
   }
 
+  private lit = false;
+
   private light(): void {
-    this.part.light(this.hot, this.inTheWay()?.owner ?? null);
+    this.part.light(this.lit ? this.hot : null, this.inTheWay()?.owner ?? null);
     this.stage.request();
   }
 

@@ -12,7 +12,7 @@ export interface Entry {
   colour: string;
   pattern: Pattern;
   label: string;
-  /** Share of the samples, 0 to 1. */
+  /** Share of the area that samples stand for, 0 to 1. */
   share?: number;
 }
 
@@ -51,12 +51,12 @@ const FALLBACK: Record<string, string> = {
   fixture: "#0072B2",
 };
 const WORDS: Record<string, string> = {
-  interference_free: "free in every rotation",
+  interference_free: "interference-free",
   accessible: "accessible",
   undecided: "undecided",
   inaccessible: "inaccessible",
   unjudged: "not judged",
-  check: "not a target",
+  check: "check face",
   fixture: "fixture",
 };
 
@@ -114,7 +114,7 @@ function verdictLook(meta: Meta, samples: Samples, cutter: string): Look {
   const order = ["interference_free", "accessible", "undecided", "inaccessible", "unjudged"];
   const entries = order.map((word) => ({ colour: colourOf(meta, word), pattern: patternOf(word), label: spoken(word) }));
   const verdict = samples.verdicts(cutter).values;
-  return painted("Verdict", entries, samples.count, (i) => order.indexOf(meta.verdicts[String(verdict[i])] ?? "unjudged"));
+  return painted("Verdict", entries, samples, (i) => order.indexOf(meta.verdicts[String(verdict[i])] ?? "unjudged"));
 }
 
 function reasonLook(meta: Meta, samples: Samples, cutter: string): Look {
@@ -130,7 +130,7 @@ function reasonLook(meta: Meta, samples: Samples, cutter: string): Look {
     { colour: colourOf(meta, "unjudged"), pattern: "plain", label: spoken("unjudged") },
   ];
   const count = entries.length;
-  return painted("Reason", [...entries, ...undecided, ...rest], samples.count, (i) => {
+  return painted("Reason", [...entries, ...undecided, ...rest], samples, (i) => {
     if (verdict[i] === UNJUDGED) return 2 * count + 1;
     if (reason[i] === NO_REASON) return 2 * count;
     return reason[i] + (meta.verdicts[String(verdict[i])] === "undecided" ? count : 0);
@@ -141,20 +141,24 @@ function classLook(meta: Meta, samples: Samples): Look {
   const kind = samples.surfaceClass.values;
   const entries: Entry[] = CLASSES.map(([label, colour, pattern]) => ({ label, colour, pattern }));
   entries.push({ colour: colourOf(meta, "unjudged"), pattern: "plain", label: spoken("unjudged") });
-  return painted("Surface class", entries, samples.count, (i) => Math.min(kind[i], 3));
+  return painted("Surface class", entries, samples, (i) => Math.min(kind[i], 3));
 }
 
-function painted(title: string, entries: Entry[], count: number, which: (i: number) => number): Look {
+function painted(title: string, entries: Entry[], samples: Samples, which: (i: number) => number): Look {
+  const { count } = samples;
   const bytes = new Uint8Array(4 * count);
   const table = entries.map((each) => [...rgb(each.colour), PATTERNS.indexOf(each.pattern)]);
-  const seen = new Array<number>(entries.length).fill(0);
+  const area = new Float64Array(entries.length);
+  const seen = new Uint8Array(entries.length);
   for (let i = 0; i < count; i++) {
     const k = which(i);
-    seen[k]++;
+    seen[k] = 1;
+    area[k] += samples.area(i);
     bytes.set(table[k], 4 * i);
   }
-  const shown = entries.map((each, k) => ({ ...each, share: count ? seen[k] / count : 0 }));
-  return { title, entries: shown.filter((each) => each.share > 0), ramp: null, bytes };
+  const whole = area.reduce((sum, each) => sum + each, 0) || 1;
+  const shown = entries.map((each, k) => ({ ...each, share: area[k] / whole }));
+  return { title, entries: shown.filter((_, k) => seen[k]), ramp: null, bytes };
 }
 
 function scalarLook(arrays: Arrays, samples: Samples, scalar: Scalar): Look {
@@ -167,10 +171,12 @@ function scalarLook(arrays: Arrays, samples: Samples, scalar: Scalar): Look {
   const unknown = rgb(UNKNOWN);
   const range = high - low || 1;
   let [below, above, missing] = [false, false, 0];
+  let whole = 0;
   for (let i = 0; i < samples.count; i++) {
+    whole += samples.area(i);
     const value = values[i];
     if (Number.isNaN(value)) {
-      missing++;
+      missing += samples.area(i);
       bytes.set(unknown, 4 * i);
       bytes[4 * i + 3] = PATTERNS.indexOf("cross");
       continue;
@@ -181,7 +187,7 @@ function scalarLook(arrays: Arrays, samples: Samples, scalar: Scalar): Look {
     bytes.set(steps[Math.round(255 * Math.min(1, Math.max(0, share)))], 4 * i);
   }
   const entries: Entry[] = missing
-    ? [{ colour: UNKNOWN, pattern: "cross", label: "not known", share: missing / samples.count }]
+    ? [{ colour: UNKNOWN, pattern: "cross", label: "not known", share: missing / (whole || 1) }]
     : [];
   return { title: capital(scalar.label), entries, ramp: { low, high, unit: scalar.unit, below, above }, bytes };
 }

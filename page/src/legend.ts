@@ -22,7 +22,7 @@ export function legend(app: App): HTMLElement {
     if (meta.faces.some((face) => !face.target)) rows.push(el("li", {}, swatch(colourOf(meta, "check"), "plain"), spoken("check")));
     if (meta.fixtures.length) rows.push(el("li", {}, swatch(colourOf(meta, "fixture"), "plain"), spoken("fixture")));
     root.replaceChildren(el("h2", {}, look.title), look.ramp ? scale(look.ramp) : "", el("ul", { class: "legend" }, ...rows));
-    if (look.entries.length) root.append(el("p", { class: "hint" }, "share of the samples"));
+    if (look.entries.length) root.append(el("p", { class: "hint" }, "share of the sampled area"));
   });
   return root;
 }

@@ -15,7 +15,7 @@ function press(host: HTMLElement, work: () => void): HTMLButtonElement {
 }
 
 export function enhanceCutters(app: App): void {
-  const rows = [...document.querySelectorAll<HTMLElement>("#cutters [data-cutter]")].filter((row) =>
+  const rows = [...document.querySelectorAll<HTMLElement>("#cutters tr[data-cutter]")].filter((row) =>
     app.meta.cutters.some((each) => each.id === row.dataset.cutter),
   );
   const buttons = new Map<HTMLElement, HTMLButtonElement>();
@@ -37,6 +37,9 @@ export function enhanceCutters(app: App): void {
       row.classList.toggle("shown", shown);
       buttons.get(row)!.setAttribute("aria-pressed", String(shown));
     }
+    for (const more of document.querySelectorAll<HTMLDetailsElement>("#cutters details[data-cutter]")) {
+      more.open = more.dataset.cutter === app.cutter.id;
+    }
   };
   app.on("cutter", mark);
   mark();
@@ -45,11 +48,13 @@ export function enhanceCutters(app: App): void {
 /** The worst spots of the cutter shown, stepped through with n and p. */
 export class SpotList {
   private readonly items = [...document.querySelectorAll<HTMLElement>("#spots [data-spot]")];
+  private readonly none = el("p", { class: "hint" }, "The cutter that is shown has none.");
   private at = -1;
 
   constructor(private readonly app: App) {
     for (const item of this.items) press(item, () => this.show(item));
     const section = document.getElementById("spots");
+    if (this.items.length) section?.append(this.none);
     const heading = section?.querySelector("h2");
     if (heading && this.items.length) {
       heading.after(
@@ -72,19 +77,11 @@ export class SpotList {
 
   private filter(): void {
     this.at = -1;
-    for (const item of this.items) item.hidden = item.dataset.cutter !== this.app.cutter.id;
-    for (const list of document.querySelectorAll<HTMLElement>("#spots ol, #spots ul")) {
-      const none = ![...list.children].some((child) => !(child as HTMLElement).hidden);
-      list.hidden = none;
-      const before = list.previousElementSibling as HTMLElement | null;
-      if (before && /^H[3-6]$/.test(before.tagName)) before.hidden = none;
+    for (const more of document.querySelectorAll<HTMLDetailsElement>("#spots details[data-cutter]")) {
+      more.hidden = more.dataset.cutter !== this.app.cutter.id;
+      more.open = !more.hidden;
     }
-    let empty = document.getElementById("no-spots");
-    if (!empty) {
-      empty = el("p", { id: "no-spots", class: "hint" }, "This cutter has none.");
-      document.getElementById("spots")?.append(empty);
-    }
-    empty.hidden = this.mine.length > 0;
+    this.none.hidden = this.mine.length > 0;
   }
 
   private mark(): void {
@@ -124,23 +121,27 @@ export function flyTo(app: App, point: Vec, normal: Vec, size?: number): void {
 
 export class FaceTable {
   private readonly rows = new Map<number, HTMLElement>();
+  /** Rows of other tables that tell of a face. */
+  private readonly others = new Map<HTMLElement, number>();
   private readonly table = document.querySelector<HTMLTableElement>("#faces table");
 
   constructor(private readonly app: App) {
     const { faces } = app.meta;
-    for (const row of document.querySelectorAll<HTMLElement>("#faces [data-face]")) {
+    for (const row of document.querySelectorAll<HTMLElement>("tr[data-face]")) {
       const owner = faces.findIndex((face) => face.number === Number(row.dataset.face));
       if (owner < 0) continue;
-      this.rows.set(owner, row);
+      if (row.closest("#faces")) this.rows.set(owner, row);
+      else this.others.set(row, owner);
       const cell = row.querySelector<HTMLElement>("th, td") ?? row;
       const made = press(cell, () => this.show(owner));
-      row.addEventListener("pointerenter", () => app.hover(owner));
+      row.addEventListener("pointerenter", () => app.hover(owner, true));
       row.addEventListener("pointerleave", () => app.hover(null));
-      made.addEventListener("focus", () => app.hover(owner));
+      made.addEventListener("focus", () => app.hover(owner, true));
       made.addEventListener("blur", () => app.hover(null));
     }
     app.on("hot", () => {
       for (const [owner, row] of this.rows) row.classList.toggle("hot", owner === app.hot);
+      for (const [row, owner] of this.others) row.classList.toggle("hot", owner === app.hot);
     });
     this.tools();
     this.sortable();

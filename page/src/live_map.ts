@@ -42,12 +42,15 @@ export class LiveTool {
   readonly solids: Solid[];
   /** Obstacles in the flutes within this distance of the contact are rear gouging. */
   readonly near: number;
+  /** Depths up to this, mm, are overlooked: the tolerance and the distance of the drawn triangles from the surface. */
+  readonly spared: number;
 
   constructor(
     readonly cutter: Cutter,
     meta: Meta,
   ) {
     const spared = meta.tolerance_mm + (meta.drawn_chord_mm ?? 0);
+    this.spared = spared;
     this.solids = cutter.outline.map((outline) =>
       solidOf(outline, spared - (outline.part === "flutes" ? cutter.allowance_mm : cutter.clearance_mm)),
     );

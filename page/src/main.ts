@@ -89,7 +89,7 @@ async function start(): Promise<void> {
     el("label", {}, "View ", views(app)),
     el("span", { class: "group" }, shown, glass, measure.root),
     clip.root,
-    button("Help", () => help.showModal(), { title: "Mouse and keys (?)" }),
+    button("?", () => help.showModal(), { title: "Mouse and keys (?)", "aria-label": "Help: mouse and keys" }),
   );
   frame.append(marks.root as unknown as Node, legend(app), measure.output, under);
   viewer.prepend(toolbar);

@@ -76,7 +76,8 @@ export function listen(app: App, measure: Measure, told: (text: string) => void)
   };
   canvas.addEventListener("keydown", (event) => {
     if (event.key !== "Enter") return;
-    if (app.picker.at(0, 0)) return choose(0, 0);
+    const middle = app.picker.at(0, 0);
+    if (middle && (measure.on || middle.sample !== null)) return choose(0, 0);
     const near = nearestToMiddle(app);
     if (near === null) return app.say("No sample is in the picture");
     if (measure.on) measure.add(app.samples.point(near));

@@ -82,7 +82,8 @@ export class PosturePanel {
     );
     this.kind.textContent = this.map.certified
       ? "Free postures are certified. What forbids the others comes from the drawn triangles."
-      : "Approximate: this map comes from the drawn triangles. It is not certified.";
+      : "Approximate: this map comes from the drawn triangles and overlooks what reaches less than " +
+        `${figure(this.app.liveTool().spared, 2)} mm into the tool. It is not certified.`;
     if (this.app.meta.rotary) this.kind.textContent += " The limits of the machine's rotary axes are not in it.";
     this.kind.classList.toggle("approximate", !this.map.certified);
     this.draw();
@@ -129,13 +130,20 @@ export class PosturePanel {
       const sure = state.state === "free" ? (here ? ", the posture found" : state.certified ? "" : " (approximate)") : "";
       this.line.textContent =
         `tilt ${degrees(posture.tilt)} deg, rotation ${degrees(posture.rotation)} deg: ` +
-        wording(this.app, state.state, met) + sure;
+        (this.app.atWitness() ? this.witnessed() : wording(this.app, state.state, met) + sure);
       this.line.dataset.state = state.state;
     } else {
       this.line.textContent = "";
     }
     this.witness.textContent = this.app.atWitness() ? this.app.spot!.text : "";
     this.draw();
+  }
+
+  /** What the plan says of its witness goes before what the drawn triangles say. */
+  private witnessed(): string {
+    const { reason, depth_mm, obstacle_face } = this.app.spot!;
+    const depth = depth_mm === null ? "" : `, ${figure(depth_mm)} mm too deep in ${obstacle_face ?? "the part"}`;
+    return `${spoken(reason)}${depth} (the best posture there is)`;
   }
 
   // Places in the drawing.
@@ -296,7 +304,7 @@ export class PosturePanel {
         const causes = [...map.causes(column)].sort((a, b) => b[1] - a[1]).map(([state]) => spoken(state));
         return el(
           "tr",
-          { "data-rotation": rotation, "data-certified": map.certified !== null },
+          { "data-rotation": rotation, "data-certified": String(map.certified !== null) },
           el("th", { scope: "row" }, degrees(rotation)),
           el("td", {}, free.join("; ") || "none"),
           el("td", {}, causes.join(", ")),

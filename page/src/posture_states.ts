@@ -2,6 +2,7 @@
 
 import type { App, Judged } from "./app.ts";
 import { spoken } from "./colours.ts";
+import { common, heldTilts } from "./contact.ts";
 import { emptyGrid, fillColumn, type Grid, type Met, STATES, type State } from "./live_map.ts";
 import type { Posture, Sample } from "./samples.ts";
 import type { Certified, StoredMaps } from "./stored_map.ts";
@@ -17,7 +18,7 @@ export class SampleMap {
     stored: StoredMaps,
     readonly sample: Sample,
   ) {
-    this.certified = stored.of(app.cutter.id, sample.row);
+    this.certified = within(app, sample, stored.of(app.cutter.id, sample.row));
     this.grid = emptyGrid(app.meta);
   }
 
@@ -116,6 +117,14 @@ export class SampleMap {
     }
     return null;
   }
+}
+
+/** Stored maps hold for any machine: what the plain limit of this one leaves of them. */
+function within(app: App, sample: Sample, found: Certified | null): Certified | null {
+  const { tilt_limit_deg: limit, setup, rotation_deg, tilt_deg } = app.meta;
+  if (!found || limit === null) return found;
+  const free = found.free.map((mine, k) => common(mine, heldTilts(sample, rotation_deg[k], setup.z, limit, tilt_deg)));
+  return { ...found, free };
 }
 
 export const apart = (a: number, b: number): number => Math.abs(((a - b + 540) % 360) - 180);

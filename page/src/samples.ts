@@ -63,6 +63,12 @@ export class Samples {
     return octahedral(values[row] / 32767, values[rows + row] / 32767);
   }
 
+  /** What a sample stands for, mm2. */
+  area(row: number): number {
+    const { values } = this.arrays.get("sample.area");
+    return Number.isFinite(values[row]) ? values[row] : 0;
+  }
+
   verdicts(cutter: string): Table {
     return this.arrays.get(`verdict.${cutter}`);
   }

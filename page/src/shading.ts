@@ -88,7 +88,7 @@ void main() {
   base = mix(base, base * 0.42, dark);
   vec3 seen = lit(base, vNormal);
   if (abs(vOwner - held) < 0.25) seen = mix(seen, vec3(1.0, 0.25, 0.6), 0.45);
-  if (abs(vOwner - hot) < 0.25) seen = mix(seen, vec3(1.0), 0.38);
+  if (abs(vOwner - hot) < 0.25) seen = mix(seen, vec3(1.0, 0.97, 0.75), 0.5);
   colour = vec4(seen, 1.0);
 }`;
 
