@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from browser import chromium, choose, intervals, launch, opened, place_of, seen, wait_for_map
+from browser import choose, chromium, intervals, launch, opened, place_of, seen, wait_for_map
 
 from scipy.spatial.transform import Rotation
 
@@ -150,7 +150,7 @@ def clear(map_):
 
 
 def test_the_intervals_shown_are_those_of_the_posture_map(page, planned, scene):
-    rows = seen(page, inner(planned, SHOWN, [1, 2], 60))[:: 12][:5]
+    rows = seen(page, inner(planned, SHOWN, [1, 2], 60))[::12][:5]
     assert len(rows) >= 3
     turns = planned.postures.rotations
     for row in rows:
@@ -159,7 +159,9 @@ def test_the_intervals_shown_are_those_of_the_posture_map(page, planned, scene):
         assert certified == {"true"}
         tool = planned.tools[SHOWN]
         point = planned.samples.point[row]
-        found = posture_map(scene, point=point, cutter=tool, rotations=turns, machine="tilt:40", tilt=planned.postures.tilt)
+        found = posture_map(
+            scene, point=point, cutter=tool, rotations=turns, machine="tilt:40", tilt=planned.postures.tilt
+        )
         for turn, wanted in zip(np.degrees(turns).round(6), clear(found), strict=True):
             mine = [each for each in shown[turn] if each[1] - each[0] > 0.3]
             assert len(mine) == len(wanted), (row, turn, mine, wanted)
@@ -179,7 +181,9 @@ def forbidding(found, k):
     """By cause, the tilts that it alone forbids at a rotation of a map, degrees."""
     causes = {word: np.degrees(getattr(found, word)[k]) for word in (*PARTS, "axis_limit", "no_contact")}
     least, most = np.degrees([found.local_gouge[k], found.local_gouge_most[k]])
-    causes["local_gouge"] = np.array([[-1.0, least - 1e-9], [most + 1e-9, 181.0]] if least == least else [[-1.0, 181.0]])
+    causes["local_gouge"] = np.array(
+        [[-1.0, least - 1e-9], [most + 1e-9, 181.0]] if least == least else [[-1.0, 181.0]]
+    )
     return causes
 
 
@@ -190,7 +194,11 @@ def test_the_live_map_agrees_with_the_posture_map_away_from_borders(page, planne
     """
     page.locator(f'#cutters tr[data-cutter="{OTHER}"] button').click()
     verdict = planned.reaches[OTHER].verdict
-    rows = [*np.flatnonzero(verdict == 0)[::9], *np.flatnonzero(verdict == 1)[::80], *np.flatnonzero(verdict == 2)[::12]]
+    rows = [
+        *np.flatnonzero(verdict == 0)[::9],
+        *np.flatnonzero(verdict == 1)[::80],
+        *np.flatnonzero(verdict == 2)[::12],
+    ]
     scene = Scene.of(PART, tolerance=page.evaluate("review.liveTool().spared"), **SCENE)
     turns, tilts = planned.postures.rotations[::4], np.arange(0.0, 90.5, 3.0)
     agree, total, met, wrong = 0, 0, set(), []
@@ -310,7 +318,9 @@ def test_a_section_has_a_cap(page, planned):
     image = picture(page)
     height, width, _ = image.shape
     # From the right one looks at the cap alone: brown, not the grey of the check face behind it.
-    middle = image[int(0.55 * height) : int(0.6 * height), int(0.4 * width) : int(0.6 * width)].reshape(-1, 3).mean(axis=0)
+    middle = (
+        image[int(0.55 * height) : int(0.6 * height), int(0.4 * width) : int(0.6 * width)].reshape(-1, 3).mean(axis=0)
+    )
     assert alike(middle, rgb("#8f8577"))
     assert middle[0] > middle[2] + 8
     page.locator("#clip select").select_option("")

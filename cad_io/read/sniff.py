@@ -54,6 +54,10 @@ def kind(file: str) -> str:
 def _opened(file: str) -> Iterator[BinaryIO]:
     """A file, open; what goes wrong about it is a ReadError."""
     try:
+        os.fspath(file).encode()
+    except UnicodeEncodeError:
+        raise ReadError("its name is no text in UTF-8, which the CAD kernel asks for: rename it", file=file) from None
+    try:
         mode = os.stat(file).st_mode
         if stat.S_ISDIR(mode):
             raise ReadError("is a folder, not a file", file=file)

@@ -4,12 +4,14 @@
 """
 
 import re
-from importlib.metadata import entry_points
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from click import Command
 from click.testing import CliRunner
+
+from plan_cutters.command.entry import MODULES
 
 
 def on_page_markdown(markdown: str, **_: Any) -> str:
@@ -21,9 +23,7 @@ def on_page_markdown(markdown: str, **_: Any) -> str:
 
 
 def _help(name: str) -> str:
-    (script,) = entry_points(group="console_scripts", name=name)
-    module = __import__(script.module, fromlist=["command"])
-    command: Command = module.command
+    command: Command = import_module(f"plan_cutters.command.{MODULES[name]}").command
     result = CliRunner(env={"COLUMNS": "100", "NO_COLOR": "1", "TERM": "dumb"}).invoke(
         command, ["--help"], prog_name=name
     )

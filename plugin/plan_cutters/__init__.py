@@ -4,7 +4,10 @@ Names are handed on lazily: importing the package loads neither the CAD kernel n
 """
 
 from importlib import import_module
-from typing import Any
+
+TYPE_CHECKING = False  # `typing` itself takes time that the command has not: an interrupt then would be a traceback
+if TYPE_CHECKING:
+    from typing import Any
 
 __version__ = "0.1.0"
 
@@ -35,7 +38,7 @@ _HOME = {
 __all__ = ["__version__", *sorted(_HOME)]
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> "Any":
     if name not in _HOME:
         raise AttributeError(f"module 'plan_cutters' has no attribute {name!r}")
     return getattr(import_module(f"plan_cutters.{_HOME[name]}"), name)

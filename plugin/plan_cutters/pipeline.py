@@ -271,8 +271,7 @@ def assemble(
         tuple((axis, dict(found)) for axis, found in elsewhere),
         answers,
         travels=moved,
-        tools={cutter.id: cutter for cutter in ready.cutters},
-        conditions=ready.conditions,
+        ready=ready,
     )
 
 

@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 import click
 
 from plan_cutters.command import grouped, terminal
-from plan_cutters.command.codes import ended, guarded
+from plan_cutters.command.codes import ended, guarded, invoked
 from plan_cutters.command.declared import CODES, EXAMPLES, options
 from plan_cutters.command.supervise import (
     INTERRUPTED,
@@ -20,12 +20,15 @@ from plan_cutters.command.supervise import (
     can_supervise,
     default_memory,
     is_child,
+    keep_interrupts,
     keep_output,
     limit_memory,
     report,
     supervise,
 )
 from plan_cutters.command.values import File
+
+_SELF = "plan-cutters"
 
 
 @click.command(cls=grouped.Command, examples=EXAMPLES, codes=CODES)
@@ -73,13 +76,15 @@ def main(args: Sequence[str] | None = None) -> NoReturn:
 
         map_of_a_point(words[1:])
     if not is_child():
-        ended("plan-cutters", words, lambda: _watched(words))
+        ended(_SELF, words, lambda: _watched(words))
     # Whoever started the command may ignore interrupts, as a shell does for what runs in the background: the parent does not.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    keep_interrupts()
     gc.disable()  # nothing of what imports make is garbage; `one_part` turns it on again
     limit_memory()
+    terminal.keep_streams()
     keep_output()
-    code, line = guarded(lambda: (_parsed(words), ""), "--debug" in words)
+    code, line = guarded(lambda: (invoked(command, _SELF, words), ""), "--debug" in words)
     if line:
         terminal.error(line)
     # Everything is on disk: to take the CAD kernel and the compiler down in order would only cost time, up to a second.
@@ -89,29 +94,22 @@ def main(args: Sequence[str] | None = None) -> NoReturn:
     os._exit(code)
 
 
-def _parsed(words: list[str]) -> int:
-    try:
-        return int(command.main(words, prog_name="plan-cutters", standalone_mode=False) or 0)
-    except click.Abort:
-        raise KeyboardInterrupt from None
-
-
 def _watched(words: list[str]) -> int:
     """Look at the words here, so that help and mistakes cost nothing; leave the work to a child."""
     from plan_cutters.command.asked import check
     from plan_cutters.command.progress import Display
 
     if "_PLAN_CUTTERS_COMPLETE" in os.environ:
-        return _parsed(words)
+        return invoked(command, _SELF, words)
     try:
-        with command.make_context("plan-cutters", list(words)) as context:
+        with command.make_context(_SELF, list(words)) as context:
             given = dict(context.params)
     except click.exceptions.Exit as done:
         return done.exit_code
     asked, faults = check(given["parts"], given)
     if not can_supervise():
         keep_output()
-        return _parsed(words)
+        return invoked(command, _SELF, words)
     display = Display(given["quiet"] or given["postures"] is not None, len(asked.judged), began())
     for fault in faults:
         terminal.error(f"plan-cutters: {fault}; the other parts are planned")

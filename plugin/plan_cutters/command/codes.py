@@ -66,6 +66,22 @@ def guarded(work: Any, debug: bool) -> tuple[int, str]:
                 )
 
 
+def invoked(command: click.Command, name: str, words: Sequence[str]) -> int:
+    """Parse and run a command, or answer a shell that asks what may come next; its exit code."""
+    variable = f"_{name.replace('-', '_').upper()}_COMPLETE"
+    if variable in os.environ:
+        from click.shell_completion import shell_complete
+
+        return shell_complete(command, {}, name, variable, os.environ[variable])
+    try:
+        with command.make_context(name, list(words)) as context:
+            return int(command.invoke(context) or 0)
+    except click.exceptions.Exit as done:
+        return done.exit_code
+    except click.Abort:
+        raise KeyboardInterrupt from None
+
+
 def ended(name: str, words: Sequence[str], work: Callable[[], int]) -> NoReturn:
     """Run a command with its words to its end, whatever becomes of the streams that it writes to."""
 
@@ -87,4 +103,7 @@ def ended(name: str, words: Sequence[str], work: Callable[[], int]) -> NoReturn:
     # All is said: an interrupt has nothing left to end.
     with contextlib.suppress(ValueError):
         signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if code == INTERRUPTED:
+        # The interpreter would end itself by the signal where it has seen the interrupt in code that was made from text.
+        os._exit(code)
     sys.exit(code)

@@ -36,17 +36,17 @@ def headline(plan: "Plan", names: Mapping[str, str]) -> list[Text]:
                         "setup.")]  # fmt: skip
     best = min(plan.cutters, key=lambda c: c.inaccessible + c.undecided)
     left = best.inaccessible + best.undecided
-    name = names[best.id]
+    name = f"{names[best.id]} ({_described(best)})"
     if not left:
         return [_marked(f"No cutter is sure for {part}", None, f". {name} reaches every sample that could be judged, but "
                         "obstacles are missing (below) that may be in its way.")]  # fmt: skip
-    which = "It" if len(entries) == 1 else f"{name} comes nearest: it"
+    which = f"{name} was judged: it" if len(entries) == 1 else f"Of {len(entries)}, {name} comes nearest: it"
+    much = f"{lost_percent(best, best.area_share)} of the area ({left} of {plan.samples.count} samples)"
+    ask = "" if "mend" in plan.effective.answers else " Ask what would help: --answers mend."
     if best.inaccessible == 0:
-        return [_marked(f"No cutter is sure for {part}", None, f". {_only(entries, name)}{which} leaves "
-                        f"{_left(plan, best)} undecided: neither safe nor blocked to the tolerance.")]  # fmt: skip
-    return [
-        _marked(f"No cutter finishes {part}", False, f". {_only(entries, name)}{which} leaves {_left(plan, best)}.")
-    ]
+        return [_marked(f"No cutter is sure for {part}", None, f". {which} leaves {much} undecided: neither safe nor blocked to "
+                        f"the tolerance.{ask}")]  # fmt: skip
+    return [_marked(f"No cutter finishes {part}", False, f". {which} leaves {much}.{ask}")]
 
 
 def between(plan: "Plan") -> list[str]:
@@ -62,19 +62,10 @@ def between(plan: "Plan") -> list[str]:
         rest = percent(1.0 - c.area.share, some=True, whole=False)
         lines.append(
             f"Between the samples, {share} of the area is proved safe with the tool axis kept as it was found. The other "
-            f"{rest} is not proved, which does not mean unsafe: the tool axis has to turn there from one sample to the next, or the "
-            "samples are too far apart. Check it in simulation, or ask for more (--spacing, --area-budget)."
+            f"{rest} is not proved, which does not mean unsafe: the tool axis has to turn there from one sample to the next, or "
+            "the samples are too far apart. Check it in simulation, or ask for more (--spacing, --area-budget)."
         )
     return lines
-
-
-def _left(plan: "Plan", c: "CutterEntry") -> str:
-    lost = c.inaccessible + c.undecided
-    return f"{lost_percent(c, c.area_share)} of the area ({lost} of {plan.samples.count} samples)"
-
-
-def _only(entries: Mapping[str, "CutterEntry"], name: str) -> str:
-    return f"{name} was judged. " if len(entries) == 1 else f"{len(entries)} cutters were judged. "
 
 
 def _marked(text: str, good: bool | None, rest: str) -> Text:

@@ -1,8 +1,10 @@
 """Tables of the summary: a row for each cutter, and the worst faces of one; lists where a terminal is too narrow for them."""
 
 from collections.abc import Mapping, Sequence
+from io import StringIO
 from typing import TYPE_CHECKING, Any
 
+from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
 
@@ -21,8 +23,6 @@ WORDS = {
 }
 #: Rows that are shown unless all are asked for, and faces.
 MOST_ROWS, WORST = 40, 5
-#: Columns below which there is no room for a table.
-_NARROW = 72
 #: Widest that the name of a cutter is shown beside its numbers.
 _NAME = 22
 _WORDS = {True: "yes", False: "no", None: "undecided"}
@@ -85,20 +85,13 @@ def cutter_rows(plan: "Plan", names: Mapping[str, str], *, verbose: bool) -> lis
         kept = {c.id for c in rank[:MOST_ROWS]}
         rows = [c for c in rows if c.id in kept]
     found: list[Any] = ["Share of the area to machine, by the verdict of its samples:"]
-    width = console().width
-    if width < _NARROW:
-        found += [_listed(c, names[c.id], c.id == taken) for c in rows]
-    else:
-        table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
-        short = _distinct([clean(names[c.id]) for c in rows], _NAME)
-        for name in ("  cutter", "feasible", *WORDS.values()):
-            table.add_column(name, justify="left" if name in ("  cutter", "feasible") else "right", no_wrap=True)
-        for c, name in zip(rows, short, strict=True):
-            mine = percents(c, c.area_share)
-            style = "bold" if c.id == taken else ""
-            table.add_row(Text(f"{'>' if c.id == taken else ' '} {name}", style), Text(_WORDS[c.feasible], _COLOURS[c.feasible]),
-                          *(mine[word] for word in WORDS))  # fmt: skip
-        found.append(table)
+    short = _distinct([clean(names[c.id]) for c in rows], _NAME)
+    table = _table(("  cutter", "feasible"), tuple(WORDS.values()))
+    for c, name in zip(rows, short, strict=True):
+        mine = percents(c, c.area_share)
+        table.add_row(Text(f"{'>' if c.id == taken else ' '} {name}", "bold" if c.id == taken else ""),
+                      Text(_WORDS[c.feasible], _COLOURS[c.feasible]), *(mine[word] for word in WORDS))  # fmt: skip
+    found += [table] if _fits(table) else [_listed(c, names[c.id], c.id == taken) for c in rows]
     if len(rows) < len(plan.cutters):
         found.append(f"  and {len(plan.cutters) - len(rows)} more cutters that reach less: -v or plan.json.")
     return found
@@ -129,15 +122,24 @@ def worst_faces(plan: "Plan", name: str) -> list[Any]:
     )  # fmt: skip
     lines: list[Any] = [cell(f"Where {name} fails, {which}:")]
     rows = [_row(c, face, areas[face]) for face in worst]
-    if console().width < _NARROW:
-        return lines + [cell(_said(*row)) for row in rows]
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
-    for title in ("  face", "mm2", "not reached", "mainly", "mm too deep", "in the way"):
-        right = title in ("mm2", "not reached", "mm too deep")
-        table.add_column(title, justify="right" if right else "left", no_wrap=title != "in the way", overflow="fold")
+    table = _table(("  face", "mainly", "in the way"), ("mm2", "not reached", "mm too deep"))
     for face, area, share, reason, depth, obstacle in rows:
-        table.add_row(f"  {face}", area, share, reason, depth, cell(obstacle))
-    return [*lines, table]
+        table.add_row(f"  {face}", reason, cell(_distinct([obstacle], _NAME)[0]), area, share, depth)
+    return [*lines, table] if _fits(table) else [*lines, *(cell(_said(*row)) for row in rows)]
+
+
+def _table(words: Sequence[str], numbers: Sequence[str]) -> Table:
+    """An empty table without lines: columns of words, then of numbers."""
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
+    for name in (*words, *numbers):
+        table.add_column(name, justify="right" if name in numbers else "left", no_wrap=True)
+    return table
+
+
+def _fits(table: Table) -> bool:
+    """Whether a terminal has room for all of a table."""
+    page = console(StringIO())
+    return Measurement.get(page, page.options.update_width(1000), table).maximum <= page.width
 
 
 def _said(face: str, area: str, share: str, reason: str, depth: str, obstacle: str) -> str:

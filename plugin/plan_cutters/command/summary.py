@@ -25,7 +25,7 @@ def summary(plan: "Plan", *, verbose: bool = False) -> None:
     """Say what is found, but not what is not reached: that comes last."""
     names = short_names(plan)
     targets, ignored = len(plan.effective.target_faces), sum(f.ignored for f in plan.faces)
-    faces = f"{plan.part.faces} faces, {targets} to machine{f', {ignored} ignored' if ignored else ''}"
+    faces = f"{plan.part.faces} face{'s'[: plan.part.faces != 1]}, {targets} to machine{f', {ignored} ignored' if ignored else ''}"
     say(
         "",
         *headline(plan, names),
@@ -99,7 +99,7 @@ def _lost(plan: "Plan", c: "CutterEntry") -> str:
     where = ""
     if deepest and deepest.depth_mm is not None:
         place = ", ".join(f"{x:.4g}" for x in deepest.point)
-        where = f"; on {deepest.face} at ({place}) the best posture is {deepest.depth_mm:.3g} mm too deep"
+        where = f"; the worst is on {deepest.face} at ({place}), where the best posture is {deepest.depth_mm:.3g} mm too deep"
     return (f"Not reached by {c.id}: {lost_percent(c, c.area_share)} of the area, {left} of {plan.samples.count} samples "
             f"({why or 'none'}), on {on}{where}.")  # fmt: skip
 
@@ -199,7 +199,8 @@ def _missing(plan: "Plan") -> Iterator[Text]:
 def _side(plan: "Plan") -> str:
     """How the side of the material was found, how sure that is, and what is open."""
     found, sewing = plan.part.orientation, plan.part.sewing
-    line = f"Side of the material: {found.method} ({'sure' if found.confident else 'a guess'})."
+    sure = " (sure)" if found.confident else "" if "guess" in found.method else " (a guess)"
+    line = f"Side of the material: {found.method}{sure}."
     if sewing and sewing.tolerance_mm is not None:
         line += f" Faces were joined at {sewing.tolerance_mm:.3g} mm."
     if sewing and sewing.open_edges:

@@ -5,6 +5,7 @@ to read or too much memory becomes one line and an exit code; what it had begun 
 no such child: the command does the job itself, and a crash of the kernel ends it.
 """
 
+import _thread
 import contextlib
 import math
 import os
@@ -88,6 +89,19 @@ def limit_memory() -> None:
         limit = int(os.environ[MEMORY])
         with contextlib.suppress(ValueError, OSError):  # macOS has no such limit
             resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+
+
+def keep_interrupts() -> None:
+    """Take an interrupt again that came where none can be raised, as while the process copies itself for the kernel."""
+    before = sys.unraisablehook
+
+    def again(what: "sys.UnraisableHookArgs") -> None:
+        if issubclass(what.exc_type, KeyboardInterrupt):
+            threading.Timer(0.05, _thread.interrupt_main).start()
+        else:
+            before(what)
+
+    sys.unraisablehook = again
 
 
 def keep_output() -> None:

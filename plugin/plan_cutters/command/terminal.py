@@ -3,10 +3,12 @@
 import contextlib
 import errno
 import os
+import re
 import sys
 import unicodedata
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from io import StringIO
+from typing import IO, TYPE_CHECKING, Any
 
 from plan_cutters.command.supervise import is_child, report
 from plan_cutters.errors import PlanError
@@ -25,6 +27,10 @@ _TURNING = frozenset("\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u20
 
 #: What goes wrong with a stream that is written to.
 _OF_STREAMS = frozenset({errno.EPIPE, errno.ENOSPC, errno.EIO, errno.EBADF, errno.EFBIG})
+
+
+#: Between a number and its unit, where no line may end; it stands for the blank while lines are made.
+_NUMBER, _GLUE = re.compile(r"(?<=\d) (?=(?:%|mm|deg|mm2)(?!\w))"), "\ue000"
 
 
 class ReaderGone(Exception):
@@ -51,41 +57,50 @@ def is_terminal() -> bool:
     return False
 
 
-def console() -> "Console":
-    """Where everything for people is set; no wider than COLUMNS."""
+def width() -> int:
+    """Columns to set text in: the terminal's, but no more than COLUMNS."""
+    columns = 0
+    if is_terminal():
+        with contextlib.suppress(OSError, ValueError):
+            columns = int(os.environ.get("COLUMNS") or os.get_terminal_size(sys.stderr.fileno()).columns)
+    return min(COLUMNS, columns) if columns > 0 else COLUMNS
+
+
+def console(stream: "IO[str] | None" = None) -> "Console":
+    """Where everything for people is set: standard error, or a stream that is set as that would be."""
     from rich.console import Console
 
-    found = Console(stderr=True, highlight=False, markup=False, emoji=False)
-    found.width = min(COLUMNS, found.width) if is_terminal() else COLUMNS
-    return found
+    return Console(file=stream, stderr=stream is None, width=width(), force_terminal=is_terminal() or None, highlight=False,
+                   markup=False, emoji=False)  # fmt: skip
 
 
 def say(*what: Any) -> None:
     """Set paragraphs (str or Text, wrapped, later lines indented) and tables on standard error."""
-    page = console()
-    with page.capture() as caught:
-        for each in what:
-            if not each:
-                page.print()
-            elif isinstance(each, str) or hasattr(each, "plain"):
-                for line in wrapped(clean(each) if isinstance(each, str) else each, page):
-                    page.print(line, no_wrap=True, overflow="ignore", crop=False)
-            else:
-                page.print(each)
-    emit("".join(f"{line.rstrip()}\n" for line in caught.get().splitlines()))
+    page = console(text := StringIO())
+    for each in what:
+        if not each:
+            page.print()
+        elif isinstance(each, str) or hasattr(each, "plain"):
+            for line in wrapped(clean(each) if isinstance(each, str) else each, page):
+                page.print(line, no_wrap=True, overflow="ignore", crop=False)
+        else:
+            page.print(each)
+    emit("".join(f"{line.rstrip()}\n" for line in text.getvalue().splitlines()))
 
 
 def wrapped(what: "str | Text", page: "Console", indent: int = 2) -> "list[Text]":
     """The lines of a paragraph, all but the first indented; what stands before its first word indents all."""
     from rich.text import Text
 
-    text = Text(what) if isinstance(what, str) else what
+    text = Text(what) if isinstance(what, str) else what.copy()
+    text.plain = _NUMBER.sub(_GLUE, text.plain)
     before = len(text.plain) - len(text.plain.lstrip(" "))
     rest, lines = text[before:], list["Text"]()
     while rest.plain:
         margin = before + (indent if lines else 0)
         line = rest.wrap(page, max(10, page.width - margin), overflow="fold")[0]
         line.rstrip()
+        line.plain = line.plain.replace(_GLUE, " ")
         lines.append(Text(" " * margin).append_text(line))
         rest = rest[len(line.plain) :]
         rest = rest[len(rest.plain) - len(rest.plain.lstrip(" ")) :]
@@ -144,4 +159,5 @@ def keep_streams() -> None:
         try:
             os.fstat(number)
         except OSError:
-            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
+            # It takes the lowest number that is free, and is there for the child, too.
+            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)

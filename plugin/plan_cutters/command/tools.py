@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from plan_cutters import __version__
-from plan_cutters.command.codes import USAGE, guarded
+from plan_cutters.command.codes import USAGE, ended, guarded, invoked
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -227,16 +227,4 @@ def _draw(found: "Sequence[Library]", folder: Path) -> None:
 def main(args: Sequence[str] | None = None) -> NoReturn:
     """Entry point of the command."""
     words = list(sys.argv[1:] if args is None else args)
-
-    def work() -> tuple[int, str]:
-        try:
-            return int(command.main(words, prog_name="plan-cutters-tools", standalone_mode=False) or 0), ""
-        except BrokenPipeError:
-            # Whoever reads the table has seen enough.
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            return 0, ""
-
-    code, line = guarded(work, "--debug" in words)
-    if line:
-        click.echo(line.replace("plan-cutters:", "plan-cutters-tools:", 1), err=True)
-    sys.exit(code)
+    ended("plan-cutters-tools", words, lambda: invoked(command, "plan-cutters-tools", words))

@@ -66,7 +66,7 @@ def rungs(cutter: Cutter) -> Floats:
     steps = [0.0]
     while steps[-1] < MOST:
         steps.append(min(MOST, steps[-1] + max(FINEST, SHARE * steps[-1])))
-    return np.unique([*steps, cutter.clearance or 0.0])
+    return np.unique(np.round([*steps, cutter.clearance or 0.0], 6))
 
 
 def part_words() -> dict[int, str]:

@@ -61,7 +61,7 @@ class Column:
 def columns(result: Any) -> list[Column]:
     """The columns, in their order, a row for each sample in the order of `samples.npz`."""
     samples, name = result.samples, result.shown
-    reach, cutter = result.reaches[name], result.tools[name]
+    reach, cutter = result.reaches[name], result.judged(name)
     near = result.clearances
     around = result.conditions.around
     n = len(samples)

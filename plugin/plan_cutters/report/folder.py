@@ -187,7 +187,10 @@ def write_all(
             plan = clock.stamp(plan)
             if "json" in formats:
                 with clock.stage("json", shown=False):
-                    write_plan(plan, staging.folder / PLAN)
+                    try:
+                        write_plan(plan, staging.folder / PLAN)
+                    except PlanError as error:
+                        raise PlanError(error.cause, file=str(out / PLAN)) from None
                     staging.publish(PLAN)
             return plan
 

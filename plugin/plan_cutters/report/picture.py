@@ -4,6 +4,7 @@ Drawn without a screen and without OpenGL: triangles with a depth at each pixel 
 """
 
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from textwrap import fill, shorten
 from typing import Any
@@ -29,6 +30,8 @@ _SMALL = 240, 160
 #: How much of what is behind a fixture shows through it.
 _THROUGH = 0.86
 _BACKGROUND, _LINE = 1.0, 0.15
+#: Faces that are no targets are paler than in the models, and shaded less: who does not see green tells it from their grey.
+_BESIDE, _PALE, _SOFT = ("check", "ignored"), np.full(3, 0.87), 0.45
 #: The words of the legend, in its order.
 _WORDS = {
     "interference_free": "interference-free",
@@ -93,10 +96,10 @@ class _Pieces:
 
 def _colours(verdict: Ints, own: list[tuple[float, float, float] | None]) -> Floats:
     """Of the verdicts; faces that are no target keep a pale shade of their own colour."""
-    found = np.array([rgb(LABELS[code]) for code in verdict.tolist()])
+    found = np.array([_PALE if LABELS[code] in _BESIDE else rgb(LABELS[code]) for code in verdict.tolist()])
     for k, colour in enumerate(own):
-        if colour is not None and LABELS[verdict[k]] in ("check", "ignored"):
-            found[k] = 0.75 * np.array(rgb("check")) + 0.25 * np.array(colour)
+        if colour is not None and LABELS[verdict[k]] in _BESIDE:
+            found[k] = 0.75 * _PALE + 0.25 * np.array(colour)
     return found
 
 
@@ -169,8 +172,10 @@ def _coloured(drawn: list[View], pieces: _Pieces) -> Floats:
     hit = part.seen >= 0
     piece = np.maximum(part.seen, 0)
     image = np.full((*part.seen.shape, 3), _BACKGROUND)
-    image[hit] = pieces.colour[piece[hit]] * part.shade[hit][:, None]
     verdict = np.where(hit, pieces.verdict[piece], -1)
+    beside = np.isin(verdict, [LABELS.index(word) for word in _BESIDE])
+    shade = np.where(beside, 1.0 - _SOFT * (1.0 - part.shade), part.shade)
+    image[hit] = pieces.colour[piece[hit]] * shade[hit][:, None]
     for word, mark in _marks(*part.seen.shape).items():
         image[mark & (verdict == LABELS.index(word))] *= 0.45
     # Lines between faces, between verdicts, and around the part.
@@ -190,6 +195,7 @@ def _glass(behind: Floats) -> Floats:
     return np.asarray(_THROUGH * behind + (1.0 - _THROUGH) * np.array(rgb("fixture")))
 
 
+@cache
 def _marks(height: int, width: int) -> dict[str, NDArray[np.bool_]]:
     """Patterns (h, w) of what is not reached, on fine pixels: the second channel beside the colours."""
     i, j = np.arange(height)[:, None] // FINER, np.arange(width)[None] // FINER
@@ -249,14 +255,14 @@ def _words(sheet: Any, result: Any, there: set[int], fixtures: bool) -> None:
     taken = (
         "is selected"
         if result.selected == result.shown
-        else "is not feasible: it is shown because it reaches the most samples"
+        else "is shown because it reaches the most samples; none is selected"
     )
     size = " x ".join(f"{x:.4g}" for x in plan.part.size_mm)
     sheet.text(0.18 / _SHEET[0], 1.0 - 0.16 / _SHEET[1], shorten(f"{part}: {name}", 120), fontsize=12, va="top")
     setup = ", ".join(f"{x:.4g}" for x in plan.effective.setup)
     under = (
-        f"This cutter {taken}. Part {size} mm. Machine {plan.effective.machine}, setup axis ({setup}), gouge tolerance {plan.effective.tolerance_mm:.3g} mm, "
-        f"{plan.samples.count} samples."
+        f"This cutter {taken}. Part {size} mm. Machine {plan.effective.machine}, setup axis ({setup}), gouge tolerance "
+        f"{plan.effective.tolerance_mm:.3g} mm, {plan.samples.count} samples."
     )
     sheet.text(0.18 / _SHEET[0], 1.0 - 0.48 / _SHEET[1], fill(under, 190), fontsize=8.5, va="top")
     handles = []
@@ -268,7 +274,7 @@ def _words(sheet: Any, result: Any, there: set[int], fixtures: bool) -> None:
             continue
         label = text if share is None else f"{text}: {percent(share)} of the target area"
         glass = word == "fixture"
-        face = tuple(_glass(np.ones(3))) if glass else rgb(word)
+        face = tuple(_glass(np.ones(3))) if glass else tuple(_PALE) if word in _BESIDE else rgb(word)
         handles.append(
             Patch(
                 facecolor=face,

@@ -62,7 +62,7 @@ def meta_of(
             for i, standing in enumerate(result.scene.around.fixtures)
         ],
         "cutters": [
-            _cutter(names[entry.id], entry, result.tools[entry.id], counts(result.reaches[entry.id].verdict))
+            _cutter(names[entry.id], entry, result.judged(entry.id), counts(result.reaches[entry.id].verdict))
             for entry in plan.cutters
         ],
         "spots": [_spot(each) for each in spots],

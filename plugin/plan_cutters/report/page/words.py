@@ -225,4 +225,6 @@ def between(found: AreaEntry) -> str:
     if found.share == 1.0:
         return "all of the area is proved safe, too, with the axes found."
     share = percent(found.share, some=found.share > 0.0, whole=False)
-    return f"{share} of the area is proved safe with the axes found; the rest is not proved, which does not mean unsafe."
+    return (
+        f"{share} of the area is proved safe with the axes found; the rest is not proved, which does not mean unsafe."
+    )
