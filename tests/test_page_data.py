@@ -3,6 +3,8 @@
 import base64
 import hashlib
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -364,29 +366,125 @@ def test_policy_allows_the_page_and_nothing_else(valley):
 
 
 NASTY = (
-    "<script>alert(1)</script>",
-    "</script><h1>x",
-    "<!--<script>",
-    "a\u2028b\u2029c",
-    "\" onload='x' &lt;",
+    "<script>alert(1)</script>", "</script><h1>x", "<!--<script>", "a\u2028b\u2029c", "\" onload='x' &lt;",
     "\x00\x07\ud800{{ 7 }}",
-)
+)  # fmt: skip
 
 
 def test_names_stay_text():
     from cad_parts import pocketed
 
-    shape = pocketed()
     names = {i + 1: name for i, name in enumerate(NASTY)}
-    part = Part(shape, names=names, file="x/<b>&\u2028.step", warnings=("</script><img src=x>",))
-    result = plan(part, cutters=["R2L30"], grid=5, area_budget=0, faces="all")
+    part = Part(pocketed(), names=names, file="x/<b>&\u2028.step", warnings=("</script><img src=x>",))
+    result = plan(part, cutters=["R2L30"], grid=5, area_budget=0, faces="all", fixtures=["box:5,6,7@40,0,0"])
     data = page(result)
     read = Page(data)
     tags = [tag for tag, _, _ in read.elements]
     assert (tags.count("script"), tags.count("h1"), tags.count("img"), tags.count("b")) == (3, 1, 0, 0)
     assert [face["name"] for face in read.meta["faces"][: len(NASTY)]] == list(NASTY)
+    assert read.meta["part"]["file"] == "<b>&\u2028.step"
     shown = {a["data-face"]: text for tag, a, text in read.elements if tag == "tr" and "data-face" in a}
     for number, name in names.items():
-        kept = name.replace("\x00", "\ufffd").replace("\x07", "\ufffd").replace("\ud800", "\ufffd")
+        kept = re.sub("[\x00\x07\ud800]", "\ufffd", name)
         assert kept in shown[str(number)]
-    assert b"<!--" not in data
+    # No part of a script element may begin a comment or another script: parsers do not agree on its end then.
+    scripts = [text for tag, a, text in read.elements if tag == "script" and "type" in a]
+    assert not any("<" in text for text in scripts)
+
+
+def told(read):
+    """The rows of the table of cutters: name, feasible, reached, main reason."""
+    rows = [
+        [" ".join(a.split()) for a in text.split("\n")]
+        for tag, a, text in read.elements
+        if tag == "tr" and "data-cutter" in a
+    ]
+    return [[cell for cell in row if cell] for row in rows]
+
+
+def test_the_page_says_first_which_cutter_to_take(valley):
+    result, read = valley
+    (title,), (why, *_) = read.of("h1"), read.of("p")
+    assert title == "Take R6L80."
+    assert "all 441 samples" in why
+    assert "R12L60 is larger" in why
+    by_name = {row[0]: row[1:] for row in told(read)}
+    assert by_name["R6L80"] == ["yes", "100 %", "–"]
+    lost = result.plan.cutters[0].area_share
+    assert by_name["R12L60"][:2] == [
+        "no",
+        f"{100 * (lost.interference_free + lost.accessible):.1f} %".replace(".0 %", " %"),
+    ]
+
+
+def test_only_all_is_told_as_all():
+    from plan_cutters.document.shares import AreaShare, Verdicts
+    from plan_cutters.document.told import lost, reached
+
+    nearly = AreaShare(accessible=1.0 - 1e-9, inaccessible=1e-9)
+    assert (reached(Verdicts(accessible=10**6, inaccessible=1), nearly), lost(Verdicts(inaccessible=1), nearly)) == (
+        ">99.9 %",
+        "<0.1 %",
+    )
+    assert reached(Verdicts(accessible=3), AreaShare(accessible=1.0 - 1e-12)) == "100 %"
+    # A sample that stands for no area is lost all the same, and so is a face without samples.
+    assert reached(Verdicts(accessible=3, inaccessible=1), AreaShare(accessible=1.0)) == ">99.9 %"
+    assert reached(Verdicts(accessible=3), AreaShare(accessible=0.9, unjudged=0.1)) == "90 %"
+    assert (reached(Verdicts(), AreaShare()), lost(Verdicts(accessible=1), AreaShare(accessible=1.0))) == ("0 %", "0 %")
+
+
+def test_worst_faces_are_those_that_lose_the_most_area(rounded):
+    result, read = rounded
+    (entry,), reach, samples = result.plan.cutters, result.reaches["R2L30HR9L20"], result.samples
+    lost = {f.id: float(samples.area[(samples.face == int(f.id[1:])) & reach.lost].sum()) for f in result.plan.faces}
+    worst = sorted((name for name in lost if lost[name] > 0), key=lambda name: -lost[name])
+    assert worst
+    tables = [text for tag, _, text in read.elements if tag == "details" and "fails" in text]
+    names = re.findall(r"^(F\d+)", tables[0], re.MULTILINE)
+    assert names == worst[:5]
+    assert entry.inaccessible
+
+
+def test_the_reader_in_the_docs_reads_it(valley):
+    _, read = valley
+    text = (Path(__file__).parent.parent / "docs" / "review_page.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    names: dict = {"np": np}
+    exec(code, names)
+    for name, entry in read.meta["arrays"].items():
+        back = names["array"](read.stream, entry)
+        assert back.dtype == np.dtype(entry["dtype"])
+        assert back.tobytes() == read.array(name).tobytes(), name
+
+
+def test_a_page_that_cannot_be_made_costs_only_itself(valley, tmp_path, monkeypatch):
+    from cad_io.errors import WriteError
+    from plan_cutters.report.page import write
+
+    def fails(*_, **__):
+        raise WriteError("the CAD kernel made no triangle of the part")
+
+    result, _ = valley
+    monkeypatch.setattr(write, "drawn", fails)
+    document = result.write(tmp_path, ("json", "html", "npz"))
+    assert document.not_written == {"html": "the CAD kernel made no triangle of the part"}
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["plan.json", "postures.npz", "samples.npz"]
+
+
+def test_the_part_keeps_no_mesh(valley):
+    from OCP.BRep import BRep_Tool
+    from OCP.TopLoc import TopLoc_Location
+
+    result, _ = valley
+    page(result)
+    assert all(
+        BRep_Tool.Triangulation_s(result.part.face(f.number), TopLoc_Location()) is None for f in result.part.faces
+    )
+
+
+def test_fewer_triangles_are_drawn_where_asked(rounded):
+    result, read = rounded
+    coarse = Page(page(result, triangles=100))
+    assert len(coarse.array("mesh.triangle")) < 0.8 * len(read.array("mesh.triangle"))
+    assert coarse.meta["drawn_chord_mm"] > read.meta["drawn_chord_mm"]
+    assert any("from its surface" in note for note in coarse.of("li"))

@@ -40,18 +40,21 @@ class Surface:
 
 def surface_of(result: Any, drawn: Drawn, atlas: Atlas) -> Surface:
     """Put the meshes of faces and fixtures together."""
+    start = 0
     meshes: list[Mesh] = []
     places: list[NDArray[np.uint16]] = []
     faces: dict[int, Range] = {}
     fixtures: dict[int, Range] = {}
     for number in sorted(drawn.meshes):
         mesh, place = placed_in(atlas, result.samples, number, drawn.meshes[number], drawn.periods[number])
-        faces[number] = (sum(len(m.triangle) for m in meshes), len(mesh.triangle))
+        faces[number] = (start, len(mesh.triangle))
+        start += len(mesh.triangle)
         meshes.append(mesh)
         places.append(place)
     for i, standing in enumerate(result.scene.around.fixtures):
         mesh = _facets(standing.shown)
-        fixtures[i] = (sum(len(m.triangle) for m in meshes), len(mesh.triangle))
+        fixtures[i] = (start, len(mesh.triangle))
+        start += len(mesh.triangle)
         meshes.append(mesh)
         places.append(np.full((len(mesh.point), 2), NOWHERE, np.uint16))
     first = np.cumsum([0, *(len(m.point) for m in meshes)])[:-1]
