@@ -17,11 +17,17 @@ from cad_io.arrays import FaceGrid
 from cad_io.part import Part
 from plan_cutters import plan
 from plan_cutters.domain.posture import lean
+from plan_cutters.report.page import write
 from plan_cutters.report.page.atlas import sheet_of
 from plan_cutters.report.page.encode import COARSE, FILTERS, FINE, Stored, filtered, halves, joined, octahedral
 from plan_cutters.report.page.stored_maps import stored
-from plan_cutters.report.page.write import page
 from plan_cutters.stages.posture_maps import PostureMaps
+
+
+def page(result, *, triangles=4000, **more):
+    """A page of few triangles: they take the time."""
+    return write.page(result, triangles=triangles, **more)
+
 
 DTYPES = {"u1": np.uint8, "u2": np.uint16, "u4": np.uint32, "i2": np.int16, "i4": np.int32, "f2": np.float16}
 
@@ -459,7 +465,6 @@ def test_the_reader_in_the_docs_reads_it(valley):
 
 def test_a_page_that_cannot_be_made_costs_only_itself(valley, tmp_path, monkeypatch):
     from cad_io.errors import WriteError
-    from plan_cutters.report.page import write
 
     def fails(*_, **__):
         raise WriteError("the CAD kernel made no triangle of the part")

@@ -21,7 +21,7 @@ from plan_cutters.report.page.words import spot as sentence
 
 FORMAT = 1
 #: Chord of the outlines of tools, mm.
-_CHORD = 0.02
+_CHORD = 0.005
 
 
 def meta_of(

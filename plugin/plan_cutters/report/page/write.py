@@ -15,6 +15,7 @@ from markupsafe import Markup
 from numpy.typing import NDArray
 
 from cad_io.write.drawn import drawn
+from plan_cutters.document.model import Plan
 from plan_cutters.report.page import arrays, tables
 from plan_cutters.report.page.arrays import Arrays
 from plan_cutters.report.page.atlas import atlas_of
@@ -30,6 +31,9 @@ LARGEST, LARGEST_WITHOUT = 8_000_000, 2_500_000
 TRIANGLES = 60_000
 #: Maps of fewer than one in so many samples are rather left out.
 _WIDEST_STRIDE = 64
+#: The kernel's triangles are up to so many times more than the obstacles' of the same chord error (2.5 times was found). A second
+#: mesh takes longer than somewhat fewer triangles do harm.
+_SURELY = 3.0
 _HERE = Path(__file__).parent
 
 
@@ -82,7 +86,8 @@ def page(
     bytes
         UTF-8; the same for the same plan.
     """
-    faces = drawn(result.part, result.scene.orientation.sign, most=triangles)
+    chord = _chord(result.plan, triangles)
+    faces = drawn(result.part, result.scene.orientation.sign, most=triangles, deflection=chord)
     atlas = atlas_of(result.samples)
     surface = surface_of(result, faces, atlas)
     box = box_of(surface, result.samples)
@@ -124,6 +129,16 @@ def page(
         left = left._replace(maps=_why(stride, largest) if found else _NO_MAPS.format(largest / 1e6))
         data = made()
     return data
+
+
+def _chord(plan: Plan, triangles: int) -> float:
+    """The chord error, mm, with which fewer than so many triangles are to be expected, as the obstacles have theirs.
+
+    Not below half the tolerance: whoever counts with what is drawn allows for both.
+    """
+    effective = plan.effective
+    alike = effective.chord_error_mm * effective.obstacle_triangles / triangles
+    return max(0.5 * effective.tolerance_mm, _SURELY * alike)
 
 
 def _maps(maps: Any, where: NDArray[np.int64], stride: int) -> Arrays:
