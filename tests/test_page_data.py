@@ -146,6 +146,26 @@ def test_each_line_of_an_uneven_grid_has_a_texel_and_each_texel_the_nearest_line
         assert np.abs(u[row // 5] - x) == pytest.approx(np.abs(u - x).min(), abs=1e-12)
 
 
+def test_an_atlas_that_is_too_large_has_coarser_sheets_then_lists(monkeypatch):
+    from cad_parts import drilled
+
+    from plan_cutters.report.page import atlas as module
+
+    samples = plan(Part(drilled()), cutters=["R2L30"], grid=9, area_budget=0, faces="all").samples
+    usual = module.atlas_of(samples)
+    assert all(sheet.ends for sheet in usual.sheets.values())
+    monkeypatch.setattr(module, "_LONGEST", 14)
+    small = module.atlas_of(samples)
+    assert small.index.shape[1] <= 14
+    assert not all(sheet.ends for sheet in small.sheets.values())
+    assert sorted(small.index[small.index >= 0].tolist()) == list(range(len(samples)))
+
+
+def test_what_is_not_finite_is_null():
+    assert write.embedded({"a": [float("nan"), (1.5, float("-inf"))]}) == '{"a":[null,[1.5,null]]}'
+    assert write.embedded("</script>&\u2028") == '"\\u003c/script\\u003e\\u0026\\u2028"'
+
+
 @pytest.fixture(scope="module")
 def valley():
     result = plan("samples/peaks_and_valleys.step", cutters=["R12L60", "R6L80", "R2L30"], grid=21, area_budget=0,

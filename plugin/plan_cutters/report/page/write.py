@@ -168,9 +168,17 @@ def _rendered(meta: dict[str, Any], data: str, shown: dict[str, Any]) -> bytes:
 
 
 def embedded(value: Any) -> str:
-    """JSON that may stand in a page: nothing in it ends the element or begins another one."""
-    text = json.dumps(value, ensure_ascii=True, separators=(",", ":"), allow_nan=False)
+    """JSON that may stand in a page: nothing in it ends the element or begins another one; null where a number is not finite."""
+    text = json.dumps(_finite(value), ensure_ascii=True, separators=(",", ":"), allow_nan=False)
     return re.sub("[<>&]", lambda found: f"\\u{ord(found[0]):04x}", text)
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _finite(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def plain(value: Any) -> Any:
