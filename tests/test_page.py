@@ -8,7 +8,12 @@ import numpy as np
 import pytest
 from browser import choose, chromium, intervals, launch, opened, place_of, seen, wait_for_map
 
+from scipy.spatial.transform import Rotation
+
 from plan_cutters import plan, posture_map
+from plan_cutters.domain import posture
+from plan_cutters.domain.kinematics import Kinematics
+from plan_cutters.report.page import meta
 from plan_cutters.scene.scene import Scene
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: setup.sh dev")
@@ -444,3 +449,65 @@ def test_without_scripts_it_says_everything_too(browser, path):
     for word in ("Take R6L60", "R10L12", "Worst spots", "F6"):
         assert word in page.inner_text("body")
     context.close()
+
+
+def machines():
+    """A trunnion, a table under a swivelling head, a nutating head, and heads with one axis and with none."""
+    nutating = (0.0, np.sin(np.pi / 4), np.cos(np.pi / 4))
+    tilts = np.radians([[-110.0, 30.0], [-95.0, 95.0], [-20.0, 200.0]])
+    a, b, c = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+    free = (-np.inf, np.inf)
+    up = np.array([0.0, 0.0, 1.0])
+    return {
+        "trunnion": Kinematics(np.array([c, a]), np.array([free, tilts[0]]), up),
+        "head and table": Kinematics(np.array([c, b]), np.array([np.radians([-170, 170]), tilts[1]]), up),
+        "nutating": Kinematics(np.array([c, nutating]), np.array([np.radians([-100, 250]), tilts[2]]), up),
+        "one axis": Kinematics(np.array([a]), np.array([tilts[0]]), up),
+        "none": Kinematics(np.zeros((0, 3)), np.zeros((0, 2)), up),
+    }
+
+
+@pytest.mark.parametrize("name", machines())
+def test_the_page_knows_what_a_machine_holds(page, name):
+    """Random tool axes, and those that the machine's own angles make, limits among them."""
+    axes = machines()[name]
+    rng = np.random.default_rng(15)
+    turn = Rotation.from_rotvec([0.3, -0.7, 1.1]).as_matrix()
+    seen_from = axes.seen_from(turn)
+    random = rng.normal(size=(1000, 3))
+    random /= np.linalg.norm(random, axis=1)[:, None]
+    limit = np.clip(axes.limit, -4.0, 4.0)
+    own = axes.axis(rng.uniform(limit[:, 0], limit[:, 1], (200, len(limit)))) if len(limit) else axes.tool[None]
+    every = np.concatenate([random, own @ turn.T])
+    found = page.evaluate(
+        """([kinematics, axes]) => { Object.assign(review.meta, { kinematics, tilt_limit_deg: null });
+             return axes.map(axis => review.probe.machine.holds(axis)); }""",
+        [meta._kinematics(seen_from), every.tolist()],
+    )
+    wanted = seen_from.allows(every)
+    assert wanted[1000:].all()
+    assert np.array(found).tolist() == wanted.tolist()
+
+
+def test_stored_intervals_are_cut_to_what_rotary_axes_hold(page, planned):
+    """As if the part stood on a trunnion: every tilt shown free is held, and no held one is lost but at ends."""
+    axes = machines()["trunnion"]
+    page.evaluate("kinematics => Object.assign(review.meta, { kinematics, tilt_limit_deg: null })", meta._kinematics(axes))
+    row = seen(page, inner(planned, SHOWN, [1, 2], 60))[3]
+    choose(page, row)
+    shown, _ = intervals(page)
+    whole = np.degrees(planned.maps.free), planned.maps.offset.reshape(-1)
+    turns, lost = np.degrees(planned.postures.rotations).round(6), 0
+    for k, turn in enumerate(turns):
+        first, last = whole[1][row * len(turns) + k : row * len(turns) + k + 2]
+        stored = whole[0][first:last]
+        tilts = np.arange(0.0, 90.0, 0.05)
+        lean = posture.lean(planned.samples.normal[row], planned.samples.direction_max[row], np.radians(turn))
+        axis = np.cos(np.radians(tilts))[:, None] * planned.samples.normal[row] + np.sin(np.radians(tilts))[:, None] * lean
+        held = axes.allows(axis) & np.any([(tilts >= a) & (tilts <= b) for a, b in stored] or [tilts < 0], axis=0)
+        mine = np.any([(tilts >= a) & (tilts <= b) for a, b in shown[turn]] or [tilts < 0], axis=0)
+        # The page's frames are rounded to about 0.01 deg.
+        near = np.convolve(held, np.ones(3), "same") > 0
+        assert not (mine & ~near).any(), turn
+        lost += int((held & ~mine).sum())
+    assert lost < 0.02 * len(turns) * len(tilts)

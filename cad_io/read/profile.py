@@ -31,10 +31,12 @@ def turned_part(source: Any, origin: Sequence[float], direction: Sequence[float]
     Raises
     ------
     ReadError
-        It holds no shape, or a profile that lies in no plane through the axis.
+        It holds no shape, or a profile that lies in no plane through the axis, or is not joined.
     """
     if isinstance(source, Part):
         return source
+    if any(getattr(getattr(each, "ctx", None), "pendingEdges", ()) for each in each_of(source)):
+        raise ReadError("the lines of the Workplane are not joined to a profile: close() it, or wire()")
     with translated("reading a body of revolution", error=ReadError):
         axis = gp_Ax1(gp_Pnt(*origin), gp_Dir(*direction))
         found = [_turned(shape, axis, origin, direction) for each in each_of(source) for shape in shapes_of(each)]

@@ -63,22 +63,26 @@ const WORDS: Record<string, string> = {
 /** A word of the plan as it is shown. */
 export const spoken = (word: string): string => WORDS[word] ?? word.replaceAll("_", " ");
 
-/** Causes: what forbids a posture, on the map and on the surface. */
-export const CAUSES: Record<string, [string, Pattern]> = {
-  free: ["#009E73", "plain"],
-  axis_limit: ["#a9b1b9", "lines"],
-  no_contact: ["#d7dade", "plain"],
-  local_gouge: ["#D55E00", "hatch"],
-  rear_gouge: ["#E69F00", "back"],
-  collision: ["#b5446e", "cross"],
-  neck: ["#c9a9dd", "bars"],
-  shank: ["#8e6bbf", "bars"],
-  holder: ["#54307e", "hatch"],
-  fixture: ["#0072B2", "lines"],
-  buried: ["#3a3a3a", "cross"],
-  undecided: ["#F0E442", "dots"],
-  tolerance: ["#d8cf9a", "dots"],
+/** Patterns of what forbids a posture, on the map and on the surface. */
+const CAUSE_PATTERNS: Record<string, Pattern> = {
+  axis_limit: "lines",
+  local_gouge: "hatch",
+  rear_gouge: "back",
+  collision: "cross",
+  neck: "bars",
+  shank: "bars",
+  holder: "hatch",
+  fixture: "lines",
+  buried: "cross",
+  undecided: "dots",
+  tolerance: "dots",
 };
+
+/** Colour and pattern of what forbids a posture, or of what is free of it. */
+export function causeOf(meta: Meta, cause: string): [string, Pattern] {
+  const word = cause === "free" ? "interference_free" : cause;
+  return [meta.cause_colours[word] ?? colourOf(meta, word), CAUSE_PATTERNS[word] ?? "plain"];
+}
 
 const CLASSES: [string, string, Pattern][] = [
   ["convex", "#E8B04A", "plain"],
@@ -121,8 +125,7 @@ function reasonLook(meta: Meta, samples: Samples, cutter: string): Look {
   const verdict = samples.verdicts(cutter).values;
   const reason = samples.reasons(cutter).values;
   const entries: Entry[] = meta.reasons.map((word) => {
-    const [colour] = CAUSES[word] ?? [UNKNOWN, "plain"];
-    return { colour, pattern: "hatch", label: spoken(word) };
+    return { colour: causeOf(meta, word)[0], pattern: "hatch", label: spoken(word) };
   });
   const undecided = entries.map((each) => ({ ...each, pattern: "dots" as Pattern, label: `${each.label}, undecided` }));
   const rest: Entry[] = [

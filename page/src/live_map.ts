@@ -1,13 +1,13 @@
 // Which postures are free at a sample, found from the drawn triangles: an approximation, not certified.
 
 import type { Box3 } from "three";
-import { modeAt, place, type Placed } from "./contact.ts";
-import { gouges } from "./contact.ts";
+import { gouges, modeAt, place, type Placed } from "./contact.ts";
+import { Machine } from "./machine.ts";
 import type { Drawn, Owner } from "./mesh.ts";
 import type { Cutter, Meta, Vec } from "./meta.ts";
 import { hit, reaches, type Solid, solidOf } from "./overlap.ts";
 import type { Posture, Sample } from "./samples.ts";
-import { across, cross, dot, minus, plus, RAD } from "./vectors.ts";
+import { across, cross, dot, minus, plus } from "./vectors.ts";
 
 /** What can forbid a posture, in the order in which it is told; `free` and the last ones are no causes. */
 export const STATES = [
@@ -63,27 +63,23 @@ export class Probe {
   private readonly index: ArrayLike<number>;
   private readonly corner = new Float64Array(9);
   private readonly ignored: boolean[];
+  readonly machine: Machine;
   /** For each part, the triangle that was in the way last: it often is again. */
   private readonly last = new Map<string, number>();
 
   constructor(
     private readonly drawn: Drawn,
-    private readonly meta: Meta,
+    meta: Meta,
   ) {
+    this.machine = new Machine(meta);
     this.index = drawn.tree.geometry.index!.array;
     this.ignored = meta.faces.map((face) => face.ignored);
-  }
-
-  /** Whether the plain limit of the axis forbids it. */
-  limited(axis: Vec): boolean {
-    const limit = this.meta.tilt_limit_deg;
-    return limit !== null && dot(axis, this.meta.setup.z) < Math.cos(limit * RAD) - 1e-9;
   }
 
   /** What is the first thing to forbid a posture; `thorough` finds the deepest place of it. */
   look(tool: LiveTool, sample: Sample, posture: Posture, thorough = false): Met {
     const placed = place(tool.cutter, sample, posture);
-    if (this.limited(placed.axis)) return { ...NOTHING, state: "axis_limit" };
+    if (!this.machine.holds(placed.axis)) return { ...NOTHING, state: "axis_limit" };
     if (!modeAt(tool.cutter, posture.tilt)) return { ...NOTHING, state: "no_contact" };
     if (gouges(tool.cutter, sample, posture)) return { ...NOTHING, state: "local_gouge" };
     return this.obstacles(tool, sample, placed, thorough);

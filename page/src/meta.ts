@@ -84,6 +84,14 @@ export interface ArrayEntry {
   bytes: number;
 }
 
+/** Rotary axes from the part to the tool, in the part's frame; null: no limit that way. */
+export interface Kinematics {
+  direction: Vec[];
+  limit_deg: [number | null, number | null][];
+  /** Where the tool points at zero angles. */
+  tool: Vec;
+}
+
 export interface Meta {
   format: number;
   part: { file: string; sha256: string; size_mm: Vec; low: Vec; high: Vec };
@@ -96,10 +104,12 @@ export interface Meta {
   reasons: string[];
   verdicts: Record<string, string>;
   colours: Record<string, string>;
+  cause_colours: Record<string, string>;
   rotation_deg: number[];
   tilt_deg: [number, number];
   tilt_limit_deg: number | null;
   rotary: boolean;
+  kinematics: Kinematics | null;
   atlas: [number, number] | null;
   faces: Face[];
   fixtures: Fixture[];

@@ -1,7 +1,7 @@
 // The panel of one sample: tilt against rotation, what is free, what forbids the rest, and the posture shown.
 
 import type { App } from "./app.ts";
-import { CAUSES, spoken } from "./colours.ts";
+import { causeOf, spoken } from "./colours.ts";
 import { button, el, figure, percent } from "./dom.ts";
 import { STATES, type State } from "./live_map.ts";
 import { swatch, tile } from "./patterns.ts";
@@ -84,7 +84,9 @@ export class PosturePanel {
       ? "Free postures are certified. What forbids the others comes from the drawn triangles."
       : "Approximate: this map comes from the drawn triangles and overlooks what reaches less than " +
         `${figure(this.app.liveTool().spared, 2)} mm into the tool. It is not certified.`;
-    if (this.app.meta.rotary) this.kind.textContent += " The limits of the machine's rotary axes are not in it.";
+    if (this.app.meta.kinematics && this.app.meta.kinematics.direction.length < 2) {
+      this.kind.textContent += " This machine turns too few axes for a map: only the posture found is shown.";
+    }
     this.kind.classList.toggle("approximate", !this.map.certified);
     this.draw();
     this.timer = window.setTimeout(() => this.advance(this.map!), 0);
@@ -172,7 +174,7 @@ export class PosturePanel {
     canvas.style.height = `${HEIGHT}px`;
     const c = canvas.getContext("2d")!;
     c.scale(ratio, ratio);
-    const fills = new Map(STATES.map((state) => [state, tile(c, ...CAUSES[state])]));
+    const fills = new Map(STATES.map((state) => [state, tile(c, ...causeOf(this.app.meta, state))]));
     const wide = Math.max(1, ((this.width - LEFT - RIGHT) * this.step) / 360 - 1);
     const seen = new Set<State>();
     const { tilts } = map.grid;
@@ -205,7 +207,7 @@ export class PosturePanel {
     if (this.legend.dataset.shown !== shown.join()) {
       this.legend.dataset.shown = shown.join();
       this.legend.replaceChildren(
-        ...shown.map((state) => el("li", {}, swatch(...CAUSES[state]), state === "tolerance" ? "within tolerance" : spoken(state))),
+        ...shown.map((state) => el("li", {}, swatch(...causeOf(this.app.meta, state)), state === "tolerance" ? "within tolerance" : spoken(state))),
       );
     }
   }

@@ -2,7 +2,6 @@
 
 import type { App, Judged } from "./app.ts";
 import { spoken } from "./colours.ts";
-import { common, heldTilts } from "./contact.ts";
 import { emptyGrid, fillColumn, type Grid, type Met, STATES, type State } from "./live_map.ts";
 import type { Posture, Sample } from "./samples.ts";
 import type { Certified, StoredMaps } from "./stored_map.ts";
@@ -119,12 +118,11 @@ export class SampleMap {
   }
 }
 
-/** Stored maps hold for any machine: what the plain limit of this one leaves of them. */
+/** Stored maps hold for any machine: what this one holds of them. */
 function within(app: App, sample: Sample, found: Certified | null): Certified | null {
-  const { tilt_limit_deg: limit, setup, rotation_deg, tilt_deg } = app.meta;
-  if (!found || limit === null) return found;
-  const free = found.free.map((mine, k) => common(mine, heldTilts(sample, rotation_deg[k], setup.z, limit, tilt_deg)));
-  return { ...found, free };
+  const { machine } = app.probe;
+  if (!found || !machine.limited) return found;
+  return { ...found, free: found.free.map((mine, k) => machine.within(mine, sample, app.meta.rotation_deg[k])) };
 }
 
 export const apart = (a: number, b: number): number => Math.abs(((a - b + 540) % 360) - 180);

@@ -67,7 +67,11 @@ class OnFace:
     @property
     def reached(self) -> float | None:
         """Share of the face's area that is reached, 0 to 1; None where the face was not sampled."""
-        return sum(self.shares.get(word, 0.0) for word in ("interference_free", "accessible")) if self.shares else None
+        if not self.shares:
+            return None
+        found = [share for word, share in self.shares.items() if word in ("interference_free", "accessible")]
+        # Rounding must not make a little less of all, nor more.
+        return 1.0 if len(found) == len(self.shares) else min(1.0, sum(found))
 
     @property
     def reason(self) -> str | None:

@@ -87,8 +87,9 @@ def _envelope(line: Floats, exact: NDArray[np.bool_], low: float, high: float) -
         mine = own[(own[:, 1] <= z + _SAME) & (own[:, 3] >= to - _SAME)]
         near = others[(others[:, 1] < to) & (others[:, 3] > z)]
         across = (near[:, 1] <= z + _SAME) & (near[:, 3] >= to - _SAME)
-        # What ends within the slice counts with its largest radius all over it.
-        level = float(near[~across][:, [0, 2]].max(initial=-1.0))
+        # What ends within the slice counts all over it with the largest radius that it has there.
+        part = near[~across]
+        level = max(float(_at(part, np.clip(end, part[:, 1], part[:, 3])).max(initial=-1.0)) for end in (z, to))
         ends = [_at(lines, height).max(initial=least)
                 for lines, least in ((mine, -1.0), (near[across], level)) for height in (z, to)]  # fmt: skip
         first, last = max(ends[0], ends[2]), max(ends[1], ends[3])

@@ -1,5 +1,6 @@
 """Holders from a script: a body of revolution, or a profile of one, becomes stages that enclose it."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -41,8 +42,8 @@ def holder(
 
     Raises
     ------
-    CutterError
-        It is no body of revolution about the axis, or the axis has no meaning.
+    OptionError
+        The axis or the tolerance has no meaning; CutterError: it is no body of revolution about the axis.
     CadIoError
         It holds no shape, or a profile that lies in no plane through the axis.
 
@@ -87,6 +88,6 @@ def _axis(given: Any) -> tuple[list[float], list[float]]:
     except (TypeError, ValueError):
         raise CutterError(f"a holder's axis is x, y, z, or a point and a direction, not {shown(given)}") from None
     base, along = numbers(origin, "a point of the axis", 3), numbers(direction, "a direction of the axis", 3)
-    if not any(along):
-        raise CutterError("the direction of a holder's axis must not be 0,0,0")
+    if not (any(along) and all(map(math.isfinite, (*base, *along)))):
+        raise CutterError("a holder's axis must be finite numbers, and its direction not 0,0,0")
     return list(base), list(along)

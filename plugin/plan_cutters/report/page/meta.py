@@ -1,5 +1,6 @@
 """What the page is told beside arrays: the `meta` object of `docs/review_page.md`."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from plan_cutters.document.palette import CAUSES
 from plan_cutters.document.shares import counts
 from plan_cutters.document.told import VERDICTS
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.outline import Outline, outline, points
 from plan_cutters.domain.shapes import modes
 from plan_cutters.report.page.atlas import Atlas
@@ -52,6 +54,7 @@ def meta_of(
         "tilt_deg": list(degrees(result.postures.tilt)),
         "tilt_limit_deg": plan.machine.tilt_limit_deg,
         "rotary": plan.machine.rotary is not None,
+        "kinematics": None if result.kinematics is None else _kinematics(result.kinematics),
         "atlas": [atlas.index.shape[1], atlas.index.shape[0]],
         "faces": [_face(entry, surface) for entry in plan.faces],
         "fixtures": [
@@ -64,6 +67,12 @@ def meta_of(
         ],
         "spots": [_spot(each) for each in spots],
     }
+
+
+def _kinematics(axes: Kinematics) -> dict[str, Any]:
+    """What the page asks which tool axes the machine holds; None: no limit that way."""
+    ends = [[end if math.isfinite(end) else None for end in pair] for pair in np.degrees(axes.limit).tolist()]
+    return {"direction": axes.direction.tolist(), "limit_deg": ends, "tool": axes.tool.tolist()}
 
 
 def _face(entry: Any, surface: Surface) -> dict[str, Any]:
