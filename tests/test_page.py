@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from browser import choose, chromium, intervals, launch, opened, place_of, seen, wait_for_map
-
 from scipy.spatial.transform import Rotation
 
 from plan_cutters import plan, posture_map
@@ -157,7 +156,7 @@ def test_the_intervals_shown_are_those_of_the_posture_map(page, planned, scene):
         choose(page, row)
         shown, certified = intervals(page)
         assert certified == {"true"}
-        tool = planned.tools[SHOWN]
+        tool = planned.judged(SHOWN)
         point = planned.samples.point[row]
         found = posture_map(
             scene, point=point, cutter=tool, rotations=turns, machine="tilt:40", tilt=planned.postures.tilt
@@ -210,7 +209,7 @@ def test_the_live_map_agrees_with_the_posture_map_away_from_borders(page, planne
             [row, np.degrees(turns).tolist(), tilts.tolist()],
         )
         found = posture_map(
-            scene, point=planned.samples.point[row], cutter=planned.tools[OTHER], rotations=turns, machine="tilt:40"
+            scene, point=planned.samples.point[row], cutter=planned.judged(OTHER), rotations=turns, machine="tilt:40"
         )
         for k, column in enumerate(states):
             causes = forbidding(found, k)
@@ -265,7 +264,7 @@ def test_a_cutter_is_switched(page, planned):
 
 def test_a_worst_spot_shows_its_witness(page, planned):
     page.locator(f'#cutters tr[data-cutter="{OTHER}"] button').click()
-    spots = [each for each in planned.cutters if each.id == OTHER][0].witnesses
+    spots = next(each for each in planned.cutters if each.id == OTHER).witnesses
     page.keyboard.press("n")
     row = page.evaluate("review.sample.row")
     wait_for_map(page, row)
@@ -301,7 +300,7 @@ def test_moving_over_the_map_turns_the_tool(page, planned):
 
 def test_the_posture_found_stands_as_in_the_plan(page, planned):
     """Axis and place of the drawn tool, against the arrays behind the plan."""
-    reach, tool = planned.reaches[SHOWN], planned.tools[SHOWN]
+    reach, tool = planned.reaches[SHOWN], planned.judged(SHOWN)
     for row in seen(page, inner(planned, SHOWN, [1], 40))[:4]:
         choose(page, row)
         elements = page.evaluate("Array.from(review.tool.group.matrix.elements)")
@@ -406,7 +405,7 @@ def test_it_prints(page):
     drawn = page.evaluate(
         """() => [...document.querySelectorAll("#stills canvas")].map(canvas => { const { data } =
              canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
-             let seen = 0; for (let i = 3; i < data.length; i += 4) if (data[i] > 128) seen++; return seen / (data.length / 4); })"""
+             let seen = 0; for (let i = 3; i < data.length; i += 4) seen += data[i] > 128; return 4 * seen / data.length; })"""
     )
     assert len(drawn) == 2
     assert min(drawn) > 0.05
@@ -492,7 +491,9 @@ def test_the_page_knows_what_a_machine_holds(page, name):
 def test_stored_intervals_are_cut_to_what_rotary_axes_hold(page, planned):
     """As if the part stood on a trunnion: every tilt shown free is held, and no held one is lost but at ends."""
     axes = machines()["trunnion"]
-    page.evaluate("kinematics => Object.assign(review.meta, { kinematics, tilt_limit_deg: null })", meta._kinematics(axes))
+    page.evaluate(
+        "kinematics => Object.assign(review.meta, { kinematics, tilt_limit_deg: null })", meta._kinematics(axes)
+    )
     row = seen(page, inner(planned, SHOWN, [1, 2], 60))[3]
     choose(page, row)
     shown, _ = intervals(page)
@@ -503,7 +504,9 @@ def test_stored_intervals_are_cut_to_what_rotary_axes_hold(page, planned):
         stored = whole[0][first:last]
         tilts = np.arange(0.0, 90.0, 0.05)
         lean = posture.lean(planned.samples.normal[row], planned.samples.direction_max[row], np.radians(turn))
-        axis = np.cos(np.radians(tilts))[:, None] * planned.samples.normal[row] + np.sin(np.radians(tilts))[:, None] * lean
+        axis = (
+            np.cos(np.radians(tilts))[:, None] * planned.samples.normal[row] + np.sin(np.radians(tilts))[:, None] * lean
+        )
         held = axes.allows(axis) & np.any([(tilts >= a) & (tilts <= b) for a, b in stored] or [tilts < 0], axis=0)
         mine = np.any([(tilts >= a) & (tilts <= b) for a, b in shown[turn]] or [tilts < 0], axis=0)
         # The page's frames are rounded to about 0.01 deg.
@@ -511,3 +514,31 @@ def test_stored_intervals_are_cut_to_what_rotary_axes_hold(page, planned):
         assert not (mine & ~near).any(), turn
         lost += int((held & ~mine).sum())
     assert lost < 0.02 * len(turns) * len(tilts)
+
+
+def test_faces_are_filtered_and_sorted(page, planned):
+    page.fill("#faces input[type=search]", "f3")
+    shown = page.evaluate(
+        "[...document.querySelectorAll('#faces tbody tr')].filter(row => !row.hidden).map(r => r.dataset.face)"
+    )
+    assert shown == ["3"]
+    page.fill("#faces input[type=search]", "")
+    head = page.locator("#faces thead button", has_text="Area")
+    head.click()
+    order = page.evaluate("[...document.querySelectorAll('#faces tbody tr')].map(row => Number(row.dataset.face))")
+    area = {int(face.id[1:]): face.area_mm2 for face in planned.plan.faces}
+    assert [area[each] for each in order] == pytest.approx(sorted(area.values()), rel=1e-3)
+    assert page.get_attribute("#faces thead th:nth-child(2)", "aria-sort") == "ascending"
+
+
+def test_an_open_surface_has_no_cap_and_says_so(browser, tmp_path):
+    from plan_cutters.report.page.write import write_html
+
+    found = plan(ROOT / "samples" / "peaks_and_valleys.step", grid=5, cutters=["R6L80"], area_budget=0)
+    write_html(found, None, tmp_path / "review.html")
+    context = browser.new_context(viewport={"width": 1366, "height": 768}, reduced_motion="reduce")
+    page = opened(context, tmp_path / "review.html")
+    page.keyboard.press("c")
+    assert "open surface" in page.inner_text("#clip .hint")
+    assert page.said == []
+    context.close()

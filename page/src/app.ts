@@ -1,5 +1,6 @@
 // What is shown now: cutter, colouring, sample, posture, what is lit up; and who wants to know.
 
+import type { Clip } from "./clip.ts";
 import { lookOf } from "./colours.ts";
 import { place } from "./contact.ts";
 import type { Arrays } from "./decode.ts";
@@ -32,6 +33,9 @@ export class App {
   judge: (posture: Posture, met: Met) => Judged = (_, met) => ({ state: met.state, certified: false });
   hot: Owner | null = null;
   toolShown = true;
+  clip: Clip | null = null;
+  /** What is to be added to what is said next. */
+  note = "";
   private madeProbe: Probe | null = null;
   private readonly liveTools = new Map<string, LiveTool>();
   private readonly told = new Map<Event, (() => void)[]>();

@@ -1,30 +1,17 @@
 // The clipping plane: across an axis of the part, with caps where it cuts closed bodies.
 
-import {
-  AlwaysStencilFunc,
-  BackSide,
-  DecrementWrapStencilOp,
-  FrontSide,
-  IncrementWrapStencilOp,
-  Mesh,
-  NotEqualStencilFunc,
-  PlaneGeometry,
-  Vector3,
-  ZeroStencilOp,
-} from "three";
+import { Mesh, NotEqualStencilFunc, PlaneGeometry, Vector3, ZeroStencilOp } from "three";
 import type { App } from "./app.ts";
+import { closed } from "./closed.ts";
 import { colourOf } from "./colours.ts";
 import { button, el, figure } from "./dom.ts";
 import type { Vec } from "./meta.ts";
 import { capMaterial, countingMaterial, shared } from "./shading.ts";
 import { distance, mixed } from "./vectors.ts";
 
-/** Edges that may have no partner before a surface counts as open: a share of all. */
-const OPEN = 0.01;
-
 export class Clip {
   readonly root = el("fieldset", { id: "clip" });
-  private readonly slider = el("input", { type: "range", min: 0, max: 1000, value: 500, "aria-label": "Place of the clipping plane" });
+  private readonly slider = el("input", { type: "range", min: 0, max: 1000, step: "any", value: 500, "aria-label": "Place of the clipping plane" });
   private readonly axis = el("select", { "aria-label": "Clipping plane" });
   private readonly text = el("output", { class: "number" });
   private readonly note = el("span", { class: "hint" });
@@ -37,7 +24,7 @@ export class Clip {
     for (const [value, label] of [["", "off"], ["0", "across X"], ["1", "across Y"], ["2", "across Z"]]) {
       this.axis.append(el("option", { value }, label));
     }
-    this.axis.addEventListener("change", () => this.update(true));
+    this.axis.addEventListener("change", () => this.turn());
     this.slider.addEventListener("input", () => this.update());
     const flip = button("Flip", () => {
       this.sign = -this.sign;
@@ -50,15 +37,50 @@ export class Clip {
   /** Off, X, Y, Z and off again. */
   next(): void {
     this.axis.selectedIndex = (this.axis.selectedIndex + 1) % this.axis.options.length;
-    this.update(true);
+    this.turn();
     this.app.say(this.on ? `Clipped ${this.axis.selectedOptions[0].text} at ${this.text.value}. ${this.note.textContent}` : "Clipping off");
   }
+
+  /** Another plane: its cut faces the eye. */
+  private turn(): void {
+    this.own = false;
+    if (this.on) this.sign = this.app.stage.table.frame().back[Number(this.axis.value)] < 0 ? -1 : 1;
+    this.update();
+  }
+
+  /** Cut through a place of the surface that is hidden otherwise; the direction from which the cut is seen. */
+  through(point: Vec, normal: Vec): Vec {
+    const size = normal.map(Math.abs);
+    // Along the normal and along the setup axis one would see the cut from its edge, or what is machined from below.
+    const rank = size.map((x, k) => x + 0.9 * Math.abs(this.app.meta.setup.z[k]));
+    const k = rank.indexOf(Math.min(...rank));
+    const { low, high } = this.app.meta.part;
+    const middle = (low[k] + high[k]) / 2;
+    this.axis.value = String(k);
+    this.slider.value = String((1000 * (point[k] - low[k])) / (high[k] - low[k] || 1));
+    this.sign = point[k] < middle ? -1 : 1;
+    this.own = true;
+    this.update();
+    const way: Vec = [0, 0, 0];
+    way[k] = this.sign;
+    return way;
+  }
+
+  /** End a cut that was made to show a hidden place. */
+  release(): void {
+    if (!this.own) return;
+    this.own = false;
+    this.axis.value = "";
+    this.update();
+  }
+
+  private own = false;
 
   private get on(): boolean {
     return this.axis.value !== "";
   }
 
-  private update(told = false): void {
+  private update(): void {
     const { low, high } = this.app.meta.part;
     for (const each of this.root.querySelectorAll<HTMLElement>("input, output, button, .hint")) each.hidden = !this.on;
     const plane = shared.plane.value;
@@ -80,11 +102,10 @@ export class Clip {
       }
     }
     for (const mesh of [...this.caps, ...this.counters]) mesh.visible = this.on;
-    if (told) this.root.dataset.axis = this.axis.value;
     this.app.stage.request();
   }
 
-  /** Count, pixel by pixel, the backs and fronts behind the plane: where they differ the plane lies in a body. */
+  /** Turn a bit over, pixel by pixel, for each surface behind the plane: where their number is odd the plane lies in a body. */
   private build(): void {
     this.built = true;
     const { drawn, meta, stage } = this.app;
@@ -97,23 +118,15 @@ export class Clip {
     ];
     bodies.forEach(([name, first, count, colour], i) => {
       if (!count) return;
-      if (!closed(drawn.position, drawn.triangle.subarray(3 * first, 3 * (first + count)), drawn.owner, meta.faces.map((f) => f.ignored))) {
+      const mine = (owner: number): boolean => (i === 0 ? owner >= 0 && !meta.faces[owner].ignored : owner < 0);
+      if (!closed(drawn, mine)) {
         open.push(name);
         return;
       }
       const geometry = drawn.geometry(first, count);
-      for (const [side, step] of [
-        [BackSide, IncrementWrapStencilOp],
-        [FrontSide, DecrementWrapStencilOp],
-      ] as const) {
-        const material = countingMaterial();
-        material.side = side;
-        material.stencilFunc = AlwaysStencilFunc;
-        material.stencilFail = material.stencilZFail = material.stencilZPass = step;
-        const mesh = new Mesh(geometry, material);
-        mesh.renderOrder = 1 + 0.1 * i;
-        this.counters.push(mesh);
-      }
+      const counter = new Mesh(geometry, countingMaterial());
+      counter.renderOrder = 1 + 0.1 * i;
+      this.counters.push(counter);
       const material = capMaterial(colour);
       material.stencilRef = 0;
       material.stencilFunc = NotEqualStencilFunc;
@@ -126,36 +139,4 @@ export class Clip {
     stage.add(...this.counters, ...this.caps);
     this.note.textContent = open.length ? `${open.join(" and ")} is an open surface: it has no cap.` : "";
   }
-}
-
-/** Whether every edge has a partner: vertices of different faces count as one where they lie at the same place. */
-export function closed(position: Float32Array, triangle: Uint32Array, owner: Float32Array, ignored: boolean[]): boolean {
-  const name = new Map<string, number>();
-  const same = new Int32Array(position.length / 3).fill(-1);
-  const vertex = (i: number): number => {
-    if (same[i] < 0) {
-      const key = `${position[3 * i]},${position[3 * i + 1]},${position[3 * i + 2]}`;
-      let found = name.get(key);
-      if (found === undefined) name.set(key, (found = name.size));
-      same[i] = found;
-    }
-    return same[i];
-  };
-  const edges = new Map<number, number>();
-  let count = 0;
-  for (let t = 0; t < triangle.length; t += 3) {
-    const of = owner[triangle[t]];
-    if (of >= 0 && ignored[of]) continue;
-    for (let k = 0; k < 3; k++) {
-      const a = vertex(triangle[t + k]);
-      const b = vertex(triangle[t + ((k + 1) % 3)]);
-      if (a === b) continue;
-      const key = Math.min(a, b) * 67108864 + Math.max(a, b);
-      edges.set(key, (edges.get(key) ?? 0) + (a < b ? 1 : -1));
-      count++;
-    }
-  }
-  let alone = 0;
-  for (const sum of edges.values()) if (sum !== 0) alone++;
-  return alone <= OPEN * count;
 }

@@ -205,7 +205,7 @@ function ends(values: ArrayLike<number>): [number, number] {
 
 /** A colour of the scale, 0 to 1: even steps of lightness in OKLab from dark blue to light yellow, told apart by any eye. */
 export function ramp(share: number): string {
-  const light = 0.3 + 0.62 * share;
+  const light = 0.38 + 0.54 * share;
   const hue = ((275 - 170 * share) * Math.PI) / 180;
   const chroma = 0.105 + 0.02 * share;
   return oklab(light, chroma * Math.cos(hue), chroma * Math.sin(hue));

@@ -29,7 +29,7 @@ export function legend(app: App): HTMLElement {
 
 function scale({ low, high, unit, below, above }: { low: number; high: number; unit: string; below: boolean; above: boolean }): HTMLElement {
   const steps = 64;
-  const bar = svg("svg", { class: "ramp", viewBox: `0 0 ${steps} 10`, preserveAspectRatio: "none", "aria-hidden": "true" });
+  const bar = svg("svg", { class: "ramp", viewBox: `0 0 ${steps} 10`, preserveAspectRatio: "none", "aria-hidden": "true", "shape-rendering": "crispEdges" });
   for (let i = 0; i < steps; i++) bar.append(svg("rect", { x: i, y: 0, width: 1.05, height: 10, fill: ramp(i / (steps - 1)) }));
   const middle = (low + high) / 2;
   return el(

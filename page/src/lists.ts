@@ -4,6 +4,7 @@ import type { App } from "./app.ts";
 import { spoken } from "./colours.ts";
 import { button, el } from "./dom.ts";
 import type { Vec } from "./meta.ts";
+import { dot } from "./vectors.ts";
 
 /** Turn what an element says into a button in it. */
 function press(host: HTMLElement, work: () => void): HTMLButtonElement {
@@ -107,8 +108,10 @@ export class SpotList {
     if (!spot) return;
     this.app.select(spot.sample, spot);
     item.scrollIntoView({ block: "nearest" });
+    this.app.note = "";
+    this.app.clip?.release();
     flyTo(this.app, spot.point, this.app.samples.normal(spot.sample));
-    this.app.say(`Spot ${this.at + 1} of ${this.mine.length}: ${spot.face}, ${spoken(spot.reason)}`);
+    this.app.say(`Spot ${this.at + 1} of ${this.mine.length}: ${spot.face}, ${spoken(spot.reason)}. ${this.app.note}`);
   }
 }
 
@@ -116,7 +119,26 @@ export class SpotList {
 export function flyTo(app: App, point: Vec, normal: Vec, size?: number): void {
   const { table } = app.stage;
   const half = size ?? Math.min(table.radius * 0.7, Math.max(6 * app.cutter.radius, table.radius * 0.08));
-  table.fly({ target: point, half, ...table.towards(normal) });
+  table.fly({ target: point, half, ...openView(app, point, normal) });
+}
+
+/** A view, askew to the normal if that can be, in which nothing hides a place of the surface. */
+function openView(app: App, point: Vec, normal: Vec): { turn: number; rise: number } {
+  const { table } = app.stage;
+  const wanted = table.towards(normal);
+  const back = (view: { turn: number; rise: number }): Vec => table.frame({ ...table.aim, ...view }).back;
+  const ideal = back(wanted);
+  const every = [wanted];
+  for (let turn = 0; turn < 360; turn += 15) for (let rise = -75; rise <= 85; rise += 10) every.push({ turn, rise });
+  const near = every
+    .map((view) => ({ view, way: back(view) }))
+    .filter(({ way }) => dot(way, normal) > 0.1)
+    .sort((a, b) => dot(b.way, ideal) - dot(a.way, ideal));
+  const found = near.find(({ way }) => !app.picker.hidden(point, way));
+  if (found || !app.clip) return found?.view ?? wanted;
+  const way = app.clip.through(point, normal);
+  app.note = "It is hidden from every side: the part is clipped there.";
+  return table.towards(way);
 }
 
 export class FaceTable {
@@ -160,7 +182,7 @@ export class FaceTable {
   }
 
   private tools(): void {
-    if (!this.table || this.rows.size < 8) return;
+    if (!this.table || this.rows.size < 6) return;
     const box = el("input", { type: "search", "aria-label": "Show faces that contain", placeholder: "Filter faces, such as F12 or plane" });
     const count = el("span", { class: "hint", "aria-live": "polite" });
     box.addEventListener("input", () => {

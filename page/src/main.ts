@@ -68,7 +68,7 @@ async function start(): Promise<void> {
   const marks = new Marks(app);
   const panel = new PosturePanel(app);
   const measure = new Measure(app, marks);
-  const clip = new Clip(app);
+  const clip = (app.clip = new Clip(app));
   const help = helpDialog();
   const stills = new Stills(app);
   const glass = button("See through", () => setGlass(), { "aria-pressed": "true", title: "See through the tool (g)" });
@@ -88,8 +88,8 @@ async function start(): Promise<void> {
     el("label", {}, "Colour by ", colouring(app)),
     el("label", {}, "View ", views(app)),
     el("span", { class: "group" }, shown, glass, measure.root),
-    clip.root,
     button("?", () => help.showModal(), { title: "Mouse and keys (?)", "aria-label": "Help: mouse and keys" }),
+    clip.root,
   );
   frame.append(marks.root as unknown as Node, legend(app), measure.output, under);
   viewer.prepend(toolbar);

@@ -1,11 +1,12 @@
 // What lies under the pointer: the point of the surface, its face or fixture, and the nearest sample.
 
-import { DoubleSide, Raycaster, Vector2 } from "three";
+import { DoubleSide, Ray, Raycaster, Vector2, Vector3 } from "three";
 import type { Drawn, Owner } from "./mesh.ts";
 import type { Vec } from "./meta.ts";
 import type { PartView } from "./part.ts";
 import { shared } from "./shading.ts";
 import type { Stage } from "./stage.ts";
+import { dot, minus, plus } from "./vectors.ts";
 
 export interface Picked {
   point: Vec;
@@ -39,12 +40,17 @@ export class Picker {
     return { point, owner: this.drawn.owner[a], sample: texel[2 * a] < 0 ? null : this.part.sampleAt(at(0), at(1)) };
   }
 
+  /** Whether something lies between a point of the surface and an eye far away. */
+  hidden(point: Vec, towards: Vec): boolean {
+    const step = 1e-4 * this.stage.table.radius;
+    const ray = new Ray(new Vector3(...plus(point, towards, step)), new Vector3(...towards));
+    return this.drawn.tree.raycastFirst(ray, DoubleSide) !== null;
+  }
+
   /** Barycentric coordinates of a point of a triangle. */
   private shares(p: Vec, a: number, b: number, c: number): [number, number, number] {
     const [A, B, C] = [a, b, c].map((i) => this.drawn.vertex(i));
-    const sub = (x: Vec, y: Vec): Vec => [x[0] - y[0], x[1] - y[1], x[2] - y[2]];
-    const dot = (x: Vec, y: Vec): number => x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
-    const [e, f, g] = [sub(B, A), sub(C, A), sub(p, A)];
+    const [e, f, g] = [minus(B, A), minus(C, A), minus(p, A)];
     const [ee, ef, ff, ge, gf] = [dot(e, e), dot(e, f), dot(f, f), dot(g, e), dot(g, f)];
     const det = ee * ff - ef * ef;
     if (det <= 0) return [1, 0, 0];

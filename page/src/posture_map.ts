@@ -22,6 +22,7 @@ export class PosturePanel {
   private readonly about = el("p", { class: "about" });
   private readonly kind = el("p", { class: "kind" });
   private readonly line = el("p", { id: "posture-line", "aria-live": "polite" });
+  private readonly start = button("Posture found", () => this.back(), { id: "found-posture" });
   private readonly witness = el("p", { class: "hint" });
   private readonly legend = el("ul", { class: "legend", "aria-label": "Legend of the posture map" });
   private readonly rows = el("tbody");
@@ -43,8 +44,7 @@ export class PosturePanel {
       el("table", { id: "intervals" }, el("caption", {}, "Free tilts by rotation"), el("thead", {}, el("tr", {}, ...head)), this.rows),
     );
     this.empty.append("Click the surface, or press Enter in the picture, to see the postures of the cutter at a sample.");
-    const found = button("Posture found", () => this.back(), { id: "found-posture" });
-    this.body.append(this.about, this.kind, this.canvas, this.line, this.witness, found, this.legend, this.intervals);
+    this.body.append(this.about, this.kind, this.canvas, this.line, this.witness, this.start, this.legend, this.intervals);
     this.root.append(this.title, this.empty, this.body);
     this.body.hidden = true;
     this.canvas.addEventListener("pointermove", (event) => this.point(event));
@@ -68,11 +68,14 @@ export class PosturePanel {
     const { sample, cutter, samples } = this.app;
     this.body.hidden = !sample;
     this.empty.hidden = !!sample;
+    this.title.textContent = "Posture map";
     this.map = sample && new SampleMap(this.app, this.stored, sample);
     if (!sample || !this.map) return;
     const face = this.app.meta.faces.find((each) => each.number === sample.face);
     const verdict = samples.verdict(cutter.id, sample.row);
     const reason = samples.reason(cutter.id, sample.row);
+    const known = samples.posture(cutter.id, sample.row);
+    this.start.textContent = known ? "Posture found" : this.app.spot ? "Posture of the witness" : "Nearest posture";
     this.canvas.setAttribute("aria-label", `Posture map of sample ${sample.row}: tilt against rotation; arrow keys move the tool`);
     this.about.replaceChildren(
       el("strong", {}, `${face?.id ?? "?"}, sample ${sample.row}`),

@@ -1,9 +1,11 @@
 // The materials: lit by a lamp at the eye, coloured as the legend says, cut by the clipping plane.
 
 import {
+  AlwaysStencilFunc,
   DataTexture,
   DoubleSide,
   GLSL3,
+  InvertStencilOp,
   NearestFilter,
   RGBAFormat,
   ShaderMaterial,
@@ -145,7 +147,7 @@ export function toolMaterial(hex: string): ShaderMaterial {
   });
 }
 
-/** Draws nothing seen: it counts what lies behind the clipping plane, for the cap. */
+/** Draws nothing seen: it turns a bit over for each surface behind the clipping plane, for the cap. */
 export function countingMaterial(): ShaderMaterial {
   return new ShaderMaterial({
     glslVersion: GLSL3,
@@ -163,7 +165,12 @@ void main() {
     colorWrite: false,
     depthWrite: false,
     depthTest: false,
+    side: DoubleSide,
     stencilWrite: true,
+    stencilFunc: AlwaysStencilFunc,
+    stencilFail: InvertStencilOp,
+    stencilZFail: InvertStencilOp,
+    stencilZPass: InvertStencilOp,
   });
 }
 
