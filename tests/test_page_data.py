@@ -435,7 +435,7 @@ def test_the_page_says_first_which_cutter_to_take(valley):
     assert "all 441 samples" in why
     assert "R12L60 is larger" in why
     by_name = {row[0]: row[1:] for row in told(read)}
-    assert by_name["R6L80"] == ["yes", "100 %", "–"]
+    assert by_name["R6L80"][:3] == ["yes", "100 %", "–"]
     lost = result.plan.cutters[0].area_share
     assert by_name["R12L60"][:2] == [
         "no",

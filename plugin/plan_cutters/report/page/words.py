@@ -109,18 +109,20 @@ def hint(word: str) -> str:
 
 
 def spot(witness: WitnessEntry) -> str:
-    """A witness in a sentence or two."""
+    """A witness in a sentence."""
     if witness.reason == "tolerance":
         return "The tolerance is too coarse to say anything about this cutter."
-    said = f"Not reached because of {reason(witness.reason)}."
-    best, obstacle = witness.best_posture, witness.obstacle_face
+    said, best, obstacle = reason(witness.reason), witness.best_posture, witness.obstacle_face
+    said = said[0].upper() + said[1:]
     if witness.depth_mm is not None and best is not None:
-        where = f" into {obstacle}" if obstacle else ""
-        there = f"tilt {angle(best.tilt)}, rotation {angle(best.rotation)}"
-        return (
-            f"{said} At the best posture found ({there}) the tool still reaches {mm(witness.depth_mm)} too deep{where}."
+        there, where = (
+            f"tilt {angle(best.tilt)}, rotation {angle(best.rotation)}",
+            f" in {obstacle}" if obstacle else "",
         )
-    return f"{said} {obstacle} is in the way." if obstacle else said
+        return f"{said}: the best posture found ({there}) is still {mm(witness.depth_mm)} too deep{where}."
+    if obstacle:
+        return f"{said}: {obstacle} is in the way."
+    return f"{said}: no posture is left."
 
 
 def tool(entry: CutterEntry) -> str:
