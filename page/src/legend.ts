@@ -7,24 +7,24 @@ import { swatch } from "./patterns.ts";
 
 export function legend(app: App): HTMLElement {
   const root = el("aside", { id: "legend", "aria-label": "Legend" });
-  app.on("look", () => {
-    const { look, meta } = app;
-    if (!look) return;
-    const rows = look.entries.map((entry) =>
-      el(
-        "li",
-        {},
-        swatch(entry.colour, entry.pattern),
-        entry.label,
-        el("span", { class: "share" }, percent(entry.share ?? 0)),
-      ),
-    );
-    if (meta.faces.some((face) => !face.target)) rows.push(el("li", {}, swatch(colourOf(meta, "check"), "plain"), spoken("check")));
-    if (meta.fixtures.length) rows.push(el("li", {}, swatch(colourOf(meta, "fixture"), "plain"), spoken("fixture")));
-    root.replaceChildren(el("h2", {}, look.title), look.ramp ? scale(look.ramp) : "", el("ul", { class: "legend" }, ...rows));
-    if (look.entries.length) root.append(el("p", { class: "hint" }, "share of the sampled area"));
-  });
+  app.on("look", () => root.replaceChildren(...legendOf(app)));
   return root;
+}
+
+/** What is in the legend now, made anew: patterns of a hidden one are not drawn elsewhere. */
+export function legendOf({ look, meta }: App): HTMLElement[] {
+  if (!look) return [];
+  const rows = look.entries.map((entry) =>
+    el("li", {}, swatch(entry.colour, entry.pattern), entry.label, el("span", { class: "share" }, percent(entry.share ?? 0))),
+  );
+  const also = (word: string): void => void rows.push(el("li", {}, swatch(colourOf(meta, word), "plain"), spoken(word)));
+  if (meta.faces.some((face) => !face.target)) also("check");
+  if (meta.fixtures.length) also("fixture");
+  const found: HTMLElement[] = [el("h2", {}, look.title)];
+  if (look.ramp) found.push(scale(look.ramp));
+  found.push(el("ul", { class: "legend" }, ...rows));
+  if (look.entries.length) found.push(el("p", { class: "hint" }, "share of the sampled area"));
+  return found;
 }
 
 function scale({ low, high, unit, below, above }: { low: number; high: number; unit: string; below: boolean; above: boolean }): HTMLElement {

@@ -183,7 +183,7 @@ export class FaceTable {
 
   private tools(): void {
     if (!this.table || this.rows.size < 6) return;
-    const box = el("input", { type: "search", "aria-label": "Show faces that contain", placeholder: "Filter faces, such as F12 or plane" });
+    const box = el("input", { type: "search", "aria-label": "Show faces that contain", placeholder: "Filter faces, such as F12" });
     const count = el("span", { class: "hint", "aria-live": "polite" });
     box.addEventListener("input", () => {
       const wanted = box.value.trim().toLowerCase();

@@ -2,6 +2,7 @@
 
 import type { App } from "./app.ts";
 import { el } from "./dom.ts";
+import { legendOf } from "./legend.ts";
 
 const SIZE = { width: 900, height: 620 };
 
@@ -23,7 +24,7 @@ export class Stills {
     const { stage } = this.app;
     const { table } = stage;
     const before = table.aim;
-    this.key.replaceChildren(...[...document.getElementById("legend")!.children].map((child) => child.cloneNode(true)));
+    this.key.replaceChildren(...legendOf(this.app));
     const views = [before, table.fitted(before.turn + 180, before.rise > 0 ? before.rise : 32)];
     views.forEach((aim, i) => {
       table.set(aim);
