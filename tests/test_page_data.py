@@ -17,11 +17,17 @@ from cad_io.arrays import FaceGrid
 from cad_io.part import Part
 from plan_cutters import plan
 from plan_cutters.domain.posture import lean
+from plan_cutters.report.page import write
 from plan_cutters.report.page.atlas import sheet_of
 from plan_cutters.report.page.encode import COARSE, FILTERS, FINE, Stored, filtered, halves, joined, octahedral
 from plan_cutters.report.page.stored_maps import stored
-from plan_cutters.report.page.write import page
 from plan_cutters.stages.posture_maps import PostureMaps
+
+
+def page(result, *, triangles=4000, **more):
+    """A page of few triangles: they take the time."""
+    return write.page(result, triangles=triangles, **more)
+
 
 DTYPES = {"u1": np.uint8, "u2": np.uint16, "u4": np.uint32, "i2": np.int16, "i4": np.int32, "f2": np.float16}
 
@@ -138,6 +144,26 @@ def test_each_line_of_an_uneven_grid_has_a_texel_and_each_texel_the_nearest_line
     at = np.linspace(u[0], u[-1], len(sheet.index))
     for x, row in zip(at, sheet.index[:, 0], strict=True):
         assert np.abs(u[row // 5] - x) == pytest.approx(np.abs(u - x).min(), abs=1e-12)
+
+
+def test_an_atlas_that_is_too_large_has_coarser_sheets_then_lists(monkeypatch):
+    from cad_parts import drilled
+
+    from plan_cutters.report.page import atlas as module
+
+    samples = plan(Part(drilled()), cutters=["R2L30"], grid=9, area_budget=0, faces="all").samples
+    usual = module.atlas_of(samples)
+    assert all(sheet.ends for sheet in usual.sheets.values())
+    monkeypatch.setattr(module, "_LONGEST", 14)
+    small = module.atlas_of(samples)
+    assert small.index.shape[1] <= 14
+    assert not all(sheet.ends for sheet in small.sheets.values())
+    assert sorted(small.index[small.index >= 0].tolist()) == list(range(len(samples)))
+
+
+def test_what_is_not_finite_is_null():
+    assert write.embedded({"a": [float("nan"), (1.5, float("-inf"))]}) == '{"a":[null,[1.5,null]]}'
+    assert write.embedded("</script>&\u2028") == '"\\u003c/script\\u003e\\u0026\\u2028"'
 
 
 @pytest.fixture(scope="module")
@@ -459,7 +485,6 @@ def test_the_reader_in_the_docs_reads_it(valley):
 
 def test_a_page_that_cannot_be_made_costs_only_itself(valley, tmp_path, monkeypatch):
     from cad_io.errors import WriteError
-    from plan_cutters.report.page import write
 
     def fails(*_, **__):
         raise WriteError("the CAD kernel made no triangle of the part")

@@ -27,8 +27,8 @@ ANGLE = 0.35
 #: Default chord error as a share of the part's diagonal.
 FINE = 5e-4
 _METRE = 1e-3
-#: By how much the chord error grows where there are too many triangles, the largest angle with it, and how often.
-_COARSER, _WIDER, _ROUNDS = 4.0, 1.6, 4
+#: By how much the chord error grows where there are too many triangles, and how often; the angle grows beyond the default chord.
+_COARSER, _WIDER, _ROUNDS = 2.0, 1.3, 12
 
 
 class Mesh(NamedTuple):
@@ -51,7 +51,7 @@ class Drawn(NamedTuple):
     missing: tuple[int, ...]
 
 
-def drawn(part: Part, sides: Sequence[float] | Floats, *, most: int) -> Drawn:
+def drawn(part: Part, sides: Sequence[float] | Floats, *, most: int, deflection: float | None = None) -> Drawn:
     """Mesh all faces of a part to be looked at; the part itself stays without a mesh.
 
     Parameters
@@ -60,7 +60,9 @@ def drawn(part: Part, sides: Sequence[float] | Floats, *, most: int) -> Drawn:
     sides : (faces,) float
         As `Orientation.sign`: normals point out of the material.
     most : int
-        Triangles to have, about: where there are more, the chord error grows.
+        Triangles to have at most: where there are more, the chord error grows, as far as that helps.
+    deflection : float, optional
+        The chord error to begin with, mm; default FINE times the part's diagonal.
 
     Raises
     ------
@@ -69,14 +71,16 @@ def drawn(part: Part, sides: Sequence[float] | Floats, *, most: int) -> Drawn:
     """
     with translated("meshing", error=WriteError, file=part.file):
         copy = BRepBuilderAPI_Copy(part.shape, False, False)
-        shape, deflection, angle = copy.Shape(), FINE * diagonal(part.shape), ANGLE
+        usual = FINE * diagonal(part.shape)
+        shape, deflection, angle = copy.Shape(), usual if deflection is None else deflection, ANGLE
         faces = [TopoDS.Face_s(copy.ModifiedShape(part.face(f.number))) for f in part.faces]
-        for _ in range(_ROUNDS):
+        for tried in range(_ROUNDS):
             BRepTools.Clean_s(shape)
             BRepMesh_IncrementalMesh(shape, deflection, False, angle, False)
-            if sum(map(_count, faces)) <= most:
+            if sum(map(_count, faces)) <= most or tried == _ROUNDS - 1:
                 break
-            deflection, angle = deflection * _COARSER, min(1.5, angle * _WIDER)
+            deflection *= _COARSER
+            angle = min(1.5, angle * (_WIDER if deflection > usual else 1.0))
         meshes, periods = {}, {}
         for info, face in zip(part.faces, faces, strict=True):
             found = face_mesh(part.face(info.number), face, None, outward=sides[info.number - 1] > 0)

@@ -1,5 +1,6 @@
 """What people are told of a plan, wherever they read it: shares in percent, reasons, the worst faces."""
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -85,7 +86,12 @@ def worst_faces(plan: Plan, cutter: CutterEntry, most: int = 5) -> tuple[list[Wo
         for name, each in cutter.faces.items()
         if each.inaccessible + each.undecided
     }
-    ranked = sorted(shares, key=lambda name: (-shares[name] * faces[name].area_mm2, -shares[name], int(name[1:])))
+    area = {
+        name: shares[name] * each.area_mm2 if math.isfinite(each.area_mm2) else 0.0
+        for name, each in faces.items()
+        if name in shares
+    }
+    ranked = sorted(shares, key=lambda name: (-area[name], -shares[name], int(name[1:])))
     found = []
     for name in ranked[:most]:
         mine, share = [w for w in cutter.witnesses if w.face == name], cutter.faces[name].area_share

@@ -19,9 +19,12 @@ from cad_io.write.drawn import Mesh
 #: Largest width and height: a place is counted in 16ths of a texel in 16 bits; the last number says that there is none.
 _LONGEST = 4094
 STEPS, NOWHERE = 16, 65535
-#: Lines this far from equal steps, in steps, count as equal ones; other lines get steps of their least distance, at most so many
-#: times more.
-_EVEN, _FINER = 0.05, 8
+#: Lines this far from equal steps, in steps, count as equal ones.
+_EVEN = 0.05
+#: Other lines get steps of their least distance, at most so many times more; less where the atlas is too large; 0: no grid.
+_FINER = (8, 3, 1, 0)
+#: Texels that an atlas may have for a finer grid.
+_TEXELS = 4_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,8 +55,8 @@ class Atlas:
     sheets: Mapping[int, Sheet]
 
 
-def sheet_of(grid: FaceGrid) -> Sheet:
-    """A face's grid with its seams at both ends, at equal steps, and no node without a sample."""
+def sheet_of(grid: FaceGrid, finer: int = _FINER[0]) -> Sheet:
+    """A face's grid with its seams at both ends, at equal steps, at most `finer` times as many, and no node without a sample."""
     known = grid.index >= 0
     _, (i, j) = distance_transform_edt(~known, return_indices=True)
     index, u, v = grid.index[i, j], grid.u, grid.v
@@ -61,18 +64,18 @@ def sheet_of(grid: FaceGrid) -> Sheet:
         u, index = np.append(u, grid.span[1]), np.vstack([index, index[:1]])
     if grid.closed_v:
         v, index = np.append(v, grid.span[3]), np.hstack([index, index[:, :1]])
-    rows, columns = _even(u), _even(v)
+    rows, columns = _even(u, finer), _even(v, finer)
     ends = ((float(u[0]), float(u[-1])), (float(v[0]), float(v[-1])))
     return Sheet(index[np.ix_(rows, columns)].astype(np.int32), ends)
 
 
-def _even(line: Floats) -> NDArray[np.intp]:
+def _even(line: Floats, finer: int) -> NDArray[np.intp]:
     """The nearest grid line (k,) at each of k equal steps from the first to the last: so many that each line is one."""
     count, span = len(line), line[-1] - line[0]
     if np.abs((line - line[0]) / span * (count - 1) - np.arange(count)).max() < _EVEN:
         return np.arange(count)
     cell = np.diff(np.concatenate([line[:1], 0.5 * (line[1:] + line[:-1]), line[-1:]]))[1:-1].min(initial=span)
-    steps = min(int(np.ceil(span / cell)) + 1, _FINER * count, max(count, _LONGEST - 1))
+    steps = min(int(np.ceil(span / cell)) + 1, finer * count, max(count, _LONGEST - 1))
     at = np.linspace(line[0], line[-1], steps)
     return np.searchsorted(0.5 * (line[1:] + line[:-1]), at)
 
@@ -86,14 +89,23 @@ def _list_of(rows: NDArray[np.int64]) -> Sheet:
 
 
 def atlas_of(samples: SurfaceSamples) -> Atlas:
-    """Lay out the sheets of all sampled faces, the highest first, in shelves."""
+    """Lay out the sheets of all sampled faces, with as fine steps as there is room for."""
     grids = {grid.face: grid for grid in samples.grids}
-    sheets: dict[int, Sheet] = {}
-    for number in np.unique(samples.face).tolist():
-        rows = np.flatnonzero(samples.face == number)
-        grid = grids.get(number)
-        fits = grid is not None and max(grid.index.shape) < _LONGEST
-        sheets[number] = sheet_of(grid) if grid is not None and fits else _list_of(rows)
+    rows = {number: np.flatnonzero(samples.face == number) for number in np.unique(samples.face).tolist()}
+    for finer in _FINER:
+        sheets = {}
+        for number, mine in rows.items():
+            grid = grids.get(number)
+            fits = grid is not None and max(grid.index.shape) < _LONGEST
+            sheets[number] = sheet_of(grid, finer) if grid is not None and fits and finer else _list_of(mine)
+        atlas = _laid_out(sheets)
+        if atlas.index.shape[0] <= _LONGEST and (finer <= 1 or atlas.index.size <= _TEXELS):
+            break
+    return atlas
+
+
+def _laid_out(sheets: Mapping[int, Sheet]) -> Atlas:
+    """Put sheets side by side, the highest first, in shelves."""
     size = {number: sheet.index.shape for number, sheet in sheets.items()}
     area = sum(h * w for h, w in size.values())
     width = min(_LONGEST, max(*(w for _, w in size.values()), math.ceil(1.1 * math.sqrt(area)), 1))

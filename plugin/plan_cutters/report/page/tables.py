@@ -1,5 +1,6 @@
 """What the page says without JavaScript: its tables and lists, as the template takes them."""
 
+import math
 from typing import Any, NamedTuple
 
 from plan_cutters.document.model import CutterEntry, FaceEntry, Plan
@@ -77,7 +78,8 @@ def _faces(plan: Plan, shown: CutterEntry) -> list[tuple[FaceEntry, str, str]]:
 
     def rank(face: FaceEntry) -> tuple[bool, float]:
         share = shares.get(face.id)
-        return not face.target, -face.area_mm2 * (share.inaccessible + share.undecided) if share else 0.0
+        area = face.area_mm2 if math.isfinite(face.area_mm2) else 0.0
+        return not face.target, -area * (share.inaccessible + share.undecided) if share else 0.0
 
     return [
         (face, reached(shown.faces[face.id], shares[face.id]), main_reason(shares[face.id]))

@@ -59,9 +59,11 @@ def angle(degrees: float) -> str:
 def area(mm2: float) -> str:
     """An area, three digits of it.
 
-    >>> area(12345.6), area(0.0456)
-    ('12,300 mm²', '0.0456 mm²')
+    >>> area(12345.6), area(0.0456), area(float("nan"))
+    ('12,300 mm²', '0.0456 mm²', 'not known')
     """
+    if not math.isfinite(mm2):
+        return "not known"
     return f"{float(f'{mm2:.3g}'):,.0f} mm²" if mm2 >= 100 else f"{mm2:.3g} mm²"
 
 

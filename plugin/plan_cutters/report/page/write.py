@@ -15,6 +15,7 @@ from markupsafe import Markup
 from numpy.typing import NDArray
 
 from cad_io.write.drawn import drawn
+from plan_cutters.document.model import Plan
 from plan_cutters.report.page import arrays, tables
 from plan_cutters.report.page.arrays import Arrays
 from plan_cutters.report.page.atlas import atlas_of
@@ -30,6 +31,9 @@ LARGEST, LARGEST_WITHOUT = 8_000_000, 2_500_000
 TRIANGLES = 60_000
 #: Maps of fewer than one in so many samples are rather left out.
 _WIDEST_STRIDE = 64
+#: The kernel's triangles are up to so many times more than the obstacles' of the same chord error (2.5 times was found). A second
+#: mesh takes longer than somewhat fewer triangles do harm.
+_SURELY = 3.0
 _HERE = Path(__file__).parent
 
 
@@ -82,7 +86,8 @@ def page(
     bytes
         UTF-8; the same for the same plan.
     """
-    faces = drawn(result.part, result.scene.orientation.sign, most=triangles)
+    chord = _chord(result.plan, triangles)
+    faces = drawn(result.part, result.scene.orientation.sign, most=triangles, deflection=chord)
     atlas = atlas_of(result.samples)
     surface = surface_of(result, faces, atlas)
     box = box_of(surface, result.samples)
@@ -126,6 +131,16 @@ def page(
     return data
 
 
+def _chord(plan: Plan, triangles: int) -> float:
+    """The chord error, mm, with which fewer than so many triangles are to be expected, as the obstacles have theirs.
+
+    Not below half the tolerance: whoever counts with what is drawn allows for both.
+    """
+    effective = plan.effective
+    alike = effective.chord_error_mm * effective.obstacle_triangles / triangles
+    return max(0.5 * effective.tolerance_mm, _SURELY * alike)
+
+
 def _maps(maps: Any, where: NDArray[np.int64], stride: int) -> Arrays:
     return {} if maps is None else arrays.map_arrays(maps, where, np.arange(0, len(where), stride))
 
@@ -153,9 +168,17 @@ def _rendered(meta: dict[str, Any], data: str, shown: dict[str, Any]) -> bytes:
 
 
 def embedded(value: Any) -> str:
-    """JSON that may stand in a page: nothing in it ends the element or begins another one."""
-    text = json.dumps(value, ensure_ascii=True, separators=(",", ":"), allow_nan=False)
+    """JSON that may stand in a page: nothing in it ends the element or begins another one; null where a number is not finite."""
+    text = json.dumps(_finite(value), ensure_ascii=True, separators=(",", ":"), allow_nan=False)
     return re.sub("[<>&]", lambda found: f"\\u{ord(found[0]):04x}", text)
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _finite(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def plain(value: Any) -> Any:
