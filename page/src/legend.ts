@@ -1,7 +1,7 @@
 // The legend of the picture: colour and pattern of what is seen, or the scale with its numbers.
 
 import type { App } from "./app.ts";
-import { colourOf, ramp, spoken } from "./colours.ts";
+import { colourOf, type Ramp, ramp, spoken } from "./colours.ts";
 import { el, figure, percent, svg } from "./dom.ts";
 import { swatch } from "./patterns.ts";
 
@@ -27,9 +27,15 @@ export function legendOf({ look, meta }: App): HTMLElement[] {
   return found;
 }
 
-function scale({ low, high, unit, below, above }: { low: number; high: number; unit: string; below: boolean; above: boolean }): HTMLElement {
+function scale({ low, high, unit, below, above }: Ramp): HTMLElement {
   const steps = 64;
-  const bar = svg("svg", { class: "ramp", viewBox: `0 0 ${steps} 10`, preserveAspectRatio: "none", "aria-hidden": "true", "shape-rendering": "crispEdges" });
+  const bar = svg("svg", {
+    class: "ramp",
+    viewBox: `0 0 ${steps} 10`,
+    preserveAspectRatio: "none",
+    "shape-rendering": "crispEdges",
+    "aria-hidden": "true",
+  });
   for (let i = 0; i < steps; i++) bar.append(svg("rect", { x: i, y: 0, width: 1.05, height: 10, fill: ramp(i / (steps - 1)) }));
   const middle = (low + high) / 2;
   return el(
