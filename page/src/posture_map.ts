@@ -155,7 +155,7 @@ export class PosturePanel {
   private witnessed(): string {
     const { reason, depth_mm, obstacle_face } = this.app.spot!;
     const depth = depth_mm === null ? "" : `, ${figure(depth_mm)} mm too deep in ${obstacle_face ?? "the part"}`;
-    return `${spoken(reason)}${depth} (the best posture there is)`;
+    return `${spoken(reason)}${depth} (the best posture found)`;
   }
 
   // Places in the drawing.
