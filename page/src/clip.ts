@@ -11,7 +11,14 @@ import { distance, mixed } from "./vectors.ts";
 
 export class Clip {
   readonly root = el("fieldset", { id: "clip" });
-  private readonly slider = el("input", { type: "range", min: 0, max: 1000, step: "any", value: 500, "aria-label": "Place of the clipping plane" });
+  private readonly slider = el("input", {
+    type: "range",
+    min: 0,
+    max: 1000,
+    step: "any",
+    value: 500,
+    "aria-label": "Place of the clipping plane",
+  });
   private readonly axis = el("select", { "aria-label": "Clipping plane" });
   private readonly text = el("output", { class: "number" });
   private readonly note = el("span", { class: "hint" });
@@ -21,7 +28,8 @@ export class Clip {
   private built = false;
 
   constructor(private readonly app: App) {
-    for (const [value, label] of [["", "off"], ["0", "across X"], ["1", "across Y"], ["2", "across Z"]]) {
+    const choices = [["", "off"], ["0", "across X"], ["1", "across Y"], ["2", "across Z"]];
+    for (const [value, label] of choices) {
       this.axis.append(el("option", { value }, label));
     }
     this.axis.addEventListener("change", () => this.turn());
@@ -38,7 +46,8 @@ export class Clip {
   next(): void {
     this.axis.selectedIndex = (this.axis.selectedIndex + 1) % this.axis.options.length;
     this.turn();
-    this.app.say(this.on ? `Clipped ${this.axis.selectedOptions[0].text} at ${this.text.value}. ${this.note.textContent}` : "Clipping off");
+    const where = `${this.axis.selectedOptions[0].text} at ${this.text.value}`;
+    this.app.say(this.on ? `Clipped ${where}. ${this.note.textContent}` : "Clipping off");
   }
 
   /** Another plane: its cut faces the eye. */

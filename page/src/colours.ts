@@ -56,6 +56,8 @@ const WORDS: Record<string, string> = {
   undecided: "undecided",
   inaccessible: "inaccessible",
   unjudged: "not judged",
+  local_gouge: "local gouging",
+  rear_gouge: "rear gouging",
   check: "check face",
   fixture: "fixture",
 };

@@ -69,7 +69,13 @@ export function gouges(cutter: Cutter, sample: Sample, posture: Posture): boolea
 }
 
 /** Tilts from and to, degrees, at which a plain limit (degrees) about the setup axis holds the tool axis at a rotation. */
-export function heldTilts(sample: Sample, rotation: number, setup: Vec, limit: number, range: [number, number]): [number, number][] {
+export function heldTilts(
+  sample: Sample,
+  rotation: number,
+  setup: Vec,
+  limit: number,
+  range: [number, number],
+): [number, number][] {
   const lean = Samples.lean(sample, rotation);
   const [along, ahead] = [dot(sample.normal, setup), dot(lean, setup)];
   const size = Math.hypot(along, ahead);

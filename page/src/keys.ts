@@ -36,7 +36,16 @@ export function helpDialog(): HTMLDialogElement {
   return dialog;
 }
 
-export function listenKeys(app: App, parts: { spots: SpotList; clip: Clip; measure: Measure; help: HTMLDialogElement; glass: () => void; tool: () => void }): void {
+interface Parts {
+  spots: SpotList;
+  clip: Clip;
+  measure: Measure;
+  help: HTMLDialogElement;
+  glass: () => void;
+  tool: () => void;
+}
+
+export function listenKeys(app: App, parts: Parts): void {
   const { table } = app.stage;
   document.addEventListener("keydown", (event) => {
     const where = event.target as HTMLElement;

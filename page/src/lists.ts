@@ -23,10 +23,11 @@ export function enhanceCutters(app: App): void {
   for (const row of rows) {
     const name = row.querySelector<HTMLElement>("th, td") ?? row;
     buttons.set(row, press(name, () => choose(row)));
-    row.classList.add("chosen-able");
-    row.addEventListener("click", (event) => {
-      if (!(event.target as Element).closest("button, a, summary")) choose(row);
-    });
+    for (const each of [row, moreOf(row)]) {
+      each?.addEventListener("click", (event) => {
+        if (!(event.target as Element).closest("button, a, summary")) choose(row);
+      });
+    }
   }
   const choose = (row: HTMLElement): void => {
     app.setCutter(row.dataset.cutter!);
@@ -36,6 +37,7 @@ export function enhanceCutters(app: App): void {
     for (const row of rows) {
       const shown = row.dataset.cutter === app.cutter.id;
       row.classList.toggle("shown", shown);
+      moreOf(row)?.classList.toggle("shown", shown);
       buttons.get(row)!.setAttribute("aria-pressed", String(shown));
     }
     for (const more of document.querySelectorAll<HTMLDetailsElement>("#cutters details[data-cutter]")) {
@@ -44,6 +46,12 @@ export function enhanceCutters(app: App): void {
   };
   app.on("cutter", mark);
   mark();
+}
+
+/** The row below that says more of the same cutter. */
+function moreOf(row: HTMLElement): Element | null {
+  const next = row.nextElementSibling;
+  return next?.classList.contains("more") ? next : null;
 }
 
 /** The worst spots of the cutter shown, stepped through with n and p. */
@@ -118,7 +126,8 @@ export class SpotList {
 /** Look at a place of the surface from its outer side, near enough to see the tool there. */
 export function flyTo(app: App, point: Vec, normal: Vec, size?: number): void {
   const { table } = app.stage;
-  const half = size ?? Math.min(table.radius * 0.7, Math.max(6 * app.cutter.radius, table.radius * 0.08));
+  const { partRadius } = app.drawn;
+  const half = size ?? Math.min(0.7 * partRadius, Math.max(6 * app.cutter.radius, 0.08 * partRadius));
   table.fly({ target: point, half, ...openView(app, point, normal) });
 }
 
@@ -183,7 +192,8 @@ export class FaceTable {
 
   private tools(): void {
     if (!this.table || this.rows.size < 6) return;
-    const box = el("input", { type: "search", "aria-label": "Show faces that contain", placeholder: "Filter faces, such as F12 or plane" });
+    const words = { "aria-label": "Show faces that contain", placeholder: "Filter faces, such as F12" };
+    const box = el("input", { type: "search", ...words });
     const count = el("span", { class: "hint", "aria-live": "polite" });
     box.addEventListener("input", () => {
       const wanted = box.value.trim().toLowerCase();
@@ -217,7 +227,7 @@ export class FaceTable {
 /** Order of two cells: by their numbers where they begin with one (`F12`, `< 0.1 %`), else by their words. */
 function compared(a: HTMLElement | undefined, b: HTMLElement | undefined): number {
   const [x, y] = [a, b].map((cell) => cell?.textContent?.trim() ?? "");
-  const [u, v] = [x, y].map((text) => Number.parseFloat(text.replace(/^[F<>\s]+/, "")));
+  const [u, v] = [x, y].map((text) => Number.parseFloat(text.replace(/^[F<>\s]+|,/g, "")));
   if (Number.isFinite(u) && Number.isFinite(v)) return u - v;
   return x.localeCompare(y, "en");
 }

@@ -48,7 +48,7 @@ async function start(): Promise<void> {
   let stage: Stage;
   let drawn: Drawn | null = null;
   try {
-    stage = new Stage(canvas, meta, () => drawn?.position ?? NONE);
+    stage = new Stage(canvas, meta, () => drawn?.partVertices ?? NONE);
   } catch {
     frame.remove();
     viewer.classList.add("without");

@@ -57,6 +57,19 @@ export class Drawn {
     meta.fixtures.forEach((fixture, i) => this.own(fixture, -1 - i));
   }
 
+  /** Vertices of the part alone, three numbers each: what a picture is to show. */
+  get partVertices(): Float32Array {
+    let end = 0;
+    for (let i = 0; i < 3 * this.ofFaces; i++) end = Math.max(end, this.triangle[i] + 1);
+    return this.position.subarray(0, 3 * end);
+  }
+
+  /** Half the diagonal of the part's box, mm. */
+  get partRadius(): number {
+    const [x, y, z] = this.meta.part.size_mm;
+    return Math.max(1e-6, Math.hypot(x, y, z) / 2);
+  }
+
   private own(range: { start: number; count: number }, owner: Owner): void {
     const end = 3 * (range.start + range.count);
     for (let i = 3 * range.start; i < end; i++) this.owner[this.triangle[i]] = owner;

@@ -41,7 +41,13 @@ export class PosturePanel {
       "details",
       {},
       el("summary", {}, "The same as a table"),
-      el("table", { id: "intervals" }, el("caption", {}, "Free tilts by rotation"), el("thead", {}, el("tr", {}, ...head)), this.rows),
+      el(
+        "table",
+        { id: "intervals" },
+        el("caption", {}, "Free tilts by rotation"),
+        el("thead", {}, el("tr", {}, ...head)),
+        this.rows,
+      ),
     );
     this.empty.append("Click the surface, or press Enter in the picture, to see the postures of the cutter at a sample.");
     this.body.append(this.about, this.kind, this.canvas, this.line, this.witness, this.start, this.legend, this.intervals);
@@ -76,7 +82,8 @@ export class PosturePanel {
     const reason = samples.reason(cutter.id, sample.row);
     const known = samples.posture(cutter.id, sample.row);
     this.start.textContent = known ? "Posture found" : this.app.spot ? "Posture of the witness" : "Nearest posture";
-    this.canvas.setAttribute("aria-label", `Posture map of sample ${sample.row}: tilt against rotation; arrow keys move the tool`);
+    const named = `Posture map of sample ${sample.row}: tilt against rotation; arrow keys move the tool`;
+    this.canvas.setAttribute("aria-label", named);
     this.about.replaceChildren(
       el("strong", {}, `${face?.id ?? "?"}, sample ${sample.row}`),
       ` at ${sample.point.map((x) => figure(x, 4)).join(", ")} mm. `,
@@ -148,7 +155,7 @@ export class PosturePanel {
   private witnessed(): string {
     const { reason, depth_mm, obstacle_face } = this.app.spot!;
     const depth = depth_mm === null ? "" : `, ${figure(depth_mm)} mm too deep in ${obstacle_face ?? "the part"}`;
-    return `${spoken(reason)}${depth} (the best posture there is)`;
+    return `${spoken(reason)}${depth} (the best posture found)`;
   }
 
   // Places in the drawing.
@@ -210,7 +217,10 @@ export class PosturePanel {
     if (this.legend.dataset.shown !== shown.join()) {
       this.legend.dataset.shown = shown.join();
       this.legend.replaceChildren(
-        ...shown.map((state) => el("li", {}, swatch(...causeOf(this.app.meta, state)), state === "tolerance" ? "within tolerance" : spoken(state))),
+        ...shown.map((state) => {
+          const word = state === "tolerance" ? "within tolerance" : spoken(state);
+          return el("li", {}, swatch(...causeOf(this.app.meta, state)), word);
+        }),
       );
     }
   }
@@ -221,7 +231,10 @@ export class PosturePanel {
     c.font = "11px system-ui, sans-serif";
     c.textAlign = "right";
     c.textBaseline = "middle";
-    for (let k = 0; k <= 3; k++) c.fillText(String(Math.round(low + ((high - low) * k) / 3)), LEFT - 5, this.y(low + ((high - low) * k) / 3));
+    for (let k = 0; k <= 3; k++) {
+      const tilt = low + ((high - low) * k) / 3;
+      c.fillText(String(Math.round(tilt)), LEFT - 5, this.y(tilt));
+    }
     c.textAlign = "center";
     c.textBaseline = "top";
     for (const turn of [0, 90, 180, 270]) c.fillText(String(turn), this.x(turn), HEIGHT - BOTTOM + 4);

@@ -2,6 +2,7 @@
 
 import type { App } from "./app.ts";
 import { el } from "./dom.ts";
+import { legendOf } from "./legend.ts";
 
 const SIZE = { width: 900, height: 620 };
 
@@ -9,10 +10,12 @@ export class Stills {
   readonly root = el("figure", { id: "stills" });
   private readonly pictures = [el("canvas", SIZE), el("canvas", SIZE)];
 
+  private readonly key = el("div", { class: "key" });
+
   constructor(private readonly app: App) {
     this.pictures.forEach((picture, i) => picture.setAttribute("aria-label", `Still ${i + 1} of the part`));
     for (const picture of this.pictures) picture.setAttribute("role", "img");
-    this.root.append(...this.pictures, el("figcaption", {}, "As seen on the screen, and from the opposite corner."));
+    this.root.append(...this.pictures, el("figcaption", {}, "As seen on the screen, and from the opposite corner."), this.key);
     // Canvases, for a picture that is loaded anew may come too late for the printer.
     window.addEventListener("beforeprint", () => this.take());
   }
@@ -21,6 +24,7 @@ export class Stills {
     const { stage } = this.app;
     const { table } = stage;
     const before = table.aim;
+    this.key.replaceChildren(...legendOf(this.app));
     const views = [before, table.fitted(before.turn + 180, before.rise > 0 ? before.rise : 32)];
     views.forEach((aim, i) => {
       table.set(aim);

@@ -37,7 +37,7 @@ export class Stage {
   }
 
   add(...objects: Object3D[]): void {
-    this.scene.add(...objects);
+    for (const object of objects) this.scene.add(object);
   }
 
   /** Called before each drawing. */
