@@ -26,7 +26,8 @@ def summary(plan: "Plan", *, verbose: bool = False) -> None:
     """Say what is found, but not what is not reached: that comes last."""
     names = short_names(plan)
     targets, ignored = len(plan.effective.target_faces), sum(f.ignored for f in plan.faces)
-    faces = f"{plan.part.faces} face{'s'[: plan.part.faces != 1]}, {targets} to machine{f', {ignored} ignored' if ignored else ''}"
+    many = "1 face" if plan.part.faces == 1 else f"{plan.part.faces} faces"
+    faces = f"{many}, {targets} to machine{f', {ignored} ignored' if ignored else ''}"
     say(
         "",
         *headline(plan, names),

@@ -5,7 +5,6 @@ to read or too much memory becomes one line and an exit code; what it had begun 
 no such child: the command does the job itself, and a crash of the kernel ends it.
 """
 
-import _thread
 import contextlib
 import math
 import os
@@ -93,11 +92,11 @@ def limit_memory() -> None:
 
 def keep_interrupts() -> None:
     """Take an interrupt again that came where none can be raised, as while the process copies itself for the kernel."""
-    before = sys.unraisablehook
+    before, me = sys.unraisablehook, threading.get_ident()
 
     def again(what: "sys.UnraisableHookArgs") -> None:
         if issubclass(what.exc_type, KeyboardInterrupt):
-            threading.Timer(0.05, _thread.interrupt_main).start()
+            threading.Timer(0.05, signal.pthread_kill, (me, signal.SIGINT)).start()
         else:
             before(what)
 
