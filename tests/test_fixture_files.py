@@ -200,7 +200,9 @@ def test_a_cad_fixture_is_in_the_step_model_in_its_colour(tmp_path):
     coloured = [face for face in again.faces if face.colour == pytest.approx(blue, abs=2e-3)]
     # All twelve faces of both boxes.
     assert sum(face.area for face in coloured) == pytest.approx(2 * (500 + 150 + 750) + 6 * 25)
-    assert "Only the GLB model shows what is no CAD body: fixture:table." in result.plan.notes
+    assert (
+        "Only the GLB model, the review page and pictures show what is no CAD body: fixture:table." in result.plan.notes
+    )
 
 
 def test_the_schema_is_that_of_the_model():

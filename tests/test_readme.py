@@ -50,5 +50,5 @@ def test_the_python_block_runs_as_it_stands(tmp_path, monkeypatch, capsys):
     assert chosen.startswith("R8L90 True {")
     assert intervals.startswith("[[")
     assert sorted(p.name for p in (tmp_path / "v_groove-plan").iterdir()) == [
-        "annotated.glb", "annotated.step", "plan.json", "samples.npz",
+        "annotated.glb", "annotated.step", "plan.json", "review.html", "samples.npz",
     ]  # fmt: skip

@@ -138,13 +138,13 @@ def test_what_cannot_be_written(halves, tmp_path, monkeypatch):
     _, found = halves
     with pytest.raises(WriteError, match="cannot be written"):
         write(found, tmp_path / "missing" / "p.glb")
-    real = module._mesh
+    real = module.face_mesh
     calls = []
-    monkeypatch.setattr(module, "_mesh", lambda *a: calls.append(1) or (None if len(calls) == 1 else real(*a)))
+    monkeypatch.setattr(module, "face_mesh", lambda *a: calls.append(1) or (None if len(calls) == 1 else real(*a)))
     assert write(found, tmp_path / "p.glb") == (found.pieces[0].face,)
     document, _ = read(tmp_path / "p.glb")
     assert len(document["meshes"]) == len(found.pieces) - 1
-    monkeypatch.setattr(module, "_mesh", lambda *a: None)
+    monkeypatch.setattr(module, "face_mesh", lambda *a: None)
     with pytest.raises(WriteError, match="no triangle"):
         write(found, tmp_path / "q.glb")
     assert sorted(p.name for p in tmp_path.iterdir()) == ["p.glb"]

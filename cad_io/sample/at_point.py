@@ -17,6 +17,7 @@ from cad_io.errors import SampleError
 from cad_io.face.curvature import curvature
 from cad_io.face.trim import Trim
 from cad_io.kernel import translated
+from cad_io.kernel.components import compound
 from cad_io.part import Part
 
 _PRECISION = 1e-9  # mm, asked of the projection
@@ -61,11 +62,9 @@ def locate(
         if found is not None and (best is None or found[0] < best[0] - _PRECISION):
             best = (found[0], info.number, found[1])
     if best is None:
-        with translated("measuring a distance", error=SampleError, file=part.file):
-            vertex = BRepBuilderAPI_MakeVertex(target).Vertex()
-            distance = BRepExtrema_DistShapeShape(vertex, part.shape).Value()
-        where = ", ".join(f"{x:g}" for x in place)
-        cause = f"no face within {within:g} mm of ({where}): the nearest is {distance:.4g} mm away"
+        foot, distance = nearest(part, point, ignore=ignore)
+        where, there = (", ".join(f"{x:.6g}" for x in each) for each in (place, foot))
+        cause = f"no face within {within:g} mm of ({where}): the nearest is {distance:.4g} mm away, at ({there})"
         raise SampleError(cause, file=part.file)
     _, number, uv = best
     d = part.surface(number).second(np.array([uv[0]]), np.array([uv[1]]))
@@ -78,6 +77,34 @@ def locate(
         neighbours=np.zeros((0, 2), np.int32), unjudged=np.full(1, -1, np.int32), reasons=(), grids=(), max_gap=0.0,
         empty=(),
     )  # fmt: skip
+
+
+def nearest(part: Part, point: Sequence[float], *, ignore: Container[int] = ()) -> tuple[Floats, float]:
+    """The point (3,) of a part's faces that is nearest to a place, and its distance, mm.
+
+    Parameters
+    ----------
+    part : Part
+    point : (3,) float
+        Part coordinates, mm.
+    ignore : container of int
+        Numbers of faces that are not looked at.
+
+    Raises
+    ------
+    SampleError
+        There is no face, or the kernel finds no distance.
+    """
+    place = np.asarray(point, float)
+    if place.shape != (3,) or not np.isfinite(place).all():
+        raise SampleError(f"a point has three finite coordinates, not {point}", file=part.file)
+    with translated("measuring a distance", error=SampleError, file=part.file):
+        vertex = BRepBuilderAPI_MakeVertex(gp_Pnt(*place.tolist())).Vertex()
+        faces = compound([part.face(info.number) for info in part.faces if info.number not in ignore])
+        found = BRepExtrema_DistShapeShape(vertex, faces)
+        if not (found.IsDone() and found.NbSolution()):
+            raise SampleError("the part has no face to measure a distance from", file=part.file)
+        return np.array(found.PointOnShape2(1).Coord()), float(found.Value())
 
 
 def _may_be_near(part: Part, number: int, target: gp_Pnt, within: float) -> bool:

@@ -3,7 +3,7 @@
 May use: what splits, and the kernel's manners.
 """
 
-from cad_io.write.gltf import write_gltf
+from cad_io.write.gltf import meshes_of, write_gltf
 from cad_io.write.step import write_step
 
-__all__ = ["write_gltf", "write_step"]
+__all__ = ["meshes_of", "write_gltf", "write_step"]

@@ -15,37 +15,21 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from OCP.BRep import BRep_Tool
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
-from OCP.TopAbs import TopAbs_REVERSED
-from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
 
-from cad_io.arrays import FaceLabels, Floats, Style
+from cad_io.arrays import Floats, Style
 from cad_io.errors import WriteError
 from cad_io.kernel import translated
 from cad_io.kernel.components import compound
 from cad_io.split.pieces import MIXED, Piece, Split
-from cad_io.surface import Surface
 from cad_io.write.aside import aside
-from cad_io.write.label_mesh import label_mesh
+from cad_io.write.drawn import ANGLE, FINE, Mesh, diagonal, face_mesh
 
-#: Largest angle between neighbouring facets, rad.
-ANGLE = 0.35
-#: Default chord error as a share of the part's diagonal.
-FINE = 5e-4
 _METRE = 1e-3
 _COMPONENT = {"float32": 5126, "uint32": 5125, "uint16": 5123}
 _VERTICES, _TRIANGLES = 34962, 34963  # what a buffer view is for
-
-
-class _Mesh(NamedTuple):
-    """Points (n, 3) mm and unit normals (n, 3) in part coordinates; triangles (m, 3) counter-clockwise from outside."""
-
-    point: Floats
-    normal: Floats
-    triangle: NDArray[np.uint32]
 
 
 class Other(NamedTuple):
@@ -111,7 +95,7 @@ def write_gltf(
     """
     with aside(path) as temporary:
         with translated("meshing", error=WriteError, file=str(path)):
-            meshes = list(_meshes(split, deflection))
+            meshes = list(meshes_of(split, deflection))
         if not any(mesh for _, mesh in meshes):
             raise WriteError("the CAD kernel made no triangle of the part", file=str(path))
         pieces = [piece for piece, _ in meshes]
@@ -137,71 +121,28 @@ def linear(rgb: tuple[float, float, float]) -> list[float]:
     return [round(float(x), 6) for x in light]
 
 
-def _meshes(split: Split, deflection: float | None) -> Iterator[tuple[Piece, _Mesh | None]]:
-    """All that is shown; of a face that could not be split, the triangles of each label as a piece."""
+def meshes_of(split: Split, deflection: float | None = None) -> Iterator[tuple[Piece, Mesh | None]]:
+    """All that is shown of a split part, piece by piece, with triangles to draw it; None where the kernel made none.
+
+    Of a face that could not be split, the triangles of each label are a piece. `deflection`: chord error, mm; default FINE times
+    the part's diagonal.
+    """
     # A copy without triangles: the part is not to carry ours, and finer ones that it carries would change the file.
     whole = compound([split.shape, *(p.shape for beside in split.beside.values() for p in beside)])
     copy = BRepBuilderAPI_Copy(whole, False, False)
     if deflection is None:
-        deflection = FINE * _diagonal(split)
+        deflection = FINE * diagonal(split.shape)
     BRepMesh_IncrementalMesh(copy.Shape(), deflection, False, ANGLE, False)
     for piece in (shown for each in split.pieces for shown in _shown(split, each)):
         labels = split.labels.get(piece.face) if piece.label == MIXED else None
-        meshes = _mesh(piece.shape, TopoDS.Face_s(copy.ModifiedShape(piece.shape)), labels)
+        meshes = face_mesh(piece.shape, TopoDS.Face_s(copy.ModifiedShape(piece.shape)), labels)
         for label, mesh in (meshes or {}).items():
             yield (piece if labels is None else Piece(piece.face, label, piece.shape)), mesh
         if not meshes:
             yield piece, None
 
 
-def _diagonal(split: Split) -> float:
-    from OCP.Bnd import Bnd_Box
-    from OCP.BRepBndLib import BRepBndLib
-
-    box = Bnd_Box()
-    BRepBndLib.Add_s(split.shape, box, False)
-    return float(np.sqrt(box.SquareExtent()))
-
-
-def _mesh(face: Any, meshed: Any, labels: FaceLabels | None) -> dict[int, _Mesh] | None:
-    """Mesh of a face by label, all of it by the label 0 where there are none; None if the kernel made none."""
-    location = TopLoc_Location()
-    triangulation = BRep_Tool.Triangulation_s(meshed, location)
-    if triangulation is None or not triangulation.HasUVNodes():
-        return None
-    uv = np.array([triangulation.UVNode(i + 1).Coord() for i in range(triangulation.NbNodes())])
-    triangle = np.array([triangulation.Triangle(i + 1).Get() for i in range(triangulation.NbTriangles())]) - 1
-    # The mesh's own nodes, not the surface's points: along an edge both faces have the same ones, and no cracks.
-    place = location.Transformation()
-    nodes = (triangulation.Node(i + 1).Transformed(place).Coord() for i in range(triangulation.NbNodes()))
-    point, label = np.array(list(nodes)), np.zeros(len(triangle), np.int32)
-    if labels is not None:
-        uv, point, triangle, label = label_mesh(face, uv, point, triangle, labels)
-    s = Surface(face).first(uv[:, 0], uv[:, 1])
-    normal = np.cross(s[:, 1], s[:, 2])
-    if face.Orientation() == TopAbs_REVERSED:
-        triangle, normal = triangle[:, ::-1], -normal
-    # Corners that are one point in 32 bits make a triangle without a normal or an inside.
-    corner = (point * _METRE).astype(np.float32)[triangle]
-    facet = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]).astype(float)
-    kept = (facet**2).sum(1) > 0
-    triangle, facet, label = triangle[kept], facet[kept], label[kept]
-    tangents = s[:, 1:]
-    length = np.linalg.norm(normal, axis=1)
-    # At a pole the tangents give no normal: there the facets around it do.
-    pole = ~(length > 1e-6 * np.linalg.norm(tangents, axis=2).prod(axis=1))
-    around = np.zeros_like(point)
-    np.add.at(around, triangle, facet[:, None] / np.linalg.norm(facet, axis=1)[:, None, None])
-    normal = np.where(pole[:, None], around, normal / np.where(pole, 1.0, length)[:, None])
-    meshes = {}
-    for value in np.unique(label).tolist():
-        used, mine = np.unique(triangle[label == value], return_inverse=True)
-        unit = normal[used] / np.linalg.norm(normal[used], axis=1)[:, None]
-        meshes[value] = _Mesh(point[used], unit, mine.reshape(-1, 3).astype(np.uint32))
-    return meshes
-
-
-def _draw(mesh: _Mesh, rgb: tuple[float, float, float]) -> _Drawn:
+def _draw(mesh: Mesh, rgb: tuple[float, float, float]) -> _Drawn:
     light = np.round(np.array([*linear(rgb), 1.0]) * 65535).astype(np.uint16)
     attributes: dict[str, NDArray[Any]] = {
         "POSITION": _y_up(mesh.point * _METRE),
@@ -251,7 +192,7 @@ def _fill_others(glb: "_Glb", others: Sequence[Other]) -> None:
         kept = length > 0
         points = other.vertex[kept].reshape(-1, 3)
         unit = np.repeat(normal[kept] / length[kept, None], 3, axis=0)
-        mesh = _Mesh(points, unit, np.arange(len(points), dtype=np.uint32).reshape(-1, 3))
+        mesh = Mesh(points, unit, np.arange(len(points), dtype=np.uint32).reshape(-1, 3), np.zeros((len(points), 2)))
         drawn = glb.mesh(other.name, _draw(mesh, other.rgb) if kept.any() else None)
         glb.node({"name": other.name, "extras": other.extras, **drawn}, root)
 

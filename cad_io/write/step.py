@@ -14,7 +14,6 @@ from typing import Any, NamedTuple
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
-from OCP.gp import gp_Trsf
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
 from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
@@ -33,6 +32,7 @@ from cad_io.arrays import Floats, Style
 from cad_io.errors import WriteError
 from cad_io.kernel import edges_of, explore, faces, shape_map, silence, translated
 from cad_io.kernel.assembly import Node
+from cad_io.kernel.bodies import placed
 from cad_io.kernel.components import compound, flat
 from cad_io.split.pieces import Piece, Split
 from cad_io.write.aside import aside
@@ -171,9 +171,7 @@ class _Document:
     def add(self, others: Sequence[Other]) -> None:
         """Products beside the part's, each of one colour."""
         for other in others:
-            move = gp_Trsf()
-            move.SetValues(*(float(value) for value in other.place.ravel()))
-            whole = compound([other.shape.Moved(TopLoc_Location(move))])
+            whole = compound([placed(other.shape, other.place)])
             label = self.shapes.AddShape(whole, False)
             _name(label, other.name)
             self.colours.SetColor(label, Quantity_Color(*other.rgb, Quantity_TOC_sRGB), XCAFDoc_ColorSurf)

@@ -271,6 +271,7 @@ def assemble(
         tuple((axis, dict(found)) for axis, found in elsewhere),
         answers,
         travels=moved,
+        ready=ready,
     )
 
 

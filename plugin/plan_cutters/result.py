@@ -1,19 +1,28 @@
 """A plan with the arrays behind it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io import Part, SurfaceSamples
 from plan_cutters.document.model import CutterEntry, Plan
+from plan_cutters.document.on_face import OnFace, on_face
 from plan_cutters.domain.answers import Answers
+from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.travel import Travel
-from plan_cutters.domain.verdicts import Reach
+from plan_cutters.domain.verdicts import UNJUDGED, Reach
+from plan_cutters.errors import OptionError
+from plan_cutters.scene.clearance import Clearances, clearances
+from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.faces import face_numbers
+from plan_cutters.scene.prepared import Prepared
 from plan_cutters.scene.scene import Scene
 from plan_cutters.stages.posture_maps import PostureMaps
 
@@ -44,6 +53,8 @@ class Result:
         Every free tilt, for the cutter `shown`, where that was asked for.
     travels : dict
         Cutter id -> Travel: where the linear axes stand; empty where that is not judged.
+    ready : Prepared, optional
+        What the cutters were judged on: for further questions.
     """
 
     plan: Plan
@@ -57,6 +68,15 @@ class Result:
     answers: Answers = field(default_factory=Answers)
     maps: PostureMaps | None = None
     travels: dict[str, Travel] = field(default_factory=dict)
+    ready: Prepared | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Options may hold objects of a CAD host: what they stand for is kept in words.
+        kept = self.ready
+        if kept is not None:
+            chosen = kept.chosen
+            kept = replace(kept, options=replace(kept.options, faces=chosen.asked, ignore=chosen.ignore, fixtures=()))
+        return self.__dict__ | {"ready": kept}
 
     def __repr__(self) -> str:
         return (
@@ -82,6 +102,89 @@ class Result:
         """Id of the cutter that the models show: the selected, else the one that reaches the most samples."""
         return self.selected or max(self.cutters, key=lambda c: c.interference_free + c.accessible).id
 
+    @cached_property
+    def clearances(self) -> Clearances:
+        """How far the cutter `shown` keeps from everything at the postures found, where it does not cut."""
+        return clearances(self.samples, self.judged(), self.reaches[self.shown], self.conditions)
+
+    @property
+    def conditions(self) -> Conditions:
+        """What all cutters were judged under."""
+        if self.ready is None:
+            raise ValueError("this result was made without what its cutters were judged on")
+        return self.ready.conditions
+
+    def judged(self, cutter: str | None = None) -> Cutter:
+        """The cutter of an id as it was judged, holder and all; default the one `shown`.
+
+        Raises
+        ------
+        OptionError
+            No cutter of the plan is called so.
+        """
+        wanted = self.shown if cutter is None else cutter
+        found = next((each for each in (self.ready.cutters if self.ready else ()) if each.id == wanted), None)
+        if found is None:
+            raise OptionError(f"cutter {wanted!r} is none of this plan's: {', '.join(c.id for c in self.cutters)}")
+        return found
+
+    def face(self, which: Any, cutter: str | None = None, *, stick_out: bool = False) -> OnFace:
+        """What a cutter reaches of one face, why not the rest, and where it is worst.
+
+        Parameters
+        ----------
+        which : int, str or object
+            A number, `F12`, the face's name, or a face of the kernel, CadQuery or build123d.
+        cutter : str, optional
+            Id; default the one `shown`.
+        stick_out : bool
+            Look for the least stick-out for this face, too, where it was not asked for with the plan.
+
+        Raises
+        ------
+        OptionError
+            It is no face of the part, or more than one.
+
+        Examples
+        --------
+        >>> from plan_cutters import plan
+        >>> result = plan("samples/v_groove.step", cutters=["R6L80", "R2L30"], grid=9, area_budget=0)
+        >>> result.face("F1", "R6L80").reached
+        1.0
+        """
+        found = face_numbers(self.part, which)
+        if len(found) != 1:
+            raise OptionError(f"{len(found)} faces were given, {', '.join(f'F{n}' for n in found[:5])}: ask for one, or "
+                              "use faces(...)")  # fmt: skip
+        return self._on_face(found[0], cutter, stick_out)
+
+    def faces(self, which: Any = None, cutter: str | None = None, *, stick_out: bool = False) -> tuple[OnFace, ...]:
+        """The same for several faces; default all targets.
+
+        `which` is given in the words of `Options.faces`, as numbers, or as objects of the kernel or a CAD host.
+        """
+        if which is None:
+            found = tuple(int(each.id[1:]) for each in self.plan.faces if each.target)
+        else:
+            found = face_numbers(self.part, which)
+        return tuple(self._on_face(number, cutter, stick_out) for number in found)
+
+    def _on_face(self, number: int, cutter: str | None, stick_out: bool) -> OnFace:
+        tool = self.judged(cutter)
+        entry = next(each for each in self.cutters if each.id == tool.id)
+        reach, known = self.reaches[tool.id], self.answers.stick_outs.get(tool.id)
+        if known is not None and known.each is None and known.why != "no holder":
+            known = None  # it is about all faces together
+        mine = self.samples.face == number
+        if known is None and stick_out and self.ready is not None and (reach.reached & mine).any():
+            from plan_cutters.answers.stick_out import least_stick_out
+
+            known = least_stick_out(
+                self.ready, tool, replace(reach, verdict=np.where(mine, reach.verdict, UNJUDGED).astype(np.uint8))
+            )
+        doubtful = self.scene.around.doubtful
+        return on_face(self.plan.faces[number - 1], entry, self.samples, reach, known, doubtful=doubtful)
+
     def to_json(self, path: str | Path) -> None:
         """Write the plan alone."""
         from plan_cutters.report.to_json import write_plan
@@ -89,18 +192,24 @@ class Result:
         write_plan(self.plan, Path(path))
 
     def write(
-        self, out: str | Path, formats: Sequence[str] = ("json", "step", "glb", "npz"), *, step_schema: str = "ap242"
+        self,
+        out: str | Path,
+        formats: Sequence[str] = ("json", "html", "step", "glb", "npz"),
+        *,
+        step_schema: str = "ap242",
     ) -> Plan:
         """Write files into the folder `out`, each whole or not at all, the plan and the samples first.
 
-        A model that cannot be written is named in the plan's `not_written`; the other files are there. Files that an
+        What cannot be written behind these is named in the plan's `not_written`; the other files are there. Files that an
         earlier run wrote there are removed if its plan lists them as they are.
 
         Parameters
         ----------
         out : path-like
         formats : sequence of str
-            Of `json`, `step`, `glb`, `npz` and `merged` (a GLB of one mesh, for parts of thousands of faces).
+            Of `json`, `html` (the review page), `step`, `glb`, `npz`, `merged` (a GLB of one mesh, for parts of thousands of
+            faces), `png` (the part with its verdicts, four views), and `csv`, `vtk` and `regions` (tool axes for CAM:
+            `docs/cam_outputs.md`).
         step_schema : str
             Application protocol of the STEP file: `ap242`, `ap214` or `ap203`.
 

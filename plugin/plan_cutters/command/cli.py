@@ -71,6 +71,10 @@ def command(parts: tuple[str, ...], **given: Any) -> int:
 def main(args: Sequence[str] | None = None) -> NoReturn:
     """Entry point of the command: what has a part to read runs in a child process."""
     words = list(sys.argv[1:] if args is None else args)
+    if words[:1] == ["map"] and not os.path.exists("map"):
+        from plan_cutters.command.map import main as map_of_a_point
+
+        map_of_a_point(words[1:])
     if not is_child():
         ended(_SELF, words, lambda: _watched(words))
     # Whoever started the command may ignore interrupts, as a shell does for what runs in the background: the parent does not.

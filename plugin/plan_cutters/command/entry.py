@@ -4,7 +4,12 @@ import os
 from importlib import import_module
 
 #: The commands, and the modules that they are in.
-MODULES = {"plan-cutters": "cli", "plan-cutters-tools": "tools", "plan-cutters-machines": "machines"}
+MODULES = {
+    "plan-cutters": "cli",
+    "plan-cutters-tools": "tools",
+    "plan-cutters-machines": "machines",
+    "plan-cutters-map": "map",
+}
 
 
 def plan_cutters() -> None:
@@ -17,6 +22,10 @@ def tools() -> None:
 
 def machines() -> None:
     _begin("plan-cutters-machines")
+
+
+def point_map() -> None:
+    _begin("plan-cutters-map")
 
 
 def _begin(name: str) -> None:

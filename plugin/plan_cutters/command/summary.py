@@ -1,7 +1,5 @@
 """What is found, for people: which cutter to take, how far each gets, where the one shown fails, what is not sure."""
 
-import re
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +10,7 @@ from plan_cutters.command.answered import answered
 from plan_cutters.command.headline import between, headline
 from plan_cutters.command.rows import cell, cutter_rows, lost_percent, percent, shown, take, worst_faces
 from plan_cutters.command.terminal import say
+from plan_cutters.document.names import named, short_names
 
 if TYPE_CHECKING:
     from plan_cutters.document.model import CutterEntry, Plan
@@ -229,29 +228,6 @@ def _details(plan: "Plan") -> Iterator[Text]:
     yield cell(f"Versions: {', '.join(f'{name} {number}' for name, number in plan.versions.items())}.")
     slow = sorted(plan.run.seconds.items(), key=lambda item: -item[1])[:6]
     yield cell(f"Seconds: {', '.join(f'{name} {seconds:.1f}' for name, seconds in slow)}.")
-
-
-def short_names(plan: "Plan") -> dict[str, str]:
-    """How cutters are called in a line, by their ids: as a library does, or without the holder, where that tells them apart."""
-    listed, heads = {}, {}
-    for c in plan.cutters:
-        numbers = dict.fromkeys(f"T{s.number}" for s in c.sources if s.number is not None)
-        listed[c.id] = " ".join([*list(numbers)[:_PLACES], c.name]) if c.sources and c.name else c.id
-        heads[c.id] = c.id.partition("H")[0]
-    said, dimensions = Counter(listed.values()), Counter(heads.values())
-    return {
-        name: listed[name] if said[listed[name]] == 1 and listed[name] != name
-        else heads[name] if dimensions[heads[name]] == 1 else name
-        for name in heads
-    }  # fmt: skip
-
-
-def named(plan: "Plan", text: str) -> str:
-    """A text with cutters called as in `short_names`."""
-    names = short_names(plan)
-    # The longest first: an id may begin as another one does.
-    ids = "|".join(re.escape(name) for name in sorted(names, key=len, reverse=True))
-    return re.sub(ids, lambda found: names[found[0]], text)
 
 
 def libraries_of(library: Any, *, verbose: bool) -> list[str]:

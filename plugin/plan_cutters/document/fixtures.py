@@ -34,4 +34,4 @@ def fixture_notes(fixtures: Sequence[Standing]) -> Iterator[str]:
             yield f"{each.name}: {note}."
     drawn = [each.name for each in fixtures if not isinstance(each.source, Part)]
     if drawn:
-        yield f"Only the GLB model shows what is no CAD body: {', '.join(drawn)}."
+        yield f"Only the GLB model, the review page and pictures show what is no CAD body: {', '.join(drawn)}."

@@ -13,6 +13,20 @@ PALETTE = {
     "fixture": "#0072B2",
 }
 LABELS = tuple(PALETTE)
+#: What forbids a tilt in a posture map -> sRGB hex; hatches tell them apart as well.
+CAUSES = {
+    "no_contact": "#E5E5E5",
+    "axis_limit": "#9A9A9A",
+    "local_gouge": "#E69F00",
+    "rear_gouge": "#D55E00",
+    "collision": "#CC79A7",
+    "neck": "#882255",
+    "shank": "#0072B2",
+    "holder": "#332288",
+    "fixture": "#117733",
+    "buried": "#5C3A21",
+    "tolerance": "#B8A94A",
+}
 
 
 def rgb(verdict: str) -> tuple[float, float, float]:

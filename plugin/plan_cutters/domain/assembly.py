@@ -189,20 +189,30 @@ def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "cover"
         raise CutterError(f"cutter {cutter.id}: it has more sections than can be judged; give fewer that enclose it")
     found = modes(cutter)
     touching = np.array([_mode(mode, cutter.allowance or 0.0) for mode in found])
-    placed = np.repeat(table[None], len(found), axis=0)
-    for i, mode in enumerate(found):
-        placed[i][:, [LOW, HIGH, BOTTOM, TOP]] -= mode.height
-        arcs = placed[i][:, KIND] == ARC
-        placed[i][arcs, SLOPE] -= mode.height
     inner, highest = _inner(cutter, bands)
     return Assembly(
-        placed,
+        _placed(table, touching[:, 4]),
         touching,
         2.0 * cutter.radius,
         inner,
         min(highest, float(table[:, TOP].max(initial=0.0))),
         _slack(cutter, flutes, bands, kind),
     )
+
+
+def placed(tool: Assembly, table: Floats) -> Assembly:
+    """A tool that touches in the same way with other pieces, rows (k, COLUMNS) whose heights are over the tip."""
+    return replace(tool, piece=_placed(table, tool.mode[:, 4]))
+
+
+def _placed(table: Floats, height: Floats) -> Floats:
+    """Rows (k, COLUMNS) for each mode (m,), their heights counted from that of its centre: (m, k, COLUMNS)."""
+    rows = np.repeat(table[None], len(height), axis=0)
+    for i, centre in enumerate(height.tolist()):
+        rows[i][:, [LOW, HIGH, BOTTOM, TOP]] -= centre
+        arcs = rows[i][:, KIND] == ARC
+        rows[i][arcs, SLOPE] -= centre
+    return rows
 
 
 def _mode(mode: Mode, allowance: float) -> tuple[float, float, float, float, float]:

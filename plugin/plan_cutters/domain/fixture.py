@@ -43,7 +43,7 @@ class Fixture:
         What lengths in the source are in, one of `cad_io.units.UNITS`. Default: what the format says; mm for STL, OBJ, PLY and
         words. A placement is in mm always.
     name : str
-        For people and plans; default the file's stem, the word, or `fixture`.
+        For people and plans; default the file's stem, the word, an object's label, or `fixture`.
     chord_error : float
         How far a mesh may be from what it stands for, mm. No file says so, so it is 0 unless it is given.
 
@@ -105,7 +105,8 @@ class Fixture:
 
     def _named(self) -> str:
         if not isinstance(self.source, str):
-            return "fixture"
+            label = getattr(self.source, "label", "")
+            return (isinstance(label, str) and label.strip()) or "fixture"
         # A path of Windows is one on every system: its slashes are in no other name.
         return self.kind or PureWindowsPath(self.source).stem or self.source
 

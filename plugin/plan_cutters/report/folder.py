@@ -21,17 +21,24 @@ if TYPE_CHECKING:
 PLAN = "plan.json"
 #: Format -> (file name, module, function).
 _WRITERS = {
+    "html": ("review.html", "page", "write_html"),
     "step": ("annotated.step", "models", "write_step"),
     "glb": ("annotated.glb", "models", "write_glb"),
     "merged": ("merged.glb", "models", "write_merged"),
     "npz": ("samples.npz", "to_npz", "write_npz"),
     "postures": ("postures.npz", "to_npz", "write_postures"),
+    "csv": ("axes.csv", "to_csv", "write_csv"),
+    "vtk": ("axes.vtp", "to_vtk", "write_vtk"),
+    "regions": ("axis_regions.json", "regions", "write_regions"),
+    "png": ("review.png", "picture", "write_png"),
 }
-#: What the CAD kernel has a part in, the easier ones first.
-_MODELS = ("glb", "merged", "step")
+#: What is shown on faces that are split along the verdicts: the CAD kernel has a part in it.
+_MODELS = ("glb", "merged", "png", "step")
+#: What follows the plan and the arrays, the easier ones first.
+_LATER = ("html", "csv", "vtk", "regions", *_MODELS)
 FORMATS = ("json", *(f for f in _WRITERS if f != "postures"))
-#: What is written unless asked otherwise; `merged` is for parts of thousands of faces.
-DEFAULT_FORMATS = tuple(f for f in FORMATS if f != "merged")
+#: What is written unless asked otherwise (`docs/decisions/0017-formats-on-request.md`).
+DEFAULT_FORMATS = ("json", "html", "step", "glb", "npz")
 
 
 def read_formats(text: str) -> tuple[str, ...]:
@@ -116,8 +123,8 @@ def write_all(
 ) -> "Plan":
     """Write the formats asked for into the folder `out`, each file whole or not at all.
 
-    The arrays and the plan come first; the plan is replaced as each model is added. What fails or ends the process in
-    the models, where the CAD kernel works, costs that model: the plan names it in `not_written`.
+    The arrays and the plan come first; the plan is replaced as each other file is added. What fails or ends the process in
+    one of these, as in the models, where the CAD kernel works, costs that file: the plan names it in `not_written`.
 
     Parameters
     ----------
@@ -156,12 +163,12 @@ def write_all(
 
     if step_schema not in SCHEMAS:
         raise OptionError(f"STEP schema {step_schema!r} is not built in; give one of {', '.join(SCHEMAS)}")
-    models = [name for name in _MODELS if name in formats]
+    later = [name for name in _LATER if name in formats]
     arrays = [name for name in ("npz",) if name in formats] + (["postures"] if result.maps else [])
     with staging or Staging(out) as staging:
         document: Plan = result.plan
         files: dict[str, FileEntry] = {}
-        missing = dict.fromkeys(models, PENDING)
+        missing = dict.fromkeys(later, PENDING)
 
         def write(name: str, split: Any, **more: str) -> None:
             file, module, function = _WRITERS[name]
@@ -200,9 +207,9 @@ def write_all(
             with clock.stage("show", shown=False):
                 onlooker.safe(document)
         split = None
-        for name in models:
+        for name in later:
             try:
-                if split is None:
+                if split is None and name in _MODELS:
                     if onlooker:
                         onlooker.begins("split")
                     with clock.stage("split", shown=False):

@@ -45,13 +45,13 @@ def _grid_labels(grid: FaceGrid, label: NDArray[np.int32]) -> FaceLabels:
     return FaceLabels(grid.face, u, v, on)
 
 
-def split_result(result: Any) -> Any:
-    """Split the part's target faces along the verdicts of the cutter shown."""
+def split_result(result: Any, cutter: str | None = None) -> Any:
+    """Split the part's target faces along the verdicts of a cutter, by its id; default the one shown."""
     samples = result.samples
     code = np.full(256, -1, np.int32)
     for verdict, label in _LABEL.items():
         code[verdict] = label
-    label = code[result.reaches[result.shown].verdict]
+    label = code[result.reaches[cutter or result.shown].verdict]
     grids = {g.face: g for g in samples.grids}
     check, ignored = LABELS.index("check"), LABELS.index("ignored")
     labels = []
@@ -74,7 +74,8 @@ def _whole(face: int, label: int) -> FaceLabels:
     return FaceLabels(face, ends, ends, np.full((2, 2), label, np.int32))
 
 
-def _verdict(piece: Any) -> str:
+def verdict_of(piece: Any) -> str:
+    """The word for a piece of a split."""
     return LABELS[piece.label] if piece.label >= 0 else "mixed"
 
 
@@ -87,12 +88,12 @@ def rungs(split: Any) -> dict[str, SplitEntry]:
     return {f"F{number}": shown[number] for number in sorted(shown)}
 
 
-def _styles(result: Any) -> Callable[[Any], Style]:
+def styles(result: Any) -> Callable[[Any], Style]:
     """Name and colour of a piece: a target face has the colour of its verdict, others keep their own."""
     faces = result.part.faces
 
     def style(piece: Any) -> Style:
-        info, verdict = faces[piece.face - 1], _verdict(piece)
+        info, verdict = faces[piece.face - 1], verdict_of(piece)
         own = info.colour if verdict in ("check", "ignored") else None
         return Style(f"F{piece.face}_{verdict} {info.name}".strip(), own or rgb(verdict))
 
@@ -109,7 +110,7 @@ def write_step(result: Any, split: Any, path: Path, *, schema: str = "ap242") ->
         for each in result.scene.around.fixtures
         if isinstance(each.source, Part)
     ]
-    write_cad(split, path, _styles(result), product=_product(result), tree=part.tree, layers=part.layers,
+    write_cad(split, path, styles(result), product=product(result), tree=part.tree, layers=part.layers,
               schema=SCHEMAS[schema], others=others)  # fmt: skip
 
 
@@ -140,9 +141,9 @@ def write_glb(result: Any, split: Any, path: Path, *, merged: bool = False) -> N
     write_gltf(
         split,
         path,
-        _styles(result),
+        styles(result),
         extras=extras,
-        piece_extras=lambda p: {"face": f"F{p.face}", "verdict": _verdict(p), "cutter": shown.id},
+        piece_extras=lambda p: {"face": f"F{p.face}", "verdict": verdict_of(p), "cutter": shown.id},
         merged=merged,
         others=[
             Drawn(each.name, each.shown, rgb("fixture"), entry.model_dump(mode="json"))
@@ -156,5 +157,6 @@ def write_merged(result: Any, split: Any, path: Path) -> None:
     write_glb(result, split, path, merged=True)
 
 
-def _product(result: Any) -> str:
+def product(result: Any) -> str:
+    """What the part is called."""
     return Path(result.part.file).stem if result.part.file else "part"

@@ -107,6 +107,20 @@ def ignored_faces(part: "Part", words: Sequence[str]) -> frozenset[int]:
     return frozenset().union(*(_selected(part.faces, text, part.tree, "--ignore") for text in words))
 
 
+def face_numbers(part: "Part", given: Any) -> tuple[int, ...]:
+    """Numbers of faces, ascending, from a number, a face's name, the words of `--faces`, or objects of a kernel or CAD host.
+
+    Raises
+    ------
+    OptionError
+        It selects no face of the part.
+    """
+    text = _word(part, given, "faces")
+    if named := tuple(f.number for f in part.faces if f.name and f.name == text):
+        return named
+    return tuple(sorted(_selected(part.faces, text, part.tree, "faces")))
+
+
 def select_faces(
     faces: Sequence[FaceInfo], text: str, *, tree: "Sequence[Node]" = (), ignored: Iterable[int] = ()
 ) -> tuple[int, ...]:

@@ -1,7 +1,11 @@
-"""`<!-- help: plan-cutters -->` in a page becomes what that command prints with `--help`, so that the page cannot grow old."""
+"""`<!-- help: plan-cutters -->` in a page becomes what that command prints with `--help`, so that the page cannot grow old.
+
+`<!-- file: pictures/summary.txt -->` becomes the text of that file.
+"""
 
 import re
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 from click import Command
@@ -11,7 +15,11 @@ from plan_cutters.command.entry import MODULES
 
 
 def on_page_markdown(markdown: str, **_: Any) -> str:
-    return re.sub(r"<!-- help: (\S+) -->", lambda found: f"```text\n{_help(found[1])}```", markdown)
+    markdown = re.sub(r"<!-- help: (\S+) -->", lambda found: f"```text\n{_help(found[1])}```", markdown)
+    docs = Path(__file__).parent.parent
+    return re.sub(
+        r"<!-- file: (\S+) -->", lambda found: f"```text\n{(docs / found[1]).read_text('utf-8')}```", markdown
+    )
 
 
 def _help(name: str) -> str:

@@ -1,0 +1,76 @@
+"""Make the pictures of the tutorial anew: `python docs/pictures.py` (needs Debian's Chromium and the `dev` extra)."""
+
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from playwright.sync_api import sync_playwright
+
+DOCS = Path(__file__).parent
+ROOT, PICTURES = DOCS.parent, DOCS / "pictures"
+#: Without these WebGL shows nothing where there is no graphics card.
+_CHROMIUM = [
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+]
+_CUTTERS = ["--cutters", "samples/shop.toml", "--cutter", "R8L90", "--holder", "R20L30+R31L40"]
+
+
+def run(*words: str) -> str:
+    """Run one of the commands as a user does; what it says."""
+    command, *rest = words
+    done = subprocess.run([str(Path(sys.executable).with_name(command)), *rest], cwd=ROOT, text=True, stderr=subprocess.STDOUT,
+                          stdout=subprocess.PIPE, check=False)  # fmt: skip
+    if done.returncode > 1:
+        raise SystemExit(done.stdout)
+    return done.stdout
+
+
+def main() -> None:
+    PICTURES.mkdir(exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder)
+        said = run(
+            "plan-cutters",
+            "samples/peaks_and_valleys.step",
+            *_CUTTERS,
+            "--answers",
+            "stick-out,mend",
+            "-o",
+            str(out / "p"),
+        )
+        # What is printed while it works tells seconds: they differ.
+        kept = said[said.index("\nTake ") + 1 : said.index("\nWritten")].splitlines()
+        text = "\n".join(line for line in kept if " s  " not in line[:12])
+        (PICTURES / "summary.txt").write_text(text.rstrip() + "\n", encoding="utf-8")
+        run("plan-cutters-map", "samples/peaks_and_valleys.step", "--at", "-2.241,4.502,-22.43", "--cutter", "R8L90", "-o",
+            str(PICTURES / "map.png"))  # fmt: skip
+        run("plan-cutters-tools", "samples/shop.toml", "--draw", str(out / "drawings"))
+        shutil.copy(next((out / "drawings").glob("*flat*12*.svg")), PICTURES / "tool.svg")
+        run("plan-cutters", "samples/pocket_top.step", "--cutters", "samples/shop.toml", "--machine", "trunnion-ac", "--fixture",
+            "table:-20", "--formats", "png", "-o", str(out / "sheet"))  # fmt: skip
+        shutil.copy(out / "sheet" / "review.png", PICTURES / "sheet.png")
+        _page(out / "p" / "review.html", PICTURES / "review.png")
+
+
+def _page(page: Path, picture: Path) -> None:
+    """The review page with the worst spot of the cutter that fails."""
+    with sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=shutil.which("chromium"), args=_CHROMIUM)
+        tab = browser.new_page(viewport={"width": 1366, "height": 768})
+        tab.goto(page.as_uri())
+        tab.wait_for_timeout(2000)
+        tab.locator("#cutters tr[data-cutter]").first.click()
+        tab.wait_for_timeout(500)
+        tab.keyboard.press("n")
+        tab.wait_for_timeout(2500)
+        tab.screenshot(path=str(picture))
+        browser.close()
+
+
+if __name__ == "__main__":
+    main()

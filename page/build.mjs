@@ -1,0 +1,74 @@
+// Bundles the review page into the Python package. `node build.mjs --check` writes nothing and fails where a file differs.
+import { readFileSync, writeFileSync, existsSync, readdirSync } from "node:fs";
+import { dirname, join, relative, sep } from "node:path";
+import { fileURLToPath } from "node:url";
+import { build } from "esbuild";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const target = join(here, "..", "plugin", "plan_cutters", "report", "page");
+
+const made = await build({
+  absWorkingDir: here,
+  entryPoints: ["src/main.ts"],
+  bundle: true,
+  minify: true,
+  format: "iife",
+  target: ["es2022"],
+  charset: "ascii",
+  legalComments: "none",
+  metafile: true,
+  write: false,
+});
+const styles = await build({
+  absWorkingDir: here,
+  entryPoints: ["src/page.css"],
+  minify: true,
+  charset: "ascii",
+  legalComments: "none",
+  write: false,
+});
+
+/** The packages of which something is bundled, each with its version and licence. */
+function bundled(inputs) {
+  const names = new Set();
+  for (const path of Object.keys(inputs)) {
+    const parts = path.split("/");
+    const at = parts.lastIndexOf("node_modules");
+    if (at >= 0) names.add(parts[at + 1].startsWith("@") ? `${parts[at + 1]}/${parts[at + 2]}` : parts[at + 1]);
+  }
+  return [...names].sort().map((name) => {
+    const folder = join(here, "node_modules", ...name.split("/"));
+    const { version } = JSON.parse(readFileSync(join(folder, "package.json"), "utf8"));
+    const file = readdirSync(folder).find((each) => /^licen[sc]e/i.test(each));
+    if (!file) throw new Error(`${name} has no licence file in its package`);
+    return { name, version, text: readFileSync(join(folder, file), "utf8").trim().replaceAll("\r", "") };
+  });
+}
+
+const parts = bundled(made.metafile.inputs);
+const licences = parts.map((part) => `${part.name} ${part.version}\n\n${part.text}\n`).join("\n----\n\n");
+// What is written into a page must be plain ASCII, and nothing in it may end the script.
+const plain = licences.replaceAll("©", "(c)").replace(/[^\x00-\x7f]/g, "?");
+const code = `/*! This page contains:\n\n${plain.replaceAll("*/", "* /")}*/\n${made.outputFiles[0].text}`;
+const files = { "page.js": code, "page.css": styles.outputFiles[0].text, "licences.txt": plain };
+for (const word of ["</script", "<!--", "sourceMappingURL"]) {
+  if (code.toLowerCase().includes(word.toLowerCase())) throw new Error(`the bundle contains ${word}`);
+}
+
+let stale = 0;
+for (const [name, text] of Object.entries(files)) {
+  const path = join(target, name);
+  const shown = relative(join(here, ".."), path).split(sep).join("/");
+  const same = existsSync(path) && readFileSync(path, "utf8") === text;
+  if (process.argv.includes("--check")) {
+    if (!same) stale += 1;
+    console.log(`${same ? "up to date" : "NOT up to date"}  ${shown}`);
+  } else {
+    writeFileSync(path, text);
+    console.log(`${shown}  ${Math.round(text.length / 1024)} KiB`);
+  }
+}
+if (stale) {
+  console.error("run `node build.mjs` in page/ and commit what it writes");
+  process.exitCode = 1;
+}

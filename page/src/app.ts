@@ -1,0 +1,182 @@
+// What is shown now: cutter, colouring, sample, posture, what is lit up; and who wants to know.
+
+import { lookOf } from "./colours.ts";
+import { place } from "./contact.ts";
+import type { Arrays } from "./decode.ts";
+import { LiveTool, type Met, Probe, type State } from "./live_map.ts";
+import type { Drawn, Owner } from "./mesh.ts";
+import type { Cutter, Meta, Spot, Vec } from "./meta.ts";
+import type { PartView } from "./part.ts";
+import type { Picker } from "./pick.ts";
+import type { Posture, Sample, Samples } from "./samples.ts";
+import type { Stage } from "./stage.ts";
+import type { ToolView } from "./tool.ts";
+
+export interface Judged {
+  state: State;
+  certified: boolean;
+}
+
+type Event = "cutter" | "look" | "sample" | "posture" | "hot" | "spot";
+
+export class App {
+  cutter: Cutter;
+  mode = "verdict";
+  sample: Sample | null = null;
+  spot: Spot | null = null;
+  posture: Posture | null = null;
+  /** What stands in the way at the posture, and what is to be said of it. */
+  met: Met | null = null;
+  state: Judged | null = null;
+  /** Told by the posture map, which knows what is certified. */
+  judge: (posture: Posture, met: Met) => Judged = (_, met) => ({ state: met.state, certified: false });
+  hot: Owner | null = null;
+  toolShown = true;
+  private madeProbe: Probe | null = null;
+  private readonly liveTools = new Map<string, LiveTool>();
+  private readonly told = new Map<Event, (() => void)[]>();
+
+  constructor(
+    readonly meta: Meta,
+    readonly arrays: Arrays,
+    readonly samples: Samples,
+    readonly drawn: Drawn,
+    readonly stage: Stage,
+    readonly part: PartView,
+    readonly tool: ToolView,
+    readonly picker: Picker,
+    /** Say something in the status line, which is read out. */
+    readonly say: (text: string) => void,
+  ) {
+    this.cutter = this.cutterOf(meta.shown);
+  }
+
+  on(event: Event, work: () => void): void {
+    this.told.set(event, [...(this.told.get(event) ?? []), work]);
+  }
+
+  private emit(event: Event): void {
+    for (const work of this.told.get(event) ?? []) work();
+  }
+
+  cutterOf(id: string): Cutter {
+    return this.meta.cutters.find((each) => each.id === id) ?? this.meta.cutters[0];
+  }
+
+  get probe(): Probe {
+    this.madeProbe ??= new Probe(this.drawn, this.meta);
+    return this.madeProbe;
+  }
+
+  liveTool(cutter = this.cutter): LiveTool {
+    let tool = this.liveTools.get(cutter.id);
+    if (!tool) {
+      tool = new LiveTool(cutter, this.meta);
+      this.liveTools.set(cutter.id, tool);
+    }
+    return tool;
+  }
+
+  setCutter(id: string): void {
+    this.cutter = this.cutterOf(id);
+    this.spot = null;
+    this.emit("cutter");
+    this.repaint();
+    if (this.sample) this.select(this.sample.row);
+  }
+
+  setMode(mode: string): void {
+    this.mode = mode;
+    this.repaint();
+  }
+
+  repaint(): void {
+    const look = lookOf(this.meta, this.arrays, this.samples, this.mode, this.cutter.id);
+    this.part.paint(look);
+    this.look = look;
+    this.emit("look");
+    this.stage.request();
+  }
+
+  look: ReturnType<typeof lookOf> | null = null;
+
+  /** Show a sample with the posture found there, or with its witness. */
+  select(row: number | null, spot: Spot | null = null): void {
+    this.sample = row === null ? null : this.samples.at(row);
+    this.spot = row === null ? null : (spot ?? this.spotOf(row));
+    this.posture = null;
+    this.met = null;
+    this.emit("sample");
+    if (spot) this.emit("spot");
+    this.setPosture(row === null ? null : this.startPosture(row));
+  }
+
+  private spotOf(row: number): Spot | null {
+    return this.meta.spots.find((each) => each.sample === row && each.cutter === this.cutter.id) ?? null;
+  }
+
+  /** The posture found, or the witness's. */
+  startPosture(row: number): Posture | null {
+    const found = this.samples.posture(this.cutter.id, row);
+    if (found) return found;
+    const { spot } = this;
+    if (!spot || spot.tilt_deg === null || spot.lean_deg === null) return null;
+    return { tilt: spot.tilt_deg, rotation: ((spot.lean_deg % 360) + 360) % 360 };
+  }
+
+  setPosture(posture: Posture | null): void {
+    this.posture = posture;
+    const { sample } = this;
+    this.met = this.state = null;
+    if (sample && posture) {
+      this.tool.show(this.cutter, place(this.cutter, sample, posture));
+      this.met = this.probe.look(this.liveTool(), sample, posture, true);
+      this.state = this.judge(posture, this.met);
+      // What is certified to be free stays so, whatever the coarse triangles say.
+      if (this.state.state === "free") this.met = null;
+    }
+    if (!sample || !posture || !this.toolShown) this.tool.hide();
+    this.emit("posture");
+    this.light();
+  }
+
+  /** The place and the name of what is in the way: of the witness at its posture, else of the drawn triangles. */
+  inTheWay(): { point: Vec | null; owner: Owner | null } | null {
+    if (this.atWitness()) {
+      const spot = this.spot!;
+      const owner = this.drawn.ownerOf(spot.obstacle_face);
+      if (spot.obstacle_point || owner !== null) return { point: spot.obstacle_point, owner };
+    }
+    return this.met && this.met.owner !== null ? { point: this.met.point, owner: this.met.owner } : null;
+  }
+
+  atWitness(): boolean {
+    const { spot, posture } = this;
+    if (!spot || !posture || spot.tilt_deg === null || spot.lean_deg === null) return false;
+    const turn = Math.abs(((posture.rotation - spot.lean_deg + 540) % 360) - 180);
+    return Math.abs(posture.tilt - spot.tilt_deg) < 0.02 && turn < 0.02;
+  }
+
+  /** Told of the face under the pointer; from a list, it is lit up in the picture. */
+  hover(owner: Owner | null, lit = false): void {
+    if (owner === this.hot && lit === this.lit) return;
+    this.hot = owner;
+    this.emit("hot");
+    if (this.lit !== lit || lit) {
+      this.lit = lit;
+      this.light();
+    }
+  }
+
+  private lit = false;
+
+  private light(): void {
+    this.part.light(this.lit ? this.hot : null, this.inTheWay()?.owner ?? null);
+    this.stage.request();
+  }
+
+  showTool(shown: boolean): void {
+    this.toolShown = shown;
+    this.setPosture(this.posture);
+  }
+}

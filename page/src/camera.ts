@@ -1,0 +1,169 @@
+// Where one looks from: a turntable about the setup axis, in parallel projection.
+
+import { Matrix4, OrthographicCamera, Vector3 } from "three";
+import type { Vec } from "./meta.ts";
+import { across, cross, DEG, dot, mixed, plus, RAD, scaled, unit } from "./vectors.ts";
+
+export interface Aim {
+  target: Vec;
+  /** Turn about the setup axis and height over its plane, degrees. */
+  turn: number;
+  rise: number;
+  /** Half of the height that is seen, mm. */
+  half: number;
+}
+
+/** The standard views by key, as [name, turn, rise]. */
+export const VIEWS: Record<string, [string, number, number]> = {
+  "1": ["front", -90, 0],
+  "2": ["back", 90, 0],
+  "3": ["left", 180, 0],
+  "4": ["right", 0, 0],
+  "5": ["top", -90, 90],
+  "6": ["bottom", -90, -90],
+  "7": ["corner", -50, 32],
+};
+
+const FLIGHT_MS = 320;
+
+export class Turntable {
+  readonly camera = new OrthographicCamera();
+  aim: Aim;
+  private aspect = 1;
+  private flight = 0;
+  private moved = false;
+  private readonly x: Vec;
+  private readonly y: Vec;
+
+  constructor(
+    private readonly z: Vec,
+    x: Vec | null,
+    private readonly centre: Vec,
+    /** Radius of all that is drawn, mm. */
+    readonly radius: number,
+    private readonly changed: () => void,
+    /** All vertices, three numbers each: what is to fit into the picture. */
+    private readonly vertices: () => Float32Array,
+  ) {
+    const first = x ?? (Math.abs(z[2]) > 0.9 ? [1, 0, 0] : across(z));
+    this.x = unit(plus(first as Vec, z, -dot(first as Vec, z)));
+    this.y = cross(z, this.x);
+    this.aim = { target: centre, turn: -50, rise: 32, half: radius };
+    this.apply();
+  }
+
+  /** All that is drawn, just within the picture. */
+  fitted(turn: number, rise: number): Aim {
+    const { up, right } = this.frame({ target: this.centre, turn, rise, half: 1 });
+    const vertices = this.vertices();
+    if (!vertices.length) return { target: this.centre, turn, rise, half: this.radius };
+    let [left, bottom, most, top] = [Infinity, Infinity, -Infinity, -Infinity];
+    for (let i = 0; i < vertices.length; i += 3) {
+      const x = vertices[i] * right[0] + vertices[i + 1] * right[1] + vertices[i + 2] * right[2];
+      const y = vertices[i] * up[0] + vertices[i + 1] * up[1] + vertices[i + 2] * up[2];
+      if (x < left) left = x;
+      if (x > most) most = x;
+      if (y < bottom) bottom = y;
+      if (y > top) top = y;
+    }
+    const shift = (along: Vec, to: number): Vec => scaled(along, to - dot(this.centre, along));
+    const middle = plus(plus(this.centre, shift(right, (left + most) / 2)), shift(up, (bottom + top) / 2));
+    const half = 0.53 * Math.max(top - bottom, (most - left) / this.aspect, 1e-3 * this.radius);
+    return { target: middle, turn, rise, half };
+  }
+
+  resize(aspect: number): void {
+    // Until one has moved, all of it is in the picture.
+    this.aspect = aspect;
+    if (!this.moved) this.aim = this.fitted(this.aim.turn, this.aim.rise);
+    this.apply();
+  }
+
+  /** Direction from the target to the eye, and what is up in the picture. */
+  frame(aim = this.aim): { back: Vec; up: Vec; right: Vec } {
+    const [t, r] = [aim.turn * RAD, aim.rise * RAD];
+    const level = mixed(this.x, Math.cos(t), this.y, Math.sin(t));
+    const back = mixed(level, Math.cos(r), this.z, Math.sin(r));
+    const up = mixed(level, -Math.sin(r), this.z, Math.cos(r));
+    return { back, up, right: cross(up, back) };
+  }
+
+  apply(): void {
+    const { back, up, right } = this.frame();
+    const { target, half } = this.aim;
+    const away = 40 * this.radius;
+    const eye = plus(target, back, away);
+    const { camera } = this;
+    camera.position.set(...eye);
+    camera.quaternion.setFromRotationMatrix(
+      new Matrix4().makeBasis(new Vector3(...right), new Vector3(...up), new Vector3(...back)),
+    );
+    camera.top = half;
+    camera.bottom = -half;
+    camera.left = -half * this.aspect;
+    camera.right = half * this.aspect;
+    camera.near = away - 12 * this.radius;
+    camera.far = away + 12 * this.radius;
+    camera.updateProjectionMatrix();
+    camera.updateMatrixWorld();
+    this.changed();
+  }
+
+  orbit(turn: number, rise: number): void {
+    this.set({ turn: this.aim.turn + turn, rise: Math.max(-90, Math.min(90, this.aim.rise + rise)) });
+  }
+
+  /** Shift the picture by shares of its height. */
+  pan(x: number, y: number): void {
+    const { up, right } = this.frame();
+    const size = 2 * this.aim.half;
+    this.set({ target: plus(plus(this.aim.target, right, -x * size), up, y * size) });
+  }
+
+  /** Zoom about a place in the picture, -1 to 1 each way. */
+  zoom(by: number, x = 0, y = 0): void {
+    const half = Math.min(20 * this.radius, Math.max(1e-4 * this.radius, this.aim.half / by));
+    const { up, right } = this.frame();
+    const moved = this.aim.half - half;
+    this.set({ half, target: plus(plus(this.aim.target, right, x * moved * this.aspect), up, y * moved) });
+  }
+
+  set(part: Partial<Aim>): void {
+    this.moved = true;
+    cancelAnimationFrame(this.flight);
+    this.aim = { ...this.aim, ...part };
+    this.apply();
+  }
+
+  /** Go there in a short flight, or at once where the system asks for no motion. */
+  fly(part: Partial<Aim>): void {
+    this.moved = true;
+    cancelAnimationFrame(this.flight);
+    const from = this.aim;
+    const to = { ...from, ...part };
+    const turn = ((to.turn - from.turn + 540) % 360) - 180;
+    if (matchMedia("(prefers-reduced-motion: reduce)").matches) return this.set(part);
+    const start = performance.now();
+    const step = (now: number): void => {
+      const share = Math.min(1, (now - start) / FLIGHT_MS);
+      const ease = share * share * (3 - 2 * share);
+      this.aim = {
+        target: mixed(from.target, 1 - ease, to.target, ease),
+        turn: share === 1 ? to.turn : from.turn + ease * turn,
+        rise: from.rise + ease * (to.rise - from.rise),
+        half: from.half * (to.half / from.half) ** ease,
+      };
+      this.apply();
+      if (share < 1) this.flight = requestAnimationFrame(step);
+    };
+    this.flight = requestAnimationFrame(step);
+  }
+
+  /** Turn and rise from which a direction is seen from its front, askew, so that a tool there shows its side. */
+  towards(direction: Vec): { turn: number; rise: number } {
+    const level = Math.hypot(dot(direction, this.x), dot(direction, this.y));
+    const rise = Math.atan2(dot(direction, this.z), level) * DEG;
+    const turn = level > 1e-3 ? Math.atan2(dot(direction, this.y), dot(direction, this.x)) * DEG : this.aim.turn;
+    return { turn: turn + 28, rise: Math.max(-65, Math.min(55, rise > 25 ? rise - 22 : rise + 12)) };
+  }
+}

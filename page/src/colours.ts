@@ -1,0 +1,233 @@
+// What the surface is coloured by: a colour and a pattern for each sample, and the legend that says so.
+
+import type { Arrays } from "./decode.ts";
+import type { Meta, Scalar } from "./meta.ts";
+import { NO_REASON, UNJUDGED } from "./meta.ts";
+import type { Samples } from "./samples.ts";
+
+export type Pattern = "plain" | "hatch" | "dots" | "cross" | "bars" | "lines" | "back";
+export const PATTERNS: Pattern[] = ["plain", "hatch", "dots", "cross", "bars", "lines", "back"];
+
+export interface Entry {
+  colour: string;
+  pattern: Pattern;
+  label: string;
+  /** Share of the area that samples stand for, 0 to 1. */
+  share?: number;
+}
+
+export interface Ramp {
+  low: number;
+  high: number;
+  unit: string;
+  /** Whether samples lie beyond the ends. */
+  below: boolean;
+  above: boolean;
+}
+
+export interface Look {
+  title: string;
+  entries: Entry[];
+  ramp: Ramp | null;
+  /** Red, green, blue and pattern of each sample. */
+  bytes: Uint8Array;
+}
+
+export interface Mode {
+  key: string;
+  label: string;
+}
+
+const capital = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
+
+const UNKNOWN = "#9a9a9a";
+const FALLBACK: Record<string, string> = {
+  interference_free: "#009E73",
+  accessible: "#56B4E9",
+  undecided: "#F0E442",
+  inaccessible: "#D55E00",
+  unjudged: "#CC79A7",
+  check: "#BFBFBF",
+  fixture: "#0072B2",
+};
+const WORDS: Record<string, string> = {
+  interference_free: "interference-free",
+  accessible: "accessible",
+  undecided: "undecided",
+  inaccessible: "inaccessible",
+  unjudged: "not judged",
+  check: "check face",
+  fixture: "fixture",
+};
+
+/** A word of the plan as it is shown. */
+export const spoken = (word: string): string => WORDS[word] ?? word.replaceAll("_", " ");
+
+/** Patterns of what forbids a posture, on the map and on the surface. */
+const CAUSE_PATTERNS: Record<string, Pattern> = {
+  axis_limit: "lines",
+  local_gouge: "hatch",
+  rear_gouge: "back",
+  collision: "cross",
+  neck: "bars",
+  shank: "bars",
+  holder: "hatch",
+  fixture: "lines",
+  buried: "cross",
+  undecided: "dots",
+  tolerance: "dots",
+};
+
+/** Colour and pattern of what forbids a posture, or of what is free of it. */
+export function causeOf(meta: Meta, cause: string): [string, Pattern] {
+  const word = cause === "free" ? "interference_free" : cause;
+  return [meta.cause_colours[word] ?? colourOf(meta, word), CAUSE_PATTERNS[word] ?? "plain"];
+}
+
+const CLASSES: [string, string, Pattern][] = [
+  ["convex", "#E8B04A", "plain"],
+  ["concave", "#2F6DB0", "plain"],
+  ["saddle", "#7FC8A9", "plain"],
+];
+
+export function modesOf(meta: Meta, cutter: string): Mode[] {
+  const scalars = meta.scalars.filter((each) => each.cutter === null || each.cutter === cutter);
+  return [
+    { key: "verdict", label: "Verdict" },
+    { key: "reason", label: "Reason" },
+    { key: "class", label: "Surface class" },
+    ...scalars.map((each) => ({ key: `scalar:${each.key}`, label: capital(each.label) })),
+  ];
+}
+
+export function lookOf(meta: Meta, arrays: Arrays, samples: Samples, mode: string, cutter: string): Look {
+  const scalar = meta.scalars.find((each) => `scalar:${each.key}` === mode);
+  if (scalar) return scalarLook(arrays, samples, scalar);
+  if (mode === "reason") return reasonLook(meta, samples, cutter);
+  if (mode === "class") return classLook(meta, samples);
+  return verdictLook(meta, samples, cutter);
+}
+
+export const colourOf = (meta: Meta, word: string): string => meta.colours[word] ?? FALLBACK[word] ?? UNKNOWN;
+
+export function patternOf(verdict: string): Pattern {
+  return verdict === "inaccessible" ? "hatch" : verdict === "undecided" ? "dots" : "plain";
+}
+
+function verdictLook(meta: Meta, samples: Samples, cutter: string): Look {
+  const order = ["interference_free", "accessible", "undecided", "inaccessible", "unjudged"];
+  const entries = order.map((word) => ({ colour: colourOf(meta, word), pattern: patternOf(word), label: spoken(word) }));
+  const verdict = samples.verdicts(cutter).values;
+  return painted("Verdict", entries, samples, (i) => order.indexOf(meta.verdicts[String(verdict[i])] ?? "unjudged"));
+}
+
+function reasonLook(meta: Meta, samples: Samples, cutter: string): Look {
+  const verdict = samples.verdicts(cutter).values;
+  const reason = samples.reasons(cutter).values;
+  const entries: Entry[] = meta.reasons.map((word) => {
+    return { colour: causeOf(meta, word)[0], pattern: "hatch", label: spoken(word) };
+  });
+  const undecided = entries.map((each) => ({ ...each, pattern: "dots" as Pattern, label: `${each.label}, undecided` }));
+  const rest: Entry[] = [
+    { colour: "#d9e4dd", pattern: "plain", label: "reached" },
+    { colour: colourOf(meta, "unjudged"), pattern: "plain", label: spoken("unjudged") },
+  ];
+  const count = entries.length;
+  return painted("Reason", [...entries, ...undecided, ...rest], samples, (i) => {
+    if (verdict[i] === UNJUDGED) return 2 * count + 1;
+    if (reason[i] === NO_REASON) return 2 * count;
+    return reason[i] + (meta.verdicts[String(verdict[i])] === "undecided" ? count : 0);
+  });
+}
+
+function classLook(meta: Meta, samples: Samples): Look {
+  const kind = samples.surfaceClass.values;
+  const entries: Entry[] = CLASSES.map(([label, colour, pattern]) => ({ label, colour, pattern }));
+  entries.push({ colour: colourOf(meta, "unjudged"), pattern: "plain", label: spoken("unjudged") });
+  return painted("Surface class", entries, samples, (i) => Math.min(kind[i], 3));
+}
+
+function painted(title: string, entries: Entry[], samples: Samples, which: (i: number) => number): Look {
+  const { count } = samples;
+  const bytes = new Uint8Array(4 * count);
+  const table = entries.map((each) => [...rgb(each.colour), PATTERNS.indexOf(each.pattern)]);
+  const area = new Float64Array(entries.length);
+  const seen = new Uint8Array(entries.length);
+  for (let i = 0; i < count; i++) {
+    const k = which(i);
+    seen[k] = 1;
+    area[k] += samples.area(i);
+    bytes.set(table[k], 4 * i);
+  }
+  const whole = area.reduce((sum, each) => sum + each, 0) || 1;
+  const shown = entries.map((each, k) => ({ ...each, share: area[k] / whole }));
+  return { title, entries: shown.filter((_, k) => seen[k]), ramp: null, bytes };
+}
+
+function scalarLook(arrays: Arrays, samples: Samples, scalar: Scalar): Look {
+  const table = arrays.get(scalar.array);
+  const first = (scalar.column ?? 0) * table.rows;
+  const values = table.values.subarray(first, first + table.rows);
+  const [low, high] = ends(values);
+  const bytes = new Uint8Array(4 * samples.count);
+  const steps = Array.from({ length: 256 }, (_, i) => rgb(ramp(i / 255)));
+  const unknown = rgb(UNKNOWN);
+  const range = high - low || 1;
+  let [below, above, missing] = [false, false, 0];
+  let whole = 0;
+  for (let i = 0; i < samples.count; i++) {
+    whole += samples.area(i);
+    const value = values[i];
+    if (Number.isNaN(value)) {
+      missing += samples.area(i);
+      bytes.set(unknown, 4 * i);
+      bytes[4 * i + 3] = PATTERNS.indexOf("cross");
+      continue;
+    }
+    const share = (value - low) / range;
+    below ||= share < -1e-3;
+    above ||= share > 1.001;
+    bytes.set(steps[Math.round(255 * Math.min(1, Math.max(0, share)))], 4 * i);
+  }
+  const entries: Entry[] = missing
+    ? [{ colour: UNKNOWN, pattern: "cross", label: "not known", share: missing / (whole || 1) }]
+    : [];
+  return { title: capital(scalar.label), entries, ramp: { low, high, unit: scalar.unit, below, above }, bytes };
+}
+
+/** Ends of the scale: but for one hundredth at either end, where single samples of sharp edges would take all of it. */
+function ends(values: ArrayLike<number>): [number, number] {
+  const known = Float32Array.from(values).filter(Number.isFinite).sort();
+  if (!known.length) return [0, 1];
+  const at = (share: number): number => known[Math.round(share * (known.length - 1))];
+  return [at(0.01), at(0.99)];
+}
+
+/** A colour of the scale, 0 to 1: even steps of lightness in OKLab from dark blue to light yellow, told apart by any eye. */
+export function ramp(share: number): string {
+  const light = 0.3 + 0.62 * share;
+  const hue = ((275 - 170 * share) * Math.PI) / 180;
+  const chroma = 0.105 + 0.02 * share;
+  return oklab(light, chroma * Math.cos(hue), chroma * Math.sin(hue));
+}
+
+function oklab(light: number, a: number, b: number): string {
+  const l = (light + 0.3963377774 * a + 0.2158037573 * b) ** 3;
+  const m = (light - 0.1055613458 * a - 0.0638541728 * b) ** 3;
+  const s = (light - 0.0894841775 * a - 1.291485548 * b) ** 3;
+  const linear = [
+    4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s,
+    -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
+    -0.0041960863 * l - 0.7034186147 * m + 1.707614701 * s,
+  ];
+  const bytes = linear.map((x) => {
+    const c = Math.min(1, Math.max(0, x));
+    return Math.round(255 * (c <= 0.0031308 ? 12.92 * c : 1.055 * c ** (1 / 2.4) - 0.055));
+  });
+  return `#${bytes.map((x) => x.toString(16).padStart(2, "0")).join("")}`;
+}
+
+export function rgb(hex: string): [number, number, number] {
+  const value = Number.parseInt(hex.slice(1), 16);
+  return [(value >> 16) & 255, (value >> 8) & 255, value & 255];
+}

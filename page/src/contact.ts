@@ -1,0 +1,93 @@
+// Where a tool stands when it touches at a posture, and what curvature alone forbids there.
+
+import type { Cutter, Mode, Vec } from "./meta.ts";
+import { type Posture, type Sample, Samples } from "./samples.ts";
+import { DEG, dot, mixed, plus, RAD } from "./vectors.ts";
+
+export interface Placed {
+  tip: Vec;
+  axis: Vec;
+}
+
+const HAIR = 1e-6;
+/** Curvatures are stored in half precision: a ball that just fits must not fail by that. */
+const ROUNDING = 1e-3;
+
+/** The mode in which a cutter touches at a tilt, degrees; null where it touches in none. */
+export function modeAt(cutter: Cutter, tilt: number): Mode | null {
+  return cutter.modes.find((mode) => tilt >= mode.tilt_low_deg - HAIR && tilt <= mode.tilt_high_deg + HAIR) ?? null;
+}
+
+/** Tip and axis of the tool that touches a sample; where it touches nowhere, as its last mode would. */
+export function place(cutter: Cutter, sample: Sample, posture: Posture): Placed {
+  const mode = modeAt(cutter, posture.tilt) ?? cutter.modes[cutter.modes.length - 1];
+  const lean = Samples.lean(sample, posture.rotation);
+  const cosine = Math.cos(posture.tilt * RAD);
+  const sine = Math.sin(posture.tilt * RAD);
+  const axis = mixed(sample.normal, cosine, lean, sine);
+  const outward = mixed(lean, cosine, sample.normal, -sine);
+  const centre = plus(sample.point, sample.normal, mode.radius + cutter.allowance_mm);
+  return { tip: plus(plus(centre, outward, -mode.offset), axis, -mode.height), axis };
+}
+
+/** Least and largest tilt (rad) that the curvature leaves at a rotation (rad); null where it leaves none. */
+export function gougeBounds(
+  [most, least]: [number, number],
+  rotation: number,
+  offset: number,
+  radius: number,
+): [number, number] | null {
+  const c = Math.cos(rotation);
+  const s = Math.sin(rotation);
+  let side = most * s * s + least * c * c;
+  if (radius > 0) {
+    if (offset === 0) return radius * most <= 1 + ROUNDING ? [0, Math.PI] : null;
+    const room = 1 - radius * (most * c * c + least * s * s);
+    if (room <= 0) return null;
+    side += (((most - least) * s * c) ** 2 * radius) / room;
+    const left = 1 - radius * side;
+    if (offset < 0) {
+      const bound = (offset * side) / left;
+      return [0, left >= 0 || bound >= 1 ? Math.PI : Math.asin(bound)];
+    }
+    if (left <= 0) return side <= 0 ? [0, Math.PI] : null;
+    side /= left;
+  }
+  const bound = offset * side;
+  if (bound <= ROUNDING) return [0, Math.PI];
+  return bound > 1 ? null : [Math.asin(bound), Math.PI - Math.asin(bound)];
+}
+
+/** Whether curvature alone forbids a posture. */
+export function gouges(cutter: Cutter, sample: Sample, posture: Posture): boolean {
+  if (!Number.isFinite(sample.curvature[0]) || !Number.isFinite(sample.curvature[1])) return false;
+  const mode = modeAt(cutter, posture.tilt);
+  if (!mode) return false;
+  const radius = mode.radius + cutter.allowance_mm;
+  const bounds = gougeBounds(sample.curvature, posture.rotation * RAD, mode.offset, radius);
+  return !bounds || posture.tilt * RAD < bounds[0] - HAIR || posture.tilt * RAD > bounds[1] + HAIR;
+}
+
+/** Tilts from and to, degrees, at which a plain limit (degrees) about the setup axis holds the tool axis at a rotation. */
+export function heldTilts(sample: Sample, rotation: number, setup: Vec, limit: number, range: [number, number]): [number, number][] {
+  const lean = Samples.lean(sample, rotation);
+  const [along, ahead] = [dot(sample.normal, setup), dot(lean, setup)];
+  const size = Math.hypot(along, ahead);
+  const cosine = Math.cos(limit * RAD);
+  if (size <= Math.abs(cosine)) return cosine <= 0 ? [range] : [];
+  const middle = Math.atan2(ahead, along) * DEG;
+  const half = Math.acos(cosine / size) * DEG;
+  const found: [number, number][] = [];
+  for (const turn of [-360, 0, 360]) {
+    const low = Math.max(range[0], middle + turn - half);
+    const high = Math.min(range[1], middle + turn + half);
+    if (low <= high) found.push([low, high]);
+  }
+  return found;
+}
+
+/** What two lists of intervals have in common. */
+export function common(a: [number, number][], b: [number, number][]): [number, number][] {
+  const pairs = a.flatMap(([x, y]) => b.map(([u, v]): [number, number] => [Math.max(x, u), Math.min(y, v)]));
+  return pairs.filter(([low, high]) => low <= high).sort((x, y) => x[0] - y[0]);
+}

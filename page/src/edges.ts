@@ -1,0 +1,66 @@
+// The borders of faces, as thin lines: a part reads better with them.
+
+import { BufferAttribute, BufferGeometry, LineSegments, ShaderMaterial, GLSL3 } from "three";
+import type { Drawn } from "./mesh.ts";
+import { shared } from "./shading.ts";
+
+/** Edges of triangles that no other triangle of the same face shares. */
+export function borders(drawn: Drawn): LineSegments {
+  const { triangle, position } = drawn;
+  const seen = new Map<number, number>();
+  const count = position.length / 3;
+  const same = coincident(drawn);
+  for (let t = 0; t < triangle.length; t += 3) {
+    for (let k = 0; k < 3; k++) {
+      const a = same[triangle[t + k]];
+      const b = same[triangle[t + ((k + 1) % 3)]];
+      if (a === b) continue;
+      const key = Math.min(a, b) * count + Math.max(a, b);
+      seen.set(key, (seen.get(key) ?? 0) + 1);
+    }
+  }
+  const ends: number[] = [];
+  for (const [key, times] of seen) if (times === 1) ends.push(Math.floor(key / count), key % count);
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(position, 3));
+  geometry.setIndex(ends);
+  const lines = new LineSegments(geometry, material());
+  lines.renderOrder = 0.5;
+  return lines;
+}
+
+/** Of each vertex the first one of its face at the same place: triangles of some faces share no vertices. */
+function coincident({ position, owner }: Drawn): Int32Array {
+  const first = new Map<string, number>();
+  const same = new Int32Array(owner.length);
+  for (let i = 0; i < owner.length; i++) {
+    const key = `${owner[i]} ${position[3 * i]} ${position[3 * i + 1]} ${position[3 * i + 2]}`;
+    const known = first.get(key);
+    same[i] = known ?? i;
+    if (known === undefined) first.set(key, i);
+  }
+  return same;
+}
+
+function material(): ShaderMaterial {
+  return new ShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: `
+out vec3 vPlace;
+void main() {
+  vPlace = position;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+}`,
+    fragmentShader: `
+precision highp float;
+uniform vec4 plane;
+in vec3 vPlace;
+out vec4 colour;
+void main() {
+  if (dot(plane.xyz, vPlace) > plane.w) discard;
+  colour = vec4(0.09, 0.11, 0.13, 0.75);
+}`,
+    uniforms: { ...shared },
+    transparent: true,
+  });
+}

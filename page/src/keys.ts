@@ -1,0 +1,115 @@
+// The keyboard does all that the mouse does; the help says how.
+
+import type { App } from "./app.ts";
+import { VIEWS } from "./camera.ts";
+import type { Clip } from "./clip.ts";
+import { button, el } from "./dom.ts";
+import type { SpotList } from "./lists.ts";
+import type { Measure } from "./measure.ts";
+
+const HELP: [string, string][] = [
+  ["Click, Enter", "show the posture map of the sample there (Enter: in the middle of the picture)"],
+  ["Drag, arrows", "turn the part (in the posture map: move the tool)"],
+  ["Shift and drag, Ctrl and arrows", "shift the picture"],
+  ["Wheel, + and -", "zoom"],
+  ["f", "fit the part into the picture"],
+  ["1 to 7", "front, back, left, right, top, bottom, corner"],
+  ["Shift and arrows, j and k", "step to a neighbouring sample"],
+  ["n and p", "next and previous worst spot"],
+  ["[ and ]", "previous and next cutter"],
+  ["t", "show or hide the tool"],
+  ["g", "see through the tool, or not"],
+  ["c", "clip: off, across X, Y, Z"],
+  ["m", "measure: between two points, or from the selected sample to the next one"],
+  ["Escape", "leave the sample, end measuring"],
+  ["?", "this help"],
+];
+
+export function helpDialog(): HTMLDialogElement {
+  const rows = HELP.map(([keys, work]) => el("tr", {}, el("th", { scope: "row" }, keys), el("td", {}, work)));
+  const dialog = el("dialog", { id: "help", "aria-labelledby": "help-title" });
+  dialog.append(
+    el("h2", { id: "help-title" }, "Mouse and keys"),
+    el("table", {}, el("tbody", {}, ...rows)),
+    button("Close", () => dialog.close()),
+  );
+  return dialog;
+}
+
+export function listenKeys(app: App, parts: { spots: SpotList; clip: Clip; measure: Measure; help: HTMLDialogElement; glass: () => void; tool: () => void }): void {
+  const { table } = app.stage;
+  document.addEventListener("keydown", (event) => {
+    const where = event.target as HTMLElement;
+    if (event.defaultPrevented || event.altKey || event.metaKey || parts.help.open) return;
+    if (where.closest("input, select, textarea") || where.isContentEditable) return;
+    if (arrow(event, where)) {
+      event.preventDefault();
+      return;
+    }
+    if (event.ctrlKey) return;
+    const view = VIEWS[event.key];
+    if (view) {
+      table.fly(table.fitted(view[1], view[2]));
+      app.say(`View: ${view[0]}`);
+      return;
+    }
+    const works: Record<string, () => void> = {
+      "+": () => table.zoom(1.25),
+      "=": () => table.zoom(1.25),
+      "-": () => table.zoom(0.8),
+      f: () => table.fly(table.fitted(table.aim.turn, table.aim.rise)),
+      n: () => parts.spots.step(1),
+      p: () => parts.spots.step(-1),
+      j: () => neighbour(app, 1),
+      k: () => neighbour(app, 0),
+      "[": () => nextCutter(app, -1),
+      "]": () => nextCutter(app, 1),
+      c: () => parts.clip.next(),
+      m: () => parts.measure.toggle(),
+      t: parts.tool,
+      g: parts.glass,
+      "?": () => parts.help.showModal(),
+      Escape: () => (parts.measure.on ? parts.measure.toggle() : app.select(null)),
+    };
+    works[event.key]?.();
+  });
+
+  const arrow = (event: KeyboardEvent, where: HTMLElement): boolean => {
+    const way: Record<string, [number, number, number]> = {
+      ArrowLeft: [-1, 0, 0],
+      ArrowRight: [1, 0, 1],
+      ArrowUp: [0, 1, 3],
+      ArrowDown: [0, -1, 2],
+    };
+    const found = way[event.key];
+    // Elsewhere in the page arrows scroll, as they do everywhere.
+    if (!found || where !== app.stage.canvas) return false;
+    const [x, y, side] = found;
+    if (event.shiftKey) neighbour(app, side);
+    else if (event.ctrlKey) table.pan(-0.08 * x, 0.08 * y);
+    else table.orbit(8 * x, 8 * y);
+    return true;
+  };
+}
+
+/** Step to the sample next to the selected one on its face. */
+function neighbour(app: App, side: number): void {
+  const { sample } = app;
+  if (!sample) {
+    app.say("No sample is selected: press Enter in the picture");
+    return;
+  }
+  const next = app.part.neighbours(sample.row)[side];
+  if (next === null || app.samples.face.values[next] !== sample.face) {
+    app.say("The face ends there");
+    return;
+  }
+  app.select(next);
+}
+
+function nextCutter(app: App, by: number): void {
+  const { cutters } = app.meta;
+  const at = cutters.indexOf(app.cutter);
+  app.setCutter(cutters[(at + by + cutters.length) % cutters.length].id);
+  app.say(`Cutter ${app.cutter.name || app.cutter.id} is shown`);
+}

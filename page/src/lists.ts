@@ -1,0 +1,201 @@
+// The tables and lists of the page, made alive: cutters switch, spots fly the camera, faces light up.
+
+import type { App } from "./app.ts";
+import { spoken } from "./colours.ts";
+import { button, el } from "./dom.ts";
+import type { Vec } from "./meta.ts";
+
+/** Turn what an element says into a button in it. */
+function press(host: HTMLElement, work: () => void): HTMLButtonElement {
+  const made = el("button", { type: "button", class: "text" });
+  made.append(...host.childNodes);
+  host.append(made);
+  made.addEventListener("click", work);
+  return made;
+}
+
+export function enhanceCutters(app: App): void {
+  const rows = [...document.querySelectorAll<HTMLElement>("#cutters tr[data-cutter]")].filter((row) =>
+    app.meta.cutters.some((each) => each.id === row.dataset.cutter),
+  );
+  const buttons = new Map<HTMLElement, HTMLButtonElement>();
+  for (const row of rows) {
+    const name = row.querySelector<HTMLElement>("th, td") ?? row;
+    buttons.set(row, press(name, () => choose(row)));
+    row.classList.add("chosen-able");
+    row.addEventListener("click", (event) => {
+      if (!(event.target as Element).closest("button, a, summary")) choose(row);
+    });
+  }
+  const choose = (row: HTMLElement): void => {
+    app.setCutter(row.dataset.cutter!);
+    app.say(`Cutter ${app.cutter.name || app.cutter.id} is shown`);
+  };
+  const mark = (): void => {
+    for (const row of rows) {
+      const shown = row.dataset.cutter === app.cutter.id;
+      row.classList.toggle("shown", shown);
+      buttons.get(row)!.setAttribute("aria-pressed", String(shown));
+    }
+    for (const more of document.querySelectorAll<HTMLDetailsElement>("#cutters details[data-cutter]")) {
+      more.open = more.dataset.cutter === app.cutter.id;
+    }
+  };
+  app.on("cutter", mark);
+  mark();
+}
+
+/** The worst spots of the cutter shown, stepped through with n and p. */
+export class SpotList {
+  private readonly items = [...document.querySelectorAll<HTMLElement>("#spots [data-spot]")];
+  private readonly none = el("p", { class: "hint" }, "The cutter that is shown has none.");
+  private at = -1;
+
+  constructor(private readonly app: App) {
+    for (const item of this.items) press(item, () => this.show(item));
+    const section = document.getElementById("spots");
+    if (this.items.length) section?.append(this.none);
+    const heading = section?.querySelector("h2");
+    if (heading && this.items.length) {
+      heading.after(
+        el(
+          "p",
+          { class: "tools" },
+          button("Previous", () => this.step(-1), { title: "Previous spot (p)" }),
+          button("Next", () => this.step(1), { title: "Next spot (n)" }),
+        ),
+      );
+    }
+    app.on("cutter", () => this.filter());
+    app.on("sample", () => this.mark());
+    this.filter();
+  }
+
+  private get mine(): HTMLElement[] {
+    return this.items.filter((item) => item.dataset.cutter === this.app.cutter.id);
+  }
+
+  private filter(): void {
+    this.at = -1;
+    for (const more of document.querySelectorAll<HTMLDetailsElement>("#spots details[data-cutter]")) {
+      more.hidden = more.dataset.cutter !== this.app.cutter.id;
+      more.open = !more.hidden;
+    }
+    this.none.hidden = this.mine.length > 0;
+  }
+
+  private mark(): void {
+    for (const item of this.items) {
+      const shown = this.app.spot !== null && this.app.meta.spots[Number(item.dataset.spot)] === this.app.spot;
+      item.classList.toggle("shown", shown);
+      if (shown) this.at = this.mine.indexOf(item);
+    }
+  }
+
+  step(by: number): void {
+    const { mine } = this;
+    if (!mine.length) {
+      this.app.say("This cutter has no worst spots");
+      return;
+    }
+    this.at = this.at < 0 ? (by > 0 ? 0 : mine.length - 1) : (this.at + by + mine.length) % mine.length;
+    this.show(mine[this.at]);
+  }
+
+  private show(item: HTMLElement): void {
+    const spot = this.app.meta.spots[Number(item.dataset.spot)];
+    if (!spot) return;
+    this.app.select(spot.sample, spot);
+    item.scrollIntoView({ block: "nearest" });
+    flyTo(this.app, spot.point, this.app.samples.normal(spot.sample));
+    this.app.say(`Spot ${this.at + 1} of ${this.mine.length}: ${spot.face}, ${spoken(spot.reason)}`);
+  }
+}
+
+/** Look at a place of the surface from its outer side, near enough to see the tool there. */
+export function flyTo(app: App, point: Vec, normal: Vec, size?: number): void {
+  const { table } = app.stage;
+  const half = size ?? Math.min(table.radius * 0.7, Math.max(6 * app.cutter.radius, table.radius * 0.08));
+  table.fly({ target: point, half, ...table.towards(normal) });
+}
+
+export class FaceTable {
+  private readonly rows = new Map<number, HTMLElement>();
+  /** Rows of other tables that tell of a face. */
+  private readonly others = new Map<HTMLElement, number>();
+  private readonly table = document.querySelector<HTMLTableElement>("#faces table");
+
+  constructor(private readonly app: App) {
+    const { faces } = app.meta;
+    for (const row of document.querySelectorAll<HTMLElement>("tr[data-face]")) {
+      const owner = faces.findIndex((face) => face.number === Number(row.dataset.face));
+      if (owner < 0) continue;
+      if (row.closest("#faces")) this.rows.set(owner, row);
+      else this.others.set(row, owner);
+      const cell = row.querySelector<HTMLElement>("th, td") ?? row;
+      const made = press(cell, () => this.show(owner));
+      row.addEventListener("pointerenter", () => app.hover(owner, true));
+      row.addEventListener("pointerleave", () => app.hover(null));
+      made.addEventListener("focus", () => app.hover(owner, true));
+      made.addEventListener("blur", () => app.hover(null));
+    }
+    app.on("hot", () => {
+      for (const [owner, row] of this.rows) row.classList.toggle("hot", owner === app.hot);
+      for (const [row, owner] of this.others) row.classList.toggle("hot", owner === app.hot);
+    });
+    this.tools();
+    this.sortable();
+  }
+
+  private show(owner: number): void {
+    const { app } = this;
+    const place = app.drawn.middle(owner);
+    const face = app.meta.faces[owner];
+    if (!place) return app.say(`${face.id} is not drawn`);
+    // Seen along the normal of its middle triangle.
+    const first = app.drawn.triangle[3 * (face.start + (face.count >> 1))];
+    const normal = [0, 1, 2].map((k) => app.drawn.normal[4 * first + k]) as Vec;
+    flyTo(app, place.centre, normal, 1.4 * place.radius);
+    app.say(`${face.id}${face.name ? `, ${face.name}` : ""}`);
+  }
+
+  private tools(): void {
+    if (!this.table || this.rows.size < 8) return;
+    const box = el("input", { type: "search", "aria-label": "Show faces that contain", placeholder: "Filter faces, such as F12 or plane" });
+    const count = el("span", { class: "hint", "aria-live": "polite" });
+    box.addEventListener("input", () => {
+      const wanted = box.value.trim().toLowerCase();
+      let shown = 0;
+      for (const row of this.rows.values()) {
+        row.hidden = !row.textContent!.toLowerCase().includes(wanted);
+        shown += row.hidden ? 0 : 1;
+      }
+      count.textContent = wanted ? `${shown} of ${this.rows.size}` : "";
+    });
+    this.table.before(el("p", { class: "tools" }, box, count));
+  }
+
+  /** Heads of columns become buttons that sort by them. */
+  private sortable(): void {
+    const heads = [...(this.table?.tHead?.rows[0]?.cells ?? [])];
+    const body = this.table?.tBodies[0];
+    if (!body) return;
+    heads.forEach((head, k) =>
+      press(head, () => {
+        const up = head.getAttribute("aria-sort") !== "ascending";
+        for (const other of heads) other.removeAttribute("aria-sort");
+        head.setAttribute("aria-sort", up ? "ascending" : "descending");
+        const rows = [...body.rows].sort((a, b) => (up ? 1 : -1) * compared(a.cells[k], b.cells[k]));
+        body.append(...rows);
+      }),
+    );
+  }
+}
+
+/** Order of two cells: by their numbers where they begin with one (`F12`, `< 0.1 %`), else by their words. */
+function compared(a: HTMLElement | undefined, b: HTMLElement | undefined): number {
+  const [x, y] = [a, b].map((cell) => cell?.textContent?.trim() ?? "");
+  const [u, v] = [x, y].map((text) => Number.parseFloat(text.replace(/^[F<>\s]+/, "")));
+  if (Number.isFinite(u) && Number.isFinite(v)) return u - v;
+  return x.localeCompare(y, "en");
+}

@@ -1,0 +1,152 @@
+// The review page: the data are read, the picture is made, the tables come alive.
+
+import { App } from "./app.ts";
+import { VIEWS } from "./camera.ts";
+import { Clip } from "./clip.ts";
+import { colourOf, modesOf } from "./colours.ts";
+import { readArrays, readMeta } from "./decode.ts";
+import { button, el } from "./dom.ts";
+import { borders } from "./edges.ts";
+import { helpDialog, listenKeys } from "./keys.ts";
+import { legend } from "./legend.ts";
+import { enhanceCutters, FaceTable, SpotList } from "./lists.ts";
+import { Marks } from "./marks.ts";
+import { Measure } from "./measure.ts";
+import { Drawn } from "./mesh.ts";
+import { PartView } from "./part.ts";
+import { Picker } from "./pick.ts";
+import { listen } from "./pointer.ts";
+import { PosturePanel } from "./posture_map.ts";
+import { Stills } from "./print.ts";
+import { Samples } from "./samples.ts";
+import { Stage } from "./stage.ts";
+import { ToolView } from "./tool.ts";
+
+const NONE = new Float32Array();
+
+async function start(): Promise<void> {
+  const viewer = document.getElementById("viewer");
+  if (!viewer) return;
+  performance.mark("start");
+  document.documentElement.classList.add("app");
+  const status = el("p", { id: "status", role: "status" });
+  const under = el("p", { id: "under" });
+  const frame = el("div", { id: "frame" });
+  const canvas = el("canvas", {
+    id: "picture",
+    tabindex: 0,
+    role: "application",
+    "aria-label": "The part in 3D. Arrow keys turn it, Enter selects the sample in the middle, ? shows all keys.",
+  });
+  frame.append(canvas);
+  viewer.append(frame, status);
+  const say = (text: string): void => {
+    status.textContent = text;
+  };
+
+  const meta = readMeta();
+  let stage: Stage;
+  let drawn: Drawn | null = null;
+  try {
+    stage = new Stage(canvas, meta, () => drawn?.position ?? NONE);
+  } catch {
+    frame.remove();
+    viewer.classList.add("without");
+    say("This browser shows no 3D here (WebGL is missing or switched off). The tables say all that the picture would.");
+    document.documentElement.dataset.ready = "without";
+    return;
+  }
+  const arrays = await readArrays(meta);
+  performance.mark("decoded");
+  const samples = new Samples(meta, arrays);
+  drawn = new Drawn(meta, arrays);
+  const part = new PartView(drawn, arrays, colourOf(meta, "check"), colourOf(meta, "fixture"));
+  const tool = new ToolView();
+  stage.add(part.group, tool.group);
+  const app = new App(meta, arrays, samples, drawn, stage, part, tool, new Picker(stage, drawn, part), say);
+
+  const marks = new Marks(app);
+  const panel = new PosturePanel(app);
+  const measure = new Measure(app, marks);
+  const clip = new Clip(app);
+  const help = helpDialog();
+  const stills = new Stills(app);
+  const glass = button("See through", () => setGlass(), { "aria-pressed": "true", title: "See through the tool (g)" });
+  const setGlass = (): void => {
+    tool.seeThrough(!tool.transparent);
+    glass.setAttribute("aria-pressed", String(tool.transparent));
+    stage.request();
+  };
+  const shown = button("Tool", () => setTool(), { "aria-pressed": "true", title: "Show or hide the tool (t)" });
+  const setTool = (): void => {
+    app.showTool(!app.toolShown);
+    shown.setAttribute("aria-pressed", String(app.toolShown));
+  };
+  const toolbar = el(
+    "div",
+    { id: "toolbar", role: "toolbar", "aria-label": "Picture" },
+    el("label", {}, "Colour by ", colouring(app)),
+    el("label", {}, "View ", views(app)),
+    el("span", { class: "group" }, shown, glass, measure.root),
+    clip.root,
+    button("?", () => help.showModal(), { title: "Mouse and keys (?)", "aria-label": "Help: mouse and keys" }),
+  );
+  frame.append(marks.root as unknown as Node, legend(app), measure.output, under);
+  viewer.prepend(toolbar);
+  viewer.append(panel.root);
+  viewer.append(stills.root, help);
+  app.repaint();
+  stage.resize();
+  performance.mark("drawn");
+
+  listen(app, measure, (text) => {
+    under.textContent = text;
+  });
+  enhanceCutters(app);
+  const spots = new SpotList(app);
+  new FaceTable(app);
+  listenKeys(app, { spots, clip, measure, help, glass: setGlass, tool: setTool });
+  // The tree over the triangles is what a click needs: once it is there the page answers.
+  void app.drawn.tree;
+  performance.mark("interactive");
+  setTimeout(() => {
+    stage.add(borders(app.drawn));
+    stage.request();
+  }, 0);
+  document.documentElement.dataset.ready = "yes";
+  // For scripts that ask the page: tests, and people at the console.
+  Object.assign(window, { review: app });
+}
+
+function colouring(app: App): HTMLSelectElement {
+  const select = el("select", { id: "colouring" });
+  const fill = (): void => {
+    const modes = modesOf(app.meta, app.cutter.id);
+    if (!modes.some((each) => each.key === app.mode)) app.mode = "verdict";
+    select.replaceChildren(...modes.map(({ key, label }) => el("option", { value: key, selected: key === app.mode }, label)));
+  };
+  select.addEventListener("change", () => app.setMode(select.value));
+  app.on("cutter", fill);
+  fill();
+  return select;
+}
+
+function views(app: App): HTMLSelectElement {
+  const select = el("select", { id: "views" }, el("option", { value: "" }, "choose"), el("option", { value: "f" }, "fit"));
+  for (const [key, [name]] of Object.entries(VIEWS)) select.append(el("option", { value: key }, name));
+  select.addEventListener("change", () => {
+    const { table } = app.stage;
+    const [, turn, rise] = VIEWS[select.value] ?? ["", table.aim.turn, table.aim.rise];
+    table.fly(table.fitted(turn, rise));
+    select.value = "";
+  });
+  return select;
+}
+
+start().catch((error: unknown) => {
+  const status = document.getElementById("status");
+  const text = error instanceof Error ? error.message : String(error);
+  if (status) status.textContent = `The picture cannot be shown: ${text}. The tables say all that it would.`;
+  document.documentElement.dataset.ready = "failed";
+  console.error(error);
+});

@@ -1,0 +1,136 @@
+// The drawn triangles: those of the faces in order, then those of the fixtures; and the tree over them.
+
+import { BufferAttribute, BufferGeometry } from "three";
+import { MeshBVH } from "three-mesh-bvh";
+import type { Arrays } from "./decode.ts";
+import type { Meta, Vec } from "./meta.ts";
+import { octahedral } from "./vectors.ts";
+
+/** Owner of a triangle: a face by its place in `meta.faces`, or a fixture: -1 for the first one, -2, ... */
+export type Owner = number;
+/** No place in the atlas: the surface there has no samples. */
+export const NO_TEXEL = 65535;
+
+export class Drawn {
+  readonly position: Float32Array;
+  readonly normal: Int8Array;
+  readonly texel: Float32Array;
+  readonly owner: Float32Array;
+  readonly triangle: Uint32Array;
+  /** Triangles of faces; those of fixtures follow. */
+  readonly ofFaces: number;
+  private made: MeshBVH | null = null;
+
+  constructor(
+    readonly meta: Meta,
+    arrays: Arrays,
+  ) {
+    const { low, high } = meta.part;
+    const place = arrays.get("mesh.position");
+    const count = place.rows;
+    this.position = new Float32Array(3 * count);
+    for (let k = 0; k < 3; k++) {
+      const step = (high[k] - low[k]) / 65535;
+      for (let i = 0; i < count; i++) this.position[3 * i + k] = low[k] + step * place.values[k * count + i];
+    }
+    const bent = arrays.get("mesh.normal");
+    this.normal = new Int8Array(4 * count);
+    for (let i = 0; i < count; i++) {
+      const n = octahedral((bent.values[i] - 127) / 127, (bent.values[count + i] - 127) / 127);
+      for (let k = 0; k < 3; k++) this.normal[4 * i + k] = Math.round(127 * n[k]);
+    }
+    const texel = arrays.get("mesh.texel");
+    this.texel = new Float32Array(2 * count);
+    for (let i = 0; i < count; i++) {
+      const none = texel.values[i] === NO_TEXEL;
+      this.texel[2 * i] = none ? -1 : texel.values[i] / 16;
+      this.texel[2 * i + 1] = none ? -1 : texel.values[count + i] / 16;
+    }
+    const corner = arrays.get("mesh.triangle");
+    this.triangle = new Uint32Array(3 * corner.rows);
+    for (let k = 0; k < 3; k++) {
+      for (let i = 0; i < corner.rows; i++) this.triangle[3 * i + k] = corner.values[k * corner.rows + i];
+    }
+    this.owner = new Float32Array(count);
+    this.ofFaces = meta.faces.reduce((most, face) => Math.max(most, face.start + face.count), 0);
+    meta.faces.forEach((face, i) => this.own(face, i));
+    meta.fixtures.forEach((fixture, i) => this.own(fixture, -1 - i));
+  }
+
+  private own(range: { start: number; count: number }, owner: Owner): void {
+    const end = 3 * (range.start + range.count);
+    for (let i = 3 * range.start; i < end; i++) this.owner[this.triangle[i]] = owner;
+  }
+
+  /** Triangles from the first one on, as geometry that shares the vertices. */
+  geometry(first: number, count: number): BufferGeometry {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", this.shared("position", this.position, 3));
+    geometry.setAttribute("normal", this.shared("normal", this.normal, 4));
+    geometry.setAttribute("texel", this.shared("texel", this.texel, 2));
+    geometry.setAttribute("owner", this.shared("owner", this.owner, 1));
+    geometry.setIndex(new BufferAttribute(this.triangle.subarray(3 * first, 3 * (first + count)), 1));
+    return geometry;
+  }
+
+  private readonly attributes = new Map<string, BufferAttribute>();
+
+  private shared(name: string, values: Float32Array | Int8Array, size: number): BufferAttribute {
+    let attribute = this.attributes.get(name);
+    if (!attribute) {
+      attribute = new BufferAttribute(values, size, values instanceof Int8Array);
+      this.attributes.set(name, attribute);
+    }
+    return attribute;
+  }
+
+  /** The tree over all triangles; it orders its own copy of them. */
+  get tree(): MeshBVH {
+    if (!this.made) {
+      const geometry = new BufferGeometry();
+      geometry.setAttribute("position", new BufferAttribute(this.position, 3));
+      geometry.setIndex(new BufferAttribute(this.triangle.slice(), 1));
+      this.made = new MeshBVH(geometry, { targetLeafSize: 8 });
+    }
+    return this.made;
+  }
+
+  /** What a triangle belongs to, as planners know it: a face's id, or a fixture's name. */
+  called(owner: Owner): string {
+    if (owner >= 0) return this.meta.faces[owner]?.id ?? "";
+    return `fixture ${this.meta.fixtures[-1 - owner]?.name ?? ""}`;
+  }
+
+  /** The owner that a plan names as `F12` or `fixture:NAME`. */
+  ownerOf(name: string | null): Owner | null {
+    if (!name) return null;
+    const face = this.meta.faces.findIndex((each) => each.id === name);
+    if (face >= 0) return face;
+    const fixture = this.meta.fixtures.findIndex((each) => name === `fixture:${each.name}` || name === each.name);
+    return fixture >= 0 ? -1 - fixture : null;
+  }
+
+  /** Corner k of a vertex list. */
+  vertex(i: number): Vec {
+    return [this.position[3 * i], this.position[3 * i + 1], this.position[3 * i + 2]];
+  }
+
+  /** The middle of what an owner covers, by its box. */
+  middle(owner: Owner): { centre: Vec; radius: number } | null {
+    const range = owner >= 0 ? this.meta.faces[owner] : this.meta.fixtures[-1 - owner];
+    if (!range || !range.count) return null;
+    const low: Vec = [Infinity, Infinity, Infinity];
+    const high: Vec = [-Infinity, -Infinity, -Infinity];
+    for (let i = 3 * range.start; i < 3 * (range.start + range.count); i++) {
+      for (let k = 0; k < 3; k++) {
+        const x = this.position[3 * this.triangle[i] + k];
+        low[k] = Math.min(low[k], x);
+        high[k] = Math.max(high[k], x);
+      }
+    }
+    return {
+      centre: low.map((x, k) => (x + high[k]) / 2) as Vec,
+      radius: Math.hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]) / 2,
+    };
+  }
+}

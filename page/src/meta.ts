@@ -1,0 +1,124 @@
+// The form of the data in the page, as plan_cutters.report.page writes it. Lengths mm, angles degrees, part frame.
+
+export type Vec = [number, number, number];
+export type PartName = "flutes" | "neck" | "shank" | "holder";
+
+export interface Face {
+  number: number;
+  id: string;
+  name: string;
+  component: string;
+  surface: string;
+  target: boolean;
+  ignored: boolean;
+  area_mm2: number;
+  start: number;
+  count: number;
+}
+
+export interface Fixture {
+  name: string;
+  start: number;
+  count: number;
+}
+
+/** Where a cutter touches: on the circle `offset` from its axis and `height` over its tip, with a radius of curvature. */
+export interface Mode {
+  offset: number;
+  radius: number;
+  height: number;
+  tilt_low_deg: number;
+  tilt_high_deg: number;
+}
+
+export interface Outline {
+  part: PartName;
+  points: [number, number][];
+}
+
+export interface Cutter {
+  id: string;
+  name: string;
+  feasible: boolean | null;
+  radius: number;
+  corner_radius: number;
+  allowance_mm: number;
+  clearance_mm: number;
+  touches_deg: [number, number][];
+  modes: Mode[];
+  outline: Outline[];
+  has_posture: boolean;
+}
+
+export interface Spot {
+  cutter: string;
+  sample: number;
+  face: string;
+  reason: string;
+  point: Vec;
+  obstacle_face: string | null;
+  obstacle_point: Vec | null;
+  depth_mm: number | null;
+  tilt_deg: number | null;
+  lean_deg: number | null;
+  axis: Vec | null;
+  text: string;
+}
+
+export interface Scalar {
+  key: string;
+  label: string;
+  unit: string;
+  cutter: string | null;
+  low: number | null;
+  high: number | null;
+  array: string;
+  column: number | null;
+}
+
+export interface ArrayEntry {
+  dtype: "u1" | "u2" | "u4" | "i2" | "i4" | "f2";
+  shape: number[];
+  filter: string;
+  offset: number;
+  bytes: number;
+}
+
+/** Rotary axes from the part to the tool, in the part's frame; null: no limit that way. */
+export interface Kinematics {
+  direction: Vec[];
+  limit_deg: [number | null, number | null][];
+  /** Where the tool points at zero angles. */
+  tool: Vec;
+}
+
+export interface Meta {
+  format: number;
+  part: { file: string; sha256: string; size_mm: Vec; low: Vec; high: Vec };
+  setup: { z: Vec; x: Vec | null };
+  machine: string;
+  tolerance_mm: number;
+  drawn_chord_mm?: number;
+  shown: string;
+  selected: string | null;
+  reasons: string[];
+  verdicts: Record<string, string>;
+  colours: Record<string, string>;
+  cause_colours: Record<string, string>;
+  rotation_deg: number[];
+  tilt_deg: [number, number];
+  tilt_limit_deg: number | null;
+  rotary: boolean;
+  kinematics: Kinematics | null;
+  atlas: [number, number] | null;
+  faces: Face[];
+  fixtures: Fixture[];
+  cutters: Cutter[];
+  spots: Spot[];
+  scalars: Scalar[];
+  maps: null | { cutter: string; count: number; of: number; step_deg: number; why: string | null };
+  arrays: Record<string, ArrayEntry>;
+}
+
+export const UNJUDGED = 255;
+export const NO_REASON = 255;

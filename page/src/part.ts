@@ -1,0 +1,93 @@
+// The part and its fixtures in 3D, coloured sample by sample through the atlas.
+
+import { type DataTexture, Group, Mesh, type ShaderMaterial, Vector2 } from "three";
+import type { Look } from "./colours.ts";
+import type { Arrays } from "./decode.ts";
+import type { Drawn, Owner } from "./mesh.ts";
+import { atlasTexture, NOBODY, partMaterial } from "./shading.ts";
+
+/** A texel of no sample. */
+const NO_SAMPLE = 255;
+
+export class PartView {
+  readonly group = new Group();
+  readonly material: ShaderMaterial;
+  private readonly texture: DataTexture;
+  private readonly index: ArrayLike<number>;
+  private readonly width: number;
+  private readonly height: number;
+
+  constructor(drawn: Drawn, arrays: Arrays, check: string, fixture: string) {
+    [this.width, this.height] = drawn.meta.atlas ?? [1, 1];
+    this.index = drawn.meta.atlas ? arrays.get("atlas.index").values : [-1];
+    this.texture = atlasTexture(this.width, this.height);
+    this.material = partMaterial(check, fixture);
+    this.material.uniforms.colours.value = this.texture;
+    this.material.uniforms.size.value = new Vector2(this.width, this.height);
+    const all = drawn.triangle.length / 3;
+    for (const [first, count] of [
+      [0, drawn.ofFaces],
+      [drawn.ofFaces, all - drawn.ofFaces],
+    ]) {
+      if (count) this.group.add(new Mesh(drawn.geometry(first, count), this.material));
+    }
+  }
+
+  /** Colour every sample. */
+  paint(look: Look): void {
+    const data = this.texture.image.data as Uint8Array;
+    const words = new Uint32Array(data.buffer);
+    const colours = new Uint32Array(look.bytes.buffer, look.bytes.byteOffset, look.bytes.length / 4);
+    const none = new Uint32Array(new Uint8Array([0, 0, 0, NO_SAMPLE]).buffer)[0];
+    for (let i = 0; i < words.length; i++) {
+      const row = this.index[i];
+      words[i] = row < 0 ? none : colours[row];
+    }
+    this.texture.needsUpdate = true;
+  }
+
+  /** The sample at a place in the atlas; null where there is none. */
+  sampleAt(x: number, y: number): number | null {
+    if (x < -0.5) return null;
+    const column = Math.min(this.width - 1, Math.max(0, Math.round(x)));
+    const line = Math.min(this.height - 1, Math.max(0, Math.round(y)));
+    const row = this.index[line * this.width + column];
+    return row >= 0 ? row : null;
+  }
+
+  /** The samples next to a sample on its grid: left, right, down, up; null where there is none. */
+  neighbours(row: number): (number | null)[] {
+    const at = this.places().get(row);
+    if (at === undefined) return [null, null, null, null];
+    const [x, y] = [at % this.width, Math.floor(at / this.width)];
+    const near = ([dx, dy]: number[]): number | null => {
+      // Some texels repeat the nearest sample: go on until another one comes.
+      for (let step = 1; step < 4; step++) {
+        const [u, v] = [x + step * dx, y + step * dy];
+        if (u < 0 || v < 0 || u >= this.width || v >= this.height) return null;
+        const found = this.index[v * this.width + u];
+        if (found < 0) return null;
+        if (found !== row) return found;
+      }
+      return null;
+    };
+    return [[-1, 0], [1, 0], [0, -1], [0, 1]].map(near);
+  }
+
+  private place: Map<number, number> | null = null;
+
+  private places(): Map<number, number> {
+    if (!this.place) {
+      this.place = new Map();
+      for (let i = 0; i < this.index.length; i++) {
+        if (this.index[i] >= 0 && !this.place.has(this.index[i])) this.place.set(this.index[i], i);
+      }
+    }
+    return this.place;
+  }
+
+  light(hot: Owner | null, held: Owner | null): void {
+    this.material.uniforms.hot.value = hot ?? NOBODY;
+    this.material.uniforms.held.value = held ?? NOBODY;
+  }
+}

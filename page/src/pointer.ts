@@ -1,0 +1,107 @@
+// The mouse in the picture: turn, shift, zoom, hover, click.
+
+import type { App } from "./app.ts";
+import type { Measure } from "./measure.ts";
+
+/** A press that moves less than this, pixels, is a click. */
+const STILL = 4;
+
+export function listen(app: App, measure: Measure, told: (text: string) => void): void {
+  const { stage } = app;
+  const { canvas, table } = stage;
+  let down: { x: number; y: number; pan: boolean; moved: boolean } | null = null;
+  let asked = 0;
+  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+  canvas.addEventListener("pointerdown", (event) => {
+    canvas.setPointerCapture(event.pointerId);
+    down = { x: event.clientX, y: event.clientY, pan: event.button !== 0 || event.shiftKey, moved: false };
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    if (!down) {
+      // Once a frame is enough for what lies under the pointer.
+      cancelAnimationFrame(asked);
+      asked = requestAnimationFrame(() => hover(event));
+      return;
+    }
+    const [dx, dy] = [event.clientX - down.x, event.clientY - down.y];
+    if (!down.moved && Math.hypot(dx, dy) < STILL) return;
+    down = { ...down, x: event.clientX, y: event.clientY, moved: true };
+    if (down.pan) table.pan(dx / canvas.clientHeight, dy / canvas.clientHeight);
+    else table.orbit(-0.45 * dx, 0.45 * dy);
+  });
+  const up = (event: PointerEvent): void => {
+    const click = down && !down.moved && !down.pan && event.type === "pointerup";
+    down = null;
+    if (click) choose(...stage.place(event));
+  };
+  canvas.addEventListener("pointerup", up);
+  canvas.addEventListener("pointercancel", up);
+  canvas.addEventListener("pointerleave", () => {
+    cancelAnimationFrame(asked);
+    app.hover(null);
+    told("");
+  });
+  canvas.addEventListener(
+    "wheel",
+    (event) => {
+      event.preventDefault();
+      const lines = event.deltaMode === 1 ? 16 : 1;
+      table.zoom(Math.exp(-0.0015 * lines * event.deltaY), ...stage.place(event));
+    },
+    { passive: false },
+  );
+
+  const hover = (event: PointerEvent): void => {
+    const found = app.picker.at(...stage.place(event));
+    app.hover(found ? found.owner : null);
+    if (!found) return told("");
+    const face = app.meta.faces[found.owner];
+    const name = face?.name && face.name !== face.id ? `, ${face.name}` : "";
+    const verdict = found.sample === null ? "" : `: ${app.samples.verdict(app.cutter.id, found.sample).replaceAll("_", " ")}`;
+    told(`${app.drawn.called(found.owner)}${name}${verdict}`);
+  };
+
+  /** What a click there does, or Enter in the middle of the picture. */
+  const choose = (x: number, y: number): void => {
+    const found = app.picker.at(x, y);
+    if (measure.on) {
+      if (found) measure.add(found.point);
+      return;
+    }
+    if (!found || found.sample === null) {
+      app.say(found ? `${app.drawn.called(found.owner)} has no samples` : "Nothing is there");
+      return;
+    }
+    app.select(found.sample);
+  };
+  canvas.addEventListener("keydown", (event) => {
+    if (event.key !== "Enter") return;
+    const middle = app.picker.at(0, 0);
+    if (middle && (measure.on || middle.sample !== null)) return choose(0, 0);
+    const near = nearestToMiddle(app);
+    if (near === null) return app.say("No sample is in the picture");
+    if (measure.on) measure.add(app.samples.point(near));
+    else app.select(near);
+  });
+}
+
+/** The sample that is drawn nearest to the middle of the picture and is not hidden; null where there is none. */
+function nearestToMiddle(app: App): number | null {
+  const { samples, stage, picker } = app;
+  const { back } = stage.table.frame();
+  const [w, h] = [stage.canvas.clientWidth, stage.canvas.clientHeight];
+  const found: [number, number, number, number][] = [];
+  for (let row = 0; row < samples.count; row++) {
+    const normal = samples.normal(row);
+    if (normal[0] * back[0] + normal[1] * back[1] + normal[2] * back[2] <= 0) continue;
+    const [x, y] = stage.project(samples.point(row));
+    const [u, v] = [(2 * x) / w - 1, 1 - (2 * y) / h];
+    if (Math.abs(u) < 1 && Math.abs(v) < 1) found.push([u * u + v * v, row, u, v]);
+  }
+  found.sort((a, b) => a[0] - b[0]);
+  for (const [, row, u, v] of found.slice(0, 40)) {
+    const there = picker.at(u, v);
+    if (there?.owner !== undefined && app.meta.faces[there.owner]?.number === samples.face.values[row]) return row;
+  }
+  return found.length ? found[0][1] : null;
+}

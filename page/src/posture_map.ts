@@ -1,0 +1,330 @@
+// The panel of one sample: tilt against rotation, what is free, what forbids the rest, and the posture shown.
+
+import type { App } from "./app.ts";
+import { causeOf, spoken } from "./colours.ts";
+import { button, el, figure, percent } from "./dom.ts";
+import { STATES, type State } from "./live_map.ts";
+import { swatch, tile } from "./patterns.ts";
+import { apart, SampleMap, wording } from "./posture_states.ts";
+import { StoredMaps } from "./stored_map.ts";
+import { turned } from "./vectors.ts";
+
+const LEFT = 30;
+const BOTTOM = 30;
+const TOP = 10;
+const RIGHT = 10;
+const HEIGHT = 226;
+
+export class PosturePanel {
+  readonly root = el("section", { id: "posture", "aria-label": "Posture map" });
+  private readonly canvas = el("canvas", { id: "map", tabindex: 0, role: "application", "aria-describedby": "posture-line" });
+  private readonly title = el("h2", {}, "Posture map");
+  private readonly about = el("p", { class: "about" });
+  private readonly kind = el("p", { class: "kind" });
+  private readonly line = el("p", { id: "posture-line", "aria-live": "polite" });
+  private readonly witness = el("p", { class: "hint" });
+  private readonly legend = el("ul", { class: "legend", "aria-label": "Legend of the posture map" });
+  private readonly rows = el("tbody");
+  private readonly intervals: HTMLElement;
+  private readonly body = el("div", { class: "posture-body" });
+  private readonly empty = el("p", { class: "hint" });
+  private readonly stored: StoredMaps;
+  private map: SampleMap | null = null;
+  private width = 320;
+  private timer = 0;
+
+  constructor(private readonly app: App) {
+    this.stored = new StoredMaps(app.meta, app.arrays);
+    const head = ["rotation, deg", "free tilts, deg", "else in the way"].map((text) => el("th", { scope: "col" }, text));
+    this.intervals = el(
+      "details",
+      {},
+      el("summary", {}, "The same as a table"),
+      el("table", { id: "intervals" }, el("caption", {}, "Free tilts by rotation"), el("thead", {}, el("tr", {}, ...head)), this.rows),
+    );
+    this.empty.append("Click the surface, or press Enter in the picture, to see the postures of the cutter at a sample.");
+    const found = button("Posture found", () => this.back(), { id: "found-posture" });
+    this.body.append(this.about, this.kind, this.canvas, this.line, this.witness, found, this.legend, this.intervals);
+    this.root.append(this.title, this.empty, this.body);
+    this.body.hidden = true;
+    this.canvas.addEventListener("pointermove", (event) => this.point(event));
+    this.canvas.addEventListener("pointerdown", (event) => this.point(event));
+    this.canvas.addEventListener("keydown", (event) => this.key(event));
+    app.judge = (posture, met) => this.map?.at(posture, met) ?? { state: met.state, certified: false };
+    app.on("sample", () => this.begin());
+    app.on("posture", () => this.told());
+    new ResizeObserver(() => this.resize()).observe(this.root);
+  }
+
+  private resize(): void {
+    const width = Math.max(220, Math.floor(this.root.clientWidth - 24));
+    if (width === this.width) return;
+    this.width = width;
+    this.draw();
+  }
+
+  private begin(): void {
+    window.clearTimeout(this.timer);
+    const { sample, cutter, samples } = this.app;
+    this.body.hidden = !sample;
+    this.empty.hidden = !!sample;
+    this.map = sample && new SampleMap(this.app, this.stored, sample);
+    if (!sample || !this.map) return;
+    const face = this.app.meta.faces.find((each) => each.number === sample.face);
+    const verdict = samples.verdict(cutter.id, sample.row);
+    const reason = samples.reason(cutter.id, sample.row);
+    this.canvas.setAttribute("aria-label", `Posture map of sample ${sample.row}: tilt against rotation; arrow keys move the tool`);
+    this.about.replaceChildren(
+      el("strong", {}, `${face?.id ?? "?"}, sample ${sample.row}`),
+      ` at ${sample.point.map((x) => figure(x, 4)).join(", ")} mm. `,
+      el("strong", {}, cutter.name || cutter.id),
+      `: ${spoken(verdict)}${reason ? ` (${spoken(reason)})` : ""}. Curvature ${sample.curvature.map(bend).join(" and ")}.`,
+    );
+    this.kind.textContent = this.map.certified
+      ? "Free postures are certified. What forbids the others comes from the drawn triangles."
+      : "Approximate: this map comes from the drawn triangles and overlooks what reaches less than " +
+        `${figure(this.app.liveTool().spared, 2)} mm into the tool. It is not certified.`;
+    if (this.app.meta.kinematics && this.app.meta.kinematics.direction.length < 2) {
+      this.kind.textContent += " This machine turns too few axes for a map: only the posture found is shown.";
+    }
+    this.kind.classList.toggle("approximate", !this.map.certified);
+    this.draw();
+    this.timer = window.setTimeout(() => this.advance(this.map!), 0);
+  }
+
+  /** Fill the map in slices, so that the page stays responsive. */
+  private advance(map: SampleMap): void {
+    if (map !== this.map) return;
+    if (!map.complete) map.advance();
+    this.draw();
+    if (!map.complete) {
+      this.timer = window.setTimeout(() => this.advance(map), 0);
+      return;
+    }
+    this.table(map);
+    this.root.dataset.complete = String(map.sample.row);
+    if (!this.app.posture) {
+      const start = this.firstFree(map) ?? map.nearest();
+      if (start) this.app.setPosture(start);
+    }
+  }
+
+  private firstFree(map: SampleMap): { tilt: number; rotation: number } | null {
+    let best: [number, { tilt: number; rotation: number }] | null = null;
+    map.grid.rotations.forEach((rotation, column) => {
+      for (const [low, high] of map.free(column)) {
+        if (!best || high - low > best[0]) best = [high - low, { tilt: Math.round((low + high) / 2), rotation }];
+      }
+    });
+    return best ? best[1] : null;
+  }
+
+  private back(): void {
+    const { sample } = this.app;
+    if (sample) this.app.setPosture(this.app.startPosture(sample.row) ?? this.map?.nearest() ?? null);
+  }
+
+  private told(): void {
+    const { posture, met, state, sample } = this.app;
+    if (posture && state && sample) {
+      const found = this.app.samples.posture(this.app.cutter.id, sample.row);
+      const here = found && Math.abs(found.tilt - posture.tilt) < 0.02 && apart(found.rotation, posture.rotation) < 0.02;
+      const sure = state.state === "free" ? (here ? ", the posture found" : state.certified ? "" : " (approximate)") : "";
+      this.line.textContent =
+        `tilt ${degrees(posture.tilt)} deg, rotation ${degrees(posture.rotation)} deg: ` +
+        (this.app.atWitness() ? this.witnessed() : wording(this.app, state.state, met) + sure);
+      this.line.dataset.state = state.state;
+    } else {
+      this.line.textContent = "";
+    }
+    this.witness.textContent = this.app.atWitness() ? this.app.spot!.text : "";
+    this.draw();
+  }
+
+  /** What the plan says of its witness goes before what the drawn triangles say. */
+  private witnessed(): string {
+    const { reason, depth_mm, obstacle_face } = this.app.spot!;
+    const depth = depth_mm === null ? "" : `, ${figure(depth_mm)} mm too deep in ${obstacle_face ?? "the part"}`;
+    return `${spoken(reason)}${depth} (the best posture there is)`;
+  }
+
+  // Places in the drawing.
+
+  private x(rotation: number): number {
+    return LEFT + ((this.width - LEFT - RIGHT) * turned(rotation + this.step / 2)) / 360;
+  }
+
+  private y(tilt: number): number {
+    const [low, high] = this.app.meta.tilt_deg;
+    return HEIGHT - BOTTOM - ((HEIGHT - BOTTOM - TOP) * (tilt - low)) / Math.max(1e-9, high - low);
+  }
+
+  private get step(): number {
+    const turns = this.app.meta.rotation_deg;
+    return turns.length > 1 ? turns[1] - turns[0] : 360;
+  }
+
+  private draw(): void {
+    const { map, canvas } = this;
+    if (!map) return;
+    const ratio = Math.min(2, devicePixelRatio || 1);
+    canvas.width = this.width * ratio;
+    canvas.height = HEIGHT * ratio;
+    canvas.style.width = `${this.width}px`;
+    canvas.style.height = `${HEIGHT}px`;
+    const c = canvas.getContext("2d")!;
+    c.scale(ratio, ratio);
+    const fills = new Map(STATES.map((state) => [state, tile(c, ...causeOf(this.app.meta, state))]));
+    const wide = Math.max(1, ((this.width - LEFT - RIGHT) * this.step) / 360 - 1);
+    const seen = new Set<State>();
+    const { tilts } = map.grid;
+    map.grid.rotations.forEach((rotation, column) => {
+      const x = this.x(rotation) - wide / 2;
+      c.fillStyle = "#eceef0";
+      c.fillRect(x, TOP, wide, HEIGHT - TOP - BOTTOM);
+      let from = 0;
+      for (let row = 1; row <= tilts.length; row++) {
+        const state = map.cell(column, from);
+        if (row < tilts.length && map.cell(column, row) === state) continue;
+        if (state && state !== "free") {
+          seen.add(state);
+          c.fillStyle = fills.get(state)!;
+          const low = from ? (tilts[from - 1] + tilts[from]) / 2 : tilts[0];
+          const high = row < tilts.length ? (tilts[row - 1] + tilts[row]) / 2 : tilts[row - 1];
+          c.fillRect(x, this.y(high), wide, this.y(low) - this.y(high));
+        }
+        from = row;
+      }
+      c.fillStyle = fills.get("free")!;
+      for (const [low, high] of map.free(column)) {
+        seen.add("free");
+        c.fillRect(x, this.y(high) - 0.5, wide, Math.max(1, this.y(low) - this.y(high) + 1));
+      }
+    });
+    this.axes(c);
+    this.marks(c);
+    const shown = STATES.filter((state) => seen.has(state));
+    if (this.legend.dataset.shown !== shown.join()) {
+      this.legend.dataset.shown = shown.join();
+      this.legend.replaceChildren(
+        ...shown.map((state) => el("li", {}, swatch(...causeOf(this.app.meta, state)), state === "tolerance" ? "within tolerance" : spoken(state))),
+      );
+    }
+  }
+
+  private axes(c: CanvasRenderingContext2D): void {
+    const [low, high] = this.app.meta.tilt_deg;
+    c.fillStyle = "#3c434a";
+    c.font = "11px system-ui, sans-serif";
+    c.textAlign = "right";
+    c.textBaseline = "middle";
+    for (let k = 0; k <= 3; k++) c.fillText(String(Math.round(low + ((high - low) * k) / 3)), LEFT - 5, this.y(low + ((high - low) * k) / 3));
+    c.textAlign = "center";
+    c.textBaseline = "top";
+    for (const turn of [0, 90, 180, 270]) c.fillText(String(turn), this.x(turn), HEIGHT - BOTTOM + 4);
+    c.fillText("rotation, deg", LEFT + (this.width - LEFT - RIGHT) / 2, HEIGHT - 13);
+    c.save();
+    c.translate(2, TOP + (HEIGHT - TOP - BOTTOM) / 2);
+    c.rotate(-Math.PI / 2);
+    c.fillText("tilt, deg", 0, 0);
+    c.restore();
+  }
+
+  private marks(c: CanvasRenderingContext2D): void {
+    const { sample, cutter, posture } = this.app;
+    const found = sample && this.app.samples.posture(cutter.id, sample.row);
+    const ring = (x: number, y: number, r: number, colour: string, width: number): void => {
+      c.strokeStyle = colour;
+      c.lineWidth = width;
+      c.beginPath();
+      c.arc(x, y, r, 0, 7);
+      c.stroke();
+    };
+    if (found) {
+      const [x, y] = [this.x(found.rotation), this.y(found.tilt)];
+      c.beginPath();
+      for (const [dx, dy] of [[0, -6], [6, 0], [0, 6], [-6, 0]]) c.lineTo(x + dx, y + dy);
+      c.closePath();
+      c.fillStyle = "#fff";
+      c.fill();
+      c.strokeStyle = "#111";
+      c.lineWidth = 1.5;
+      c.stroke();
+    }
+    if (!posture) return;
+    const [x, y] = [this.x(posture.rotation), this.y(posture.tilt)];
+    ring(x, y, 8, "#fff", 4);
+    ring(x, y, 8, "#111", 2);
+  }
+
+  // Moving over it.
+
+  private point(event: PointerEvent): void {
+    if (!this.map) return;
+    const box = this.canvas.getBoundingClientRect();
+    const across = (event.clientX - box.left - LEFT) / (this.width - LEFT - RIGHT);
+    const [low, high] = this.app.meta.tilt_deg;
+    const up = (HEIGHT - BOTTOM - (event.clientY - box.top)) / (HEIGHT - BOTTOM - TOP);
+    if (across < 0 || across > 1) return;
+    const column = this.map.column(turned(360 * across - this.step / 2));
+    const tilt = Math.round(Math.min(high, Math.max(low, low + up * (high - low))));
+    this.go(column, Math.min(high, Math.max(low, tilt)));
+  }
+
+  private go(column: number, tilt: number): void {
+    const rotation = this.map!.grid.rotations[column];
+    const now = this.app.posture;
+    if (now && now.tilt === tilt && now.rotation === rotation) return;
+    this.app.setPosture({ tilt, rotation });
+  }
+
+  private key(event: KeyboardEvent): void {
+    const way: Record<string, [number, number]> = {
+      ArrowLeft: [-1, 0],
+      ArrowRight: [1, 0],
+      ArrowUp: [0, 1],
+      ArrowDown: [0, -1],
+      PageUp: [0, 10],
+      PageDown: [0, -10],
+    };
+    const step = way[event.key];
+    if (!step || !this.map || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const { posture } = this.app;
+    const turns = this.map.grid.rotations.length;
+    const [low, high] = this.app.meta.tilt_deg;
+    const column = posture ? this.map.column(posture.rotation) : 0;
+    const tilt = Math.round(posture?.tilt ?? low) + step[1];
+    this.go((column + step[0] + turns) % turns, Math.min(high, Math.max(low, tilt)));
+  }
+
+  private table(map: SampleMap): void {
+    this.rows.replaceChildren(
+      ...map.grid.rotations.map((rotation, column) => {
+        const free = map.free(column).map(([low, high]) => `${degrees(low)} to ${degrees(high)}`);
+        const causes = [...map.causes(column)].sort((a, b) => b[1] - a[1]).map(([state]) => spoken(state));
+        return el(
+          "tr",
+          { "data-rotation": rotation, "data-certified": String(map.certified !== null) },
+          el("th", { scope: "row" }, degrees(rotation)),
+          el("td", {}, free.join("; ") || "none"),
+          el("td", {}, causes.join(", ")),
+        );
+      }),
+    );
+    const cells = map.grid.rotations.length * map.grid.tilts.length;
+    let open = 0;
+    map.grid.rotations.forEach((_, k) => map.grid.tilts.forEach((__, i) => (open += map.cell(k, i) === "free" ? 1 : 0)));
+    this.title.textContent = `Posture map: ${percent(open / cells)} free`;
+  }
+}
+
+const degrees = (value: number): string => String(Number(value.toFixed(1)));
+
+/** A curvature as planners think of it: a radius. */
+function bend(curvature: number): string {
+  if (!Number.isFinite(curvature)) return "unknown";
+  if (Math.abs(curvature) < 1e-5) return "flat";
+  return `${curvature > 0 ? "concave" : "convex"} R ${figure(1 / Math.abs(curvature))}`;
+}

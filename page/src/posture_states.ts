@@ -1,0 +1,155 @@
+// The map of one sample: what is certified, what the drawn triangles add to it, and what is said of a posture.
+
+import type { App, Judged } from "./app.ts";
+import { spoken } from "./colours.ts";
+import { emptyGrid, fillColumn, type Grid, type Met, STATES, type State } from "./live_map.ts";
+import type { Posture, Sample } from "./samples.ts";
+import type { Certified, StoredMaps } from "./stored_map.ts";
+
+const SLICE_MS = 14;
+
+export class SampleMap {
+  readonly certified: Certified | null;
+  readonly grid: Grid;
+
+  constructor(
+    private readonly app: App,
+    stored: StoredMaps,
+    readonly sample: Sample,
+  ) {
+    this.certified = within(app, sample, stored.of(app.cutter.id, sample.row));
+    this.grid = emptyGrid(app.meta);
+  }
+
+  get complete(): boolean {
+    return this.grid.done >= this.grid.rotations.length;
+  }
+
+  /** Look further for a moment; the page stays responsive. */
+  advance(): void {
+    const end = performance.now() + SLICE_MS;
+    do fillColumn(this.grid, this.app.probe, this.app.liveTool(), this.sample);
+    while (!this.complete && performance.now() < end);
+  }
+
+  /** The state of a searched rotation at a tilt of the grid; null where it is not known yet. */
+  cell(column: number, row: number): State | null {
+    const tilt = this.grid.tilts[row];
+    if (this.freeAt(column, tilt)) return "free";
+    if (column >= this.grid.done) return null;
+    const state = STATES[this.grid.state[column * this.grid.tilts.length + row]];
+    return this.certified && state === "free" ? this.unsure(column) : state;
+  }
+
+  private freeAt(column: number, tilt: number): boolean {
+    return this.certified?.free[column].some(([low, high]) => tilt >= low && tilt <= high) ?? false;
+  }
+
+  private unsure(column: number): State {
+    return this.certified!.undecided[column] > 0 ? "undecided" : "tolerance";
+  }
+
+  /** Free intervals at a rotation: the stored ones, else those of the grid. */
+  free(column: number): [number, number][] {
+    if (this.certified) return this.certified.free[column];
+    const found: [number, number][] = [];
+    let open = false;
+    this.grid.tilts.forEach((tilt, row) => {
+      const free = this.cell(column, row) === "free";
+      if (free && !open) found.push([tilt, tilt]);
+      else if (free) found[found.length - 1][1] = tilt;
+      open = free;
+    });
+    return found;
+  }
+
+  /** What stands in the way at a rotation, each with how many degrees. */
+  causes(column: number): Map<State, number> {
+    const found = new Map<State, number>();
+    for (let row = 0; row < this.grid.tilts.length; row++) {
+      const state = this.cell(column, row);
+      if (state && state !== "free") found.set(state, (found.get(state) ?? 0) + 1);
+    }
+    return found;
+  }
+
+  /** The searched rotation next to a rotation, degrees. */
+  column(rotation: number): number {
+    let best = 0;
+    this.grid.rotations.forEach((each, i) => {
+      if (apart(each, rotation) < apart(this.grid.rotations[best], rotation)) best = i;
+    });
+    return best;
+  }
+
+  /** The state of a posture, and whether that is certified. */
+  at(posture: Posture, met: Met): Judged {
+    const found = this.app.samples.posture(this.app.cutter.id, this.sample.row);
+    if (found && Math.abs(found.tilt - posture.tilt) < 0.02 && apart(found.rotation, posture.rotation) < 0.02) {
+      return { state: "free", certified: true };
+    }
+    const column = this.column(posture.rotation);
+    const searched = apart(this.grid.rotations[column], posture.rotation) < 0.02;
+    if (!this.certified || !searched) return { state: met.state, certified: false };
+    if (this.freeAt(column, posture.tilt)) return { state: "free", certified: true };
+    return { state: met.state === "free" ? this.unsure(column) : met.state, certified: false };
+  }
+
+  /** A blocked posture that comes near to being free: of the last cause, the one that meets least. */
+  nearest(): Posture | null {
+    const { grid, app } = this;
+    const order: State[] = ["holder", "fixture", "shank", "neck", "collision", "rear_gouge"];
+    for (const state of order) {
+      const cells: Posture[] = [];
+      grid.rotations.forEach((rotation, column) =>
+        grid.tilts.forEach((tilt, row) => {
+          if (this.cell(column, row) === state) cells.push({ tilt, rotation });
+        }),
+      );
+      const step = Math.max(1, Math.ceil(cells.length / 60));
+      let best: [number, Posture] | null = null;
+      for (let i = 0; i < cells.length; i += step) {
+        const { depth } = app.probe.look(app.liveTool(), this.sample, cells[i], true);
+        if (!best || depth < best[0]) best = [depth, cells[i]];
+      }
+      if (best) return best[1];
+    }
+    return null;
+  }
+}
+
+/** Stored maps hold for any machine: what this one holds of them. */
+function within(app: App, sample: Sample, found: Certified | null): Certified | null {
+  const { machine } = app.probe;
+  if (!found || !machine.limited) return found;
+  return { ...found, free: found.free.map((mine, k) => machine.within(mine, sample, app.meta.rotation_deg[k])) };
+}
+
+export const apart = (a: number, b: number): number => Math.abs(((a - b + 540) % 360) - 180);
+
+/** What is said of a posture: `free`, or what is in the way. */
+export function wording(app: App, state: State, met: Met | null): string {
+  const name = met && met.owner !== null ? app.drawn.called(met.owner) : "";
+  switch (state) {
+    case "free":
+      return "free";
+    case "axis_limit":
+      return "beyond the limit of the tool axis";
+    case "no_contact":
+      return "the cutter does not touch at this tilt";
+    case "local_gouge":
+      return "local gouge: the surface curves more than the cutter";
+    case "rear_gouge":
+      return `rear gouge: the bottom of the cutter meets ${name}`;
+    case "collision":
+      return `collision: the side of the cutter meets ${name}`;
+    case "fixture":
+      return `${met?.part ?? "cutter"} meets ${name}`;
+    case "undecided":
+      return "undecided: neither called free nor known to be forbidden";
+    case "tolerance":
+      return "not free within the tolerance";
+    default:
+      return `${spoken(state)} meets ${name}`;
+  }
+}

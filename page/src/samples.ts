@@ -1,0 +1,102 @@
+// A sample: where it lies, its frame, its curvature, and what a cutter reaches there.
+
+import type { Arrays, Table } from "./decode.ts";
+import type { Meta, Vec } from "./meta.ts";
+import { NO_REASON } from "./meta.ts";
+import { across, cross, mixed, octahedral, RAD, turned } from "./vectors.ts";
+
+export interface Sample {
+  row: number;
+  point: Vec;
+  normal: Vec;
+  /** Direction of the largest curvature, from which rotations count. */
+  direction: Vec;
+  /** Largest and least, 1/mm, concave positive. */
+  curvature: [number, number];
+  face: number;
+}
+
+export interface Posture {
+  tilt: number;
+  rotation: number;
+}
+
+export class Samples {
+  readonly count: number;
+  readonly face: Table;
+  readonly surfaceClass: Table;
+
+  constructor(
+    private readonly meta: Meta,
+    private readonly arrays: Arrays,
+  ) {
+    this.face = arrays.get("sample.face");
+    this.surfaceClass = arrays.get("sample.class");
+    this.count = this.face.rows;
+  }
+
+  at(row: number): Sample {
+    const point = this.point(row);
+    const normal = this.normal(row);
+    const angle = (this.arrays.get("sample.direction").values[row] / 32767) * Math.PI;
+    const first = across(normal);
+    const direction = mixed(first, Math.cos(angle), cross(normal, first), Math.sin(angle));
+    const bends = this.arrays.get("sample.curvature");
+    return {
+      row,
+      point,
+      normal,
+      direction,
+      curvature: [bends.values[row], bends.values[bends.rows + row]],
+      face: this.face.values[row],
+    };
+  }
+
+  point(row: number): Vec {
+    const { rows, values } = this.arrays.get("sample.point");
+    const { low, high } = this.meta.part;
+    return [0, 1, 2].map((k) => low[k] + ((high[k] - low[k]) * values[k * rows + row]) / 65535) as Vec;
+  }
+
+  normal(row: number): Vec {
+    const { rows, values } = this.arrays.get("sample.normal");
+    return octahedral(values[row] / 32767, values[rows + row] / 32767);
+  }
+
+  /** What a sample stands for, mm2. */
+  area(row: number): number {
+    const { values } = this.arrays.get("sample.area");
+    return Number.isFinite(values[row]) ? values[row] : 0;
+  }
+
+  verdicts(cutter: string): Table {
+    return this.arrays.get(`verdict.${cutter}`);
+  }
+
+  reasons(cutter: string): Table {
+    return this.arrays.get(`reason.${cutter}`);
+  }
+
+  verdict(cutter: string, row: number): string {
+    return this.meta.verdicts[String(this.verdicts(cutter).values[row])] ?? "unjudged";
+  }
+
+  reason(cutter: string, row: number): string | null {
+    const found = this.reasons(cutter).values[row];
+    return found === NO_REASON ? null : (this.meta.reasons[found] ?? null);
+  }
+
+  /** The posture found, degrees; null where there is none, or where it is not stored for this cutter. */
+  posture(cutter: string, row: number): Posture | null {
+    if (!this.arrays.has(`tilt.${cutter}`)) return null;
+    const tilt = this.arrays.get(`tilt.${cutter}`).values[row];
+    if (tilt === 65535) return null;
+    return { tilt: tilt / 100, rotation: turned(this.arrays.get(`lean.${cutter}`).values[row] / 100) };
+  }
+
+  /** The lean direction at a rotation, degrees. */
+  static lean(sample: Sample, rotation: number): Vec {
+    const across_ = cross(sample.normal, sample.direction);
+    return mixed(sample.direction, Math.cos(rotation * RAD), across_, Math.sin(rotation * RAD));
+  }
+}

@@ -1,0 +1,195 @@
+// The materials: lit by a lamp at the eye, coloured as the legend says, cut by the clipping plane.
+
+import {
+  DataTexture,
+  DoubleSide,
+  GLSL3,
+  NearestFilter,
+  RGBAFormat,
+  ShaderMaterial,
+  UnsignedByteType,
+  Vector3,
+  Vector4,
+} from "three";
+import { rgb } from "./colours.ts";
+
+/** What all materials share: the clipping plane (kept: xyz . p <= w) and the pixels of a step of the patterns. */
+export const shared = {
+  plane: { value: new Vector4(0, 0, 0, 1) },
+  ratio: { value: 1 },
+};
+
+const VERTEX = `
+in vec2 texel;
+in float owner;
+out vec3 vNormal;
+out vec3 vPlace;
+out vec2 vTexel;
+flat out float vOwner;
+void main() {
+  vPlace = position;
+  vNormal = normalMatrix * normal;
+  vTexel = texel;
+  vOwner = owner;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+}`;
+
+const LIGHT = `
+vec3 lit(vec3 colour, vec3 normal) {
+  vec3 n = normalize(normal);
+  if (!gl_FrontFacing) n = -n;
+  float head = clamp(n.z, 0.0, 1.0);
+  float sky = 0.5 + 0.5 * dot(n, normalize(vec3(-0.35, 0.8, 0.45)));
+  return colour * (0.56 + 0.28 * head + 0.2 * sky);
+}`;
+
+// Patterns 1 to 6 as in colours.ts, in pixels of the screen: the same size whatever the zoom.
+const INK = `
+float ink(int pattern, vec2 p) {
+  float d = p.x + p.y;
+  float e = p.x - p.y;
+  if (pattern == 1) return step(mod(d, 8.0), 1.9);
+  if (pattern == 2) { vec2 q = mod(p, 6.0) - 3.0; return step(dot(q, q), 2.6); }
+  if (pattern == 3) return max(step(mod(d, 9.0), 1.5), step(mod(e, 9.0), 1.5));
+  if (pattern == 4) return step(mod(p.y, 6.0), 1.6);
+  if (pattern == 5) return step(mod(p.x, 6.0), 1.6);
+  if (pattern == 6) return step(mod(e, 8.0), 1.9);
+  return 0.0;
+}`;
+
+const PART = `
+precision highp float;
+uniform sampler2D colours;
+uniform vec2 size;
+uniform vec3 plain;
+uniform vec3 fixed_;
+uniform float hot;
+uniform float held;
+uniform vec4 plane;
+uniform float ratio;
+in vec3 vNormal;
+in vec3 vPlace;
+in vec2 vTexel;
+flat in float vOwner;
+out vec4 colour;
+${LIGHT}
+${INK}
+void main() {
+  if (dot(plane.xyz, vPlace) > plane.w) discard;
+  vec3 base = vOwner < 0.0 ? fixed_ : plain;
+  int pattern = 0;
+  if (vTexel.x >= -0.5) {
+    vec4 found = texelFetch(colours, ivec2(clamp(floor(vTexel + 0.5), vec2(0.0), size - 1.0)), 0);
+    base = found.rgb;
+    pattern = int(found.a * 255.0 + 0.5);
+    if (pattern == 255) { base = plain; pattern = 0; }
+  }
+  float dark = ink(pattern, gl_FragCoord.xy / ratio);
+  base = mix(base, base * 0.42, dark);
+  vec3 seen = lit(base, vNormal);
+  if (abs(vOwner - held) < 0.25) seen = mix(seen, vec3(1.0, 0.25, 0.6), 0.45);
+  if (abs(vOwner - hot) < 0.25) seen = mix(seen, vec3(1.0, 0.97, 0.75), 0.5);
+  colour = vec4(seen, 1.0);
+}`;
+
+/** Of no face and no fixture. */
+export const NOBODY = 1e9;
+
+export function partMaterial(check: string, fixture: string): ShaderMaterial {
+  const vector = (hex: string): Vector3 => new Vector3(...rgb(hex).map((x) => x / 255));
+  return new ShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: VERTEX,
+    fragmentShader: PART,
+    side: DoubleSide,
+    uniforms: {
+      ...shared,
+      colours: { value: null },
+      size: { value: null },
+      plain: { value: vector(check) },
+      fixed_: { value: vector(fixture) },
+      hot: { value: NOBODY },
+      held: { value: NOBODY },
+    },
+    // A little back, so that lines on the surface are seen whole.
+    polygonOffset: true,
+    polygonOffsetFactor: 1,
+    polygonOffsetUnits: 1,
+  });
+}
+
+const TOOL = `
+precision highp float;
+uniform vec3 tint;
+uniform float opacity;
+in vec3 vNormal;
+out vec4 colour;
+${LIGHT}
+void main() {
+  colour = vec4(lit(tint, vNormal), opacity);
+}`;
+
+const TOOL_VERTEX = `
+out vec3 vNormal;
+void main() {
+  vNormal = normalMatrix * normal;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+}`;
+
+export function toolMaterial(hex: string): ShaderMaterial {
+  return new ShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: TOOL_VERTEX,
+    fragmentShader: TOOL,
+    uniforms: { tint: { value: new Vector3(...rgb(hex).map((x) => x / 255)) }, opacity: { value: 1 } },
+  });
+}
+
+/** Draws nothing seen: it counts what lies behind the clipping plane, for the cap. */
+export function countingMaterial(): ShaderMaterial {
+  return new ShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: VERTEX,
+    fragmentShader: `
+precision highp float;
+uniform vec4 plane;
+in vec3 vPlace;
+out vec4 colour;
+void main() {
+  if (dot(plane.xyz, vPlace) > plane.w) discard;
+  colour = vec4(0.0);
+}`,
+    uniforms: { ...shared },
+    colorWrite: false,
+    depthWrite: false,
+    depthTest: false,
+    stencilWrite: true,
+  });
+}
+
+export function capMaterial(hex: string): ShaderMaterial {
+  return new ShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: "void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }",
+    fragmentShader: `
+precision highp float;
+uniform vec3 tint;
+uniform float ratio;
+out vec4 colour;
+void main() {
+  vec2 p = gl_FragCoord.xy / ratio;
+  float line = step(mod(p.x - p.y, 7.0), 1.1);
+  colour = vec4(tint * (1.0 - 0.22 * line), 1.0);
+}`,
+    uniforms: { ...shared, tint: { value: new Vector3(...rgb(hex).map((x) => x / 255)) } },
+    side: DoubleSide,
+    stencilWrite: true,
+  });
+}
+
+export function atlasTexture(width: number, height: number): DataTexture {
+  const texture = new DataTexture(new Uint8Array(4 * width * height), width, height, RGBAFormat, UnsignedByteType);
+  texture.magFilter = texture.minFilter = NearestFilter;
+  texture.generateMipmaps = false;
+  return texture;
+}

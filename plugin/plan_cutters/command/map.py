@@ -1,0 +1,321 @@
+"""`plan-cutters-map`: every free tilt of one cutter at one point of a part, as a table and as a picture."""
+
+import json
+import math
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
+
+from cad_io.units import UNITS
+from plan_cutters import __version__
+from plan_cutters.command.codes import guarded
+
+if TYPE_CHECKING:
+    from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.stages.posture_map import PostureMap
+
+_SELF = "plan-cutters-map"
+#: Some tilt is free; none is; none is, but some are undecided, or obstacles are missing.
+_FREE, _NONE, _UNDECIDED = 0, 1, 4
+
+
+@click.command(
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
+    epilog="Exit codes: 0 some tilt is free; 1 none is; 2 wrong command line; 3 the part cannot be read, or the point is on "
+    "none of its faces; 4 no tilt is surely free, but some are undecided; 130 interrupted.",
+)
+@click.argument("part", metavar="PART")
+@click.option("--at", required=True, metavar="X,Y,Z", help="The point, part coordinates, mm.")
+@click.option(
+    "--within",
+    type=float,
+    default=1.0,
+    metavar="MM",
+    help="How far the point may be from the part: the nearest point of a face is taken, and said.  [default: 1]",
+)
+@click.option(
+    "--cutter",
+    required=True,
+    metavar="SPEC|NAME",
+    help="R6L80 and so on, as for plan-cutters; with --cutters the id or the name of a tool there.",
+)
+@click.option("--cutters", metavar="FILE", help="Tool library that the cutter is taken from.")
+@click.option("--holder", metavar="SPEC|FILE", help="Holder of a cutter that has none, as for plan-cutters.")
+@click.option("--allowance", type=float, default=0.0, metavar="MM", help="Stock left on the surface.  [default: 0]")
+@click.option(
+    "--holder-clearance",
+    type=float,
+    default=0.0,
+    metavar="MM",
+    help="Room asked of neck, shank and holder.  [default: 0]",
+)
+@click.option("--machine", default="unlimited", metavar="NAME|FILE", help="As for plan-cutters.  [default: unlimited]")
+@click.option(
+    "--setup", default="0,0,1", metavar="X,Y,Z", help="Direction of the part along the spindle.  [default: 0,0,1]"
+)
+@click.option("--tilt", default="0:90", metavar="MIN:MAX", help="Tilts from the normal, degrees.  [default: 0:90]")
+@click.option(
+    "--rotation",
+    default="0:360",
+    metavar="MIN:MAX",
+    help="Rotations from the direction of the largest curvature, degrees.  [default: 0:360]",
+)
+@click.option("--rotation-step", type=float, default=5.0, metavar="DEG", help="[default: 5]")
+@click.option(
+    "--tolerance",
+    type=float,
+    default=0.01,
+    metavar="MM",
+    help="Gouge tolerance; 0: the nominal answer, which proves nothing.  [default: 0.01]",
+)
+@click.option(
+    "--fixture", multiple=True, metavar="FILE[@X,Y,Z[,RX,RY,RZ]][:UNIT]", help="As for plan-cutters. Repeatable."
+)
+@click.option("--ignore", multiple=True, metavar="SELECT", help="Faces that are no obstacles. Repeatable.")
+@click.option("--flip", is_flag=True, help="Take the other side of open shells and loose faces.")
+@click.option("--unit", type=click.Choice(list(UNITS)), help="What lengths in the part's file are in.")
+@click.option(
+    "-o", "--out", multiple=True, metavar="FILE", help=".png or .svg. Repeatable.  [default: <stem>-map.png and .svg]"
+)
+@click.option("--json", "json_out", metavar="-", help="With `-`: the map on standard output, and no table.")
+@click.option("--quiet", is_flag=True, help="No table.")
+@click.option("--debug", is_flag=True, help="Show tracebacks.")
+@click.version_option(__version__, prog_name=_SELF)
+def command(part: str, **given: Any) -> int:
+    """Which tilts of one cutter are free at one point of PART, rotation by rotation, and what forbids the others?
+
+    Prints the free intervals and draws the map: tilt against rotation, forbidden tilts coloured by cause, undecided ones
+    apart.
+
+    \b
+    plan-cutters-map samples/v_groove.step --at 0,0,0 --cutter R8L90 --tilt 0:60
+    plan-cutters-map blade.step --at 12,3,40 --cutter R6L80 --machine trunnion-ac -o spot.png
+    """
+    from plan_cutters.domain.posture import PostureRange
+    from plan_cutters.errors import OptionError
+
+    given["part"] = part
+    place, setup = _numbers(given["at"], "--at", 3), _numbers(given["setup"], "--setup", 3)
+    tilt, rotation = (_numbers(given[word], f"--{word}", 2, ":") for word in ("tilt", "rotation"))
+    postures = PostureRange.degrees((tilt[0], tilt[1]), (rotation[0], rotation[1]), given["rotation_step"])
+    if not given["within"] >= 0:
+        raise OptionError("--within must be a distance in mm that is not negative")
+    if given["json_out"] not in (None, "-"):
+        raise OptionError("--json takes -, for standard output")
+    outs = [Path(out) for out in given["out"]] or [Path(f"{Path(part).stem}-map.{kind}") for kind in ("png", "svg")]
+    for out in outs:
+        if out.suffix.lower() not in (".png", ".svg"):
+            raise OptionError(f"-o {out}: pictures are written as .png or .svg")
+        if not out.absolute().parent.is_dir():
+            raise OptionError("cannot be written: there is no such folder", file=str(out))
+    if not os.path.isfile(part):
+        from cad_io.errors import ReadError
+
+        raise ReadError("no such file", file=part)
+    cutter = _cutter(given)
+    from plan_cutters.options import machine_given
+
+    machine = machine_given(given["machine"])
+    from cad_io import read_part
+    from cad_io.sample import locate, nearest
+    from plan_cutters.point import posture_map
+    from plan_cutters.scene.scene import Scene
+
+    tolerance = {"tolerance": given["tolerance"]} if given["tolerance"] > 0 else {}
+    scene = Scene.of(
+        read_part(part, unit=given["unit"], guarded=hasattr(os, "fork")), setup=setup, flip=given["flip"],
+        ignore=given["ignore"], fixtures=given["fixture"], **tolerance,
+    )  # fmt: skip
+    foot, off = nearest(scene.part, place, ignore=scene.ignored)
+    if off > given["within"]:
+        raise OptionError(
+            f"the point ({_text(place)}) is {off:.4g} mm from the part: the nearest point of a face is ({_text(foot)}); give "
+            f"that, or --within {math.ceil(off)}",
+            file=part,
+        )
+    found = posture_map(
+        scene, point=foot.tolist(), cutter=cutter, rotations=postures.rotations, tilt=postures.tilt,
+        machine=machine, tolerance=given["tolerance"],
+    )  # fmt: skip
+    face = int(locate(scene.part, scene.orientation, foot.tolist(), ignore=scene.ignored).face[0])
+    about = _about(found, f"F{face}", off, cutter, given)
+    _draw(found, postures.tilt, about, outs)
+    if given["json_out"] == "-":
+        sys.stdout.write(json.dumps(_facts(found, f"F{face}", off, cutter, given), indent=2) + "\n")
+    elif not given["quiet"]:
+        _table(found, about, outs)
+    sys.stdout.flush()
+    if any(len(each) for each in found.free) and not found.missing:
+        return _FREE
+    return _UNDECIDED if found.missing or any(len(each) for each in found.undecided) else _NONE
+
+
+def _numbers(text: str, what: str, count: int, between: str = ",") -> tuple[float, ...]:
+    from plan_cutters.errors import OptionError
+
+    try:
+        found = tuple(float(word) for word in text.split(between))
+    except ValueError:
+        found = ()
+    if len(found) != count or not all(map(math.isfinite, found)):
+        raise OptionError(f"{what} {text!r} is not {count} numbers, as {between.join(['0', '0', '1'][-count:])}")
+    return found
+
+
+def _cutter(given: dict[str, Any]) -> "Cutter":
+    """The cutter asked for: inline, or of a library."""
+    from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.errors import OptionError
+    from plan_cutters.library.read import holder_of, read_library
+
+    holder = None if given["holder"] is None else holder_of(given["holder"])
+    if given["cutters"] is None:
+        cutter = Cutter.parse(given["cutter"])
+    else:
+        library = read_library(given["cutters"], holder=holder, skip_bad=True)
+        mine = [each for each in library if given["cutter"] in (each.id, each.name)]
+        if len(mine) != 1:
+            many = "several tools are" if mine else "no tool is"
+            raise OptionError(
+                f"{many} called {given['cutter']!r}: plan-cutters-tools lists them", file=given["cutters"]
+            )
+        cutter = mine[0]
+    if given["allowance"] < 0 or given["holder_clearance"] < 0:
+        raise OptionError("--allowance and --holder-clearance must not be negative")
+    return cutter.asked(given["allowance"], given["holder_clearance"], None if isinstance(holder, str) else holder)
+
+
+def _text(values: Any) -> str:
+    return ", ".join(f"{x + 0.0:.6g}" for x in values)
+
+
+def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: dict[str, Any]) -> list[str]:
+    """What the map is of, line by line; the first is its title."""
+    curvature = ", ".join(f"{x + 0.0:.4g}" for x in found.curvature)
+    proved = f"gouge tolerance {found.tolerance:g} mm" if found.tolerance else "nominal, not certified"
+    moved = f"; the point asked for is {off:.3g} mm off" if off > 1e-3 else ""
+    lines = [
+        f"{cutter.id} at ({_text(_round(found.point))}) on {face} of {Path(given['part']).name}",
+        f"Normal ({_text(_round(found.normal))}), rotation 0 towards ({_text(_round(found.direction_max))}); curvatures "
+        f"{curvature} 1/mm, concave positive{moved}.",
+        f"Machine {Path(given['machine']).name}, setup {given['setup']}; {proved}; rotations {given['rotation_step']:g} deg "
+        "apart: nothing is said between them.",
+    ]
+    if found.missing:
+        lines.append(
+            f"Not certified: obstacles are missing or guessed ({len(found.missing)}), first {found.missing[0]}."
+        )
+    elif found.tolerance:
+        lines.append("A free tilt is safe for the true surface to the tolerance; of several causes the first in the legend is "
+                     "shown.")  # fmt: skip
+    return lines
+
+
+def _round(vector: Any) -> list[float]:
+    """Coordinates without the noise of rounding."""
+    return [round(float(x), 9) for x in vector]
+
+
+def _degrees(intervals: Any) -> list[list[float]]:
+    return [[math.degrees(low), math.degrees(high)] for low, high in intervals.tolist()]
+
+
+def _facts(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: dict[str, Any]) -> dict[str, Any]:
+    """The map as JSON has it; degrees and mm."""
+    words = (
+        "free",
+        "undecided",
+        "axis_limit",
+        "rear_gouge",
+        "collision",
+        "neck",
+        "shank",
+        "holder",
+        "buried",
+        "no_contact",
+    )
+    none = [None if math.isnan(x) else math.degrees(x) for x in found.local_gouge.tolist()]
+    return {
+        "format": "plan-cutters-map", "part": Path(given["part"]).name, "face": face, "point": found.point.tolist(),
+        "off_mm": off, "normal": found.normal.tolist(), "direction_max": found.direction_max.tolist(),
+        "curvature": found.curvature.tolist(), "cutter": cutter.id, "machine": given["machine"],
+        "tolerance_mm": found.tolerance, "certified": found.certified, "missing": list(found.missing),
+        "rotations": [
+            {"deg": math.degrees(turn), "local_gouge": none[i], **{w: _degrees(getattr(found, w)[i]) for w in words}}
+            for i, turn in enumerate(found.rotations.tolist())
+        ],
+    }  # fmt: skip
+
+
+def _draw(found: "PostureMap", tilt: tuple[float, float], about: list[str], outs: Sequence[Path]) -> None:
+    """Draw the files, each whole or not at all."""
+    from plan_cutters.errors import PlanError
+    from plan_cutters.report.map_picture import draw_map
+
+    asides = [out.with_name(f".{out.stem}.part{out.suffix}") for out in outs]
+    try:
+        draw_map(found, tilt, about[0], about[1:], asides)
+        for aside, out in zip(asides, outs, strict=True):
+            os.replace(aside, out)
+    except OSError as error:
+        raise PlanError(f"cannot be written: {error.strerror}", file=str(error.filename or outs[0])) from None
+    finally:
+        for aside in asides:
+            aside.unlink(missing_ok=True)
+
+
+def _table(found: "PostureMap", about: list[str], outs: Sequence[Path]) -> None:
+    """The free intervals for people."""
+    from rich.console import Console
+    from rich.table import Table
+
+    if hasattr(sys.stdout, "reconfigure"):
+        sys.stdout.reconfigure(errors="replace")
+    console = Console(highlight=False, markup=False, width=None if sys.stdout.isatty() else 80)
+    for line in about:
+        console.print(line, soft_wrap=True)
+    table = Table("Rotation", "Free tilts (deg)", "Undecided", "Local gouge below")
+    for column in (table.columns[0], table.columns[3]):
+        column.justify = "right"
+    for i, turn in enumerate(found.rotations.tolist()):
+        gouge = found.local_gouge[i]
+        below = "always" if math.isnan(gouge) else f"{math.degrees(gouge):.2f}"
+        table.add_row(
+            f"{math.degrees(turn):g}", _spans(found.free[i]) or "none", _spans(found.undecided[i], False), below
+        )
+    console.print(table)
+    console.print(f"Drawn in {' and '.join(map(str, outs))}.", soft_wrap=True)
+
+
+def _spans(intervals: Any, inward: bool = True) -> str:
+    """Intervals of degrees, two digits behind the point: of free ones none is told wider than it is."""
+    found = []
+    for low, high in _degrees(intervals):
+        first, last = (math.ceil, math.floor) if inward else (math.floor, math.ceil)
+        if not inward or first(100 * low - 1e-7) <= last(100 * high + 1e-7):
+            found.append(f"{first(100 * low - 1e-7) / 100:.2f} to {last(100 * high + 1e-7) / 100:.2f}")
+    return ", ".join(found)
+
+
+def main(args: Sequence[str] | None = None) -> NoReturn:
+    """Entry point of the command."""
+    words = list(sys.argv[1:] if args is None else args)
+
+    def work() -> tuple[int, str]:
+        try:
+            return int(command.main(words, prog_name=_SELF, standalone_mode=False) or 0), ""
+        except click.Abort:
+            raise KeyboardInterrupt from None
+        except BrokenPipeError:
+            # Whoever reads the table has seen enough.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            return 0, ""
+
+    code, line = guarded(work, "--debug" in words)
+    if line:
+        click.echo(line.replace("plan-cutters:", f"{_SELF}:", 1), err=True)
+    sys.exit(code)

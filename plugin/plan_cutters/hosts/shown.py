@@ -1,0 +1,156 @@
+"""What hosts show of a result: kernel shapes with names and colours, by groups."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cad_io import Part
+from cad_io.arrays import Floats
+from cad_io.kernel.bodies import Side, of_triangles, placed, revolved
+from plan_cutters.document.model import WitnessEntry
+from plan_cutters.document.palette import rgb
+from plan_cutters.domain.checks import shown as written
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.outline import outline
+from plan_cutters.domain.travel import tips
+from plan_cutters.domain.verdicts import UNDECIDED, Reach, blank
+from plan_cutters.errors import OptionError
+from plan_cutters.report.models import product, split_result, styles, verdict_of
+from plan_cutters.result import Result
+
+Colour = tuple[float, float, float]
+#: Parts of a tool assembly, from light to dark up to the holder.
+_TOOL: dict[str, Colour] = {
+    "flutes": (0.85, 0.78, 0.35), "neck": (0.72, 0.72, 0.74), "shank": (0.62, 0.62, 0.66), "holder": (0.36, 0.37, 0.42),
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """A shape of the kernel in part coordinates, with a name that no other one has, and sRGB, 0 to 1."""
+
+    shape: Any
+    name: str
+    colour: Colour
+
+
+def shown(
+    result: Result, at: int | WitnessEntry | None = None, cutter: str | None = None
+) -> tuple[str, dict[str, tuple[Shown, ...]]]:
+    """The part's name, and groups of what is to be seen: targets by verdict, check faces, ignored faces, fixtures, the tool.
+
+    Parameters
+    ----------
+    result : Result
+    at : int or WitnessEntry, optional
+        A sample, by its row, or a witness of the plan: there the tool is put, at the posture found or the best one tried.
+    cutter : str, optional
+        Id of the one whose verdicts and tool are shown; default the result's own choice.
+
+    Raises
+    ------
+    OptionError
+        No posture is known there.
+    """
+    names = _Names()
+    roots = result.part.tree
+    name = names.of((len(roots) == 1 and roots[0].name) or product(result))
+    groups: dict[str, list[Shown]] = {word: [] for word in ("targets", "check faces", "ignored faces", "fixtures")}
+    for word in groups:
+        names.of(word)
+    tool = result.judged(cutter)
+    split, style = split_result(result, tool.id), styles(result)
+    for piece in split.pieces:
+        # What could be split beside its place alone is shown so: here nothing has to hang together.
+        for each in split.beside.get(piece.face, (piece,)):
+            title, colour = style(each)
+            group = {"check": "check faces", "ignored": "ignored faces"}.get(verdict_of(each), "targets")
+            groups[group].append(Shown(each.shape, names.of(title), colour))
+    groups["fixtures"] += [
+        Shown(_fixture(each), names.of(each.name), rgb("fixture")) for each in result.scene.around.fixtures
+    ]
+    found = {word: tuple(each) for word, each in groups.items() if each}
+    if at is not None:
+        tip, axis = _posture(result, tool, at)
+        found[names.of(f"tool {tool.id}")] = tuple(_tool(tool, tip, axis, names))
+    return name, found
+
+
+class _Names:
+    """Names that are each used once; a path has no slash within a name."""
+
+    def __init__(self) -> None:
+        self.taken: set[str] = set()
+
+    def of(self, wanted: str) -> str:
+        name, count = wanted.replace("/", "_"), 2
+        base = name
+        while name in self.taken:
+            name, count = f"{base} {count}", count + 1
+        self.taken.add(name)
+        return name
+
+
+def _fixture(standing: Any) -> Any:
+    if isinstance(standing.source, Part):
+        place = np.column_stack([standing.fixture.rotation, standing.fixture.shift])
+        return placed(standing.source.shape, place)
+    return of_triangles(standing.shown)
+
+
+def _posture(result: Result, cutter: Cutter, at: int | WitnessEntry) -> tuple[Floats, Floats]:
+    """Tip and axis of a tool."""
+    samples = result.samples
+    if isinstance(at, WitnessEntry):
+        if at.best_posture is None:
+            raise OptionError(f"no posture is within the axis limits at {at.face}: there is none to show")
+        row = int(np.linalg.norm(samples.point - np.array(at.point), axis=1).argmin())
+        axis, tilt = np.array(at.best_posture.axis), np.radians(at.best_posture.tilt)
+    else:
+        row = _row(at, len(samples))
+        reach = result.reaches[cutter.id]
+        if not np.isfinite(reach.tilt[row]):
+            what = "undecided" if reach.verdict[row] == UNDECIDED else "not reached"
+            raise OptionError(
+                f"sample {row} is {what} with {cutter.id}, so no posture is known there: give a witness of the plan, as "
+                "result.face(...).worst"
+            )
+        axis, tilt = reach.axis[row], float(reach.tilt[row])
+    normal = samples.normal[row]
+    lean = axis - (axis @ normal) * normal
+    if np.linalg.norm(lean) < 1e-9:
+        lean = samples.direction_max[row]
+    one: Reach = blank(1)
+    one.axis[0], one.lean[0], one.tilt[0] = axis, lean / np.linalg.norm(lean), tilt
+    tip = tips(cutter, samples.point[row : row + 1], normal[None], one)[0]
+    if not np.isfinite(tip).all():
+        raise OptionError(f"{cutter.id} cannot touch at a tilt of {np.degrees(tilt):.3g} deg: there is nothing to show")
+    return tip, axis
+
+
+def _row(given: Any, count: int) -> int:
+    if isinstance(given, bool) or not isinstance(given, int | np.integer) or not -count <= given < count:
+        raise OptionError(f"at must be the row of a sample, 0 to {count - 1}, or a witness, not {written(given)}")
+    return int(given) % count
+
+
+def _tool(cutter: Cutter, tip: Floats, axis: Floats, names: _Names) -> Iterator[Shown]:
+    """Each part of a tool assembly as a solid."""
+    across = np.eye(3)[int(np.abs(axis).argmin())]
+    x = np.cross(across, axis)
+    x /= np.linalg.norm(x)
+    place = np.column_stack([x, np.cross(axis, x), axis, tip])
+    whole = outline(cutter)
+    for part in whole.parts:
+        mine = whole.of(part)
+        (_, low), (_, high) = mine[0].start, mine[-1].end
+        sides = [Side(mine[0].start), *(Side(s.end, s.at(0.5) if s.centre else None) for s in mine)]
+        ends, at = [], (0.0, low)
+        for side in [*sides, Side((0.0, high)), Side((0.0, low))]:
+            if np.hypot(side.end[0] - at[0], side.end[1] - at[1]) > 1e-9:
+                ends.append(side)
+                at = side.end
+        if high - low > 1e-9:
+            yield Shown(placed(revolved((0.0, low), ends), place), names.of(part), _TOOL[part])

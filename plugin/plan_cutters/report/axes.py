@@ -1,0 +1,112 @@
+"""The posture found at every sample as columns, for the cutter shown: what `axes.csv` and `axes.vtp` have in common."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plan_cutters.domain.clearance import part_words
+from plan_cutters.domain.travel import tips
+from plan_cutters.domain.verdicts import (
+    ACCESSIBLE,
+    CONCAVE,
+    CONVEX,
+    INACCESSIBLE,
+    INTERFERENCE_FREE,
+    NO_REASON,
+    REASONS,
+    SADDLE,
+    UNDECIDED,
+    UNJUDGED,
+)
+from plan_cutters.scene.conditions import rotations_of
+
+VERDICTS = {INACCESSIBLE: "inaccessible", ACCESSIBLE: "accessible", INTERFERENCE_FREE: "interference_free",
+            UNDECIDED: "undecided", UNJUDGED: "unjudged"}  # fmt: skip
+CLASSES = {CONVEX: "convex", CONCAVE: "concave", SADDLE: "saddle", UNJUDGED: "unjudged"}
+#: Digits behind the point of lengths, mm, angles, deg, and parts of unit vectors.
+_MM, _DEG, _UNIT = 6, 6, 9
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One column, or three of a vector.
+
+    Attributes
+    ----------
+    name : str
+        With its unit at the end where it has one: `tilt_deg`.
+    values : (n,) or (n, 3) array
+    digits : int
+        Behind the point, for text.
+    words : dict, optional
+        What codes mean, in text.
+    """
+
+    name: str
+    values: NDArray[Any]
+    digits: int = 0
+    words: dict[int, str] | None = None
+
+    @property
+    def names(self) -> list[str]:
+        """One name for each column of text: a vector's parts stand before its unit, as in `point_x_mm`."""
+        if self.values.ndim == 1:
+            return [self.name]
+        stem, dash, unit = self.name.rpartition("_") if self.name.endswith("_mm") else (self.name, "", "")
+        return [f"{stem}_{axis}{dash}{unit}" for axis in "xyz"]
+
+
+def columns(result: Any) -> list[Column]:
+    """The columns, in their order, a row for each sample in the order of `samples.npz`."""
+    samples, name = result.samples, result.shown
+    reach, cutter = result.reaches[name], result.judged(name)
+    near = result.clearances
+    around = result.conditions.around
+    n = len(samples)
+    rotation = np.degrees(rotations_of(samples.normal, samples.direction_max, reach.lean))
+    rotation[~reach.reached] = np.nan
+    faces = {number: around.called(number) for number in np.unique(near.face).tolist() if number}
+    found = [
+        Column("sample", np.arange(n, dtype=np.int32)),
+        Column("face", samples.face, words={f: f"F{f}" for f in np.unique(samples.face).tolist()}),
+        Column("point_mm", samples.point, _MM),
+        Column("normal", samples.normal, _UNIT),
+        Column("area_mm2", samples.area, _MM),
+        Column("surface_class", result.surface_class, words=CLASSES),
+        Column("verdict", reach.verdict, words=VERDICTS),
+        Column("reason", reach.reason, words=dict(enumerate(REASONS)) | {NO_REASON: ""}),
+        Column("axis", reach.axis, _UNIT),
+        Column("lean", reach.lean, _UNIT),
+        Column("tilt_deg", np.degrees(reach.tilt), _DEG),
+        Column("rotation_deg", rotation, _DEG),
+        Column("tip_mm", tips(cutter, samples.point, samples.normal, reach), _MM),
+        Column("clearance_mm", near.distance, _MM),
+        Column("nearest_part", near.part, words={-1: "", **part_words()}),
+        Column("nearest_face", near.face, words={0: "", **faces}),
+    ]
+    return found + _machine(result)
+
+
+def _machine(result: Any) -> list[Column]:
+    """Positions of the machine's axes: those to take, then the rotary ones of the other solution; linear ones where judged."""
+    name, machine = result.shown, result.conditions.machine
+    if result.kinematics is None:
+        return []
+    angles, taken, _ = result.kinematics.positions(result.reaches[name].axis)
+    moved = result.travels.get(name)
+    taken = taken if moved is None else moved.taken
+    first, rows = np.maximum(taken, 0).astype(np.int64), np.arange(len(taken))
+    both = [np.where((taken >= 0)[:, None], np.degrees(angles[rows, way]), np.nan) for way in (first, 1 - first)]
+    found = [
+        Column(f"{axis.name}{word}_deg", np.ascontiguousarray(each[:, k]), _DEG)
+        for word, each in zip(("", "_other"), both, strict=True)
+        for k, axis in enumerate(machine.rotary)
+    ]
+    if moved is not None:
+        found += [
+            Column(f"{axis.name}_mm", np.ascontiguousarray(moved.position[:, k]), _MM)
+            for k, axis in enumerate(machine.linear)
+        ]
+    return found

@@ -1,0 +1,159 @@
+"""The posture map of one point as a picture: tilt against rotation, as the seed's Fig. 7, in colours and hatches."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from textwrap import fill
+from typing import Any
+
+import numpy as np
+
+from cad_io.arrays import Floats
+from plan_cutters.document.palette import CAUSES as COLOURS
+from plan_cutters.document.palette import PALETTE
+from plan_cutters.report.sheet import figure, save
+
+#: Letters of a line.
+_TITLE, _NOTE = 95, 150
+
+
+@dataclass(frozen=True, slots=True)
+class Cause:
+    """What may forbid a tilt: its name in a map, its words, its colour and its hatch."""
+
+    name: str
+    words: str
+    colour: str
+    hatch: str
+
+
+#: In this order each counts for what is forbidden: the first one that does is drawn.
+CAUSES = (
+    Cause("no_contact", "no contact", COLOURS["no_contact"], "."),
+    Cause("axis_limit", "axis limit", COLOURS["axis_limit"], "--"),
+    Cause("local_gouge", "local gouge", COLOURS["local_gouge"], "//"),
+    Cause("rear_gouge", "rear gouge", COLOURS["rear_gouge"], "\\\\"),
+    Cause("collision", "collision (flutes)", COLOURS["collision"], "xx"),
+    Cause("neck", "neck", COLOURS["neck"], "||"),
+    Cause("shank", "shank", COLOURS["shank"], "++"),
+    Cause("holder", "holder", COLOURS["holder"], "oo"),
+    Cause("buried", "within a body", COLOURS["buried"], "**"),
+)
+FREE = Cause("free", "free", PALETTE["interference_free"], "")
+UNDECIDED = Cause("undecided", "undecided", PALETTE["undecided"], "..")
+#: What is neither free nor undecided, and nothing alone forbids: within the bounds of the search.
+OTHER = Cause("other", "not free", "#555555", "")
+
+
+def forbidden(found: Any, low: float, high: float) -> dict[str, list[Floats]]:
+    """What each cause forbids in a posture map, rad, at each rotation (k, 2), none of it twice: the first cause has it.
+
+    Parameters
+    ----------
+    found : PostureMap
+    low, high : float
+        The tilts that were asked for, rad.
+    """
+    shares: dict[str, list[Floats]] = {each.name: [] for each in (*CAUSES, UNDECIDED, OTHER)}
+    whole = np.array([[low, high]])
+    for i in range(len(found.rotations)):
+        left = without(without(whole, found.free[i]), found.undecided[i])
+        shares["undecided"].append(found.undecided[i])
+        for cause in CAUSES:
+            mine = _gouged(found, i, low, high) if cause.name == "local_gouge" else getattr(found, cause.name)[i]
+            rest = without(left, mine)
+            shares[cause.name].append(without(left, rest))
+            left = rest
+        shares["other"].append(left)
+    return shares
+
+
+def _gouged(found: Any, i: int, low: float, high: float) -> Floats:
+    """Tilts (k, 2) that local gouging alone forbids at a rotation."""
+    least, most = found.local_gouge[i], found.local_gouge_most[i]
+    if np.isnan(least):
+        return np.array([[low, high]])
+    return np.array([[a, b] for a, b in ((low, least), (most, high)) if b > a]).reshape(-1, 2)
+
+
+def without(intervals: Floats, others: Floats) -> Floats:
+    """What of intervals (k, 2) none of the others covers, (m, 2), ascending; both sorted.
+
+    >>> without(np.array([[0.0, 4.0]]), np.array([[1.0, 2.0], [3.0, 9.0]])).tolist()
+    [[0.0, 1.0], [2.0, 3.0]]
+    """
+    kept = []
+    for low, high in intervals.tolist():
+        for first, last in others.tolist():
+            if last <= low or first >= high:
+                continue
+            if first > low:
+                kept.append((low, first))
+            low = max(low, last)
+        if high > low:
+            kept.append((low, high))
+    return np.array(kept).reshape(-1, 2)
+
+
+def draw_map(found: Any, tilt: tuple[float, float], title: str, notes: Sequence[str], paths: Sequence[Path]) -> None:
+    """Draw a posture map, once for each path: PNG or SVG by its ending.
+
+    Parameters
+    ----------
+    found : PostureMap
+        At rotations that ascend evenly.
+    tilt : (float, float)
+        The tilts that were asked for, rad.
+    title : str
+    notes : sequence of str
+        Lines beneath the picture.
+    paths : sequence of Path
+
+    The same map gives the same bytes. Each rotation that was searched is a column; nothing is known between.
+    """
+    from matplotlib.collections import PolyCollection
+    from matplotlib.patches import Patch
+
+    low, high = np.degrees(tilt)
+    turns = np.degrees(found.rotations)
+    step = float(np.diff(turns).min()) if len(turns) > 1 else 10.0
+    whole = len(turns) > 1 and abs(turns[-1] + step - turns[0] - 360.0) < 1e-6
+    # A full turn ends with its first rotation.
+    places = [*enumerate(turns.tolist()), *([(0, float(turns[0]) + 360.0)] if whole else [])]
+    left, right = (places[0][1], places[-1][1]) if whole else (places[0][1] - 0.5 * step, places[-1][1] + 0.5 * step)
+    shares = {"free": found.free, **forbidden(found, *tilt)}
+    sheet = figure(9.0, 5.3)
+    plot = sheet.add_axes((0.075, 0.27, 0.70, 0.65))
+    legend = []
+    for cause in (FREE, UNDECIDED, *CAUSES, OTHER):
+        boxes = [
+            [(at - 0.5 * step, a), (at + 0.5 * step, a), (at + 0.5 * step, b), (at - 0.5 * step, b)]
+            for i, at in places
+            for a, b in np.degrees(shares[cause.name][i]).tolist()
+        ]
+        if not boxes and cause is not FREE:
+            continue
+        style: dict[str, Any] = {"facecolor": cause.colour, "edgecolor": "#00000066", "hatch": cause.hatch or None}
+        plot.add_collection(PolyCollection(boxes, linewidth=0.0, **style))
+        legend.append(Patch(label=cause.words, linewidth=0.5, **style))
+    plot.set_xlabel("rotation θ from the direction of largest curvature (deg)")
+    plot.set_ylabel("tilt λ from the surface normal (deg)")
+    plot.set_xticks(_ticks(left, right))
+    plot.set_yticks(_ticks(low, high))
+    plot.set_xlim(left, right)
+    plot.set_ylim(low, high if high > low else low + 1.0)
+    plot.set_title(fill(title, _TITLE), fontsize=11, loc="left")
+    sheet.legend(handles=legend, loc="upper left", bbox_to_anchor=(0.785, 0.9), frameon=False, fontsize=9,
+                 title="tilts", alignment="left", handleheight=1.4, handlelength=2.2)  # fmt: skip
+    lines = "\n".join(fill(note, _NOTE) for note in notes)
+    sheet.text(0.075, 0.15, lines, fontsize=8, va="top", linespacing=1.5)
+    for path in paths:
+        save(sheet, path)
+
+
+def _ticks(low: float, high: float) -> list[float]:
+    """Round numbers of degrees between two ends."""
+    span = max(high - low, 1e-9)
+    step = next((s for s in (1, 2, 5, 10, 15, 30, 45, 60) if span / s <= 13), 90)
+    first = np.ceil((low - 1e-9) / step) * step
+    return [float(x) + 0.0 for x in np.arange(first, high + 1e-9, step)]

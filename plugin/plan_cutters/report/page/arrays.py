@@ -1,0 +1,88 @@
+"""The arrays of the review page, each under its name; `docs/review_page.md` says what is in them."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from plan_cutters.report.page.atlas import Atlas
+from plan_cutters.report.page.encode import COARSE, FINE, Stored, halves, octahedral, placed, turned, unfolded
+from plan_cutters.report.page.facts import tilt_and_lean
+from plan_cutters.report.page.stored_maps import stored
+from plan_cutters.report.page.surface import Surface
+
+Arrays = dict[str, Stored]
+
+
+def drawn_arrays(surface: Surface, atlas: Atlas, low: Floats, high: Floats) -> Arrays:
+    """The mesh, and which sample stands where on it."""
+    return {
+        "mesh.position": Stored.of(placed(surface.point, low, high)),
+        "mesh.normal": Stored.of((octahedral(surface.normal, COARSE) + COARSE).astype(np.uint8)),
+        "mesh.triangle": Stored.of(surface.triangle),
+        "mesh.texel": Stored.of(surface.place),
+        "atlas.index": Stored.of(atlas.index.reshape(-1)),
+    }
+
+
+def sample_arrays(result: Any, low: Floats, high: Floats) -> Arrays:
+    """The samples, and what each cutter reaches of them."""
+    samples, normal = result.samples, octahedral(result.samples.normal, FINE)
+    number = np.uint16 if samples.face.max(initial=0) < 1 << 16 else np.uint32
+    found = {
+        "sample.point": placed(np.nan_to_num(samples.point), low, high),
+        "sample.normal": normal,
+        "sample.direction": turned(samples.direction_max, unfolded(normal, FINE)),
+        "sample.curvature": halves(samples.curvature),
+        "sample.class": result.surface_class,
+        "sample.face": samples.face.astype(number),
+        "sample.area": halves(samples.area),
+    }
+    for name, reach in result.reaches.items():
+        found |= {f"verdict.{name}": reach.verdict, f"reason.{name}": reach.reason}
+    return {name: Stored.of(array) for name, array in found.items()}
+
+
+def posture_arrays(result: Any, name: str) -> Arrays:
+    """The postures found for a cutter."""
+    tilt, lean = tilt_and_lean(result.samples, result.reaches[name])
+    return {f"tilt.{name}": Stored.of(tilt), f"lean.{name}": Stored.of(lean)}
+
+
+def scalar_arrays(result: Any) -> tuple[Arrays, list[dict[str, Any]]]:
+    """Values at samples, and what the page is told of them."""
+    curvature, found = result.samples.curvature, {}
+    told = [
+        _scalar("curvature_max", "largest curvature", "1/mm", curvature[:, 0], array="sample.curvature", column=0),
+        _scalar("curvature_min", "smallest curvature", "1/mm", curvature[:, 1], array="sample.curvature", column=1),
+    ]
+    for each in result.answers.radius_maps:
+        key = f"largest_{each.shape}"
+        # What is told must not be more than what reaches.
+        found[f"scalar.{key}"] = Stored.of(halves(each.radius, "down"))
+        told.append(
+            _scalar(key, f"largest {each.shape} end (radius, up to {each.most:.3g} mm tried)", "mm", each.radius)
+        )
+    for name, stick_out in result.answers.stick_outs.items():
+        if stick_out.each is not None:
+            key = f"stick_out.{name}"
+            found[f"scalar.{key}"] = Stored.of(halves(stick_out.each, "up"))
+            told.append(_scalar(key, "least stick-out", "mm", stick_out.each, cutter=name))
+    return found, told
+
+
+def _scalar(
+    key: str, label: str, unit: str, values: Floats, *, cutter: str | None = None, array: str | None = None,
+    column: int | None = None,
+) -> dict[str, Any]:  # fmt: skip
+    known = values[np.isfinite(values)]
+    low, high = (float(known.min()), float(known.max())) if len(known) else (None, None)
+    return {"key": key, "label": label, "unit": unit, "cutter": cutter, "low": low, "high": high,
+            "array": array or f"scalar.{key}", "column": column}  # fmt: skip
+
+
+def map_arrays(maps: Any, rows: NDArray[np.int64], of: NDArray[np.int64]) -> Arrays:
+    """Some posture maps: see `stored`."""
+    found = stored(maps, rows, of)
+    return {f"maps.{word}": Stored.of(getattr(found, word)) for word in ("row", "count", "end", "undecided")}

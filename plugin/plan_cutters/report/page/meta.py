@@ -1,0 +1,151 @@
+"""What the page is told beside arrays: the `meta` object of `docs/review_page.md`."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from cad_io.arrays import Floats
+from plan_cutters.document.build import degrees
+from plan_cutters.document.model import CutterEntry
+from plan_cutters.document.names import short_names
+from plan_cutters.document.palette import CAUSES
+from plan_cutters.document.shares import counts
+from plan_cutters.document.told import VERDICTS
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.kinematics import Kinematics
+from plan_cutters.domain.outline import Outline, outline, points
+from plan_cutters.domain.shapes import modes
+from plan_cutters.report.page.atlas import Atlas
+from plan_cutters.report.page.facts import WORDS, Spot
+from plan_cutters.report.page.surface import Surface
+from plan_cutters.report.page.words import spot as sentence
+
+FORMAT = 1
+#: Chord of the outlines of tools, mm.
+_CHORD = 0.005
+
+
+def meta_of(
+    result: Any, surface: Surface, atlas: Atlas, box: tuple[Floats, Floats], spots: list[Spot]
+) -> dict[str, Any]:
+    """All of it but the arrays, and what was left out of them."""
+    plan, effective, names = result.plan, result.plan.effective, short_names(result.plan)
+    low, high = box
+    return {
+        "format": FORMAT,
+        "part": {
+            "file": plan.part.file,
+            "sha256": plan.part.sha256,
+            "size_mm": list(plan.part.size_mm),
+            "low": low.tolist(),
+            "high": high.tolist(),
+        },
+        "setup": {"z": list(effective.setup), "x": effective.placement and effective.placement.x},
+        "machine": plan.machine.name,
+        "tolerance_mm": effective.tolerance_mm,
+        "shown": result.shown,
+        "selected": plan.selected,
+        "reasons": plan.reasons,
+        "verdicts": {str(code): word for code, word in WORDS.items()},
+        "colours": plan.legend,
+        "cause_colours": CAUSES,
+        "rotation_deg": np.degrees(result.postures.rotations).round(6).tolist(),
+        "tilt_deg": list(degrees(result.postures.tilt)),
+        "tilt_limit_deg": plan.machine.tilt_limit_deg,
+        "rotary": plan.machine.rotary is not None,
+        "kinematics": None if result.kinematics is None else _kinematics(result.kinematics),
+        "atlas": [atlas.index.shape[1], atlas.index.shape[0]],
+        "faces": [_face(entry, surface) for entry in plan.faces],
+        "fixtures": [
+            {"name": standing.name, "start": surface.fixtures[i][0], "count": surface.fixtures[i][1]}
+            for i, standing in enumerate(result.scene.around.fixtures)
+        ],
+        "cutters": [
+            _cutter(names[entry.id], entry, result.judged(entry.id), counts(result.reaches[entry.id].verdict))
+            for entry in plan.cutters
+        ],
+        "spots": [_spot(each) for each in spots],
+    }
+
+
+def _kinematics(axes: Kinematics) -> dict[str, Any]:
+    """What the page asks which tool axes the machine holds; None: no limit that way."""
+    ends = [[end if math.isfinite(end) else None for end in pair] for pair in np.degrees(axes.limit).tolist()]
+    return {"direction": axes.direction.tolist(), "limit_deg": ends, "tool": axes.tool.tolist()}
+
+
+def _face(entry: Any, surface: Surface) -> dict[str, Any]:
+    number = int(entry.id[1:])
+    start, count = surface.faces.get(number, (0, 0))
+    return {
+        "number": number,
+        "id": entry.id,
+        "name": entry.name,
+        "component": entry.component,
+        "surface": entry.surface,
+        "target": entry.target,
+        "ignored": entry.ignored,
+        "area_mm2": entry.area_mm2,
+        "start": start,
+        "count": count,
+    }
+
+
+def _cutter(name: str, entry: CutterEntry, cutter: Cutter, found: dict[str, Any]) -> dict[str, Any]:
+    return {
+        "id": entry.id,
+        "name": name,
+        "feasible": entry.feasible,
+        "radius": entry.radius,
+        "corner_radius": entry.corner_radius,
+        "allowance_mm": entry.allowance_mm,
+        "clearance_mm": entry.clearance_mm,
+        "touches_deg": [list(each) for each in entry.touches_deg],
+        "modes": [_mode(mode) for mode in modes(cutter)],
+        "outline": _outline(cutter),
+        "shares": {word: getattr(entry.area_share, word) for word in VERDICTS},
+        "counts": found,
+        "by_reason": {name: n for name, n in entry.by_reason.items() if n},
+        "undecided_by_reason": {name: n for name, n in entry.undecided_by_reason.items() if n},
+    }
+
+
+def _mode(mode: Any) -> dict[str, float]:
+    low, high = degrees((mode.low, mode.high))
+    return {
+        "offset": mode.offset,
+        "radius": mode.radius,
+        "height": mode.height,
+        "tilt_low_deg": low,
+        "tilt_high_deg": high,
+    }
+
+
+def _outline(cutter: Cutter) -> list[dict[str, Any]]:
+    """The polyline of each part of a tool, from the tip up."""
+    whole, found = outline(cutter), []
+    for part in whole.parts:
+        segments = whole.of(part)
+        line = points(Outline(segments), _CHORD)
+        line[0] = segments[0].start
+        found.append({"part": part, "points": line.round(4).tolist()})
+    return found
+
+
+def _spot(spot: Spot) -> dict[str, Any]:
+    w, best = spot.witness, spot.witness.best_posture
+    return {
+        "cutter": spot.cutter,
+        "sample": spot.sample,
+        "face": w.face,
+        "reason": w.reason,
+        "point": list(w.point),
+        "obstacle_face": w.obstacle_face,
+        "obstacle_point": w.obstacle_point and list(w.obstacle_point),
+        "depth_mm": w.depth_mm,
+        "tilt_deg": best and best.tilt,
+        "lean_deg": best and best.rotation,
+        "axis": best and list(best.axis),
+        "text": sentence(w),
+    }

@@ -1,0 +1,230 @@
+"""What the page says of a plan, for planners: short sentences, each number with its unit."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from plan_cutters.document.answers import StickOutEntry
+from plan_cutters.document.model import AreaEntry, CutterEntry, Plan, WitnessEntry
+from plan_cutters.document.told import part_of, percent, reached
+
+
+class _Reason(NamedTuple):
+    """A reason, as it stands after "because of"; what it is; and what is tried first against it: nothing of that is computed."""
+
+    said: str
+    what: str
+    hint: str
+
+
+REASONS = {
+    "axis_limit": _Reason("the axis limit", "The machine cannot hold any axis that would serve.",
+                          "another setup, or a machine that tilts further"),
+    "local_gouge": _Reason("local gouging", "The surface curves more than the cutter, right at the contact.",
+                           "a smaller radius or corner radius"),
+    "rear_gouge": _Reason("rear gouging", "The flutes cut into the part within a cutter's diameter of the contact.",
+                          "a smaller radius or corner radius"),
+    "collision": _Reason("collision of the flutes", "The flutes meet the part farther away.",
+                         "a thinner cutter"),
+    "buried": _Reason("another body", "It covers the surface, so nothing can be machined there.",
+                      "--ignore, if that body is not there when the part is machined"),
+    "tolerance": _Reason("too coarse a tolerance", "It is no smaller than the cutter's own features.",
+                         "a smaller --tolerance"),
+    "neck": _Reason("collision of the neck", "The neck meets the part.", "a thinner or longer neck"),
+    "shank": _Reason("collision of the shank", "The shank meets the part.", "a thinner shank or a longer stick-out"),
+    "holder": _Reason("collision of the holder", "The holder meets the part.", "a longer stick-out or a slimmer holder"),
+    "fixture": _Reason("the fixture", "Without the fixtures the sample would be reached.", "another place for the fixture"),
+}  # fmt: skip
+#: Verdicts, and what they say of a sample.
+VERDICTS = {
+    "interference_free": ("interference-free", "the tool may stand along the normal, turned any way"),
+    "accessible": ("accessible", "a tilted posture was found that neither gouges nor collides"),
+    "undecided": ("undecided", "neither a safe posture nor a proof that there is none was found"),
+    "inaccessible": ("inaccessible", "no posture of those searched is safe"),
+    "unjudged": ("not judged", "the surface could not be sampled or has no normal there"),
+}
+FEASIBLE = {True: "yes", False: "no", None: "undecided"}
+
+
+def mm(length: float | None) -> str:
+    """A length, three digits of it."""
+    return "" if length is None else f"{length:.3g} mm"
+
+
+def angle(degrees: float) -> str:
+    """An angle, to a tenth of a degree."""
+    return f"{round(degrees, 1) + 0.0:g}°"
+
+
+def area(mm2: float) -> str:
+    """An area, three digits of it.
+
+    >>> area(12345.6), area(0.0456)
+    ('12,300 mm²', '0.0456 mm²')
+    """
+    return f"{float(f'{mm2:.3g}'):,.0f} mm²" if mm2 >= 100 else f"{mm2:.3g} mm²"
+
+
+def place(point: Sequence[float] | None) -> str:
+    """A point or direction."""
+    return "" if point is None else ", ".join(f"{x + 0.0:.4g}" for x in point)
+
+
+def up(length: float | None) -> str:
+    """A length that must not be less, rounded up."""
+    return "" if length is None else f"{math.ceil(100.0 * length - 1e-9) / 100.0:.2f} mm"
+
+
+def down(radius: float | None) -> str:
+    """A radius that must not be more, rounded down to three digits.
+
+    >>> down(6.2399), down(0.0)
+    ('6.23 mm', '0 mm')
+    """
+    if not radius:
+        return "0 mm"
+    digit = 10.0 ** (math.floor(math.log10(radius)) - 2)
+    return f"{math.floor(radius / digit + 1e-9) * digit:.4g} mm"
+
+
+def count(number: int, word: str) -> str:
+    """So many things.
+
+    >>> count(1, "face"), count(1200, "sample")
+    ('1 face', '1,200 samples')
+    """
+    return f"{number:,} {word}{'' if number == 1 else 's'}"
+
+
+def reason(word: str) -> str:
+    """A reason, as it stands after "because of"."""
+    return REASONS[word].said if word in REASONS else word.replace("_", " ")
+
+
+def hint(word: str) -> str:
+    """What is tried first against a reason."""
+    return REASONS[word].hint if word in REASONS else ""
+
+
+def spot(witness: WitnessEntry) -> str:
+    """A witness in a sentence or two."""
+    if witness.reason == "tolerance":
+        return "The tolerance is too coarse to say anything about this cutter."
+    said = f"Not reached because of {reason(witness.reason)}."
+    best, obstacle = witness.best_posture, witness.obstacle_face
+    if witness.depth_mm is not None and best is not None:
+        where = f" into {obstacle}" if obstacle else ""
+        there = f"tilt {angle(best.tilt)}, rotation {angle(best.rotation)}"
+        return (
+            f"{said} At the best posture found ({there}) the tool still reaches {mm(witness.depth_mm)} too deep{where}."
+        )
+    return f"{said} {obstacle} is in the way." if obstacle else said
+
+
+def tool(entry: CutterEntry) -> str:
+    """A cutter in words: its end, its lengths, its holder."""
+    ends = {"end": "flat end", "form": "form cutter"}
+    kind = ends.get(entry.shape, entry.shape)
+    if entry.shape == "end" and entry.corner_radius:
+        ball = entry.corner_radius >= entry.radius
+        kind = "ball end" if ball else f"bull nose with corner radius {entry.corner_radius:g} mm"
+    said = [f"{kind}, radius {entry.radius:g} mm"]
+    if entry.taper_deg:
+        said.append(f"taper {entry.taper_deg:g}°")
+    if entry.flutes_mm is not None and entry.flutes_mm < entry.length:
+        said.append(f"flutes {entry.flutes_mm:g} mm")
+    holder = [stage for stage in entry.stages if stage.part == "holder"]
+    if holder:
+        widest = max(max(stage.radius_mm, stage.upper_radius_mm) for stage in holder)
+        said.append(f"stick-out {entry.length:g} mm, holder up to radius {widest:g} mm")
+    else:
+        said.append(f"judged up to {entry.length:g} mm over the tip, without a holder")
+    return ", ".join(said)
+
+
+def headline(plan: Plan, names: Mapping[str, str], shown: CutterEntry) -> tuple[str, str]:
+    """Which cutter to take, and why: a title, and some sentences."""
+    title, why = _choice(plan, names, shown)
+    unjudged = part_of(shown, shown.area_share, ["unjudged"])
+    if unjudged != "0 %":
+        why += f" {unjudged} of the target area could not be judged (see Notes)."
+    return title, why
+
+
+def _choice(plan: Plan, names: Mapping[str, str], shown: CutterEntry) -> tuple[str, str]:
+    found, name = plan.samples, names[shown.id]
+    much = f"It reaches {reached(shown, shown.area_share)} of the target area"
+    if plan.selected:
+        every = f"all {count(found.count - found.unjudged, 'sample')}" + (
+            " that could be judged" if found.unjudged else ""
+        )
+        return (
+            f"Take {name}.",
+            f"It reaches {every} of the target faces without gouging or collision. {_why(plan, names)}",
+        )
+    if plan.selected_over_setups:
+        name = names[plan.selected_over_setups]
+        return (
+            f"Take {name}, in several setups.",
+            "It reaches every judged sample in one setup or another, but not in one alone.",
+        )
+    if plan.selected_for_setup:
+        c = next(c for c in plan.cutters if c.id == plan.selected_for_setup)
+        return (
+            f"Take {names[c.id]} for this setup.",
+            f"It reaches {reached(c, c.area_share)} of the target area: all that any of these cutters can reach here. The axis "
+            f"limit loses {count(c.beyond_setup, 'sample')} of {found.count:,} for every cutter: machine these in another setup.",
+        )
+    if shown.feasible is None and not shown.undecided:
+        return (
+            f"{name} may do, but obstacles are missing.",
+            f"{much}. Something that may be in the way is not known (see Notes).",
+        )
+    if shown.feasible is None:
+        unsure = part_of(shown, shown.area_share, ["undecided"])
+        return f"No cutter is sure to finish this part; {name} comes nearest.", f"{much}; {unsure} is undecided."
+    if not shown.interference_free + shown.accessible:
+        return "No cutter reaches any of the target faces.", "The lists below say why."
+    return (
+        f"No single cutter finishes this part; {name} comes nearest.",
+        f"{much}; the lists below say what it leaves, and why.",
+    )
+
+
+def _why(plan: Plan, names: Mapping[str, str]) -> str:
+    """Why the selected cutter, and no other one."""
+    first = next(c for c in plan.cutters if c.id == plan.selected)
+    larger = [names[c.id] for c in plan.cutters if c.radius > first.radius]
+    if not larger:
+        return "It has the largest radius of the cutters given."
+    listed = ", ".join(larger[:4]) + (f" and {len(larger) - 4} more" if len(larger) > 4 else "")
+    verb = "is" if len(larger) == 1 else "are"
+    return f"It has the largest radius of the feasible ones: {listed} {verb} larger, but not feasible."
+
+
+#: What stands for an obstacle that is not known.
+STAND_IN = {
+    "none": "Nothing stands for it.",
+    "box": "The box around it stands for it.",
+    "triangles": "Its own triangles stand for it.",
+    "edges": "Its edges stand for it.",
+}
+
+
+def limit(found: StickOutEntry) -> str:
+    """What limits a stick-out."""
+    if found.least_mm is None:
+        return f"not looked for: {found.limited_by}"
+    if found.limited_by == "floor" or found.face is None:
+        return "flutes and neck, which must stand out"
+    return f"{found.obstacle_face or 'the part'}, which a shorter one's holder meets at {place(found.point)} mm on {found.face}"
+
+
+def between(found: AreaEntry) -> str:
+    """What is known between the samples."""
+    if found.share == 1.0:
+        return "all of the area is proved safe, too, with the axes found."
+    share = percent(found.share, some=found.share > 0.0, whole=False)
+    return (
+        f"{share} of the area is proved safe with the axes found; the rest is not proved, which does not mean unsafe."
+    )

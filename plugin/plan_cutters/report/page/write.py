@@ -1,0 +1,180 @@
+"""The page as a file: data, tables and script in one, within its size."""
+
+import base64
+import hashlib
+import json
+import math
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import jinja2
+import numpy as np
+from markupsafe import Markup
+from numpy.typing import NDArray
+
+from cad_io.write.drawn import drawn
+from plan_cutters.report.page import arrays, tables
+from plan_cutters.report.page.arrays import Arrays
+from plan_cutters.report.page.atlas import atlas_of
+from plan_cutters.report.page.encode import joined, size_of
+from plan_cutters.report.page.facts import spots_of
+from plan_cutters.report.page.meta import meta_of
+from plan_cutters.report.page.surface import box_of, surface_of
+from plan_cutters.report.page.tables import Drawing
+
+#: Bytes that a page may have, with the posture maps of all samples, and without.
+LARGEST, LARGEST_WITHOUT = 8_000_000, 2_500_000
+#: Triangles that are drawn, about.
+TRIANGLES = 60_000
+#: Maps of fewer than one in so many samples are rather left out.
+_WIDEST_STRIDE = 64
+_HERE = Path(__file__).parent
+
+
+class Left(NamedTuple):
+    """Sentences on what is left out of a page to keep its size: about cutters that are not shown, and about maps."""
+
+    others: str
+    maps: str
+
+
+_SMALLER = ", to keep this page below {:g} MB"
+_OTHERS = "Postures are stored for the cutter shown alone, to keep this page small; samples.npz has all."
+_NO_MAPS = "Certified posture maps are not stored" + _SMALLER + "; postures.npz has all."
+
+
+def write_html(result: Any, _split: object, path: Path) -> None:
+    """Write `review.html`.
+
+    Raises
+    ------
+    CadIoError
+        The kernel cannot mesh the part.
+    OSError
+        The file cannot be written.
+    """
+    path.write_bytes(page(result, maps=result.maps))
+
+
+def page(
+    result: Any, *, maps: Any = None, rows: NDArray[np.int64] | None = None, largest: int | None = None,
+    triangles: int = TRIANGLES,
+) -> bytes:  # fmt: skip
+    """The page of a plan.
+
+    Parameters
+    ----------
+    result : Result
+    maps : PostureMaps, optional
+        Of the cutter shown.
+    rows : (m,) int, optional
+        Samples that the maps are of, ascending; all by default.
+    largest : int, optional
+        Bytes that it may have: where it has more, first postures of the cutters that are not shown are left out, then maps.
+        Default: LARGEST where there are maps of all samples, else LARGEST_WITHOUT.
+    triangles : int
+        To draw, about.
+
+    Returns
+    -------
+    bytes
+        UTF-8; the same for the same plan.
+    """
+    faces = drawn(result.part, result.scene.orientation.sign, most=triangles)
+    atlas = atlas_of(result.samples)
+    surface = surface_of(result, faces, atlas)
+    box = box_of(surface, result.samples)
+    spots, more = spots_of(result)
+    scalars, told = arrays.scalar_arrays(result)
+    base = {
+        **arrays.drawn_arrays(surface, atlas, *box),
+        **arrays.sample_arrays(result, *box),
+        **arrays.posture_arrays(result, result.shown),
+        **scalars,
+    }
+    others = _together(arrays.posture_arrays(result, name) for name in result.reaches if name != result.shown)
+    meta = {**meta_of(result, surface, atlas, box, spots), "drawn_chord_mm": faces.deflection, "scalars": told}
+    about = Drawing(faces.deflection, faces.missing)
+
+    where = np.arange(len(result.samples)) if rows is None else rows
+    largest = largest or (LARGEST if maps is not None and rows is None else LARGEST_WITHOUT)
+    found, stride, left = _maps(maps, where, 1), 1, Left("", "")
+
+    def made() -> bytes:
+        entries, data = joined({**base, **others, **found})
+        for each in meta["cutters"]:
+            each["has_posture"] = f"tilt.{each['id']}" in entries
+        told = None
+        if maps is not None:
+            told = {"cutter": maps.cutter, "count": len(where[::stride]) if found else 0, "of": len(result.samples),
+                    "step_deg": round(result.plan.effective.rotation_step_deg, 9), "why": left.maps or None}  # fmt: skip
+        shown = tables.of(result, spots, more, about, [why for why in left if why])
+        return _rendered({**meta, "maps": told, "arrays": entries}, data, shown)
+
+    data = made()
+    if len(data) > largest and others:
+        others, left = {}, left._replace(others=_OTHERS)
+        data = made()
+    while len(data) > largest and found:
+        room = largest - len(data) + size_of(found)
+        stride = max(stride + 1, math.ceil(stride * size_of(found) / max(room, 1)))
+        found = _maps(maps, where, stride) if stride <= _WIDEST_STRIDE else {}
+        left = left._replace(maps=_why(stride, largest) if found else _NO_MAPS.format(largest / 1e6))
+        data = made()
+    return data
+
+
+def _maps(maps: Any, where: NDArray[np.int64], stride: int) -> Arrays:
+    return {} if maps is None else arrays.map_arrays(maps, where, np.arange(0, len(where), stride))
+
+
+def _why(stride: int, largest: int) -> str:
+    return f"Certified posture maps are stored for one in {stride} samples{_SMALLER.format(largest / 1e6)}; postures.npz has all."
+
+
+def _together(each: Iterable[Arrays]) -> Arrays:
+    return {name: array for one in each for name, array in one.items()}
+
+
+def _rendered(meta: dict[str, Any], data: str, shown: dict[str, Any]) -> bytes:
+    script, style = _asset("page.js"), _asset("page.css")
+    policy = (f"default-src 'none'; script-src '{_hash(script)}'; style-src '{_hash(style)}'; img-src data: blob:; "
+              "base-uri 'none'; form-action 'none'")  # fmt: skip
+    return _TEMPLATE.render(
+        policy=policy,
+        script=Markup(script),
+        style=Markup(style),
+        meta=Markup(embedded(meta)),
+        data=Markup(data),
+        **shown,
+    ).encode()
+
+
+def embedded(value: Any) -> str:
+    """JSON that may stand in a page: nothing in it ends the element or begins another one."""
+    text = json.dumps(value, ensure_ascii=True, separators=(",", ":"), allow_nan=False)
+    return re.sub("[<>&]", lambda found: f"\\u{ord(found[0]):04x}", text)
+
+
+def plain(value: Any) -> Any:
+    """A text in which a sign stands for each character that has no place in a page: controls, halves of surrogate pairs."""
+    if not isinstance(value, str) or isinstance(value, Markup):
+        return value
+    return _NO_TEXT.sub("\ufffd", value)
+
+
+def _asset(name: str) -> str:
+    return (_HERE / name).read_text(encoding="utf-8")
+
+
+def _hash(text: str) -> str:
+    return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+
+
+_NO_TEXT = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
+_TEMPLATE = jinja2.Environment(
+    loader=jinja2.FileSystemLoader(_HERE), autoescape=True, undefined=jinja2.StrictUndefined, finalize=plain,
+    trim_blocks=True, lstrip_blocks=True,
+).get_template("page.html.jinja")  # fmt: skip

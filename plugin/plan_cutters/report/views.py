@@ -1,0 +1,122 @@
+"""Views of a part drawn into images: where one looks from, which triangle each pixel shows, and how bright it is."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats, Ints, Record
+
+#: Pixels drawn for each pixel of an image, along either side: they are averaged, so that edges are smooth.
+FINER = 2
+#: Shares of an image's width and height that stay empty around what is drawn.
+_MARGIN = 0.04, 0.08
+#: Light from behind the viewer's left shoulder, and how dark a surface can get.
+_LIGHT, _DARKEST = np.array([-0.35, 0.45, 1.0]), 0.55
+
+
+class Body(NamedTuple):
+    """Corners (n, 3, 3), mm, and unit normals (n, 3, 3) of triangles, and what each belongs to (n,)."""
+
+    corner: Floats
+    normal: Floats
+    owner: Ints
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class View(Record):
+    """One image.
+
+    Attributes
+    ----------
+    frame : (3, 3) float
+        Unit rows: to the right, upwards, towards the viewer.
+    scale : float
+        Pixels of the finished image a mm.
+    seen : (h, w) int32
+        What each fine pixel shows; -1 for nothing.
+    shade : (h, w) float
+        How bright, 0 to 1.
+    depth : (h, w) float
+        Nearness, mm; -inf for nothing.
+    """
+
+    frame: Floats
+    scale: float
+    seen: Ints
+    shade: Floats
+    depth: Floats
+
+
+def frame_towards(viewer: Floats, up: Floats) -> Floats:
+    """The frame (3, 3) of a view from a direction: right, up on the sheet, towards the viewer."""
+    towards = viewer / np.linalg.norm(viewer)
+    right = np.cross(up, towards)
+    if np.linalg.norm(right) < 1e-6:
+        # From above or below: the direction that is nearest to X points to the right.
+        across = np.eye(3)[int(np.abs(towards).argmin())] if abs(towards[0]) > 0.9 else np.eye(3)[0]
+        right = across - (across @ towards) * towards
+    right = right / np.linalg.norm(right)
+    return np.array([right, np.cross(towards, right), towards])
+
+
+def fitted(frame: Floats, points: Floats, width: int, height: int) -> tuple[float, Floats]:
+    """Pixels a mm with which points (n, 3) fill an image, and what of the frame is in its middle (2,), mm."""
+    flat = points @ frame[:2].T
+    low, high = flat.min(axis=0), flat.max(axis=0)
+    size = np.maximum(high - low, 1e-9)
+    room = (1.0 - 2.0 * np.array(_MARGIN)) * np.array([width, height])
+    return float((room / size).min()), 0.5 * (low + high)
+
+
+def view(
+    frame: Floats, bodies: Sequence[Body], scale: float, middle: Floats, width: int, height: int, finer: int = FINER
+) -> list[View]:
+    """Draw each body by itself from one side; the images have finer pixels, `finer` along each side of one.
+
+    Parameters
+    ----------
+    frame : (3, 3) float
+    bodies : sequence of Body
+    scale, middle
+        As `fitted` gives them.
+    width, height : int
+        Of the finished image, pixels.
+    """
+    from plan_cutters.kernels.raster import draw
+
+    wide, high, fine = width * finer, height * finer, scale * finer
+    light = _LIGHT / np.linalg.norm(_LIGHT)
+    views = []
+    for body in bodies:
+        placed = body.corner @ frame.T
+        corner = np.empty_like(placed)
+        corner[:, :, 0] = (placed[:, :, 0] - middle[0]) * fine + 0.5 * (wide - 1)
+        corner[:, :, 1] = 0.5 * (high - 1) - (placed[:, :, 1] - middle[1]) * fine
+        corner[:, :, 2] = placed[:, :, 2]
+        # Open shells are looked at from both sides: a side that is turned away is lit as if it were turned.
+        turned = body.normal @ frame.T
+        turned = np.where(turned[:, :, 2:] < 0.0, -turned, turned)
+        bright = _DARKEST + (1.0 - _DARKEST) * np.clip(turned @ light, 0.0, 1.0)
+        depth = np.full((high, wide), -np.inf)
+        seen, shade = np.full((high, wide), -1, np.int32), np.zeros((high, wide))
+        draw(np.ascontiguousarray(corner), np.ascontiguousarray(bright), np.ascontiguousarray(body.owner, np.int32), depth, seen,
+             shade)  # fmt: skip
+        views.append(View(frame, scale, seen, shade, depth))
+    return views
+
+
+def borders(codes: Ints) -> NDArray[np.bool_]:
+    """Pixels (h, w) whose right or lower neighbour has another code."""
+    found = np.zeros(codes.shape, bool)
+    found[:, :-1] |= codes[:, :-1] != codes[:, 1:]
+    found[:-1] |= codes[:-1] != codes[1:]
+    return found
+
+
+def averaged(image: Floats) -> Floats:
+    """A fine image (h, w, 3) as the finished one."""
+    h, w, _ = image.shape
+    return np.asarray(image.reshape(h // FINER, FINER, w // FINER, FINER, 3).mean(axis=(1, 3)))
