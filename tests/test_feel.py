@@ -25,6 +25,7 @@ from plan_cutters.document.model import Plan
 
 GROOVE = SAMPLES / "v_groove.step"
 QUICK = ("--cutter", "R6L80", "--grid", "5", "--area-budget", "0")
+FILES = ("--formats", "json,step,glb,npz", "-o", "out")
 #: A part, cutters that fail and one that does not.
 WAVES = SAMPLES / "peaks_and_valleys.step"
 COLOUR = re.compile(r"\x1b\[[0-9;]*m")
@@ -370,7 +371,7 @@ def test_what_the_child_says_comes_through_whatever_it_holds():
 
 def test_it_speaks_soon_and_shows_a_clock_on_a_terminal(tmp_path):
     parent, child = pty.openpty()
-    words = [sys.executable, "-m", "plan_cutters", str(GROOVE), *QUICK, "-o", "out"]
+    words = [sys.executable, "-m", "plan_cutters", str(GROOVE), *QUICK, *FILES]
     process = subprocess.Popen(words, cwd=tmp_path, env=ENV | {"TERM": "xterm", "COLUMNS": "80"}, stderr=child)
     os.close(child)
     said = b""
@@ -417,7 +418,7 @@ def closed(*words, cwd, close):
 def test_closed_streams(tmp_path):
     done = closed(GROOVE, *QUICK, "--json", "-", cwd=tmp_path, close=">&-")
     assert (done.returncode, done.stderr) == (2, "plan-cutters: --json -: standard output is closed\n")
-    done = closed(GROOVE, *QUICK, "-o", "out", cwd=tmp_path, close="<&- >&- 2>&-")
+    done = closed(GROOVE, *QUICK, *FILES, cwd=tmp_path, close="<&- >&- 2>&-")
     assert done.returncode == 0
     assert leftovers(tmp_path / "out") == ["annotated.glb", "annotated.step", "plan.json", "samples.npz"]
 
@@ -434,7 +435,7 @@ def test_a_reader_that_has_seen_enough_ends_it_quietly(tmp_path):
 
 def test_standard_error_that_cannot_be_written_changes_nothing(tmp_path):
     with open("/dev/full", "w") as full:
-        done = subprocess.run([sys.executable, "-m", "plan_cutters", str(GROOVE), *QUICK, "-o", "out"], cwd=tmp_path, env=ENV,
+        done = subprocess.run([sys.executable, "-m", "plan_cutters", str(GROOVE), *QUICK, *FILES], cwd=tmp_path, env=ENV,
                               stdout=subprocess.PIPE, stderr=full, check=False)  # fmt: skip
     assert (done.returncode, done.stdout) == (0, b"")
     assert leftovers(tmp_path / "out") == ["annotated.glb", "annotated.step", "plan.json", "samples.npz"]

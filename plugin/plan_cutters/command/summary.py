@@ -51,6 +51,8 @@ def written(plan: "Plan", out: Path | None, formats: Sequence[str]) -> list[Any]
     files = [*(["plan.json"] if "json" in formats else []), *sorted(f.name for f in plan.files.values())]
     if files:
         lines.append(f"Written to {out}: {', '.join(files)} ({plan.run.total:.0f} s in all).")
+    if out is not None and "html" in plan.files:
+        lines.append(f"Look at it in a browser: {out / plan.files['html'].name}")
     for face, entry in plan.split.items():
         if entry.rung != "contour":
             how = "split beside the part" if entry.rung == "beside" else "one piece in the STEP, by samples in the GLB"
@@ -117,7 +119,7 @@ def setups(plan: "Plan", *, verbose: bool = True) -> list[str]:
     elif count > 1:
         best = next(c for c in plan.cutters if c.id == plan.selected_over_setups)
         each = "; ".join(f"{_axis(s.axis)}: {s.interference_free + s.accessible}" for s in best.setups)
-        lines.append(f"Over the {count} setups {best.id} reaches every sample ({each}).")
+        lines.append(f"Over the {count} setups {best.id} reaches every sample (of {plan.samples.count}, {each}).")
     lost = max((c.beyond_setup for c in plan.cutters), default=0)
     if not lost:
         return lines

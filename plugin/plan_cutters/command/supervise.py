@@ -118,8 +118,8 @@ def keep_output() -> None:
 
 
 def report(word: str, text: str) -> None:
-    """Tell the parent, if there is one: `part FILE`, `staging FOLDER`, `stage NAME`, `at DONE TOTAL`, `work WHOSE FACE`,
-    `say TEXT`, `safe CODE FOLDER`, `done CODE`.
+    """Tell the parent, if there is one: `part FILE`, `staging FOLDER`, `stage NAME`, `detail TEXT`, `at DONE TOTAL`,
+    `work WHOSE FACE`, `say TEXT`, `safe CODE FOLDER`, `done CODE`.
 
     `say`: for people; `safe`: the plan of this part is in the folder, models follow; `done`: so are they.
     """
@@ -154,6 +154,9 @@ class Display(Protocol):
 
     def stage(self, name: str) -> None:
         """Another stage is begun."""
+
+    def detail(self, text: str) -> None:
+        """What of the stage is done just now."""
 
     def at(self, done: int, total: int) -> None:
         """So much of the stage is done."""
@@ -302,6 +305,8 @@ class _Watch:
                 self.display.begins(text)
             case "stage":
                 self.display.stage(text)
+            case "detail":
+                self.display.detail(text)
             case "at":
                 done, _, total = text.partition(" ")
                 self.display.at(int(done), int(total))
