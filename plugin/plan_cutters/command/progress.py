@@ -114,7 +114,7 @@ class Display:
     def _show(self, news: bool) -> None:
         if self.quiet or not self.words:
             return
-        if terminal.is_terminal():
+        if terminal.redraws():
             with contextlib.suppress(OSError, ValueError):
                 self._draw()
             return
