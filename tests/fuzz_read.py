@@ -157,7 +157,7 @@ class Case:
         ]
         with (self.folder / "said").open("w") as said, (self.folder / "printed").open("w") as printed:
             sys.stderr, sys.stdout = said, printed
-            code, line = codes.guarded(lambda: (cli._parsed(words), ""), False)
+            code, line = codes.guarded(lambda: (codes.invoked(cli.command, "plan-cutters", words), ""), False)
             print(line, file=sys.stderr)
         return code
 

@@ -7,7 +7,7 @@ import pytest
 import trimesh
 import vises
 from cad_parts import box, compound
-from test_cli import SAMPLES, assert_one_line, leftovers, run
+from test_cli import SAMPLES, assert_one_line, in_lines, leftovers, run
 from test_write_gltf import read
 
 from cad_io import ReadError, read_part
@@ -163,7 +163,7 @@ def test_the_command_names_and_draws_fixtures(tmp_path):
                "--formats", "json,glb,merged", "--fixture", "jaw.stl", "--fixture", "table:0",
                "-o", "out", cwd=tmp_path)  # fmt: skip
     assert done.returncode == 1, done.stderr
-    assert "fixture:jaw: STL files name no unit: mm was assumed." in done.stderr
+    assert "fixture:jaw: STL files name no unit: mm was assumed." in in_lines(done.stderr)
     document = json.loads((tmp_path / "out/plan.json").read_text())
     assert document["effective"]["fixtures"] == ["jaw.stl", "table:0"]
     jaw, table = document["fixtures"]

@@ -23,6 +23,7 @@ EXAMPLES = (
         "plan-cutters blade.step --cutter R6L80 --answers stick-out,mend",
         "How short it can be held, and what would help:",
     ),
+    ("plan-cutters-map blade.step --at 12,3,40 --cutter R6L80", "All postures of a cutter at one point, drawn:"),
     ("plan-cutters blade.step --cutter R6L80 --json - --quiet", "For a script, the plan on standard output:"),
 )
 CODES = (

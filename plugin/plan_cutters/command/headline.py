@@ -58,10 +58,11 @@ def between(plan: "Plan") -> list[str]:
         if c.area.feasible:
             lines.append("Between the samples, too, all of the area is proved safe with the tool axes found.")
             continue
-        share = percent(c.area.share, some=c.area.share > 0.0, whole=False)
-        rest = percent(1.0 - c.area.share, some=True, whole=False)
+        nothing = c.area.share <= 0.0
+        share = "nothing" if nothing else f"{percent(c.area.share, some=True, whole=False)} of the area"
+        rest = "area" if nothing else percent(1.0 - c.area.share, some=True, whole=False)
         lines.append(
-            f"Between the samples, {share} of the area is proved safe with the tool axis kept as it was found. The other "
+            f"Between the samples, {share} is proved safe with the tool axis kept as it was found. The {'other ' * (not nothing)}"
             f"{rest} is not proved, which does not mean unsafe: the tool axis has to turn there from one sample to the next, or "
             "the samples are too far apart. Check it in simulation, or ask for more (--spacing, --area-budget)."
         )

@@ -13,6 +13,9 @@ import click
 
 from plan_cutters import __version__
 from plan_cutters.command.codes import USAGE, ended, guarded, invoked
+from plan_cutters.command.grouped import Command, heading
+from plan_cutters.command.terminal import clean, error
+from plan_cutters.command.values import File, Words, machine_names
 
 if TYPE_CHECKING:
     from plan_cutters.domain.machine import Machine
@@ -20,18 +23,26 @@ if TYPE_CHECKING:
 _SELF = "plan-cutters-machines"
 
 
+_questions, _output, _run = heading("Questions"), heading("Output"), heading("Run")
+
+
 @click.command(
-    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
-    epilog="Exit codes: 0 each machine is understood; 2 one is not, or the command line is wrong.",
+    cls=Command,
+    examples=(
+        (_SELF, "The machines that are built in:"),
+        (f"{_SELF} trunnion-ac --angles 0.3,0,1", "The angles that hold a tool axis:"),
+        (f"{_SELF} shop.fcm --to-toml shop.toml", "What is understood of a machine file, and the same as TOML:"),
+    ),
+    codes=(("0", "each machine is understood"), ("2", "one is not, or the command line is wrong")),
 )
-@click.argument("machines", nargs=-1, metavar="[FILE|NAME]...")
-@click.option("--json", "as_json", is_flag=True, help="All that was understood, as JSON on standard output.")
-@click.option("--to-toml", metavar="FILE", help="Write the machine in our own format.")
-@click.option(
+@click.argument("machines", nargs=-1, metavar="[NAME|FILE]...", type=Words("NAME|FILE", machine_names, files=True))
+@_questions(
     "--angles", metavar="X,Y,Z", help="Angles that hold this tool axis, from the tip to the spindle: both solutions."
 )
-@click.option("--axis", metavar="A=DEG,C=DEG", help="The tool axis at these angles; those not named are 0.")
-@click.option("--debug", is_flag=True, help="Show tracebacks.")
+@_questions("--axis", metavar="A=DEG,C=DEG", help="The tool axis at these angles; those not named are 0.")
+@_output("--json", "as_json", is_flag=True, help="All that was understood, as JSON on standard output.")
+@_output("--to-toml", type=File("FILE"), help="Write the machine in our own format.")
+@_run("--debug", is_flag=True, help="Show tracebacks.")
 @click.version_option(__version__, prog_name=_SELF)
 def command(machines: tuple[str, ...], **given: Any) -> int:
     """What is understood of each machine: a built-in one by its name, or a file.
@@ -74,7 +85,7 @@ def command(machines: tuple[str, ...], **given: Any) -> int:
         for facts, machine in zip(found, read, strict=True):
             _explain(facts, machine)
     for line in lines:
-        click.echo(line, err=True)
+        error(line)
     return USAGE if lines else 0
 
 
@@ -178,7 +189,7 @@ def _explain(facts: dict[str, Any], machine: "Machine") -> None:
     console = _console()
 
     def say(text: str) -> None:
-        console.print(text, soft_wrap=True)
+        console.print(clean(text), soft_wrap=True)
 
     title = facts["given"] if machine.name == facts["given"] else f"{facts['given']}: {machine.name}"
     say(f"{title} ({facts['format']})")
@@ -195,7 +206,12 @@ def _explain(facts: dict[str, Any], machine: "Machine") -> None:
             )
             moves = f"{'about' if rotary else 'along'} {vector_text(axis.direction)}"
             table.add_row(
-                axis.name, axis.carries, moves, limits_text(axis), vector_text(axis.point) if rotary else "", rate
+                clean(axis.name),
+                axis.carries,
+                moves,
+                limits_text(axis),
+                vector_text(axis.point) if rotary else "",
+                rate,
             )
         console.print(table)
         say("  Directions are those of the tool relative to the part (ISO 841), at zero positions.")

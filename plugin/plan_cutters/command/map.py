@@ -12,7 +12,10 @@ import click
 
 from cad_io.units import UNITS
 from plan_cutters import __version__
-from plan_cutters.command.codes import guarded
+from plan_cutters.command.codes import ended, invoked
+from plan_cutters.command.grouped import Command, heading
+from plan_cutters.command.terminal import clean, hand_out
+from plan_cutters.command.values import File, Words, cutter_ids, machine_names
 
 if TYPE_CHECKING:
     from plan_cutters.domain.cutter import Cutter
@@ -23,78 +26,94 @@ _SELF = "plan-cutters-map"
 _FREE, _NONE, _UNDECIDED = 0, 1, 4
 
 
+_what, _way, _search = heading("What"), heading("In the way"), heading("Search")
+_output, _run = heading("Output"), heading("Run")
+
+
 @click.command(
-    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
-    epilog="Exit codes: 0 some tilt is free; 1 none is; 2 wrong command line; 3 the part cannot be read, or the point is on "
-    "none of its faces; 4 no tilt is surely free, but some are undecided; 130 interrupted.",
+    cls=Command,
+    examples=(
+        (f"{_SELF} samples/v_groove.step --at 0,0,0 --cutter R8L90 --tilt 0:60", "A cutter at the bottom of a groove:"),
+        (f"{_SELF} blade.step --at 12,3,40 --cutter R6L80 --machine trunnion-ac", "What a machine can hold there:"),
+    ),
+    codes=(
+        ("0", "some tilt is free"),
+        ("1", "none is"),
+        ("2", "wrong command line"),
+        ("3", "the part cannot be read, or the point is on none of its faces"),
+        ("4", "no tilt is surely free, but some are undecided"),
+        ("130", "interrupted"),
+    ),
 )
-@click.argument("part", metavar="PART")
-@click.option("--at", required=True, metavar="X,Y,Z", help="The point, part coordinates, mm.")
-@click.option(
+@click.argument("part", metavar="PART", type=File("PART"))
+@_what("--at", required=True, metavar="X,Y,Z", help="The point, part coordinates, mm.")
+@_what(
     "--within",
     type=float,
     default=1.0,
     metavar="MM",
     help="How far the point may be from the part: the nearest point of a face is taken, and said.  [default: 1]",
 )
-@click.option(
+@_what(
     "--cutter",
     required=True,
-    metavar="SPEC|NAME",
+    type=Words("SPEC|NAME", cutter_ids),
     help="R6L80 and so on, as for plan-cutters; with --cutters the id or the name of a tool there.",
 )
-@click.option("--cutters", metavar="FILE", help="Tool library that the cutter is taken from.")
-@click.option("--holder", metavar="SPEC|FILE", help="Holder of a cutter that has none, as for plan-cutters.")
-@click.option("--allowance", type=float, default=0.0, metavar="MM", help="Stock left on the surface.  [default: 0]")
-@click.option(
-    "--holder-clearance",
-    type=float,
-    default=0.0,
-    metavar="MM",
-    help="Room asked of neck, shank and holder.  [default: 0]",
+@_what("--cutters", type=File("FILE"), help="Tool library that the cutter is taken from.")
+@_what("--holder", type=File("SPEC|FILE"), help="Holder of a cutter that has none, as for plan-cutters.")
+@_what("--flip", is_flag=True, help="Take the other side of open shells and loose faces.")
+@_what("--unit", type=click.Choice(list(UNITS)), help="What lengths in the part's file are in.")
+@_way(
+    "--machine",
+    default="unlimited",
+    type=Words("NAME|FILE", machine_names, files=True),
+    help="As for plan-cutters.  [default: unlimited]",
 )
-@click.option("--machine", default="unlimited", metavar="NAME|FILE", help="As for plan-cutters.  [default: unlimited]")
-@click.option(
-    "--setup", default="0,0,1", metavar="X,Y,Z", help="Direction of the part along the spindle.  [default: 0,0,1]"
-)
-@click.option("--tilt", default="0:90", metavar="MIN:MAX", help="Tilts from the normal, degrees.  [default: 0:90]")
-@click.option(
+@_way("--setup", default="0,0,1", metavar="X,Y,Z", help="Direction of the part along the spindle.  [default: 0,0,1]")
+@_way("--fixture", multiple=True, type=File("FILE[@X,Y,Z[,RX,RY,RZ]][:UNIT]"), help="As for plan-cutters. Repeatable.")
+@_way("--ignore", multiple=True, metavar="SELECT", help="Faces that are no obstacles. Repeatable.")
+@_search("--tilt", default="0:90", metavar="MIN:MAX", help="Tilts from the normal, degrees.  [default: 0:90]")
+@_search(
     "--rotation",
     default="0:360",
     metavar="MIN:MAX",
     help="Rotations from the direction of the largest curvature, degrees.  [default: 0:360]",
 )
-@click.option("--rotation-step", type=float, default=5.0, metavar="DEG", help="[default: 5]")
-@click.option(
+@_search("--rotation-step", type=float, default=5.0, metavar="DEG", help="Step between rotations.  [default: 5]")
+@_search(
     "--tolerance",
     type=float,
     default=0.01,
     metavar="MM",
     help="Gouge tolerance; 0: the nominal answer, which proves nothing.  [default: 0.01]",
 )
-@click.option(
-    "--fixture", multiple=True, metavar="FILE[@X,Y,Z[,RX,RY,RZ]][:UNIT]", help="As for plan-cutters. Repeatable."
+@_search("--allowance", type=float, default=0.0, metavar="MM", help="Stock left on the surface.  [default: 0]")
+@_search(
+    "--holder-clearance",
+    type=float,
+    default=0.0,
+    metavar="MM",
+    help="Room asked of neck, shank and holder.  [default: 0]",
 )
-@click.option("--ignore", multiple=True, metavar="SELECT", help="Faces that are no obstacles. Repeatable.")
-@click.option("--flip", is_flag=True, help="Take the other side of open shells and loose faces.")
-@click.option("--unit", type=click.Choice(list(UNITS)), help="What lengths in the part's file are in.")
-@click.option(
-    "-o", "--out", multiple=True, metavar="FILE", help=".png or .svg. Repeatable.  [default: <stem>-map.png and .svg]"
+@_output(
+    "-o",
+    "--out",
+    multiple=True,
+    type=File("FILE"),
+    help=".png or .svg. Repeatable.  [default: <part>-map.png and .svg]",
 )
-@click.option("--json", "json_out", metavar="-", help="With `-`: the map on standard output, and no table.")
-@click.option("--quiet", is_flag=True, help="No table.")
-@click.option("--debug", is_flag=True, help="Show tracebacks.")
+@_output("--json", "json_out", type=Words("-", lambda: ("-",)), help="The map on standard output, and no table.")
+@_output("--quiet", is_flag=True, help="No table.")
+@_run("--debug", is_flag=True, help="Show tracebacks.")
 @click.version_option(__version__, prog_name=_SELF)
 def command(part: str, **given: Any) -> int:
     """Which tilts of one cutter are free at one point of PART, rotation by rotation, and what forbids the others?
 
     Prints the free intervals and draws the map: tilt against rotation, forbidden tilts coloured by cause, undecided ones
     apart.
-
-    \b
-    plan-cutters-map samples/v_groove.step --at 0,0,0 --cutter R8L90 --tilt 0:60
-    plan-cutters-map blade.step --at 12,3,40 --cutter R6L80 --machine trunnion-ac -o spot.png
     """
+    from cad_io.read.sniff import kind
     from plan_cutters.domain.posture import PostureRange
     from plan_cutters.errors import OptionError
 
@@ -112,10 +131,7 @@ def command(part: str, **given: Any) -> int:
             raise OptionError(f"-o {out}: pictures are written as .png or .svg")
         if not out.absolute().parent.is_dir():
             raise OptionError("cannot be written: there is no such folder", file=str(out))
-    if not os.path.isfile(part):
-        from cad_io.errors import ReadError
-
-        raise ReadError("no such file", file=part)
+    kind(part)
     cutter = _cutter(given)
     from plan_cutters.options import machine_given
 
@@ -145,10 +161,9 @@ def command(part: str, **given: Any) -> int:
     about = _about(found, f"F{face}", off, cutter, given)
     _draw(found, postures.tilt, about, outs)
     if given["json_out"] == "-":
-        sys.stdout.write(json.dumps(_facts(found, f"F{face}", off, cutter, given), indent=2) + "\n")
+        hand_out(json.dumps(_facts(found, f"F{face}", off, cutter, given), indent=2) + "\n")
     elif not given["quiet"]:
         _table(found, about, outs)
-    sys.stdout.flush()
     if any(len(each) for each in found.free) and not found.missing:
         return _FREE
     return _UNDECIDED if found.missing or any(len(each) for each in found.undecided) else _NONE
@@ -277,7 +292,7 @@ def _table(found: "PostureMap", about: list[str], outs: Sequence[Path]) -> None:
         sys.stdout.reconfigure(errors="replace")
     console = Console(highlight=False, markup=False, width=None if sys.stdout.isatty() else 80)
     for line in about:
-        console.print(line, soft_wrap=True)
+        console.print(clean(line), soft_wrap=True)
     table = Table("Rotation", "Free tilts (deg)", "Undecided", "Local gouge below")
     for column in (table.columns[0], table.columns[3]):
         column.justify = "right"
@@ -288,7 +303,7 @@ def _table(found: "PostureMap", about: list[str], outs: Sequence[Path]) -> None:
             f"{math.degrees(turn):g}", _spans(found.free[i]) or "none", _spans(found.undecided[i], False), below
         )
     console.print(table)
-    console.print(f"Drawn in {' and '.join(map(str, outs))}.", soft_wrap=True)
+    console.print(clean(f"Drawn in {' and '.join(map(str, outs))}."), soft_wrap=True)
 
 
 def _spans(intervals: Any, inward: bool = True) -> str:
@@ -304,18 +319,4 @@ def _spans(intervals: Any, inward: bool = True) -> str:
 def main(args: Sequence[str] | None = None) -> NoReturn:
     """Entry point of the command."""
     words = list(sys.argv[1:] if args is None else args)
-
-    def work() -> tuple[int, str]:
-        try:
-            return int(command.main(words, prog_name=_SELF, standalone_mode=False) or 0), ""
-        except click.Abort:
-            raise KeyboardInterrupt from None
-        except BrokenPipeError:
-            # Whoever reads the table has seen enough.
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            return 0, ""
-
-    code, line = guarded(work, "--debug" in words)
-    if line:
-        click.echo(line.replace("plan-cutters:", f"{_SELF}:", 1), err=True)
-    sys.exit(code)
+    ended(_SELF, words, lambda: invoked(command, _SELF, words))

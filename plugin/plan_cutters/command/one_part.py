@@ -104,8 +104,11 @@ class Onlooker:
         self.summarise(plan)
 
     def begins(self, what: str) -> None:
+        from plan_cutters.report.folder import file_name
+
         # Each step has the whole limit of the stage.
         self.tell("write", 0, 1)
+        self.tell.detail("splitting the faces" if what == "split" else f"writing {file_name(what)}")
 
     def failed(self, what: str, error: Exception) -> None:
         if self.given["debug"]:

@@ -22,8 +22,8 @@ _WORDS = {
     "classify": "taking samples",
     "tessellate": "meshing what is in the way",
     "tree": "meshing what is in the way",
-    "compile": "loading the search",
-    "bodies": "loading the search",
+    "compile": "preparing the search",
+    "bodies": "preparing the search",
     "setups": "judging in the other setups",
     "stick-out": "asking for the least stick-out",
     "stick-out-map": "asking for the least stick-out",
@@ -57,7 +57,7 @@ class Display:
 
     def __init__(self, quiet: bool, cutters: int, began: float, *, itself: bool = False) -> None:
         self.quiet, self.cutters, self.began, self.itself = quiet, cutters, began, itself
-        self.words, self.said, self.spoke = "", "", 0.0
+        self.words, self.doing, self.spoke = "", "", 0.0
         self.judged: dict[str, None] = {}
         self.name = "start"
         self.share: float | None = None
@@ -65,10 +65,10 @@ class Display:
         self.task: Any = None
 
     def begins(self, part: str) -> None:
-        self.judged, self.said = {}, ""
+        self.judged = {}
 
     def stage(self, name: str) -> None:
-        self.name, self.share = name, None
+        self.name, self.share, self.doing = name, None, ""
         if name not in _WORDS:
             self.judged.setdefault(name)
             self.share = (len(self.judged) - 1) / max(self.cutters, len(self.judged))
@@ -81,6 +81,11 @@ class Display:
             self.share = done / total
             if self.name not in _WORDS:
                 self.share = (len(self.judged) - 1 + self.share) / max(self.cutters, len(self.judged))
+        self.tick()
+
+    def detail(self, text: str) -> None:
+        """What is done just now, where the stage's own words say too little."""
+        self.doing = text
         self.tick()
 
     def say(self, text: str) -> None:
@@ -101,7 +106,7 @@ class Display:
     def line(self) -> str:
         """What is being done."""
         if self.name in _WORDS:
-            return self.words
+            return self.doing or self.words
         name = terminal.clean(self.name.partition("H")[0])
         many = max(self.cutters, len(self.judged))
         return f"judging {name} ({len(self.judged)} of {many})" if many > 1 else f"judging {name}"
@@ -109,7 +114,7 @@ class Display:
     def _show(self, news: bool) -> None:
         if self.quiet or not self.words:
             return
-        if terminal.is_terminal():
+        if terminal.redraws():
             with contextlib.suppress(OSError, ValueError):
                 self._draw()
             return
@@ -164,3 +169,8 @@ class Teller:
             report("at", f"{done} {total}")
             if self.display is not None:
                 self.display.at(done, total)
+
+    def detail(self, text: str) -> None:
+        report("detail", text)
+        if self.display is not None:
+            self.display.detail(text)

@@ -84,7 +84,8 @@ def cutter_rows(plan: "Plan", names: Mapping[str, str], *, verbose: bool) -> lis
         rank = sorted(rows, key=lambda c: (c.id != taken, c.area_share.inaccessible + c.area_share.undecided))
         kept = {c.id for c in rank[:MOST_ROWS]}
         rows = [c for c in rows if c.id in kept]
-    found: list[Any] = ["Share of the area to machine, by the verdict of its samples:"]
+    here = f", in setup {','.join(f'{x:.4g}' for x in plan.effective.setup)}" if plan.effective.other_setups else ""
+    found: list[Any] = [f"Share of the area to machine, by the verdict of its samples{here}:"]
     short = _distinct([clean(names[c.id]) for c in rows], _NAME)
     table = _table(("  cutter", "feasible"), tuple(WORDS.values()))
     for c, name in zip(rows, short, strict=True):

@@ -25,7 +25,8 @@ def summary(plan: "Plan", *, verbose: bool = False) -> None:
     """Say what is found, but not what is not reached: that comes last."""
     names = short_names(plan)
     targets, ignored = len(plan.effective.target_faces), sum(f.ignored for f in plan.faces)
-    faces = f"{plan.part.faces} face{'s'[: plan.part.faces != 1]}, {targets} to machine{f', {ignored} ignored' if ignored else ''}"
+    many = "1 face" if plan.part.faces == 1 else f"{plan.part.faces} faces"
+    faces = f"{many}, {targets} to machine{f', {ignored} ignored' if ignored else ''}"
     say(
         "",
         *headline(plan, names),
@@ -50,6 +51,8 @@ def written(plan: "Plan", out: Path | None, formats: Sequence[str]) -> list[Any]
     files = [*(["plan.json"] if "json" in formats else []), *sorted(f.name for f in plan.files.values())]
     if files:
         lines.append(f"Written to {out}: {', '.join(files)} ({plan.run.total:.0f} s in all).")
+    if out is not None and "html" in plan.files:
+        lines.append(f"Look at it in a browser: {out / plan.files['html'].name}")
     for face, entry in plan.split.items():
         if entry.rung != "contour":
             how = "split beside the part" if entry.rung == "beside" else "one piece in the STEP, by samples in the GLB"
@@ -116,7 +119,7 @@ def setups(plan: "Plan", *, verbose: bool = True) -> list[str]:
     elif count > 1:
         best = next(c for c in plan.cutters if c.id == plan.selected_over_setups)
         each = "; ".join(f"{_axis(s.axis)}: {s.interference_free + s.accessible}" for s in best.setups)
-        lines.append(f"Over the {count} setups {best.id} reaches every sample ({each}).")
+        lines.append(f"Over the {count} setups {best.id} reaches every sample (of {plan.samples.count}, {each}).")
     lost = max((c.beyond_setup for c in plan.cutters), default=0)
     if not lost:
         return lines

@@ -5,7 +5,6 @@ to read or too much memory becomes one line and an exit code; what it had begun 
 no such child: the command does the job itself, and a crash of the kernel ends it.
 """
 
-import _thread
 import contextlib
 import math
 import os
@@ -93,11 +92,11 @@ def limit_memory() -> None:
 
 def keep_interrupts() -> None:
     """Take an interrupt again that came where none can be raised, as while the process copies itself for the kernel."""
-    before = sys.unraisablehook
+    before, me = sys.unraisablehook, threading.get_ident()
 
     def again(what: "sys.UnraisableHookArgs") -> None:
         if issubclass(what.exc_type, KeyboardInterrupt):
-            threading.Timer(0.05, _thread.interrupt_main).start()
+            threading.Timer(0.05, signal.pthread_kill, (me, signal.SIGINT)).start()
         else:
             before(what)
 
@@ -119,8 +118,8 @@ def keep_output() -> None:
 
 
 def report(word: str, text: str) -> None:
-    """Tell the parent, if there is one: `part FILE`, `staging FOLDER`, `stage NAME`, `at DONE TOTAL`, `work WHOSE FACE`,
-    `say TEXT`, `safe CODE FOLDER`, `done CODE`.
+    """Tell the parent, if there is one: `part FILE`, `staging FOLDER`, `stage NAME`, `detail TEXT`, `at DONE TOTAL`,
+    `work WHOSE FACE`, `say TEXT`, `safe CODE FOLDER`, `done CODE`.
 
     `say`: for people; `safe`: the plan of this part is in the folder, models follow; `done`: so are they.
     """
@@ -155,6 +154,9 @@ class Display(Protocol):
 
     def stage(self, name: str) -> None:
         """Another stage is begun."""
+
+    def detail(self, text: str) -> None:
+        """What of the stage is done just now."""
 
     def at(self, done: int, total: int) -> None:
         """So much of the stage is done."""
@@ -303,6 +305,8 @@ class _Watch:
                 self.display.begins(text)
             case "stage":
                 self.display.stage(text)
+            case "detail":
+                self.display.detail(text)
             case "at":
                 done, _, total = text.partition(" ")
                 self.display.at(int(done), int(total))

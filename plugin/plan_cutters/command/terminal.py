@@ -51,10 +51,15 @@ def clean(text: str) -> str:
 
 
 def is_terminal() -> bool:
-    """Whether standard error goes to a terminal that can redraw a line."""
+    """Whether standard error goes to a terminal."""
     with contextlib.suppress(OSError, ValueError, AttributeError):
-        return sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
+        return sys.stderr.isatty()
     return False
+
+
+def redraws() -> bool:
+    """Whether it can redraw a line, and colour it."""
+    return is_terminal() and os.environ.get("TERM") != "dumb"
 
 
 def width() -> int:
@@ -70,7 +75,7 @@ def console(stream: "IO[str] | None" = None) -> "Console":
     """Where everything for people is set: standard error, or a stream that is set as that would be."""
     from rich.console import Console
 
-    return Console(file=stream, stderr=stream is None, width=width(), force_terminal=is_terminal() or None, highlight=False,
+    return Console(file=stream, stderr=stream is None, width=width(), force_terminal=redraws() or None, highlight=False,
                    markup=False, emoji=False)  # fmt: skip
 
 

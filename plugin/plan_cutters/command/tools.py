@@ -14,6 +14,9 @@ import click
 
 from plan_cutters import __version__
 from plan_cutters.command.codes import USAGE, ended, guarded, invoked
+from plan_cutters.command.grouped import Command, heading
+from plan_cutters.command.terminal import clean, error
+from plan_cutters.command.values import File, Folder
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -27,23 +30,37 @@ _COLUMNS = ("", "No.", "Name", "Type", "Unit", "DC", "RE", "LCF", "Stick-out", "
 _NARROW = 130
 
 
+_tools, _output, _run = heading("Tools"), heading("Output"), heading("Run")
+
+
 @click.command(
-    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
-    epilog="Exit codes: 0 each file holds a tool that can be judged, or a holder; 2 one does not, or the command line is wrong.",
+    cls=Command,
+    examples=(
+        ("plan-cutters-tools shop.tools", "What of a library can be judged, and why the rest cannot:"),
+        ("plan-cutters-tools shop.tools --assume-stickout 35 --holder R15L40", "With what the library leaves out:"),
+        (
+            "plan-cutters-tools shop.tools --draw drawings --to-toml shop.toml",
+            "Drawings to scale, and the tools as TOML:",
+        ),
+    ),
+    codes=(
+        ("0", "each file holds a tool that can be judged, or a holder"),
+        ("2", "one does not, or the command line is wrong"),
+    ),
 )
-@click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@click.option("--json", "as_json", is_flag=True, help="All that was understood, as JSON on standard output.")
-@click.option("--to-toml", metavar="FILE", help="Write the tools that can be judged in our own format.")
-@click.option("--draw", metavar="DIR", help="Draw each assembly to scale (SVG) into a folder.")
-@click.option("--assume-stickout", type=float, metavar="MM", help="Stick-out of tools that state none.")
-@click.option(
+@click.argument("files", nargs=-1, required=True, metavar="FILE...", type=File("FILE"))
+@_tools("--assume-stickout", type=float, metavar="MM", help="Stick-out of tools that state none.")
+@_tools(
     "--holder",
-    metavar="FILE|SPEC",
+    type=File("SPEC|FILE"),
     help="Holder of tools that have none: R15L30 (radius, length), stages from the nose up joined by +; a file with a holder "
     "(FILE#NAME if it has several); or `none`.",
 )
-@click.option("--skip-bad", is_flag=True, help="Use the other tools of a library that has broken ones.")
-@click.option("--debug", is_flag=True, help="Show tracebacks.")
+@_tools("--skip-bad", is_flag=True, help="Use the other tools of a library that has broken ones.")
+@_output("--json", "as_json", is_flag=True, help="All that was understood, as JSON on standard output.")
+@_output("--to-toml", type=File("FILE"), help="Write the tools that can be judged in our own format.")
+@_output("--draw", type=Folder("DIR"), help="Draw each assembly to scale (SVG) into a folder.")
+@_run("--debug", is_flag=True, help="Show tracebacks.")
 @click.version_option(__version__, prog_name="plan-cutters-tools")
 def command(files: tuple[str, ...], **given: Any) -> int:
     """What is understood of the tools in FILE, and why some cannot be judged.
@@ -78,7 +95,7 @@ def command(files: tuple[str, ...], **given: Any) -> int:
         for library in found:
             _table(library)
     for line in lines:
-        click.echo(line, err=True)
+        error(line)
     return USAGE if lines else 0
 
 
@@ -127,12 +144,11 @@ def _table(library: "Library") -> None:
     console = Console(highlight=False, markup=False, width=None if sys.stdout.isatty() else 200)
     used = sum(entry.cutter is not None for entry in library.entries)
     tools = "1 tool" if len(library.entries) == 1 else f"{len(library.entries)} tools"
-    console.print(f"{library.file}: {library.format}, {tools} listed, {used} used, {len(library)} different",
-                  soft_wrap=True)  # fmt: skip
-    for note in library.notes:
-        console.print(f"  {note}", soft_wrap=True)
-    for holder in library.holders:
-        console.print(f"  holder {holder.name}: {holder.id}", soft_wrap=True)
+    heads = [f"{library.file}: {library.format}, {tools} listed, {used} used, {len(library)} different"]
+    heads += [f"  {note}" for note in library.notes]
+    heads += [f"  holder {holder.name}: {holder.id}" for holder in library.holders]
+    for line in heads:
+        console.print(clean(line), soft_wrap=True)
     if not library.entries:
         return
     if console.width < _NARROW:
@@ -161,6 +177,11 @@ def _listed(console: "Console", row: list[str]) -> None:
 
 
 def _row(entry: "Entry") -> list[str]:
+    """A tool as the table has it."""
+    return [clean(word) for word in _words(entry)]
+
+
+def _words(entry: "Entry") -> list[str]:
     given, cutter = dict(entry.given), entry.cutter
     number = "" if entry.number is None else str(entry.number)
     words = [entry.place, number, entry.name, entry.kind, entry.unit]

@@ -179,9 +179,9 @@ def grammar(text: str, option: str) -> None:
     elif _NUMBERS.fullmatch(plain):
         for item, first, last, _ in _ends(plain):
             if first > last:
-                raise OptionError(f"{where}: {item} runs backwards")
+                raise OptionError(f"{where}: {_brief(item)} runs backwards")
             if not first:
-                raise OptionError(f"{where}: faces are numbered from 1")
+                raise OptionError(f"{where}: there is no face F0; they are numbered from 1")
     else:
         raise OptionError(f"{where}: give {_WORDS}")
 
@@ -192,7 +192,8 @@ def _selected(faces: Sequence[FaceInfo], text: str, tree: "Sequence[Node]", opti
     word = text.strip()
     plain = word.removeprefix("!").strip()
     every = {f.number for f in faces}
-    grammar(text, option)
+    if not _NUMBERS.fullmatch(plain):  # of numbers the part has more to say
+        grammar(text, option)
     if plain == "all":
         chosen = every
     elif plain == "sculptured":
@@ -219,10 +220,12 @@ def _selected(faces: Sequence[FaceInfo], text: str, tree: "Sequence[Node]", opti
 def _numbered(word: str, count: int, where: str) -> set[int]:
     """Numbers in a list of numbers and ranges, none beyond `count`."""
     found: set[int] = set()
-    for _, first, last, ends in _ends(word):
+    for item, first, last, ends in _ends(word):
         for end, number in zip(ends, (first, last), strict=True):
             if not 1 <= number <= count:
                 raise OptionError(f"{where}: there is no face F{_brief(end)}; the part has F1 to F{count}")
+        if first > last:
+            raise OptionError(f"{where}: {_brief(item)} runs backwards")
         found.update(range(first, last + 1))
     return found
 
