@@ -240,6 +240,15 @@ def test_a_map_that_is_not_stored_is_said_to_be_approximate(page, planned):
     assert any(shown.values())
 
 
+def test_the_verdict_on_a_sample_that_is_not_reached_is_kept(page, planned):
+    """The drawn triangles alone would leave gaps where the search proved that there are none."""
+    for row in seen(page, inner(planned, SHOWN, [0, 3], 60))[:3]:
+        choose(page, row)
+        shown, certified = intervals(page)
+        assert certified == {"true"}
+        assert not any(shown.values())
+
+
 def test_nothing_beyond_the_axis_limit_is_shown_free(page, planned):
     """Stored maps hold for any machine: this one tilts 40 degrees."""
     for row in seen(page, inner(planned, SHOWN, [1, 2], 60))[::20]:

@@ -80,6 +80,9 @@ const CAUSE_PATTERNS: Record<string, Pattern> = {
   tolerance: "dots",
 };
 
+/** Where the drawn triangles meet nothing, which is no proof: paler than what is certified to be free. */
+export const OPEN: [string, Pattern] = ["#9ddcc6", "plain"];
+
 /** Colour and pattern of what forbids a posture, or of what is free of it. */
 export function causeOf(meta: Meta, cause: string): [string, Pattern] {
   const word = cause === "free" ? "interference_free" : cause;

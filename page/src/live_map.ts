@@ -23,6 +23,7 @@ export const STATES = [
   "fixture",
   "undecided",
   "tolerance",
+  "buried",
 ] as const;
 export type State = (typeof STATES)[number];
 

@@ -1,7 +1,7 @@
 // The panel of one sample: tilt against rotation, what is free, what forbids the rest, and the posture shown.
 
 import type { App } from "./app.ts";
-import { causeOf, spoken } from "./colours.ts";
+import { causeOf, OPEN, spoken } from "./colours.ts";
 import { button, el, figure, percent } from "./dom.ts";
 import { STATES, type State } from "./live_map.ts";
 import { swatch, tile } from "./patterns.ts";
@@ -26,6 +26,7 @@ export class PosturePanel {
   private readonly witness = el("p", { class: "hint" });
   private readonly legend = el("ul", { class: "legend", "aria-label": "Legend of the posture map" });
   private readonly rows = el("tbody");
+  private readonly caption = el("caption", {});
   private readonly intervals: HTMLElement;
   private readonly body = el("div", { class: "posture-body" });
   private readonly empty = el("p", { class: "hint" });
@@ -44,7 +45,7 @@ export class PosturePanel {
       el(
         "table",
         { id: "intervals" },
-        el("caption", {}, "Free tilts by rotation"),
+        this.caption,
         el("thead", {}, el("tr", {}, ...head)),
         this.rows,
       ),
@@ -91,7 +92,7 @@ export class PosturePanel {
       `: ${spoken(verdict)}${reason ? ` (${spoken(reason)})` : ""}. Curvature ${sample.curvature.map(bend).join(" and ")}.`,
     );
     this.kind.textContent = this.map.certified
-      ? "Free postures are certified. What forbids the others comes from the drawn triangles."
+      ? "What is free is certified. What forbids the others comes from the drawn triangles."
       : "Approximate: this map comes from the drawn triangles and overlooks what reaches less than " +
         `${figure(this.app.liveTool().spared, 2)} mm into the tool. It is not certified.`;
     if (this.app.meta.kinematics && this.app.meta.kinematics.direction.length < 2) {
@@ -139,10 +140,10 @@ export class PosturePanel {
     if (posture && state && sample) {
       const found = this.app.samples.posture(this.app.cutter.id, sample.row);
       const here = found && Math.abs(found.tilt - posture.tilt) < 0.02 && apart(found.rotation, posture.rotation) < 0.02;
-      const sure = state.state === "free" ? (here ? ", the posture found" : state.certified ? "" : " (approximate)") : "";
+      const sure = state.state === "free" ? (here ? ", the posture found" : state.certified ? "" : "") : "";
       this.line.textContent =
         `tilt ${degrees(posture.tilt)} deg, rotation ${degrees(posture.rotation)} deg: ` +
-        (this.app.atWitness() ? this.witnessed() : wording(this.app, state.state, met) + sure);
+        (this.app.atWitness() ? this.witnessed() : wording(this.app, state, met) + sure);
       this.line.dataset.state = state.state;
     } else {
       this.line.textContent = "";
@@ -205,7 +206,7 @@ export class PosturePanel {
         }
         from = row;
       }
-      c.fillStyle = fills.get("free")!;
+      c.fillStyle = map.certified ? fills.get("free")! : OPEN[0];
       for (const [low, high] of map.free(column)) {
         seen.add("free");
         c.fillRect(x, this.y(high) - 0.5, wide, Math.max(1, this.y(low) - this.y(high) + 1));
@@ -214,12 +215,14 @@ export class PosturePanel {
     this.axes(c);
     this.marks(c);
     const shown = STATES.filter((state) => seen.has(state));
-    if (this.legend.dataset.shown !== shown.join()) {
-      this.legend.dataset.shown = shown.join();
+    const told = `${shown.join()} ${map.certified !== null}`;
+    if (this.legend.dataset.shown !== told) {
+      this.legend.dataset.shown = told;
       this.legend.replaceChildren(
         ...shown.map((state) => {
-          const word = state === "tolerance" ? "within tolerance" : spoken(state);
-          return el("li", {}, swatch(...causeOf(this.app.meta, state)), word);
+          const open = state === "free" && !map.certified;
+          const word = open ? "nothing met (not certified)" : state === "tolerance" ? "within tolerance" : spoken(state);
+          return el("li", {}, swatch(...(open ? OPEN : causeOf(this.app.meta, state))), word);
         }),
       );
     }
@@ -332,7 +335,8 @@ export class PosturePanel {
     const cells = map.grid.rotations.length * map.grid.tilts.length;
     let open = 0;
     map.grid.rotations.forEach((_, k) => map.grid.tilts.forEach((__, i) => (open += map.cell(k, i) === "free" ? 1 : 0)));
-    this.title.textContent = `Posture map: ${percent(open / cells)} free`;
+    this.title.textContent = `Posture map: ${percent(open / cells)} ${map.certified ? "free" : "open"}`;
+    this.caption.textContent = map.certified ? "Free tilts by rotation" : "Tilts at which nothing is met, not certified";
   }
 }
 

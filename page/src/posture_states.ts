@@ -17,7 +17,7 @@ export class SampleMap {
     stored: StoredMaps,
     readonly sample: Sample,
   ) {
-    this.certified = within(app, sample, stored.of(app.cutter.id, sample.row));
+    this.certified = within(app, sample, stored.of(app.cutter.id, sample.row)) ?? lost(app, sample);
     this.grid = emptyGrid(app.meta);
   }
 
@@ -46,7 +46,13 @@ export class SampleMap {
   }
 
   private unsure(column: number): State {
+    if (this.buried) return "buried";
     return this.certified!.undecided[column] > 0 ? "undecided" : "tolerance";
+  }
+
+  /** Whether the sample lies under or within a body: the drawn triangles do not tell what they enclose. */
+  private get buried(): boolean {
+    return this.app.samples.reason(this.app.cutter.id, this.sample.row) === "buried";
   }
 
   /** Free intervals at a rotation: the stored ones, else those of the grid. */
@@ -125,14 +131,22 @@ function within(app: App, sample: Sample, found: Certified | null): Certified | 
   return { ...found, free: found.free.map((mine, k) => machine.within(mine, sample, app.meta.rotation_deg[k])) };
 }
 
+/** The verdict on a sample that is not reached is certified, too: no searched rotation has a free tilt. */
+function lost(app: App, sample: Sample): Certified | null {
+  const verdict = app.samples.verdict(app.cutter.id, sample.row);
+  if (verdict !== "inaccessible" && verdict !== "undecided") return null;
+  const unsure = verdict === "undecided" ? 1 : 0;
+  return { free: app.meta.rotation_deg.map(() => []), undecided: app.meta.rotation_deg.map(() => unsure) };
+}
+
 export const apart = (a: number, b: number): number => Math.abs(((a - b + 540) % 360) - 180);
 
 /** What is said of a posture: `free`, or what is in the way. */
-export function wording(app: App, state: State, met: Met | null): string {
+export function wording(app: App, { state, certified }: Judged, met: Met | null): string {
   const name = met && met.owner !== null ? app.drawn.called(met.owner) : "";
   switch (state) {
     case "free":
-      return "free";
+      return certified ? "free" : "nothing is met in the drawing, which is not certified";
     case "axis_limit":
       return "beyond the limit of the tool axis";
     case "no_contact":
@@ -149,6 +163,8 @@ export function wording(app: App, state: State, met: Met | null): string {
       return "undecided: neither called free nor known to be forbidden";
     case "tolerance":
       return "not free within the tolerance";
+    case "buried":
+      return "the sample lies under or within a body";
     default:
       return `${spoken(state)} meets ${name}`;
   }
