@@ -13,6 +13,7 @@ from plan_cutters.command.terminal import clean, console
 if TYPE_CHECKING:
     from plan_cutters.document.model import CutterEntry, Plan
     from plan_cutters.document.shares import AreaShare, Verdicts
+    from plan_cutters.document.told import WorstFace
 
 #: Verdicts, what a column calls them.
 WORDS = {
@@ -112,18 +113,16 @@ def _listed(c: "CutterEntry", name: str, taken: bool) -> Text:
 
 def worst_faces(plan: "Plan", name: str) -> list[Any]:
     """Where the cutter shown fails: the faces on which it leaves the most area."""
-    c, areas = shown(plan), {f.id: f.area_mm2 for f in plan.faces}
-    lost = {face: v.area_share.inaccessible + v.area_share.undecided for face, v in c.faces.items()
-            if v.inaccessible + v.undecided}  # fmt: skip
-    if not lost:
+    from plan_cutters.document import told
+
+    c = shown(plan)
+    worst, count = told.worst_faces(plan, c, WORST)
+    if not worst:
         return []
-    worst = sorted(lost, key=lambda face: (-lost[face] * areas[face], -lost[face], int(face[1:])))[:WORST]
-    which = f"the {len(worst)} worst of {len(lost)} faces" if len(lost) > len(worst) else (
-        f"{len(lost)} face{'s' if len(lost) > 1 else ''}"
-    )  # fmt: skip
-    lines: list[Any] = [cell(f"Where {name} fails, {which}:")]
-    rows = [_row(c, face, areas[face]) for face in worst]
-    table = _table(("  face", "mainly", "in the way"), ("mm2", "not reached", "mm too deep"))
+    which = f"the {len(worst)} worst of {count} faces" if count > len(worst) else f"{count} face{'s' if count > 1 else ''}"
+    lines: list[Any] = [cell(f"Where {name} {'fails' if c.inaccessible else 'is not sure'}, {which}:")]
+    rows = [_row(told.figure(each.area), each) for each in worst]
+    table = _table(("  face", "mainly", "in the way"), ("mm2 lost", "of the face", "mm too deep"))
     for face, area, share, reason, depth, obstacle in rows:
         table.add_row(f"  {face}", reason, cell(_distinct([obstacle], _NAME)[0]), area, share, depth)
     return [*lines, table] if _fits(table) else [*lines, *(cell(_said(*row)) for row in rows)]
@@ -147,20 +146,16 @@ def _said(face: str, area: str, share: str, reason: str, depth: str, obstacle: s
     """A face in a line."""
     deep = f", {depth} mm too deep" if depth != "-" else ""
     way = f", {obstacle} in the way" if obstacle != "-" else ""
-    return f"  {face} ({area} mm2): {share} not reached, mainly {reason}{deep}{way}"
+    return f"  {face}: {area} mm2 lost, {share} of the face, mainly {reason}{deep}{way}"
 
 
-def _row(c: "CutterEntry", face: str, area: float) -> tuple[str, str, str, str, str, str]:
-    """Face, area, share that is not reached, main reason, depth, what is in the way."""
-    verdicts = c.faces[face]
-    mine = [w for w in c.witnesses if w.face == face]
-    by = verdicts.area_share.lost_by
-    reason = max(by, key=lambda name: by[name]) if by else mine[0].reason if mine else "?"
-    fitting = [w for w in mine if w.reason == reason] or mine
-    deepest = max(fitting, key=lambda w: w.depth_mm or 0.0, default=None)
+def _row(area: str, found: "WorstFace") -> tuple[str, str, str, str, str, str]:
+    """Face, area that is lost, its share of the face, main reason, depth, what is in the way."""
+    deepest = found.witness
     depth = "-" if deepest is None or deepest.depth_mm is None else f"{deepest.depth_mm:.3g}"
     way = "-" if deepest is None or deepest.obstacle_face is None else deepest.obstacle_face
-    return face, f"{area:.4g}", lost_percent(verdicts, verdicts.area_share), reason.replace("_", " "), depth, way
+    reason = found.reason.replace("_", " ") or "?"
+    return found.face.id, area, found.share, f"undecided: {reason}" if found.undecided else reason, depth, way
 
 
 def _distinct(names: Sequence[str], most: int) -> list[str]:
