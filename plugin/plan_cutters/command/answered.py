@@ -15,18 +15,17 @@ def answered(plan: "Plan") -> list[str]:
         found = c.least_stick_out
         if found is None:
             continue
+        if found.limited_by == "floor":
+            continue
         if found.least_mm is None:
             lines.append(f"The least stick-out of {c.id} was not looked for: {found.limited_by}.")
             continue
         at = f", when the tool stands at {_place(found.point)} on {found.face}" if found.point is not None else ""
-        limit = (
-            "its flutes and neck are that long"
-            if found.limited_by == "floor"
-            else f"with less, its holder meets {found.obstacle_face or 'the part'}{at}"
-        )
         lines.append(
-            f"{c.id} needs a stick-out of {up(found.least_mm)} mm at least ({found.longest_mm:g} mm was judged): {limit}."
+            f"{c.id} needs a stick-out of {up(found.least_mm)} mm at least ({found.longest_mm:g} mm was judged): with less, its "
+            f"holder meets {found.obstacle_face or 'the part'}{at}."
         )
+    lines += _held_short(plan)
     for each in plan.largest_radius:
         if not each.percentiles_mm or each.bottleneck_mm is None or each.bottleneck_point is None:
             continue
@@ -40,7 +39,9 @@ def answered(plan: "Plan") -> list[str]:
         least = f"That is {most}." if each.reason is None else (
             f"The narrowest place is {narrowest} ({each.reason.replace('_', ' ')})."
         )  # fmt: skip
-        lines.append(f"A {each.shape} end {whole} ({each.length_over_radius:g} radii long); half of the area {half}. {least}")
+        lines.append(
+            f"A {each.shape} end {whole} ({each.length_over_radius:g} radii long); half of the area {half}. {least}"
+        )
     if plan.missing and (plan.largest_radius or any(c.least_stick_out for c in plan.cutters)):
         lines.append(
             "Stick-outs and largest radii hold unless a face is in the way that is missing from the obstacles."
@@ -53,10 +54,24 @@ def answered(plan: "Plan") -> list[str]:
         if helping:
             lines.append(f"{c.id} would finish with {'; or with '.join(helping)}.")
             continue
-        lines.append(f"Nothing sure would make {c.id} finish: {c.mend.why or 'no change of one thing was found to help'}.")
+        lines.append(
+            f"Nothing sure would make {c.id} finish: {c.mend.why or 'no change of one thing was found to help'}."
+        )
         if unsure:
             lines.append(f"  Not decided: {'; '.join(unsure)}.")
     return lines
+
+
+def _held_short(plan: "Plan") -> list[str]:
+    """Cutters of which no obstacle limits the stick-out, in one sentence."""
+    found = [
+        f"{c.id} {up(s.least_mm)} mm ({s.longest_mm:g} mm was judged)"
+        for c in plan.cutters
+        if (s := c.least_stick_out) and s.limited_by == "floor" and s.least_mm is not None
+    ]
+    if not found:
+        return []
+    return [f"No obstacle limits these stick-outs, but the length of flutes and neck does: {', '.join(found)}."]
 
 
 def up(length: float) -> str:

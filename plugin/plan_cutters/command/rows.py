@@ -119,7 +119,9 @@ def worst_faces(plan: "Plan", name: str) -> list[Any]:
     worst, count = told.worst_faces(plan, c, WORST)
     if not worst:
         return []
-    which = f"the {len(worst)} worst of {count} faces" if count > len(worst) else f"{count} face{'s' if count > 1 else ''}"
+    which = (
+        f"the {len(worst)} worst of {count} faces" if count > len(worst) else f"{count} face{'s' if count > 1 else ''}"
+    )
     lines: list[Any] = [cell(f"Where {name} {'fails' if c.inaccessible else 'is not sure'}, {which}:")]
     rows = [_row(told.figure(each.area), each) for each in worst]
     table = _table(("  face", "mainly", "in the way"), ("mm2 lost", "of the face", "mm too deep"))

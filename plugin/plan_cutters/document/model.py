@@ -137,7 +137,9 @@ class WitnessEntry(Frozen):
     obstacle_face: str | None = Field(description="or `fixture:NAME`")
     obstacle_point: Vector | None = Field(description="a point of that face in the cutter at the best posture")
     best_posture: Posture | None
-    depth_mm: float | None = Field(description="how deep the part reaches into the cutter at the best posture, or may do")
+    depth_mm: float | None = Field(
+        description="how deep the part reaches into the cutter at the best posture, or may do"
+    )
 
 
 class AreaEntry(Frozen):

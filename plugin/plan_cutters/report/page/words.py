@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from plan_cutters.document.answers import ChangeEntry, StickOutEntry
 from plan_cutters.document.model import AreaEntry, CutterEntry, Plan, WitnessEntry
+from plan_cutters.document.names import named
 from plan_cutters.document.told import figure, part_of, percent, reached
 
 
@@ -167,7 +168,24 @@ def headline(plan: Plan, names: Mapping[str, str], shown: CutterEntry) -> tuple[
     unjudged = part_of(shown, shown.area_share, ["unjudged"])
     if unjudged != "0 %":
         why += f" {unjudged} of the target area could not be judged (see Notes)."
-    return title, why
+    taken = plan.selected or plan.selected_over_setups or plan.selected_for_setup
+    told = next((c for c in plan.cutters if c.id == taken), shown)
+    return title, " ".join([why, *_held(told), *_mended(plan, told)])
+
+
+def _held(entry: CutterEntry) -> list[str]:
+    """How far a cutter stands out of which holder, in a sentence."""
+    if not any(stage.part == "holder" for stage in entry.stages):
+        return ["It was judged without a holder."]
+    least = entry.least_stick_out.least_mm if entry.least_stick_out else None
+    needed = f", of which it needs {up(least)}" if least is not None else ""
+    return [f"It stands {entry.length:g} mm out of {entry.holder or 'its holder'}{needed}."]
+
+
+def _mended(plan: Plan, entry: CutterEntry) -> list[str]:
+    """What would help a cutter most, in a sentence."""
+    helping = [each.why for each in entry.mend.changes if each.helps] if entry.mend else []
+    return [f"It would finish with {named(plan, helping[0])}."] if helping else []
 
 
 def _choice(plan: Plan, names: Mapping[str, str], shown: CutterEntry) -> tuple[str, str]:
@@ -268,6 +286,4 @@ def between(found: AreaEntry) -> str:
     if found.share == 1.0:
         return "all of the area is proved safe, too, with the tool axes found."
     share = percent(found.share, some=found.share > 0.0, whole=False)
-    return (
-        f"{share} of the area is proved safe with the tool axes found; the rest is not proved, which does not mean unsafe."
-    )
+    return f"{share} of the area is proved safe with the tool axes found; the rest is not proved, which does not mean unsafe."
