@@ -161,7 +161,7 @@ export class PosturePanel {
       const may = depth_mm === null ? "" : `, ${met} may reach ${figure(depth_mm)} mm into the tool`;
       return `undecided (${spoken(reason)})${may} ${best}`;
     }
-    return `${spoken(reason)}${depth_mm === null ? "" : `, ${figure(depth_mm)} mm too deep in ${met}`} ${best}`;
+    return `${spoken(reason)}${depth_mm === null ? "" : `; it is ${figure(depth_mm)} mm too deep in ${met}`} ${best}`;
   }
 
   // Places in the drawing.
