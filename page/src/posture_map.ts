@@ -87,7 +87,7 @@ export class PosturePanel {
     this.canvas.setAttribute("aria-label", named);
     this.about.replaceChildren(
       el("strong", {}, `${face?.id ?? "?"}, sample ${sample.row}`),
-      ` at ${sample.point.map((x) => figure(x, 4)).join(", ")} mm. `,
+      ` at ${samples.told(sample.row).map((x) => figure(x, 4)).join(", ")} mm. `,
       el("strong", {}, cutter.name || cutter.id),
       `: ${spoken(verdict)}${reason ? ` (${spoken(reason)})` : ""}. Curvature ${sample.curvature.map(bend).join(" and ")}.`,
     );
