@@ -138,10 +138,10 @@ def setups(plan: "Plan", *, verbose: bool = True) -> list[str]:
 
 def _machine(plan: "Plan") -> str:
     """What limits the tool axis, and how the part stands."""
-    along = f"the spindle along {_axis(plan.effective.setup)} of the part"
+    along = f"spindle points along {_axis(plan.effective.setup)} of the part"
     if plan.machine.name == "unlimited":
-        return f"No machine limits the tool axis; it is set up with {along}."
-    return f"The machine is {plan.machine.name}, with {along}."
+        return f"No machine limits the tool axis; the {along}."
+    return f"The machine is {plan.machine.name}; its {along}."
 
 
 def _judged(plan: "Plan") -> int:
