@@ -18,10 +18,11 @@ from test_cli import ENV, SAMPLES, assert_one_line, in_lines, leftovers, run, sa
 from plan_cutters import plan
 from plan_cutters.command import summary as summaries
 from plan_cutters.command.progress import Display
-from plan_cutters.command.rows import _distinct, percent
+from plan_cutters.command.rows import _distinct
 from plan_cutters.command.supervise import _Watch
 from plan_cutters.command.terminal import clean, say
 from plan_cutters.document.model import Plan
+from plan_cutters.document.told import percent
 
 GROOVE = SAMPLES / "v_groove.step"
 QUICK = ("--cutter", "R6L80", "--grid", "5", "--area-budget", "0")

@@ -9,10 +9,13 @@ from rich.table import Table
 from rich.text import Text
 
 from plan_cutters.command.terminal import clean, console
+from plan_cutters.document.told import part_of
+from plan_cutters.document.told import worst_faces as most_lost
 
 if TYPE_CHECKING:
     from plan_cutters.document.model import CutterEntry, Plan
     from plan_cutters.document.shares import AreaShare, Verdicts
+    from plan_cutters.document.told import WorstFace
 
 #: Verdicts, what a column calls them.
 WORDS = {
@@ -34,41 +37,9 @@ def cell(text: str, style: str = "") -> Text:
     return Text(clean(text), style)
 
 
-def percent(share: float, *, some: bool, whole: bool) -> str:
-    """A share in percent: 100 only where it is the whole, and 0 only where there is nothing of it.
-
-    Examples
-    --------
-    >>> percent(0.00001, some=True, whole=False), percent(0.99999, some=True, whole=False)
-    ('<0.1 %', '>99.9 %')
-    """
-    if whole:
-        return "100 %"
-    if not some and not share:
-        return "0 %"
-    text = f"{100.0 * share:.1f}"
-    return {"0.0": "<0.1 %", "100.0": ">99.9 %"}.get(text, f"{text} %")
-
-
 def percents(counts: "Verdicts", share: "AreaShare") -> dict[str, str]:
     """Each verdict's share of the area, as it is shown."""
-    words = [*WORDS, "unjudged"]
-    there = {word: bool(getattr(counts, word)) or getattr(share, word) > 0.0 for word in words}
-    return {
-        word: percent(
-            getattr(share, word), some=there[word], whole=there[word] and not any(there[w] for w in words if w != word)
-        )
-        for word in words
-    }
-
-
-def lost_percent(counts: "Verdicts", share: "AreaShare") -> str:
-    """The share of the area that is inaccessible or undecided, as it is shown."""
-    lost = counts.inaccessible + counts.undecided
-    others = counts.interference_free + counts.accessible + counts.unjudged
-    return percent(
-        share.inaccessible + share.undecided, some=bool(lost), whole=bool(lost) and not others and not share.unjudged
-    )
+    return {word: part_of(counts, share, [word]) for word in WORDS}
 
 
 def shown(plan: "Plan") -> "CutterEntry":
@@ -112,17 +83,14 @@ def _listed(c: "CutterEntry", name: str, taken: bool) -> Text:
 
 def worst_faces(plan: "Plan", name: str) -> list[Any]:
     """Where the cutter shown fails: the faces on which it leaves the most area."""
-    c, areas = shown(plan), {f.id: f.area_mm2 for f in plan.faces}
-    lost = {face: v.area_share.inaccessible + v.area_share.undecided for face, v in c.faces.items()
-            if v.inaccessible + v.undecided}  # fmt: skip
-    if not lost:
+    worst, count = most_lost(plan, shown(plan), WORST)
+    if not worst:
         return []
-    worst = sorted(lost, key=lambda face: (-lost[face] * areas[face], -lost[face], int(face[1:])))[:WORST]
-    which = f"the {len(worst)} worst of {len(lost)} faces" if len(lost) > len(worst) else (
-        f"{len(lost)} face{'s' if len(lost) > 1 else ''}"
-    )  # fmt: skip
+    which = (
+        f"the {len(worst)} worst of {count} faces" if count > len(worst) else f"{count} face{'s' if count > 1 else ''}"
+    )
     lines: list[Any] = [cell(f"Where {name} fails, {which}:")]
-    rows = [_row(c, face, areas[face]) for face in worst]
+    rows = [_row(each) for each in worst]
     table = _table(("  face", "mainly", "in the way"), ("mm2", "not reached", "mm too deep"))
     for face, area, share, reason, depth, obstacle in rows:
         table.add_row(f"  {face}", reason, cell(_distinct([obstacle], _NAME)[0]), area, share, depth)
@@ -150,17 +118,12 @@ def _said(face: str, area: str, share: str, reason: str, depth: str, obstacle: s
     return f"  {face} ({area} mm2): {share} not reached, mainly {reason}{deep}{way}"
 
 
-def _row(c: "CutterEntry", face: str, area: float) -> tuple[str, str, str, str, str, str]:
+def _row(found: "WorstFace") -> tuple[str, str, str, str, str, str]:
     """Face, area, share that is not reached, main reason, depth, what is in the way."""
-    verdicts = c.faces[face]
-    mine = [w for w in c.witnesses if w.face == face]
-    by = verdicts.area_share.lost_by
-    reason = max(by, key=lambda name: by[name]) if by else mine[0].reason if mine else "?"
-    fitting = [w for w in mine if w.reason == reason] or mine
-    deepest = max(fitting, key=lambda w: w.depth_mm or 0.0, default=None)
-    depth = "-" if deepest is None or deepest.depth_mm is None else f"{deepest.depth_mm:.3g}"
-    way = "-" if deepest is None or deepest.obstacle_face is None else deepest.obstacle_face
-    return face, f"{area:.4g}", lost_percent(verdicts, verdicts.area_share), reason.replace("_", " "), depth, way
+    witness = found.witness
+    depth = "-" if witness is None or witness.depth_mm is None else f"{witness.depth_mm:.3g}"
+    way = "-" if witness is None or witness.obstacle_face is None else witness.obstacle_face
+    return found.face.id, f"{found.face.area_mm2:.4g}", found.share, (found.reason or "?").replace("_", " "), depth, way
 
 
 def _distinct(names: Sequence[str], most: int) -> list[str]:

@@ -14,8 +14,8 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.domain.verdicts import REASONS
-from plan_cutters.report.axes import VERDICTS, columns
+from plan_cutters.domain.verdicts import REASONS, WORDS
+from plan_cutters.report.axes import columns
 
 _TYPE = {
     "float64": "Float64",
@@ -40,7 +40,7 @@ def write_vtk(result: Any, _split: object, path: Path) -> None:
     about = {
         "cutter": [result.shown],
         "part": [Path(result.part.file).name if result.part.file else ""],
-        "verdicts": [f"{code} {word}" for code, word in sorted(VERDICTS.items())],
+        "verdicts": [f"{code} {word}" for code, word in sorted(WORDS.items())],
         "reasons": [f"{code} {word}" for code, word in enumerate(REASONS)],
     }
     text = [
