@@ -214,7 +214,7 @@ def test_large_arrays_go_into_several_blocks(tmp_path):
 
 
 def test_every_posture_found_is_served_by_its_own_axis(peaks):
-    reach, cutter = peaks.reaches[peaks.shown], peaks.tools[peaks.shown]
+    reach, cutter = peaks.reaches[peaks.shown], peaks.judged(peaks.shown)
     rows = np.flatnonzero(reach.reached)[::9]
     for row in rows.tolist():
         assert serves(np.array([row]), reach.axis[row], peaks.samples, cutter, peaks.conditions)[0]
@@ -222,7 +222,7 @@ def test_every_posture_found_is_served_by_its_own_axis(peaks):
 
 def test_a_fixed_axis_serves_just_where_a_map_of_the_point_has_it_free(peaks):
     """The map of one point comes from other kernels: closed intervals in place of a test of one posture."""
-    cutter, samples = peaks.tools[peaks.shown], peaks.samples
+    cutter, samples = peaks.judged(peaks.shown), peaks.samples
     rng, agreed = np.random.default_rng(5), {True: 0, False: 0}
     for row in rng.choice(len(samples), 14, replace=False).tolist():
         axis = samples.normal[row] + 0.35 * rng.normal(size=3)
@@ -250,7 +250,7 @@ def unpacked(runs):
 
 def test_regions_hold_every_reached_sample_once_and_one_axis_serves_each(peaks, tmp_path):
     found = axis_regions(peaks)
-    reach, cutter, samples = peaks.reaches[peaks.shown], peaks.tools[peaks.shown], peaks.samples
+    reach, cutter, samples = peaks.reaches[peaks.shown], peaks.judged(peaks.shown), peaks.samples
     assert found.regions
     rows = [row for region in found.regions for row in unpacked(region.rows)] + unpacked(found.rest.rows)
     assert sorted(rows) == np.flatnonzero(reach.reached).tolist()
