@@ -12,6 +12,8 @@ from typing import Any
 
 #: Dots an inch of PNG files.
 DPI = 150
+#: Letters that are set on whole dots are wider than they are in the font, by up to this.
+_ON_DOTS = 1.05
 _STYLE = {
     "svg.hashsalt": "plan-cutters",
     "svg.fonttype": "path",
@@ -59,7 +61,7 @@ def fitting(text: str, size: float, width: float) -> list[str]:
     def wide(line: str) -> float:
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", "Glyph")
-            return float(text_to_path.get_text_width_height_descent(line, font, ismath=False)[0]) / 72.0
+            return float(text_to_path.get_text_width_height_descent(line, font, ismath=False)[0]) * _ON_DOTS / 72.0
 
     found = [""]
     for word in re.findall(r"\s*\S+", text):
