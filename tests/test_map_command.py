@@ -187,11 +187,12 @@ def test_a_setup_file_says_how_the_part_stands(capsys, tmp_path):
     for setup in ("0,0,1", str(tmp_path / "setup.toml")):
         code, out, err = run(capsys, *words, "--setup", setup)
         assert err == ""
-        free.append([bool(each["free"]) for each in json.loads(out)["rotations"]])
-        assert code == (0 if any(free[-1]) else 1)
+        free.append([sum(high - low for low, high in each["free"]) for each in json.loads(out)["rotations"]])
+        assert (code == 0) == (sum(free[-1]) > 0)
     # The groove leaves tilts about its own line, y, alone; the fixture stands on the side of +x.
-    assert not any(free[0])
-    assert np.flatnonzero(free[1]).tolist() == [4]
+    assert sum(free[0]) == 0
+    assert np.flatnonzero(free[1]).tolist() == [0, 4]
+    assert 0 < free[1][0] < 5 < 30 < free[1][4]
 
 
 def test_names_are_no_formulas_and_all_words_stay_on_the_sheet(capsys, tmp_path):
