@@ -9,6 +9,7 @@ from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
+import cadquery as cq
 import jsonschema
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ import plan_cutters.report.to_csv as to_csv
 from plan_cutters import Cutter, Machine, plan, posture_map
 from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.clearance import MOST, grown, working_height
+from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.placement import frame_of
@@ -356,6 +358,19 @@ def test_free_tilts_of_a_region_are_within_the_limits_of_the_machine(peaks, mach
 
 def test_without_limits_the_machine_leaves_all_tilts(peaks):
     assert peaks.maps.held(peaks.conditions.machineless) is peaks.maps
+
+
+def test_names_that_no_file_can_hold_cost_no_file(tmp_path):
+    part = cq.Assembly(cq.Workplane().box(20, 20, 5), name="half \ud800")
+    fixture = Fixture(cq.Workplane().box(3, 3, 3).translate((14, 0, 2)), name='=1+1,"\n\udfff')
+    cutter = Cutter.parse("R2L30").asked(0.0, 0.0, Holder.parse("R20L30"))
+    result = plan(part, cutters=cutter, fixtures=[fixture], faces="all", grid=5, area_budget=0)
+    formats = ["json", "csv", "vtk", "regions", "png", "step", "glb", "html", "npz"]
+    assert not result.write(tmp_path, formats).not_written
+    rows = rows_of(tmp_path / "axes.csv")
+    assert len(rows) == len(result.samples)
+    assert '=1+1,"\n?' in {row["nearest_face"].removeprefix("fixture:") for row in rows}
+    assert not any(text.startswith(("=", "+", "@")) for row in rows for text in row.values())
 
 
 def test_formats_are_written_on_request_and_a_failure_costs_one_file(tmp_path, monkeypatch):

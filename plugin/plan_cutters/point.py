@@ -91,9 +91,11 @@ def posture_map(
     low, high = max(0.0, low), min(np.pi, high)
     stage = Scene.of(part, **scene, **({"tolerance": wanted} if wanted > 0 else {}))
     contact = locate(stage.part, stage.orientation, place, ignore=stage.ignored)
-    across = Placement(stage.setup, None if x is None else numbers(x, "x", 3)).x
-    ask = Ask(contact, cutter, np.array(turns), (low, high), machine, np.array(stage.setup),
-              None if across is None else np.array(across))  # fmt: skip
+    across = None
+    if x is not None:
+        first, second, third = numbers(x, "x", 3)
+        across = np.array(Placement(stage.setup, (first, second, third)).x)
+    ask = Ask(contact, cutter, np.array(turns), (low, high), machine, np.array(stage.setup), across)
     if wanted > 0:
         around, kept = stage.around, stage.tolerance
         found = posture_map_of(ask, around, tools(cutter, kept, around.surely.triangles.chord_error), _NARROWEST, kept)

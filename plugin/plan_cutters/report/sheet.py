@@ -14,10 +14,11 @@ from typing import Any
 DPI = 150
 #: Letters that are set on whole dots are wider than they are in the font, by up to this.
 _ON_DOTS = 1.05
+_FONT = "DejaVu Sans"
 _STYLE = {
     "svg.hashsalt": "plan-cutters",
     "svg.fonttype": "path",
-    "font.family": "DejaVu Sans",
+    "font.family": _FONT,
     "hatch.linewidth": 0.6,
     "axes.linewidth": 0.8,
 }
@@ -56,7 +57,7 @@ def fitting(text: str, size: float, width: float) -> list[str]:
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import text_to_path
 
-    font = FontProperties(family=_STYLE["font.family"], size=size)
+    font = FontProperties(family=_FONT, size=size)
 
     def wide(line: str) -> float:
         with warnings.catch_warnings():
