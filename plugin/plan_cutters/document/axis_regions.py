@@ -22,15 +22,14 @@ class RegionFace(Frozen):
 
 
 class FreeTilts(Frozen):
-    """Tilts that are free at every sample of a region, from the posture maps: of the part and the fixtures alone, whatever the
-    machine."""
+    """Tilts that are free at every sample of a region, from the posture maps, and that the machine can hold there."""
 
     leaning_deg: Span | None = Field(
-        description="each sample has a rotation, one of those searched, at which all these tilts are free; null: no range is "
-        "common to all"
+        description="each sample has a rotation, one of those searched, at which all these tilts are free and within the axis "
+        "limits; null: no range is common to all"
     )
     any_rotation_deg: Span | None = Field(
-        description="these tilts are free at every rotation searched, at every sample; null: none are"
+        description="these tilts are free and within the axis limits at every rotation searched, at every sample; null: none are"
     )
 
 
