@@ -167,7 +167,7 @@ def test_the_first_line_says_which_cutter_to_take(capsys, planned):
     assert re.search(r"^> R6L80 +yes ", said, re.MULTILINE)
     assert re.search(r"^  R12L120 +no ", said, re.MULTILINE)
     # Last is what is not reached, and why.
-    assert re.search(r"\nNot reached by R12L120: .*(rear gouge|collision)(.*\n  )*.*\n$", said)
+    assert re.search(r"\nR12L120 does not reach .*(rear gouge|collision)(.*\n  )*.*\n$", said)
 
 
 def test_what_is_served_between_samples_is_put_in_words(capsys, planned):

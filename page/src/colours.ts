@@ -56,8 +56,8 @@ const WORDS: Record<string, string> = {
   undecided: "undecided",
   inaccessible: "inaccessible",
   unjudged: "not judged",
-  local_gouge: "local gouging",
-  rear_gouge: "rear gouging",
+  local_gouge: "local gouge",
+  rear_gouge: "rear gouge",
   check: "check face",
   fixture: "fixture",
 };

@@ -45,4 +45,4 @@ export function figure(value: number, digits = 3): string {
 }
 
 export const percent = (share: number): string =>
-  share > 0 && share < 0.001 ? "< 0.1 %" : share < 1 && share > 0.999 ? "> 99.9 %" : `${Number((100 * share).toFixed(1))} %`;
+  share > 0 && share < 0.001 ? "<0.1 %" : share < 1 && share > 0.999 ? ">99.9 %" : `${Number((100 * share).toFixed(1))} %`;

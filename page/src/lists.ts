@@ -224,7 +224,7 @@ export class FaceTable {
   }
 }
 
-/** Order of two cells: by their numbers where they begin with one (`F12`, `< 0.1 %`), else by their words. */
+/** Order of two cells: by their numbers where they begin with one (`F12`, `<0.1 %`), else by their words. */
 function compared(a: HTMLElement | undefined, b: HTMLElement | undefined): number {
   const [x, y] = [a, b].map((cell) => cell?.textContent?.trim() ?? "");
   const [u, v] = [x, y].map((text) => Number.parseFloat(text.replace(/^[F<>\s]+|,/g, "")));

@@ -155,8 +155,13 @@ export class PosturePanel {
   /** What the plan says of its witness goes before what the drawn triangles say. */
   private witnessed(): string {
     const { reason, depth_mm, obstacle_face } = this.app.spot!;
-    const depth = depth_mm === null ? "" : `, ${figure(depth_mm)} mm too deep in ${obstacle_face ?? "the part"}`;
-    return `${spoken(reason)}${depth} (the best posture found)`;
+    const met = obstacle_face ?? "the part";
+    const best = "(the best posture found)";
+    if (this.app.samples.verdict(this.app.cutter.id, this.app.sample!.row) === "undecided") {
+      const may = depth_mm === null ? "" : `, ${met} may reach ${figure(depth_mm)} mm into the tool`;
+      return `undecided (${spoken(reason)})${may} ${best}`;
+    }
+    return `${spoken(reason)}${depth_mm === null ? "" : `, ${figure(depth_mm)} mm too deep in ${met}`} ${best}`;
   }
 
   // Places in the drawing.

@@ -152,9 +152,9 @@ export function wording(app: App, { state, certified }: Judged, met: Met | null)
     case "no_contact":
       return "the cutter does not touch at this tilt";
     case "local_gouge":
-      return "local gouging: the surface curves more than the cutter";
+      return "local gouge: the surface curves more than the cutter";
     case "rear_gouge":
-      return `rear gouging: the bottom of the cutter meets ${name}`;
+      return `rear gouge: the bottom of the cutter meets ${name}`;
     case "collision":
       return `collision: the side of the cutter meets ${name}`;
     case "fixture":

@@ -57,7 +57,7 @@ def stick_out(case: Case, trials: Trials) -> Change:
         return none("stick_out", now, 0, "where the holder is out of the way, something else is", lost)
     asked, made = length(found.steps), found.case.cutter
     return Change("stick_out", now, asked, True, 0, lost, trials.count, _beyond(found.beyond, length), made,
-                  f"stand out {asked:g} mm instead of {now:g} mm", {"cutters": (made,)})  # fmt: skip
+                  f"a stick-out of {asked:g} mm instead of {now:g} mm", {"cutters": (made,)})  # fmt: skip
 
 
 def radius(case: Case, trials: Trials) -> Change:

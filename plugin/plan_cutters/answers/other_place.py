@@ -72,7 +72,7 @@ def setup(case: Case, trials: Trials, unlimited: Change) -> Change:
         more = ", with --flip" if flip else ", without --flip"
     words = ",".join(f"{each:.4g}" for each in found.axis)
     return Change("setup", now, found.axis, True, 0, len(trials.lost), trials.count, found.beyond, None,
-                  f"clamp it with {words} along the spindle, {found.angle:.4g} deg from now{more}", options)  # fmt: skip
+                  f"the part clamped with {words} along the spindle, {found.angle:.4g} deg from now{more}", options)  # fmt: skip
 
 
 def _nearest(case: Case, trials: Trials, end: Axis, found: _Found | None) -> _Found | None:
@@ -202,11 +202,10 @@ def faces(case: Case, trials: Trials) -> Change:
     area = sum(infos[n - 1].area for n in bad)
     whole = sum(infos[n - 1].area for n in ready.chosen.targets)
     out = np.isin(np.concatenate([trials.lost, trials.kept]), np.flatnonzero(np.isin(face, bad)))
-    share, some = 100.0 * out.mean(), 100.0 * len(trials.lost) / out.sum()
+    much = f"{area:,.0f}" if area >= 100.0 else f"{area:.3g}"
     which = (
         ids[0] if len(ids) == 1 else f"{len(ids)} faces ({', '.join(ids[:5])}{' and others' if len(ids) > 5 else ''})"
     )
     return Change("faces", ids, ids, True, 0, len(trials.lost), int((~out).sum()), None, None,
-                  f"leave {which} out: {area:.4g} mm2, {100.0 * area / whole:.3g} % of the target area and {share:.3g} % of the "
-                  f"samples, of which {some:.3g} % are lost",
+                  f"{which} left out of what is to be finished: {much} mm2, {100.0 * area / whole:.3g} % of the target area",
                   {"faces": ",".join(f"F{n}" for n in rest)})  # fmt: skip

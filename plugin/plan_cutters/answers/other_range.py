@@ -71,7 +71,7 @@ def tilt_range(case: Case, trials: Trials) -> Change:
         return none("tilt_range", (low, high), 0, "no range was found that serves all samples", len(trials.lost))
     _, asked, beyond = min(found, key=lambda each: each[0])
     return Change("tilt_range", (low, high), asked, True, 0, len(trials.lost), trials.count, beyond, None,
-                  f"search tilts from {asked[0]:g} to {asked[1]:g} deg instead of {low:g} to {high:g} deg",
+                  f"tilts from {asked[0]:g} to {asked[1]:g} deg in the search instead of {low:g} to {high:g} deg",
                   {"tilt": (math.radians(asked[0]), math.radians(asked[1]))})  # fmt: skip
 
 

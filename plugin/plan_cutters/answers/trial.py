@@ -42,7 +42,7 @@ _LOOKED_AT = 1024
 _ROUNDS = 8
 
 #: What stands in the way, in words that follow "lost to".
-_WORDS = {"axis_limit": "the limits of axis and tilt", "local_gouge": "local gouging", "rear_gouge": "rear gouging",
+_WORDS = {"axis_limit": "the limits of axis and tilt", "local_gouge": "local gouge", "rear_gouge": "rear gouge",
           "collision": "collision", "buried": "a body around them", "tolerance": "the tolerance", "neck": "the neck",
           "shank": "the shank", "holder": "the holder", "fixture": "the fixtures"}  # fmt: skip
 

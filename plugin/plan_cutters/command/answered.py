@@ -15,32 +15,33 @@ def answered(plan: "Plan") -> list[str]:
         found = c.least_stick_out
         if found is None:
             continue
-        if found.least_mm is None:
-            lines.append(f"Stick-out of {c.id}: not looked for ({found.limited_by}).")
+        if found.limited_by == "floor":
             continue
-        why = "" if found.limited_by == "floor" else f", by {found.obstacle_face or 'the part'}"
-        at = f" at {_place(found.point)} on {found.face}" if found.point is not None else ""
-        limit = (
-            "its flutes and neck end there"
-            if found.limited_by == "floor"
-            else f"a shorter one's holder is stopped{at}{why}"
-        )
+        if found.least_mm is None:
+            lines.append(f"The least stick-out of {c.id} was not looked for: {found.limited_by}.")
+            continue
+        at = f", when the tool stands at {_place(found.point)} on {found.face}" if found.point is not None else ""
         lines.append(
-            f"Stick-out of {c.id}: at least {up(found.least_mm)} mm of the {found.longest_mm:g} mm judged: {limit}."
+            f"{c.id} needs a stick-out of {up(found.least_mm)} mm at least ({found.longest_mm:g} mm was judged): with less, its "
+            f"holder meets {found.obstacle_face or 'the part'}{at}."
         )
+    lines += _held_short(plan)
     for each in plan.largest_radius:
         if not each.percentiles_mm or each.bottleneck_mm is None or each.bottleneck_point is None:
             continue
         most = f"{radius(each.most_mm)}, the largest tried"
         narrowest = f"{_place(each.bottleneck_point)} on {each.bottleneck_face}"
-        whole = f"{radius(each.bottleneck_mm)} reaches every sample" if each.bottleneck_mm else (
-            f"not even R{each.least_mm:.3g} reaches {each.below} samples"
+        whole = f"of {radius(each.bottleneck_mm)} reaches every sample" if each.bottleneck_mm else (
+            f"that reaches every sample is smaller than R{each.least_mm:.3g}, which misses {each.below} samples"
         )  # fmt: skip
         middle = each.percentiles_mm["50"]
         half = f"takes {radius(middle)} or more" if middle else f"takes less than R{each.least_mm:.3g}"
-        least = most if each.reason is None else f"{narrowest} ({each.reason.replace('_', ' ')})"
-        lines.append(f"Largest {each.shape} end, {each.length_over_radius:g} radii long: {whole}, half of the area {half}; "
-                     f"the narrowest: {least}.")  # fmt: skip
+        least = f"That is {most}." if each.reason is None else (
+            f"The narrowest place is {narrowest} ({each.reason.replace('_', ' ')})."
+        )  # fmt: skip
+        lines.append(
+            f"A {each.shape} end {whole} ({each.length_over_radius:g} radii long); half of the area {half}. {least}"
+        )
     if plan.missing and (plan.largest_radius or any(c.least_stick_out for c in plan.cutters)):
         lines.append(
             "Stick-outs and largest radii hold unless a face is in the way that is missing from the obstacles."
@@ -50,11 +51,27 @@ def answered(plan: "Plan") -> list[str]:
             continue
         helping = [change.why for change in c.mend.changes if change.helps]
         unsure = [change.why for change in c.mend.changes if change.helps is None]
-        text = "; or ".join(helping) if helping else c.mend.why or "no change of one thing was found to help"
-        lines.append(f"What would make {c.id} finish: {text}.")
-        if unsure and not helping:
+        if helping:
+            lines.append(f"{c.id} would finish with {'; or with '.join(helping)}.")
+            continue
+        lines.append(
+            f"Nothing sure would make {c.id} finish: {c.mend.why or 'no change of one thing was found to help'}."
+        )
+        if unsure:
             lines.append(f"  Not decided: {'; '.join(unsure)}.")
     return lines
+
+
+def _held_short(plan: "Plan") -> list[str]:
+    """Cutters of which no obstacle limits the stick-out, in one sentence."""
+    found = [
+        f"{c.id} {up(s.least_mm)} mm ({s.longest_mm:g} mm was judged)"
+        for c in plan.cutters
+        if (s := c.least_stick_out) and s.limited_by == "floor" and s.least_mm is not None
+    ]
+    if not found:
+        return []
+    return [f"No obstacle limits these stick-outs, but the length of flutes and neck does: {', '.join(found)}."]
 
 
 def up(length: float) -> str:

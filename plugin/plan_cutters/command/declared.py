@@ -59,8 +59,9 @@ _OPTIONS = (
         "--cutter",
         type=Words("SPEC", values.cutter_ids),
         multiple=True,
-        help="R6L80: radius 6, length 80 mm; then rc1 corner radius (rc6: ball), T5 taper (half angle, deg), F20 flutes, "
-        "N5.5x40 neck (radius x length; more of them upwards), S6 shank radius. Repeatable.  [default: the built-in drawer]",
+        help="R6L80: radius 6, 80 mm from tip to holder; then rc1 corner radius (rc6: ball), T5 taper (half angle, deg), F20 "
+        "length of flutes, N5.5x40 neck (radius x length; more of them upwards), S6 shank radius. Repeatable.  "
+        "[default: the built-in drawer]",
     ),
     _cutters(
         "--cutters",
@@ -76,7 +77,7 @@ _OPTIONS = (
         "R12:15L20; a file with a holder (FILE#NAME if it has several); or `none`.",
     ),
     _cutters("--assume-stickout", type=float, metavar="MM", help="Stick-out of the libraries' tools that state none."),
-    _cutters("--skip-bad", is_flag=True, help="Use the other tools of a library that has broken ones."),
+    _cutters("--skip-bad", is_flag=True, help="If some tools of a library are broken, use the others."),
     _cutters(
         "--list-cutters",
         is_flag=True,
@@ -99,7 +100,7 @@ _OPTIONS = (
         multiple=True,
         default=["0,0,1"],
         help="Direction of the part along the machine's spindle, or a setup file (TOML) that says where the part stands. "
-        "Repeatable: every cutter is judged in each, and what they reach together is said.  [default: 0,0,1]",
+        "Repeatable: every cutter is judged in each, and the summary says what they reach together.  [default: 0,0,1]",
     ),
     _machine(
         "--fixture",
@@ -125,20 +126,22 @@ _OPTIONS = (
     _faces(
         "--unit",
         type=click.Choice(list(UNITS)),
-        help="What lengths in the part's file are in, where it says so wrongly.  [default: what it says]",
+        help="Unit of the lengths in the part's file, if the file states a wrong one.  [default: as stated]",
     ),
     _samples(
         "--spacing",
         type=float,
         metavar="MM",
-        help="Samples at most this far apart.  [default: from curvature, the smallest cutter and a budget]",
+        help="Largest distance of neighbouring samples.  [default: from curvature, the smallest cutter and a budget]",
     ),
-    _samples("--grid", type=int, metavar="N", help="N x N parameter samples a face, instead."),
+    _samples(
+        "--grid", type=int, metavar="N", help="N x N samples in the parameters of each face, instead of a spacing."
+    ),
     _samples(
         "--area-budget",
         type=int,
         metavar="N",
-        help="Contacts to look at between the samples of the selected cutter; 0: samples alone.  [default: 24 a sample, at "
+        help="Contacts to look at between the samples, for the selected cutter; 0: none.  [default: 24 a sample, at "
         "most 100000]",
     ),
     _samples("--tolerance", type=float, default=0.01, metavar="MM", help="Gouge tolerance.  [default: 0.01]"),
@@ -148,7 +151,7 @@ _OPTIONS = (
         type=float,
         default=0.0,
         metavar="MM",
-        help="Room asked of neck, shank and holder.  [default: 0]",
+        help="Clearance that neck, shank and holder must keep.  [default: 0]",
     ),
     _postures(
         "--tilt", type=Range(), default="0:90", help="Tilts to search, degrees from the normal.  [default: 0:90]"
@@ -191,14 +194,14 @@ _OPTIONS = (
         type=Words("-", lambda: ("-",)),
         help="The plan of one part on standard output, nothing else there; files only where -o names a folder.",
     ),
-    _output("-v", "--verbose", is_flag=True, help="Say all that the summary leaves to plan.json."),
-    _output("--quiet", is_flag=True, help="No progress and no summary: errors alone."),
+    _output("-v", "--verbose", is_flag=True, help="Print all details, not only the summary."),
+    _output("--quiet", is_flag=True, help="Print no progress and no summary, only errors."),
     _answers(
         "--answers",
         default="",
         type=Words("LIST", values.answers, listed=True),
-        help="Answer more: stick-out (how short each cutter can be held), stick-out-map (that for every sample, too), radius "
-        "(the largest flat and ball end that reaches each sample), mend (what would make each cutter that fails feasible), or "
+        help="More questions to answer: stick-out (how short each cutter can be held), stick-out-map (that for every sample, "
+        "too), radius (the largest flat and ball end that reaches each sample), mend (what would make each cutter that fails feasible), or "
         "all (without the map).",
     ),
     _answers(
@@ -206,7 +209,7 @@ _OPTIONS = (
         type=float,
         default=10.0,
         metavar="N",
-        help="Of the ends whose largest radius is asked for.  [default: 10]",
+        help="Length of the ends of --answers radius, in radii.  [default: 10]",
     ),
     _run("--jobs", type=int, metavar="N", help="Threads.  [default: all cores]"),
     click.option("--cluster", metavar="ADDRESS", hidden=True),

@@ -24,7 +24,7 @@ def headline(plan: "Plan", names: Mapping[str, str]) -> list[Text]:
         which = (
             "reaches every sample"
             if len(entries) == 1
-            else f"is the largest of {len(entries)} that reaches every sample"
+            else f"is the largest of {len(entries)} cutters that reaches every sample"
         )
         return [_marked(f"Take {names[c.id]}", True, f" for {part}: {_described(c)}. It {which}.")]
     if plan.selected_over_setups:
@@ -42,7 +42,7 @@ def headline(plan: "Plan", names: Mapping[str, str]) -> list[Text]:
     if not left:
         return [_marked(f"No cutter is sure for {part}", None, f". {name} reaches every sample that could be judged, but "
                         "obstacles are missing (below) that may be in its way.")]  # fmt: skip
-    which = f"{name} was judged: it" if len(entries) == 1 else f"Of {len(entries)}, {name} comes nearest: it"
+    which = f"{name} was judged: it" if len(entries) == 1 else f"Of {len(entries)} cutters, {name} comes nearest: it"
     much = f"{lost_percent(best, best.area_share)} of the area ({left} of {plan.samples.count} samples)"
     ask = "" if "mend" in plan.effective.answers else " Ask what would help: --answers mend."
     if best.inaccessible == 0:
@@ -89,5 +89,6 @@ def _described(c: "CutterEntry") -> str:
         held = f"judged without a holder, {c.length:.5g} mm up from its tip"
     else:
         widest = max(max(stage.radius_mm, stage.upper_radius_mm) for stage in holder)
-        held = f"{c.length:.5g} mm out of its holder, which is up to R{widest:.4g} wide"
+        named = f" {c.holder}" if c.holder else ""
+        held = f"{c.length:.5g} mm out of its holder{named}, which is up to R{widest:.4g} wide"
     return f"{what} R{c.radius:.5g}{taper}, {held}"

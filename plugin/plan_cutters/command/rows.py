@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from plan_cutters.command.terminal import clean, console
-from plan_cutters.document.told import part_of
+from plan_cutters.document.told import figure, part_of
 from plan_cutters.document.told import worst_faces as most_lost
 
 if TYPE_CHECKING:
@@ -83,15 +83,16 @@ def _listed(c: "CutterEntry", name: str, taken: bool) -> Text:
 
 def worst_faces(plan: "Plan", name: str) -> list[Any]:
     """Where the cutter shown fails: the faces on which it leaves the most area."""
-    worst, count = most_lost(plan, shown(plan), WORST)
+    c = shown(plan)
+    worst, count = most_lost(plan, c, WORST)
     if not worst:
         return []
     which = (
         f"the {len(worst)} worst of {count} faces" if count > len(worst) else f"{count} face{'s' if count > 1 else ''}"
     )
-    lines: list[Any] = [cell(f"Where {name} fails, {which}:")]
-    rows = [_row(each) for each in worst]
-    table = _table(("  face", "mainly", "in the way"), ("mm2", "not reached", "mm too deep"))
+    lines: list[Any] = [cell(f"Where {name} {'fails' if c.inaccessible else 'is not sure'}, {which}:")]
+    rows = [_row(figure(each.area), each) for each in worst]
+    table = _table(("  face", "mainly", "in the way"), ("mm2 lost", "of the face", "mm too deep"))
     for face, area, share, reason, depth, obstacle in rows:
         table.add_row(f"  {face}", reason, cell(_distinct([obstacle], _NAME)[0]), area, share, depth)
     return [*lines, table] if _fits(table) else [*lines, *(cell(_said(*row)) for row in rows)]
@@ -115,15 +116,16 @@ def _said(face: str, area: str, share: str, reason: str, depth: str, obstacle: s
     """A face in a line."""
     deep = f", {depth} mm too deep" if depth != "-" else ""
     way = f", {obstacle} in the way" if obstacle != "-" else ""
-    return f"  {face} ({area} mm2): {share} not reached, mainly {reason}{deep}{way}"
+    return f"  {face}: {area} mm2 lost, {share} of the face, mainly {reason}{deep}{way}"
 
 
-def _row(found: "WorstFace") -> tuple[str, str, str, str, str, str]:
-    """Face, area, share that is not reached, main reason, depth, what is in the way."""
-    witness = found.witness
-    depth = "-" if witness is None or witness.depth_mm is None else f"{witness.depth_mm:.3g}"
-    way = "-" if witness is None or witness.obstacle_face is None else witness.obstacle_face
-    return found.face.id, f"{found.face.area_mm2:.4g}", found.share, (found.reason or "?").replace("_", " "), depth, way
+def _row(area: str, found: "WorstFace") -> tuple[str, str, str, str, str, str]:
+    """Face, area that is lost, its share of the face, main reason, depth, what is in the way."""
+    deepest = found.witness
+    depth = "-" if deepest is None or deepest.depth_mm is None else f"{deepest.depth_mm:.3g}"
+    way = "-" if deepest is None or deepest.obstacle_face is None else deepest.obstacle_face
+    reason = found.reason.replace("_", " ") or "?"
+    return found.face.id, area, found.share, f"undecided: {reason}" if found.undecided else reason, depth, way
 
 
 def _distinct(names: Sequence[str], most: int) -> list[str]:

@@ -28,13 +28,13 @@ def summary(plan: "Plan", *, verbose: bool = False) -> None:
     names = short_names(plan)
     targets, ignored = len(plan.effective.target_faces), sum(f.ignored for f in plan.faces)
     many = "1 face" if plan.part.faces == 1 else f"{plan.part.faces} faces"
-    faces = f"{many}, {targets} to machine{f', {ignored} ignored' if ignored else ''}"
+    faces = f"The part has {many}: {targets} to machine{f', {ignored} ignored' if ignored else ''}"
     say(
         "",
         *headline(plan, names),
         *between(plan),
-        cell(f"{faces}; {plan.samples.count} samples, at most {plan.samples.max_gap_mm:.3g} mm apart; machine "
-             f"{plan.machine.name}, setup {_axis(plan.effective.setup)}."),
+        cell(f"{faces}, with {plan.samples.count} samples, at most {plan.samples.max_gap_mm:.3g} mm apart. The machine is "
+             f"{plan.machine.name}, its spindle along {_axis(plan.effective.setup)} of the part."),
         "",
         *cutter_rows(plan, names, verbose=verbose),
         *_unjudged_share(plan),
@@ -57,8 +57,10 @@ def written(plan: "Plan", out: Path | None, formats: Sequence[str]) -> list[Any]
         lines.append(f"Look at it in a browser: {out / plan.files['html'].name}")
     for face, entry in plan.split.items():
         if entry.rung != "contour":
-            how = "split beside the part" if entry.rung == "beside" else "one piece in the STEP, by samples in the GLB"
-            lines.append(f"Not split in its place: {face} ({entry.why}): {how}.")
+            how = "it is split beside the part" if entry.rung == "beside" else (
+                "it is one piece in the STEP, and the GLB shows it by its samples"
+            )  # fmt: skip
+            lines.append(f"{face} could not be split in its place ({entry.why}): {how}.")
     if out is not None and formats and (old := left_over(out, plan, formats)):
         lines.append(f"Left over from an earlier run, or not ours: {', '.join(old)} in {out}")
     return lines
@@ -104,9 +106,10 @@ def _lost(plan: "Plan", c: "CutterEntry") -> str:
     where = ""
     if deepest and deepest.depth_mm is not None:
         place = ", ".join(f"{x:.4g}" for x in deepest.point)
-        where = f"; the worst is on {deepest.face} at ({place}), where the best posture is {deepest.depth_mm:.3g} mm too deep"
-    return (f"Not reached by {c.id}: {lost_percent(c, c.area_share)} of the area, {left} of {plan.samples.count} samples "
-            f"({why or 'none'}), on {on}{where}.")  # fmt: skip
+        sure = "may be" if deepest.verdict == "undecided" else "is"
+        where = f"; the worst is on {deepest.face} at ({place}), where the best posture {sure} {deepest.depth_mm:.3g} mm too deep"
+    return (f"{c.id} does not reach {lost_percent(c, c.area_share)} of the area ({left} of {plan.samples.count} samples): "
+            f"{why or 'no reason'}. They lie on {on}{where}.")  # fmt: skip
 
 
 def setups(plan: "Plan", *, verbose: bool = True) -> list[str]:
@@ -116,7 +119,7 @@ def setups(plan: "Plan", *, verbose: bool = True) -> list[str]:
     if count > 1 and plan.selected_over_setups is None:
         best = min(plan.cutters, key=lambda c: c.lost_in_all or 0)
         lines.append(
-            f"Over the {count} setups no cutter reaches every sample: {best.id} loses {best.lost_in_all} in all of them."
+            f"Over the {count} setups no cutter reaches every sample: {best.id} loses {best.lost_in_all} samples in all of them."
         )
     elif count > 1:
         best = next(c for c in plan.cutters if c.id == plan.selected_over_setups)
@@ -241,7 +244,7 @@ def libraries_of(library: Any, *, verbose: bool) -> list[str]:
     )
     unused = len(library.unused)
     more = f"; {unused} {'is' if unused == 1 else 'are'} not used (-v says why)" if unused and not verbose else ""
-    lines = [f"{library.file} ({library.format}): {cutters} of {tools}{more}."]
+    lines = [f"{library.file} ({library.format}) gives {cutters} of {tools}{more}."]
     if not verbose:
         return lines
     lines += [f"  {note}" for note in library.notes]

@@ -81,6 +81,7 @@ def cutter_entry(
         shape=cutter.shape,
         taper_deg=float(np.degrees(cutter.taper)),
         flutes_mm=flute_length(cutter),
+        holder=cutter.holder.name if cutter.holder else "",
         stages=[
             StageEntry(
                 part=part,
@@ -102,18 +103,19 @@ def cutter_entry(
         undecided_by_reason={name: int((unsure & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
         faces=faces,
         area_share=whole_share(faces, samples, part),
-        witnesses=[_witness_entry(w, samples, around) for w in found],
+        witnesses=[_witness_entry(w, samples, around, reach) for w in found],
         seconds=seconds,
     )
 
 
-def _witness_entry(witness: Witness, samples: SurfaceSamples, around: Surroundings) -> WitnessEntry:
+def _witness_entry(witness: Witness, samples: SurfaceSamples, around: Surroundings, reach: Reach) -> WitnessEntry:
     best = None
     if witness.tilt is not None and witness.rotation is not None and witness.axis is not None:
         best = posture(witness.tilt, witness.rotation, witness.axis)
     return WitnessEntry(
         point=vector(samples.point[witness.sample]),
         face=f"F{samples.face[witness.sample]}",
+        verdict="undecided" if reach.verdict[witness.sample] == UNDECIDED else "inaccessible",
         reason=witness.reason,
         obstacle_face=None if not witness.obstacle_face else around.called(witness.obstacle_face),
         obstacle_point=None if witness.obstacle_point is None else vector(witness.obstacle_point),

@@ -132,11 +132,14 @@ class WitnessEntry(Frozen):
 
     point: Vector
     face: str
+    verdict: Literal["inaccessible", "undecided"] = "inaccessible"
     reason: str
     obstacle_face: str | None = Field(description="or `fixture:NAME`")
     obstacle_point: Vector | None = Field(description="a point of that face in the cutter at the best posture")
     best_posture: Posture | None
-    depth_mm: float | None = Field(description="how deep the part reaches into the cutter at the best posture")
+    depth_mm: float | None = Field(
+        description="how deep the part reaches into the cutter at the best posture, or may do"
+    )
 
 
 class AreaEntry(Frozen):
@@ -261,6 +264,7 @@ class CutterEntry(Verdicts):
     shape: str = Field(default="end", description="end, lollipop, barrel, lens or form")
     taper_deg: float = Field(default=0.0, description="half angle")
     flutes_mm: float | None = Field(default=None, description="height over the tip up to which it cuts")
+    holder: str = Field(default="", description="its holder's name; empty where it has none, or one without a name")
     stages: list[StageEntry] = Field(default=[], description="from the flutes up")
     touches_deg: list[tuple[float, float]] = Field(default=[], description="tilts at which the cutting part can touch")
     allowance_mm: float = 0.0

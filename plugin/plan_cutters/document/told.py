@@ -26,6 +26,8 @@ class WorstFace:
         Of the face, in percent.
     reason : str
         By which most of it is lost.
+    undecided : bool
+        More of that is undecided than inaccessible.
     witness : WitnessEntry, optional
         The deepest there, of that reason where there is one.
     """
@@ -34,6 +36,7 @@ class WorstFace:
     area: float
     share: str
     reason: str
+    undecided: bool
     witness: WitnessEntry | None
 
 
@@ -53,6 +56,17 @@ def percent(share: float, *, some: bool, whole: bool) -> str:
         return "0 %"
     text = f"{100.0 * share:.1f}"
     return {"0.0": "<0.1 %", "100.0": ">99.9 %"}.get(text, f"{text.removesuffix('.0')} %")
+
+
+def figure(number: float) -> str:
+    """Three digits of a number, without an exponent where it is large.
+
+    Examples
+    --------
+    >>> figure(12345.6), figure(0.0456), figure(7.769e6)
+    ('12,300', '0.0456', '7,770,000')
+    """
+    return f"{float(f'{number:.3g}'):,.0f}" if abs(number) >= 100.0 else f"{number:.3g}"
 
 
 def part_of(counts: Verdicts, share: AreaShare, words: Iterable[str]) -> str:
@@ -98,9 +112,7 @@ def worst_faces(plan: Plan, cutter: CutterEntry, most: int = 5) -> tuple[list[Wo
         mine, share = [w for w in cutter.witnesses if w.face == name], cutter.faces[name].area_share
         reason = main_reason(share) or (mine[0].reason if mine else "")
         witness = max([w for w in mine if w.reason == reason] or mine, key=lambda w: w.depth_mm or 0.0, default=None)
-        found.append(
-            WorstFace(
-                faces[name], shares[name] * faces[name].area_mm2, lost(cutter.faces[name], share), reason, witness
-            )
-        )
+        lot = shares[name] * faces[name].area_mm2
+        unsure = share.undecided > share.inaccessible
+        found.append(WorstFace(faces[name], lot, lost(cutter.faces[name], share), reason, unsure, witness))
     return found, len(ranked)

@@ -4,9 +4,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from plan_cutters.document.answers import StickOutEntry
+from plan_cutters.document.answers import ChangeEntry, StickOutEntry
 from plan_cutters.document.model import AreaEntry, CutterEntry, Plan, WitnessEntry
-from plan_cutters.document.told import part_of, percent, reached
+from plan_cutters.document.names import named
+from plan_cutters.document.told import figure, part_of, percent, reached
 
 
 class _Reason(NamedTuple):
@@ -20,9 +21,9 @@ class _Reason(NamedTuple):
 REASONS = {
     "axis_limit": _Reason("the axis limit", "The machine cannot hold any axis that would serve.",
                           "another setup, or a machine that tilts further"),
-    "local_gouge": _Reason("local gouging", "The surface curves more than the cutter, right at the contact.",
+    "local_gouge": _Reason("local gouge", "The surface curves more than the cutter, right at the contact.",
                            "a smaller radius or corner radius"),
-    "rear_gouge": _Reason("rear gouging", "The flutes cut into the part within a cutter's diameter of the contact.",
+    "rear_gouge": _Reason("rear gouge", "The flutes cut into the part within a cutter's diameter of the contact.",
                           "a smaller radius or corner radius"),
     "collision": _Reason("collision of the flutes", "The flutes meet the part farther away.",
                          "a thinner cutter"),
@@ -37,11 +38,11 @@ REASONS = {
 }  # fmt: skip
 #: Verdicts, and what they say of a sample.
 VERDICTS = {
-    "interference_free": ("interference-free", "the tool may stand along the normal, turned any way"),
-    "accessible": ("accessible", "a tilted posture was found that neither gouges nor collides"),
-    "undecided": ("undecided", "neither a safe posture nor a proof that there is none was found"),
-    "inaccessible": ("inaccessible", "no posture of those searched is safe"),
-    "unjudged": ("not judged", "the surface could not be sampled or has no normal there"),
+    "interference_free": ("interference-free", "The tool can stand along the surface normal, in every rotation."),
+    "accessible": ("accessible", "A posture (tilt and rotation) was found that neither gouges nor collides."),
+    "undecided": ("undecided", "Neither a safe posture was found nor a proof that there is none."),
+    "inaccessible": ("inaccessible", "None of the postures that were searched is safe."),
+    "unjudged": ("not judged", "The surface could not be sampled, or it has no normal there."),
 }
 FEASIBLE = {True: "yes", False: "no", None: "undecided"}
 
@@ -64,7 +65,7 @@ def area(mm2: float) -> str:
     """
     if not math.isfinite(mm2):
         return "not known"
-    return f"{float(f'{mm2:.3g}'):,.0f} mm²" if mm2 >= 100 else f"{mm2:.3g} mm²"
+    return f"{figure(mm2)} mm²"
 
 
 def place(point: Sequence[float] | None) -> str:
@@ -99,8 +100,17 @@ def count(number: int, word: str) -> str:
 
 
 def reason(word: str) -> str:
-    """A reason, as it stands after "because of"."""
+    """What a reason is called."""
     return REASONS[word].said if word in REASONS else word.replace("_", " ")
+
+
+def sentence(text: str) -> str:
+    """A clause as a sentence of its own.
+
+    >>> sentence("nothing helps")
+    'Nothing helps.'
+    """
+    return f"{text[:1].upper()}{text[1:]}."
 
 
 def hint(word: str) -> str:
@@ -114,15 +124,20 @@ def spot(witness: WitnessEntry) -> str:
         return "The tolerance is too coarse to say anything about this cutter."
     said, best, obstacle = reason(witness.reason), witness.best_posture, witness.obstacle_face
     said = said[0].upper() + said[1:]
+    unsure = witness.verdict == "undecided"
+    said += ", undecided" * unsure
     if witness.depth_mm is not None and best is not None:
         there, where = (
             f"tilt {angle(best.tilt)}, rotation {angle(best.rotation)}",
             f" in {obstacle}" if obstacle else "",
         )
+        if unsure:
+            what = obstacle or "the part"
+            return f"{said}: at the best posture found ({there}) {what} may reach {mm(witness.depth_mm)} into the tool."
         return f"{said}: the best posture found ({there}) is still {mm(witness.depth_mm)} too deep{where}."
     if obstacle:
-        return f"{said}: {obstacle} is in the way."
-    return f"{said}: no posture is left."
+        return f"{said}: {obstacle} {'may be' if unsure else 'is'} in the way."
+    return f"{said}: no posture is {'sure' if unsure else 'left'}."
 
 
 def tool(entry: CutterEntry) -> str:
@@ -140,7 +155,8 @@ def tool(entry: CutterEntry) -> str:
     holder = [stage for stage in entry.stages if stage.part == "holder"]
     if holder:
         widest = max(max(stage.radius_mm, stage.upper_radius_mm) for stage in holder)
-        said.append(f"stick-out {entry.length:g} mm, holder up to radius {widest:g} mm")
+        named = f" {entry.holder}" if entry.holder else ""
+        said.append(f"stick-out {entry.length:g} mm, holder{named} of up to {widest:g} mm radius")
     else:
         said.append(f"judged up to {entry.length:g} mm over the tip, without a holder")
     return ", ".join(said)
@@ -152,7 +168,24 @@ def headline(plan: Plan, names: Mapping[str, str], shown: CutterEntry) -> tuple[
     unjudged = part_of(shown, shown.area_share, ["unjudged"])
     if unjudged != "0 %":
         why += f" {unjudged} of the target area could not be judged (see Notes)."
-    return title, why
+    taken = plan.selected or plan.selected_over_setups or plan.selected_for_setup
+    told = next((c for c in plan.cutters if c.id == taken), shown)
+    return title, " ".join([why, *_held(told), *_mended(plan, told)])
+
+
+def _held(entry: CutterEntry) -> list[str]:
+    """How far a cutter stands out of which holder, in a sentence."""
+    if not any(stage.part == "holder" for stage in entry.stages):
+        return ["It was judged without a holder."]
+    least = entry.least_stick_out.least_mm if entry.least_stick_out else None
+    needed = f", of which it needs {up(least)}" if least is not None else ""
+    return [f"It stands {entry.length:g} mm out of {entry.holder or 'its holder'}{needed}."]
+
+
+def _mended(plan: Plan, entry: CutterEntry) -> list[str]:
+    """What would help a cutter most, in a sentence."""
+    helping = [each.why for each in entry.mend.changes if each.helps] if entry.mend else []
+    return [f"It would finish with {named(plan, helping[0])}."] if helping else []
 
 
 def _choice(plan: Plan, names: Mapping[str, str], shown: CutterEntry) -> tuple[str, str]:
@@ -218,17 +251,39 @@ STAND_IN = {
 def limit(found: StickOutEntry) -> str:
     """What limits a stick-out."""
     if found.least_mm is None:
-        return f"not looked for: {found.limited_by}"
+        return f"It was not looked for: {found.limited_by}."
     if found.limited_by == "floor" or found.face is None:
-        return "flutes and neck, which must stand out"
-    return f"{found.obstacle_face or 'the part'}, which a shorter one's holder meets at {place(found.point)} mm on {found.face}"
+        return "Its flutes and neck are that long."
+    met = found.obstacle_face or "the part"
+    return f"With less, the holder meets {met} when the tool stands at {place(found.point)} mm on {found.face}."
+
+
+#: What `mend` changes, as the subject of a sentence.
+THINGS = {
+    "tolerance": "A finer tolerance",
+    "tilt_range": "A wider range of tilts",
+    "stick_out": "Another stick-out",
+    "setup": "Another setup axis",
+    "corner_radius": "Another corner radius",
+    "radius": "A smaller radius",
+    "tilt_limit": "A machine that tilts further",
+    "faces": "Leaving out faces",
+}
+
+
+def change(found: ChangeEntry) -> tuple[str, str]:
+    """What is changed, and whether that helps: subject and rest of a sentence."""
+    subject = THINGS.get(found.thing, found.thing.replace("_", " "))
+    if found.helps:
+        return subject, f"helps: {found.why}."
+    if found.asked is not None and not found.why.startswith("is not decided"):
+        return subject, f"may help: {found.why}."
+    return subject, f"{found.why}."
 
 
 def between(found: AreaEntry) -> str:
     """What is known between the samples."""
     if found.share == 1.0:
-        return "all of the area is proved safe, too, with the axes found."
+        return "all of the area is proved safe, too, with the tool axes found."
     share = percent(found.share, some=found.share > 0.0, whole=False)
-    return (
-        f"{share} of the area is proved safe with the axes found; the rest is not proved, which does not mean unsafe."
-    )
+    return f"{share} of the area is proved safe with the tool axes found; the rest is not proved, which does not mean unsafe."
