@@ -467,8 +467,10 @@ def test_a_name_that_is_no_text(tmp_path):
 
 @pytest.mark.parametrize("until", ["reading", "judging"])
 def test_a_terminal_that_is_closed_ends_the_run(tmp_path, until):
-    process = subprocess.Popen([sys.executable, "-m", "plan_cutters", str(WAVES), "--grid", "401"], cwd=tmp_path, env=ENV,
-                               stderr=subprocess.PIPE, text=True)  # fmt: skip
+    process = subprocess.Popen(
+        [sys.executable, "-m", "plan_cutters", str(WAVES), "--grid", "401"], cwd=tmp_path, env=ENV, stderr=subprocess.PIPE,
+        text=True, preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL),  # whoever runs the tests may ignore it
+    )  # fmt: skip
     said_until(process, until)
     children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
     process.send_signal(signal.SIGHUP)

@@ -201,8 +201,8 @@ _OPTIONS = (
         default="",
         type=Words("LIST", values.answers, listed=True),
         help="More questions to answer: stick-out (how short each cutter can be held), stick-out-map (that for every sample, "
-        "too), radius (the largest flat and ball end that reaches each sample), mend (what would make each cutter that fails feasible), or "
-        "all (without the map).",
+        "too), radius (the largest flat and ball end that reaches each sample), mend (what would make each cutter that fails "
+        "feasible), or all (without the map).",
     ),
     _answers(
         "--length-over-radius",
