@@ -221,6 +221,7 @@ def everywhere(value, text):
             "rung",
             "part",
             "carries",
+            "verdict",
         }
         return {k: v if k in kept and isinstance(v, str) else everywhere(v, text) for k, v in value.items()}
     if isinstance(value, list):
