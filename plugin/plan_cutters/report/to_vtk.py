@@ -33,7 +33,8 @@ _BLOCK = 1 << 20
 def write_vtk(result: Any, _split: object, path: Path) -> None:
     """Write `axes.vtp`: a vertex for each sample, with the columns of `axes.csv` as point data; codes stay numbers.
 
-    What the codes mean stands in the field data, as texts: `verdicts`, `reasons`, `classes`, `parts`, `fixtures`, `cutter`, `part`.
+    What the codes mean stands in the field data, as texts: `verdicts`, `reasons`, `classes`, `parts`, `fixtures`,
+    `cutter`, `part`.
     """
     found = {column.name: column.values for column in columns(result)}
     point = found.pop("point_mm")
