@@ -195,8 +195,16 @@ def test_paraview_reads_the_points(peaks, tmp_path):
     assert np.array_equal(arrays["face"], peaks.samples.face)
     assert np.array_equal(arrays["clearance_mm"], peaks.clearances.distance, equal_nan=True)
     assert {"normal", "tilt_deg", "lean", "C_deg", "A_deg", "C_other_deg"} <= set(arrays)
-    words = data.GetFieldData().GetAbstractArray("verdicts")
-    assert [words.GetValue(i) for i in range(words.GetNumberOfValues())][1] == "1 accessible"
+    told = {}
+    for i in range(data.GetFieldData().GetNumberOfArrays()):
+        words = data.GetFieldData().GetAbstractArray(i)
+        told[words.GetName()] = [words.GetValue(k) for k in range(words.GetNumberOfValues())]
+    assert told["verdicts"][1] == "1 accessible"
+    for name, column in (("classes", "surface_class"), ("parts", "nearest_part")):
+        codes = {int(line.split()[0]) for line in told[name]}
+        assert set(np.unique(arrays[column]).tolist()) <= codes | {-1}
+    assert told["fixtures"] == ["-1 fixture:box"]
+    assert -1 in arrays["nearest_face"]
 
 
 def test_large_arrays_go_into_several_blocks(tmp_path):

@@ -67,7 +67,8 @@ class FixedAxis(Frozen):
 
     axis: Vector
     rotary_deg: dict[str, float] | None = Field(
-        description="a position of the machine's rotary axes that holds it, by name; null without such axes"
+        description="a position of the machine's rotary axes that holds it, by name; null without such axes; whether the linear "
+        "axes can go there is not looked at"
     )
     samples: int
     area_mm2: float
@@ -92,7 +93,7 @@ class AxisRegions(Frozen):
     sha256: str | None
     cutter: str
     machine: str
-    setup: Vector
+    setup: Vector = Field(description="the first one, where there are several")
     tolerance_mm: float
     axes: list[FixedAxis] = Field(description="the one that serves most of what is left comes next")
     regions: list[Region] = Field(
