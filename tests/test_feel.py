@@ -182,7 +182,7 @@ def test_what_is_served_between_samples_is_put_in_words(capsys, planned):
 
 def test_where_none_is_feasible_the_worst_faces_are_listed(capsys, failing):
     said = shown(capsys, failing)
-    assert in_lines(said).startswith("No cutter finishes pocket_top.step. Of 3, ")
+    assert in_lines(said).startswith("No cutter finishes pocket_top.step. Of 3 cutters, ")
     assert "--answers mend" in in_lines(said)
     head = next(i for i, line in enumerate(said.splitlines()) if line.startswith("Where "))
     rows = [line.split() for line in takewhile(str.strip, said.splitlines()[head + 2 :])]
@@ -191,6 +191,7 @@ def test_where_none_is_feasible_the_worst_faces_are_listed(capsys, failing):
     lost = {name: areas[name] * (v.area_share.inaccessible + v.area_share.undecided) for name, v in best.faces.items()}
     worst = sorted(lost.values(), reverse=True)[:5]
     assert [lost[row[0]] for row in rows] == pytest.approx([each for each in worst if each])
+    assert all(head in said for head in ("mm2 lost", "of the face"))
     assert "Over the 2 setups" in said
 
 
@@ -219,6 +220,7 @@ def everywhere(value, text):
             "selected_for_setup",
             "stand_in",
             "rung",
+            "verdict",
             "part",
             "carries",
             "verdict",

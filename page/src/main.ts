@@ -52,6 +52,8 @@ async function start(): Promise<void> {
   } catch {
     frame.remove();
     viewer.classList.add("without");
+    // Without a picture there is nothing that the tables would have to stand beside.
+    document.documentElement.classList.remove("app");
     say("This browser shows no 3D here (WebGL is missing or switched off). The tables say all that the picture would.");
     document.documentElement.dataset.ready = "without";
     return;

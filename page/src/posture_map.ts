@@ -87,7 +87,7 @@ export class PosturePanel {
     this.canvas.setAttribute("aria-label", named);
     this.about.replaceChildren(
       el("strong", {}, `${face?.id ?? "?"}, sample ${sample.row}`),
-      ` at ${sample.point.map((x) => figure(x, 4)).join(", ")} mm. `,
+      ` at ${samples.told(sample.row).map((x) => figure(x, 4)).join(", ")} mm. `,
       el("strong", {}, cutter.name || cutter.id),
       `: ${spoken(verdict)}${reason ? ` (${spoken(reason)})` : ""}. Curvature ${sample.curvature.map(bend).join(" and ")}.`,
     );
@@ -161,7 +161,7 @@ export class PosturePanel {
       const may = depth_mm === null ? "" : `, ${met} may reach ${figure(depth_mm)} mm into the tool`;
       return `undecided (${spoken(reason)})${may} ${best}`;
     }
-    return `${spoken(reason)}${depth_mm === null ? "" : `, ${figure(depth_mm)} mm too deep in ${met}`} ${best}`;
+    return `${spoken(reason)}${depth_mm === null ? "" : `; it is ${figure(depth_mm)} mm too deep in ${met}`} ${best}`;
   }
 
   // Places in the drawing.

@@ -52,6 +52,14 @@ export class Samples {
     };
   }
 
+  /** The place of a sample in decimals that are known: points are stored to a 65535th of the part. */
+  told(row: number): number[] {
+    const { low, high } = this.meta.part;
+    const step = Math.max(...[0, 1, 2].map((k) => high[k] - low[k])) / 65535;
+    const digits = Math.min(20, Math.max(0, Math.floor(-Math.log10(step || 1))));
+    return this.point(row).map((x) => Number(x.toFixed(digits)));
+  }
+
   point(row: number): Vec {
     const { rows, values } = this.arrays.get("sample.point");
     const { low, high } = this.meta.part;

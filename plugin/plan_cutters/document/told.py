@@ -111,8 +111,10 @@ def worst_faces(plan: Plan, cutter: CutterEntry, most: int = 5) -> tuple[list[Wo
     for name in ranked[:most]:
         mine, share = [w for w in cutter.witnesses if w.face == name], cutter.faces[name].area_share
         reason = main_reason(share) or (mine[0].reason if mine else "")
-        witness = max([w for w in mine if w.reason == reason] or mine, key=lambda w: w.depth_mm or 0.0, default=None)
-        lot = shares[name] * faces[name].area_mm2
         unsure = share.undecided > share.inaccessible
+        told = "undecided" if unsure else "inaccessible"
+        alike = [w for w in mine if w.reason == reason] or mine
+        witness = max(alike, key=lambda w: (w.verdict == told, w.depth_mm or 0.0), default=None)
+        lot = shares[name] * faces[name].area_mm2
         found.append(WorstFace(faces[name], lot, lost(cutter.faces[name], share), reason, unsure, witness))
     return found, len(ranked)

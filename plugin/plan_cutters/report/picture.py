@@ -15,6 +15,7 @@ from cad_io.arrays import Floats, Ints
 from cad_io.errors import WriteError
 from cad_io.kernel import translated
 from cad_io.write import meshes_of
+from plan_cutters.document.names import short_names
 from plan_cutters.document.palette import LABELS, rgb
 from plan_cutters.domain.posture import unit
 from plan_cutters.report.sheet import DPI, figure, fitting, printable, save, write
@@ -250,7 +251,7 @@ def _words(sheet: Any, result: Any, there: set[int], fixtures: bool) -> None:
     entry = next(c for c in plan.cutters if c.id == result.shown)
     shares = entry.area_share.model_dump()
     part = Path(plan.part.file).name if plan.part.file else "part"
-    name = entry.name if entry.name and entry.name != entry.id else entry.id
+    name = short_names(plan)[entry.id]
     taken = (
         "is selected"
         if result.selected == result.shown

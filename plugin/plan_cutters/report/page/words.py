@@ -118,11 +118,20 @@ def hint(word: str) -> str:
     return REASONS[word].hint if word in REASONS else ""
 
 
+def called(obstacle: str | None) -> str:
+    """What is in the way, as it is told.
+
+    >>> called("fixture:table"), called("F12"), called(None)
+    ('fixture table', 'F12', '')
+    """
+    return (obstacle or "").replace("fixture:", "fixture ", 1)
+
+
 def spot(witness: WitnessEntry) -> str:
     """A witness in a sentence."""
     if witness.reason == "tolerance":
         return "The tolerance is too coarse to say anything about this cutter."
-    said, best, obstacle = reason(witness.reason), witness.best_posture, witness.obstacle_face
+    said, best, obstacle = reason(witness.reason), witness.best_posture, called(witness.obstacle_face)
     said = said[0].upper() + said[1:]
     unsure = witness.verdict == "undecided"
     said += ", undecided" * unsure
@@ -133,11 +142,11 @@ def spot(witness: WitnessEntry) -> str:
         )
         if unsure:
             what = obstacle or "the part"
-            return f"{said}: at the best posture found ({there}) {what} may reach {mm(witness.depth_mm)} into the tool."
-        return f"{said}: the best posture found ({there}) is still {mm(witness.depth_mm)} too deep{where}."
+            return f"{said}. At the best posture found ({there}) {what} may reach {mm(witness.depth_mm)} into the tool."
+        return f"{said}. The best posture found ({there}) is still {mm(witness.depth_mm)} too deep{where}."
     if obstacle:
-        return f"{said}: {obstacle} {'may be' if unsure else 'is'} in the way."
-    return f"{said}: no posture is {'sure' if unsure else 'left'}."
+        return f"{said}. {obstacle[0].upper() + obstacle[1:]} {'may be' if unsure else 'is'} in the way."
+    return f"{said}. No posture is {'sure' if unsure else 'left'}."
 
 
 def tool(entry: CutterEntry) -> str:
