@@ -223,7 +223,6 @@ def everywhere(value, text):
             "verdict",
             "part",
             "carries",
-            "verdict",
         }
         return {k: v if k in kept and isinstance(v, str) else everywhere(v, text) for k, v in value.items()}
     if isinstance(value, list):
