@@ -52,7 +52,7 @@ def main() -> None:
         run("plan-cutters-tools", "samples/shop.toml", "--draw", str(out / "drawings"))
         shutil.copy(next((out / "drawings").glob("*flat*12*.svg")), PICTURES / "tool.svg")
         run("plan-cutters", "samples/pocket_top.step", "--cutters", "samples/shop.toml", "--machine", "trunnion-ac", "--fixture",
-            "table:-20", "--formats", "png", "-o", str(out / "sheet"))  # fmt: skip
+            "table:0", "--formats", "png", "-o", str(out / "sheet"))  # fmt: skip
         shutil.copy(out / "sheet" / "review.png", PICTURES / "sheet.png")
         _page(out / "p" / "review.html", PICTURES / "review.png")
 

@@ -523,3 +523,14 @@ except KeyboardInterrupt:
     done = subprocess.run([sys.executable, "-c", code], env=ENV, capture_output=True, text=True, timeout=30, check=False,
                           preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))  # fmt: skip
     assert (done.stdout, done.stderr) == ("heard\n", "")
+
+
+@pytest.mark.parametrize("words", [("tools", SAMPLES / "shop.toml"), ("machines",), ("machines", "trunnion-ac")])
+@pytest.mark.parametrize(("close", "code"), [("| true", 141), (">/dev/full", 2), (">&-", 2)])
+def test_the_other_commands_survive_a_closed_output(tmp_path, words, close, code):
+    call = f"from plan_cutters.command.entry import {words[0]}; {words[0]}()"
+    line = f"""{sys.executable} -c '{call}' {" ".join(map(str, words[1:]))} {close}; exit ${{PIPESTATUS[0]}}"""
+    done = subprocess.run(["bash", "-c", line], cwd=tmp_path, env=ENV, capture_output=True, text=True, check=False)
+    assert done.returncode == code
+    assert done.stderr.count("\n") == (0 if code == 141 else 1)
+    assert "internal error" not in done.stderr

@@ -175,7 +175,10 @@ export class App {
   private lit = false;
 
   private light(): void {
-    this.part.light(this.lit ? this.hot : null, this.inTheWay()?.owner ?? null);
+    const way = this.inTheWay()?.owner ?? null;
+    // The face of the sample itself keeps its verdicts in view: what is in the way of it there has a mark.
+    const own = way !== null && this.sample !== null && this.meta.faces[way]?.number === this.sample.face;
+    this.part.light(this.lit ? this.hot : null, own ? null : way);
     this.stage.request();
   }
 

@@ -29,19 +29,17 @@ def answered(plan: "Plan") -> list[str]:
     for each in plan.largest_radius:
         if not each.percentiles_mm or each.bottleneck_mm is None or each.bottleneck_point is None:
             continue
-        most = f"{radius(each.most_mm)}, the largest tried"
         narrowest = f"{_place(each.bottleneck_point)} on {each.bottleneck_face}"
-        whole = f"of {radius(each.bottleneck_mm)} reaches every sample" if each.bottleneck_mm else (
-            f"that reaches every sample is smaller than R{each.least_mm:.3g}, which misses {each.below} samples"
+        end = f"{each.shape} end of %s ({each.length_over_radius:g} radii long)"
+        whole = f"A {end % radius(each.bottleneck_mm)} reaches every sample" if each.bottleneck_mm else (
+            f"Not even a {end % f'R{each.least_mm:.3g}'} reaches every sample: it misses {each.below}"
         )  # fmt: skip
         middle = each.percentiles_mm["50"]
         half = f"takes {radius(middle)} or more" if middle else f"takes less than R{each.least_mm:.3g}"
-        least = f"That is {most}." if each.reason is None else (
+        least = f"No end larger than {radius(each.most_mm)} was tried." if each.reason is None else (
             f"The narrowest place is {narrowest} ({each.reason.replace('_', ' ')})."
         )  # fmt: skip
-        lines.append(
-            f"A {each.shape} end {whole} ({each.length_over_radius:g} radii long); half of the area {half}. {least}"
-        )
+        lines.append(f"{whole}; half of the area {half}. {least}")
     if plan.missing and (plan.largest_radius or any(c.least_stick_out for c in plan.cutters)):
         lines.append(
             "Stick-outs and largest radii hold unless a face is in the way that is missing from the obstacles."

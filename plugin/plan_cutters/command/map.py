@@ -14,10 +14,12 @@ from cad_io.units import UNITS
 from plan_cutters import __version__
 from plan_cutters.command.codes import ended, invoked
 from plan_cutters.command.grouped import Command, heading
-from plan_cutters.command.terminal import clean, hand_out
+from plan_cutters.command.terminal import clean, hand_out, paper
 from plan_cutters.command.values import File, Words, cutter_ids, machine_names
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from plan_cutters.domain.cutter import Cutter
     from plan_cutters.domain.placement import Placement
     from plan_cutters.stages.posture_map import PostureMap
@@ -174,7 +176,8 @@ def command(part: str, **given: Any) -> int:
     if given["json_out"] == "-":
         hand_out(json.dumps(_facts(found, f"F{face}", off, cutter, given), indent=2) + "\n")
     elif not given["quiet"]:
-        _table(found, about, outs)
+        with paper(80) as console:
+            _table(found, about, outs, console)
     if any(len(each) for each in found.free) and not found.missing:
         return _FREE
     return _UNDECIDED if found.missing or any(len(each) for each in found.undecided) else _NONE
@@ -312,19 +315,11 @@ def _draw(found: "PostureMap", tilt: tuple[float, float], about: list[str], outs
             aside.unlink(missing_ok=True)
 
 
-def _table(found: "PostureMap", about: list[str], outs: Sequence[Path]) -> None:
+def _table(found: "PostureMap", about: list[str], outs: Sequence[Path], console: "Console") -> None:
     """The free intervals for people."""
-    from io import StringIO
-
-    from rich.console import Console
     from rich.table import Table
 
-    if hasattr(sys.stdout, "reconfigure"):
-        sys.stdout.reconfigure(errors="replace")
     names = " and ".join(clean(str(out)) for out in outs)
-    # Of a terminal the width is its own. Not set on standard output itself: where that is closed, rich would end us.
-    width = None if sys.stdout.isatty() else 80
-    console = Console(file=(text := StringIO()), highlight=False, markup=False, width=width)
     for line in about:
         console.print(clean(line), soft_wrap=True)
     table = Table("Rotation", "Free tilts (deg)", "Undecided", "Local gouge below")
@@ -341,7 +336,6 @@ def _table(found: "PostureMap", about: list[str], outs: Sequence[Path]) -> None:
         )
     console.print(table)
     console.print(f"Drawn in {names}.", soft_wrap=True)
-    hand_out(text.getvalue())
 
 
 def _spans(intervals: Any, inward: bool = True) -> str:

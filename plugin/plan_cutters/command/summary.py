@@ -33,8 +33,7 @@ def summary(plan: "Plan", *, verbose: bool = False) -> None:
         "",
         *headline(plan, names),
         *between(plan),
-        cell(f"{faces}, with {plan.samples.count} samples, at most {plan.samples.max_gap_mm:.3g} mm apart. The machine is "
-             f"{plan.machine.name}, its spindle along {_axis(plan.effective.setup)} of the part."),
+        cell(f"{faces}, with {plan.samples.count} samples, at most {plan.samples.max_gap_mm:.3g} mm apart. {_machine(plan)}"),
         "",
         *cutter_rows(plan, names, verbose=verbose),
         *_unjudged_share(plan),
@@ -137,6 +136,14 @@ def setups(plan: "Plan", *, verbose: bool = True) -> list[str]:
     others = ", ".join(f"{axis} {share}" for axis, share in shares[1:])
     lines.append(f"Area within the limit by setup axis: {shares[0][1]} now; {others}.")
     return lines
+
+
+def _machine(plan: "Plan") -> str:
+    """What limits the tool axis, and how the part stands."""
+    along = f"the spindle along {_axis(plan.effective.setup)} of the part"
+    if plan.machine.name == "unlimited":
+        return f"No machine limits the tool axis; it is set up with {along}."
+    return f"The machine is {plan.machine.name}, with {along}."
 
 
 def _judged(plan: "Plan") -> int:
