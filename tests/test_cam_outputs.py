@@ -5,19 +5,24 @@ import json
 import math
 import re
 import shutil
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
+import cadquery as cq
 import jsonschema
 import numpy as np
 import pytest
 import trimesh
 
 import plan_cutters.report.to_csv as to_csv
-from plan_cutters import Cutter, plan, posture_map
+from plan_cutters import Cutter, Machine, plan, posture_map
+from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.clearance import MOST, grown, working_height
+from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.kinematics import Kinematics
+from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.posture import lean
 from plan_cutters.domain.shapes import flute_length
 from plan_cutters.domain.travel import tips
@@ -190,8 +195,16 @@ def test_paraview_reads_the_points(peaks, tmp_path):
     assert np.array_equal(arrays["face"], peaks.samples.face)
     assert np.array_equal(arrays["clearance_mm"], peaks.clearances.distance, equal_nan=True)
     assert {"normal", "tilt_deg", "lean", "C_deg", "A_deg", "C_other_deg"} <= set(arrays)
-    words = data.GetFieldData().GetAbstractArray("verdicts")
-    assert [words.GetValue(i) for i in range(words.GetNumberOfValues())][1] == "1 accessible"
+    told = {}
+    for i in range(data.GetFieldData().GetNumberOfArrays()):
+        words = data.GetFieldData().GetAbstractArray(i)
+        told[words.GetName()] = [words.GetValue(k) for k in range(words.GetNumberOfValues())]
+    assert told["verdicts"][1] == "1 accessible"
+    for name, column in (("classes", "surface_class"), ("parts", "nearest_part")):
+        codes = {int(line.split()[0]) for line in told[name]}
+        assert set(np.unique(arrays[column]).tolist()) <= codes | {-1}
+    assert told["fixtures"] == ["-1 fixture:box"]
+    assert -1 in arrays["nearest_face"]
 
 
 def test_large_arrays_go_into_several_blocks(tmp_path):
@@ -214,7 +227,7 @@ def test_large_arrays_go_into_several_blocks(tmp_path):
 
 
 def test_every_posture_found_is_served_by_its_own_axis(peaks):
-    reach, cutter = peaks.reaches[peaks.shown], peaks.tools[peaks.shown]
+    reach, cutter = peaks.reaches[peaks.shown], peaks.judged()
     rows = np.flatnonzero(reach.reached)[::9]
     for row in rows.tolist():
         assert serves(np.array([row]), reach.axis[row], peaks.samples, cutter, peaks.conditions)[0]
@@ -222,7 +235,7 @@ def test_every_posture_found_is_served_by_its_own_axis(peaks):
 
 def test_a_fixed_axis_serves_just_where_a_map_of_the_point_has_it_free(peaks):
     """The map of one point comes from other kernels: closed intervals in place of a test of one posture."""
-    cutter, samples = peaks.tools[peaks.shown], peaks.samples
+    cutter, samples = peaks.judged(), peaks.samples
     rng, agreed = np.random.default_rng(5), {True: 0, False: 0}
     for row in rng.choice(len(samples), 14, replace=False).tolist():
         axis = samples.normal[row] + 0.35 * rng.normal(size=3)
@@ -250,7 +263,7 @@ def unpacked(runs):
 
 def test_regions_hold_every_reached_sample_once_and_one_axis_serves_each(peaks, tmp_path):
     found = axis_regions(peaks)
-    reach, cutter, samples = peaks.reaches[peaks.shown], peaks.tools[peaks.shown], peaks.samples
+    reach, cutter, samples = peaks.reaches[peaks.shown], peaks.judged(), peaks.samples
     assert found.regions
     rows = [row for region in found.regions for row in unpacked(region.rows)] + unpacked(found.rest.rows)
     assert sorted(rows) == np.flatnonzero(reach.reached).tolist()
@@ -308,6 +321,64 @@ def test_free_tilts_of_a_region_are_free_at_each_of_its_samples(peaks):
                         for each in spans
                     )
     assert told >= 10
+
+
+NARROW = Machine(
+    "narrow",
+    axes=(Axis("C", "rotary", "part", (0, 0, 1), (-1.2, 2.0)), Axis("A", "rotary", "part", (1, 0, 0), (-0.1, 0.5))),
+)
+
+
+@pytest.mark.parametrize(("machine", "x"), [("tilt:20", None), (NARROW, None), (NARROW, (0, 1, 0)), ("3-axis", None)])
+def test_free_tilts_of_a_region_are_within_the_limits_of_the_machine(peaks, machine, x):
+    """A range of tilts that goes into CAM as a limit must be one that the machine holds: here by its angles, tilt by tilt."""
+    machine = Machine.of(machine)
+    conditions = replace(peaks.conditions, machine=machine, x=None if x is None else np.array(x, float))
+    frame = frame_of(conditions.setup, conditions.x)
+    maps, samples, k = peaks.maps, peaks.samples, len(peaks.maps.rotations)
+    held = maps.held(conditions)
+    free, told, cells = _Free(held), 0, 0
+    assert len(held.free) < len(maps.free) or (np.diff(held.free) < 1e-3).all() or held.free.max() < maps.free.max()
+    rng = np.random.default_rng(3)
+    for cell in rng.choice(len(maps.offset) - 1, 300).tolist():
+        row, turn = divmod(cell, k)
+        f = lean(samples.normal[row], samples.direction_max[row], float(maps.rotations[turn]))
+        for low, high in maps.free[maps.offset[cell] : maps.offset[cell + 1]].tolist():
+            tilt = np.linspace(low, high, 23)[1:-1]
+            axis = np.cos(tilt)[:, None] * samples.normal[row] + np.sin(tilt)[:, None] * f
+            mine = held.free[held.offset[cell] : held.offset[cell + 1]]
+            within = ((mine[:, :1] <= tilt) & (mine[:, 1:] >= tilt)).any(axis=0)
+            near = (np.abs(mine.reshape(-1, 1) - tilt) < 1e-5).any(axis=0)
+            assert (within == machine.allows(axis, frame))[~near].all()
+            cells += 1
+    for row in np.flatnonzero(peaks.reaches[peaks.shown].reached)[::5].tolist():
+        found = free.of(np.array([row])).leaning_deg
+        if found is None:
+            continue
+        tilt = np.radians(np.linspace(*found, 30)[1:-1])
+        f = lean(samples.normal[row], samples.direction_max[row], maps.rotations)
+        axes = np.cos(tilt)[:, None, None] * samples.normal[row] + np.sin(tilt)[:, None, None] * f
+        assert machine.allows(axes.reshape(-1, 3), frame).reshape(len(tilt), k).all(axis=0).any()
+        told += 1
+    assert cells > 50
+    assert told > 5 or machine.fixed
+
+
+def test_without_limits_the_machine_leaves_all_tilts(peaks):
+    assert peaks.maps.held(peaks.conditions.machineless) is peaks.maps
+
+
+def test_names_that_no_file_can_hold_cost_no_file(tmp_path):
+    part = cq.Assembly(cq.Workplane().box(20, 20, 5), name="half \ud800")
+    fixture = Fixture(cq.Workplane().box(3, 3, 3).translate((14, 0, 2)), name='=1+1,"\n\udfff')
+    cutter = Cutter.parse("R2L30").asked(0.0, 0.0, Holder.parse("R20L30"))
+    result = plan(part, cutters=cutter, fixtures=[fixture], faces="all", grid=5, area_budget=0)
+    formats = ["json", "csv", "vtk", "regions", "png", "step", "glb", "html", "npz"]
+    assert not result.write(tmp_path, formats).not_written
+    rows = rows_of(tmp_path / "axes.csv")
+    assert len(rows) == len(result.samples)
+    assert '=1+1,"\n?' in {row["nearest_face"].removeprefix("fixture:") for row in rows}
+    assert not any(text.startswith(("=", "+", "@")) for row in rows for text in row.values())
 
 
 def test_formats_are_written_on_request_and_a_failure_costs_one_file(tmp_path, monkeypatch):

@@ -278,7 +278,8 @@ def test_an_interrupt_at_the_very_start(tmp_path):
         time.sleep(delay)
         process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=60)
-        assert process.returncode in (130, -signal.SIGINT)
+        # Before any code of ours runs, the interpreter itself may end with 1.
+        assert process.returncode in (130, -signal.SIGINT, *([1] if delay < 0.2 else []))
         assert delay < 0.2 or process.returncode == 130
         assert delay < 0.2 or "Traceback" not in said
         assert leftovers(tmp_path) == []

@@ -18,10 +18,11 @@ from test_cli import ENV, SAMPLES, assert_one_line, in_lines, leftovers, run, sa
 from plan_cutters import plan
 from plan_cutters.command import summary as summaries
 from plan_cutters.command.progress import Display
-from plan_cutters.command.rows import _distinct, percent
+from plan_cutters.command.rows import _distinct
 from plan_cutters.command.supervise import _Watch
 from plan_cutters.command.terminal import clean, say
 from plan_cutters.document.model import Plan
+from plan_cutters.document.told import percent
 
 GROOVE = SAMPLES / "v_groove.step"
 QUICK = ("--cutter", "R6L80", "--grid", "5", "--area-budget", "0")
@@ -468,8 +469,10 @@ def test_a_name_that_is_no_text(tmp_path):
 
 @pytest.mark.parametrize("until", ["reading", "judging"])
 def test_a_terminal_that_is_closed_ends_the_run(tmp_path, until):
-    process = subprocess.Popen([sys.executable, "-m", "plan_cutters", str(WAVES), "--grid", "401"], cwd=tmp_path, env=ENV,
-                               stderr=subprocess.PIPE, text=True)  # fmt: skip
+    process = subprocess.Popen(
+        [sys.executable, "-m", "plan_cutters", str(WAVES), "--grid", "401"], cwd=tmp_path, env=ENV, stderr=subprocess.PIPE,
+        text=True, preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL),  # whoever runs the tests may ignore it
+    )  # fmt: skip
     said_until(process, until)
     children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
     process.send_signal(signal.SIGHUP)
@@ -520,3 +523,14 @@ except KeyboardInterrupt:
     done = subprocess.run([sys.executable, "-c", code], env=ENV, capture_output=True, text=True, timeout=30, check=False,
                           preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))  # fmt: skip
     assert (done.stdout, done.stderr) == ("heard\n", "")
+
+
+@pytest.mark.parametrize("words", [("tools", SAMPLES / "shop.toml"), ("machines",), ("machines", "trunnion-ac")])
+@pytest.mark.parametrize(("close", "code"), [("| true", 141), (">/dev/full", 2), (">&-", 2)])
+def test_the_other_commands_survive_a_closed_output(tmp_path, words, close, code):
+    call = f"from plan_cutters.command.entry import {words[0]}; {words[0]}()"
+    line = f"""{sys.executable} -c '{call}' {" ".join(map(str, words[1:]))} {close}; exit ${{PIPESTATUS[0]}}"""
+    done = subprocess.run(["bash", "-c", line], cwd=tmp_path, env=ENV, capture_output=True, text=True, check=False)
+    assert done.returncode == code
+    assert done.stderr.count("\n") == (0 if code == 141 else 1)
+    assert "internal error" not in done.stderr

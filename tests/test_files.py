@@ -230,7 +230,7 @@ def test_a_step_that_fails_costs_the_step_alone(result, tmp_path, monkeypatch):
     monkeypatch.setattr(models, "write_cad", fails)
     document = result.write(tmp_path / "out")
     assert document.not_written == {"step": "the CAD kernel cannot turn the part into STEP"}
-    assert sorted(document.files) == ["glb", "npz"]
+    assert sorted(document.files) == ["glb", "html", "npz"]
     assert read(tmp_path / "out")["not_written"] == document.not_written
     check_files(tmp_path / "out")
     assert [p.name for p in tmp_path.iterdir()] == ["out"]
@@ -246,7 +246,7 @@ def test_splitting_that_fails_costs_the_models_alone(result, tmp_path, monkeypat
     assert sorted(document.not_written) == ["glb", "step"]
     assert all("no curve" in why or "memory" in why or "space" in why for why in document.not_written.values())
     check_files(tmp_path)
-    assert sorted(read(tmp_path)["files"]) == ["npz"]
+    assert sorted(read(tmp_path)["files"]) == ["html", "npz"]
 
 
 def test_the_plan_is_there_before_the_models_begin(result, tmp_path, monkeypatch):
@@ -260,7 +260,7 @@ def test_the_plan_is_there_before_the_models_begin(result, tmp_path, monkeypatch
     monkeypatch.setattr(models, "split", looks)
     document = result.write(tmp_path)
     (before,) = seen
-    assert sorted(before["files"]) == ["npz"]
+    assert sorted(before["files"]) == ["html", "npz"]
     assert sorted(before["not_written"]) == ["glb", "step"]
     assert document.not_written == {}
     check_files(tmp_path)
@@ -269,6 +269,7 @@ def test_the_plan_is_there_before_the_models_begin(result, tmp_path, monkeypatch
     assert differs == {"files", "not_written", "split", "run"}
     assert after["run"]["seconds"].keys() - result.plan.run.seconds.keys() == {
         "start",
+        "html",
         "npz",
         "json",
         "split",
@@ -326,6 +327,8 @@ def start(*words, cwd):
 
 WORDS = (
     SAMPLES / "peaks_and_valleys.step",
+    "--formats",
+    "json,step,glb,npz",
     "--cutter",
     "R4L60",
     "--cutter",

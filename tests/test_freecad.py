@@ -49,7 +49,8 @@ holder.Placement = App.Placement(App.Vector(0, 0, 100), App.Rotation(App.Vector(
 thing = blade(holder)
 document.recompute()
 shape = macro["shape_of"](thing)
-group = macro["run"](thing, [1], "--cutter R4L50 --cutter R30L20 --grid 15 --area-budget 0")
+# What the macro itself asks for counts, whatever the user says.
+group = macro["run"](thing, [1], "--cutter R4L50 --cutter R30L20 --grid 15 --area-budget 0 -o other --formats html --faces F2")
 plan = json.load(open(os.path.join(group.Folder, "plan.json"), encoding="utf-8"))
 box = shape.BoundBox
 
@@ -71,8 +72,11 @@ found["errors"] = [
     line_of(macro["run"], thing, [], '--cutter "R4L50'),
     line_of(macro["run"], thing, [99], ""),
     line_of(macro["run"], document.addObject("Part::Feature", "Empty"), [], ""),
+    line_of(macro["run"], thing, [], "--help"),
 ]
 os.environ["PLAN_CUTTERS"] = os.path.join(os.getcwd(), "missing")
+found["errors"].append(line_of(macro["run"], thing, [], ""))
+os.environ["PLAN_CUTTERS"] = 'plan-cutters "'
 found["errors"].append(line_of(macro["run"], thing, [], ""))
 os.environ["PLAN_CUTTERS"], os.environ["PATH"] = "", ""
 found["errors"].append(line_of(macro["run"], thing, [], ""))
@@ -133,11 +137,13 @@ def test_verdicts_come_back(inside):
 
 
 def test_errors_are_one_line(inside):
-    wrong, quote, face, empty, missing, nowhere = inside["errors"]
+    wrong, quote, face, empty, no_plan, missing, path, nowhere = inside["errors"]
     assert wrong.startswith("cutter 'nonsense' is not of the form")
     assert quote.startswith("the options cannot be read")
     assert "there is no face F99" in face
     assert "holds no faces" in empty
+    assert "wrote no plan" in no_plan
+    assert path.startswith("the command's path cannot be read")
     assert "cannot be started" in missing
     assert "was not found: install it" in nowhere
     assert all("\n" not in each for each in inside["errors"])

@@ -68,11 +68,11 @@ def radius_at(made, height):
     return found
 
 
-def assert_encloses(made, shape, slack):
+def assert_encloses(made, shape, slack, foot=None):
     """No point of the shape's surface lies outside, and at some height the stages are not much larger."""
     points = np.array([p.toTuple() for p in cq.Shape.cast(shape).tessellate(0.05, 0.1)[0]])
     points = np.vstack([points, [v.toTuple() for v in cq.Shape.cast(shape).Vertices()]])
-    height = points[:, 2] - points[:, 2].min()
+    height = points[:, 2] - (points[:, 2].min() if foot is None else foot)
     out = np.hypot(points[:, 0], points[:, 1])
     room = np.array([radius_at(made, h) for h in height]) - out
     assert room.min() > -1e-7
@@ -146,6 +146,31 @@ def test_what_does_not_turn_is_refused_or_swept(make):
     assert_encloses(made, shape.wrapped, 0.2)
 
 
+def upright(shape, degrees):
+    return shape.rotate((0, 0, 0), (1, 0, 0), degrees)
+
+
+@pytest.mark.parametrize("frame", [0, 90, 35])
+def test_a_ball_that_is_cut_off_does_not_lift_the_nose(frame):
+    """The sphere's own frame may lie across: its full height, of which less is there, says nothing of where the nose is."""
+    half = cq.Workplane().box(60, 60, 40, centered=(True, True, False)).translate((0, 0, 5))
+    collar = upright(cq.Workplane().sphere(15), frame).translate((0, 0, 10)).intersect(half)
+    shape = cq.Workplane().circle(4).extrude(12).union(collar).val().wrapped
+    made = holder(shape)
+    assert_encloses(made, shape, 0.5, foot=0.0)
+    assert radius_at(made, 2.0) < 5.0
+
+
+@pytest.mark.parametrize("degrees", [5, 20])
+def test_a_nose_that_is_sawn_off_askew_stands_where_it_is(degrees):
+    """Bounds of parameters are loose around the curved border: the lowest point is in closed form."""
+    cone = cq.Workplane().circle(8).workplane(offset=40).circle(14).loft()
+    saw = cq.Workplane().box(60, 60, 40, centered=(True, True, False)).translate((0, 0, -40))
+    shape = cone.cut(upright(saw, degrees).translate((0, 0, 14))).val().wrapped
+    slope = math.tan(math.radians(degrees))
+    assert_encloses(holder(shape, enclose=True), shape, 0.2, foot=(14 - 8 * slope) / (1 + 0.15 * slope))
+
+
 def test_a_holder_off_its_axis_is_refused():
     off = bd.Pos(2, 0, 0) * bd.Cylinder(3, 4)
     with pytest.raises(CutterError, match="no body of revolution"):
@@ -161,6 +186,8 @@ def test_what_is_no_holder_has_a_line():
         holder(cq.Workplane("XZ").moveTo(5, 0).lineTo(8, 0).wire())
     with pytest.raises(ReadError, match="no area"):
         holder(cq.Workplane().circle(5))
+    with pytest.raises(ReadError, match="draw its one half"):
+        holder(bd.Plane.XZ * bd.Rectangle(10, 40))
     with pytest.raises(CutterError, match="gap between the heights 10 and 15"):
         holder([bd.Cylinder(3, 10, align=(bd.Align.CENTER, bd.Align.CENTER, bd.Align.MIN)),
                 bd.Pos(0, 0, 20) * bd.Cylinder(3, 10)])  # fmt: skip

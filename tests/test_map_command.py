@@ -3,11 +3,13 @@
 import json
 import math
 import os
+import shutil
 import subprocess
 import sys
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
 
 from cad_io import read_part
@@ -17,6 +19,7 @@ from plan_cutters import posture_map
 from plan_cutters.command import cli
 from plan_cutters.command import map as of_a_point
 from plan_cutters.report.map_picture import CAUSES, forbidden, without
+from plan_cutters.report.sheet import DPI, figure, fitting, write
 
 GROOVE = "samples/v_groove.step"
 
@@ -74,12 +77,12 @@ def test_colours_stand_where_the_map_says(capsys, tmp_path):
     with Image.open(out) as image:
         pixels = np.asarray(image.convert("RGB"), float)
     free = np.abs(pixels - [0, 0x9E, 0x73]).max(axis=-1) < 3
-    height, width, _ = pixels.shape
-    plot = free[: int(0.73 * height), int(0.07 * width) : int(0.78 * width)]
+    _, width, _ = pixels.shape
+    plot = free[:, int(0.07 * width) : int(0.78 * width)]
     found = posture_map(GROOVE, point=(0, 0, 0), cutter="R8L90", rotations=np.radians(np.arange(0, 360, 10)),
                         tilt=(0.0, math.radians(60)))  # fmt: skip
     share = sum(float(np.diff(each).sum()) for each in found.free) / (36 * math.radians(60))
-    area = 0.70 * width * 0.65 * height
+    area = 0.70 * width * 3.45 * 150
     assert plot.sum() / area == pytest.approx(share, abs=0.02)
 
 
@@ -134,6 +137,9 @@ def test_what_is_left_of_intervals():
         ([GROOVE, "--at", "0,0,0", "--cutter", "R8L90", "--machine", "mill"], 2, "mill"),
         ([GROOVE, "--at", "0,0,0", "--cutter", "R8L90", "--tilt", "50:10"], 2, "must run upwards"),
         ([GROOVE, "--at", "0,0,0", "--cutter", "R8L90", "--within", "-1"], 2, "--within"),
+        ([GROOVE, "--at", "0,0,0", "--cutter", "R8L90", "--allowance", "nan"], 2, "--allowance"),
+        ([GROOVE, "--at", "0,0,0", "--cutter", "R8L90", "--setup", "nix.toml"], 2, "nix.toml: cannot be read"),
+        ([GROOVE, "--at", "0,0,0", "--cutter", "R8L90", "--machine", "3-axis"], 2, "fewer than two rotary axes"),
         ([GROOVE, "--at", "0,0,0", "--cutter", "X", "--cutters", "samples/shop.toml"], 2, "no tool is called 'X'"),
     ],
 )
@@ -161,6 +167,69 @@ def test_a_tool_of_a_library_and_its_name(capsys, tmp_path):
         _, out, err = run(capsys, GROOVE, "--cutters", "samples/shop.toml", "--cutter", name, *words)
         assert err == ""
         assert json.loads(out)["cutter"] == tool.id
+
+
+def test_a_setup_file_says_how_the_part_stands(capsys, tmp_path):
+    """Its X decides which of the tilts across it a trunnion holds, and its fixtures are in the way."""
+    (tmp_path / "setup.toml").write_text(
+        'unit = "mm"\naxis = [0, 0, 1]\nx = [0, 1, 0]\nfixtures = ["box:4,4,40@14,0,30"]\n'
+    )
+    (tmp_path / "mill.toml").write_text(
+        'format = "plan-cutters-machine"\nversion = 1\nname = "mill"\nunits = { length = "mm", angle = "deg" }\n'
+        'sign = "tool-relative"\n'
+        '[[part_chain]]\naxis = "A"\ntype = "rotary"\ndirection = [1, 0, 0]\nlimits = [-60, 60]\n'
+        '[[part_chain]]\naxis = "C"\ntype = "rotary"\ndirection = [0, 0, 1]\nlimits = [-10, 10]\n'
+        '[[tool_chain]]\naxis = "Z"\ntype = "linear"\ndirection = [0, 0, 1]\n'
+    )
+    words = [GROOVE, "--at", "0,0,0", "--cutter", "R8L90", "--rotation-step", "45", "--machine", str(tmp_path / "mill.toml"),
+             "-o", str(tmp_path / "m.svg"), "--json", "-"]  # fmt: skip
+    free = []
+    for setup in ("0,0,1", str(tmp_path / "setup.toml")):
+        code, out, err = run(capsys, *words, "--setup", setup)
+        assert err == ""
+        free.append([sum(high - low for low, high in each["free"]) for each in json.loads(out)["rotations"]])
+        assert (code == 0) == (sum(free[-1]) > 0)
+    # The groove leaves tilts about its own line, y, alone; the fixture stands on the side of +x.
+    assert sum(free[0]) == 0
+    assert np.flatnonzero(free[1]).tolist() == [0, 4]
+    assert 0 < free[1][0] < 5 < 30 < free[1][4]
+
+
+def test_names_are_no_formulas_and_all_words_stay_on_the_sheet(capsys, tmp_path):
+    part = tmp_path / ("a$x_{1$^\\frac$ \u4e2d" + "W" * 150 + ".step")
+    shutil.copy(GROOVE, part)
+    out = tmp_path / "map.png"
+    code, text, err = run(capsys, str(part), "--at", "0.123456,5.123456,0.3", "--cutter", "R8L90", "--rotation", "0:40", "-o",
+                          str(out), "-o", str(tmp_path / "map.svg"))  # fmt: skip
+    assert (code, err) == (0, "")
+    assert "a$x_{1$^" in text
+    with Image.open(out) as image:
+        pixels = np.asarray(image.convert("L"))
+    inked = pixels < 200
+    assert not inked[:, -30:].any()
+    assert not inked[-10:].any()
+    assert not inked[:10].any()
+
+
+def test_lines_are_as_wide_as_their_letters():
+    for text in ("iiii " * 60, "WWWW " * 60, "M" * 300, "1 " + "W" * 200, ""):
+        lines = fitting(text, 8, 3.0)
+        assert "".join(lines).replace(" ", "") == text.replace(" ", "")
+        sheet = figure(4.0, 3.0)
+        write(sheet, lines, (0.5, 2.9), 8)
+        (drawn,) = sheet.texts
+        box = drawn.get_window_extent(FigureCanvasAgg(sheet).get_renderer())
+        assert box.width <= 3.0 * DPI
+    assert len(fitting("iiii " * 60, 8, 3.0)) < len(fitting("WWWW " * 60, 8, 3.0))
+
+
+def test_a_reader_that_goes_is_no_verdict():
+    done = subprocess.run(
+        f"{sys.executable} -m plan_cutters map {GROOVE} --at 0,0,0 --cutter R8L90 -o $(mktemp -d)/m.png | true; "
+        "echo ${PIPESTATUS[0]}",
+        shell=True, executable="/bin/bash", capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert (done.stdout.strip(), done.stderr) == ("141", "")
 
 
 def test_the_word_map_unless_a_file_has_that_name(capsys, tmp_path, monkeypatch):

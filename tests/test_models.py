@@ -8,6 +8,7 @@ import subprocess
 from collections import Counter
 from pathlib import Path
 
+import cadquery as cq
 import numpy as np
 import pytest
 import trimesh
@@ -16,6 +17,7 @@ from cad_io import read_part
 from plan_cutters import Cutter, plan
 from plan_cutters.document.palette import PALETTE, rgb
 from plan_cutters.report import DEFAULT_FORMATS
+from plan_cutters.report.models import split_result
 
 ROOT = Path(__file__).parent.parent
 SAMPLES = ROOT / "samples"
@@ -122,3 +124,14 @@ def test_a_face_without_a_grid_is_coloured_by_its_worst_verdict(written):
         if piece.face in target:
             verdicts = result.reaches["R8L90"].verdict[result.samples.face == piece.face]
             assert LABELS[piece.label] == ("inaccessible" if (verdicts == 0).any() else "accessible")
+
+
+def test_a_face_round_a_seam_with_one_line_is_written(tmp_path):
+    """Two lines each way, of which the seam is one twice: the border of its labels is a turn further."""
+    cone = cq.Workplane(cq.Solid.makeCone(5, 2, 8))
+    result = plan(cone, cutters="R2L40", grid=2, faces="F1", area_budget=0)
+    assert result.samples.grids[0].u.size == 1
+    assert not result.write(tmp_path, ["json", "step", "glb", "png"]).not_written
+    split = split_result(result)
+    area = sum(cq.Face(piece.shape).Area() for piece in split.pieces if piece.face == 1)
+    assert area == pytest.approx(result.plan.faces[0].area_mm2, rel=1e-6)

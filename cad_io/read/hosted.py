@@ -274,7 +274,10 @@ def _label(source: Any) -> str:
 
 
 def _text(name: Any) -> str:
-    return name.strip() if isinstance(name, str) and not _MADE_UP.fullmatch(name.strip()) else ""
+    """A host's name, if it is one; half a pair of surrogates, which no file can hold, becomes a question mark."""
+    if not isinstance(name, str) or _MADE_UP.fullmatch(name.strip()):
+        return ""
+    return name.strip().encode("utf-8", "replace").decode()
 
 
 def _colour(source: Any) -> Colour | None:

@@ -7,7 +7,7 @@ from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.GeomAbs import GeomAbs_Plane
 from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt
 
-from cad_io.errors import ReadError
+from cad_io.errors import CadIoError, ReadError
 from cad_io.kernel import faces, translated
 from cad_io.kernel.bodies import turned
 from cad_io.kernel.components import as_one
@@ -57,7 +57,12 @@ def _turned(shape: Any, axis: gp_Ax1, origin: Sequence[float], direction: Sequen
             raise ReadError(
                 "the profile lies in no plane through the axis: draw it there, or give the axis that it turns about"
             )
-    return turned(shape, origin, direction)
+    try:
+        return turned(shape, origin, direction)
+    except CadIoError:
+        raise ReadError(
+            "the profile cannot be turned about the axis: draw its one half, on one side of the axis"
+        ) from None
 
 
 def _coplanar(one: Any, other: Any) -> bool:

@@ -14,12 +14,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
-from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Surface
+from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d, BRepAdaptor_Surface
 from OCP.BRepTools import BRepTools
 from OCP.GeomAbs import (
     GeomAbs_Circle,
     GeomAbs_Cone,
     GeomAbs_Cylinder,
+    GeomAbs_Line,
     GeomAbs_Plane,
     GeomAbs_Sphere,
     GeomAbs_SurfaceOfRevolution,
@@ -34,6 +35,8 @@ from cad_io.tessellate.triangles import tessellate
 
 #: Distance from the axis, mm, and angle to it up to which a surface turns about it.
 _ON = 1e-7
+#: Parameters that differ by no more are the same, mm and rad.
+_SAME = 1e-7
 #: Parameters beyond this are none: a face that is not trimmed.
 _FARTHEST = 1e6
 
@@ -146,18 +149,18 @@ def _turning(face: Any, base: Floats, along: Floats, chord: float) -> _Found | N
     body = getattr(surface, made)()
     frame = body.Position()
     if made == "Sphere":
-        # Its own axis says nothing: it turns about every line through its centre, in a frame that does not matter.
+        # It turns about every line through its centre; but in a frame that does not, its parameters are no heights.
         centre = _xyz(body.Location()) - base
         if np.linalg.norm(centre - (centre @ along) * along) > _ON:
             return None
-        up = 1.0
-        if not _coaxial(body.Location(), frame.Direction(), base, along):
-            v0, v1 = -0.5 * math.pi, 0.5 * math.pi
-        else:
-            up = math.copysign(1.0, float(_xyz(frame.Direction()) @ along))
+        if not _coaxial(body.Location(), frame.Direction(), base, along) or not _ends(face, v0, v1):
+            return []
+        up = math.copysign(1.0, float(_xyz(frame.Direction()) @ along))
         return list(_arc(0.0, float(centre @ along), body.Radius(), up, v0, v1, chord))
     if not _coaxial(body.Location(), frame.Direction(), base, along):
         return None
+    if not _ends(face, v0, v1):
+        return []
     up = math.copysign(1.0, float(_xyz(frame.Direction()) @ along))
     foot = float((_xyz(body.Location()) - base) @ along)
     if made == "Torus":
@@ -167,6 +170,19 @@ def _turning(face: Any, base: Floats, along: Floats, chord: float) -> _Found | N
     lean = body.SemiAngle()
     ends = [(abs(body.RefRadius() + v * math.sin(lean)), foot + up * v * math.cos(lean)) for v in (v0, v1)]
     return [((*ends[0], *ends[1]), True)]
+
+
+def _ends(face: Any, v0: float, v1: float) -> bool:
+    """Whether a face goes just as far as the bounds of its second parameter say.
+
+    These are loose around curved borders, and a foot that is too low would lift the whole outline.
+    """
+    found = []
+    for edge in edges_of(face):
+        curve = BRepAdaptor_Curve2d(edge, face)
+        if curve.GetType() == GeomAbs_Line:
+            found += [curve.Value(end).Y() for end in (curve.FirstParameter(), curve.LastParameter())]
+    return bool(found) and abs(min(found) - v0) <= _SAME and abs(max(found) - v1) <= _SAME
 
 
 def _arc(

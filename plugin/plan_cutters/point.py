@@ -13,6 +13,7 @@ from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.checks import number, numbers, radians
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import OptionError
 from plan_cutters.options import machine_given
@@ -37,6 +38,7 @@ def posture_map(
     tilt: tuple[float, float] = (0.0, np.pi / 2),
     machine: Machine | str | None = None,
     tolerance: float | None = None,
+    x: Sequence[float] | None = None,
     **scene: Any,
 ) -> PostureMap:
     """Find the free tilt intervals of a cutter at a point of a part.
@@ -58,6 +60,8 @@ def posture_map(
     tolerance : float, optional
         Gouge tolerance, mm; default that of the Scene, or 0.01. 0: the nominal answer, obstacles refined until the ends
         settle; not certified.
+    x : (3,) float, optional
+        Direction of the part along the machine's X, as `Placement` has it.
     **scene
         `setup`, `flip`, `ignore` and `fixtures`, as `Scene.of` takes them; the point is not projected to ignored faces.
 
@@ -87,7 +91,11 @@ def posture_map(
     low, high = max(0.0, low), min(np.pi, high)
     stage = Scene.of(part, **scene, **({"tolerance": wanted} if wanted > 0 else {}))
     contact = locate(stage.part, stage.orientation, place, ignore=stage.ignored)
-    ask = Ask(contact, cutter, np.array(turns), (low, high), machine, np.array(stage.setup))
+    across = None
+    if x is not None:
+        first, second, third = numbers(x, "x", 3)
+        across = np.array(Placement(stage.setup, (first, second, third)).x)
+    ask = Ask(contact, cutter, np.array(turns), (low, high), machine, np.array(stage.setup), across)
     if wanted > 0:
         around, kept = stage.around, stage.tolerance
         found = posture_map_of(ask, around, tools(cutter, kept, around.surely.triangles.chord_error), _NARROWEST, kept)

@@ -5,7 +5,9 @@ from typing import TYPE_CHECKING
 
 from rich.text import Text
 
-from plan_cutters.command.rows import cell, lost_percent, percent
+from plan_cutters.command.rows import cell
+from plan_cutters.document.told import lost as lost_percent
+from plan_cutters.document.told import percent
 
 if TYPE_CHECKING:
     from plan_cutters.document.model import CutterEntry, Plan

@@ -14,10 +14,12 @@ import click
 from plan_cutters import __version__
 from plan_cutters.command.codes import USAGE, ended, guarded, invoked
 from plan_cutters.command.grouped import Command, heading
-from plan_cutters.command.terminal import clean, error
+from plan_cutters.command.terminal import clean, error, hand_out, paper
 from plan_cutters.command.values import File, Words, machine_names
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from plan_cutters.domain.machine import Machine
 
 _SELF = "plan-cutters-machines"
@@ -78,12 +80,13 @@ def command(machines: tuple[str, ...], **given: Any) -> int:
     if read and not lines and given["to_toml"] is not None:
         _write(read[0], Path(given["to_toml"]))
     if given["as_json"]:
-        click.echo(json.dumps({"machines": found}, indent=2, ensure_ascii=False))
-    elif not machines:
-        _list(read)
+        hand_out(json.dumps({"machines": found}, indent=2, ensure_ascii=False) + "\n")
     else:
-        for facts, machine in zip(found, read, strict=True):
-            _explain(facts, machine)
+        with paper(200) as console:
+            if not machines:
+                _list(read, console)
+            for facts, machine in zip(found, read, strict=True) if machines else ():
+                _explain(facts, machine, console)
     for line in lines:
         error(line)
     return USAGE if lines else 0
@@ -153,16 +156,7 @@ def _facts(name: str, form: str, machine: "Machine", axis: Any, turned: Any) -> 
     return found
 
 
-def _console() -> Any:
-    from rich.console import Console
-
-    if hasattr(sys.stdout, "reconfigure"):
-        # Names and frames of tables may have no place in the terminal's encoding.
-        sys.stdout.reconfigure(errors="replace")
-    return Console(highlight=False, markup=False, width=None if sys.stdout.isatty() else 200)
-
-
-def _list(machines: "Sequence[Machine]") -> None:
+def _list(machines: "Sequence[Machine]", console: "Console") -> None:
     from rich.table import Table
 
     from plan_cutters.machines.explain import limits_text, share, share_text
@@ -172,7 +166,6 @@ def _list(machines: "Sequence[Machine]") -> None:
     for machine in machines:
         axes = [f"{axis.name} ({axis.carries}, {limits_text(axis)})" for axis in machine.rotary]
         table.add_row(machine.name, ", ".join(axes) or "none", share_text(machine, share(machine).held))
-    console = _console()
     console.print(table)
     console.print(
         "Others: unlimited, tilt:DEG (within DEG of the setup axis), or a machine file. Names explain one.",
@@ -180,13 +173,11 @@ def _list(machines: "Sequence[Machine]") -> None:
     )
 
 
-def _explain(facts: dict[str, Any], machine: "Machine") -> None:
+def _explain(facts: dict[str, Any], machine: "Machine", console: "Console") -> None:
     """A machine for people."""
     from rich.table import Table
 
     from plan_cutters.machines.explain import limits_text, summary, vector_text
-
-    console = _console()
 
     def say(text: str) -> None:
         console.print(clean(text), soft_wrap=True)

@@ -14,11 +14,14 @@ from cad_io.units import UNITS
 from plan_cutters import __version__
 from plan_cutters.command.codes import ended, invoked
 from plan_cutters.command.grouped import Command, heading
-from plan_cutters.command.terminal import clean, hand_out
+from plan_cutters.command.terminal import clean, hand_out, paper
 from plan_cutters.command.values import File, Words, cutter_ids, machine_names
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.domain.placement import Placement
     from plan_cutters.stages.posture_map import PostureMap
 
 _SELF = "plan-cutters-map"
@@ -70,7 +73,12 @@ _output, _run = heading("Output"), heading("Run")
     type=Words("NAME|FILE", machine_names, files=True),
     help="As for plan-cutters.  [default: unlimited]",
 )
-@_way("--setup", default="0,0,1", metavar="X,Y,Z", help="Direction of the part along the spindle.  [default: 0,0,1]")
+@_way(
+    "--setup",
+    default="0,0,1",
+    type=File("X,Y,Z|FILE"),
+    help="Direction of the part along the spindle, or a setup file, as for plan-cutters.  [default: 0,0,1]",
+)
 @_way("--fixture", multiple=True, type=File("FILE[@X,Y,Z[,RX,RY,RZ]][:UNIT]"), help="As for plan-cutters. Repeatable.")
 @_way("--ignore", multiple=True, metavar="SELECT", help="Faces that are no obstacles. Repeatable.")
 @_search("--tilt", default="0:90", metavar="MIN:MAX", help="Tilts from the normal, degrees.  [default: 0:90]")
@@ -118,7 +126,7 @@ def command(part: str, **given: Any) -> int:
     from plan_cutters.errors import OptionError
 
     given["part"] = part
-    place, setup = _numbers(given["at"], "--at", 3), _numbers(given["setup"], "--setup", 3)
+    place, setup = _numbers(given["at"], "--at", 3), _setup(given["setup"])
     tilt, rotation = (_numbers(given[word], f"--{word}", 2, ":") for word in ("tilt", "rotation"))
     postures = PostureRange.degrees((tilt[0], tilt[1]), (rotation[0], rotation[1]), given["rotation_step"])
     if not given["within"] >= 0:
@@ -136,6 +144,11 @@ def command(part: str, **given: Any) -> int:
     from plan_cutters.options import machine_given
 
     machine = machine_given(given["machine"])
+    if machine.turns and len(machine.rotary) < 2:
+        raise OptionError(
+            f"machine {machine.name} has fewer than two rotary axes: it holds no tilt at most rotations, and the map would be "
+            "empty; leave --machine out, or plan the part with it"
+        )
     from cad_io import read_part
     from cad_io.sample import locate, nearest
     from plan_cutters.point import posture_map
@@ -143,8 +156,8 @@ def command(part: str, **given: Any) -> int:
 
     tolerance = {"tolerance": given["tolerance"]} if given["tolerance"] > 0 else {}
     scene = Scene.of(
-        read_part(part, unit=given["unit"], guarded=hasattr(os, "fork")), setup=setup, flip=given["flip"],
-        ignore=given["ignore"], fixtures=given["fixture"], **tolerance,
+        read_part(part, unit=given["unit"], guarded=hasattr(os, "fork")), setup=setup.z, flip=given["flip"],
+        ignore=given["ignore"], fixtures=[*given["fixture"], *setup.fixtures], **tolerance,
     )  # fmt: skip
     foot, off = nearest(scene.part, place, ignore=scene.ignored)
     if off > given["within"]:
@@ -155,7 +168,7 @@ def command(part: str, **given: Any) -> int:
         )
     found = posture_map(
         scene, point=foot.tolist(), cutter=cutter, rotations=postures.rotations, tilt=postures.tilt,
-        machine=machine, tolerance=given["tolerance"],
+        machine=machine, tolerance=given["tolerance"], x=setup.x,
     )  # fmt: skip
     face = int(locate(scene.part, scene.orientation, foot.tolist(), ignore=scene.ignored).face[0])
     about = _about(found, f"F{face}", off, cutter, given)
@@ -163,10 +176,22 @@ def command(part: str, **given: Any) -> int:
     if given["json_out"] == "-":
         hand_out(json.dumps(_facts(found, f"F{face}", off, cutter, given), indent=2) + "\n")
     elif not given["quiet"]:
-        _table(found, about, outs)
+        with paper(80) as console:
+            _table(found, about, outs, console)
     if any(len(each) for each in found.free) and not found.missing:
         return _FREE
     return _UNDECIDED if found.missing or any(len(each) for each in found.undecided) else _NONE
+
+
+def _setup(text: str) -> "Placement":
+    """A setup axis, or what a setup file says."""
+    from plan_cutters.domain.placement import Placement
+    from plan_cutters.machines.setups import read_setup
+
+    if text.lower().endswith(".toml") or os.path.isfile(text):
+        return read_setup(text)
+    x, y, z = _numbers(text, "--setup", 3)
+    return Placement((x, y, z))
 
 
 def _numbers(text: str, what: str, count: int, between: str = ",") -> tuple[float, ...]:
@@ -199,8 +224,8 @@ def _cutter(given: dict[str, Any]) -> "Cutter":
                 f"{many} called {given['cutter']!r}: plan-cutters-tools lists them", file=given["cutters"]
             )
         cutter = mine[0]
-    if given["allowance"] < 0 or given["holder_clearance"] < 0:
-        raise OptionError("--allowance and --holder-clearance must not be negative")
+    if not (0 <= given["allowance"] < math.inf and 0 <= given["holder_clearance"] < math.inf):
+        raise OptionError("--allowance and --holder-clearance must be numbers of mm that are not negative")
     return cutter.asked(given["allowance"], given["holder_clearance"], None if isinstance(holder, str) else holder)
 
 
@@ -210,19 +235,25 @@ def _text(values: Any) -> str:
 
 def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: dict[str, Any]) -> list[str]:
     """What the map is of, line by line; the first is its title."""
+    from plan_cutters.report.sheet import printable
+
     curvature = ", ".join(f"{x + 0.0:.4g}" for x in found.curvature)
+    apart = "one rotation: nothing is said of others"
+    if len(found.rotations) > 1:
+        step = math.degrees(found.rotations[1] - found.rotations[0])
+        apart = f"rotations {step:.4g} deg apart: nothing is said between them"
     proved = f"gouge tolerance {found.tolerance:g} mm" if found.tolerance else "nominal, not certified"
     moved = f"; the point asked for is {off:.3g} mm off" if off > 1e-3 else ""
     lines = [
-        f"{cutter.id} at ({_text(_round(found.point))}) on {face} of {Path(given['part']).name}",
+        f"{cutter.id} at ({_text(_round(found.point))}) on {face} of {printable(Path(given['part']).name, 80)}",
         f"Normal ({_text(_round(found.normal))}), rotation 0 towards ({_text(_round(found.direction_max))}); curvatures "
         f"{curvature} 1/mm, concave positive{moved}.",
-        f"Machine {Path(given['machine']).name}, setup {given['setup']}; {proved}; rotations {given['rotation_step']:g} deg "
-        "apart: nothing is said between them.",
+        f"Machine {printable(Path(given['machine']).name, 40)}, setup {printable(Path(given['setup']).name, 40)}; {proved}; "
+        f"{apart}.",
     ]
     if found.missing:
         lines.append(
-            f"Not certified: obstacles are missing or guessed ({len(found.missing)}), first {found.missing[0]}."
+            f"Not certified: obstacles are missing or guessed ({len(found.missing)}), first {printable(found.missing[0])}."
         )
     elif found.tolerance:
         lines.append("A free tilt is safe for the true surface to the tolerance; of several causes the first in the legend is "
@@ -258,6 +289,7 @@ def _facts(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: 
         "format": "plan-cutters-map", "part": Path(given["part"]).name, "face": face, "point": found.point.tolist(),
         "off_mm": off, "normal": found.normal.tolist(), "direction_max": found.direction_max.tolist(),
         "curvature": found.curvature.tolist(), "cutter": cutter.id, "machine": given["machine"],
+        "setup": given["setup"],
         "tolerance_mm": found.tolerance, "certified": found.certified, "missing": list(found.missing),
         "rotations": [
             {"deg": math.degrees(turn), "local_gouge": none[i], **{w: _degrees(getattr(found, w)[i]) for w in words}}
@@ -283,14 +315,11 @@ def _draw(found: "PostureMap", tilt: tuple[float, float], about: list[str], outs
             aside.unlink(missing_ok=True)
 
 
-def _table(found: "PostureMap", about: list[str], outs: Sequence[Path]) -> None:
+def _table(found: "PostureMap", about: list[str], outs: Sequence[Path], console: "Console") -> None:
     """The free intervals for people."""
-    from rich.console import Console
     from rich.table import Table
 
-    if hasattr(sys.stdout, "reconfigure"):
-        sys.stdout.reconfigure(errors="replace")
-    console = Console(highlight=False, markup=False, width=None if sys.stdout.isatty() else 80)
+    names = " and ".join(clean(str(out)) for out in outs)
     for line in about:
         console.print(clean(line), soft_wrap=True)
     table = Table("Rotation", "Free tilts (deg)", "Undecided", "Local gouge below")
@@ -300,10 +329,13 @@ def _table(found: "PostureMap", about: list[str], outs: Sequence[Path]) -> None:
         gouge = found.local_gouge[i]
         below = "always" if math.isnan(gouge) else f"{math.degrees(gouge):.2f}"
         table.add_row(
-            f"{math.degrees(turn):g}", _spans(found.free[i]) or "none", _spans(found.undecided[i], False), below
+            f"{math.degrees(turn):g}",
+            _spans(found.free[i]) or ("under 0.01" if len(found.free[i]) else "none"),
+            _spans(found.undecided[i], False),
+            below,
         )
     console.print(table)
-    console.print(clean(f"Drawn in {' and '.join(map(str, outs))}."), soft_wrap=True)
+    console.print(f"Drawn in {names}.", soft_wrap=True)
 
 
 def _spans(intervals: Any, inward: bool = True) -> str:

@@ -9,6 +9,8 @@ from rich.table import Table
 from rich.text import Text
 
 from plan_cutters.command.terminal import clean, console
+from plan_cutters.document.told import figure, part_of
+from plan_cutters.document.told import worst_faces as most_lost
 
 if TYPE_CHECKING:
     from plan_cutters.document.model import CutterEntry, Plan
@@ -35,41 +37,9 @@ def cell(text: str, style: str = "") -> Text:
     return Text(clean(text), style)
 
 
-def percent(share: float, *, some: bool, whole: bool) -> str:
-    """A share in percent: 100 only where it is the whole, and 0 only where there is nothing of it.
-
-    Examples
-    --------
-    >>> percent(0.00001, some=True, whole=False), percent(0.99999, some=True, whole=False)
-    ('<0.1 %', '>99.9 %')
-    """
-    if whole:
-        return "100 %"
-    if not some and not share:
-        return "0 %"
-    text = f"{100.0 * share:.1f}"
-    return {"0.0": "<0.1 %", "100.0": ">99.9 %"}.get(text, f"{text} %")
-
-
 def percents(counts: "Verdicts", share: "AreaShare") -> dict[str, str]:
     """Each verdict's share of the area, as it is shown."""
-    words = [*WORDS, "unjudged"]
-    there = {word: bool(getattr(counts, word)) or getattr(share, word) > 0.0 for word in words}
-    return {
-        word: percent(
-            getattr(share, word), some=there[word], whole=there[word] and not any(there[w] for w in words if w != word)
-        )
-        for word in words
-    }
-
-
-def lost_percent(counts: "Verdicts", share: "AreaShare") -> str:
-    """The share of the area that is inaccessible or undecided, as it is shown."""
-    lost = counts.inaccessible + counts.undecided
-    others = counts.interference_free + counts.accessible + counts.unjudged
-    return percent(
-        share.inaccessible + share.undecided, some=bool(lost), whole=bool(lost) and not others and not share.unjudged
-    )
+    return {word: part_of(counts, share, [word]) for word in WORDS}
 
 
 def shown(plan: "Plan") -> "CutterEntry":
@@ -113,17 +83,15 @@ def _listed(c: "CutterEntry", name: str, taken: bool) -> Text:
 
 def worst_faces(plan: "Plan", name: str) -> list[Any]:
     """Where the cutter shown fails: the faces on which it leaves the most area."""
-    from plan_cutters.document import told
-
     c = shown(plan)
-    worst, count = told.worst_faces(plan, c, WORST)
+    worst, count = most_lost(plan, c, WORST)
     if not worst:
         return []
     which = (
         f"the {len(worst)} worst of {count} faces" if count > len(worst) else f"{count} face{'s' if count > 1 else ''}"
     )
     lines: list[Any] = [cell(f"Where {name} {'fails' if c.inaccessible else 'is not sure'}, {which}:")]
-    rows = [_row(told.figure(each.area), each) for each in worst]
+    rows = [_row(figure(each.area), each) for each in worst]
     table = _table(("  face", "mainly", "in the way"), ("mm2 lost", "of the face", "mm too deep"))
     for face, area, share, reason, depth, obstacle in rows:
         table.add_row(f"  {face}", reason, cell(_distinct([obstacle], _NAME)[0]), area, share, depth)

@@ -8,9 +8,11 @@ from rich.text import Text
 
 from plan_cutters.command.answered import answered
 from plan_cutters.command.headline import between, headline
-from plan_cutters.command.rows import cell, cutter_rows, lost_percent, percent, shown, take, worst_faces
+from plan_cutters.command.rows import cell, cutter_rows, shown, take, worst_faces
 from plan_cutters.command.terminal import say
 from plan_cutters.document.names import named, short_names
+from plan_cutters.document.told import lost as lost_percent
+from plan_cutters.document.told import percent
 
 if TYPE_CHECKING:
     from plan_cutters.document.model import CutterEntry, Plan

@@ -6,7 +6,7 @@ import os
 import re
 import sys
 import unicodedata
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from io import StringIO
 from typing import IO, TYPE_CHECKING, Any
 
@@ -129,8 +129,37 @@ def emit(text: str) -> None:
 
 
 def hand_out(text: str) -> None:
-    """Write on standard output, for programs to read; errors as of `handing_out`."""
+    """Write on standard output, for programs to read; errors as of `handing_out`, and where it is closed."""
+    if sys.stdout is None:
+        raise PlanError("cannot be written: it is closed", file="standard output")
     handing_out(lambda: (sys.stdout.write(text), sys.stdout.flush()))
+
+
+class _Paper(StringIO):
+    """Text whose tables have frames that standard output can show."""
+
+    @property
+    def encoding(self) -> str:  # type: ignore[override]
+        return getattr(sys.stdout, "encoding", None) or "utf-8"
+
+
+@contextlib.contextmanager
+def paper(width: int) -> Iterator["Console"]:
+    """What is printed on it goes to standard output at the end, as by `hand_out`; `width` holds where that is no terminal.
+
+    Rich itself would end the process where standard output is closed.
+    """
+    from rich.console import Console
+
+    if hasattr(sys.stdout, "reconfigure"):
+        # Names and frames of tables may have no place in the terminal's encoding.
+        sys.stdout.reconfigure(errors="replace")
+    seen = sys.stdout is not None and sys.stdout.isatty()
+    console = Console(
+        file=(text := _Paper()), highlight=False, markup=False, width=None if seen else width, force_terminal=seen
+    )
+    yield console
+    hand_out(text.getvalue())
 
 
 def handing_out(work: Callable[[], Any]) -> Any:

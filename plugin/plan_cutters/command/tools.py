@@ -15,7 +15,7 @@ import click
 from plan_cutters import __version__
 from plan_cutters.command.codes import USAGE, ended, guarded, invoked
 from plan_cutters.command.grouped import Command, heading
-from plan_cutters.command.terminal import clean, error
+from plan_cutters.command.terminal import clean, error, hand_out, paper
 from plan_cutters.command.values import File, Folder
 
 if TYPE_CHECKING:
@@ -90,10 +90,11 @@ def command(files: tuple[str, ...], **given: Any) -> int:
         if given["draw"] is not None:
             _draw(found, Path(given["draw"]))
     if given["as_json"]:
-        click.echo(json.dumps({"libraries": [_plain(library) for library in found]}, indent=2, ensure_ascii=False))
+        hand_out(json.dumps({"libraries": [_plain(library) for library in found]}, indent=2, ensure_ascii=False) + "\n")
     else:
-        for library in found:
-            _table(library)
+        with paper(200) as console:
+            for library in found:
+                _table(library, console)
     for line in lines:
         error(line)
     return USAGE if lines else 0
@@ -133,15 +134,10 @@ def _dimensions(cutter: "Cutter") -> dict[str, Any]:
     }
 
 
-def _table(library: "Library") -> None:
+def _table(library: "Library", console: "Console") -> None:
     """A library for people: widths follow the words where the output is no terminal."""
-    from rich.console import Console
     from rich.table import Table
 
-    if hasattr(sys.stdout, "reconfigure"):
-        # Names and frames of tables may have no place in the terminal's encoding.
-        sys.stdout.reconfigure(errors="replace")
-    console = Console(highlight=False, markup=False, width=None if sys.stdout.isatty() else 200)
     used = sum(entry.cutter is not None for entry in library.entries)
     tools = "1 tool" if len(library.entries) == 1 else f"{len(library.entries)} tools"
     heads = [f"{library.file}: {library.format}, {tools} listed, {used} used, {len(library)} different"]

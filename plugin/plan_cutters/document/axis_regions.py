@@ -22,15 +22,14 @@ class RegionFace(Frozen):
 
 
 class FreeTilts(Frozen):
-    """Tilts that are free at every sample of a region, from the posture maps: of the part and the fixtures alone, whatever the
-    machine."""
+    """Tilts that are free at every sample of a region, from the posture maps, and that the machine can hold there."""
 
     leaning_deg: Span | None = Field(
-        description="each sample has a rotation, one of those searched, at which all these tilts are free; null: no range is "
-        "common to all"
+        description="each sample has a rotation, one of those searched, at which all these tilts are free and within the axis "
+        "limits; null: no range is common to all"
     )
     any_rotation_deg: Span | None = Field(
-        description="these tilts are free at every rotation searched, at every sample; null: none are"
+        description="these tilts are free and within the axis limits at every rotation searched, at every sample; null: none are"
     )
 
 
@@ -68,7 +67,8 @@ class FixedAxis(Frozen):
 
     axis: Vector
     rotary_deg: dict[str, float] | None = Field(
-        description="a position of the machine's rotary axes that holds it, by name; null without such axes"
+        description="a position of the machine's rotary axes that holds it, by name; null without such axes; whether the linear "
+        "axes can go there is not looked at"
     )
     samples: int
     area_mm2: float
@@ -93,7 +93,7 @@ class AxisRegions(Frozen):
     sha256: str | None
     cutter: str
     machine: str
-    setup: Vector
+    setup: Vector = Field(description="the first one, where there are several")
     tolerance_mm: float
     axes: list[FixedAxis] = Field(description="the one that serves most of what is left comes next")
     regions: list[Region] = Field(

@@ -9,18 +9,7 @@ from pydantic import Field
 
 from cad_io import Part, SurfaceSamples
 from plan_cutters.document.frozen import Frozen
-from plan_cutters.domain.verdicts import (
-    ACCESSIBLE,
-    INACCESSIBLE,
-    INTERFERENCE_FREE,
-    REASONS,
-    UNDECIDED,
-    UNJUDGED,
-    Reach,
-)
-
-_WORDS = {INTERFERENCE_FREE: "interference_free", ACCESSIBLE: "accessible", INACCESSIBLE: "inaccessible",
-          UNDECIDED: "undecided", UNJUDGED: "unjudged"}  # fmt: skip
+from plan_cutters.domain.verdicts import INACCESSIBLE, REASONS, UNDECIDED, WORDS, Reach
 
 
 class Verdicts(Frozen):
@@ -54,7 +43,7 @@ class FaceVerdicts(Verdicts):
 
 def counts(verdict: NDArray[np.uint8]) -> dict[str, Any]:
     """How many samples have each verdict."""
-    return {name: int((verdict == code).sum()) for code, name in _WORDS.items()}
+    return {name: int((verdict == code).sum()) for code, name in WORDS.items()}
 
 
 def face_verdicts(samples: SurfaceSamples, reach: Reach) -> dict[str, FaceVerdicts]:
@@ -84,7 +73,7 @@ def whole_share(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part
     areas = areas if areas.sum() > 0.0 else np.ones(len(targets))
     weights = (areas / max(1e-300, areas.sum())).tolist()
     parts = [(weight, share) for weight, (_, share) in zip(weights, targets, strict=True)]
-    sums = {word: min(1.0, sum(weight * getattr(share, word) for weight, share in parts)) for word in _WORDS.values()}
+    sums = {word: min(1.0, sum(weight * getattr(share, word) for weight, share in parts)) for word in WORDS.values()}
     lost = {
         reason: min(1.0, sum(weight * share.lost_by.get(reason, 0.0) for weight, share in parts)) for reason in REASONS
     }
@@ -93,7 +82,7 @@ def whole_share(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part
 
 def _share(verdict: NDArray[np.uint8], reason: NDArray[np.uint8], area: NDArray[np.float64]) -> AreaShare:
     area = area / area.sum()
-    shares = {name: min(1.0, float(area[verdict == code].sum())) for code, name in _WORDS.items()}
+    shares = {name: min(1.0, float(area[verdict == code].sum())) for code, name in WORDS.items()}
     lost = (verdict == INACCESSIBLE) | (verdict == UNDECIDED)
     by = {
         name: min(1.0, float(area[lost & (reason == i)].sum()))

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 from plan_cutters.document.model import CutterEntry, FaceEntry, Plan, WitnessEntry
 from plan_cutters.document.shares import AreaShare, Verdicts
+from plan_cutters.domain.verdicts import WORDS
 
 #: Verdicts, from best to worst.
-VERDICTS = ("interference_free", "accessible", "undecided", "inaccessible", "unjudged")
+VERDICTS = tuple(WORDS.values())
 _REACHED, _LOST = ("interference_free", "accessible"), ("inaccessible", "undecided")
 
 

@@ -46,6 +46,17 @@ def flag(value: Any, what: str) -> bool:
     return bool(value)
 
 
+def name(value: Any, what: str, *, error: type[OptionError] = OptionError) -> str:
+    r"""A text that files can hold: half a pair of surrogates, which no encoding has, becomes a question mark.
+
+    >>> name("rim\ud800", "a name")
+    'rim?'
+    """
+    if not isinstance(value, str):
+        raise error(f"{what} must be a text, not {shown(value)}")
+    return value.encode("utf-8", "replace").decode()
+
+
 def items(value: Any, what: str, of: str, *, error: type[OptionError] = OptionError) -> list[Any]:
     """The items of a list, a tuple, an array or anything else that gives its items in order."""
     try:

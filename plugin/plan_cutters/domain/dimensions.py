@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from plan_cutters.domain.checks import items, number, shown
+from plan_cutters.domain.checks import items, name, number, shown
 from plan_cutters.domain.holder import Holder, Stage, positive
 from plan_cutters.errors import CutterError
 
@@ -69,8 +69,7 @@ class Dimensions:
             object.__setattr__(self, word, value)
         for word in ("radius", "length"):
             object.__setattr__(self, word, positive(getattr(self, word), f"cutter {word}"))
-        if not isinstance(self.name, str):
-            raise CutterError(f"a cutter's name must be a text, not {shown(self.name)}")
+        object.__setattr__(self, "name", name(self.name, "a cutter's name", error=CutterError))
         if not isinstance(self.shape, str) or self.shape not in _SHAPES:
             raise CutterError(f"a cutter's shape must be one of {', '.join(_SHAPES)}, not {shown(self.shape)}")
         for word in ("flutes", "shank_radius"):

@@ -11,7 +11,7 @@ import numpy as np
 
 from cad_io.arrays import Floats
 from cad_io.units import UNITS
-from plan_cutters.domain.checks import number, numbers, shown
+from plan_cutters.domain.checks import name, number, numbers, shown
 from plan_cutters.errors import FixtureError
 
 #: Simple fixtures by words: what each number is.
@@ -77,13 +77,12 @@ class Fixture:
         object.__setattr__(self, "placement", _placed(placement, str(self)))
         if self.unit is not None and self.unit not in UNITS:
             raise FixtureError(f"{self}: no length unit is called {shown(self.unit)}; give one of {', '.join(UNITS)}")
-        if not isinstance(self.name, str):
-            raise FixtureError(f"a fixture's name must be a text, not {shown(self.name)}")
+        given = name(self.name, "a fixture's name", error=FixtureError)
         error = number(self.chord_error, "a fixture's chord error", error=FixtureError)
         if not 0.0 <= error < math.inf:
             raise FixtureError(f"{self}: its chord error must be 0 or a positive number of mm, not {error:g}")
         object.__setattr__(self, "chord_error", error)
-        object.__setattr__(self, "name", self.name or self._named())
+        object.__setattr__(self, "name", given or name(self._named(), "a fixture's name"))
         _ = self.sizes
 
     def __str__(self) -> str:

@@ -5,7 +5,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from plan_cutters.domain.checks import items, number, shown
+from plan_cutters.domain.checks import items, name, number, shown
 from plan_cutters.errors import CutterError
 
 #: A number in a text that describes a cutter.
@@ -76,8 +76,7 @@ class Holder:
         if not stages or not all(isinstance(stage, Stage) for stage in stages):
             raise CutterError("a holder needs at least one stage: a radius and a length, as R15L30")
         object.__setattr__(self, "stages", stages)
-        if not isinstance(self.name, str):
-            raise CutterError(f"a holder's name must be a text, not {shown(self.name)}")
+        object.__setattr__(self, "name", name(self.name, "a holder's name", error=CutterError))
 
     @property
     def id(self) -> str:

@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints, Record
 
 INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
+#: Their words, from best to worst.
+WORDS = {INTERFERENCE_FREE: "interference_free", ACCESSIBLE: "accessible", UNDECIDED: "undecided",
+         INACCESSIBLE: "inaccessible", UNJUDGED: "unjudged"}  # fmt: skip
 #: Classes of a surface at a sample; there is UNJUDGED, too.
 CONVEX, CONCAVE, SADDLE = 0, 1, 2
 

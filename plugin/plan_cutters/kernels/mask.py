@@ -58,3 +58,42 @@ def mask(rows, normal, direction_max, ranges, turns, offset, free, undecided, fo
             if unsure:
                 verdict = UNDECIDED
         found.verdict[row] = verdict
+
+
+@entry
+def held_free(rows, normal, direction_max, ranges, offset, free, place, kept):  # type: ignore[no-untyped-def]
+    """What the machine holds of free tilts, at every rotation of the maps: how many intervals or, with room, these.
+
+    Parameters
+    ----------
+    rows, normal, direction_max, ranges, offset, free
+        As for `mask`.
+    place : (n * k,) int64
+        How many intervals each sample has at each rotation, written; where they begin in `kept`, read if that has room.
+    kept : (m, 2) float64, written
+        Without rows: nothing but `place` is written.
+    """
+    intervals, e2, f, t = np.empty((64, 2)), np.empty(3), np.empty(3), np.empty(3)
+    count = len(ranges.rotation_cos)
+    for row in rows:
+        n, e1 = normal[row], direction_max[row]
+        cross(n, e1, e2)
+        for rotation in range(count):
+            cell = row * count + rotation
+            at = place[cell]
+            if len(kept) == 0:
+                place[cell] = at = 0
+            if offset[cell] == offset[cell + 1]:
+                continue
+            lean_frame(e1, e2, ranges.rotation_cos[rotation], ranges.rotation_sin[rotation], f, t)
+            held = held_tilts(n, f, ranges, ranges.tilt_low, ranges.tilt_high, intervals)
+            for i in range(offset[cell], offset[cell + 1]):
+                for k in range(held):
+                    low, high = max(free[i, 0], intervals[k, 0]), min(free[i, 1], intervals[k, 1])
+                    if low > high:
+                        continue
+                    if len(kept) == 0:
+                        place[cell] += 1
+                    else:
+                        kept[at, 0], kept[at, 1] = low, high
+                        at += 1

@@ -8,22 +8,9 @@ from numpy.typing import NDArray
 
 from plan_cutters.domain.clearance import part_words
 from plan_cutters.domain.travel import tips
-from plan_cutters.domain.verdicts import (
-    ACCESSIBLE,
-    CONCAVE,
-    CONVEX,
-    INACCESSIBLE,
-    INTERFERENCE_FREE,
-    NO_REASON,
-    REASONS,
-    SADDLE,
-    UNDECIDED,
-    UNJUDGED,
-)
+from plan_cutters.domain.verdicts import CONCAVE, CONVEX, NO_REASON, REASONS, SADDLE, UNJUDGED, WORDS
 from plan_cutters.scene.conditions import rotations_of
 
-VERDICTS = {INACCESSIBLE: "inaccessible", ACCESSIBLE: "accessible", INTERFERENCE_FREE: "interference_free",
-            UNDECIDED: "undecided", UNJUDGED: "unjudged"}  # fmt: skip
 CLASSES = {CONVEX: "convex", CONCAVE: "concave", SADDLE: "saddle", UNJUDGED: "unjudged"}
 #: Digits behind the point of lengths, mm, angles, deg, and parts of unit vectors.
 _MM, _DEG, _UNIT = 6, 6, 9
@@ -75,7 +62,7 @@ def columns(result: Any) -> list[Column]:
         Column("normal", samples.normal, _UNIT),
         Column("area_mm2", samples.area, _MM),
         Column("surface_class", result.surface_class, words=CLASSES),
-        Column("verdict", reach.verdict, words=VERDICTS),
+        Column("verdict", reach.verdict, words=WORDS),
         Column("reason", reach.reason, words=dict(enumerate(REASONS)) | {NO_REASON: ""}),
         Column("axis", reach.axis, _UNIT),
         Column("lean", reach.lean, _UNIT),

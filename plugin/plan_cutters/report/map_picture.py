@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -11,10 +10,12 @@ import numpy as np
 from cad_io.arrays import Floats
 from plan_cutters.document.palette import CAUSES as COLOURS
 from plan_cutters.document.palette import PALETTE
-from plan_cutters.report.sheet import figure, save
+from plan_cutters.report.sheet import figure, fitting, save, write
 
-#: Letters of a line.
-_TITLE, _NOTE = 95, 150
+#: Inches: the sheet's width, the room left at its sides, and the plot, from its left and with its size.
+_WIDTH, _SIDE, _PLOT = 9.0, 0.3, (0.675, 6.3, 3.45)
+#: Points: the letters of the title and of the notes; and inches that a line of each takes.
+_TITLE, _NOTE, _TITLE_LINE, _NOTE_LINE = 11, 8, 0.23, 0.168
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,8 +123,14 @@ def draw_map(found: Any, tilt: tuple[float, float], title: str, notes: Sequence[
     places = [*enumerate(turns.tolist()), *([(0, float(turns[0]) + 360.0)] if whole else [])]
     left, right = (places[0][1], places[-1][1]) if whole else (places[0][1] - 0.5 * step, places[-1][1] + 0.5 * step)
     shares = {"free": found.free, **forbidden(found, *tilt)}
-    sheet = figure(9.0, 5.3)
-    plot = sheet.add_axes((0.075, 0.27, 0.70, 0.65))
+    room = _WIDTH - 2.0 * _SIDE
+    head = fitting(title, _TITLE, room)
+    below = [line for note in notes for line in fitting(note, _NOTE, room)]
+    # The plot keeps its size: the sheet grows with what is written above and below.
+    foot, top = 0.8 + _NOTE_LINE * len(below), 0.25 + _TITLE_LINE * len(head)
+    high_sheet = foot + _PLOT[2] + top
+    sheet = figure(_WIDTH, high_sheet)
+    plot = sheet.add_axes((_PLOT[0] / _WIDTH, foot / high_sheet, _PLOT[1] / _WIDTH, _PLOT[2] / high_sheet))
     legend = []
     for cause in (FREE, UNDECIDED, *CAUSES, OTHER):
         boxes = [
@@ -142,11 +149,10 @@ def draw_map(found: Any, tilt: tuple[float, float], title: str, notes: Sequence[
     plot.set_yticks(_ticks(low, high))
     plot.set_xlim(left, right)
     plot.set_ylim(low, high if high > low else low + 1.0)
-    plot.set_title(fill(title, _TITLE), fontsize=11, loc="left")
-    sheet.legend(handles=legend, loc="upper left", bbox_to_anchor=(0.785, 0.9), frameon=False, fontsize=9,
-                 title="tilts", alignment="left", handleheight=1.4, handlelength=2.2)  # fmt: skip
-    lines = "\n".join(fill(note, _NOTE) for note in notes)
-    sheet.text(0.075, 0.15, lines, fontsize=8, va="top", linespacing=1.5)
+    sheet.legend(handles=legend, loc="upper left", bbox_to_anchor=(0.785, (foot + _PLOT[2]) / high_sheet), frameon=False,
+                 fontsize=9, title="tilts", alignment="left", handleheight=1.4, handlelength=2.2)  # fmt: skip
+    write(sheet, head, (_SIDE, high_sheet - 0.12), _TITLE)
+    write(sheet, below, (_SIDE, foot - 0.55), _NOTE)
     for path in paths:
         save(sheet, path)
 

@@ -39,9 +39,9 @@ def _grid_labels(grid: FaceGrid, label: NDArray[np.int32]) -> FaceLabels:
     on = np.where(grid.index >= 0, label[grid.index], -1).astype(np.int32)
     u, v = grid.u, grid.v
     if grid.closed_u:
-        u, on = np.append(u, 2 * u[-1] - u[-2]), np.vstack([on, on[:1]])
+        u, on = np.append(u, u[0] + grid.span[1] - grid.span[0]), np.vstack([on, on[:1]])
     if grid.closed_v:
-        v, on = np.append(v, 2 * v[-1] - v[-2]), np.hstack([on, on[:, :1]])
+        v, on = np.append(v, v[0] + grid.span[3] - grid.span[2]), np.hstack([on, on[:, :1]])
     return FaceLabels(grid.face, u, v, on)
 
 

@@ -6,7 +6,6 @@ Drawn without a screen and without OpenGL: triangles with a depth at each pixel 
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from textwrap import fill, shorten
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,7 @@ from cad_io.write import meshes_of
 from plan_cutters.document.names import short_names
 from plan_cutters.document.palette import LABELS, rgb
 from plan_cutters.domain.posture import unit
-from plan_cutters.report.sheet import DPI, figure, save
+from plan_cutters.report.sheet import DPI, figure, fitting, printable, save, write
 from plan_cutters.report.views import FINER, Body, View, averaged, borders, fitted, frame_towards, view
 
 #: Inches: the sheet, and each view.
@@ -259,13 +258,16 @@ def _words(sheet: Any, result: Any, there: set[int], fixtures: bool) -> None:
         else "is shown because it reaches the most samples; none is selected"
     )
     size = " x ".join(f"{x:.4g}" for x in plan.part.size_mm)
-    sheet.text(0.18 / _SHEET[0], 1.0 - 0.16 / _SHEET[1], shorten(f"{part}: {name}", 120), fontsize=12, va="top")
+    room = _SHEET[0] - 2.0 * 0.18
+    head = fitting(f"{printable(part, 60)}: {printable(name, 60)}", 12, room)
+    write(sheet, head[:1], (0.18, _SHEET[1] - 0.16), 12)
     setup = ", ".join(f"{x:.4g}" for x in plan.effective.setup)
+    machine = printable(plan.effective.machine, 40)
     under = (
-        f"This cutter {taken}. Part {size} mm. Machine {plan.effective.machine}, setup axis ({setup}), gouge tolerance "
+        f"This cutter {taken}. Part {size} mm. Machine {machine}, setup axis ({setup}), gouge tolerance "
         f"{plan.effective.tolerance_mm:.3g} mm, {plan.samples.count} samples."
     )
-    sheet.text(0.18 / _SHEET[0], 1.0 - 0.48 / _SHEET[1], fill(under, 190), fontsize=8.5, va="top")
+    write(sheet, fitting(under, 8.5, room), (0.18, _SHEET[1] - 0.48), 8.5)
     handles = []
     for word, text in _WORDS.items():
         share = shares.get(word)

@@ -31,7 +31,7 @@ _STEP = 1.0
 def write_regions(result: Any, _split: object, path: Path) -> None:
     """Write `axis_regions.json`: regions that one fixed axis serves, with the limits in which their axes lie.
 
-    With posture maps also the tilts that are free all over a region.
+    With posture maps also the tilts that are free all over a region, and that the machine holds.
     """
     path.write_text(axis_regions(result).model_dump_json(indent=2) + "\n", encoding="utf-8")
 
@@ -44,7 +44,7 @@ def axis_regions(result: Any) -> AxisRegions:
     held = held_at(axes, number, samples)
     near = clearances(samples, cutter, held, conditions).distance
     label = _connected(number, samples.neighbours)
-    free = None if result.maps is None else _Free(result.maps)
+    free = None if result.maps is None else _Free(result.maps.held(conditions))
     parts = [np.flatnonzero(label == k) for k in range(label.max(initial=-1) + 1)]
     parts = sorted(parts, key=lambda rows: (-float(samples.area[rows].sum()), int(rows[0])))
     regions = []

@@ -4,15 +4,21 @@ Matplotlib is loaded here alone, and only when something is drawn. The package V
 depends on it: it is there wherever the kernel is.
 """
 
+import re
+import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 #: Dots an inch of PNG files.
 DPI = 150
+#: Letters that are set on whole dots are wider than they are in the font, by up to this.
+_ON_DOTS = 1.05
+_FONT = "DejaVu Sans"
 _STYLE = {
     "svg.hashsalt": "plan-cutters",
     "svg.fonttype": "path",
-    "font.family": "DejaVu Sans",
+    "font.family": _FONT,
     "hatch.linewidth": 0.6,
     "axes.linewidth": 0.8,
 }
@@ -25,6 +31,54 @@ def figure(width: float, height: float) -> Any:
     return Figure(figsize=(width, height), dpi=DPI, facecolor="white")
 
 
+def printable(text: str, most: int = 200) -> str:
+    """A text from a file as it may stand on a sheet: no control characters, and its middle left out where it is long.
+
+    >>> printable("rim\\n2"), printable("abcdefgh", 5)
+    ('rim?2', 'ab…gh')
+    """
+    text = "".join(letter if letter.isprintable() else "?" for letter in text)
+    if len(text) <= most:
+        return text
+    return f"{text[: most // 2]}…{text[len(text) - (most - 1) // 2 :]}"
+
+
+def write(sheet: Any, lines: Sequence[str], place: tuple[float, float], size: float) -> None:
+    """Write lines on a sheet, at `place`, inches from its lower left corner to theirs at the top, in letters of `size` points.
+
+    They are taken as they are: nothing in them is a formula.
+    """
+    x, y = place[0] / sheet.get_figwidth(), place[1] / sheet.get_figheight()
+    sheet.text(x, y, "\n".join(lines), fontsize=size, va="top", linespacing=1.5, parse_math=False)
+
+
+def fitting(text: str, size: float, width: float) -> list[str]:
+    """A text in lines of a width, inches, as its letters are wide; words that are wider are broken, too."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import text_to_path
+
+    font = FontProperties(family=_FONT, size=size)
+
+    def wide(line: str) -> float:
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "Glyph")
+            return float(text_to_path.get_text_width_height_descent(line, font, ismath=False)[0]) * _ON_DOTS / 72.0
+
+    found = [""]
+    for word in re.findall(r"\s*\S+", text):
+        if wide(found[-1] + word) <= width:
+            found[-1] += word
+            continue
+        rest = word.lstrip()
+        if found[-1]:
+            found.append("")
+        for letter in rest if wide(rest) > width else [rest]:
+            if found[-1] and wide(found[-1] + letter) > width:
+                found.append("")
+            found[-1] += letter
+    return found
+
+
 def save(sheet: Any, path: Path) -> None:
     """Write a sheet as PNG or SVG, by the ending of the path."""
     import matplotlib
@@ -32,7 +86,9 @@ def save(sheet: Any, path: Path) -> None:
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     # The program's version and the time of writing would change the bytes.
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(_STYLE), warnings.catch_warnings():
+        # A letter that the font does not have is drawn as a box: that is no word for standard error.
+        warnings.filterwarnings("ignore", "Glyph")
         if path.suffix.lower() == ".svg":
             FigureCanvasSVG(sheet).print_svg(path, metadata={"Date": None, "Creator": "plan-cutters"})
         else:

@@ -14,8 +14,9 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.domain.verdicts import REASONS
-from plan_cutters.report.axes import VERDICTS, columns
+from plan_cutters.domain.clearance import part_words
+from plan_cutters.domain.verdicts import REASONS, WORDS
+from plan_cutters.report.axes import CLASSES, columns
 
 _TYPE = {
     "float64": "Float64",
@@ -32,7 +33,8 @@ _BLOCK = 1 << 20
 def write_vtk(result: Any, _split: object, path: Path) -> None:
     """Write `axes.vtp`: a vertex for each sample, with the columns of `axes.csv` as point data; codes stay numbers.
 
-    What the codes mean stands in the field data, as texts: `verdicts`, `reasons`, `cutter`, `part`.
+    What the codes mean stands in the field data, as texts: `verdicts`, `reasons`, `classes`, `parts`, `fixtures`,
+    `cutter`, `part`.
     """
     found = {column.name: column.values for column in columns(result)}
     point = found.pop("point_mm")
@@ -40,8 +42,11 @@ def write_vtk(result: Any, _split: object, path: Path) -> None:
     about = {
         "cutter": [result.shown],
         "part": [Path(result.part.file).name if result.part.file else ""],
-        "verdicts": [f"{code} {word}" for code, word in sorted(VERDICTS.items())],
+        "verdicts": [f"{code} {word}" for code, word in sorted(WORDS.items())],
         "reasons": [f"{code} {word}" for code, word in enumerate(REASONS)],
+        "classes": [f"{code} {word}" for code, word in sorted(CLASSES.items())],
+        "parts": [f"{code} {word}" for code, word in sorted(part_words().items())],
+        "fixtures": [f"{each.number} {each.name}" for each in result.conditions.around.fixtures],
     }
     text = [
         '<?xml version="1.0"?>',

@@ -98,7 +98,8 @@ class PostureMap(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Ask(Record):
-    """What a map is asked for: contact, cutter, rotations (k,) and tilts from and to, rad, machine and unit setup axis."""
+    """What a map is asked for: contact, cutter, rotations (k,) and tilts from and to, rad, machine, unit setup axis and, if it
+    is known, unit direction along the machine's X."""
 
     contact: SurfaceSamples
     cutter: Cutter
@@ -106,6 +107,7 @@ class Ask(Record):
     tilt: tuple[float, float]
     machine: Machine
     setup: Floats
+    x: Floats | None = None
 
 
 def posture_map_of(
@@ -117,7 +119,7 @@ def posture_map_of(
 
     contact, cutter, (low, high) = ask.contact, ask.cutter, ask.tilt
     p, n, e1 = contact.point[0], contact.normal[0], contact.direction_max[0]
-    ranges = ranges_of(ask.machine, ask.setup, PostureRange(ask.tilt))
+    ranges = ranges_of(ask.machine, ask.setup, PostureRange(ask.tilt), ask.x)
     whole, (light, heavy) = around.may_be, tools
     near, far = _rear(whole.triangles, p, n, cutter.radius)
     alone = {"rear_gouge": (near, light.only(FLUTES)), "collision": (far, light.only(FLUTES)),

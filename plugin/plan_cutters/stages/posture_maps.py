@@ -3,7 +3,7 @@
 import json
 import os
 import zipfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -146,6 +146,26 @@ class PostureMaps(Record):
         axis_lost = judged & ~lost & np.isin(reach.verdict, (INACCESSIBLE, UNDECIDED))
         reach.reason[axis_lost] = REASONS.index("axis_limit")
         return reach
+
+    def held(self, conditions: Conditions) -> "PostureMaps":
+        """The maps of one machine and setup: of the free tilts those that it holds. The verdicts stay what they are."""
+        from plan_cutters.kernels.mask import held_free
+
+        machine = conditions.machine
+        if not machine.limited:
+            return self
+        rotary = rotary_of(conditions.kinematics)
+        ranges = Ranges(
+            np.cos(self.rotations), np.sin(self.rotations), *self.tilt, conditions.setup, machine.limit_cos, rotary
+        )
+        rows, place = np.arange(len(self.normal)), np.zeros(len(self.offset) - 1, np.int64)
+        maps = self.normal, self.direction_max, ranges, self.offset, self.free, place
+        in_chunks(lambda piece: held_free(piece, *maps, np.zeros((0, 2))), rows, conditions.jobs)
+        offset = np.concatenate([[0], np.cumsum(place)])
+        kept = np.empty((offset[-1], 2))
+        place[:] = offset[:-1]
+        in_chunks(lambda piece: held_free(piece, *maps, kept), rows if len(kept) else rows[:0], conditions.jobs)
+        return replace(self, offset=offset, free=kept)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> "PostureMaps":

@@ -9,16 +9,8 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters.document.model import WitnessEntry
-from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED, Reach
+from plan_cutters.domain.verdicts import Reach
 
-#: Verdicts by their codes, from best to worst.
-WORDS = {
-    INTERFERENCE_FREE: "interference_free",
-    ACCESSIBLE: "accessible",
-    UNDECIDED: "undecided",
-    INACCESSIBLE: "inaccessible",
-    UNJUDGED: "unjudged",
-}
 #: Spots of the cutter that is shown, and of each other one.
 _SPOTS, _OTHER_SPOTS = 20, 6
 #: Instead of a tilt: there is none.

@@ -16,8 +16,9 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.outline import Outline, outline, points
 from plan_cutters.domain.shapes import modes
+from plan_cutters.domain.verdicts import WORDS
 from plan_cutters.report.page.atlas import Atlas
-from plan_cutters.report.page.facts import WORDS, Spot
+from plan_cutters.report.page.facts import Spot
 from plan_cutters.report.page.surface import Surface
 from plan_cutters.report.page.words import spot as sentence
 
