@@ -120,12 +120,11 @@ def test_what_is_undecided_is_not_told_as_blocked():
 
 
 def test_witnesses_have_the_verdicts_of_their_samples(planned):
-    from plan_cutters.document.told import VERDICTS
-    from plan_cutters.report.page.facts import WORDS, spots_of
+    from plan_cutters.domain.verdicts import INACCESSIBLE, UNDECIDED
+    from plan_cutters.report.page.facts import spots_of
 
+    words_of = {INACCESSIBLE: "inaccessible", UNDECIDED: "undecided"}
     spots, _ = spots_of(planned)
     assert spots
     for spot in spots:
-        verdict = WORDS[int(planned.reaches[spot.cutter].verdict[spot.sample])]
-        assert verdict in VERDICTS
-        assert spot.witness.verdict == verdict
+        assert spot.witness.verdict == words_of[planned.reaches[spot.cutter].verdict[spot.sample]]
