@@ -121,6 +121,7 @@ def test_a_narrow_terminal_shows_lines_in_place_of_a_table(tmp_path, monkeypatch
     import sys
 
     from plan_cutters.command import tools
+    from plan_cutters.command.terminal import paper
     from plan_cutters.library.read import listing
 
     class Terminal(io.StringIO):
@@ -132,7 +133,8 @@ def test_a_narrow_terminal_shows_lines_in_place_of_a_table(tmp_path, monkeypatch
     for columns in (80, 200):
         monkeypatch.setenv("COLUMNS", str(columns))
         monkeypatch.setattr(sys, "stdout", Terminal())
-        tools._table(listing(path))
+        with paper(200) as console:
+            tools._table(listing(path), console)
         shown[columns] = sys.stdout.getvalue()
     assert "Stick-out" in shown[200]
     assert 'T7 "a tool" flat end mill' in shown[80]
