@@ -48,3 +48,13 @@ class Prepared(Record):
     buried: Ints
     conditions: Conditions
     cutters: tuple[Cutter, ...]
+
+    @property
+    def inside_bodies(self) -> NDArray[np.bool_]:
+        """Samples (n,) that lie inside another body of the part: they are no surface of the finished part."""
+        return (self.buried >= 0) & (self.buried < len(self.conditions.around.bodies))
+
+    @property
+    def finished(self) -> NDArray[np.bool_]:
+        """Judged samples (n,) of the finished part's surface: shares, selection, reasons and answers are about these."""
+        return (self.samples.unjudged < 0) & ~self.inside_bodies
