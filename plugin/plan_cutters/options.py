@@ -16,7 +16,7 @@ from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement
-from plan_cutters.domain.posture import PostureRange, unit
+from plan_cutters.domain.posture import PostureRange, along, unit
 from plan_cutters.errors import OptionError
 from plan_cutters.library.records import Entry, Library, libraries_of
 
@@ -36,8 +36,8 @@ def machine_given(given: Any) -> Machine:
 
 
 def _setup(given: Any, placed: Placement | None) -> tuple[tuple[float, float, float], Placement | None]:
-    """A setup axis, and what more is known of the setup: a text or path is a setup file."""
-    if isinstance(given, str | os.PathLike):
+    """A setup axis, and what more is known of the setup: a word as `+z` is an axis, another text or path a setup file."""
+    if isinstance(given, os.PathLike) or (isinstance(given, str) and along(given) is None):
         from plan_cutters.machines.setups import read_setup
 
         given = read_setup(given)

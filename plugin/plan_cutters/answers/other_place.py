@@ -47,6 +47,9 @@ def setup(case: Case, trials: Trials, unlimited: Change) -> Change:
     now: Axis = ready.scene.setup
     if not ready.conditions.machine.limited:
         return none("setup", now, len(trials.lost), "the machine has no limit, so it turns to any axis")
+    if any(each.follows_setup for each in ready.scene.fixtures):
+        why = "is not decided: a table lies across the setup axis, so it would lie elsewhere; ask with another --setup"
+        return replace(none("setup", now, len(trials.lost), why), helps=None)
     if unlimited.left:
         # An axis within a limit is one without.
         why = f"{unlimited.left:,} of {unlimited.looked:,} samples are not reached without any limit of the axis"

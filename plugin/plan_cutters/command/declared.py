@@ -14,7 +14,7 @@ from plan_cutters.command.values import File, Folder, Range, Setup, Words
 EXAMPLES = (
     ("plan-cutters blade.step", "The sculptured faces, with the built-in cutters:"),
     (
-        "plan-cutters blade.step --cutter R6L80 --cutter R3L60rc3 --holder R15L40",
+        "plan-cutters blade.step --cutter D12L80 --cutter D6L60rc3 --holder hsk63a-er32",
         "Two cutters, flat and ball, in a holder:",
     ),
     ("plan-cutters mould.step --cutters shop.tools --machine trunnion-ac", "Your tool library on a machine:"),
@@ -59,9 +59,9 @@ _OPTIONS = (
         "--cutter",
         type=Words("SPEC", values.cutter_ids),
         multiple=True,
-        help="R6L80: radius 6, 80 mm from tip to holder; then rc1 corner radius (rc6: ball), T5 taper (half angle, deg), F20 "
-        "length of flutes, N5.5x40 neck (radius x length; more of them upwards), S6 shank radius. Repeatable.  "
-        "[default: the built-in drawer]",
+        help="D12L80: diameter 12, 80 mm from tip to holder, or R6L80 by radius; then rc1 corner radius (rc6: ball), T5 taper "
+        "(half angle, deg), F20 length of flutes, N11x40 neck (diameter x length; more of them upwards), S12 shank; behind R, "
+        "N and S are radii, too. Inches: D0.5inL3in. Repeatable.  [default: the built-in drawer]",
     ),
     _cutters(
         "--cutters",
@@ -72,9 +72,10 @@ _OPTIONS = (
     ),
     _cutters(
         "--holder",
-        type=File("SPEC|FILE"),
-        help="Holder of the cutters that have none: R15L30 (radius, length); stages from the nose up joined by +, cones as "
-        "R12:15L20; a file with a holder (FILE#NAME if it has several); or `none`.",
+        type=Words("SPEC|FILE", values.holder_words, files=True),
+        help="Holder of the cutters that have none: a collet chuck as er32, hsk63a-er32 or bt40-er16x100 (plan-cutters-tools "
+        "--list-holders); D30L30 or R15L30 (diameter or radius, length); stages from the nose up joined by +, cones as "
+        "D24:30L20; a file with a holder (FILE#NAME if it has several); or `none`.",
     ),
     _cutters("--assume-stickout", type=float, metavar="MM", help="Stick-out of the libraries' tools that state none."),
     _cutters("--skip-bad", is_flag=True, help="If some tools of a library are broken, use the others."),
@@ -99,15 +100,15 @@ _OPTIONS = (
         type=Setup(),
         multiple=True,
         default=["0,0,1"],
-        help="Direction of the part along the machine's spindle, or a setup file (TOML) that says where the part stands. "
-        "Repeatable: every cutter is judged in each, and the summary says what they reach together.  [default: 0,0,1]",
+        help="Direction of the part along the machine's spindle, +z, -y or x,y,z, or a setup file (TOML) that says where the "
+        "part stands. Repeatable: every cutter is judged in each, and the summary says what they reach together.  [default: 0,0,1]",
     ),
     _machine(
         "--fixture",
         type=File("FILE[@X,Y,Z[,RX,RY,RZ]][:UNIT]"),
         multiple=True,
-        help="A body in the way: STEP, IGES, BREP, STL, OBJ, PLY, GLB, or `box:X,Y,Z`, `cylinder:R,H`, `table:Z`, placed in "
-        "part coordinates (mm, degrees). Repeatable.",
+        help="A body in the way: STEP, IGES, BREP, STL, OBJ, PLY, GLB, or `box:X,Y,Z`, `cylinder:R,H`, placed in part "
+        "coordinates (mm, degrees); `table`, all below the part along the setup axis, or `table:H`, all below H. Repeatable.",
     ),
     _faces(
         "--faces",

@@ -76,8 +76,8 @@ _output, _run = heading("Output"), heading("Run")
 @_way(
     "--setup",
     default="0,0,1",
-    type=File("X,Y,Z|FILE"),
-    help="Direction of the part along the spindle, or a setup file, as for plan-cutters.  [default: 0,0,1]",
+    type=File("AXIS|FILE"),
+    help="Direction of the part along the spindle, +z or x,y,z, or a setup file, as for plan-cutters.  [default: 0,0,1]",
 )
 @_way("--fixture", multiple=True, type=File("FILE[@X,Y,Z[,RX,RY,RZ]][:UNIT]"), help="As for plan-cutters. Repeatable.")
 @_way("--ignore", multiple=True, metavar="SELECT", help="Faces that are no obstacles. Repeatable.")
@@ -186,8 +186,11 @@ def command(part: str, **given: Any) -> int:
 def _setup(text: str) -> "Placement":
     """A setup axis, or what a setup file says."""
     from plan_cutters.domain.placement import Placement
+    from plan_cutters.domain.posture import along
     from plan_cutters.machines.setups import read_setup
 
+    if (named := along(text)) is not None:
+        return Placement(named)
     if text.lower().endswith(".toml") or os.path.isfile(text):
         return read_setup(text)
     x, y, z = _numbers(text, "--setup", 3)

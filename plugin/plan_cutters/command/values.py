@@ -70,21 +70,28 @@ class Range(click.ParamType):
 
 
 class Setup(click.ParamType):
-    """A direction x,y,z, or a setup file."""
+    """A direction, as +z or x,y,z, or a setup file."""
 
-    name = "X,Y,Z|FILE"
+    name = "AXIS|FILE"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...] | str:
+        from plan_cutters.domain.posture import along
+
+        if (named := along(value)) is not None:
+            return named
         try:
             x, y, z = (float(part) for part in value.split(","))
         except ValueError:
             if value.lower().endswith(".toml") or os.path.isfile(value):
                 return str(value)
-            self.fail(f"{value!r} is not of the form x,y,z, as 0,0,1, nor a setup file", param, ctx)
+            self.fail(
+                f"{value!r} is no direction, as +z, -y or 0,0,1 (x,y,z), nor a setup file", param, ctx
+            )
         return x, y, z
 
     def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
-        return [_FILE]
+        found = [CompletionItem(f"{sign}{axis}") for axis in "xyz" for sign in "+-"]
+        return [each for each in found if each.value.startswith(incomplete)] or [_FILE]
 
 
 def machine_names() -> Sequence[str]:
@@ -97,6 +104,12 @@ def cutter_ids() -> Sequence[str]:
     from plan_cutters.domain.drawer import builtin
 
     return [cutter.id for cutter in builtin()]
+
+
+def holder_words() -> Sequence[str]:
+    from plan_cutters.domain.standard_holders import words
+
+    return [*words(), "none"]
 
 
 def formats() -> Sequence[str]:

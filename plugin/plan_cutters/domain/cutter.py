@@ -77,7 +77,9 @@ class Cutter(Dimensions):
 
     @classmethod
     def parse(cls, spec: str) -> "Cutter":
-        """Read `R6L80`: radius and length in mm; `R6L80rc1` adds a corner radius (`spec.dimensions` has the rest).
+        """Read `R6L80` or `D12L80`: radius or diameter, and length, in mm; `rc1` adds a corner radius.
+
+        `spec.dimensions` has the rest, inches too. A text that is not the id itself becomes the name.
 
         Raises
         ------
@@ -90,9 +92,14 @@ class Cutter(Dimensions):
         'R6L80'
         >>> Cutter.parse("")
         Traceback (most recent call last):
-        plan_cutters.errors.CutterError: cutter '' is not of the form R6L80 (radius 6 mm, length 80 mm)
+        plan_cutters.errors.CutterError: cutter '' is not of the form R6L80 (radius 6 mm, length 80 mm) or D12L80 (diameter \
+12 mm, length 80 mm); D0.5inL3in is in inches
+        >>> Cutter.parse("D0.5inL3in").id
+        'R6.35L76.2'
         """
-        return cls(**dimensions(spec))
+        made = cls(**dimensions(spec))
+        given = spec.strip()
+        return made if made.id.lower() == given.lower() else replace(made, name=given)
 
     @classmethod
     def of(cls, given: Any) -> "Cutter":

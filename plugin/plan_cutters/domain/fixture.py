@@ -15,12 +15,12 @@ from plan_cutters.domain.checks import name, number, numbers, shown
 from plan_cutters.errors import FixtureError
 
 #: Simple fixtures by words: what each number is.
-WORDS = {"box": "x,y,z", "cylinder": "r,h", "table": "z"}
-_WORD = re.compile(rf"({'|'.join(WORDS)}):(.*)", re.IGNORECASE | re.DOTALL)
+WORDS = {"box": "x,y,z", "cylinder": "r,h", "table": "h"}
+_WORD = re.compile(rf"({'|'.join(WORDS)}):(.*)|(table)", re.IGNORECASE | re.DOTALL)
 #: Suffixes of files that are known, and what they are.
 CAD = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
 MESH = (".stl", ".obj", ".ply", ".glb")
-_FORM = "FILE[@x,y,z[,rx,ry,rz]][:UNIT], box:x,y,z, cylinder:r,h or table:z"
+_FORM = "FILE[@x,y,z[,rx,ry,rz]][:UNIT], box:x,y,z, cylinder:r,h, table or table:h"
 #: Lengths beyond this, mm, are rather a mistake.
 _FARTHEST = 1e6
 _NOWHERE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -34,11 +34,13 @@ class Fixture:
     ----------
     source : str or object
         Path of a STEP, IGES, BREP, STL, OBJ, PLY or GLB file; `box:x,y,z` (its least corner at the origin), `cylinder:r,h` (it
-        stands on the origin, along z), `table:z` (all that is below the height z, as far as any cutter goes); or an object:
-        a kernel shape, a CadQuery or build123d object, a `cad_io.Part`, a trimesh mesh.
+        stands on the origin, along z), `table` (all that is below the part along the setup axis, as far as any cutter goes) or
+        `table:h` (all below the height h along it, from the part's origin); or an object: a kernel shape, a CadQuery or
+        build123d object, a `cad_io.Part`, a trimesh mesh.
     placement : tuple of float
         x, y, z, mm, and rx, ry, rz, degrees, in part coordinates: turned about the part's fixed x axis, then about its y axis,
-        then about its z axis, all through the origin, then shifted. Three numbers are a shift alone.
+        then about its z axis, all through the origin, then shifted. Three numbers are a shift alone. A table with angles lies
+        across the part's z, so turned, whatever the setup.
     unit : str, optional
         What lengths in the source are in, one of `cad_io.units.UNITS`. Default: what the format says; mm for STL, OBJ, PLY and
         words. A placement is in mm always.
@@ -113,13 +115,18 @@ class Fixture:
     def kind(self) -> str:
         """The word that it is given by; empty for files and objects."""
         found = _WORD.fullmatch(self.source) if isinstance(self.source, str) else None
-        return found[1].lower() if found else ""
+        return (found[1] or found[3]).lower() if found else ""
+
+    @property
+    def follows_setup(self) -> bool:
+        """Whether where it lies depends on the setup axis: a table that is not turned by angles."""
+        return self.kind == "table" and not any(self.placement[3:])
 
     @property
     def sizes(self) -> tuple[float, ...]:
-        """Numbers of a word, mm; none for files and objects."""
+        """Numbers of a word, mm; none for files, objects and a table right below the part."""
         found = _WORD.fullmatch(self.source) if isinstance(self.source, str) else None
-        if found is None:
+        if found is None or found[1] is None:
             return ()
         kind, form = found[1].lower(), WORDS[found[1].lower()]
         sizes = _numbers(found[2], f"{self}: its {'height' if kind == 'table' else 'sizes'}", form)

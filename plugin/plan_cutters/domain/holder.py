@@ -6,11 +6,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from plan_cutters.domain.checks import items, name, number, shown
+from plan_cutters.domain.lengths import LENGTH, across, length
+from plan_cutters.domain.standard_holders import chuck
 from plan_cutters.errors import CutterError
 
-#: A number in a text that describes a cutter.
-NUMBER = r"-?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
-_STAGE = re.compile(rf"R(?P<radius>{NUMBER})(?::(?P<upper>{NUMBER}))?L(?P<length>{NUMBER})", re.IGNORECASE)
+_STAGE = re.compile(
+    rf"(?P<by>[RD])(?P<lower>{LENGTH})(?::(?P<upper>{LENGTH}))?L(?P<length>{LENGTH})",
+    re.IGNORECASE,
+)
 
 
 def text_of(value: float) -> str:
@@ -64,12 +67,23 @@ class Stage:
 class Holder:
     """A tool holder: stages from its nose up. It sits where the cutter's length ends.
 
+    Attributes
+    ----------
+    stages : tuple of Stage
+    name : str
+        For people; the id is made from the stages.
+    bore : float, optional
+        Diameter of the largest shank that it holds, mm. None: not known.
+
+    Examples
+    --------
     >>> Holder((Stage(15, 30),)).id
     'R15L30'
     """
 
     stages: tuple[Stage, ...]
     name: str = ""
+    bore: float | None = None
 
     def __post_init__(self) -> None:
         stages = tuple(items(self.stages, "a holder's stages", "stages", error=CutterError))
@@ -77,6 +91,8 @@ class Holder:
             raise CutterError("a holder needs at least one stage: a radius and a length, as R15L30")
         object.__setattr__(self, "stages", stages)
         object.__setattr__(self, "name", name(self.name, "a holder's name", error=CutterError))
+        if self.bore is not None:
+            object.__setattr__(self, "bore", positive(self.bore, "a holder's bore"))
 
     @property
     def id(self) -> str:
@@ -85,23 +101,35 @@ class Holder:
 
     @classmethod
     def parse(cls, spec: str) -> "Holder":
-        """Read `R15L30`, or stages from the nose up joined by `+`: `R12:15L20+R15L30`, of which the first is a cone.
+        """Read a word such as `er32` or `hsk63a-er32x100`, or stages from the nose up joined by `+`.
+
+        `R12:15L20+R15L30` is a cone and a cylinder by their radii; `D24:30L20+D30L30` is the same by diameters. Lengths are in mm
+        unless `in` stands behind them.
 
         Raises
         ------
         CutterError
+
+        Examples
+        --------
+        >>> Holder.parse("D1inL2in").id, Holder.parse("er16").name
+        ('R12.7L50.8', 'ER16')
         """
         if not isinstance(spec, str):
             raise CutterError(f"{shown(spec)} is no holder: give a Holder or a text such as 'R15L30'")
+        made = chuck(spec.strip())
+        if made is not None:
+            return cls(tuple(Stage(radius, long) for radius, long in made.stages), made.name, made.bore)
         found = []
         for word in spec.strip().split("+"):
             match = _STAGE.fullmatch(word.strip())
             if not match:
                 raise CutterError(
-                    f"holder {shown(spec)} is not of the form R15L30 (radius 15 mm, length 30 mm), stages joined by +"
+                    f"holder {shown(spec)} is not of the form R15L30 (radius 15 mm, length 30 mm) or D30L30, stages joined by +, "
+                    "nor a word as er32 or hsk63a-er32"
                 )
-            upper = float(match["upper"]) if match["upper"] else math.nan
-            found.append(Stage(float(match["radius"]), float(match["length"]), upper))
+            upper = across(match["by"], match["upper"]) if match["upper"] else math.nan
+            found.append(Stage(across(match["by"], match["lower"]), length(match["length"]), upper))
         return cls(tuple(found))
 
     @classmethod

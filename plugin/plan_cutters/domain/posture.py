@@ -1,12 +1,13 @@
 """Postures: the range of tilts and rotations to search."""
 
 import math
+import re
 from dataclasses import dataclass
 
 import numpy as np
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.checks import number, numbers, pair, radians
+from plan_cutters.domain.checks import number, numbers, pair, radians, shown
 from plan_cutters.errors import OptionError
 
 _RIGHT, _FULL = math.pi / 2, 2 * math.pi
@@ -85,8 +86,26 @@ def _check(tilt: tuple[float, float], rotation: tuple[float, float], step: float
         raise OptionError(f"rotation step {step:g} must lie between {least:.2g} and {full:.4g} {unit}")
 
 
-def unit(vector: tuple[float, float, float], what: str) -> Floats:
-    """The direction of a vector; OptionError if it has none."""
+def along(text: str) -> tuple[float, float, float] | None:
+    """The direction that a word such as `+z`, `Z` or `-y` names; None for any other text.
+
+    >>> along("-Y"), along("up")
+    ((0.0, -1.0, 0.0), None)
+    """
+    found = re.fullmatch(r"([+-]?)([xyz])", text.strip(), re.IGNORECASE)
+    if found is None:
+        return None
+    x, y, z = ((-1.0 if found[1] == "-" else 1.0) if found[2].lower() == each else 0.0 for each in "xyz")
+    return x, y, z
+
+
+def unit(vector: tuple[float, float, float] | str, what: str) -> Floats:
+    """The direction of a vector, or of a word as `along` has it; OptionError if it has none."""
+    if isinstance(vector, str):
+        named = along(vector)
+        if named is None:
+            raise OptionError(f"{what} {shown(vector)} is no direction: give +x, -x, +y, -y, +z, -z, or three numbers")
+        vector = named
     v = np.array(numbers(vector, what, 3))
     largest = float(np.abs(v).max())
     if not 0.0 < largest < math.inf:

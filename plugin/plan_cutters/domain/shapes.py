@@ -201,6 +201,11 @@ def check(cutter: Dimensions, name: str) -> None:
             f"{name}: the holder's nose of radius {cutter.holder.stages[0].radius:g} is narrower than what it holds, "
             f"of radius {last:g}"
         )
+    if cutter.holder is not None and cutter.holder.bore is not None and 2.0 * last > cutter.holder.bore + SAME:
+        raise CutterError(
+            f"{name}: its shank of {2.0 * last:g} mm does not fit {cutter.holder.name or 'its holder'}, which takes up to "
+            f"{cutter.holder.bore:g} mm: another holder, or say its flutes and shank (F30S10)"
+        )
 
 
 def _check_shape(cutter: Dimensions, name: str) -> None:

@@ -6,23 +6,30 @@ from typing import Any
 
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.dimensions import Dimensions
-from plan_cutters.domain.holder import NUMBER, Stage, text_of
+from plan_cutters.domain.holder import Stage, text_of
+from plan_cutters.domain.lengths import LENGTH, across, length
 from plan_cutters.errors import CutterError
 
+_ANGLE = r"-?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
 _CUTTER = re.compile(
-    rf"R(?P<radius>{NUMBER})L(?P<length>{NUMBER})(?:rc(?P<corner>{NUMBER}))?(?:T(?P<taper>{NUMBER}))?"
-    rf"(?:F(?P<flutes>{NUMBER}))?(?P<necks>(?:N{NUMBER}(?::{NUMBER})?x{NUMBER})*)(?:S(?P<shank>{NUMBER}))?",
+    rf"(?P<by>[RD])(?P<radius>{LENGTH})L(?P<length>{LENGTH})(?:rc(?P<corner>{LENGTH}))?(?:T(?P<taper>{_ANGLE}))?"
+    rf"(?:F(?P<flutes>{LENGTH}))?(?P<necks>(?:N{LENGTH}(?::{LENGTH})?x{LENGTH})*)(?:S(?P<shank>{LENGTH}))?",
     re.IGNORECASE,
 )
-_NECK = re.compile(rf"N(?P<radius>{NUMBER})(?::(?P<upper>{NUMBER}))?x(?P<length>{NUMBER})", re.IGNORECASE)
+_NECK = re.compile(rf"N(?P<radius>{LENGTH})(?::(?P<upper>{LENGTH}))?x(?P<length>{LENGTH})", re.IGNORECASE)
+
+
+def is_spec(text: str) -> bool:
+    """Whether a text is of the form that `dimensions` reads."""
+    return _CUTTER.fullmatch(text.strip()) is not None
 
 
 def dimensions(spec: str) -> dict[str, Any]:
-    """The dimensions of a cutter from a text such as `R6L80rc1F20N5.5x40S6`.
+    """The dimensions of a cutter from a text such as `R6L80rc1F20N5.5x40S6`, or `D12L80rc1F20N11x40S12`, which is the same.
 
     Radius and length; then, each where there is one: `rc` corner radius, `T` half angle of a taper in degrees, `F` length of
     the flutes, `N` radius of a neck `x` its length (`N5:6x4` a cone; more of them from there up), `S` radius of the shank.
-    All in mm.
+    A text that begins with `D` has diameters for `D`, `N` and `S`. Lengths are in mm; `in` behind a number makes that one inches.
 
     Raises
     ------
@@ -32,22 +39,31 @@ def dimensions(spec: str) -> dict[str, Any]:
         raise CutterError(f"{shown(spec)} is no cutter: give a Cutter or a text such as 'R6L80'")
     match = _CUTTER.fullmatch(spec.strip())
     if not match:
-        raise CutterError(f"cutter {spec!r} is not of the form R6L80 (radius 6 mm, length 80 mm)")
-    words = match.groupdict()
+        raise CutterError(_wrong(spec))
+    words, by = match.groupdict(), match["by"]
     necks = [
-        Stage(float(each["radius"]), float(each["length"]), float(each["upper"] or each["radius"]))
-        for each in _NECK.finditer(words.pop("necks"))
+        Stage(across(by, each["radius"]), length(each["length"]), across(by, each["upper"] or each["radius"]))
+        for each in _NECK.finditer(words["necks"])
     ]
-    numbers = {name: float(text) for name, text in words.items() if text is not None}
     return {
-        "radius": numbers["radius"],
-        "length": numbers["length"],
-        "corner_radius": numbers.get("corner", 0.0),
-        "taper": math.radians(numbers.get("taper", 0.0)),
-        "flutes": numbers.get("flutes"),
+        "radius": across(by, words["radius"]),
+        "length": length(words["length"]),
+        "corner_radius": length(words["corner"] or "0"),
+        "taper": math.radians(float(words["taper"] or 0.0)),
+        "flutes": None if words["flutes"] is None else length(words["flutes"]),
         "neck": necks,
-        "shank_radius": numbers.get("shank"),
+        "shank_radius": None if words["shank"] is None else across(by, words["shank"]),
     }
+
+
+def _wrong(spec: str) -> str:
+    """What is wrong with a text that is no cutter, and what would be right."""
+    begun = _CUTTER.match(spec.strip())
+    if begun is None:
+        return (f"cutter {spec!r} is not of the form R6L80 (radius 6 mm, length 80 mm) or D12L80 (diameter 12 mm, length "
+                "80 mm); D0.5inL3in is in inches")  # fmt: skip
+    return (f"cutter {spec!r}: {spec.strip()[begun.end():]!r} is none of what may follow {begun[0]}: in this order, rc1 corner "
+            "radius, T5 taper, F20 flutes, N5.5x40 neck, S6 shank")  # fmt: skip
 
 
 def written(cutter: Dimensions) -> str:

@@ -3,14 +3,16 @@
 import os
 import tomllib
 from pathlib import Path
-from typing import ClassVar
+from typing import Annotated, Any, ClassVar
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
+from pydantic_core import PydanticCustomError
 
 from cad_io.units import UNITS
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
+from plan_cutters.domain.posture import along
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files import content
 from plan_cutters.machines.chain import scaled
@@ -24,15 +26,28 @@ class Content(content.Content):
     error: ClassVar[type[PlanError]] = OptionError
 
 
+def _direction(given: Any) -> Any:
+    """A word such as `+z` as three numbers; anything else as it is."""
+    if not isinstance(given, str):
+        return given
+    found = along(given)
+    if found is None:
+        raise PydanticCustomError("direction", "give a direction as +z, -y or [0, 0, 1]")
+    return list(found)
+
+
+_Direction = Annotated[Vector, BeforeValidator(_direction)]
+
+
 class SetupTable(BaseModel):
     """A setup; `axis` is another name of `z`, `origin` is in `unit`, the other words are those of the command line."""
 
     model_config = ConfigDict(extra="forbid")
 
     unit: str
-    axis: Vector | None = None
-    z: Vector | None = None
-    x: Vector | None = None
+    axis: _Direction | None = None
+    z: _Direction | None = None
+    x: _Direction | None = None
     origin: Vector | None = None
     clamped: str | list[str] = []
     fixtures: list[str] = []
@@ -45,7 +60,7 @@ def read_setup(path: str | os.PathLike[str]) -> Placement:
     ----------
     path : path
         TOML: `unit` of its lengths, one of `cad_io.units.UNITS`; `axis` or `z`, and `x`: directions of the part along the
-        machine's Z and X; `origin`; `clamped`, in the words of `--faces`; `fixtures`, in those of `--fixture`: files are looked
+        machine's Z and X, three numbers or a word as `+z`; `origin`; `clamped`, in the words of `--faces`; `fixtures`, in those of `--fixture`: files are looked
         for in the setup file's folder.
 
     Raises
@@ -103,7 +118,7 @@ def _three(found: list[float]) -> tuple[float, float, float]:
 
 def _fixture(text: str, unit: str, folder: Path) -> Fixture:
     found = Fixture.parse(text)
-    if unit != "mm" and ((found.kind and found.unit is None) or any(found.placement[:3])):
+    if unit != "mm" and ((found.sizes and found.unit is None) or any(found.placement[:3])):
         # Lengths of words are mm unless they say otherwise, placements always: beside other lengths of the file that misleads.
         raise OptionError(
             f"{found}: in a file of other units than mm, a word must say its unit, as table:-5:mm, and a placement, "

@@ -5,7 +5,7 @@ tessellation.
 """
 
 import math
-from collections.abc import MutableMapping, Sequence
+from collections.abc import Callable, MutableMapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -20,6 +20,7 @@ from cad_io.read.mesh import Mesh, is_mesh, read_mesh
 from cad_io.read.read import TIMEOUT
 from cad_io.tessellate.stand_ins import StandIn
 from plan_cutters.domain.fixture import CAD, MESH, Fixture
+from plan_cutters.domain.placement import frame_of
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Standing, Surroundings, surroundings
@@ -89,7 +90,9 @@ def _read(fixture: Fixture, timeout: float) -> Part | Mesh:
     return read_part(source, unit=fixture.unit, timeout=timeout)
 
 
-def joined(around: Surroundings, fixtures: Sequence[Fixture], chord: float, kept: Kept) -> Surroundings:
+def joined(
+    around: Surroundings, fixtures: Sequence[Fixture], chord: float, kept: Kept, setup: Sequence[float] = (0.0, 0.0, 1.0)
+) -> Surroundings:  # fmt: skip
     """What stands around a part with fixtures.
 
     Parameters
@@ -101,6 +104,8 @@ def joined(around: Surroundings, fixtures: Sequence[Fixture], chord: float, kept
         Chord error to ask for, mm.
     kept : mapping, changed
         What is known of fixtures by their sources: it is not found again.
+    setup : sequence of float
+        Unit setup axis, across which tables lie.
 
     Raises
     ------
@@ -113,8 +118,10 @@ def joined(around: Surroundings, fixtures: Sequence[Fixture], chord: float, kept
     near = np.array([vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))])
     standing, bodies = [], []
     for number, fixture in enumerate(fixtures, 1):
-        body = _body(fixture, chord, near, kept)
-        standing.append(_standing(-number, packable(fixture, kept), body, read(fixture, kept), near))
+        bed = _bed(fixture, around, setup, near) if fixture.kind == "table" else None
+        body = _body(fixture, chord, kept) if bed is None else _solid(bed(TABLE), 0.0)
+        shown = None if bed is None else bed(_SHOWN * float(np.ptp(near, axis=0).max()))
+        standing.append(_standing(-number, packable(fixture, kept), body, read(fixture, kept), shown, setup))
         bodies.append(body)
     may_be = _together(around.may_be, standing, [body.may_be for body in bodies], near)
     surely = may_be
@@ -123,16 +130,21 @@ def joined(around: Surroundings, fixtures: Sequence[Fixture], chord: float, kept
     return replace(around, may_be=may_be, surely=surely, fixtures=tuple(standing), alone=around)
 
 
-def _standing(number: int, fixture: Fixture, body: _Body, source: Part | Mesh | None, near: Floats) -> Standing:
+def _standing(
+    number: int, fixture: Fixture, body: _Body, source: Part | Mesh | None, drawn: Floats | None, setup: Sequence[float]
+) -> Standing:  # fmt: skip
+    """A fixture in its place; `drawn`: triangles in its own frame that models show instead of all."""
     vertex = fixture.placed(body.surely.triangles.vertex)
     whole = Obstacles(replace(body.surely.triangles, vertex=vertex), body.surely.weight)
     enclosing = Body((number,), (1,), True, np.zeros((0, 3, 3)))
     notes = list(body.notes)
     if isinstance(source, Mesh) and not fixture.chord_error:
         notes.append("how far it is from what it stands for is not known: it counts as exact")
-    shown = whole.triangles.vertex
-    if fixture.kind == "table":
-        shown = fixture.placed(_slab(fixture, near, _SHOWN * float(np.ptp(near, axis=0).max())))
+    shown = whole.triangles.vertex if drawn is None else fixture.placed(drawn)
+    if fixture.follows_setup and (not fixture.sizes or tuple(setup) != (0.0, 0.0, 1.0)):
+        high = float((vertex @ np.asarray(setup, float)).max())
+        axis = ",".join(f"{each + 0.0:.4g}" for each in setup)
+        notes.append(f"its top is {high + 0.0:.6g} mm from the part's origin along the setup axis {axis}")
     return Standing(number, fixture, source, whole, enclosing if body.surely.weight.any() else None, body.missing,
                     tuple(notes), shown)  # fmt: skip
 
@@ -161,10 +173,8 @@ def _together(own: Obstacles, standing: Sequence[Standing], bodies: Sequence[Obs
     return Obstacles(triangles, np.concatenate(weight), np.concatenate(boxes), max(gaps), near)
 
 
-def _body(fixture: Fixture, chord: float, near: Floats, kept: Kept) -> _Body:
+def _body(fixture: Fixture, chord: float, kept: Kept) -> _Body:
     """A fixture in its own frame, as close to what it stands for as is asked."""
-    if fixture.kind == "table":
-        return _table(fixture, near)
     source = read(fixture, kept)
     if isinstance(source, Mesh):
         return _of_mesh(source, fixture.chord_error)
@@ -201,18 +211,34 @@ def _of_mesh(mesh: Mesh, error: float) -> _Body:
     return _Body(whole, whole, (), tuple(notes))
 
 
-def _table(fixture: Fixture, near: Floats) -> _Body:
-    """All below a height, as a slab wide enough for any cutter at the part."""
-    return _solid(_slab(fixture, near, TABLE), 0.0)
+def _bed(fixture: Fixture, around: Surroundings, setup: Sequence[float], near: Floats) -> Callable[[float], Floats]:
+    """A table in its own frame, as a slab that goes so far beyond the part as is asked, mm, and is as thick.
 
+    It lies across the setup axis; if it is turned by angles, across its own z. Without a height it lies right below the part.
+    """
+    # Rows: across, across and up, in the table's own frame.
+    frame = frame_of(np.asarray(setup, float)) if fixture.follows_setup else np.eye(3)
 
-def _slab(fixture: Fixture, near: Floats, beyond: float) -> Floats:
-    """A table in its own frame, so far beyond the part as asked, mm, and as thick."""
+    def heights(points: Floats) -> Floats:
+        return np.asarray((points - fixture.shift) @ fixture.rotation @ frame.T)
+
+    if fixture.sizes:
+        (top,) = fixture.sizes
+    else:
+        # What surely is the part: what only stands for something missing may reach lower than anything does.
+        part = around.surely.triangles.vertex
+        part = part if len(part) else around.may_be.triangles.vertex
+        # Its shift comes on top, as for any fixture.
+        top = float(heights(part + fixture.shift)[..., 2].min())
     corners = np.array([[near[i, 0], near[j, 1], near[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
-    own = (corners - fixture.shift) @ fixture.rotation
-    low, high = own.min(axis=0) - beyond, own.max(axis=0) + beyond
-    (high[2],) = fixture.sizes
-    return box(np.append(low[:2], min(low[2], high[2] - beyond)), high)
+    own = heights(corners)
+
+    def slab(beyond: float) -> Floats:
+        low, high = own.min(axis=0) - beyond, own.max(axis=0) + beyond
+        high[2] = top
+        return np.ascontiguousarray(box(np.append(low[:2], min(low[2], top - beyond)), high) @ frame)
+
+    return slab
 
 
 def _word(fixture: Fixture, chord: float) -> _Body:

@@ -160,7 +160,7 @@ class Scene(Record):
             chord = CHORD_ASKED * self.asked
             if "_alone" not in self.__dict__:
                 self.__dict__["_alone"] = surroundings(self.part, chord, ignored=self.ignored, jobs=jobs, at=at)
-            around = joined(self.__dict__["_alone"], self.fixtures, chord, self._sources)
+            around = joined(self.__dict__["_alone"], self.fixtures, chord, self._sources, self.setup)
             kept = kept_tolerance(self.asked, around.surely.triangles.chord_error)
             refuse_overlaps(around, kept)
             self.__dict__["_around"] = around
@@ -169,7 +169,7 @@ class Scene(Record):
 
     def surround_closer(self, chord: float) -> Surroundings:
         """The same, with triangles for another chord error, mm, which are not kept."""
-        return joined(surroundings(self.part, chord, ignored=self.ignored), self.fixtures, chord, self._sources)
+        return joined(surroundings(self.part, chord, ignored=self.ignored), self.fixtures, chord, self._sources, self.setup)
 
     @property
     def around(self) -> Surroundings:
