@@ -62,9 +62,9 @@ def test_texts(text, source, placement, unit, name):
         ("box:1e6,1,1:m", "is its unit right"),
         ("cylinder:0,5", "must be positive"),
         ("cylinder:1,2,3", "cylinder takes r,h, not 3 numbers"),
-        ("table:", "not of the form z"),
-        ("table:1,2", "table takes z, not 2 numbers"),
-        ("table:low", "'low' is not of the form z"),
+        ("table:", "not of the form h"),
+        ("table:1,2", "table takes h, not 2 numbers"),
+        ("table:low", "'low' is not of the form h"),
     ],
 )
 def test_texts_that_are_no_fixture(text, words):

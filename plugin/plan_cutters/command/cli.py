@@ -98,6 +98,7 @@ def _watched(words: list[str]) -> int:
     """Look at the words here, so that help and mistakes cost nothing; leave the work to a child."""
     from plan_cutters.command.asked import check
     from plan_cutters.command.progress import Display
+    from plan_cutters.document.names import called
 
     if "_PLAN_CUTTERS_COMPLETE" in os.environ:
         return invoked(command, _SELF, words)
@@ -110,7 +111,8 @@ def _watched(words: list[str]) -> int:
     if not can_supervise():
         keep_output()
         return invoked(command, _SELF, words)
-    display = Display(given["quiet"] or given["postures"] is not None, len(asked.judged), began())
+    names = {cutter.id: called(cutter) for cutter in asked.judged}
+    display = Display(given["quiet"] or given["postures"] is not None, len(names), began(), names=names)
     for fault in faults:
         terminal.error(f"plan-cutters: {fault}; the other parts are planned")
     memory = default_memory() if given["memory"] is None else int(given["memory"] * 1e9)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from rich.text import Text
 
 from plan_cutters.command.rows import cell
+from plan_cutters.document.names import described
 from plan_cutters.document.told import lost as lost_percent
 from plan_cutters.document.told import percent
 
@@ -26,19 +27,19 @@ def headline(plan: "Plan", names: Mapping[str, str]) -> list[Text]:
             if len(entries) == 1
             else f"is the largest of {len(entries)} cutters that reaches every sample"
         )
-        return [_marked(f"Take {names[c.id]}", True, f" for {part}: {_described(c)}. It {which}.")]
+        return [_marked(f"Take {names[c.id]}", True, f" for {part}: {described(c, names[c.id])}. It {which}.")]
     if plan.selected_over_setups:
         c = entries[plan.selected_over_setups]
-        return [_marked(f"Take {names[c.id]}", True, f" for {part}, in {setups} setups: {_described(c)}. Together they reach "
+        return [_marked(f"Take {names[c.id]}", True, f" for {part}, in {setups} setups: {described(c, names[c.id])}. Together they reach "
                         "every sample; no setup does alone.")]  # fmt: skip
     if plan.selected_for_setup:
         c = entries[plan.selected_for_setup]
-        return [_marked(f"Take {names[c.id]} in this setup", None, f" of {part}: {_described(c)}. It leaves only what the axis "
+        return [_marked(f"Take {names[c.id]} in this setup", None, f" of {part}: {described(c, names[c.id])}. It leaves only what the axis "
                         f"limit keeps from every cutter, {lost_percent(c, c.area_share)} of the area: that needs another "
                         "setup.")]  # fmt: skip
     best = min(plan.cutters, key=lambda c: c.inaccessible + c.undecided)
     left = best.inaccessible + best.undecided
-    name = f"{names[best.id]} ({_described(best)})"
+    name = f"{names[best.id]} ({described(best, names[best.id])})"
     if not left:
         return [_marked(f"No cutter is sure for {part}", None, f". {name} reaches every sample that could be judged, but "
                         "obstacles are missing (below) that may be in its way.")]  # fmt: skip
@@ -74,21 +75,3 @@ def between(plan: "Plan") -> list[str]:
 def _marked(text: str, good: bool | None, rest: str) -> Text:
     return Text.assemble(cell(text, _MARKS[good]), cell(rest))
 
-
-def _described(c: "CutterEntry") -> str:
-    """A cutter in words: shape, radius, how far it stands out of what."""
-    if c.shape != "end":
-        what = c.shape if c.shape in ("lollipop", "barrel", "lens") else "form cutter"
-    elif c.corner_radius <= 0.0:
-        what = "flat end"
-    else:
-        what = "ball end" if c.corner_radius >= c.radius else f"bull nose with corners of {c.corner_radius:.4g} mm"
-    taper = f", taper {c.taper_deg:.4g} deg" if c.taper_deg else ""
-    holder = [stage for stage in c.stages if stage.part == "holder"]
-    if not holder:
-        held = f"judged without a holder, {c.length:.5g} mm up from its tip"
-    else:
-        widest = max(max(stage.radius_mm, stage.upper_radius_mm) for stage in holder)
-        named = f" {c.holder}" if c.holder else ""
-        held = f"{c.length:.5g} mm out of its holder{named}, which is up to R{widest:.4g} wide"
-    return f"{what} R{c.radius:.5g}{taper}, {held}"

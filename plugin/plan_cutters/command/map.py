@@ -15,7 +15,7 @@ from plan_cutters import __version__
 from plan_cutters.command.codes import ended, invoked
 from plan_cutters.command.grouped import Command, heading
 from plan_cutters.command.terminal import clean, hand_out, paper
-from plan_cutters.command.values import File, Words, cutter_ids, machine_names
+from plan_cutters.command.values import File, Words, cutter_ids, holder_words, machine_names
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -61,10 +61,14 @@ _output, _run = heading("Output"), heading("Run")
     "--cutter",
     required=True,
     type=Words("SPEC|NAME", cutter_ids),
-    help="R6L80 and so on, as for plan-cutters; with --cutters the id or the name of a tool there.",
+    help="D12L80, R6L80 and so on, as for plan-cutters; with --cutters the id or the name of a tool there.",
 )
 @_what("--cutters", type=File("FILE"), help="Tool library that the cutter is taken from.")
-@_what("--holder", type=File("SPEC|FILE"), help="Holder of a cutter that has none, as for plan-cutters.")
+@_what(
+    "--holder",
+    type=Words("SPEC|FILE", holder_words, files=True),
+    help="Holder of a cutter that has none, as for plan-cutters.",
+)
 @_what("--flip", is_flag=True, help="Take the other side of open shells and loose faces.")
 @_what("--unit", type=click.Choice(list(UNITS)), help="What lengths in the part's file are in.")
 @_way(
@@ -238,6 +242,7 @@ def _text(values: Any) -> str:
 
 def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: dict[str, Any]) -> list[str]:
     """What the map is of, line by line; the first is its title."""
+    from plan_cutters.document.names import called
     from plan_cutters.report.sheet import printable
 
     curvature = ", ".join(f"{x + 0.0:.4g}" for x in found.curvature)
@@ -246,9 +251,10 @@ def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: 
         step = math.degrees(found.rotations[1] - found.rotations[0])
         apart = f"rotations {step:.4g} deg apart: nothing is said between them"
     proved = f"gouge tolerance {found.tolerance:g} mm" if found.tolerance else "nominal, not certified"
+    held = f", {cutter.holder.name or cutter.holder.id}" if cutter.holder else ""
     moved = f"; the point asked for is {off:.3g} mm off" if off > 1e-3 else ""
     lines = [
-        f"{cutter.id} at ({_text(_round(found.point))}) on {face} of {printable(Path(given['part']).name, 80)}",
+        f"{called(cutter)}{held} ({cutter.id.partition('H')[0]}) at ({_text(_round(found.point))}) on {face} of {printable(Path(given['part']).name, 80)}",
         f"Normal ({_text(_round(found.normal))}), rotation 0 towards ({_text(_round(found.direction_max))}); curvatures "
         f"{curvature} 1/mm, concave positive{moved}.",
         f"Machine {printable(Path(given['machine']).name, 40)}, setup {printable(Path(given['setup']).name, 40)}; {proved}; "

@@ -12,6 +12,7 @@ from plan_cutters.command.codes import UNREADABLE, code_of
 from plan_cutters.command.progress import Display, Teller
 from plan_cutters.command.summary import not_reached, summary, written
 from plan_cutters.command.supervise import INTERRUPTED, Unfinished, is_child, report, report_work
+from plan_cutters.document.names import called
 
 if TYPE_CHECKING:
     from plan_cutters.document.model import Plan
@@ -89,7 +90,10 @@ class Onlooker:
         self.plan: Plan | None = None
         self.display = None
         if not is_child():
-            self.display = Display(given["quiet"], len(options.judged), began or time.monotonic(), itself=True)
+            names = {cutter.id: called(cutter) for cutter in options.judged}
+            self.display = Display(
+                given["quiet"], len(names), began or time.monotonic(), itself=True, names=names
+            )
         self.tell = Teller(self.display)
 
     def summarise(self, plan: "Plan") -> None:

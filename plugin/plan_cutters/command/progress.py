@@ -5,6 +5,7 @@ The process that waits draws it: the clock runs on while the CAD kernel holds th
 
 import contextlib
 import time
+from collections.abc import Mapping
 from typing import Any
 
 from plan_cutters.command import terminal
@@ -53,9 +54,14 @@ class Display:
         When the command began (`time.monotonic`).
     itself : bool
         Draw without being ticked.
+    names : mapping, optional
+        What cutters are called, by their ids.
     """
 
-    def __init__(self, quiet: bool, cutters: int, began: float, *, itself: bool = False) -> None:
+    def __init__(
+        self, quiet: bool, cutters: int, began: float, *, itself: bool = False, names: Mapping[str, str] | None = None
+    ) -> None:  # fmt: skip
+        self.names = names or {}
         self.quiet, self.cutters, self.began, self.itself = quiet, cutters, began, itself
         self.words, self.doing, self.spoke = "", "", 0.0
         self.judged: dict[str, None] = {}
@@ -107,7 +113,7 @@ class Display:
         """What is being done."""
         if self.name in _WORDS:
             return self.doing or self.words
-        name = terminal.clean(self.name.partition("H")[0])
+        name = terminal.clean(self.names.get(self.name) or self.name.partition("H")[0])
         many = max(self.cutters, len(self.judged))
         return f"judging {name} ({len(self.judged)} of {many})" if many > 1 else f"judging {name}"
 

@@ -16,7 +16,7 @@ from plan_cutters import __version__
 from plan_cutters.command.codes import USAGE, ended, guarded, invoked
 from plan_cutters.command.grouped import Command, heading
 from plan_cutters.command.terminal import clean, error, hand_out, paper
-from plan_cutters.command.values import File, Folder
+from plan_cutters.command.values import File, Folder, Words, cutter_ids, holder_words
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -38,6 +38,8 @@ _tools, _output, _run = heading("Tools"), heading("Output"), heading("Run")
     examples=(
         ("plan-cutters-tools shop.tools", "What of a library can be judged, and why the rest cannot:"),
         ("plan-cutters-tools shop.tools --assume-stickout 35 --holder R15L40", "With what the library leaves out:"),
+        ("plan-cutters-tools --cutter D12L80 --holder hsk63a-er32 --draw drawings", "An assembly given by words, drawn:"),
+        ("plan-cutters-tools --list-holders", "The built-in holders:"),
         (
             "plan-cutters-tools shop.tools --draw drawings --to-toml shop.toml",
             "Drawings to scale, and the tools as TOML:",
@@ -48,14 +50,21 @@ _tools, _output, _run = heading("Tools"), heading("Output"), heading("Run")
         ("2", "one does not, or the command line is wrong"),
     ),
 )
-@click.argument("files", nargs=-1, required=True, metavar="FILE...", type=File("FILE"))
+@click.argument("files", nargs=-1, metavar="[FILE]...", type=File("FILE"))
+@_tools(
+    "--cutter",
+    multiple=True,
+    type=Words("SPEC", cutter_ids),
+    help="A cutter by words, D12L80 and so on as for plan-cutters, to be shown and drawn in its holder. Repeatable.",
+)
 @_tools("--assume-stickout", type=float, metavar="MM", help="Stick-out of tools that state none.")
 @_tools(
     "--holder",
-    type=File("SPEC|FILE"),
-    help="Holder of tools that have none: R15L30 (radius, length), stages from the nose up joined by +; a file with a holder "
-    "(FILE#NAME if it has several); or `none`.",
+    type=Words("SPEC|FILE", holder_words, files=True),
+    help="Holder of tools that have none: a collet chuck as er32 or hsk63a-er32; D30L30 or R15L30 (diameter or radius, length), "
+    "stages from the nose up joined by +; a file with a holder (FILE#NAME if it has several); or `none`.",
 )
+@_tools("--list-holders", is_flag=True, help="List the built-in holders; with --draw, draw each with its largest shank.")
 @_tools("--skip-bad", is_flag=True, help="Use the other tools of a library that has broken ones.")
 @_output("--json", "as_json", is_flag=True, help="All that was understood, as JSON on standard output.")
 @_output("--to-toml", type=File("FILE"), help="Write the tools that can be judged in our own format.")
@@ -68,9 +77,17 @@ def command(files: tuple[str, ...], **given: Any) -> int:
     Reads Fusion .tools, .json and CSV, HSMWorks .hsmlib, FreeCAD .fctl, .fctb and .fcholder, LinuxCNC .tbl, and TOML.
     """
     from plan_cutters.library.read import holder_of, listing, nothing
+    from plan_cutters.library.words import of_words
 
+    if given["list_holders"]:
+        return _holders(files, given)
+    if not files and not given["cutter"]:
+        raise click.UsageError("Missing argument 'FILE...'.")
     holder = None if given["holder"] is None else holder_of(given["holder"])
-    found, lines = [], []
+    found: list[Library] = []
+    lines = []
+    if given["cutter"]:
+        found.append(of_words(given["cutter"], None if isinstance(holder, str) else holder))
     for file in files:
 
         def one(file: str = file) -> tuple[int, str]:
@@ -98,6 +115,30 @@ def command(files: tuple[str, ...], **given: Any) -> int:
     for line in lines:
         error(line)
     return USAGE if lines else 0
+
+
+def _holders(files: tuple[str, ...], given: dict[str, Any]) -> int:
+    """The built-in holders: listed, and drawn where that is asked for."""
+    from plan_cutters.library.words import pinned, standard
+
+    others = [f"--{word.replace('_', '-')}" for word in ("cutter", "holder", "assume_stickout", "to_toml") if given[word]]
+    if files or others:
+        raise click.UsageError(f"--list-holders lists the built-in holders alone: leave out {(files or others)[0]}")
+    if given["draw"] is not None:
+        _draw(pinned(), Path(given["draw"]))
+    if given["as_json"]:
+        plain = [{"word": word, "name": each.name, "id": each.id, "bore": each.bore} for word, each in standard().items()]
+        hand_out(json.dumps({"holders": plain}, indent=2) + "\n")
+        return 0
+    lines = [
+        "Collet chucks as outer bounds, from the nose up to the gauge line; mm. A chuck of another length: hsk63a-er32x120.",
+        f"{'word':14}{'shank up to':>12}  {'length':>6}  sections from the nose up, diameter x length",
+    ]
+    for word, each in standard().items():
+        sections = " + ".join(f"D{2.0 * stage.radius:g} x {stage.length:g}" for stage in each.stages)
+        lines.append(f"{word:14}{each.bore:12g}  {sum(stage.length for stage in each.stages):6g}  {sections}")
+    hand_out("\n".join(lines) + "\n")
+    return 0
 
 
 def _plain(library: "Library") -> dict[str, Any]:
@@ -221,12 +262,16 @@ def _to_toml(found: "Sequence[Library]", path: Path) -> None:
 def _draw(found: "Sequence[Library]", folder: Path) -> None:
     from plan_cutters.errors import PlanError
 
+    from plan_cutters.document.names import called
+    from plan_cutters.domain.spec import is_spec
+
     draw = import_module("plan_cutters.library.drawing").draw
     drawn: dict[str, str] = {}
     for library in found:
         for cutter in library:
             numbers = library.numbers(cutter)
-            words = [*(f"T{number}" for number in numbers[:1]), cutter.name or cutter.id]
+            held = f", {cutter.holder.name}" if cutter.holder and is_spec(cutter.name or cutter.id) else ""
+            words = [*(f"T{number}" for number in numbers[:1]), f"{called(cutter)}{held}"]
             stem = re.sub(r"[^\w.-]+", "_", " ".join(words)).strip("._")[:80] or "tool"
             name, i = stem, 2
             while name in drawn:

@@ -212,7 +212,7 @@ def notes(scene: Scene, options: Options, samples: SurfaceSamples, cutters: Sequ
             "the obstacle triangles could not be made to follow the surface more closely."
         )
     notes += _around_notes(scene.part, scene.around)
-    notes += fixture_notes(scene.around.fixtures)
+    notes += fixture_notes(scene.around.fixtures, several=bool(options.other_setups))
     return notes
 
 

@@ -27,11 +27,15 @@ def fixture_entry(standing: Standing) -> FixtureEntry:
     )
 
 
-def fixture_notes(fixtures: Sequence[Standing]) -> Iterator[str]:
-    """What the plan must say of fixtures."""
+def fixture_notes(fixtures: Sequence[Standing], *, several: bool = False) -> Iterator[str]:
+    """What the plan must say of fixtures; `several`: there is more than one setup."""
     for each in fixtures:
         for note in each.notes:
             yield f"{each.name}: {note}."
+    if several:
+        for each in fixtures:
+            if each.fixture.follows_setup:
+                yield f"{each.name}: it lies across the axis of the first setup, and stays there in the others."
     drawn = [each.name for each in fixtures if not isinstance(each.source, Part)]
     if drawn:
         yield f"Only the GLB model, the review page and pictures show what is no CAD body: {', '.join(drawn)}."

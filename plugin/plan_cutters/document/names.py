@@ -1,29 +1,99 @@
-"""How cutters are called where people read: in the summary, on the page and on pictures."""
+"""How cutters are called where people read: by what they are and their diameter, in the summary, on the page and on pictures."""
 
+import math
 import re
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.spec import is_spec
+
 if TYPE_CHECKING:
-    from plan_cutters.document.model import Plan
+    from plan_cutters.document.model import CutterEntry, Plan
 
 #: Numbers in the tool changer that are named of one cutter.
 _PLACES = 3
+#: What the drawer's names end in.
+_DRAWER = ", built-in"
+_END, _BALL, _BULL = "flat end", "ball end", "bull nose"
+
+
+def kind(cutter: "Cutter | CutterEntry") -> str:
+    """What a cutter is called, whatever its size.
+
+    >>> kind(Cutter.parse("D12L80rc6")), kind(Cutter.parse("D12L80"))
+    ('ball end', 'flat end')
+    """
+    if cutter.shape != "end":
+        return "form cutter" if cutter.shape == "form" else cutter.shape
+    if not cutter.corner_radius:
+        return _END
+    return _BALL if cutter.corner_radius >= cutter.radius else _BULL
+
+
+def called(cutter: "Cutter | CutterEntry") -> str:
+    """A cutter by its description and diameter, mm: its name where a person or a library gave one.
+
+    >>> called(Cutter.parse("R6L80")), called(Cutter.parse("D12L80rc1")), called(Cutter(3, 40, 3, name="Finisher"))
+    ('flat end D12 x 80', 'bull nose D12 rc1 x 80', 'Finisher D6')
+    """
+    across = f"{2.0 * cutter.radius:.5g}"
+    name = cutter.name.removesuffix(_DRAWER).strip()
+    if name and not is_spec(name):
+        # Where the name says the diameter itself, it need not be said again.
+        said = re.search(rf"(?<![\d.,]){re.escape(across)}(?![\d]|[.,]\d)", name)
+        return name if said else f"{name} D{across}"
+    what = kind(cutter)
+    corner = f" rc{cutter.corner_radius:.4g}" if cutter.corner_radius and what != _BALL else ""
+    taper = math.degrees(cutter.taper) if isinstance(cutter, Cutter) else cutter.taper_deg
+    lean = f" T{taper:.4g}" if taper else ""
+    return f"{what} D{across}{corner}{lean} x {cutter.length:.5g}"
 
 
 def short_names(plan: "Plan") -> dict[str, str]:
-    """How cutters are called in a line, by their ids: as a library does, or without the holder, where that tells them apart."""
-    listed, heads = {}, {}
+    """How cutters are called in a line, by their ids, each otherwise: the shortest of what tells it apart."""
+    numbers = _numbers(plan)
+    ways: list[list[str]] = []
     for c in plan.cutters:
-        numbers = dict.fromkeys(f"T{s.number}" for s in c.sources if s.number is not None)
-        listed[c.id] = " ".join([*list(numbers)[:_PLACES], c.name]) if c.sources and c.name else c.id
-        heads[c.id] = c.id.partition("H")[0]
-    said, dimensions = Counter(listed.values()), Counter(heads.values())
+        name, head = " ".join([*numbers.get(c.id, [])[:_PLACES], called(c)]), c.id.partition("H")[0]
+        held = [f"{name}, {c.holder}"] if c.holder else []
+        ways.append([name, *held, f"{name} ({head})", c.id])
+    # A name that is another's id would be taken for it.
+    taken = Counter(each for way in ways for each in dict.fromkeys(way))
     return {
-        name: listed[name] if said[listed[name]] == 1 and listed[name] != name
-        else heads[name] if dimensions[heads[name]] == 1 else name
-        for name in heads
-    }  # fmt: skip
+        c.id: next((each for each in way if taken[each] == 1), c.id) for c, way in zip(plan.cutters, ways, strict=True)
+    }
+
+
+def _numbers(plan: "Plan") -> dict[str, list[str]]:
+    """`T3` and so on, by the ids of cutters: only numbers that the libraries give to one tool."""
+    mine: dict[int, set[str]] = {}
+    for c in plan.cutters:
+        for source in c.sources:
+            if source.number is not None:
+                mine.setdefault(source.number, set()).add(c.id)
+    others = {tool.number for library in plan.libraries for tool in library.unused}
+    found: dict[str, list[str]] = {}
+    for c in plan.cutters:
+        each = dict.fromkeys(s.number for s in c.sources if s.number is not None)
+        found[c.id] = [f"T{number}" for number in each if len(mine[number]) == 1 and number not in others]
+    return found
+
+
+def described(entry: "CutterEntry", name: str) -> str:
+    """What a cutter's name does not say of it: what it is, and how far it stands out of what."""
+    what = called_plainly(entry)
+    said = f"{'' if what in name else f'{what}, '}{entry.id.partition('H')[0]}, "
+    holder = [stage for stage in entry.stages if stage.part == "holder"]
+    if not holder:
+        return f"{said}judged without a holder, {entry.length:.5g} mm up from its tip"
+    widest = 2.0 * max(max(stage.radius_mm, stage.upper_radius_mm) for stage in holder)
+    return f"{said}{entry.length:.5g} mm out of its holder{f' {entry.holder}' if entry.holder else ''}, up to D{widest:.4g} wide"
+
+
+def called_plainly(entry: "CutterEntry") -> str:
+    """The same as `called` for one without a name."""
+    return called(entry.model_copy(update={"name": ""}))
 
 
 def named(plan: "Plan", text: str) -> str:

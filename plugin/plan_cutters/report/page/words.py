@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from plan_cutters.document.answers import ChangeEntry, StickOutEntry
 from plan_cutters.document.model import AreaEntry, CutterEntry, Plan, WitnessEntry
-from plan_cutters.document.names import named
+from plan_cutters.document.names import kind, named
 from plan_cutters.document.told import figure, part_of, percent, reached
 
 
@@ -151,21 +151,18 @@ def spot(witness: WitnessEntry) -> str:
 
 def tool(entry: CutterEntry) -> str:
     """A cutter in words: its end, its lengths, its holder."""
-    ends = {"end": "flat end", "form": "form cutter"}
-    kind = ends.get(entry.shape, entry.shape)
-    if entry.shape == "end" and entry.corner_radius:
-        ball = entry.corner_radius >= entry.radius
-        kind = "ball end" if ball else f"bull nose with corner radius {entry.corner_radius:g} mm"
-    said = [f"{kind}, radius {entry.radius:g} mm"]
+    what = kind(entry)
+    corner = f" with corner radius {entry.corner_radius:g} mm" if what == "bull nose" else ""
+    said = [f"{what}{corner}, diameter {2.0 * entry.radius:g} mm"]
     if entry.taper_deg:
         said.append(f"taper {entry.taper_deg:g}°")
     if entry.flutes_mm is not None and entry.flutes_mm < entry.length:
         said.append(f"flutes {entry.flutes_mm:g} mm")
     holder = [stage for stage in entry.stages if stage.part == "holder"]
     if holder:
-        widest = max(max(stage.radius_mm, stage.upper_radius_mm) for stage in holder)
+        widest = 2.0 * max(max(stage.radius_mm, stage.upper_radius_mm) for stage in holder)
         named = f" {entry.holder}" if entry.holder else ""
-        said.append(f"stick-out {entry.length:g} mm, holder{named} of up to {widest:g} mm radius")
+        said.append(f"stick-out {entry.length:g} mm, holder{named} of up to {widest:g} mm diameter")
     else:
         said.append(f"judged up to {entry.length:g} mm over the tip, without a holder")
     return ", ".join(said)
