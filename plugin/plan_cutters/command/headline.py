@@ -11,14 +11,14 @@ from plan_cutters.document.told import lost as lost_percent
 from plan_cutters.document.told import percent
 
 if TYPE_CHECKING:
-    from plan_cutters.document.model import CutterEntry, Plan
+    from plan_cutters.document.model import Plan
 
 _MARKS = {True: "bold green", False: "bold red", None: "bold yellow"}
 
 
 def headline(plan: "Plan", names: Mapping[str, str]) -> list[Text]:
     """Which cutter to take, with what holder, and why; or why none."""
-    entries = {c.id: c for c in plan.cutters}
+    entries, told = {c.id: c for c in plan.cutters}, {c.id: described(c, names[c.id]) for c in plan.cutters}
     part, setups = plan.part.file or "the part", 1 + len(plan.effective.other_setups)
     if plan.selected:
         c = entries[plan.selected]
@@ -27,19 +27,19 @@ def headline(plan: "Plan", names: Mapping[str, str]) -> list[Text]:
             if len(entries) == 1
             else f"is the largest of {len(entries)} cutters that reaches every sample"
         )
-        return [_marked(f"Take {names[c.id]}", True, f" for {part}: {described(c, names[c.id])}. It {which}.")]
+        return [_marked(f"Take {names[c.id]}", True, f" for {part}: {told[c.id]}. It {which}.")]
     if plan.selected_over_setups:
         c = entries[plan.selected_over_setups]
-        return [_marked(f"Take {names[c.id]}", True, f" for {part}, in {setups} setups: {described(c, names[c.id])}. Together they reach "
+        return [_marked(f"Take {names[c.id]}", True, f" for {part}, in {setups} setups: {told[c.id]}. Together they reach "
                         "every sample; no setup does alone.")]  # fmt: skip
     if plan.selected_for_setup:
         c = entries[plan.selected_for_setup]
-        return [_marked(f"Take {names[c.id]} in this setup", None, f" of {part}: {described(c, names[c.id])}. It leaves only what the axis "
+        return [_marked(f"Take {names[c.id]} in this setup", None, f" of {part}: {told[c.id]}. It leaves only what the axis "
                         f"limit keeps from every cutter, {lost_percent(c, c.area_share)} of the area: that needs another "
                         "setup.")]  # fmt: skip
     best = min(plan.cutters, key=lambda c: c.inaccessible + c.undecided)
     left = best.inaccessible + best.undecided
-    name = f"{names[best.id]} ({described(best, names[best.id])})"
+    name = f"{names[best.id]} ({told[best.id]})"
     if not left:
         return [_marked(f"No cutter is sure for {part}", None, f". {name} reaches every sample that could be judged, but "
                         "obstacles are missing (below) that may be in its way.")]  # fmt: skip
@@ -74,4 +74,3 @@ def between(plan: "Plan") -> list[str]:
 
 def _marked(text: str, good: bool | None, rest: str) -> Text:
     return Text.assemble(cell(text, _MARKS[good]), cell(rest))
-

@@ -252,9 +252,10 @@ def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: 
         apart = f"rotations {step:.4g} deg apart: nothing is said between them"
     proved = f"gouge tolerance {found.tolerance:g} mm" if found.tolerance else "nominal, not certified"
     held = f", {cutter.holder.name or cutter.holder.id}" if cutter.holder else ""
+    title = f"{called(cutter)}{held} ({cutter.id.partition('H')[0]})"
     moved = f"; the point asked for is {off:.3g} mm off" if off > 1e-3 else ""
     lines = [
-        f"{called(cutter)}{held} ({cutter.id.partition('H')[0]}) at ({_text(_round(found.point))}) on {face} of {printable(Path(given['part']).name, 80)}",
+        f"{title} at ({_text(_round(found.point))}) on {face} of {printable(Path(given['part']).name, 80)}",
         f"Normal ({_text(_round(found.normal))}), rotation 0 towards ({_text(_round(found.direction_max))}); curvatures "
         f"{curvature} 1/mm, concave positive{moved}.",
         f"Machine {printable(Path(given['machine']).name, 40)}, setup {printable(Path(given['setup']).name, 40)}; {proved}; "

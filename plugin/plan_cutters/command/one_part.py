@@ -91,9 +91,7 @@ class Onlooker:
         self.display = None
         if not is_child():
             names = {cutter.id: called(cutter) for cutter in options.judged}
-            self.display = Display(
-                given["quiet"], len(names), began or time.monotonic(), itself=True, names=names
-            )
+            self.display = Display(given["quiet"], len(names), began or time.monotonic(), itself=True, names=names)
         self.tell = Teller(self.display)
 
     def summarise(self, plan: "Plan") -> None:

@@ -38,7 +38,10 @@ _tools, _output, _run = heading("Tools"), heading("Output"), heading("Run")
     examples=(
         ("plan-cutters-tools shop.tools", "What of a library can be judged, and why the rest cannot:"),
         ("plan-cutters-tools shop.tools --assume-stickout 35 --holder R15L40", "With what the library leaves out:"),
-        ("plan-cutters-tools --cutter D12L80 --holder hsk63a-er32 --draw drawings", "An assembly given by words, drawn:"),
+        (
+            "plan-cutters-tools --cutter D12L80 --holder hsk63a-er32 --draw drawings",
+            "An assembly given by words, drawn:",
+        ),
         ("plan-cutters-tools --list-holders", "The built-in holders:"),
         (
             "plan-cutters-tools shop.tools --draw drawings --to-toml shop.toml",
@@ -64,7 +67,9 @@ _tools, _output, _run = heading("Tools"), heading("Output"), heading("Run")
     help="Holder of tools that have none: a collet chuck as er32 or hsk63a-er32; D30L30 or R15L30 (diameter or radius, length), "
     "stages from the nose up joined by +; a file with a holder (FILE#NAME if it has several); or `none`.",
 )
-@_tools("--list-holders", is_flag=True, help="List the built-in holders; with --draw, draw each with its largest shank.")
+@_tools(
+    "--list-holders", is_flag=True, help="List the built-in holders; with --draw, draw each with its largest shank."
+)
 @_tools("--skip-bad", is_flag=True, help="Use the other tools of a library that has broken ones.")
 @_output("--json", "as_json", is_flag=True, help="All that was understood, as JSON on standard output.")
 @_output("--to-toml", type=File("FILE"), help="Write the tools that can be judged in our own format.")
@@ -121,13 +126,17 @@ def _holders(files: tuple[str, ...], given: dict[str, Any]) -> int:
     """The built-in holders: listed, and drawn where that is asked for."""
     from plan_cutters.library.words import pinned, standard
 
-    others = [f"--{word.replace('_', '-')}" for word in ("cutter", "holder", "assume_stickout", "to_toml") if given[word]]
+    others = [
+        f"--{word.replace('_', '-')}" for word in ("cutter", "holder", "assume_stickout", "to_toml") if given[word]
+    ]
     if files or others:
         raise click.UsageError(f"--list-holders lists the built-in holders alone: leave out {(files or others)[0]}")
     if given["draw"] is not None:
         _draw(pinned(), Path(given["draw"]))
     if given["as_json"]:
-        plain = [{"word": word, "name": each.name, "id": each.id, "bore": each.bore} for word, each in standard().items()]
+        plain = [
+            {"word": word, "name": each.name, "id": each.id, "bore": each.bore} for word, each in standard().items()
+        ]
         hand_out(json.dumps({"holders": plain}, indent=2) + "\n")
         return 0
     lines = [
@@ -260,10 +269,9 @@ def _to_toml(found: "Sequence[Library]", path: Path) -> None:
 
 
 def _draw(found: "Sequence[Library]", folder: Path) -> None:
-    from plan_cutters.errors import PlanError
-
     from plan_cutters.document.names import called
     from plan_cutters.domain.spec import is_spec
+    from plan_cutters.errors import PlanError
 
     draw = import_module("plan_cutters.library.drawing").draw
     drawn: dict[str, str] = {}

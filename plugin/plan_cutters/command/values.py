@@ -84,9 +84,7 @@ class Setup(click.ParamType):
         except ValueError:
             if value.lower().endswith(".toml") or os.path.isfile(value):
                 return str(value)
-            self.fail(
-                f"{value!r} is no direction, as +z, -y or 0,0,1 (x,y,z), nor a setup file", param, ctx
-            )
+            self.fail(f"{value!r} is no direction, as +z, -y or 0,0,1 (x,y,z), nor a setup file", param, ctx)
         return x, y, z
 
     def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:

@@ -5,11 +5,9 @@ import re
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.spec import is_spec
-
 if TYPE_CHECKING:
     from plan_cutters.document.model import CutterEntry, Plan
+    from plan_cutters.domain.cutter import Cutter
 
 #: Numbers in the tool changer that are named of one cutter.
 _PLACES = 3
@@ -21,6 +19,7 @@ _END, _BALL, _BULL = "flat end", "ball end", "bull nose"
 def kind(cutter: "Cutter | CutterEntry") -> str:
     """What a cutter is called, whatever its size.
 
+    >>> from plan_cutters.domain.cutter import Cutter
     >>> kind(Cutter.parse("D12L80rc6")), kind(Cutter.parse("D12L80"))
     ('ball end', 'flat end')
     """
@@ -34,9 +33,14 @@ def kind(cutter: "Cutter | CutterEntry") -> str:
 def called(cutter: "Cutter | CutterEntry") -> str:
     """A cutter by its description and diameter, mm: its name where a person or a library gave one.
 
+    >>> from plan_cutters.domain.cutter import Cutter
     >>> called(Cutter.parse("R6L80")), called(Cutter.parse("D12L80rc1")), called(Cutter(3, 40, 3, name="Finisher"))
     ('flat end D12 x 80', 'bull nose D12 rc1 x 80', 'Finisher D6')
     """
+    # Not before anything is planned: help is shown without numpy.
+    from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.domain.spec import is_spec
+
     across = f"{2.0 * cutter.radius:.5g}"
     name = cutter.name.removesuffix(_DRAWER).strip()
     if name and not is_spec(name):

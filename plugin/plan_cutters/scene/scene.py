@@ -169,7 +169,9 @@ class Scene(Record):
 
     def surround_closer(self, chord: float) -> Surroundings:
         """The same, with triangles for another chord error, mm, which are not kept."""
-        return joined(surroundings(self.part, chord, ignored=self.ignored), self.fixtures, chord, self._sources, self.setup)
+        return joined(
+            surroundings(self.part, chord, ignored=self.ignored), self.fixtures, chord, self._sources, self.setup
+        )
 
     @property
     def around(self) -> Surroundings:
