@@ -172,9 +172,9 @@ def test_the_files_of_a_plan(tmp_path):
         assert sum(c["by_reason"].values()) == c["inaccessible"]
     assert "R3L60" in done.stderr
     assert "without a holder" in in_lines(done.stderr)
-    assert done.stderr.index("Take R3L60") < done.stderr.index("R40L60 ")
+    assert done.stderr.index("Take flat end D6 x 60") < done.stderr.index("flat end D80 x 60 ")
     # The last lines say what is not reached, and why.
-    assert re.search(r"\nR40L60 does not reach .*\n(  .*\n)*$", done.stderr)
+    assert re.search(r"\nflat end D80 x 60 does not reach .*\n(  .*\n)*$", done.stderr)
 
 
 def test_two_runs_give_the_same_bytes(tmp_path):

@@ -162,12 +162,12 @@ def test_completion_knows_names_and_loads_no_kernel(tmp_path, words, offered):
 def test_the_first_line_says_which_cutter_to_take(capsys, planned):
     said = shown(capsys, planned)
     first = said.split("\n")[1]
-    assert first.startswith("Take R6L80 for peaks_and_valleys.step: flat end R6")
+    assert first.startswith("Take flat end D12 x 80 for peaks_and_valleys.step: R6L80, ")
     assert "without a holder" in in_lines(said)
-    assert re.search(r"^> R6L80 +yes ", said, re.MULTILINE)
-    assert re.search(r"^  R12L120 +no ", said, re.MULTILINE)
+    assert re.search(r"^> flat end D12 x 80 +yes ", said, re.MULTILINE)
+    assert re.search(r"^  flat end D24 x 120 +no ", said, re.MULTILINE)
     # Last is what is not reached, and why.
-    assert re.search(r"\nR12L120 does not reach .*(rear gouge|collision)(.*\n  )*.*\n$", said)
+    assert re.search(r"\nflat end D24 x 120 does not reach (.*\n  )*.*(rear gouge|collision)(.*\n  )*.*\n$", said)
 
 
 def test_what_is_served_between_samples_is_put_in_words(capsys, planned):
@@ -282,7 +282,7 @@ def test_many_cutters_are_said_in_few_lines(capsys, failing):
     assert "and 140 more cutters that reach less" in said
     assert "more cutters leave" in in_lines(said)
     whole = shown(capsys, document, verbose=True)
-    assert all(f" {c.id} " in whole for c in many)
+    assert all(f" ({c.id}) " in whole for c in many)
 
 
 def test_names_that_are_shortened_stay_apart():
@@ -453,7 +453,7 @@ def test_files_with_odd_names(tmp_path):
     done = run(odd, *QUICK, "--formats", "json", "-o", "out", cwd=tmp_path)
     assert done.returncode == 0
     assert "\x1b" not in done.stderr
-    assert r"Take R6L80 for a\n\x1b[31mß.step" in done.stderr
+    assert r"Take flat end D12 x 80 for a\n\x1b[31mß.step" in done.stderr
     (tmp_path / "-x.step").write_bytes(GROOVE.read_bytes())
     assert run("--quiet", "--formats", "json", "-o", "out", *QUICK, "--", "-x.step", cwd=tmp_path).returncode == 0
 

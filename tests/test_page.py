@@ -384,7 +384,7 @@ def test_every_control_is_reached_by_tab(page):
         reached.add(page.evaluate("(e => e.id || e.textContent.trim().slice(0, 30))(document.activeElement)"))
         page.keyboard.press("Tab")
     assert {"colouring", "picture", "views"} <= reached
-    assert any(text.startswith("R6L60") for text in reached)
+    assert any(text.startswith("flat end D12 x 60") for text in reached)
 
 
 def test_faces_and_the_picture_know_each_other(page, planned):
@@ -409,7 +409,7 @@ def test_it_prints(page):
     reader = PdfReader(io.BytesIO(page.pdf(format="A4")))
     assert 2 <= len(reader.pages) <= 12
     text = " ".join(each.extract_text() for each in reader.pages)
-    for words in ("Take R6L60", "Cutters", "Faces", "F6", "Notes", "About this plan"):
+    for words in ("Take flat end D12 x 60", "Cutters", "Faces", "F6", "Notes", "About this plan"):
         assert words in text, words
     drawn = page.evaluate(
         """() => [...document.querySelectorAll("#stills canvas")].map(canvas => { const { data } =
@@ -446,7 +446,7 @@ def test_without_webgl_the_tables_are_there(playwright, path):
     page = opened(browser.new_context(), path)
     assert page.evaluate("document.documentElement.dataset.ready") == "without"
     assert "WebGL" in page.inner_text("#status")
-    assert "R6L60" in page.inner_text("#cutters")
+    assert "flat end D12 x 60" in page.inner_text("#cutters")
     browser.close()
 
 
@@ -454,7 +454,7 @@ def test_without_scripts_it_says_everything_too(browser, path):
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto(path.as_uri())
-    for word in ("Take R6L60", "R10L12", "Worst spots", "F6"):
+    for word in ("Take flat end D12 x 60", "flat end D20 x 12", "Worst spots", "F6"):
         assert word in page.inner_text("body")
     context.close()
 

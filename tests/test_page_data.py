@@ -431,13 +431,13 @@ def told(read):
 def test_the_page_says_first_which_cutter_to_take(valley):
     result, read = valley
     (title,), (why, *_) = read.of("h1"), read.of("p")
-    assert title == "Take R6L80."
+    assert title == "Take flat end D12 x 80."
     assert "all 441 samples" in why
-    assert "R12L60 is larger" in why
+    assert "flat end D24 x 60 is larger" in why
     by_name = {row[0]: row[1:] for row in told(read)}
-    assert by_name["R6L80"][:3] == ["yes", "100 %", "–"]
+    assert by_name["flat end D12 x 80"][:3] == ["yes", "100 %", "–"]
     lost = result.plan.cutters[0].area_share
-    assert by_name["R12L60"][:2] == [
+    assert by_name["flat end D24 x 60"][:2] == [
         "no",
         f"{100 * (lost.interference_free + lost.accessible):.1f} %".replace(".0 %", " %"),
     ]

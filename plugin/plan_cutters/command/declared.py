@@ -14,7 +14,7 @@ from plan_cutters.command.values import File, Folder, Range, Setup, Words
 EXAMPLES = (
     ("plan-cutters blade.step", "The sculptured faces, with the built-in cutters:"),
     (
-        "plan-cutters blade.step --cutter D12L80 --cutter D6L60rc3 --holder hsk63a-er32",
+        "plan-cutters blade.step --cutter D12L80 --cutter D6L60rc3 --holder er32",
         "Two cutters, flat and ball, in a holder:",
     ),
     ("plan-cutters mould.step --cutters shop.tools --machine trunnion-ac", "Your tool library on a machine:"),

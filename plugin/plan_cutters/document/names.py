@@ -48,7 +48,7 @@ def called(cutter: "Cutter | CutterEntry") -> str:
         said = re.search(rf"(?<![\d.,]){re.escape(across)}(?![\d]|[.,]\d)", name)
         return name if said else f"{name} D{across}"
     what = kind(cutter)
-    corner = f" rc{cutter.corner_radius:.4g}" if cutter.corner_radius and what != _BALL else ""
+    corner = f" rc{cutter.corner_radius:.4g}" if cutter.corner_radius and what not in (_BALL, "lollipop") else ""
     taper = math.degrees(cutter.taper) if isinstance(cutter, Cutter) else cutter.taper_deg
     lean = f" T{taper:.4g}" if taper else ""
     return f"{what} D{across}{corner}{lean} x {cutter.length:.5g}"
@@ -87,7 +87,11 @@ def _numbers(plan: "Plan") -> dict[str, list[str]]:
 def described(entry: "CutterEntry", name: str) -> str:
     """What a cutter's name does not say of it: what it is, and how far it stands out of what."""
     what = called_plainly(entry)
-    said = f"{'' if what in name else f'{what}, '}{entry.id.partition('H')[0]}, "
+    from plan_cutters.domain.spec import is_spec
+
+    # As it was given, so that it can be given again; else as plan and arrays call it.
+    given = entry.name if is_spec(entry.name) else entry.id.partition("H")[0]
+    said = f"{'' if what in name else f'{what}, '}{given}, "
     holder = [stage for stage in entry.stages if stage.part == "holder"]
     if not holder:
         return f"{said}judged without a holder, {entry.length:.5g} mm up from its tip"
