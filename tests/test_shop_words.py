@@ -5,6 +5,7 @@ import math
 import subprocess
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -28,6 +29,8 @@ from plan_cutters.library.records import Entry, Library
 from plan_cutters.machines.setups import read_setup
 from plan_cutters.options import Options
 from plan_cutters.scene.scene import Scene
+
+REAL = Path(__file__).resolve().parents[2] / "shared" / "data" / "tools"
 
 #: Lengths of three digits behind the point, mm, as texts and numbers.
 LENGTHS = st.integers(1, 200_000).map(lambda n: n / 1000)
@@ -164,7 +167,7 @@ class TestStandardHolders:
     def test_in_options_and_for_a_cutter_s_own(self):
         (one,) = Options(cutters="D12L80", holder="er32").judged
         assert one.holder.name == "ER32"
-        assert one.id == Cutter(6, 80, holder="er32").id == "R6L80HR25L60"
+        assert one.id == Cutter(6, 80, holder="er32").id == "R6L80HR25.05L60"
         with pytest.raises(CutterError, match="24 mm does not fit ER16"):
             _ = Options(cutters=["D24L80"], holder="er16").judged
 
@@ -356,7 +359,7 @@ class TestNames:
         assert names[given[2].id] == "flat end D10 x 80 (R5L80)"
         assert names[given[3].id] == "flat end D10 x 80 (R5L80F20S5)"
         entry = next(c for c in found.cutters if c.id == given[1].id)
-        assert described(entry, "flat end D8 x 80, ER32") == "R4L80, 80 mm out of its holder ER32, up to D50 wide"
+        assert described(entry, "flat end D8 x 80, ER32") == "R4L80, 80 mm out of its holder ER32, up to D50.1 wide"
         inline = plan(box(), cutters="D0.5inL3in", faces="F1", grid=2, area_budget=0).plan
         assert described(inline.cutters[0], "flat end D12.7 x 76.2").startswith("D0.5inL3in, ")
 

@@ -41,12 +41,12 @@ class Taper(NamedTuple):
 
 #: ISO 15488 (DIN 6499): collets and their nuts, plain and slotted, whichever is wider.
 NOSES = {
-    "er11": Nose(19.0, 11.0, 7.0),
+    "er11": Nose(19.1, 11.0, 7.0),
     "er16": Nose(32.0, 17.0, 10.0),
     "er20": Nose(35.0, 18.5, 13.0),
-    "er25": Nose(42.0, 19.5, 16.0),
-    "er32": Nose(50.0, 22.0, 20.0),
-    "er40": Nose(63.0, 25.0, 26.0),
+    "er25": Nose(42.1, 19.5, 16.0),
+    "er32": Nose(50.1, 22.0, 20.0),
+    "er40": Nose(63.1, 25.0, 26.0),
 }
 #: ISO 12164-1 (DIN 69893): flange d1, its height f1, and the room d10 that is kept for the gripper behind it.
 #: ISO 7388-1 (DIN 69871, ASME B5.50): flange, down to its front face, and the body's largest diameter before 35 mm.
@@ -63,7 +63,7 @@ TAPERS = {
     "sk30": Taper("SK30", 50.0, 19.1, 45.0, 50.0),
     "sk40": Taper("SK40", 63.55, 19.1, 50.0, 60.0),
     "sk50": Taper("SK50", 97.5, 19.1, 80.0, 70.0),
-    "cat40": Taper("CAT40", 63.6, 19.1, 50.0, 60.0),
+    "cat40": Taper("CAT40", 63.6, 19.1, 50.0, 59.0),
     "cat50": Taper("CAT50", 98.6, 19.1, 80.0, 70.0),
     "bt30": Taper("BT30", 46.0, 22.0, 46.0, 50.0),
     "bt40": Taper("BT40", 63.0, 27.0, 63.0, 60.0),
