@@ -17,7 +17,7 @@ _CHROMIUM = [
     "--enable-unsafe-swiftshader",
     "--disable-background-networking",
 ]
-_CUTTERS = ["--cutters", "samples/shop.toml", "--cutter", "R8L90", "--holder", "R20L30+R31L40"]
+_CUTTERS = ["--cutters", "samples/shop.toml", "--cutter", "D16L90", "--holder", "D40L30+D62L40"]
 
 
 def run(*words: str) -> str:
@@ -47,12 +47,12 @@ def main() -> None:
         kept = said[said.index("\nTake ") + 1 : said.index("\nWritten")].splitlines()
         text = "\n".join(line for line in kept if " s  " not in line[:12])
         (PICTURES / "summary.txt").write_text(text.rstrip() + "\n", encoding="utf-8")
-        run("plan-cutters-map", "samples/peaks_and_valleys.step", "--at", "-2.241,4.502,-22.43", "--cutter", "R8L90", "-o",
+        run("plan-cutters-map", "samples/peaks_and_valleys.step", "--at", "-2.241,4.502,-22.43", "--cutter", "D16L90", "-o",
             str(PICTURES / "map.png"))  # fmt: skip
         run("plan-cutters-tools", "samples/shop.toml", "--draw", str(out / "drawings"))
         shutil.copy(next((out / "drawings").glob("*flat*12*.svg")), PICTURES / "tool.svg")
         run("plan-cutters", "samples/pocket_top.step", "--cutters", "samples/shop.toml", "--machine", "trunnion-ac", "--fixture",
-            "table:0", "--formats", "png", "-o", str(out / "sheet"))  # fmt: skip
+            "table", "--formats", "png", "-o", str(out / "sheet"))  # fmt: skip
         shutil.copy(out / "sheet" / "review.png", PICTURES / "sheet.png")
         _page(out / "p" / "review.html", PICTURES / "review.png")
 

@@ -82,8 +82,8 @@ class Options:
     machine : Machine
         May be given as a text: `tilt:60`, the name of a built-in one, or a machine file.
     setup : tuple of float
-        Direction of the part along the machine's spindle at zero angles; kept with length 1. May be given as a Placement or a
-        setup file: then it is kept as `placement`, too, and its fixtures are added to `fixtures`.
+        Direction of the part along the machine's spindle at zero angles; kept with length 1. May be given as a word (`+z`, `-y`),
+        a Placement or a setup file: of the last two it is kept as `placement`, too, and its fixtures are added to `fixtures`.
     other_setups : tuple of (float, float, float)
         More setup axes, in which every cutter is judged as well; the sides of open faces stay those of `setup`. May be given in
         the same ways, without fixtures and clamped faces of their own.
