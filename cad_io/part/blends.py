@@ -82,7 +82,8 @@ def blends(part: "Part") -> frozenset[int]:
         dot = agree[:, None] * (normal[:, 0] * normal[:, 1]).sum(axis=2)
         smooth = (dot > np.cos(SMOOTH)).mean(axis=1) >= _MOSTLY
         most = np.abs(kappa).max(axis=3)
-        bends = (np.abs(across) >= _ACROSS * most).mean(axis=2) >= _MOSTLY
+        least = np.maximum(_ACROSS * most, (1 - _SAME) * np.abs(across[:, ::-1]))
+        bends = (np.abs(across) >= least).mean(axis=2) >= _MOSTLY
         # Seen from the other side, what is largest is smallest, with the other sign.
         there = np.where(agree[:, None, None] > 0, kappa[:, 1], -kappa[:, 1, :, ::-1])
         alike = (np.abs(kappa[:, 0] - there).max(axis=2) <= _SAME * most.max(axis=1)).mean(axis=1) >= _MOSTLY
