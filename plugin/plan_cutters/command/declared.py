@@ -12,7 +12,7 @@ from plan_cutters.command.grouped import heading
 from plan_cutters.command.values import File, Folder, Range, Setup, Words
 
 EXAMPLES = (
-    ("plan-cutters blade.step", "The sculptured faces, with the built-in cutters:"),
+    ("plan-cutters blade.step", "The sculptured faces and fillets, with the built-in cutters:"),
     (
         "plan-cutters blade.step --cutter R6L80 --cutter R3L60rc3 --holder R15L40",
         "Two cutters, flat and ball, in a holder:",
@@ -111,10 +111,12 @@ _OPTIONS = (
     ),
     _faces(
         "--faces",
-        default="sculptured",
+        default="sculptured,blends",
         type=Words("SELECT", values.face_words),
-        help="`sculptured`, `all`, `F3,7-12`, `component:NAME`, `name:REGEX` or `color:#RRGGBB`, after a `!` all but these; "
-        "the others are obstacles.  [default: sculptured]",
+        help="`sculptured` (what is no plane, cylinder, cone, sphere or torus in shape; all faces where none is), `blends` "
+        "(fillets and rounds: they join two faces smoothly), `all`, `F3,7-12`, a list of these, `component:NAME`, `name:REGEX` "
+        "or `color:#RRGGBB`, after a `!` all but these; the others are not judged, only obstacles.  "
+        "[default: sculptured,blends]",
     ),
     _faces(
         "--ignore",
