@@ -31,7 +31,11 @@ CODES = (
     ("1", "none does; the plan says where and why"),
     ("2", "the command line, a library or a machine file is wrong"),
     ("3", "the part or a fixture cannot be read, or holds nothing to judge"),
-    ("4", "a cutter would finish all that could be judged, but something could not, or obstacles are missing"),
+    (
+        "4",
+        "a cutter would finish all that could be judged, but something could not, obstacles are missing, or samples are farther "
+        "apart than its radius and nobody asked for that",
+    ),
     ("130", "interrupted; nothing is half-written"),
 )
 

@@ -97,6 +97,7 @@ def cutter_entry(
         clearance_mm=cutter.clearance or 0.0,
         slack_mm=slack,
         feasible=feasible,
+        seen=samples.max_gap <= cutter.radius,
         march_differs=march_differs,
         **mine,
         by_reason={name: int((lost & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
@@ -159,7 +160,7 @@ def _sewing(part: Part) -> SewingInfo | None:
 
 def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen) -> list[FaceEntry]:
     """Every face of the part, judged or not."""
-    empty = dict(samples.empty)
+    empty, gaps = dict(samples.empty), dict(samples.face_gaps)
     chosen, ignored = set(choice.targets), set(choice.ignored)
     component = component_of(part.tree)
     result = []
@@ -176,11 +177,13 @@ def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen) -> list[Fa
                 name=face.name,
                 surface=face.surface,
                 shape=face.shape,
+                kind="blend" if face.number in choice.blends else face.shape,
                 target=face.number in chosen,
                 ignored=face.number in ignored,
                 area_mm2=face.area,
                 component=component[face.number],
                 samples=int(mine.sum()),
+                gap_mm=gaps.get(face.number),
                 unjudged=reason if face.number in chosen else face.unjudged,
             )
         )
