@@ -6,8 +6,8 @@ fillets bends along its edges, not across them, and is no blend. Faces that carr
 that a hole of four quarters is a hole.
 """
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +17,12 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from cad_io.arrays import Floats
+from cad_io.arrays import FaceInfo, Floats
 from cad_io.face.curvature import curvature
+from cad_io.face.trim import Trim
 from cad_io.kernel import is_kernel_error
 from cad_io.part.sew import edge_uses
-
-if TYPE_CHECKING:
-    from cad_io.part.part import Part
+from cad_io.surface import Surface
 
 #: Normals on both sides of a smooth edge agree within this, rad, at so large a share of the points looked at.
 SMOOTH, _MOSTLY = np.deg2rad(3.0), 0.75
@@ -52,13 +51,28 @@ class _Side(NamedTuple):
     turned: Floats
 
 
-def blends(part: "Part") -> frozenset[int]:
+class Bare(NamedTuple):
+    """A face of a part: what is known of it, the kernel's face with the edges that it shares, its border and its surface."""
+
+    info: FaceInfo
+    shape: TopoDS_Face
+    trim: Trim | None
+    surface: Surface
+
+
+def blends(faces: Sequence[Bare], size: float) -> frozenset[int]:
     """Numbers of the faces of a part that are blends.
 
     An edge, or a face, that the kernel cannot evaluate joins nothing smoothly.
+
+    Parameters
+    ----------
+    faces : sequence of Bare
+        All faces of the part.
+    size : float
+        Of the part, mm.
     """
-    infos = part.faces
-    shape = [part.sewn.faces.get(info.number) or part.face(info.number) for info in infos]
+    infos, shape = [face.info for face in faces], [face.shape for face in faces]
     rounded = [info.shape in _ROUND and info.unjudged is None for info in infos]
     edges = [
         (edge, users) for edge, users in edge_uses(shape)
@@ -75,7 +89,7 @@ def blends(part: "Part") -> frozenset[int]:
     turned: dict[int, Floats] = {}
     for i in np.unique(owner).tolist():
         mine, which = np.nonzero(owner == i)
-        found = _side(part, i + 1, shape[i], [edges[k][0] for k in mine.tolist()])
+        found = _side(faces[i], size, [edges[k][0] for k in mine.tolist()])
         if found is not None:
             normal[mine, which], kappa[mine, which], across[mine, which], turned[i] = found
     with np.errstate(invalid="ignore"):
@@ -95,7 +109,7 @@ def blends(part: "Part") -> frozenset[int]:
     for k, s in zip(*np.nonzero(smooth[:, None] & bends & (one[owner[:, :1]] != one[owner[:, 1:]])), strict=True):
         joined.setdefault(int(one[owner[k, s]]), set()).add(int(one[owner[k, 1 - s]]))
     several = {i for i in turned if rounded[i] and len(joined.get(int(one[i]), ())) > 1}
-    return frozenset(i + 1 for i in several if kind[i] not in _RULED or _turn(_of_one(one, i, turned)) < HALF)
+    return frozenset(infos[i].number for i in several if kind[i] not in _RULED or _turn(_of_one(one, i, turned)) < HALF)
 
 
 def _groups(count: int, pairs: NDArray[np.intp]) -> NDArray[np.int32]:
@@ -109,24 +123,23 @@ def _of_one(one: NDArray[np.int32], i: int, turned: Mapping[int, Floats]) -> Flo
     return np.concatenate([turned[j] for j in np.flatnonzero(one == one[i]).tolist() if j in turned])
 
 
-def _side(part: "Part", number: int, shape: TopoDS_Face, edges: list[TopoDS_Edge]) -> _Side | None:
+def _side(face: Bare, size: float, edges: list[TopoDS_Edge]) -> _Side | None:
     """One face along some of its edges; None where it cannot be evaluated."""
-    trim = part.trim(number)
-    if trim is None:
+    if face.trim is None:
         return None
-    points, (u0, u1, v0, v1) = len(_ALONG), trim.box
-    along = np.concatenate([_parameters(edge, shape) for edge in edges])
+    points, (u0, u1, v0, v1) = len(_ALONG), face.trim.box
+    along = np.concatenate([_parameters(edge, face.shape) for edge in edges])
     share = np.linspace(0.0, 1.0, _LINES)
     u, v = (g.ravel() for g in np.meshgrid(u0 + share * (u1 - u0), v0 + share * (v1 - v0)))
     uv, n = along[:, 0], len(along)
     try:
-        d = part.surface(number).second(np.concatenate([uv[:, 0], u]), np.concatenate([uv[:, 1], v]))
+        d = face.surface.second(np.concatenate([uv[:, 0], u]), np.concatenate([uv[:, 1], v]))
     except Exception as thrown:
         if not is_kernel_error(thrown):
             raise
         return None
     with np.errstate(all="ignore"):
-        geometry = curvature(d, 1.0, float(np.linalg.norm(part.size)))
+        geometry = curvature(d, 1.0, size)
         tangent = d[:n, 1] * along[:, 1, :1] + d[:n, 2] * along[:, 1, 1:]
         beside = np.cross(geometry.normal[:n], tangent)
         cosine = (beside * geometry.direction_max[:n]).sum(axis=1) / np.linalg.norm(beside, axis=1)

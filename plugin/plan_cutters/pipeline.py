@@ -249,7 +249,9 @@ def assemble(
                              ready.conditions, budget=budget)  # fmt: skip
         area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
                          short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
-        entries = [e.model_copy(update={"area": area, "seen": e.seen or area.feasible}) if e.id == best else e for e in entries]
+        entries = [
+            e.model_copy(update={"area": area, "seen": e.seen or area.feasible}) if e.id == best else e for e in entries
+        ]
     with clock.stage("plan", shown=False):
         document = plan_of(
             ready,

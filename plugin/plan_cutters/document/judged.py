@@ -40,7 +40,9 @@ def not_judged(plan: Plan) -> list[str]:
         return []
     many = scope.not_judged > 1
     what = _listed(scope.not_judged_by_kind)
-    return [f"{what} {'were' if many else 'was'} not judged, only {'obstacles' if many else 'an obstacle'}: --faces all."]
+    return [
+        f"{what} {'were' if many else 'was'} not judged, only {'obstacles' if many else 'an obstacle'}: --faces all."
+    ]
 
 
 def _asked(plan: Plan, scope: Scope) -> str:

@@ -34,7 +34,6 @@ from plan_cutters.document.model import (
     SetupReach,
 )
 from plan_cutters.document.palette import MEANING, PALETTE
-
 from plan_cutters.document.shares import counts
 from plan_cutters.document.travel import placement_entry, travel_entry, travel_notes
 from plan_cutters.domain.answers import Answers

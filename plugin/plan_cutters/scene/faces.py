@@ -93,7 +93,9 @@ def choose(
             f"{len(ignored)} faces are ignored, neither targets nor obstacles: {_some(f'F{n}' for n in sorted(ignored))}."
         )
     if placed is not None and placed.clamped:
-        held = frozenset().union(*(_selected(part.faces, text, part.tree, placed.where, part.blends) for text in placed.clamped))
+        held = frozenset().union(
+            *(_selected(part.faces, text, part.tree, placed.where, part.blends) for text in placed.clamped)
+        )
         left = tuple(n for n in targets if n not in held)
         if not left:
             raise OptionError(f"{placed.where} {_brief(', '.join(placed.clamped))} leaves no target face")
@@ -224,7 +226,11 @@ def _selected(
         wanted = tuple(bytes.fromhex(match[1]))
         chosen = {f.number for f in faces if f.colour and tuple(round(255 * c) for c in f.colour) == wanted}
     else:
-        kinds = {"all": every, "blends": set(blends), "sculptured": {f.number for f in faces if f.shape == "sculptured"}}
+        kinds = {
+            "all": every,
+            "blends": set(blends),
+            "sculptured": {f.number for f in faces if f.shape == "sculptured"},
+        }
         words = {word.strip() for word in plain.split(",")} & set(_KINDS)
         chosen = _numbered(plain, len(faces), where).union(*(kinds[word] for word in words))
     # All but what a mistyped name selects would be everything.
