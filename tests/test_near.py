@@ -118,11 +118,11 @@ def test_a_small_face_gets_some_samples(size):
 
 
 @pytest.mark.parametrize("width", [1e-3, 1e-5])
-def test_a_needle_that_hardly_a_grid_hits_is_sampled_along_it(width):
+def test_a_needle_that_no_grid_hits_well_is_sampled_along_it(width):
     line = np.array([(0.0, 0.0), (60.0, 11.0), (100.0, 33.371)])
     part = read_part(compound(polygon(*line, *(line + np.array([0.0, width]))[::-1]), box()))
     samples = sample(part, orient(part), spacing=5.0, faces=[1])
-    assert bool(samples.grids) == (width > 1e-4)
+    assert not samples.grids
     assert samples.max_gap <= 5.0
     along = np.stack([np.interp(np.arange(101), line[:, 0], line[:, k]) for k in (0, 1)] + [np.zeros(101)], axis=1)
     assert cKDTree(samples.point).query(along)[0].max() <= 5.0 + width
