@@ -9,6 +9,7 @@ from pydantic import Field
 
 from plan_cutters.document.answers import MendEntry, RadiusEntry, StickOutEntry
 from plan_cutters.document.frozen import Frozen, Posture, Vector
+from plan_cutters.document.part_info import PartInfo
 from plan_cutters.document.scope import Scope
 from plan_cutters.document.shares import AreaShare, FaceVerdicts, Verdicts
 from plan_cutters.document.travel import PlacementEntry, TravelEntry
@@ -19,33 +20,6 @@ FORMAT_VERSION = 1
 class Units(Frozen):
     length: Literal["mm"] = "mm"
     angle: Literal["deg"] = "deg"
-
-
-class OrientationInfo(Frozen):
-    """How the side out of the material was found, and whether that is more than a guess."""
-
-    method: str
-    confident: bool
-
-
-class SewingInfo(Frozen):
-    """Faces that stand in no solid, joined where their edges coincide to find out which side is material."""
-
-    tolerance_mm: float | None = Field(description="the smallest tried that left the least open; null: nothing to join")
-    tried_mm: float | None = Field(description="the largest tried")
-    open_edges: int = Field(description="edges that still belong to one face alone")
-    open_length_mm: float
-
-
-class PartInfo(Frozen):
-    file: str | None
-    sha256: str | None
-    size_mm: Vector
-    solids: int
-    faces: int
-    orientation: OrientationInfo
-    sewing: SewingInfo | None = Field(default=None, description="null where every face belongs to a solid")
-    warnings: list[str]
 
 
 class Effective(Frozen):

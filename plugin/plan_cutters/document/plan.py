@@ -15,6 +15,7 @@ from plan_cutters.document.build import (
     missing_entries,
     notes,
     part_info,
+    sampling_notes,
     versions,
 )
 from plan_cutters.document.fixtures import fixture_entry
@@ -116,6 +117,7 @@ def plan_of(
         notes=[
             *notes(scene, options, samples, ready.cutters),
             *choice.notes,
+            *sampling_notes(ready),
             *travel_notes(options),
             *area_notes(entries, doubtful=around.doubtful),
         ],
