@@ -48,7 +48,7 @@ def not_judged(plan: Plan) -> list[str]:
 def _asked(plan: Plan, scope: Scope) -> str:
     words = {word.strip() for word in plan.effective.faces.split(",")}
     if words <= _BY_KIND:
-        return f"the {_listed(scope.judged_by_kind)}" if scope.judged > 1 else f"the {_one(scope.judged_by_kind)}"
+        return f"the {_listed(scope.judged_by_kind).removeprefix('1 ')}"
     return f"the {scope.judged} faces asked for" if scope.judged > 1 else "the face asked for"
 
 
@@ -65,10 +65,6 @@ def _listed(kinds: dict[str, int]) -> str:
     ]
     said = [text for text in each if text]
     return " and ".join([", ".join(said[:-1]), said[-1]]) if len(said) > 1 else said[0]
-
-
-def _one(kinds: dict[str, int]) -> str:
-    return _listed(kinds).removeprefix("1 ")
 
 
 def _counted(number: int, word: str) -> str:
