@@ -201,10 +201,12 @@ class SurfaceSamples(Record):
     reasons : tuple of str
     grids : tuple of FaceGrid
     max_gap : float
-        Largest distance, mm, between grid neighbours and from the border of a sampled face to its nearest sample. Faces
-        in `empty` have no part in it.
+        Largest distance, mm, between grid neighbours and from a point of a sampled face, up to its border, to the nearest
+        sample of that face, through space. Faces in `empty` have no part in it.
     empty : tuple of (int, str)
         Faces that gave no sample, with the reason.
+    face_gaps : tuple of (int, float)
+        The same distance of each sampled face alone.
     """
 
     point: Floats
@@ -220,6 +222,7 @@ class SurfaceSamples(Record):
     grids: tuple[FaceGrid, ...]
     max_gap: float
     empty: tuple[tuple[int, str], ...]
+    face_gaps: tuple[tuple[int, float], ...] = ()
 
     def __len__(self) -> int:
         return len(self.point)

@@ -29,7 +29,7 @@ from cad_io.face.evaluate import density
 from cad_io.kernel import edges_of, first_derivatives
 from cad_io.part.orient import orient
 from cad_io.sample import sample
-from cad_io.sample.gap import border_gap
+from cad_io.sample.gap import border_probes
 from cad_io.tessellate import tessellate
 from cad_io.tessellate.mesh import folded, upright
 from plan_cutters import Cutter, Machine, plan
@@ -224,7 +224,8 @@ def test_the_largest_gap_reaches_the_border(make, spacing):
             step = float(np.linalg.norm(pairs[:, 0] - pairs[:, 1], axis=1).max())
         border = np.concatenate([edge_points(edge, 400) for edge in edges_of(part.face(face.number))])
         farthest = float(near.query(border)[0].max())
-        assert samples.max_gap == pytest.approx(max(step, farthest), rel=0.05)
+        # Inside, where the border cuts cells, points may be farther still (`test_near.py`).
+        assert max(step, farthest) * 0.95 <= samples.max_gap <= spacing * (1 + 1e-9)
 
 
 def test_one_sample_is_as_far_from_the_border_as_it_is():
@@ -232,9 +233,10 @@ def test_one_sample_is_as_far_from_the_border_as_it_is():
     disc = next(face.number for face in part.faces if face.surface == "plane")
     height = part.face(disc)
     middle = np.array([[0.0, 0.0, edge_points(edges_of(height)[0], 2)[0, 2]]])
-    assert border_gap(part, disc, middle, 0.0) == pytest.approx(5.0)
-    assert border_gap(part, disc, middle + np.array([2.0, 0, 0]), 0.0) == pytest.approx(7.0, rel=1e-3)
-    assert border_gap(part, disc, np.full((1, 3), np.nan), 0.0) == 0.0
+    probes = border_probes(part, disc, 0.0)
+    assert probes.distance(middle).max() == pytest.approx(5.0)
+    assert probes.distance(middle + np.array([2.0, 0, 0])).max() == pytest.approx(7.0, rel=1e-3)
+    assert probes.distance(np.full((1, 3), np.nan)).max() == 0.0
 
 
 def edge_points(edge, count):

@@ -223,6 +223,7 @@ def everywhere(value, text):
             "verdict",
             "part",
             "carries",
+            "sampled_by",
         }
         return {k: v if k in kept and isinstance(v, str) else everywhere(v, text) for k, v in value.items()}
     if isinstance(value, list):

@@ -145,17 +145,21 @@ def test_default_spacing_follows_cutter_curvature_and_budget():
     small, large = Cutter.flat(radius=2, length=30), Cutter.flat(radius=8, length=60)
     flat = read_part(shapes.plane((0, 40), (0, 40)))
     side = orient(flat, towards=UP, flip=False)
-    assert default_spacing(flat, side, [1], [large, small]) == {1: 0.5}
-    assert default_spacing(flat, side, [1], [large]) == {1: 2.0}
+    assert default_spacing(flat, side, [1], [large, small]) == ({1: 0.5}, 1.0)
+    assert default_spacing(flat, side, [1], [large]) == ({1: 2.0}, 1.0)
     # A cylinder: the normal turns by at most 0.2 rad from sample to sample, but no more than four times as finely.
     bent = read_part(rod())  # radius 5
     side = orient(bent, towards=UP, flip=False)
     curved = next(f.number for f in bent.faces if f.shape == "cylinder")
-    assert default_spacing(bent, side, [curved], [large])[curved] == pytest.approx(0.2 * 5)
-    assert default_spacing(bent, side, [curved], [Cutter.flat(radius=40, length=99)])[curved] == pytest.approx(10 / 4)
+    assert default_spacing(bent, side, [curved], [large])[0][curved] == pytest.approx(0.2 * 5)
+    assert default_spacing(bent, side, [curved], [Cutter.flat(radius=40, length=99)])[0][curved] == pytest.approx(
+        10 / 4
+    )
     # Too many: coarser on all faces alike.
     wide = read_part(shapes.plane((0, 4000), (0, 1000)))
-    found = default_spacing(wide, orient(wide, towards=UP, flip=False), [1], [small])[1]
+    spacing, coarser = default_spacing(wide, orient(wide, towards=UP, flip=False), [1], [small])
+    assert coarser > 1.0
+    found = spacing[1]
     assert 4000 * 1000 / found**2 == pytest.approx(BUDGET)
 
 

@@ -24,6 +24,7 @@ from cad_io.face.recognise import recognise
 from cad_io.face.trim import Trim, trim_of
 from cad_io.kernel import edges_of, explore, faces, is_kernel_error, shape_map, translated
 from cad_io.kernel.assembly import Node
+from cad_io.part.blends import Bare, blends
 from cad_io.part.packing import Found, packed, unpacked
 from cad_io.part.sew import Sewn, edge_uses, sew
 from cad_io.surface import Surface
@@ -84,6 +85,8 @@ class Part:
         Every edge joins two faces: the shape has an inside.
     sewn : Sewn
         Faces that stand in no solid, joined where they touch.
+    blends : frozenset of int
+        Numbers of the faces that are fillets and rounds.
     warnings : tuple of str
 
     Raises
@@ -217,6 +220,17 @@ class Part:
     def sewn(self) -> Sewn:
         with translated("joining faces", file=self.file):
             return sew(self.shape, self._faces, float(np.linalg.norm(self.size)))
+
+    @cached_property
+    def blends(self) -> frozenset[int]:
+        """Numbers of the faces that are fillets and rounds: see `cad_io.part.blends`."""
+        with translated("looking for blends", file=self.file):
+            joined, trim, surface = self.sewn.faces, self.trim, self.surface
+            faces = [
+                Bare(f, joined.get(f.number) or self.face(f.number), trim(f.number), surface(f.number))
+                for f in self.faces
+            ]
+            return blends(faces, float(np.linalg.norm(self.size)))
 
     def solid_shapes(self) -> Iterator[TopoDS_Shape]:
         """Every solid, as it stands in the shape."""

@@ -60,8 +60,10 @@ def uniform(surface: Surface, trim: Trim, count: int) -> Lines:
     return Lines(u.lines(share), v.lines(share), u.closed, v.closed, (u.low, u.high, v.low, v.high))
 
 
-def spaced(surface: Surface, trim: Trim, spacing: float, more: tuple[float, float] = (1.0, 1.0)) -> Lines:
-    """Lines over the trim's box so that neighbours are at most `spacing` mm apart, `more` times as many if asked.
+def spaced(
+    surface: Surface, trim: Trim, spacing: float, more: tuple[float, float] = (1.0, 1.0), finer: int = 1
+) -> Lines:
+    """Lines over the trim's box so that neighbours are at most `spacing` mm apart, `more` and `finer` times as many if asked.
 
     Lines are laid by the largest speed across them, so the gap holds everywhere as far as the probes saw.
     """
@@ -75,7 +77,7 @@ def spaced(surface: Surface, trim: Trim, spacing: float, more: tuple[float, floa
     speed_u = speed[..., 0].max(axis=1) * (u.high - u.low)
     speed_v = speed[..., 1].max(axis=0) * (v.high - v.low)
     lengths = [_cumulative(speed_u, share_u), _cumulative(speed_v, share_v)]
-    gaps = np.array([max(np.ceil(more[k] * lengths[k][-1] / spacing), _LEAST_LINES - 1) for k in (0, 1)])
+    gaps = finer * np.array([max(np.ceil(more[k] * lengths[k][-1] / spacing), _LEAST_LINES - 1) for k in (0, 1)])
     closed = np.array([u.closed, v.closed])
     gaps = np.where(closed, np.maximum(gaps, _LEAST_LINES), gaps)
     gaps = np.maximum(gaps / max(1.0, np.sqrt(gaps.prod() / _MOST_NODES)), 2).astype(int)

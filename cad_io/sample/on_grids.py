@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from cad_io.arrays import FaceGrid, Floats, Ints, Orientation, SurfaceSamples
 from cad_io.errors import SampleError
@@ -14,7 +15,7 @@ from cad_io.face.trim import Trim
 from cad_io.kernel import translated
 from cad_io.part import Part
 from cad_io.sample.at_point import locate
-from cad_io.sample.gap import border_gap
+from cad_io.sample.gap import border_probes, denser, halves_inside, inner_probes
 from cad_io.sample.grid_lines import Lines, spaced, uniform
 from cad_io.sample.joints import smooth_joints
 from cad_io.tessellate.mesh import uv_meshes
@@ -25,11 +26,19 @@ __all__ = ["locate", "sample"]
 REASONS = ("the surface has no normal or curvature there",)
 _DOUBLINGS = 4  # of a grid that misses a thin face
 _CORRECTIONS = 4  # of a spacing that the probes underrated
+_HALVINGS = 12  # of cells at the border that leave the face too far from its samples
+_MOST_MORE, _FEW_SAMPLES = 4, 2000  # so many times as many samples, or so many, are taken for that
+_NODES = 40_000  # of a grid for that, whether in the face or not
+_FEW = 100  # samples: a face with fewer may be too thin for grids
+_LEAST_SAMPLES = 4  # of a face, as far as its grid can be finer
+_BESIDE = 2  # middles of triangles that each is linked with
 _LEAST_SHARE = 0.125  # of its cell that a sample on the trim stands for
 
 
 class _FaceSamples(NamedTuple):
-    """Samples of one face before they are put together; pairs and index count within the face."""
+    """Samples of one face before they are put together; pairs and index count within the face. `gap`: how far the face is
+    from them where its border cuts cells, mm.
+    """
 
     number: int
     derivatives: Floats
@@ -37,6 +46,7 @@ class _FaceSamples(NamedTuple):
     weight: Floats
     pairs: Ints
     grid: FaceGrid | None
+    gap: float = 0.0
 
 
 def sample(
@@ -58,14 +68,15 @@ def sample(
         That many lines each way, at least 2, uniform over the surface's own domain, ends included, a closed seam once,
         a border that is a single point 1e-4 of the range inward. Surfaces without end use the box of the trim.
     spacing : float or mapping of int to float, optional
-        Instead of `grid`: grid neighbours at most so many mm apart, for all faces or by face number.
+        Instead of `grid`: grid neighbours at most so many mm apart, and no point of the face farther from its nearest
+        sample, for all faces or by face number. `max_gap` says where that was not to be had.
     faces : sequence of int
         Face numbers.
 
     Returns
     -------
     SurfaceSamples
-        Points on the trim count as inside. A face too thin for its grid gets a finer one, then the middles of its
+        Points on the trim count as inside. A face too thin for its grid gets a finer one, then the middles of
         triangles; one without any sample is in `empty`.
 
     Raises
@@ -96,28 +107,78 @@ def sample(
 
 
 def _sample_face(part: Part, number: int, trim: Trim, grid: int | None, step: float | None) -> _FaceSamples | None:
-    surface = part.surface(number)
+    found = _uniform(part, number, trim, grid) if step is None else _spaced(part, number, trim, step)
+    if found is None:
+        return _in_triangles(part, number, step)
+    if trim.rectangular and _covered(found):
+        return found
+    found = _covering(part, number, trim, found, step)
+    if step is not None and found.gap > step and len(found.uv) < _FEW:
+        # A needle that grids hardly hit.
+        thin = _in_triangles(part, number, step)
+        return thin if thin is not None and thin.gap < found.gap else found
+    return found
+
+
+def _uniform(part: Part, number: int, trim: Trim, grid: int | None) -> _FaceSamples | None:
+    """Samples on so many lines each way, on more where none hits the face."""
+    for doubling in range(_DOUBLINGS + 1):
+        lines = uniform(part.surface(number), trim, 2**doubling * (int(grid or 2) - 1) + 1)
+        inside = trim.inside_grid(lines.u, lines.v)
+        if inside.any():
+            return _on_grid(part, number, trim, lines, inside)
+    return None
+
+
+def _spaced(part: Part, number: int, trim: Trim, step: float) -> _FaceSamples | None:
+    """Samples on lines so near that grid neighbours are at most a step apart, on more where few hit the face."""
+    surface, found = part.surface(number), None
     more = np.ones(2)
     for doubling in range(_DOUBLINGS + 1):
-        finer = 2**doubling
         for _ in range(_CORRECTIONS):
-            if grid is not None:
-                lines = uniform(surface, trim, finer * (grid - 1) + 1)
-            else:
-                lines = spaced(surface, trim, float(step or 0) / finer, (float(more[0]), float(more[1])))
+            lines = spaced(surface, trim, step, (float(more[0]), float(more[1])), 2**doubling)
             inside = trim.inside_grid(lines.u, lines.v)
             if not inside.any():
                 break
             found = _on_grid(part, number, trim, lines, inside)
-            if step is None:
-                return found
             worst = _widest(found, lines) / step
             if (worst <= 1 + 1e-9).all():
-                return found
+                break
             more *= np.where(worst > 1, 1.02 * worst, 1.0)
-        else:
-            return found
-    return _in_triangles(part, number)
+        if found is not None and len(found.uv) >= _LEAST_SAMPLES:
+            break
+    return found
+
+
+def _covering(part: Part, number: int, trim: Trim, found: _FaceSamples, step: float | None) -> _FaceSamples:
+    """Samples with how far the face is from them; with a step, on more lines where it is farther than that."""
+    grid = found.grid
+    assert grid is not None, "samples in triangles have no lines"
+    lines = Lines(grid.u, grid.v, grid.closed_u, grid.closed_v, grid.span)
+    near = _gap(found.derivatives[:, 0], found.pairs)
+    border = border_probes(part, number, near if step is None else step)
+    if not trim.closed:  # only the kernel knows what is inside, a node at a time
+        return found._replace(gap=float(border.distance(found.derivatives[:, 0]).max(initial=0.0)))
+    most, nodes = max(_MOST_MORE * len(found.uv), _FEW_SAMPLES), max(_MOST_MORE * grid.index.size, _NODES)
+    for _ in range(_HALVINGS + 1):
+        finer = halves_inside(trim, lines)
+        probes = [border, inner_probes(part, number, lines, finer)]
+        away = np.concatenate([each.distance(found.derivatives[:, 0]) for each in probes])
+        found = found._replace(gap=float(away.max(initial=0.0)))
+        far = away > (np.inf if step is None else step)
+        if not far.any():
+            break
+        lines = denser(lines, finer, np.concatenate([each.uv for each in probes])[far], trim)
+        inside = trim.inside_grid(lines.u, lines.v)
+        if inside.sum() > most or inside.size > nodes:
+            break
+        found = _on_grid(part, number, trim, lines, inside)._replace(gap=found.gap)
+    return found
+
+
+def _covered(found: _FaceSamples) -> bool:
+    """Nodes stand all over the face and along its border: it is no farther from them than they are from each other."""
+    return found.grid is not None and bool((found.grid.index >= 0).all())
 
 
 def _on_grid(part: Part, number: int, trim: Trim, lines: Lines, inside: NDArray[np.bool_]) -> _FaceSamples:
@@ -140,24 +201,43 @@ def _on_grid(part: Part, number: int, trim: Trim, lines: Lines, inside: NDArray[
     return _FaceSamples(number, derivatives, uv, weight, np.concatenate(pairs), face_grid)
 
 
-def _in_triangles(part: Part, number: int) -> _FaceSamples | None:
-    """Middles of the face's triangles, for a face that no grid hits."""
+def _in_triangles(part: Part, number: int, step: float | None) -> _FaceSamples | None:
+    """Middles of the face's triangles, halved down to a step, for a face that no grid hits."""
     size = float(np.linalg.norm(part.size))
     mesh = uv_meshes(part, [number], 1e-3 * size, 0.5).get(number)
     if mesh is None:
         return None
-    corners = mesh.uv[mesh.corner]
+    corners = _halved_to(part, number, mesh.uv[mesh.corner], step or np.inf)
     uv = corners.mean(axis=1)
     derivatives = part.surface(number).second(uv[:, 0], uv[:, 1])
     (a, b) = (corners[:, k] - corners[:, 0] for k in (1, 2))
     weight = _density(derivatives) * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-    # Triangles that share two corners are neighbours.
-    sides = np.sort(np.concatenate([mesh.corner[:, [0, 1]], mesh.corner[:, [1, 2]], mesh.corner[:, [2, 0]]]), axis=1)
-    owner = np.tile(np.arange(len(uv)), 3)
-    order = np.lexsort(sides.T)
-    same = (sides[order][1:] == sides[order][:-1]).all(axis=1)
-    pairs = np.stack([owner[order][:-1][same], owner[order][1:][same]], axis=1).astype(np.int32)
-    return _FaceSamples(number, derivatives, uv, weight, pairs, None)
+    # The face is thin: what lies next to a middle is nearest to it.
+    known = np.flatnonzero(np.isfinite(derivatives[:, 0]).all(axis=1))
+    pairs = np.zeros((0, 2), np.int32)
+    if len(known) > 1:
+        tree = cKDTree(derivatives[known, 0])
+        beside = tree.query(derivatives[known, 0], min(_BESIDE + 1, len(known)))[1]
+        both = np.stack([np.repeat(np.arange(len(known)), beside.shape[1]), beside.ravel()], axis=1)
+        both = np.unique(np.sort(both[both[:, 0] != both[:, 1]], axis=1), axis=0)
+        pairs = known[both].astype(np.int32)
+    gap = border_probes(part, number, step or 0.0).distance(derivatives[:, 0]).max(initial=0.0)
+    return _FaceSamples(number, derivatives, uv, weight, pairs, None, float(gap))
+
+
+def _halved_to(part: Part, number: int, corners: Floats, step: float) -> Floats:
+    """Triangles (n, 3, 2) in parameters, halved across their longest sides until these are at most a step long, mm."""
+    while True:
+        there = part.surface(number).values(corners[..., 0].ravel(), corners[..., 1].ravel()).reshape(-1, 3, 3)
+        side = np.linalg.norm(np.roll(there, -1, axis=1) - there, axis=2)
+        longest = np.nan_to_num(side).argmax(axis=1)
+        long = np.nan_to_num(side).max(axis=1) > step
+        if not long.any() or len(corners) + long.sum() > _FEW_SAMPLES:
+            return corners
+        rows = np.arange(len(corners))[:, None]
+        a, b, c = np.moveaxis(corners[rows, (longest[:, None] + np.arange(3)) % 3][long], 1, 0)
+        middle = 0.5 * (a + b)
+        corners = np.concatenate([corners[~long], np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
 
 
 def _together(
@@ -171,11 +251,7 @@ def _together(
     face = np.repeat(np.array([f.number for f in taken], np.int32), np.diff(start))
     within = [f.pairs + s for f, s in zip(taken, start[:-1], strict=True)]
     gaps = [_gap(point, pairs) for pairs in within]
-    to_border = [
-        border_gap(part, f.number, f.derivatives[:, 0], gap)
-        for f, gap in zip(taken, gaps, strict=True)
-        if f.grid is None or not _all_along(part.trim(f.number), f.grid)
-    ]
+    whole = [max(gap, f.gap) for f, gap in zip(taken, gaps, strict=True)]
     neighbours = np.concatenate([*within, smooth_joints(part, orientation, point, face, dict(
         zip([f.number for f in taken], gaps, strict=True)))]).astype(np.int32)  # fmt: skip
     bad = np.concatenate([g.bad for g in geometry]) if geometry else np.zeros(0, bool)
@@ -191,8 +267,9 @@ def _together(
         unjudged=np.where(bad, 0, -1).astype(np.int32),
         reasons=REASONS if bad.any() else (),
         grids=tuple(_moved(f.grid, int(s)) for f, s in zip(taken, start[:-1], strict=True) if f.grid is not None),
-        max_gap=max(gaps + to_border, default=0.0),
+        max_gap=max(whole, default=0.0),
         empty=empty,
+        face_gaps=tuple((f.number, gap) for f, gap in zip(taken, whole, strict=True)),
     )  # fmt: skip
 
 
@@ -218,11 +295,6 @@ def _gap(point: Floats, pairs: Ints) -> float:
     if not len(pairs):
         return 0.0
     return float(np.nanmax(np.linalg.norm(point[pairs[:, 0]] - point[pairs[:, 1]], axis=1), initial=0.0))
-
-
-def _all_along(trim: Trim | None, grid: FaceGrid) -> bool:
-    """True if nodes stand all along the border: it is no farther from them than they are from each other."""
-    return trim is not None and trim.rectangular and bool((grid.index >= 0).all())
 
 
 def _linked(first: Ints, second: Ints) -> Ints:

@@ -55,10 +55,10 @@ const WORDS: Record<string, string> = {
   accessible: "accessible",
   undecided: "undecided",
   inaccessible: "inaccessible",
-  unjudged: "not judged",
+  unjudged: "could not be judged",
   local_gouge: "local gouge",
   rear_gouge: "rear gouge",
-  check: "check face",
+  check: "not judged (obstacle only)",
   fixture: "fixture",
 };
 

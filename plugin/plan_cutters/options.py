@@ -89,7 +89,7 @@ class Options:
         the same ways, without fixtures and clamped faces of their own.
     faces : str or objects, optional
         Target faces, in the words of the command line, or as numbers, or as objects of the kernel or a CAD host. Default:
-        the faces picked on the object that the part was made from; where none were, `sculptured`.
+        the faces picked on the object that the part was made from; where none were, `sculptured,blends`.
     ignore : str, list of str or objects
         Faces that are neither targets nor obstacles, in the same words.
     grid : int, optional

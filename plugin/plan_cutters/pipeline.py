@@ -166,8 +166,9 @@ def prepare(
     with clock.stage("sample"):
         chosen = choose(whole, options.faces, scene.ignored, scene.ignore, options.placement)
         spacing: Spacing = options.spacing
+        coarser = 1.0
         if options.grid is None and options.spacing is None:
-            spacing = default_spacing(whole, scene.orientation, chosen.targets, cutters)
+            spacing, coarser = default_spacing(whole, scene.orientation, chosen.targets, cutters)
         _affordable(whole, chosen.targets, options)
         samples = sample(whole, scene.orientation, grid=options.grid, spacing=spacing, faces=chosen.targets)
     with clock.stage("classify"):
@@ -192,7 +193,9 @@ def prepare(
         warm(contacts_of(samples), cutters[0], conditions)
     with clock.stage("bodies"):
         within = buried(samples, scene.orientation, around.enclosing, around.surely, scene.tolerance)
-    return Prepared(scene, options, chosen, spacing, samples, surface_class, region, within, conditions, cutters)
+    return Prepared(
+        scene, options, chosen, spacing, samples, surface_class, region, within, conditions, cutters, coarser
+    )
 
 
 def _read(part: Any, options: Options, timeout: float) -> Part | Scene:
@@ -249,7 +252,9 @@ def assemble(
                              ready.conditions, budget=budget)  # fmt: skip
         area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
                          short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
-        entries = [e.model_copy(update={"area": area}) if e.id == best else e for e in entries]
+        entries = [
+            e.model_copy(update={"area": area, "seen": e.seen or area.feasible}) if e.id == best else e for e in entries
+        ]
     with clock.stage("plan", shown=False):
         document = plan_of(
             ready,

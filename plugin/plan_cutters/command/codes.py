@@ -28,7 +28,10 @@ def code_of(plan: "Plan") -> int:
         doubtful = plan.missing and any(c.feasible is None for c in plan.cutters)
         return NOT_ALL_JUDGED if doubtful else NONE_FEASIBLE
     unjudged = plan.samples.unjudged or any(f.target and f.unjudged for f in plan.faces)
-    return NOT_ALL_JUDGED if unjudged else FEASIBLE
+    taken = plan.selected or plan.selected_over_setups
+    # Who says how densely to sample has asked for what lies between.
+    unseen = plan.effective.sampled_by == "default" and any(c.id == taken and not c.seen for c in plan.cutters)
+    return NOT_ALL_JUDGED if unjudged or unseen else FEASIBLE
 
 
 def guarded(work: Any, debug: bool) -> tuple[int, str]:

@@ -12,7 +12,7 @@ from plan_cutters.command.grouped import heading
 from plan_cutters.command.values import File, Folder, Range, Setup, Words
 
 EXAMPLES = (
-    ("plan-cutters blade.step", "The sculptured faces, with the built-in cutters:"),
+    ("plan-cutters blade.step", "The sculptured faces and fillets, with the built-in cutters:"),
     (
         "plan-cutters blade.step --cutter D12L80 --cutter D6L60rc3 --holder er32",
         "Two cutters, flat and ball, in a holder:",
@@ -31,7 +31,11 @@ CODES = (
     ("1", "none does; the plan says where and why"),
     ("2", "the command line, a library or a machine file is wrong"),
     ("3", "the part or a fixture cannot be read, or holds nothing to judge"),
-    ("4", "a cutter would finish all that could be judged, but something could not, or obstacles are missing"),
+    (
+        "4",
+        "a cutter would finish all that could be judged, but something could not, obstacles are missing, or samples are farther "
+        "apart than its radius and nobody asked for that",
+    ),
     ("130", "interrupted; nothing is half-written"),
 )
 
@@ -113,10 +117,12 @@ _OPTIONS = (
     ),
     _faces(
         "--faces",
-        default="sculptured",
+        default="sculptured,blends",
         type=Words("SELECT", values.face_words),
-        help="`sculptured`, `all`, `F3,7-12`, `component:NAME`, `name:REGEX` or `color:#RRGGBB`, after a `!` all but these; "
-        "the others are obstacles.  [default: sculptured]",
+        help="`sculptured` (what is no plane, cylinder, cone, sphere or torus in shape; all faces where none is), `blends` "
+        "(fillets and rounds: they join two faces smoothly), `all`, `F3,7-12`, a list of these, `component:NAME`, `name:REGEX` "
+        "or `color:#RRGGBB`, after a `!` all but these; the others are not judged, only obstacles.  "
+        "[default: sculptured,blends]",
     ),
     _faces(
         "--ignore",

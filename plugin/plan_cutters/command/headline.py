@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from rich.text import Text
 
 from plan_cutters.command.rows import cell
+from plan_cutters.document.judged import judged
 from plan_cutters.document.names import described
 from plan_cutters.document.told import lost as lost_percent
 from plan_cutters.document.told import percent
@@ -19,7 +20,7 @@ _MARKS = {True: "bold green", False: "bold red", None: "bold yellow"}
 def headline(plan: "Plan", names: Mapping[str, str]) -> list[Text]:
     """Which cutter to take, with what holder, and why; or why none."""
     entries, told = {c.id: c for c in plan.cutters}, {c.id: described(c, names[c.id]) for c in plan.cutters}
-    part, setups = plan.part.file or "the part", 1 + len(plan.effective.other_setups)
+    part, setups = judged(plan), 1 + len(plan.effective.other_setups)
     if plan.selected:
         c = entries[plan.selected]
         which = (
@@ -34,7 +35,7 @@ def headline(plan: "Plan", names: Mapping[str, str]) -> list[Text]:
                         "every sample; no setup does alone.")]  # fmt: skip
     if plan.selected_for_setup:
         c = entries[plan.selected_for_setup]
-        return [_marked(f"Take {names[c.id]} in this setup", None, f" of {part}: {told[c.id]}. It leaves only what the axis "
+        return [_marked(f"Take {names[c.id]} in this setup", None, f" for {part}: {told[c.id]}. It leaves only what the axis "
                         f"limit keeps from every cutter, {lost_percent(c, c.area_share)} of the area: that needs another "
                         "setup.")]  # fmt: skip
     best = min(plan.cutters, key=lambda c: c.inaccessible + c.undecided)

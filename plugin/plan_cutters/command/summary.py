@@ -10,6 +10,7 @@ from plan_cutters.command.answered import answered
 from plan_cutters.command.headline import between, headline
 from plan_cutters.command.rows import cell, cutter_rows, shown, take, worst_faces
 from plan_cutters.command.terminal import say
+from plan_cutters.document.judged import not_judged, not_seen
 from plan_cutters.document.names import named, short_names
 from plan_cutters.document.told import lost as lost_percent
 from plan_cutters.document.told import percent
@@ -32,6 +33,7 @@ def summary(plan: "Plan", *, verbose: bool = False) -> None:
     say(
         "",
         *headline(plan, names),
+        *map(cell, (*not_judged(plan), *not_seen(plan, names))),
         *between(plan),
         cell(f"{faces}, with {plan.samples.count} samples, at most {plan.samples.max_gap_mm:.3g} mm apart. {_machine(plan)}"),
         "",

@@ -129,4 +129,4 @@ def answers() -> Sequence[str]:
 
 
 def face_words() -> Sequence[str]:
-    return ("sculptured", "all", "component:", "name:", "color:#")
+    return ("sculptured", "blends", "all", "component:", "name:", "color:#")

@@ -15,12 +15,10 @@ from plan_cutters.document.model import (
     CutterEntry,
     FaceEntry,
     MissingEntry,
-    OrientationInfo,
-    PartInfo,
-    SewingInfo,
     StageEntry,
     WitnessEntry,
 )
+from plan_cutters.document.part_info import OrientationInfo, PartInfo, SewingInfo
 from plan_cutters.document.shares import counts, face_verdicts, whole_share
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.shapes import flute_length, modes
@@ -33,7 +31,9 @@ from plan_cutters.domain.verdicts import (
 )
 from plan_cutters.options import Options
 from plan_cutters.scene.faces import Chosen
+from plan_cutters.scene.prepared import Prepared
 from plan_cutters.scene.scene import Scene
+from plan_cutters.scene.spacing import BUDGET
 from plan_cutters.scene.surroundings import Surroundings
 
 
@@ -97,6 +97,7 @@ def cutter_entry(
         clearance_mm=cutter.clearance or 0.0,
         slack_mm=slack,
         feasible=feasible,
+        seen=samples.max_gap <= cutter.radius,
         march_differs=march_differs,
         **mine,
         by_reason={name: int((lost & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
@@ -159,7 +160,7 @@ def _sewing(part: Part) -> SewingInfo | None:
 
 def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen) -> list[FaceEntry]:
     """Every face of the part, judged or not."""
-    empty = dict(samples.empty)
+    empty, gaps = dict(samples.empty), dict(samples.face_gaps)
     chosen, ignored = set(choice.targets), set(choice.ignored)
     component = component_of(part.tree)
     result = []
@@ -176,11 +177,13 @@ def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen) -> list[Fa
                 name=face.name,
                 surface=face.surface,
                 shape=face.shape,
+                kind="blend" if face.number in choice.blends else face.shape,
                 target=face.number in chosen,
                 ignored=face.number in ignored,
                 area_mm2=face.area,
                 component=component[face.number],
                 samples=int(mine.sum()),
+                gap_mm=gaps.get(face.number),
                 unjudged=reason if face.number in chosen else face.unjudged,
             )
         )
@@ -191,7 +194,7 @@ def notes(scene: Scene, options: Options, samples: SurfaceSamples, cutters: Sequ
     """What the verdicts do not say."""
     notes = [
         *_tool_notes(options, cutters),
-        f"Verdicts are about samples; grid neighbours, and borders from the nearest sample of their face, are at most "
+        f"Verdicts are about samples; grid neighbours, and points of a face from its nearest sample, are at most "
         f"{samples.max_gap:.3g} mm apart.",
     ]
     if samples.empty:
@@ -214,6 +217,21 @@ def notes(scene: Scene, options: Options, samples: SurfaceSamples, cutters: Sequ
     notes += _around_notes(scene.part, scene.around)
     notes += fixture_notes(scene.around.fixtures, several=bool(options.other_setups))
     return notes
+
+
+def sampling_notes(ready: Prepared) -> Iterator[str]:
+    """Where samples are farther apart than was asked, or than they should be."""
+    spacing = ready.spacing
+    if ready.coarser > 1.0:
+        yield (f"Samples are {ready.coarser:.3g} times as far apart as curvature and the smallest cutter ask, for a default plan "
+               f"takes about {BUDGET:,}: --spacing asks for more, --faces for less.")  # fmt: skip
+    if spacing is None:
+        return
+    step = spacing if isinstance(spacing, dict) else dict.fromkeys(ready.chosen.targets, spacing)
+    wide = [f"F{number}" for number, gap in ready.samples.face_gaps if gap > step[number] * (1 + 1e-6)]
+    if wide:
+        yield (f"Samples are farther apart than asked on {listed(wide)}, whose borders no grid follows: `gap_mm` of each face in "
+               "plan.json says how far.")  # fmt: skip
 
 
 def _tool_notes(options: Options, cutters: Sequence[Cutter]) -> Iterator[str]:

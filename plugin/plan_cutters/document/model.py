@@ -9,6 +9,8 @@ from pydantic import Field
 
 from plan_cutters.document.answers import MendEntry, RadiusEntry, StickOutEntry
 from plan_cutters.document.frozen import Frozen, Posture, Vector
+from plan_cutters.document.part_info import PartInfo
+from plan_cutters.document.scope import Scope
 from plan_cutters.document.shares import AreaShare, FaceVerdicts, Verdicts
 from plan_cutters.document.travel import PlacementEntry, TravelEntry
 
@@ -18,33 +20,6 @@ FORMAT_VERSION = 1
 class Units(Frozen):
     length: Literal["mm"] = "mm"
     angle: Literal["deg"] = "deg"
-
-
-class OrientationInfo(Frozen):
-    """How the side out of the material was found, and whether that is more than a guess."""
-
-    method: str
-    confident: bool
-
-
-class SewingInfo(Frozen):
-    """Faces that stand in no solid, joined where their edges coincide to find out which side is material."""
-
-    tolerance_mm: float | None = Field(description="the smallest tried that left the least open; null: nothing to join")
-    tried_mm: float | None = Field(description="the largest tried")
-    open_edges: int = Field(description="edges that still belong to one face alone")
-    open_length_mm: float
-
-
-class PartInfo(Frozen):
-    file: str | None
-    sha256: str | None
-    size_mm: Vector
-    solids: int
-    faces: int
-    orientation: OrientationInfo
-    sewing: SewingInfo | None = Field(default=None, description="null where every face belongs to a solid")
-    warnings: list[str]
 
 
 class Effective(Frozen):
@@ -71,6 +46,9 @@ class Effective(Frozen):
     target_faces: list[str]
     grid: int | None = Field(description="samples a side and face; null where sampled by spacing")
     spacing_mm: float | None = Field(description="largest spacing asked for; null where sampled by grid")
+    sampled_by: Literal["default", "spacing", "grid"] = Field(
+        default="default", description="who said how densely: nobody, `--spacing` or `--grid`"
+    )
     tilt_deg: tuple[float, float]
     rotation_deg: tuple[float, float]
     rotation_step_deg: float
@@ -92,8 +70,8 @@ class Effective(Frozen):
 class SampleCounts(Frozen):
     count: int
     max_gap_mm: float = Field(
-        description="largest distance between grid neighbours, and from the border of a sampled face to its nearest "
-        "sample; verdicts are about samples"
+        description="largest distance between neighbours on a face's grid, and from a point of a sampled face, up to its "
+        "border, to the nearest sample of that face; verdicts are about samples"
     )
     convex: int
     concave: int
@@ -107,11 +85,15 @@ class FaceEntry(Frozen):
     name: str
     surface: str = Field(description="kind of the stored surface")
     shape: str = Field(description="what it is in shape: plane, cylinder, cone, sphere, torus or sculptured")
+    kind: str = Field(default="", description="`shape`, or `blend`: a fillet or round that joins two faces smoothly")
     target: bool
     ignored: bool = Field(default=False, description="neither a target nor an obstacle")
     area_mm2: float
     component: str = Field(description="names of the instances in the file down to the product that it belongs to")
     samples: int
+    gap_mm: float | None = Field(
+        default=None, description="as `samples.max_gap_mm`, of this face alone; null where it was not sampled"
+    )
     unjudged: str | None = Field(description="why the face, or some of its samples, could not be judged")
 
 
@@ -277,6 +259,11 @@ class CutterEntry(Verdicts):
         description="null: only undecided samples stand in the way, or it reaches all that could be judged but obstacles are "
         "missing"
     )
+    seen: bool = Field(
+        default=True,
+        description="no point of the sampled faces is farther from their samples than its radius, nor grid neighbours from each "
+        "other (`samples.max_gap_mm`), or the area between them is proved; `feasible` is about the samples all the same",
+    )
     march_differs: int = Field(description="convex samples on which the seed's boundary march gives another answer")
     by_reason: dict[str, int] = Field(description="inaccessible samples by reason")
     undecided_by_reason: dict[str, int]
@@ -355,6 +342,7 @@ class Plan(Frozen):
     effective: Effective
     versions: dict[str, str]
     samples: SampleCounts
+    scope: Scope | None = Field(default=None, description="which faces were judged; null in older files")
     faces: list[FaceEntry]
     missing: list[MissingEntry]
     reasons: list[str] = Field(description="what `reason_ID` in samples.npz counts in")
@@ -382,6 +370,7 @@ class Plan(Frozen):
     )
     notes: list[str] = Field(description="what these verdicts do not say")
     legend: dict[str, str] = Field(description="colour of each verdict in the STEP and GLB files, sRGB")
+    legend_words: dict[str, str] = Field(default={}, description="what those colours mean, in words for people")
     split: dict[str, SplitEntry] = Field(default={}, description="faces of mixed verdicts: how the models show them")
     files: dict[str, FileEntry] = Field(default={}, description="what was written beside this file, by format")
     not_written: dict[str, str] = Field(default={}, description="formats asked for whose file is missing, and why")

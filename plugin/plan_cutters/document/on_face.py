@@ -131,5 +131,5 @@ def _unjudged(entry: FaceEntry) -> str:
     if entry.ignored:
         return "it is ignored: neither a target nor an obstacle"
     if not entry.target:
-        return "it is a check face: an obstacle, not a target"
+        return "it is a check face: not judged, an obstacle only"
     return entry.unjudged or ""

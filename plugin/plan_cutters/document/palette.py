@@ -13,6 +13,18 @@ PALETTE = {
     "fixture": "#0072B2",
 }
 LABELS = tuple(PALETTE)
+#: What each of them means, in words for people.
+MEANING = {
+    "interference_free": "interference-free",
+    "accessible": "accessible",
+    "undecided": "undecided",
+    "inaccessible": "inaccessible",
+    "unjudged": "could not be judged",
+    "check": "not judged (obstacle only)",
+    "ignored": "ignored: neither judged nor an obstacle",
+    "mixed": "mixed: could not be split",
+    "fixture": "fixture",
+}
 #: What forbids a tilt in a posture map -> sRGB hex; hatches tell them apart as well.
 CAUSES = {
     "no_contact": "#E5E5E5",

@@ -15,10 +15,12 @@ from plan_cutters.document.build import (
     missing_entries,
     notes,
     part_info,
+    sampling_notes,
     versions,
 )
 from plan_cutters.document.fixtures import fixture_entry
 from plan_cutters.document.frozen import vector
+from plan_cutters.document.judged import scope_of
 from plan_cutters.document.libraries import library_entry, source_entry
 from plan_cutters.document.model import (
     CutterEntry,
@@ -32,7 +34,7 @@ from plan_cutters.document.model import (
     SetupEntry,
     SetupReach,
 )
-from plan_cutters.document.palette import PALETTE
+from plan_cutters.document.palette import MEANING, PALETTE
 from plan_cutters.document.shares import counts
 from plan_cutters.document.travel import placement_entry, travel_entry, travel_notes
 from plan_cutters.domain.answers import Answers
@@ -53,6 +55,7 @@ def plan_of(
     """The plan of a part from the entries of its cutters, and what was answered after them."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
     part, around = scene.part, scene.around
+    faces = face_entries(part, samples, choice)
     return Plan(
         part=part_info(scene),
         effective=Effective(
@@ -73,6 +76,7 @@ def plan_of(
             target_faces=[f"F{n}" for n in choice.targets],
             grid=options.grid,
             spacing_mm=max(ready.spacing.values()) if isinstance(ready.spacing, dict) else ready.spacing,
+            sampled_by="grid" if options.grid is not None else "default" if options.spacing is None else "spacing",
             tilt_deg=degrees(options.postures.tilt),
             rotation_deg=degrees(options.postures.rotation),
             rotation_step_deg=float(np.degrees(options.postures.step)),
@@ -96,7 +100,8 @@ def plan_of(
             unjudged=int((samples.unjudged >= 0).sum()),
             regions=len(np.unique(ready.region)),
         ),
-        faces=face_entries(part, samples, choice),
+        scope=scope_of(faces),
+        faces=faces,
         missing=missing_entries(part, around),
         reasons=list(REASONS),
         machine=machine_entry(options.machine, ready.conditions.kinematics),
@@ -112,10 +117,12 @@ def plan_of(
         notes=[
             *notes(scene, options, samples, ready.cutters),
             *choice.notes,
+            *sampling_notes(ready),
             *travel_notes(options),
             *area_notes(entries, doubtful=around.doubtful),
         ],
         legend=PALETTE if around.fixtures else {word: PALETTE[word] for word in PALETTE if word != "fixture"},
+        legend_words=MEANING if around.fixtures else {word: MEANING[word] for word in PALETTE if word != "fixture"},
         run=Run(time=started.isoformat(timespec="seconds"), seconds={}),
     )
 

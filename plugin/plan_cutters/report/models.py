@@ -19,7 +19,7 @@ from cad_io.write.gltf import Other as Drawn
 from cad_io.write.step import Other as Product
 from cad_io.write.step import write_step as write_cad
 from plan_cutters.document.model import SplitEntry
-from plan_cutters.document.palette import LABELS, rgb
+from plan_cutters.document.palette import LABELS, MEANING, rgb
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED
 
 _LABEL = {
@@ -130,6 +130,7 @@ def write_glb(result: Any, split: Any, path: Path, *, merged: bool = False) -> N
             "component": entry.component,
             "layers": list(result.part.layers.get(face, ())),
             "surface": entry.surface,
+            "kind": entry.kind,
             "target": entry.target,
             "ignored": entry.ignored,
             "cutter": shown.id,
@@ -143,7 +144,12 @@ def write_glb(result: Any, split: Any, path: Path, *, merged: bool = False) -> N
         path,
         styles(result),
         extras=extras,
-        piece_extras=lambda p: {"face": f"F{p.face}", "verdict": verdict_of(p), "cutter": shown.id},
+        piece_extras=lambda p: {
+            "face": f"F{p.face}",
+            "verdict": verdict_of(p),
+            "meaning": MEANING[verdict_of(p)],
+            "cutter": shown.id,
+        },
         merged=merged,
         others=[
             Drawn(each.name, each.shown, rgb("fixture"), entry.model_dump(mode="json"))

@@ -16,7 +16,7 @@ from cad_io.errors import WriteError
 from cad_io.kernel import translated
 from cad_io.write import meshes_of
 from plan_cutters.document.names import short_names
-from plan_cutters.document.palette import LABELS, rgb
+from plan_cutters.document.palette import LABELS, MEANING, rgb
 from plan_cutters.domain.posture import unit
 from plan_cutters.report.sheet import DPI, figure, fitting, printable, save, write
 from plan_cutters.report.views import FINER, Body, View, averaged, borders, fitted, frame_towards, view
@@ -40,7 +40,7 @@ _WORDS = {
     "inaccessible": "inaccessible",
     "unjudged": "unjudged",
     "mixed": "mixed: could not be split",
-    "check": "check face: an obstacle, not a target",
+    "check": MEANING["check"],
     "fixture": "fixture",
 }
 #: The second channel: what patterns stand for. As matplotlib writes hatches, for the legend.

@@ -15,9 +15,17 @@ if TYPE_CHECKING:
     from cad_io import Part
     from cad_io.kernel.assembly import Node
 
-_WORDS = "sculptured, all, numbers as F3,7-12, component:NAME, name:REGEX, color:#RRGGBB, or one of them after a ! for all others"
+#: The faces that a finisher would finish: what is judged where nobody says more.
+DEFAULT = "sculptured,blends"
+_WORDS = (
+    "sculptured, blends, all, numbers as F3,7-12, a list of these, component:NAME, name:REGEX, color:#RRGGBB, or one of them "
+    "after a ! for all others"
+)
+_KINDS = ("sculptured", "blends", "all")
 _RANGE = r"[Ff]?[0-9]+(?:\s*-\s*[Ff]?[0-9]+)?"
+_ITEM = rf"(?:{'|'.join(_KINDS)}|{_RANGE})"
 _NUMBERS = re.compile(rf"{_RANGE}(?:\s*,\s*{_RANGE})*")
+_LIST = re.compile(rf"{_ITEM}(?:\s*,\s*{_ITEM})*")
 _COLOUR = re.compile(r"colou?r:#([0-9a-fA-F]{6})")
 #: Digits of a number that are looked at: more than any part has faces.
 _DIGITS = 12
@@ -39,6 +47,8 @@ class Chosen:
         The words for `ignored`.
     notes : tuple of str
         What the plan must say of the choice.
+    blends : frozenset of int
+        Faces of the part that are fillets and rounds, whether chosen or not.
     """
 
     targets: tuple[int, ...]
@@ -46,6 +56,7 @@ class Chosen:
     asked: str
     ignore: tuple[str, ...]
     notes: tuple[str, ...]
+    blends: frozenset[int] = frozenset()
 
 
 def choose(
@@ -57,7 +68,7 @@ def choose(
     ----------
     part : Part
     faces : str, objects or None
-        None: the faces picked on the host's object, else `sculptured`.
+        None: the faces picked on the host's object, else `DEFAULT`.
     ignored : collection of int
         Faces to leave out.
     ignore : tuple of str
@@ -70,10 +81,10 @@ def choose(
     OptionError
         A choice has no meaning, nothing is left, or a face is asked for by its number and ignored.
     """
-    asked = _word(part, part.picked or "sculptured" if faces is None else faces, "--faces")
-    targets = select_faces(part.faces, asked, tree=part.tree, ignored=ignored)
+    asked = _word(part, part.picked or DEFAULT if faces is None else faces, "--faces")
+    targets = select_faces(part.faces, asked, tree=part.tree, ignored=ignored, blends=part.blends)
     notes = []
-    if asked == "sculptured" and _none_sculptured(part.faces[n - 1] for n in targets):
+    if _finished(asked) and _none_sculptured(part.faces[n - 1] for n in targets):
         notes.append(
             f"No face that can be judged is sculptured: all are targets ({len(targets)}); --faces chooses among them."
         )
@@ -82,7 +93,9 @@ def choose(
             f"{len(ignored)} faces are ignored, neither targets nor obstacles: {_some(f'F{n}' for n in sorted(ignored))}."
         )
     if placed is not None and placed.clamped:
-        held = frozenset().union(*(_selected(part.faces, text, part.tree, placed.where) for text in placed.clamped))
+        held = frozenset().union(
+            *(_selected(part.faces, text, part.tree, placed.where, part.blends) for text in placed.clamped)
+        )
         left = tuple(n for n in targets if n not in held)
         if not left:
             raise OptionError(f"{placed.where} {_brief(', '.join(placed.clamped))} leaves no target face")
@@ -94,7 +107,7 @@ def choose(
             )
             notes.append(f"{what}: {_some(lost)}.")
         targets = left
-    return Chosen(targets, tuple(sorted(ignored)), asked, ignore, tuple(notes))
+    return Chosen(targets, tuple(sorted(ignored)), asked, ignore, tuple(notes), part.blends)
 
 
 def ignored_words(part: "Part", ignore: Any) -> tuple[str, ...]:
@@ -104,7 +117,7 @@ def ignored_words(part: "Part", ignore: Any) -> tuple[str, ...]:
 
 def ignored_faces(part: "Part", words: Sequence[str]) -> frozenset[int]:
     """Numbers of the faces to leave out, from their words (`ignored_words`)."""
-    return frozenset().union(*(_selected(part.faces, text, part.tree, "--ignore") for text in words))
+    return frozenset().union(*(_selected(part.faces, text, part.tree, "--ignore", part.blends) for text in words))
 
 
 def face_numbers(part: "Part", given: Any) -> tuple[int, ...]:
@@ -118,12 +131,13 @@ def face_numbers(part: "Part", given: Any) -> tuple[int, ...]:
     text = _word(part, given, "faces")
     if named := tuple(f.number for f in part.faces if f.name and f.name == text):
         return named
-    return tuple(sorted(_selected(part.faces, text, part.tree, "faces")))
+    return tuple(sorted(_selected(part.faces, text, part.tree, "faces", part.blends)))
 
 
 def select_faces(
-    faces: Sequence[FaceInfo], text: str, *, tree: "Sequence[Node]" = (), ignored: Iterable[int] = ()
-) -> tuple[int, ...]:
+    faces: Sequence[FaceInfo], text: str, *, tree: "Sequence[Node]" = (), ignored: Iterable[int] = (),
+    blends: Collection[int] = (),
+) -> tuple[int, ...]:  # fmt: skip
     """Numbers of the target faces, ascending.
 
     Parameters
@@ -131,12 +145,15 @@ def select_faces(
     faces : sequence of FaceInfo
         All faces of the part.
     text : str
-        `sculptured` (all where there is none), `all`, numbers as `F3,7-12`, `component:NAME`, `name:REGEX` or
-        `color:#RRGGBB`; after a `!` all faces but these.
+        `sculptured`, `blends`, `all`, numbers as `F3,7-12`, a list of these, `component:NAME`, `name:REGEX` or
+        `color:#RRGGBB`; after a `!` all faces but these. `sculptured`, with or without `blends`, is all faces where none is
+        sculptured.
     tree : sequence of Node
         Components of the part.
     ignored : iterable of int
         Faces that cannot be targets.
+    blends : collection of int
+        Numbers of the faces that are fillets and rounds.
 
     Raises
     ------
@@ -145,13 +162,11 @@ def select_faces(
     """
     out = frozenset(ignored)
     left = [f for f in faces if f.number not in out]
-    if text == "sculptured":
-        chosen = [f.number for f in left if f.shape == "sculptured"]
-        # What has no surface may have been sculptured: it is asked for, but alone it would hide all others.
-        if _none_sculptured(faces[n - 1] for n in chosen):
-            chosen = [f.number for f in left]
+    # What has no surface may have been sculptured: it is asked for, but alone it would hide all others.
+    if _finished(text) and _none_sculptured(left):
+        chosen = [f.number for f in left]
     else:
-        found = _selected(faces, text, tree, "--faces")
+        found = _selected(faces, text, tree, "--faces", blends)
         both = out & found
         if both and _NUMBERS.fullmatch(text.strip()):
             raise OptionError(f"--faces {_brief(text)}: F{min(both)} is ignored (--ignore): it cannot be a target")
@@ -159,6 +174,12 @@ def select_faces(
     if not chosen:
         raise OptionError(f"--faces {_brief(text)}: --ignore leaves none of these faces")
     return tuple(chosen)
+
+
+def _finished(text: str) -> bool:
+    """The words ask for what is sculptured in a part, with its blends or without."""
+    words = {word.strip() for word in text.split(",")}
+    return "sculptured" in words and words <= set(DEFAULT.split(","))
 
 
 def _none_sculptured(faces: Iterable[FaceInfo]) -> bool:
@@ -169,14 +190,14 @@ def _none_sculptured(faces: Iterable[FaceInfo]) -> bool:
 def grammar(text: str, option: str) -> None:
     """Whether a text is a selection at all, whatever the part: an OptionError that names the option, if not."""
     where, plain = f"{option} {_brief(text)}", text.strip().removeprefix("!").strip()
-    if plain in ("all", "sculptured") or plain.startswith("component:") or _COLOUR.fullmatch(plain):
+    if plain.startswith("component:") or _COLOUR.fullmatch(plain):
         return
     if plain.startswith("name:"):
         try:
             re.compile(plain.removeprefix("name:"))
         except (re.error, RecursionError, OverflowError) as error:
             raise OptionError(f"{where}: not a regular expression ({error})") from None
-    elif _NUMBERS.fullmatch(plain):
+    elif _LIST.fullmatch(plain):
         for item, first, last, _ in _ends(plain):
             if first > last:
                 raise OptionError(f"{where}: {_brief(item)} runs backwards")
@@ -186,19 +207,17 @@ def grammar(text: str, option: str) -> None:
         raise OptionError(f"{where}: give {_WORDS}")
 
 
-def _selected(faces: Sequence[FaceInfo], text: str, tree: "Sequence[Node]", option: str) -> set[int]:
+def _selected(
+    faces: Sequence[FaceInfo], text: str, tree: "Sequence[Node]", option: str, blends: Collection[int]
+) -> set[int]:
     """Numbers that a text selects: the one grammar of face selections."""
     where = f"{option} {_brief(text)}"
     word = text.strip()
     plain = word.removeprefix("!").strip()
     every = {f.number for f in faces}
-    if not _NUMBERS.fullmatch(plain):  # of numbers the part has more to say
+    if not _LIST.fullmatch(plain):  # of numbers the part has more to say
         grammar(text, option)
-    if plain == "all":
-        chosen = every
-    elif plain == "sculptured":
-        chosen = {f.number for f in faces if f.shape == "sculptured"}
-    elif plain.startswith("component:"):
+    if plain.startswith("component:"):
         chosen = _of_component(tree, plain.removeprefix("component:"), where)
     elif plain.startswith("name:"):
         pattern = re.compile(plain.removeprefix("name:"))
@@ -207,9 +226,15 @@ def _selected(faces: Sequence[FaceInfo], text: str, tree: "Sequence[Node]", opti
         wanted = tuple(bytes.fromhex(match[1]))
         chosen = {f.number for f in faces if f.colour and tuple(round(255 * c) for c in f.colour) == wanted}
     else:
-        chosen = _numbered(plain, len(faces), where)
+        kinds = {
+            "all": every,
+            "blends": set(blends),
+            "sculptured": {f.number for f in faces if f.shape == "sculptured"},
+        }
+        words = {word.strip() for word in plain.split(",")} & set(_KINDS)
+        chosen = _numbered(plain, len(faces), where).union(*(kinds[word] for word in words))
     # All but what a mistyped name selects would be everything.
-    found = bool(chosen) or plain == "sculptured"
+    found = bool(chosen) or plain in _KINDS or _finished(plain)
     if word != plain:
         chosen = every - chosen
     if not (found and chosen):
@@ -231,8 +256,10 @@ def _numbered(word: str, count: int, where: str) -> set[int]:
 
 
 def _ends(word: str) -> Iterator[tuple[str, int, int, tuple[str, str]]]:
-    """Each item of a list of numbers and ranges, where it begins and ends, as numbers and as written."""
+    """Each number and range of a list, where it begins and ends, as numbers and as written."""
     for item in word.split(","):
+        if item.strip() in _KINDS:
+            continue
         ends = [end.strip().lstrip("Ff").lstrip("0") or "0" for end in item.split("-")]
         # No more digits than can count: neither a huge number nor a huge range is ever built.
         yield item.strip(), int(ends[0][:_DIGITS]), int(ends[-1][:_DIGITS]), (ends[0], ends[-1])

@@ -36,6 +36,8 @@ class Prepared(Record):
     conditions : Conditions
     cutters : tuple of Cutter
         From the most wanted down.
+    coarser : float
+        How many times as far apart as curvature and cutters ask the samples are, for the budget of a default plan.
     """
 
     scene: Scene
@@ -48,6 +50,7 @@ class Prepared(Record):
     buried: Ints
     conditions: Conditions
     cutters: tuple[Cutter, ...]
+    coarser: float = 1.0
 
     @property
     def inside_bodies(self) -> NDArray[np.bool_]:

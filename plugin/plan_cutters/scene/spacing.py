@@ -21,8 +21,8 @@ _FINEST = 4.0
 
 def default_spacing(
     part: Part, orientation: Orientation, faces: Sequence[int], cutters: Sequence[Cutter]
-) -> dict[int, float]:
-    """Spacing of each target face, mm.
+) -> tuple[dict[int, float], float]:
+    """Spacing of each target face, mm, and how many times as coarse as it should be, for the budget.
 
     A quarter of the smallest cutter's radius, finer (up to four times) where the surface bends within it, coarser for
     all faces alike where the budget binds.
@@ -38,4 +38,4 @@ def default_spacing(
         spacing[number] = min(base, max(base / _FINEST, _TURN / typical if typical else base))
     wanted = sum(part.faces[number - 1].area / spacing[number] ** 2 for number in faces)
     coarser = max(1.0, (wanted / BUDGET) ** 0.5)
-    return {number: value * coarser for number, value in spacing.items()}
+    return {number: value * coarser for number, value in spacing.items()}, coarser

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from plan_cutters.document.answers import ChangeEntry, StickOutEntry
+from plan_cutters.document.judged import judged, not_judged, not_seen
 from plan_cutters.document.model import AreaEntry, CutterEntry, Plan, WitnessEntry
 from plan_cutters.document.names import kind, named
 from plan_cutters.document.told import figure, part_of, percent, reached
@@ -42,7 +43,7 @@ VERDICTS = {
     "accessible": ("accessible", "A posture (tilt and rotation) was found that neither gouges nor collides."),
     "undecided": ("undecided", "Neither a safe posture was found nor a proof that there is none."),
     "inaccessible": ("inaccessible", "None of the postures that were searched is safe."),
-    "unjudged": ("not judged", "The surface could not be sampled, or it has no normal there."),
+    "unjudged": ("could not be judged", "The surface could not be sampled, or it has no normal there."),
 }
 FEASIBLE = {True: "yes", False: "no", None: "undecided"}
 
@@ -174,9 +175,16 @@ def headline(plan: Plan, names: Mapping[str, str], shown: CutterEntry) -> tuple[
     unjudged = part_of(shown, shown.area_share, ["unjudged"])
     if unjudged != "0 %":
         why += f" {unjudged} of the target area could not be judged (see Notes)."
+    why = " ".join([why, *scope(plan), *not_seen(plan, names)])
     taken = plan.selected or plan.selected_over_setups or plan.selected_for_setup
     told = next((c for c in plan.cutters if c.id == taken), shown)
     return title, " ".join([why, *_held(told), *_mended(plan, told)])
+
+
+def scope(plan: Plan) -> list[str]:
+    """Which faces were judged, where not all were, and which were not: sentences."""
+    left = not_judged(plan)
+    return [f"Judged: {judged(plan)}.", *left] if left else []
 
 
 def _held(entry: CutterEntry) -> list[str]:

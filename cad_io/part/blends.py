@@ -1,0 +1,183 @@
+"""Which faces are blends: fillets and rounds that lead smoothly from one face to another?
+
+A blend is a torus, a sphere, a cone or a cylinder in shape, whatever the file calls it; a cone or cylinder turns less than
+half a turn. It joins at least two other faces smoothly, each along an edge across which it bends: a wall between two
+fillets bends along its edges, not across them, and is no blend. Faces that carry on one and the same surface count as one, so
+that a hole of four quarters is a hole.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRepAdaptor import BRepAdaptor_Curve2d
+from OCP.gp import gp_Pnt2d, gp_Vec2d
+from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from cad_io.arrays import FaceInfo, Floats
+from cad_io.face.curvature import curvature
+from cad_io.face.trim import Trim
+from cad_io.kernel import is_kernel_error
+from cad_io.part.sew import edge_uses
+from cad_io.surface import Surface
+
+#: Normals on both sides of a smooth edge agree within this, rad, at so large a share of the points looked at.
+SMOOTH, _MOSTLY = np.deg2rad(3.0), 0.75
+#: Cones and cylinders that turn as much as this, rad, are no blends: half a turn, less what files are off.
+HALF = np.pi - np.deg2rad(1.0)
+#: Shapes that a blend may have, and those of them that are none from half a turn on.
+_ROUND, _RULED = ("torus", "sphere", "cone", "cylinder"), ("cone", "cylinder")
+#: Least share of its largest curvature with which a blend bends across its edges.
+_ACROSS = 0.5
+#: Two faces of one kind carry on the same surface where their curvatures differ by no more than this share.
+_SAME = 0.02
+#: Points along an edge, as shares of it, none at its ends; lines each way over a face to tell how far it turns.
+_ALONG, _LINES = (np.arange(7) + 0.5) / 7, 9
+#: Singular values below this share mean that normals do not turn at all.
+_FLAT = 1e-3
+
+
+class _Side(NamedTuple):
+    """A face along its edges, k edges with p points each: unit normals (k, p, 3), curvatures (k, p, 2), how it bends across
+    the edge (k, p), all with the surface's own normal; `turned` (n, 3): normals away from its axis, all over it.
+    """
+
+    normal: Floats
+    curvature: Floats
+    across: Floats
+    turned: Floats
+
+
+class Bare(NamedTuple):
+    """A face of a part: what is known of it, the kernel's face with the edges that it shares, its border and its surface."""
+
+    info: FaceInfo
+    shape: TopoDS_Face
+    trim: Trim | None
+    surface: Surface
+
+
+def blends(faces: Sequence[Bare], size: float) -> frozenset[int]:
+    """Numbers of the faces of a part that are blends.
+
+    An edge, or a face, that the kernel cannot evaluate joins nothing smoothly.
+
+    Parameters
+    ----------
+    faces : sequence of Bare
+        All faces of the part.
+    size : float
+        Of the part, mm.
+    """
+    infos, shape = [face.info for face in faces], [face.shape for face in faces]
+    rounded = [info.shape in _ROUND and info.unjudged is None for info in infos]
+    edges = [
+        (edge, users) for edge, users in edge_uses(shape)
+        if len(users) == 2 and users[0][0] != users[1][0] and (rounded[users[0][0]] or rounded[users[1][0]])
+    ]  # fmt: skip
+    if not edges:
+        return frozenset()
+    owner = np.array([[i for i, _ in users] for _, users in edges])
+    # Two faces that follow an edge in opposite directions have their normals on the same side.
+    agree = -np.array([users[0][1] * users[1][1] for _, users in edges], float)
+    points = len(_ALONG)
+    normal = np.full((len(edges), 2, points, 3), np.nan)
+    kappa, across = np.full((len(edges), 2, points, 2), np.nan), np.full((len(edges), 2, points), np.nan)
+    turned: dict[int, Floats] = {}
+    for i in np.unique(owner).tolist():
+        mine, which = np.nonzero(owner == i)
+        found = _side(faces[i], size, [edges[k][0] for k in mine.tolist()])
+        if found is not None:
+            normal[mine, which], kappa[mine, which], across[mine, which], turned[i] = found
+    with np.errstate(invalid="ignore"):
+        dot = agree[:, None] * (normal[:, 0] * normal[:, 1]).sum(axis=2)
+        smooth = (dot > np.cos(SMOOTH)).mean(axis=1) >= _MOSTLY
+        most = np.abs(kappa).max(axis=3)
+        least = np.maximum(_ACROSS * most, (1 - _SAME) * np.abs(across[:, ::-1]))
+        bends = (np.abs(across) >= least).mean(axis=2) >= _MOSTLY
+        # Seen from the other side, what is largest is smallest, with the other sign.
+        there = np.where(agree[:, None, None] > 0, kappa[:, 1], -kappa[:, 1, :, ::-1])
+        alike = (np.abs(kappa[:, 0] - there).max(axis=2) <= _SAME * most.max(axis=1)).mean(axis=1) >= _MOSTLY
+    kind = np.array([info.shape for info in infos])
+    rounds = np.array(rounded)[owner].all(axis=1)
+    on = smooth & alike & rounds & (kind[owner[:, 0]] == kind[owner[:, 1]])
+    one = _groups(len(infos), owner[on])
+    joined: dict[int, set[int]] = {}
+    for k, s in zip(*np.nonzero(smooth[:, None] & bends & (one[owner[:, :1]] != one[owner[:, 1:]])), strict=True):
+        joined.setdefault(int(one[owner[k, s]]), set()).add(int(one[owner[k, 1 - s]]))
+    several = {i for i in turned if rounded[i] and len(joined.get(int(one[i]), ())) > 1}
+    return frozenset(infos[i].number for i in several if kind[i] not in _RULED or _turn(_of_one(one, i, turned)) < HALF)
+
+
+def _groups(count: int, pairs: NDArray[np.intp]) -> NDArray[np.int32]:
+    """Numbers (count,) of what pairs (m, 2) connect."""
+    links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(count, count))
+    return np.asarray(connected_components(links, directed=False)[1])
+
+
+def _of_one(one: NDArray[np.int32], i: int, turned: Mapping[int, Floats]) -> Floats:
+    """Normals (n, 3) of all faces that carry on the same surface as face `i`."""
+    return np.concatenate([turned[j] for j in np.flatnonzero(one == one[i]).tolist() if j in turned])
+
+
+def _side(face: Bare, size: float, edges: list[TopoDS_Edge]) -> _Side | None:
+    """One face along some of its edges; None where it cannot be evaluated."""
+    if face.trim is None:
+        return None
+    points, (u0, u1, v0, v1) = len(_ALONG), face.trim.box
+    along = np.concatenate([_parameters(edge, face.shape) for edge in edges])
+    share = np.linspace(0.0, 1.0, _LINES)
+    u, v = (g.ravel() for g in np.meshgrid(u0 + share * (u1 - u0), v0 + share * (v1 - v0)))
+    uv, n = along[:, 0], len(along)
+    try:
+        d = face.surface.second(np.concatenate([uv[:, 0], u]), np.concatenate([uv[:, 1], v]))
+    except Exception as thrown:
+        if not is_kernel_error(thrown):
+            raise
+        return None
+    with np.errstate(all="ignore"):
+        geometry = curvature(d, 1.0, size)
+        tangent = d[:n, 1] * along[:, 1, :1] + d[:n, 2] * along[:, 1, 1:]
+        beside = np.cross(geometry.normal[:n], tangent)
+        cosine = (beside * geometry.direction_max[:n]).sum(axis=1) / np.linalg.norm(beside, axis=1)
+        high, low = geometry.curvature[:n].T
+        across = low + (high - low) * cosine**2
+        # Where the surface rises round the point, its own normal points at its axis.
+        away = -np.sign(geometry.curvature[n:].sum(axis=1))[:, None] * geometry.normal[n:]
+    shaped = (len(edges), points)
+    return _Side(geometry.normal[:n].reshape(*shaped, 3), geometry.curvature[:n].reshape(*shaped, 2),
+                 across.reshape(shaped), away[np.isfinite(away).all(axis=1)])  # fmt: skip
+
+
+def _parameters(edge: TopoDS_Edge, face: TopoDS_Face) -> Floats:
+    """Places (u, v) along an edge of a face, and the directions in which it goes there: (p, 2, 2), nan where it has none."""
+    try:
+        curve = BRepAdaptor_Curve2d(edge, face)
+        low, high = curve.FirstParameter(), curve.LastParameter()
+        if not max(-low, high) < 1e50:
+            return np.full((len(_ALONG), 2, 2), np.nan)
+        at, to, found = gp_Pnt2d(), gp_Vec2d(), []
+        for t in (low + (high - low) * _ALONG).tolist():
+            curve.D1(t, at, to)
+            found.append((at.Coord(), to.Coord()))
+    except Exception as thrown:
+        if not is_kernel_error(thrown):
+            raise
+        return np.full((len(_ALONG), 2, 2), np.nan)
+    return np.array(found)
+
+
+def _turn(normal: Floats) -> float:
+    """How far normals (n, 3) turn about the axis of the cone or cylinder that they stand on, rad."""
+    if len(normal) < 2:
+        return 2 * np.pi
+    values, axes = np.linalg.svd(normal - normal.mean(axis=0), full_matrices=False)[1:]
+    if values[1] < _FLAT * np.sqrt(len(normal)):
+        # Less than a tenth of a turn, too little to tell the axis.
+        return 0.0
+    flat = normal @ axes[:2].T
+    angle = np.sort(np.arctan2(flat[:, 1], flat[:, 0]))
+    return float(2 * np.pi - np.diff(angle, append=angle[0] + 2 * np.pi).max())

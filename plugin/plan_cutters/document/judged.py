@@ -1,0 +1,105 @@
+"""What was judged and what was not, as people are told: faces, and what lies between samples."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+from plan_cutters.document.model import CutterEntry, FaceEntry, Plan
+from plan_cutters.document.scope import Scope
+from plan_cutters.document.told import percent
+
+#: Choices that name kinds of faces, not faces.
+_BY_KIND = frozenset({"sculptured", "blends", "all"})
+
+
+def scope_of(faces: Sequence[FaceEntry]) -> Scope:
+    """What was judged of all faces."""
+    targets = [f for f in faces if f.target]
+    others = [f for f in faces if not f.target and not f.ignored]
+    return Scope(
+        judged=len(targets),
+        judged_mm2=_area(targets),
+        not_judged=len(others),
+        not_judged_mm2=_area(others),
+        judged_by_kind=_kinds(targets),
+        not_judged_by_kind=_kinds(others),
+    )
+
+
+def judged(plan: Plan) -> str:
+    """The part, or what of it was judged: `the 6 free-form faces and 12 fillets of part.step (23 % of the area)`."""
+    part, scope = plan.part.file or "the part", plan.scope
+    if scope is None or not scope.not_judged:
+        return part
+    return f"{_asked(plan, scope)} of {part} ({_share(scope)} of the area)"
+
+
+def not_judged(plan: Plan) -> list[str]:
+    """What was not judged, and how it is asked for, in a sentence."""
+    scope = plan.scope
+    if scope is None or not scope.not_judged:
+        return []
+    many = scope.not_judged > 1
+    what = _listed(scope.not_judged_by_kind)
+    return [
+        f"{what} {'were' if many else 'was'} not judged, only {'obstacles' if many else 'an obstacle'}: --faces all."
+    ]
+
+
+def _asked(plan: Plan, scope: Scope) -> str:
+    words = {word.strip() for word in plan.effective.faces.split(",")}
+    if words <= _BY_KIND:
+        return f"the {_listed(scope.judged_by_kind).removeprefix('1 ')}"
+    return f"the {scope.judged} faces asked for" if scope.judged > 1 else "the face asked for"
+
+
+def _listed(kinds: dict[str, int]) -> str:
+    """Faces by their kinds: `6 free-form faces, 39 plane and round faces and 12 fillets`."""
+    free, blends = kinds.get("sculptured", 0), kinds.get("blend", 0)
+    plane = kinds.get("plane", 0)
+    others = sum(kinds.values()) - free - blends
+    simple = "plane and round" if 0 < plane < others else "plane" if plane else "round"
+    each = [
+        _counted(free, "free-form face"),
+        _counted(others, f"{simple} face"),
+        _counted(blends, "fillet"),
+    ]
+    said = [text for text in each if text]
+    return " and ".join([", ".join(said[:-1]), said[-1]]) if len(said) > 1 else said[0]
+
+
+def _counted(number: int, word: str) -> str:
+    return f"{number:,} {word}{'' if number == 1 else 's'}" if number else ""
+
+
+def _share(scope: Scope) -> str:
+    whole = scope.judged_mm2 + scope.not_judged_mm2
+    return percent(scope.judged_mm2 / whole if whole > 0.0 else 0.0, some=scope.judged > 0, whole=False)
+
+
+def _area(faces: Sequence[FaceEntry]) -> float:
+    return math.fsum(f.area_mm2 for f in faces if math.isfinite(f.area_mm2))
+
+
+def _kinds(faces: Sequence[FaceEntry]) -> dict[str, int]:
+    found: dict[str, int] = {}
+    for face in faces:
+        found[face.kind] = found.get(face.kind, 0) + 1
+    return dict(sorted(found.items()))
+
+
+def not_seen(plan: Plan, names: Mapping[str, str]) -> list[str]:
+    """Whether more lies between the samples than the cutter to take, or the one that comes nearest, is wide; in a sentence."""
+    taken = plan.selected or plan.selected_over_setups or plan.selected_for_setup
+    entry = next((c for c in plan.cutters if c.id == taken), None) or _nearest(plan)
+    if entry.seen:
+        return []
+    widest = max(plan.faces, key=lambda f: f.gap_mm or 0.0)
+    on = f" on {widest.id}" if widest.gap_mm else ""
+    return [
+        f"What lies between the samples was not seen: they are up to {plan.samples.max_gap_mm:.3g} mm apart{on}, more than the "
+        f"radius of {names[entry.id]}, {entry.radius:.4g} mm. --spacing {entry.radius:.4g} looks more closely."
+    ]
+
+
+def _nearest(plan: Plan) -> CutterEntry:
+    return min(plan.cutters, key=lambda c: c.inaccessible + c.undecided)
