@@ -19,7 +19,8 @@ def headline(plan: "Plan", names: Mapping[str, str]) -> list[Text]:
     """Which cutter to take, with what holder, and why; or why none."""
     entries = {c.id: c for c in plan.cutters}
     part, setups = plan.part.file or "the part", 1 + len(plan.effective.other_setups)
-    if plan.selected:
+    alone = any(s.lost == 0 for s in entries[plan.selected].setups) if plan.selected else False
+    if plan.selected and (setups == 1 or alone):
         c = entries[plan.selected]
         which = (
             "reaches every sample"
@@ -36,16 +37,16 @@ def headline(plan: "Plan", names: Mapping[str, str]) -> list[Text]:
         return [_marked(f"Take {names[c.id]} in this setup", None, f" of {part}: {_described(c)}. It leaves only what the axis "
                         f"limit keeps from every cutter, {lost_percent(c, c.area_share)} of the area: that needs another "
                         "setup.")]  # fmt: skip
-    best = min(plan.cutters, key=lambda c: c.inaccessible + c.undecided)
-    left = best.inaccessible + best.undecided
+    best = min(plan.cutters, key=lambda c: c.lost)
+    left = best.lost
     name = f"{names[best.id]} ({_described(best)})"
     if not left:
         return [_marked(f"No cutter is sure for {part}", None, f". {name} reaches every sample that could be judged, but "
                         "obstacles are missing (below) that may be in its way.")]  # fmt: skip
     which = f"{name} was judged: it" if len(entries) == 1 else f"Of {len(entries)} cutters, {name} comes nearest: it"
-    much = f"{lost_percent(best, best.area_share)} of the area ({left} of {plan.samples.count} samples)"
+    much = f"{lost_percent(best, best.area_share)} of the area ({left} of {plan.samples.finished} samples)"
     ask = "" if "mend" in plan.effective.answers else " Ask what would help: --answers mend."
-    if best.inaccessible == 0:
+    if best.blocked == 0:
         return [_marked(f"No cutter is sure for {part}", None, f". {which} leaves {much} undecided: neither safe nor blocked to "
                         f"the tolerance.{ask}")]  # fmt: skip
     return [_marked(f"No cutter finishes {part}", False, f". {which} leaves {much}.{ask}")]

@@ -7,6 +7,7 @@ PALETTE = {
     "undecided": "#F0E442",
     "inaccessible": "#D55E00",
     "unjudged": "#CC79A7",
+    "inside_bodies": "#595959",
     "check": "#BFBFBF",
     "ignored": "#BFBFBF",
     "mixed": "#E69F00",

@@ -81,9 +81,8 @@ def _machine(result: Any) -> list[Column]:
     name, machine = result.shown, result.conditions.machine
     if result.kinematics is None:
         return []
-    angles, taken, _ = result.kinematics.positions(result.reaches[name].axis)
+    angles, taken = result.rotary(name)
     moved = result.travels.get(name)
-    taken = taken if moved is None else moved.taken
     first, rows = np.maximum(taken, 0).astype(np.int64), np.arange(len(taken))
     both = [np.where((taken >= 0)[:, None], np.degrees(angles[rows, way]), np.nan) for way in (first, 1 - first)]
     found = [

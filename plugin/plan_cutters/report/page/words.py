@@ -19,7 +19,7 @@ class _Reason(NamedTuple):
 
 
 REASONS = {
-    "axis_limit": _Reason("the axis limit", "The machine cannot hold any axis that would serve.",
+    "axis_limit": _Reason("the axis limit", "A posture would serve, but the machine cannot hold it as the part is set up.",
                           "another setup, or a machine that tilts further"),
     "local_gouge": _Reason("local gouge", "The surface curves more than the cutter, right at the contact.",
                            "a smaller radius or corner radius"),
@@ -31,9 +31,9 @@ REASONS = {
                       "--ignore, if that body is not there when the part is machined"),
     "tolerance": _Reason("too coarse a tolerance", "It is no smaller than the cutter's own features.",
                          "a smaller --tolerance"),
-    "neck": _Reason("collision of the neck", "The neck meets the part.", "a thinner or longer neck"),
-    "shank": _Reason("collision of the shank", "The shank meets the part.", "a thinner shank or a longer stick-out"),
-    "holder": _Reason("collision of the holder", "The holder meets the part.", "a longer stick-out or a slimmer holder"),
+    "neck": _Reason("collision of the neck", "The neck is in the way, the flutes are not.", "a thinner or longer neck"),
+    "shank": _Reason("collision of the shank", "The shank is in the way, the flutes are not.", "a thinner shank or a longer stick-out"),
+    "holder": _Reason("collision of the holder", "The holder is in the way, the flutes are not.", "a longer stick-out or a slimmer holder"),
     "fixture": _Reason("the fixture", "Without the fixtures the sample would be reached.", "another place for the fixture"),
 }  # fmt: skip
 #: Verdicts, and what they say of a sample.
@@ -199,11 +199,10 @@ def _mended(plan: Plan, entry: CutterEntry) -> list[str]:
 
 def _choice(plan: Plan, names: Mapping[str, str], shown: CutterEntry) -> tuple[str, str]:
     found, name = plan.samples, names[shown.id]
+    several = bool(plan.effective.other_setups) and not any(setup.lost == 0 for setup in shown.setups)
     much = f"It reaches {reached(shown, shown.area_share)} of the target area"
-    if plan.selected:
-        every = f"all {count(found.count - found.unjudged, 'sample')}" + (
-            " that could be judged" if found.unjudged else ""
-        )
+    if plan.selected and not several:
+        every = f"all {count(found.judged, 'sample')}" + (" that could be judged" if found.unjudged else "")
         return (
             f"Take {name}.",
             f"It reaches {every} of the target faces without gouging or collision. {_why(plan, names)}",
@@ -219,7 +218,8 @@ def _choice(plan: Plan, names: Mapping[str, str], shown: CutterEntry) -> tuple[s
         return (
             f"Take {names[c.id]} for this setup.",
             f"It reaches {reached(c, c.area_share)} of the target area: all that any of these cutters can reach here. The axis "
-            f"limit loses {count(c.beyond_setup, 'sample')} of {found.count:,} for every cutter: machine these in another setup.",
+            f"limit loses {count(c.beyond_setup, 'sample')} of {found.finished:,} for every cutter: machine these in another "
+            "setup.",
         )
     if shown.feasible is None and not shown.undecided:
         return (
