@@ -255,8 +255,9 @@ def _judged(
             reach = explained.reach
             found = witnesses(samples, reach, cutter, ready.conditions, buried=ready.buried)
             marched = march_differs(samples, convex, ready.region, mine.interference_free)
-            entry = cutter_entry(cutter, samples, reach, found, marched, seconds[cutter], part=ready.scene.part, around=around,
-                                 slack=ready.conditions.light(cutter).slack, inside=inside, besides=explained.besides)  # fmt: skip
+            slack, part = ready.conditions.light(cutter).slack, ready.scene.part
+            entry = cutter_entry(cutter, samples, reach, found, marched, seconds[cutter], part=part, around=around, slack=slack,
+                                 inside=inside, besides=explained.besides)  # fmt: skip
             judged[cutter] = Judged(reach, which, mine if elsewhere else reach, entry)
     return judged
 

@@ -25,7 +25,7 @@ class CoveringBody(Frozen):
 
     number: int = Field(description="from 1")
     name: str = Field(description="of its component; empty where it has none")
-    own_faces: list[str]
+    own_faces: list[str] = Field(description="runs of them, as `F7-12`")
     faces: list[str] = Field(description="target faces that it covers, some of each at least")
     samples: int
     area_mm2: float
@@ -79,13 +79,13 @@ def inside_entry(ready: Prepared, faces: Mapping[str, FaceVerdicts]) -> InsideEn
 
 def _body(ready: Prepared, found: Covering, area: float, largest: bool) -> CoveringBody:
     bodies, part = ready.conditions.around.bodies, ready.scene.part
-    own = [number for number in bodies[found.index].faces if number > 0]
+    own = sorted(number for number in bodies[found.index].faces if number > 0)
     others = {n for i, body in enumerate(bodies) if i != found.index for n in body.faces}
     name, option = _named(part, own, others)
     return CoveringBody(
         number=1 + found.index,
         name=name,
-        own_faces=[f"F{n}" for n in own],
+        own_faces=numbers(own).split(","),
         faces=[f"F{n}" for n in np.unique(ready.samples.face[found.rows]).tolist()],
         samples=len(found.rows),
         area_mm2=area,

@@ -70,9 +70,11 @@ def counts(verdict: NDArray[np.uint8], inside: NDArray[np.bool_] | None = None) 
     return {**{name: int((verdict == code).sum()) for code, name in WORDS.items()}, "inside_bodies": covered}
 
 
-def face_verdicts(samples: SurfaceSamples, reach: Reach, inside: NDArray[np.bool_]) -> dict[str, FaceVerdicts]:
+def face_verdicts(
+    samples: SurfaceSamples, reach: Reach, inside: NDArray[np.bool_] | None = None
+) -> dict[str, FaceVerdicts]:
     """What is reached of each face that has samples, by its id; `inside` as in `counts`."""
-    found = {}
+    found, inside = {}, np.zeros(len(samples), bool) if inside is None else inside
     numbers, first = np.unique(np.sort(samples.face), return_index=True)
     groups = np.split(np.argsort(samples.face, kind="stable"), first[1:])
     for number, mine in zip(numbers.tolist(), groups, strict=False):

@@ -126,11 +126,10 @@ def inside(plan: Plan, most: int = 5) -> list[str]:
         rest = len(over) - (most - 2)
         lines.append(f"Bodies overlap: {each}{f'; {rest} more in plan.json' if rest > 0 else ''}.")
     if found.sheets is not None:
-        lines.append(
-            f"{listed(found.sheets.faces)} {'is a construction sheet' if len(found.sheets.faces) == 1 else 'are construction sheets'}"
-            f" on the skin of a body: {figure(found.sheets.area_mm2)} mm2 of them face into it. {found.sheets.option} leaves such "
-            "sheets out."
-        )
+        sheets, area = found.sheets, figure(found.sheets.area_mm2)
+        what = "is a construction sheet" if len(sheets.faces) == 1 else "are construction sheets"
+        lines.append(f"{listed(sheets.faces)} {what} on the skin of a body: {area} mm2 face into it. {sheets.option} leaves such "
+                     "sheets out.")  # fmt: skip
     return lines
 
 
@@ -138,7 +137,8 @@ def _standing(body: CoveringBody) -> str:
     on, area = listed(body.faces, 4), figure(body.area_mm2)
     verb = "stands on" if body.how == "stands_on" else "touches or overlaps"
     if body.largest:
-        return f"{_called(body, first=True)} covers {area} mm2 of {on}, which {'touches' if len(body.faces) == 1 else 'touch'} it."
+        touch = "touches" if len(body.faces) == 1 else "touch"
+        return f"{_called(body, first=True)} covers {area} mm2 of {on}, which {touch} it."
     return (f"{_called(body, first=True)} {verb} {on} and covers {area} mm2 there. If it is not part of what is finished, as a "
             f"clamp is not, leave it out, or what lies under it is not planned: {body.option}.")  # fmt: skip
 
@@ -146,7 +146,7 @@ def _standing(body: CoveringBody) -> str:
 def _called(body: CoveringBody, *, first: bool = False) -> str:
     """A body as it is told: its number, its name, its faces."""
     name = f' "{body.name}"' if body.name else ""
-    return f"{'Body' if first else 'body'} {body.number}{name} ({listed(body.own_faces, 4)})"
+    return f"{'Body' if first else 'body'} {body.number}{name} ({listed(body.own_faces, 2)})"
 
 
 def _more(bodies: Sequence[CoveringBody], one: str, many: str) -> list[str]:

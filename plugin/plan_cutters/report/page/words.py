@@ -32,8 +32,10 @@ REASONS = {
     "tolerance": _Reason("too coarse a tolerance", "It is no smaller than the cutter's own features.",
                          "a smaller --tolerance"),
     "neck": _Reason("collision of the neck", "The neck is in the way, the flutes are not.", "a thinner or longer neck"),
-    "shank": _Reason("collision of the shank", "The shank is in the way, the flutes are not.", "a thinner shank or a longer stick-out"),
-    "holder": _Reason("collision of the holder", "The holder is in the way, the flutes are not.", "a longer stick-out or a slimmer holder"),
+    "shank": _Reason("collision of the shank", "The shank is in the way, the flutes are not.",
+                     "a thinner shank or a longer stick-out"),
+    "holder": _Reason("collision of the holder", "The holder is in the way, the flutes are not.",
+                      "a longer stick-out or a slimmer holder"),
     "fixture": _Reason("the fixture", "Without the fixtures the sample would be reached.", "another place for the fixture"),
 }  # fmt: skip
 #: Verdicts, and what they say of a sample.
