@@ -290,8 +290,8 @@ class CutterEntry(Verdicts):
     faces: dict[str, FaceVerdicts]
     area_share: AreaShare = Field(
         default=AreaShare(),
-        description="of the target faces' area without what lies inside other bodies, faces without samples (unjudged) included and "
-        "those of unknown area not; what "
+        description="of the target faces' area without what lies inside other bodies, faces without samples (unjudged) included "
+        "and those of unknown area not; what "
         "the samples stand for, not what is shown between them: that is in `area`",
     )
     witnesses: list[WitnessEntry]
