@@ -24,7 +24,7 @@ class CoveringBody(Frozen):
     """A body of the part, and what of the target faces lies inside it."""
 
     number: int = Field(description="from 1")
-    name: str = Field(description="of its component; empty where it has none")
+    name: str = Field(description="of its component; empty where it has none of its own")
     own_faces: list[str] = Field(description="runs of them, as `F7-12`")
     faces: list[str] = Field(description="target faces that it covers, some of each at least")
     samples: int
@@ -112,7 +112,7 @@ def _named(part: Part, own: Sequence[int], others: set[int]) -> tuple[str, str]:
     if name and faces_of(part.tree, name) == set(own) and not others & set(own):
         return name, f"--ignore {shlex.quote(f'component:{name}')}"
     # What two bodies have in common closes the other one.
-    return name, f"--ignore {numbers([n for n in own if n not in others] or own)}"
+    return "", f"--ignore {numbers([n for n in own if n not in others] or own)}"
 
 
 def numbers(faces: Sequence[int]) -> str:
