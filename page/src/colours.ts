@@ -189,8 +189,11 @@ function painted(title: string, entries: Entry[], samples: Samples, which: (i: n
     area[k] += samples.area(i);
     bytes.set(table[k], 4 * i);
   }
-  const whole = area.reduce((sum, each) => sum + each, 0) || 1;
-  const shown = entries.map((each, k) => ({ ...each, share: area[k] / whole }));
+  const whole = area.reduce((sum, each) => sum + each, 0);
+  // What is no surface of the finished part is a share of all; the others are shares of what is left.
+  const inside = entries.findIndex((each) => each.label === spoken("inside_bodies"));
+  const left = whole - (area[inside] ?? 0);
+  const shown = entries.map((each, k) => ({ ...each, share: area[k] / ((k === inside ? whole : left) || 1) }));
   return { title, entries: shown.filter((_, k) => seen[k]), ramp: null, bytes };
 }
 

@@ -70,7 +70,7 @@ export class Probe {
   constructor(
     private readonly drawn: Drawn,
     meta: Meta,
-    private readonly machine: Machine,
+    readonly machine: Machine,
   ) {
     this.index = drawn.tree.geometry.index!.array;
     this.ignored = meta.faces.map((face) => face.ignored);

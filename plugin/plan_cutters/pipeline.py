@@ -253,6 +253,7 @@ def _judged(
             over, which = over_setups([mine, *(found[cutter.id] for _, found in elsewhere)])
             explained = reasons.of(cutter, over, tell)
             reach = explained.reach
+        with clock.stage(cutter.id, shown=False):
             found = witnesses(samples, reach, cutter, ready.conditions, buried=ready.buried)
             marched = march_differs(samples, convex, ready.region, mine.interference_free)
             slack, part = ready.conditions.light(cutter).slack, ready.scene.part

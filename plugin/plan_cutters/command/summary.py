@@ -151,6 +151,8 @@ def setups(plan: "Plan", *, verbose: bool = True) -> list[str]:
 def _machine(plan: "Plan") -> str:
     """What limits the tool axis, and how the part stands."""
     along = f"spindle points along {_axis(plan.effective.setup)} of the part"
+    if plan.effective.other_setups:
+        along += f", in other setups along {'; '.join(map(_axis, plan.effective.other_setups))}"
     if plan.machine.name == "unlimited":
         return f"No machine limits the tool axis; the {along}."
     return f"The machine is {plan.machine.name}; its {along}."
