@@ -18,7 +18,6 @@ from plan_cutters.domain.shapes import flute_length
 from plan_cutters.domain.verdicts import (
     AXIS_LIMIT,
     BURIED,
-    FIXTURE,
     INACCESSIBLE,
     LOCAL_GOUGE,
     NO_REASON,
@@ -31,8 +30,7 @@ from plan_cutters.domain.verdicts import (
 from plan_cutters.scene.conditions import Conditions, contacts_of, search_postures
 from plan_cutters.scene.threads import Progress
 
-#: Reasons that something besides cutter and part takes part in.
-_REMOVABLE = (AXIS_LIMIT, FIXTURE, *(REASONS.index(word) for word in ("neck", "shank", "holder")))
+_PARTS = tuple(REASONS.index(word) for word in ("neck", "shank", "holder"))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,63 +82,44 @@ class Reasons:
         first, n = self.conditions[0], len(reach.verdict)
         before, reason, besides = reach.reason, reach.reason.copy(), np.full(n, NO_REASON, np.uint8)
         rows = np.flatnonzero(reach.lost & self.asked & ~np.isin(before, (BURIED, TOLERANCE)))
-        limited, less = first.machine.limited, list(_less(cutter))
-        if not len(rows) or not (limited or less or first.around.alone is not None):
+        limited, less, alone = first.machine.limited, list(_less(cutter)), first.around.alone
+        if not len(rows) or not (limited or less or alone is not None):
             return Explained(reach, besides)
-        known, free = None, np.zeros(n, bool)
+        # Flutes by themselves, without limits and fixtures: what they do not reach nothing else frees, and is done with.
+        bare = replace(first.machineless, around=alone or first.around)
+        found = self._search("flutes", less[-1][1] if less else cutter, rows, bare)
+        shut = rows[~found.reached[rows] & np.isin(before[rows], (AXIS_LIMIT, *_PARTS))]
+        reason[shut] = found.reason[shut]
+        rows = rows[found.reached[rows]]
+        tell(1, 3)
         if limited:
-            known = self._search("unlimited", cutter, rows, first.machineless)
-            free[rows] = known.reached[rows]
-            reason[free] = AXIS_LIMIT
-            besides[free & (before != AXIS_LIMIT)] = before[free & (before != AXIS_LIMIT)]
-            tell(1, 3)
-        left = rows[~free[rows]]
+            if less or alone is not None:
+                found = self._search("unlimited", cutter, rows, first.machineless)
+            free = found.reached[rows]
+            reason[rows[free]] = AXIS_LIMIT
+            # Where the limit leaves nothing by itself, and so does something without it, both take part.
+            other = np.where(free, before[rows], found.reason[rows])
+            besides[rows] = np.where(
+                (free & (other != AXIS_LIMIT)) | (before[rows] == AXIS_LIMIT) & ~free, other, NO_REASON
+            )
+            rows = rows[~free]
+        tell(2, 3)
         if less:
-            # Where limits and local gouge alone leave nothing, the flutes by themselves find nothing.
-            held = left[~np.isin(before[left], (AXIS_LIMIT, LOCAL_GOUGE))]
-            self._held(cutter, less, held, reason, free)
-            tell(2, 3)
-            left = left[~free[left]]
-        left = left[before[left] != FIXTURE]
-        self._else(cutter, less, left, known, reason, besides)
+            # Where limits and local gouge alone leave nothing, flutes by themselves find nothing.
+            rows = rows[~np.isin(before[rows], (AXIS_LIMIT, LOCAL_GOUGE))]
+            if limited or alone is not None:
+                rows = rows[self._anywhere(less[-1][1], rows)]
+            self._held(less, rows, reason)
         tell(3, 3)
         return Explained(replace(reach, reason=reason), besides)
 
-    def _held(
-        self, cutter: Cutter, less: Sequence[tuple[int, Cutter]], rows: NDArray[np.int64], reason: NDArray[np.uint8],
-        free: NDArray[np.bool_],
-    ) -> None:  # fmt: skip
+    def _held(self, less: Sequence[tuple[int, Cutter]], rows: NDArray[np.int64], reason: NDArray[np.uint8]) -> None:
         """Write which of holder, shank and neck has to be away for there to be a posture, from the top down."""
-        if not len(rows):
-            return
-        served = self._anywhere(less[-1][1], rows)
-        free[rows[served]], rows = True, rows[served]
         for part, without in less[:-1]:
             served = self._anywhere(without, rows)
-            reason[rows[served]], rows = part, rows[~served]
+            reason[rows[served]] = part
+            rows = rows[~served]
         reason[rows] = less[-1][0]
-
-    def _else(
-        self, cutter: Cutter, less: Sequence[tuple[int, Cutter]], rows: NDArray[np.int64], known: Reach | None,
-        reason: NDArray[np.uint8], besides: NDArray[np.uint8],
-    ) -> None:  # fmt: skip
-        """Of samples that nothing alone frees: the reason is what is in the way of flutes without limits, holder and fixtures."""
-        rows = rows[np.isin(reason[rows], _REMOVABLE)]
-        if known is not None and not less and self.conditions[0].around.alone is None:
-            # The search without the limit has told.
-            reason[rows] = known.reason[rows]
-            return
-        if not len(rows):
-            return
-        around = self.conditions[0].around
-        bare = replace(self.conditions[0].machineless, around=around.alone or around)
-        found = self._search("else", less[-1][1] if less else cutter, rows, bare)
-        shut = rows[~found.reached[rows]]
-        reason[shut] = found.reason[shut]
-        both = rows[found.reached[rows] & (reason[rows] == AXIS_LIMIT)]
-        if known is not None:
-            # Lost to the limit and to something else: neither alone frees them.
-            besides[both] = known.reason[both]
 
     def _anywhere(self, cutter: Cutter, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Whether a cutter has a posture in some setup."""
@@ -155,7 +134,9 @@ class Reasons:
         found, known = blank(len(self.asked)), self._known.setdefault(under, {})
         for other, earlier in known.items():
             # As `nesting.handed`, but of the samples that were looked at.
-            if inside(cutter, other):
+            if cutter == other:
+                mine = rows[earlier.verdict[rows] != UNJUDGED]
+            elif inside(cutter, other):
                 mine = rows[earlier.reached[rows] & (found.verdict[rows] == UNJUDGED)]
             elif inside(other, cutter):
                 mine = rows[(earlier.verdict[rows] == INACCESSIBLE) & (found.verdict[rows] == UNJUDGED)]
