@@ -8,11 +8,15 @@ from cad_parts import box, cut, rod
 
 from cad_io import read_part
 from plan_cutters import Cutter, Holder, Machine, plan
+from plan_cutters.command.codes import code_of
+from plan_cutters.command.summary import summary
+from plan_cutters.document.names import short_names
 from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import AXIS_LIMIT, REASONS, UNDECIDED
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
+from plan_cutters.report.page.words import headline
 from plan_cutters.stages import reasons as finding
 from plan_cutters.stages.judge import judge
 
@@ -174,3 +178,23 @@ def test_what_is_lost_in_all_setups_has_the_reason_of_one_that_may_serve():
     assert (which[reach.lost] == -1).all()
     assert (found.reason[reach.lost] == 2).all()
     assert (found.verdict == UNDECIDED).sum() == 1
+
+
+def test_the_headline_is_that_of_the_union(capsys):
+    """Two setups do together what none does alone; where one does, that one is told."""
+    top = read_part(box(20, 20, 6))
+    how = HOW | {"cutters": ["R3L30"], "machine": "tilt:60"}
+    both = plan(top, setup=(0, 0, 1), other_setups=[(0, 0, -1)], **how)
+    assert (both.selected, code_of(both.plan)) == ("R3L30", 0)
+    summary(both.plan)
+    said = " ".join("".join(capsys.readouterr()).split())
+    assert said.startswith("Take R3L30 for the part, in 2 setups")
+    assert "over 2 setups" in said
+    below = plan(top, setup=(0, 0, 1), other_setups=[(0, 0, -1)], **how | {"faces": "5"})
+    assert not below.here["R3L30"].reached.any()
+    summary(below.plan)
+    said = " ".join("".join(capsys.readouterr()).split())
+    assert said.startswith("Take R3L30 for the part, in setup 0,0,-1:")
+    names = short_names(both.plan)
+    assert headline(both.plan, names, both.cutters[0])[0] == "Take R3L30, in several setups."
+    assert headline(below.plan, names, below.cutters[0])[0] == "Take R3L30, in setup 0, 0, -1."

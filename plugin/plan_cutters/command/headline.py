@@ -19,7 +19,14 @@ def headline(plan: "Plan", names: Mapping[str, str]) -> list[Text]:
     """Which cutter to take, with what holder, and why; or why none."""
     entries = {c.id: c for c in plan.cutters}
     part, setups = plan.part.file or "the part", 1 + len(plan.effective.other_setups)
-    alone = any(s.lost == 0 for s in entries[plan.selected].setups) if plan.selected else False
+    here = "this setup" if setups == 1 else "these setups"
+    # Of several setups one may do by itself.
+    alone = next((s.axis for s in entries[plan.selected].setups if not s.lost), None) if plan.selected else None
+    if plan.selected and alone not in (None, plan.effective.setup):
+        c = entries[plan.selected]
+        axis = ",".join(f"{x:.4g}" for x in alone or ())
+        return [_marked(f"Take {names[c.id]}", True, f" for {part}, in setup {axis}: {_described(c)}. It reaches every sample "
+                        "there, and needs no other setup.")]  # fmt: skip
     if plan.selected and (setups == 1 or alone):
         c = entries[plan.selected]
         which = (
@@ -34,7 +41,7 @@ def headline(plan: "Plan", names: Mapping[str, str]) -> list[Text]:
                         "every sample; no setup does alone.")]  # fmt: skip
     if plan.selected_for_setup:
         c = entries[plan.selected_for_setup]
-        return [_marked(f"Take {names[c.id]} in this setup", None, f" of {part}: {_described(c)}. It leaves only what the axis "
+        return [_marked(f"Take {names[c.id]} in {here}", None, f" of {part}: {_described(c)}. It leaves only what the axis "
                         f"limit keeps from every cutter, {lost_percent(c, c.area_share)} of the area: that needs another "
                         "setup.")]  # fmt: skip
     best = min(plan.cutters, key=lambda c: c.lost)

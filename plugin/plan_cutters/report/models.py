@@ -125,7 +125,7 @@ def write_glb(result: Any, split: Any, path: Path, *, merged: bool = False) -> N
     def extras(face: int) -> dict[str, Any]:
         entry = entries[face]
         counts = shown.faces.get(entry.id)
-        reasons = sorted({w.reason for w in shown.witnesses if w.face == entry.id})
+        reasons = sorted({w.reason for w in shown.witnesses if w.face == entry.id and not w.inside_bodies})
         return {
             "face": entry.id,
             "number": face,

@@ -201,12 +201,14 @@ def _mended(plan: Plan, entry: CutterEntry) -> list[str]:
 
 def _choice(plan: Plan, names: Mapping[str, str], shown: CutterEntry) -> tuple[str, str]:
     found, name = plan.samples, names[shown.id]
-    several = bool(plan.effective.other_setups) and not any(setup.lost == 0 for setup in shown.setups)
+    # Of several setups one may do by itself.
+    alone = next((setup.axis for setup in shown.setups if not setup.lost), plan.effective.setup)
+    several = bool(shown.setups) and all(setup.lost for setup in shown.setups)
     much = f"It reaches {reached(shown, shown.area_share)} of the target area"
     if plan.selected and not several:
         every = f"all {count(found.judged, 'sample')}" + (" that could be judged" if found.unjudged else "")
         return (
-            f"Take {name}.",
+            f"Take {name}." if alone == plan.effective.setup else f"Take {name}, in setup {place(alone)}.",
             f"It reaches {every} of the target faces without gouging or collision. {_why(plan, names)}",
         )
     if plan.selected_over_setups:
@@ -218,7 +220,7 @@ def _choice(plan: Plan, names: Mapping[str, str], shown: CutterEntry) -> tuple[s
     if plan.selected_for_setup:
         c = next(c for c in plan.cutters if c.id == plan.selected_for_setup)
         return (
-            f"Take {names[c.id]} for this setup.",
+            f"Take {names[c.id]} for {'these setups' if shown.setups else 'this setup'}.",
             f"It reaches {reached(c, c.area_share)} of the target area: all that any of these cutters can reach here. The axis "
             f"limit loses {count(c.beyond_setup, 'sample')} of {found.finished:,} for every cutter: machine these in another "
             "setup.",
