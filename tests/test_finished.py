@@ -65,7 +65,7 @@ def test_a_clamp_is_told_by_name_and_its_advice_works(tmp_path):
     result = plan(tmp_path / "held.step", grid=9, **HOW)
     bodies = result.plan.inside_other_bodies.bodies
     (clamp,) = [body for body in bodies if not body.largest]
-    assert "my clamp" in clamp.name
+    assert (clamp.name, clamp.option) == ("my clamp", "--ignore 'component:my clamp'")
     assert (clamp.how, clamp.samples, clamp.own_faces) == ("stands_on", 9, ["F7-12"])
     (line,) = [line for line in inside(result.plan) if clamp.option in line]
     assert "stands on F6" in line

@@ -108,9 +108,11 @@ def _named(part: Part, own: Sequence[int], others: set[int]) -> tuple[str, str]:
     """The name of a body's component, and the option that leaves this body out and no other one."""
     components = component_of(part.tree)
     paths = {components.get(number, "") for number in own}
-    name = next(iter(paths)) if len(paths) == 1 else ""
-    if name and faces_of(part.tree, name) == set(own) and not others & set(own):
-        return name, f"--ignore {shlex.quote(f'component:{name}')}"
+    path = next(iter(paths)).split("/") if len(paths) == 1 else []
+    # The shortest end of its path that means no other one.
+    for name in ("/".join(path[i:]) for i in reversed(range(len(path)))):
+        if name and faces_of(part.tree, name) == set(own) and not others & set(own):
+            return name, f"--ignore {shlex.quote(f'component:{name}')}"
     # What two bodies have in common closes the other one.
     return "", f"--ignore {numbers([n for n in own if n not in others] or own)}"
 
