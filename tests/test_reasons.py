@@ -1,5 +1,6 @@
 """Why a sample is lost, by what would free it; and several setups as one."""
 
+import csv
 from dataclasses import replace
 
 import numpy as np
@@ -150,7 +151,10 @@ def test_several_setups_are_one_answer(plate, machine, tmp_path):
     assert [each.reached for each in both.plan.setups[:2]] == [each.reached.sum() for each in alone]
     assert [each.reached for each in both.plan.setups[2:]] == [None] * 4
     assert sum(each.serves for each in entry.setups) == together.sum()
-    both.write(tmp_path, ["npz"])
+    both.write(tmp_path, ["npz", "csv"])
+    with (tmp_path / "axes.csv").open(newline="") as file:
+        told = [row["setup"] for row in csv.DictReader(file)]
+    assert told == ["" if k < 0 else str(k) for k in both.served_in["R2L30"].tolist()]
     with np.load(tmp_path / "samples.npz") as arrays:
         which = arrays["setup_R2L30"]
         assert ((which >= 0) == together).all()

@@ -73,6 +73,9 @@ def columns(result: Any) -> list[Column]:
         Column("nearest_part", near.part, words={-1: "", **part_words()}),
         Column("nearest_face", near.face, words={0: "", **faces}),
     ]
+    if name in result.served_in:
+        setups = range(len(result.elsewhere) + 1)
+        found.append(Column("setup", result.served_in[name], words={-1: "", **{k: str(k) for k in setups}}))
     return found + _machine(result)
 
 
