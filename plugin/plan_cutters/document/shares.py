@@ -74,7 +74,7 @@ def face_verdicts(
     samples: SurfaceSamples, reach: Reach, inside: NDArray[np.bool_] | None = None
 ) -> dict[str, FaceVerdicts]:
     """What is reached of each face that has samples, by its id; `inside` as in `counts`."""
-    found, inside = {}, np.zeros(len(samples), bool) if inside is None else inside
+    found, inside = {}, np.zeros(len(samples.face), bool) if inside is None else inside
     numbers, first = np.unique(np.sort(samples.face), return_index=True)
     groups = np.split(np.argsort(samples.face, kind="stable"), first[1:])
     for number, mine in zip(numbers.tolist(), groups, strict=False):
