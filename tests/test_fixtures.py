@@ -105,7 +105,8 @@ def test_a_fixture_and_a_face_of_the_part_give_the_same_verdicts(cutter, height,
         assert one.lost.all() if lost else one.reached.all()
     if not one.lost.any():
         return
-    assert {REASONS[r] for r in other.reason[other.lost]} == {"fixture"}
+    # What the fixture stops is the holder: a longer stick-out would do, and is asked for before another place of the fixture.
+    assert {REASONS[r] for r in other.reason[other.lost]} == {"fixture" if walled else "holder"}
     assert set(fixed.cutters[0].by_reason) == set(REASONS)
     assert {w.obstacle_face for w in fixed.cutters[0].witnesses} & {"fixture:table", "fixture:box"}
 

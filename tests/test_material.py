@@ -65,8 +65,9 @@ def test_nothing_is_reached_under_a_block_that_stands_on_another():
     # The bottom of the upper block lies on the lower one.
     assert not hit[result.samples.face == 11].any()
     entry = result.cutters[0]
-    assert entry.feasible is False
-    assert entry.by_reason["buried"] >= 9
+    # Neither is surface of the finished part: the cutter reaches all of that.
+    assert entry.feasible is True
+    assert entry.inside_bodies == entry.by_reason["buried"] == 9 + 81
     witness = next(w for w in entry.witnesses if w.face == "F6" and w.reason == "buried")
     assert (witness.obstacle_face, witness.obstacle_point[2]) == ("F12", pytest.approx(80.0))
 
@@ -93,7 +94,10 @@ def test_a_clamp_on_a_wavy_top_covers_what_is_under_it():
     assert not reached(result)[under].any()
     away = top & (np.abs(at[:, :2] - 30) > 15).any(axis=1)
     assert reached(result)[away].mean() > 0.5
-    assert result.selected is None
+    inside = result.plan.inside_other_bodies
+    assert under.sum() <= inside.samples == result.inside_bodies.sum()
+    # It stands with its foot in the wavy top.
+    assert [(each.faces, each.how) for each in inside.bodies if not each.largest] == [(["F5"], "overlaps")]
 
 
 def test_touching_overlapping_and_repeated_bodies():

@@ -6,6 +6,7 @@ import { place } from "./contact.ts";
 import type { Arrays } from "./decode.ts";
 import { LiveTool, type Met, Probe, type State } from "./live_map.ts";
 import type { Drawn, Owner } from "./mesh.ts";
+import { Machine } from "./machine.ts";
 import type { Cutter, Meta, Spot, Vec } from "./meta.ts";
 import type { PartView } from "./part.ts";
 import type { Picker } from "./pick.ts";
@@ -22,6 +23,8 @@ type Event = "cutter" | "look" | "sample" | "posture" | "hot" | "spot";
 
 export class App {
   cutter: Cutter;
+  /** Stands in the setup that serves the sample shown. */
+  readonly machine: Machine;
   mode = "verdict";
   sample: Sample | null = null;
   spot: Spot | null = null;
@@ -53,6 +56,7 @@ export class App {
     readonly say: (text: string) => void,
   ) {
     this.cutter = this.cutterOf(meta.shown);
+    this.machine = new Machine(meta);
   }
 
   on(event: Event, work: () => void): void {
@@ -68,7 +72,7 @@ export class App {
   }
 
   get probe(): Probe {
-    this.madeProbe ??= new Probe(this.drawn, this.meta);
+    this.madeProbe ??= new Probe(this.drawn, this.meta, this.machine);
     return this.madeProbe;
   }
 
@@ -110,6 +114,7 @@ export class App {
     this.spot = row === null ? null : (spot ?? this.spotOf(row));
     this.posture = null;
     this.met = null;
+    this.machine.stand(row === null ? 0 : (this.samples.setup(this.cutter.id, row) ?? 0));
     this.emit("sample");
     if (spot) this.emit("spot");
     this.setPosture(row === null ? null : this.startPosture(row));

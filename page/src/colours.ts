@@ -47,6 +47,7 @@ const FALLBACK: Record<string, string> = {
   undecided: "#F0E442",
   inaccessible: "#D55E00",
   unjudged: "#CC79A7",
+  inside_bodies: "#595959",
   check: "#BFBFBF",
   fixture: "#0072B2",
 };
@@ -56,6 +57,7 @@ const WORDS: Record<string, string> = {
   undecided: "undecided",
   inaccessible: "inaccessible",
   unjudged: "could not be judged",
+  inside_bodies: "inside another body",
   local_gouge: "local gouge",
   rear_gouge: "rear gouge",
   check: "not judged (obstacle only)",
@@ -100,6 +102,7 @@ export function modesOf(meta: Meta, cutter: string): Mode[] {
   return [
     { key: "verdict", label: "Verdict" },
     { key: "reason", label: "Reason" },
+    ...(meta.setups.length ? [{ key: "setup", label: "Setup that serves" }] : []),
     { key: "class", label: "Surface class" },
     ...scalars.map((each) => ({ key: `scalar:${each.key}`, label: capital(each.label) })),
   ];
@@ -109,6 +112,7 @@ export function lookOf(meta: Meta, arrays: Arrays, samples: Samples, mode: strin
   const scalar = meta.scalars.find((each) => `scalar:${each.key}` === mode);
   if (scalar) return scalarLook(arrays, samples, scalar);
   if (mode === "reason") return reasonLook(meta, samples, cutter);
+  if (mode === "setup") return setupLook(meta, samples, cutter);
   if (mode === "class") return classLook(meta, samples);
   return verdictLook(meta, samples, cutter);
 }
@@ -120,10 +124,9 @@ export function patternOf(verdict: string): Pattern {
 }
 
 function verdictLook(meta: Meta, samples: Samples, cutter: string): Look {
-  const order = ["interference_free", "accessible", "undecided", "inaccessible", "unjudged"];
+  const order = ["interference_free", "accessible", "undecided", "inaccessible", "unjudged", "inside_bodies"];
   const entries = order.map((word) => ({ colour: colourOf(meta, word), pattern: patternOf(word), label: spoken(word) }));
-  const verdict = samples.verdicts(cutter).values;
-  return painted("Verdict", entries, samples, (i) => order.indexOf(meta.verdicts[String(verdict[i])] ?? "unjudged"));
+  return painted("Verdict", entries, samples, (i) => order.indexOf(samples.verdict(cutter, i)));
 }
 
 function reasonLook(meta: Meta, samples: Samples, cutter: string): Look {
@@ -136,12 +139,34 @@ function reasonLook(meta: Meta, samples: Samples, cutter: string): Look {
   const rest: Entry[] = [
     { colour: "#d9e4dd", pattern: "plain", label: "reached" },
     { colour: colourOf(meta, "unjudged"), pattern: "plain", label: spoken("unjudged") },
+    { colour: colourOf(meta, "inside_bodies"), pattern: "plain", label: spoken("inside_bodies") },
   ];
   const count = entries.length;
   return painted("Reason", [...entries, ...undecided, ...rest], samples, (i) => {
+    if (samples.inside(i)) return 2 * count + 2;
     if (verdict[i] === UNJUDGED) return 2 * count + 1;
     if (reason[i] === NO_REASON) return 2 * count;
     return reason[i] + (meta.verdicts[String(verdict[i])] === "undecided" ? count : 0);
+  });
+}
+
+/** Which setup serves each sample: a colour of the scale for each. */
+function setupLook(meta: Meta, samples: Samples, cutter: string): Look {
+  const count = meta.setups.length;
+  const entries: Entry[] = meta.setups.map(({ z }, k) => {
+    const colour = ramp(count > 1 ? k / (count - 1) : 0);
+    return { colour, pattern: "plain", label: `setup ${k + 1}: ${z.map((x) => Number(x.toFixed(4))).join(", ")}` };
+  });
+  entries.push(
+    { colour: colourOf(meta, "inaccessible"), pattern: "hatch", label: "no setup" },
+    { colour: colourOf(meta, "unjudged"), pattern: "plain", label: spoken("unjudged") },
+    { colour: colourOf(meta, "inside_bodies"), pattern: "plain", label: spoken("inside_bodies") },
+  );
+  return painted("Setup that serves", entries, samples, (i) => {
+    const verdict = samples.verdict(cutter, i);
+    if (verdict === "inside_bodies") return count + 2;
+    if (verdict === "unjudged") return count + 1;
+    return samples.setup(cutter, i) ?? count;
   });
 }
 
@@ -164,8 +189,11 @@ function painted(title: string, entries: Entry[], samples: Samples, which: (i: n
     area[k] += samples.area(i);
     bytes.set(table[k], 4 * i);
   }
-  const whole = area.reduce((sum, each) => sum + each, 0) || 1;
-  const shown = entries.map((each, k) => ({ ...each, share: area[k] / whole }));
+  const whole = area.reduce((sum, each) => sum + each, 0);
+  // What is no surface of the finished part is a share of all; the others are shares of what is left.
+  const inside = entries.findIndex((each) => each.label === spoken("inside_bodies"));
+  const left = whole - (area[inside] ?? 0);
+  const shown = entries.map((each, k) => ({ ...each, share: area[k] / ((k === inside ? whole : left) || 1) }));
   return { title, entries: shown.filter((_, k) => seen[k]), ramp: null, bytes };
 }
 

@@ -23,7 +23,9 @@ export function legendOf({ look, meta }: App): HTMLElement[] {
   const found: HTMLElement[] = [el("h2", {}, look.title)];
   if (look.ramp) found.push(scale(look.ramp));
   found.push(el("ul", { class: "legend" }, ...rows));
-  if (look.entries.length) found.push(el("p", { class: "hint" }, "share of the sampled area"));
+  const inside = look.entries.some((entry) => entry.label === spoken("inside_bodies"));
+  const hint = `share of the sampled area${inside ? " that lies inside no other body" : ""}`;
+  if (look.entries.length) found.push(el("p", { class: "hint" }, hint));
   return found;
 }
 

@@ -2,7 +2,7 @@
 
 import type { Box3 } from "three";
 import { gouges, modeAt, place, type Placed } from "./contact.ts";
-import { Machine } from "./machine.ts";
+import type { Machine } from "./machine.ts";
 import type { Drawn, Owner } from "./mesh.ts";
 import type { Cutter, Meta, Vec } from "./meta.ts";
 import { hit, reaches, type Solid, solidOf } from "./overlap.ts";
@@ -64,15 +64,14 @@ export class Probe {
   private readonly index: ArrayLike<number>;
   private readonly corner = new Float64Array(9);
   private readonly ignored: boolean[];
-  readonly machine: Machine;
   /** For each part, the triangle that was in the way last: it often is again. */
   private readonly last = new Map<string, number>();
 
   constructor(
     private readonly drawn: Drawn,
     meta: Meta,
+    readonly machine: Machine,
   ) {
-    this.machine = new Machine(meta);
     this.index = drawn.tree.geometry.index!.array;
     this.ignored = meta.faces.map((face) => face.ignored);
   }

@@ -12,23 +12,37 @@ const ON_LIMIT = 1e-9;
 const STEP = 0.1;
 
 export class Machine {
+  /** The setup in which the part stands, counted from 0. */
+  private at = 0;
+
   constructor(private readonly meta: Meta) {}
+
+  /** Let the part stand in another setup. */
+  stand(setup: number): void {
+    this.at = setup;
+  }
+
+  private get setup(): { z: Vec; kinematics: Kinematics | null } {
+    return this.meta.setups[this.at] ?? { z: this.meta.setup.z, kinematics: this.meta.kinematics };
+  }
 
   get limited(): boolean {
     return this.meta.tilt_limit_deg !== null || this.meta.kinematics !== null;
   }
 
   holds(axis: Vec): boolean {
-    const { tilt_limit_deg: limit, setup, kinematics } = this.meta;
-    if (limit !== null && dot(axis, setup.z) < Math.cos(limit * RAD) - ON_LIMIT) return false;
+    const { tilt_limit_deg: limit } = this.meta;
+    const { z, kinematics } = this.setup;
+    if (limit !== null && dot(axis, z) < Math.cos(limit * RAD) - ON_LIMIT) return false;
     return kinematics === null || turnsTo(kinematics, axis);
   }
 
   /** What of free intervals (degrees) at a rotation the machine holds. */
   within(free: [number, number][], sample: Sample, rotation: number): [number, number][] {
-    const { tilt_limit_deg: limit, setup, tilt_deg, kinematics } = this.meta;
+    const { tilt_limit_deg: limit, tilt_deg } = this.meta;
+    const { z, kinematics } = this.setup;
     let left = free;
-    if (limit !== null) left = common(left, heldTilts(sample, rotation, setup.z, limit, tilt_deg));
+    if (limit !== null) left = common(left, heldTilts(sample, rotation, z, limit, tilt_deg));
     if (kinematics === null) return left;
     const lean = Samples.lean(sample, rotation);
     const held = (tilt: number): boolean =>

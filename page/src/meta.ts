@@ -110,6 +110,8 @@ export interface Meta {
   tilt_limit_deg: number | null;
   rotary: boolean;
   kinematics: Kinematics | null;
+  /** Where there are several: each, the first one first. */
+  setups: { z: Vec; kinematics: Kinematics | null }[];
   atlas: [number, number] | null;
   faces: Face[];
   fixtures: Fixture[];
@@ -122,3 +124,4 @@ export interface Meta {
 
 export const UNJUDGED = 255;
 export const NO_REASON = 255;
+export const NO_SETUP = 255;

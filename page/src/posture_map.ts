@@ -81,6 +81,8 @@ export class PosturePanel {
     const face = this.app.meta.faces.find((each) => each.number === sample.face);
     const verdict = samples.verdict(cutter.id, sample.row);
     const reason = samples.reason(cutter.id, sample.row);
+    const served = this.app.meta.setups.length ? samples.setup(cutter.id, sample.row) : null;
+    const setup = served === null ? "" : `, in setup ${served + 1}`;
     const known = samples.posture(cutter.id, sample.row);
     this.start.textContent = known ? "Posture found" : this.app.spot ? "Posture of the witness" : "Nearest posture";
     const named = `Posture map of sample ${sample.row}: tilt against rotation; arrow keys move the tool`;
@@ -89,7 +91,7 @@ export class PosturePanel {
       el("strong", {}, `${face?.id ?? "?"}, sample ${sample.row}`),
       ` at ${samples.told(sample.row).map((x) => figure(x, 4)).join(", ")} mm. `,
       el("strong", {}, cutter.name || cutter.id),
-      `: ${spoken(verdict)}${reason ? ` (${spoken(reason)})` : ""}. Curvature ${sample.curvature.map(bend).join(" and ")}.`,
+      `: ${spoken(verdict)}${reason ? ` (${spoken(reason)})` : ""}${setup}. Curvature ${sample.curvature.map(bend).join(" and ")}.`,
     );
     this.kind.textContent = this.map.certified
       ? "What is free is certified. What forbids the others comes from the drawn triangles."

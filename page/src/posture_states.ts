@@ -126,7 +126,7 @@ export class SampleMap {
 
 /** Stored maps hold for any machine: what this one holds of them. */
 function within(app: App, sample: Sample, found: Certified | null): Certified | null {
-  const { machine } = app.probe;
+  const { machine } = app;
   if (!found || !machine.limited) return found;
   return { ...found, free: found.free.map((mine, k) => machine.within(mine, sample, app.meta.rotation_deg[k])) };
 }
@@ -134,7 +134,7 @@ function within(app: App, sample: Sample, found: Certified | null): Certified | 
 /** The verdict on a sample that is not reached is certified, too: no searched rotation has a free tilt. */
 function lost(app: App, sample: Sample): Certified | null {
   const verdict = app.samples.verdict(app.cutter.id, sample.row);
-  if (verdict !== "inaccessible" && verdict !== "undecided") return null;
+  if (!["inaccessible", "undecided", "inside_bodies"].includes(verdict)) return null;
   const unsure = verdict === "undecided" ? 1 : 0;
   return { free: app.meta.rotation_deg.map(() => []), undecided: app.meta.rotation_deg.map(() => unsure) };
 }

@@ -2,7 +2,7 @@
 
 import type { Arrays, Table } from "./decode.ts";
 import type { Meta, Vec } from "./meta.ts";
-import { NO_REASON } from "./meta.ts";
+import { NO_REASON, NO_SETUP } from "./meta.ts";
 import { across, cross, mixed, octahedral, RAD, turned } from "./vectors.ts";
 
 export interface Sample {
@@ -85,7 +85,20 @@ export class Samples {
     return this.arrays.get(`reason.${cutter}`);
   }
 
+  /** Whether it lies inside another body of the part: no surface of the finished part. */
+  inside(row: number): boolean {
+    return this.arrays.has("sample.inside") && this.arrays.get("sample.inside").values[row] === 1;
+  }
+
+  /** The setup whose posture a sample has, counted from 0; null where none serves it. */
+  setup(cutter: string, row: number): number | null {
+    if (!this.arrays.has(`setup.${cutter}`)) return 0;
+    const found = this.arrays.get(`setup.${cutter}`).values[row];
+    return found === NO_SETUP ? null : found;
+  }
+
   verdict(cutter: string, row: number): string {
+    if (this.inside(row)) return "inside_bodies";
     return this.meta.verdicts[String(this.verdicts(cutter).values[row])] ?? "unjudged";
   }
 

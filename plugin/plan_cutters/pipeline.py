@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io import Part, read_part
+from cad_io.arrays import Ints
 from cad_io.read.read import TIMEOUT
 from cad_io.sample import sample
 from cad_io.tessellate.triangles import At
@@ -18,13 +19,15 @@ from plan_cutters.answers.ask import ask
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock, Progress
 from plan_cutters.document.frozen import Vector
-from plan_cutters.document.model import AreaEntry, CutterEntry, SetupEntry
-from plan_cutters.document.plan import Elsewhere, completed, plan_of, selection
+from plan_cutters.document.model import AreaEntry, CutterEntry
+from plan_cutters.document.plan import Elsewhere, OverSetups, completed, plan_of, selection
+from plan_cutters.document.setups import SetupEntry
 from plan_cutters.document.travel import travels
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.nesting import handed, order
+from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.verdicts import CONVEX, Reach, blank
 from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.kernels.rows import Contacts
@@ -43,6 +46,7 @@ from plan_cutters.stages.decompose import march_differs
 from plan_cutters.stages.elsewhere import in_setup
 from plan_cutters.stages.judge import judge
 from plan_cutters.stages.posture_maps import posture_maps
+from plan_cutters.stages.reasons import Reasons
 from plan_cutters.stages.select_cutters import ranked
 from plan_cutters.stages.setups import AXES, within_limits
 
@@ -104,24 +108,28 @@ def run(
     """
     started = datetime.datetime.now(datetime.UTC)
     ready = prepare(part, options, clock, read_timeout=read_timeout, at=at, ahead=ahead)
-    judged: dict[Cutter, Judged] = {}
+    here: dict[Cutter, Reach] = {}
+    seconds: dict[Cutter, float] = {}
     for cutter in order(ready.cutters):
         with clock.stage(cutter.id) as tell:
             # In the order of rank, whatever the order of work.
-            earlier = {c: judged[c].reach for c in ready.cutters if c in judged}
-            judged[cutter] = _judged(ready, cutter, earlier, tell)
+            earlier = {c: here[c] for c in ready.cutters if c in here}
+            began = time.perf_counter()
+            here[cutter] = judge(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell)
+            seconds[cutter] = time.perf_counter() - began
     places = options.other_placements or (None,) * len(options.other_setups)
     others = [
         (axis, None if place is None else place.x) for axis, place in zip(options.other_setups, places, strict=True)
     ]
-    elsewhere = [(axis, _elsewhere(ready, judged, axis, x, clock)) for axis, x in others]
-    answers = ask(ready, {cutter: each.reach for cutter, each in judged.items()}, clock.stage)
+    elsewhere = [(axis, _elsewhere(ready, here, axis, x, clock)) for axis, x in others]
+    judged = _judged(ready, here, elsewhere, seconds, clock)
+    answers = ask(ready, {cutter: each.here for cutter, each in judged.items()}, clock.stage)
     result = assemble(ready, judged, clock, started, answers, elsewhere)
     if not options.posture_maps:
         return result
     with clock.stage("maps") as tell:
         cutter = next(c for c in ready.cutters if c.id == result.shown)
-        reach = judged[cutter].reach
+        reach = judged[cutter].here
         if ready.conditions.machine.limited:
             reach = judge(replace(ready, conditions=ready.conditions.machineless), cutter)
         maps = posture_maps(
@@ -131,13 +139,13 @@ def run(
 
 
 def _elsewhere(
-    ready: Prepared, judged: Mapping[Cutter, "Judged"], axis: Vector, x: Vector | None, clock: Clock
+    ready: Prepared, here: Mapping[Cutter, Reach], axis: Vector, x: Vector | None, clock: Clock
 ) -> dict[str, Reach]:
     """What each cutter reaches in another setup."""
     found = {}
-    for cutter, each in judged.items():
+    for cutter, reach in here.items():
         with clock.stage("setups") as tell:
-            found[cutter.id] = in_setup(ready, cutter, axis, each.reach, x=x, progress=tell)
+            found[cutter.id] = in_setup(ready, cutter, axis, reach, x=x, progress=tell)
     return found
 
 
@@ -193,9 +201,15 @@ def prepare(
         warm(contacts_of(samples), cutters[0], conditions)
     with clock.stage("bodies"):
         within = buried(samples, scene.orientation, around.enclosing, around.surely, scene.tolerance)
-    return Prepared(
+    ready = Prepared(
         scene, options, chosen, spacing, samples, surface_class, region, within, conditions, cutters, coarser
     )
+    if not ready.finished.any():
+        raise UnjudgeableError(
+            "every target sample lies inside another body of the part, so there is no surface to finish: leave a body out with "
+            "--ignore, or choose other faces with --faces", file=whole.file,
+        )  # fmt: skip
+    return ready
 
 
 def _read(part: Any, options: Options, timeout: float) -> Part | Scene:
@@ -209,24 +223,47 @@ def _read(part: Any, options: Options, timeout: float) -> Part | Scene:
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """What is known of one cutter: what it reaches, and its line in the plan."""
+    """What is known of one cutter.
+
+    Attributes
+    ----------
+    reach : Reach
+        Over all setups, with the reasons that can be acted on.
+    which : (n,) int32
+        The setup that serves each sample, -1 for none.
+    here : Reach
+        In the first setup alone; the same where there is no other one.
+    entry : CutterEntry
+        Its line in the plan.
+    """
 
     reach: Reach
+    which: Ints
+    here: Reach
     entry: CutterEntry
 
 
 def _judged(
-    ready: Prepared, cutter: Cutter, earlier: Mapping[Cutter, Reach], tell: Callable[[int, int], None]
-) -> Judged:  # fmt: skip
-    samples, convex = ready.samples, ready.surface_class == CONVEX
-    began = time.perf_counter()
-    reach = judge(ready, cutter, known=handed(cutter, earlier, len(samples)), progress=tell)
-    seconds = time.perf_counter() - began
-    found = witnesses(samples, reach, cutter, ready.conditions, buried=ready.buried)
-    marched = march_differs(samples, convex, ready.region, reach.interference_free)
-    around = ready.conditions.around
-    return Judged(reach, cutter_entry(cutter, samples, reach, found, marched, seconds, part=ready.scene.part, around=around,
-                                       slack=ready.conditions.light(cutter).slack))  # fmt: skip
+    ready: Prepared, here: Mapping[Cutter, Reach], elsewhere: Sequence[Elsewhere], seconds: Mapping[Cutter, float], clock: Clock
+) -> dict[Cutter, Judged]:  # fmt: skip
+    """What each cutter reaches over all setups, why not the rest, and its line in the plan."""
+    samples, convex, around = ready.samples, ready.surface_class == CONVEX, ready.conditions.around
+    inside = ready.inside_bodies
+    reasons = Reasons(samples, ready.setups, ready.finished & (ready.buried < 0))
+    judged = {}
+    for cutter, mine in here.items():
+        with clock.stage("reasons") as tell:
+            over, which = over_setups([mine, *(found[cutter.id] for _, found in elsewhere)])
+            explained = reasons.of(cutter, over, tell)
+            reach = explained.reach
+        with clock.stage(cutter.id, shown=False):
+            found = witnesses(samples, reach, cutter, ready.conditions, buried=ready.buried)
+            marched = march_differs(samples, convex, ready.region, mine.interference_free)
+            slack, part = ready.conditions.light(cutter).slack, ready.scene.part
+            entry = cutter_entry(cutter, samples, reach, found, marched, seconds[cutter], part=part, around=around, slack=slack,
+                                 inside=inside, besides=explained.besides)  # fmt: skip
+            judged[cutter] = Judged(reach, which, mine if elsewhere else reach, entry)
+    return judged
 
 
 def assemble(
@@ -237,19 +274,22 @@ def assemble(
     """The result of all cutters: the choice, the area between the samples for the one chosen, what was answered, the plan."""
     clock, answers = clock or Clock(), answers or Answers()
     reaches = {cutter.id: each.reach for cutter, each in judged.items()}
-    within = within_limits(ready.samples, ready.cutters, ready.conditions)
-    beyond = (ready.samples.unjudged < 0) & ~within & (ready.buried < 0)
-    moved = travels(ready.options, ready.samples, {cutter: each.reach for cutter, each in judged.items()})
-    entries = completed([judged[c].entry for c in ready.cutters], ready, answers, reaches, beyond, elsewhere, moved)
+    here = {cutter.id: each.here for cutter, each in judged.items()}
+    served_in = {cutter.id: each.which for cutter, each in judged.items()}
+    within = [within_limits(ready.samples, ready.cutters, conditions) & ready.finished for conditions in ready.setups]
+    beyond = ready.finished & ~np.logical_or.reduce(within) & (ready.buried < 0)
+    moved = travels(ready.options, ready.samples, {cutter: each.here for cutter, each in judged.items()})
+    over = OverSetups(reaches, here, served_in, ready.scene.setup, tuple(elsewhere))
+    entries = completed([judged[c].entry for c in ready.cutters], ready, answers, over, beyond, moved)
     selected, chosen = selection(entries)
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
-    best = selected or next((e.id for e in entries if not (e.inaccessible or e.undecided)), None)
+    best = selected or next((e.id for e in entries if not e.lost), None)
     budget = ready.options.contacts_between(len(ready.samples))
     if best and budget:
         with clock.stage("area"):
             cutter = next(c for c in ready.cutters if c.id == best)
             served = between(ready.samples, judged[cutter].reach, cutter, ready.scene.part, ready.scene.orientation,
-                             ready.conditions, budget=budget)  # fmt: skip
+                             ready.conditions, budget=budget, beside=ready.inside_bodies)  # fmt: skip
         area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
                          short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
         entries = [
@@ -263,7 +303,7 @@ def assemble(
             chosen,
             started or datetime.datetime.now(datetime.UTC),
             answers,
-            _setups(ready, within),
+            _setups(ready, within, over),
         )
     return Result(
         clock.stamp(document),
@@ -277,21 +317,32 @@ def assemble(
         answers,
         travels=moved,
         ready=ready,
+        here=here,
+        served_in=served_in if elsewhere else {},
     )
 
 
-def _setups(ready: Prepared, here: NDArray[np.bool_]) -> list[SetupEntry]:
-    """How much is within the axis limits in this setup, `here` (n,), and would be in each along the part's own axes."""
+def _setups(ready: Prepared, within: Sequence[NDArray[np.bool_]], over: OverSetups) -> list[SetupEntry]:
+    """How much is within the axis limits and is reached in each setup asked for, `within` (n,) each, and how much would be within
+    them in each along the part's own axes."""
     if not ready.conditions.machine.limited:
         return []
-    judged, area = ready.samples.unjudged < 0, ready.samples.area
-    found = []
-    for axis in dict.fromkeys((ready.scene.setup, *AXES)):
-        own = axis == ready.scene.setup
-        within = here if own else within_limits(ready.samples, ready.cutters, ready.conditions, axis)
-        share = float(area[within].sum() / area[judged].sum()) if area[judged].sum() > 0.0 else 0.0
-        found.append(SetupEntry(axis=axis, within=int(within.sum()), share=min(1.0, share)))
-    return found
+    asked = ready.finished
+    whole = float(ready.samples.area[asked].sum())
+
+    def share(mine: NDArray[np.bool_]) -> float:
+        return min(1.0, float(ready.samples.area[mine].sum()) / whole) if whole > 0.0 else 0.0
+
+    found: dict[Vector, SetupEntry] = {}
+    for k, (axis, each) in enumerate(over.each()):
+        mine = asked & np.logical_or.reduce([reach.reached for reach in each.values()])
+        found.setdefault(axis, SetupEntry(axis=axis, within=int(within[k].sum()), share=share(within[k]),
+                                          reached=int(mine.sum()), reached_share=share(mine)))  # fmt: skip
+    for axis in AXES:
+        if axis not in found:
+            mine = asked & within_limits(ready.samples, ready.cutters, ready.conditions, axis)
+            found[axis] = SetupEntry(axis=axis, within=int(mine.sum()), share=share(mine))
+    return list(found.values())
 
 
 def _affordable(part: Part, targets: Sequence[int], options: Options) -> None:

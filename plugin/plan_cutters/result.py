@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io import Part, SurfaceSamples
+from cad_io.arrays import Floats, Ints
 from plan_cutters.document.model import CutterEntry, Plan
 from plan_cutters.document.on_face import OnFace, on_face
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.kinematics import Kinematics
+from plan_cutters.domain.over_setups import positions
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import UNJUDGED, Reach
@@ -41,7 +43,7 @@ class Result:
         Of the target faces.
     surface_class : (n,) uint8
     reaches : dict
-        Cutter id -> Reach.
+        Cutter id -> Reach: over all setups, what one or another of them reaches, with the posture of the first that does.
     postures : PostureRange
     kinematics : Kinematics, optional
         The machine's rotary axes in the part's frame; None where any tool axis within a plain limit is possible.
@@ -55,6 +57,11 @@ class Result:
         Cutter id -> Travel: where the linear axes stand; empty where that is not judged.
     ready : Prepared, optional
         What the cutters were judged on: for further questions.
+    here : dict
+        Cutter id -> Reach in the first setup alone: that of `reaches` where there is no other one.
+    served_in : dict
+        Cutter id -> (n,) int32, the setup whose posture a sample has, counted from 0 as in `plan.cutters[].setups`, -1 for none;
+        empty where one setup was asked for.
     """
 
     plan: Plan
@@ -69,6 +76,8 @@ class Result:
     maps: PostureMaps | None = None
     travels: dict[str, Travel] = field(default_factory=dict)
     ready: Prepared | None = None
+    here: dict[str, Reach] = field(default_factory=dict)
+    served_in: dict[str, Ints] = field(default_factory=dict)
 
     def __getstate__(self) -> dict[str, Any]:
         # Options may hold objects of a CAD host: what they stand for is kept in words.
@@ -106,6 +115,26 @@ class Result:
     def clearances(self) -> Clearances:
         """How far the cutter `shown` keeps from everything at the postures found, where it does not cut."""
         return clearances(self.samples, self.judged(), self.reaches[self.shown], self.conditions)
+
+    @property
+    def inside_bodies(self) -> NDArray[np.bool_]:
+        """Samples (n,) inside other bodies of the part: no surface of the finished part."""
+        return np.zeros(len(self.samples), bool) if self.ready is None else self.ready.inside_bodies
+
+    def rotary(self, cutter: str) -> tuple[Floats, NDArray[np.int8]]:
+        """Positions of the rotary axes at the postures of a cutter, rad, both solutions, and which of them is to be taken.
+
+        Each in the setup that serves its sample; arrays as `Kinematics.positions` gives them, (n, 2, axes) and (n,), and where
+        linear travel is judged as that takes them.
+        """
+        if self.ready is None or self.kinematics is None:
+            raise ValueError("rotary positions need a machine of rotary axes, and what cutters were judged on")
+        axis = self.reaches[cutter].axis
+        which = self.served_in.get(cutter, np.zeros(len(axis), np.int32))
+        angles, taken, _ = positions([each.kinematics for each in self.ready.setups], axis, which)
+        if cutter in self.travels:
+            taken = np.where(which > 0, taken, self.travels[cutter].taken)
+        return angles, taken
 
     @property
     def conditions(self) -> Conditions:
@@ -183,7 +212,9 @@ class Result:
                 self.ready, tool, replace(reach, verdict=np.where(mine, reach.verdict, UNJUDGED).astype(np.uint8))
             )
         doubtful = self.scene.around.doubtful
-        return on_face(self.plan.faces[number - 1], entry, self.samples, reach, known, doubtful=doubtful)
+        return on_face(
+            self.plan.faces[number - 1], entry, self.samples, reach, known, doubtful=doubtful, inside=self.inside_bodies
+        )
 
     def to_json(self, path: str | Path) -> None:
         """Write the plan alone."""

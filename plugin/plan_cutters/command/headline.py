@@ -21,7 +21,15 @@ def headline(plan: "Plan", names: Mapping[str, str]) -> list[Text]:
     """Which cutter to take, with what holder, and why; or why none."""
     entries, told = {c.id: c for c in plan.cutters}, {c.id: described(c, names[c.id]) for c in plan.cutters}
     part, setups = judged(plan), 1 + len(plan.effective.other_setups)
-    if plan.selected:
+    here = "this setup" if setups == 1 else "these setups"
+    # Of several setups one may do by itself.
+    alone = next((s.axis for s in entries[plan.selected].setups if not s.lost), None) if plan.selected else None
+    if plan.selected and alone not in (None, plan.effective.setup):
+        c = entries[plan.selected]
+        axis = ",".join(f"{x:.4g}" for x in alone or ())
+        return [_marked(f"Take {names[c.id]}", True, f" for {part}, in setup {axis}: {told[c.id]}. It reaches every sample "
+                        "there, and needs no other setup.")]  # fmt: skip
+    if plan.selected and (setups == 1 or alone):
         c = entries[plan.selected]
         which = (
             "reaches every sample"
@@ -35,19 +43,19 @@ def headline(plan: "Plan", names: Mapping[str, str]) -> list[Text]:
                         "every sample; no setup does alone.")]  # fmt: skip
     if plan.selected_for_setup:
         c = entries[plan.selected_for_setup]
-        return [_marked(f"Take {names[c.id]} in this setup", None, f" for {part}: {told[c.id]}. It leaves only what the axis "
+        return [_marked(f"Take {names[c.id]} in {here}", None, f" for {part}: {told[c.id]}. It leaves only what the axis "
                         f"limit keeps from every cutter, {lost_percent(c, c.area_share)} of the area: that needs another "
                         "setup.")]  # fmt: skip
-    best = min(plan.cutters, key=lambda c: c.inaccessible + c.undecided)
-    left = best.inaccessible + best.undecided
+    best = min(plan.cutters, key=lambda c: c.lost)
+    left = best.lost
     name = f"{names[best.id]} ({told[best.id]})"
     if not left:
         return [_marked(f"No cutter is sure for {part}", None, f". {name} reaches every sample that could be judged, but "
                         "obstacles are missing (below) that may be in its way.")]  # fmt: skip
     which = f"{name} was judged: it" if len(entries) == 1 else f"Of {len(entries)} cutters, {name} comes nearest: it"
-    much = f"{lost_percent(best, best.area_share)} of the area ({left} of {plan.samples.count} samples)"
+    much = f"{lost_percent(best, best.area_share)} of the area ({left} of {plan.samples.finished} samples)"
     ask = "" if "mend" in plan.effective.answers else " Ask what would help: --answers mend."
-    if best.inaccessible == 0:
+    if best.blocked == 0:
         return [_marked(f"No cutter is sure for {part}", None, f". {which} leaves {much} undecided: neither safe nor blocked to "
                         f"the tolerance.{ask}")]  # fmt: skip
     return [_marked(f"No cutter finishes {part}", False, f". {which} leaves {much}.{ask}")]

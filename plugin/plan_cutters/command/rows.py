@@ -55,7 +55,7 @@ def cutter_rows(plan: "Plan", names: Mapping[str, str], *, verbose: bool) -> lis
         rank = sorted(rows, key=lambda c: (c.id != taken, c.area_share.inaccessible + c.area_share.undecided))
         kept = {c.id for c in rank[:MOST_ROWS]}
         rows = [c for c in rows if c.id in kept]
-    here = f", in setup {','.join(f'{x:.4g}' for x in plan.effective.setup)}" if plan.effective.other_setups else ""
+    here = f", over {1 + len(plan.effective.other_setups)} setups" if plan.effective.other_setups else ""
     found: list[Any] = [f"Share of the area to machine, by the verdict of its samples{here}:"]
     short = _distinct([clean(names[c.id]) for c in rows], _NAME)
     table = _table(("  cutter", "feasible"), tuple(WORDS.values()))
@@ -90,7 +90,7 @@ def worst_faces(plan: "Plan", name: str) -> list[Any]:
     which = (
         f"the {len(worst)} worst of {count} faces" if count > len(worst) else f"{count} face{'s' if count > 1 else ''}"
     )
-    lines: list[Any] = [cell(f"Where {name} {'fails' if c.inaccessible else 'is not sure'}, {which}:")]
+    lines: list[Any] = [cell(f"Where {name} {'fails' if c.blocked else 'is not sure'}, {which}:")]
     rows = [_row(figure(each.area), each) for each in worst]
     table = _table(("  face", "mainly", "in the way"), ("mm2 lost", "of the face", "mm too deep"))
     for face, area, share, reason, depth, obstacle in rows:

@@ -12,8 +12,8 @@ from plan_cutters.command.rows import cell, cutter_rows, shown, take, worst_face
 from plan_cutters.command.terminal import say
 from plan_cutters.document.judged import not_judged, not_seen
 from plan_cutters.document.names import named, short_names
+from plan_cutters.document.told import inside, percent, reasons
 from plan_cutters.document.told import lost as lost_percent
-from plan_cutters.document.told import percent
 
 if TYPE_CHECKING:
     from plan_cutters.document.model import CutterEntry, Plan
@@ -32,6 +32,7 @@ def summary(plan: "Plan", *, verbose: bool = False) -> None:
     faces = f"The part has {many}: {targets} to machine{f', {ignored} ignored' if ignored else ''}"
     say(
         "",
+        *_first_of_all(plan),
         *headline(plan, names),
         *map(cell, (*not_judged(plan), *not_seen(plan, names))),
         *between(plan),
@@ -44,6 +45,12 @@ def summary(plan: "Plan", *, verbose: bool = False) -> None:
         *_apart([cell(named(plan, line)) for line in answered(plan)]),
         *_apart([*_unsure(plan, verbose=verbose), *(_details(plan) if verbose else ())]),
     )  # fmt: skip
+
+
+def _first_of_all(plan: "Plan") -> list[Any]:
+    """What is no surface of the finished part: before anybody relies on the rest."""
+    lines = [cell(named(plan, line)) for line in inside(plan)]
+    return [_marked("Inside other bodies:", lines[0].plain), *lines[1:], ""] if lines else []
 
 
 def written(plan: "Plan", out: Path | None, formats: Sequence[str]) -> list[Any]:
@@ -73,11 +80,11 @@ def not_reached(plan: "Plan", *, verbose: bool = False) -> list[str]:
     for c in plan.cutters:
         if c.id == plan.selected:
             break
-        if c.inaccessible + c.undecided:
+        if c.lost:
             larger.append(c)
     near = larger
     if not verbose and len(larger) > _OTHERS:
-        near = sorted(larger, key=lambda c: (c.id != take(plan), c.inaccessible + c.undecided))[:_OTHERS]
+        near = sorted(larger, key=lambda c: (c.id != take(plan), c.lost))[:_OTHERS]
     lines = [named(plan, _lost(plan, c)) for c in larger if c in near]
     if rest := [c for c in larger if c not in near]:
         ends = [min(rest, key=_lost_share), max(rest, key=_lost_share)]
@@ -94,22 +101,25 @@ def _lost_share(c: "CutterEntry") -> float:
 
 def _lost(plan: "Plan", c: "CutterEntry") -> str:
     """What a cutter leaves: how much, why, on which faces, and the worst place."""
-    left = c.inaccessible + c.undecided
-    reasons = sorted(c.area_share.lost_by.items(), key=lambda item: -item[1])
-    why = ", ".join(f"{name.replace('_', ' ')} {percent(share, some=True, whole=False)}" for name, share in reasons)
+    left = c.lost
+    why = ", ".join(reasons(c))
     if c.undecided:
         why += f"; {percent(c.area_share.undecided, some=True, whole=False)} is undecided"
-    worst = sorted(((v.inaccessible + v.undecided, name) for name, v in c.faces.items()), key=lambda x: -x[0])
+    worst = sorted(((v.lost, name) for name, v in c.faces.items()), key=lambda x: -x[0])
     on = ", ".join(name for count, name in worst[:_PLACES] if count)
     more = sum(count > 0 for count, _ in worst) - _PLACES
     on += f" and {more} more" if more > 0 else ""
-    deepest = max((w for w in c.witnesses if w.depth_mm is not None), key=lambda w: w.depth_mm or 0, default=None)
+    deepest = max(
+        (w for w in c.witnesses if w.depth_mm is not None and not w.inside_bodies),
+        key=lambda w: w.depth_mm or 0,
+        default=None,
+    )
     where = ""
     if deepest and deepest.depth_mm is not None:
         place = ", ".join(f"{x:.4g}" for x in deepest.point)
         sure = "may be" if deepest.verdict == "undecided" else "is"
         where = f"; the worst is on {deepest.face} at ({place}), where the best posture {sure} {deepest.depth_mm:.3g} mm too deep"
-    return (f"{c.id} does not reach {lost_percent(c, c.area_share)} of the area ({left} of {plan.samples.count} samples): "
+    return (f"{c.id} does not reach {lost_percent(c, c.area_share)} of the area ({left} of {plan.samples.finished} samples): "
             f"{why or 'no reason'}. They lie on {on}{where}.")  # fmt: skip
 
 
@@ -117,39 +127,37 @@ def setups(plan: "Plan", *, verbose: bool = True) -> list[str]:
     """What no cutter can reach in this setup, which cutter does the rest, and how much is within the limit in other setups."""
     lines = []
     count = 1 + len(plan.effective.other_setups)
-    if count > 1 and plan.selected_over_setups is None:
-        best = min(plan.cutters, key=lambda c: c.lost_in_all or 0)
+    if count > 1:
+        best = shown(plan)
+        each = "; ".join(f"{s.interference_free + s.accessible:,} with {_axis(s.axis)}" for s in best.setups)
+        what = f"leaves {best.lost_in_all:,}" if best.lost_in_all else "reaches all"
         lines.append(
-            f"Over the {count} setups no cutter reaches every sample: {best.id} loses {best.lost_in_all} samples in all of them."
+            f"Over the {count} setups {best.id} {what} of {plan.samples.finished:,} samples. It reaches {each}."
         )
-    elif count > 1:
-        best = next(c for c in plan.cutters if c.id == plan.selected_over_setups)
-        each = "; ".join(f"{_axis(s.axis)}: {s.interference_free + s.accessible}" for s in best.setups)
-        lines.append(f"Over the {count} setups {best.id} reaches every sample (of {plan.samples.count}, {each}).")
     lost = max((c.beyond_setup for c in plan.cutters), default=0)
     if not lost:
         return lines
-    lines += [f"Beyond this setup: the axis limit loses {lost} of {plan.samples.count} samples for every cutter."]
+    here = "this setup" if count == 1 else "these setups"
+    lines += [f"Beyond {here}: the axis limit loses {lost} of {plan.samples.finished} samples for every cutter."]
     if plan.selected_for_setup and verbose:
-        lines.append(f"For this setup: {plan.selected_for_setup}, which leaves nothing else.")
-    shares = [
-        (_axis(s.axis), percent(s.share, some=bool(s.within), whole=s.within == _judged(plan))) for s in plan.setups
-    ]
-    others = ", ".join(f"{axis} {share}" for axis, share in shares[1:])
-    lines.append(f"Area within the limit by setup axis: {shares[0][1]} now; {others}.")
+        lines.append(f"For {here}: {plan.selected_for_setup}, which leaves nothing else.")
+    within = [(s, percent(s.share, some=bool(s.within), whole=s.within == plan.samples.judged)) for s in plan.setups]
+    now = [f"{_axis(s.axis)} {share}" for s, share in within if s.reached is not None]
+    others = ", ".join(f"{_axis(s.axis)} {share}" for s, share in within if s.reached is None)
+    lines.append(
+        f"Area within the limit by setup axis: {within[0][1] if count == 1 else ', '.join(now)} now; {others}."
+    )
     return lines
 
 
 def _machine(plan: "Plan") -> str:
     """What limits the tool axis, and how the part stands."""
     along = f"spindle points along {_axis(plan.effective.setup)} of the part"
+    if plan.effective.other_setups:
+        along += f", in other setups along {'; '.join(map(_axis, plan.effective.other_setups))}"
     if plan.machine.name == "unlimited":
         return f"No machine limits the tool axis; the {along}."
     return f"The machine is {plan.machine.name}; its {along}."
-
-
-def _judged(plan: "Plan") -> int:
-    return plan.samples.count - plan.samples.unjudged
 
 
 def _travel(plan: "Plan", *, verbose: bool) -> Sequence[str]:

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cad_io import Part, SurfaceSamples
 from cad_io.kernel.assembly import component_of
@@ -64,14 +65,18 @@ def degrees(pair: tuple[float, float]) -> tuple[float, float]:
 
 def cutter_entry(
     cutter: Cutter, samples: SurfaceSamples, reach: Reach, found: Sequence[Witness], march_differs: int, seconds: float,
-    *, part: Part, around: Surroundings, slack: float,
+    *, part: Part, around: Surroundings, slack: float, inside: NDArray[np.bool_], besides: NDArray[np.uint8],
 ) -> CutterEntry:  # fmt: skip
-    """What a cutter reaches, and why not where it does not, among what is `around`; `slack` as in `Assembly`."""
-    mine = counts(reach.verdict)
+    """What a cutter reaches, and why not where it does not, among what is `around`; `slack` as in `Assembly`.
+
+    `inside` (n,): samples inside other bodies of the part. `besides` (n,): what takes part in the axis limit.
+    """
+    mine = counts(reach.verdict, inside)
+    blocked = mine["inaccessible"] - mine["inside_bodies"]
     # What is missing from the obstacles can only be in the way of more.
-    feasible = False if mine["inaccessible"] else None if mine["undecided"] or around.doubtful else True
+    feasible = False if blocked else None if mine["undecided"] or around.doubtful else True
     lost, unsure = reach.verdict == INACCESSIBLE, reach.verdict == UNDECIDED
-    faces = face_verdicts(samples, reach)
+    faces = face_verdicts(samples, reach, inside)
     return CutterEntry(
         id=cutter.id,
         name=cutter.name,
@@ -102,14 +107,17 @@ def cutter_entry(
         **mine,
         by_reason={name: int((lost & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
         undecided_by_reason={name: int((unsure & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
+        axis_limit_with={name: int((besides == i).sum()) for i, name in enumerate(REASONS) if (besides == i).any()},
         faces=faces,
         area_share=whole_share(faces, samples, part),
-        witnesses=[_witness_entry(w, samples, around, reach) for w in found],
+        witnesses=[_witness_entry(w, samples, around, reach, inside) for w in found],
         seconds=seconds,
     )
 
 
-def _witness_entry(witness: Witness, samples: SurfaceSamples, around: Surroundings, reach: Reach) -> WitnessEntry:
+def _witness_entry(
+    witness: Witness, samples: SurfaceSamples, around: Surroundings, reach: Reach, inside: NDArray[np.bool_]
+) -> WitnessEntry:
     best = None
     if witness.tilt is not None and witness.rotation is not None and witness.axis is not None:
         best = posture(witness.tilt, witness.rotation, witness.axis)
@@ -122,6 +130,7 @@ def _witness_entry(witness: Witness, samples: SurfaceSamples, around: Surroundin
         obstacle_point=None if witness.obstacle_point is None else vector(witness.obstacle_point),
         best_posture=best,
         depth_mm=witness.depth,
+        inside_bodies=bool(inside[witness.sample]),
     )
 
 

@@ -9,8 +9,10 @@ from pydantic import Field
 
 from plan_cutters.document.answers import MendEntry, RadiusEntry, StickOutEntry
 from plan_cutters.document.frozen import Frozen, Posture, Vector
+from plan_cutters.document.inside import InsideEntry
 from plan_cutters.document.part_info import PartInfo
 from plan_cutters.document.scope import Scope
+from plan_cutters.document.setups import SetupEntry, SetupReach
 from plan_cutters.document.shares import AreaShare, FaceVerdicts, Verdicts
 from plan_cutters.document.travel import PlacementEntry, TravelEntry
 
@@ -78,6 +80,20 @@ class SampleCounts(Frozen):
     saddle: int
     unjudged: int
     regions: int
+    inside_bodies: int = Field(
+        default=0,
+        description="inside other bodies of the part: no surface of the finished part (`inside_other_bodies`)",
+    )
+
+    @property
+    def finished(self) -> int:
+        """Samples but those inside other bodies: what shares and choices are about, those that are not judged included."""
+        return self.count - self.inside_bodies
+
+    @property
+    def judged(self) -> int:
+        """Judged samples of the finished part's surface."""
+        return self.finished - self.unjudged
 
 
 class FaceEntry(Frozen):
@@ -122,6 +138,7 @@ class WitnessEntry(Frozen):
     depth_mm: float | None = Field(
         description="how deep the part reaches into the cutter at the best posture, or may do"
     )
+    inside_bodies: bool = Field(default=False, description="it lies inside another body of the part")
 
 
 class AreaEntry(Frozen):
@@ -169,20 +186,6 @@ class MachineEntry(Frozen):
     tilt_limit_deg: float | None = Field(description="largest angle from the setup axis")
     rotary: list[RotaryEntry] | None = Field(description="from the part to the tool; null: any within the limit above")
     notes: list[str]
-
-
-class SetupEntry(Frozen):
-    """How much of the target surface some cutter could touch within the axis limits, were this the setup axis."""
-
-    axis: Vector
-    within: int = Field(description="samples")
-    share: float = Field(description="of the judged samples' area, 0 to 1")
-
-
-class SetupReach(Verdicts):
-    """What a cutter reaches in one setup."""
-
-    axis: Vector
 
 
 class SourceEntry(Frozen):
@@ -267,10 +270,15 @@ class CutterEntry(Verdicts):
     march_differs: int = Field(description="convex samples on which the seed's boundary march gives another answer")
     by_reason: dict[str, int] = Field(description="inaccessible samples by reason")
     undecided_by_reason: dict[str, int]
+    axis_limit_with: dict[str, int] = Field(
+        default={},
+        description="samples lost to the axis limit at which something else is in the way within the limit, by that reason",
+    )
     faces: dict[str, FaceVerdicts]
     area_share: AreaShare = Field(
         default=AreaShare(),
-        description="of the target faces' area, faces without samples (unjudged) included and those of unknown area not; what "
+        description="of the target faces' area without what lies inside other bodies, faces without samples (unjudged) included "
+        "and those of unknown area not; what "
         "the samples stand for, not what is shown between them: that is in `area`",
     )
     witnesses: list[WitnessEntry]
@@ -283,7 +291,8 @@ class CutterEntry(Verdicts):
     )
     beyond_setup: int = Field(
         default=0,
-        description="samples that the axis limit alone loses for every cutter in this setup, as an underside's",
+        description="samples at which no axis within the limit lets any cutter touch, as an underside's, in each of the setups "
+        "asked for; `by_reason` says what would free each",
     )
     singular: int | None = Field(
         default=None,
@@ -343,6 +352,7 @@ class Plan(Frozen):
     versions: dict[str, str]
     samples: SampleCounts
     scope: Scope | None = Field(default=None, description="which faces were judged; null in older files")
+    inside_other_bodies: InsideEntry = InsideEntry()
     faces: list[FaceEntry]
     missing: list[MissingEntry]
     reasons: list[str] = Field(description="what `reason_ID` in samples.npz counts in")

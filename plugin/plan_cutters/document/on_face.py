@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import SurfaceSamples
-from plan_cutters.document.build import counts
-from plan_cutters.document.model import CutterEntry, FaceEntry, Verdicts, WitnessEntry
+from plan_cutters.document.model import CutterEntry, FaceEntry, WitnessEntry
+from plan_cutters.document.shares import Verdicts, counts
 from plan_cutters.domain.stick_out import StickOut
-from plan_cutters.domain.verdicts import NO_REASON, REASONS, Reach
+from plan_cutters.domain.verdicts import NO_REASON, REASONS, WORDS, Reach
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,8 @@ class OnFace:
     verdicts : Verdicts
         Counts of samples.
     shares : dict
-        Verdict -> share of the face's area, 0 to 1; those that occur. Each sample stands for its own share of the area.
+        Verdict -> share of the face's area, 0 to 1; those that occur. Each sample stands for its own share of the area; what
+        lies inside other bodies of the part does not count.
     reasons : dict
         Reason -> share of the face's area that is lost for it, the largest first.
     worst : WitnessEntry, optional
@@ -81,12 +82,16 @@ class OnFace:
 
 def on_face(
     entry: FaceEntry, cutter: CutterEntry, samples: SurfaceSamples, reach: Reach, stick_out: StickOut | None,
-    *, doubtful: bool,
+    *, doubtful: bool, inside: NDArray[np.bool_],
 ) -> OnFace:  # fmt: skip
-    """What a cutter reaches of a face; `stick_out`: what was answered for the samples, or for those of this face alone."""
-    mine = samples.face == int(entry.id[1:])
+    """What a cutter reaches of a face; `stick_out`: what was answered for the samples, or for those of this face alone.
+
+    `inside` (n,): samples that are no surface of the finished part.
+    """
+    whole_face = samples.face == int(entry.id[1:])
+    found = counts(reach.verdict[whole_face], inside[whole_face])
+    mine = whole_face & ~inside
     area, verdict = samples.area[mine], reach.verdict[mine]
-    found = counts(verdict)
     shares, reasons = {}, {}
     whole = float(area.sum())
     if whole > 0.0:
@@ -95,10 +100,10 @@ def on_face(
         why = reach.reason[mine]
         lost = {REASONS[code]: float(area[why == code].sum()) / whole for code in np.unique(why[why != NO_REASON])}
         reasons = dict(sorted(lost.items(), key=lambda each: (-each[1], each[0])))
-    deepest = [w for w in cutter.witnesses if w.face == entry.id]
+    deepest = [w for w in cutter.witnesses if w.face == entry.id and not w.inside_bodies]
     least, unknown = _least(entry, mine, reach, stick_out)
     return OnFace(
-        entry.id, entry.name, entry.component, entry.target, cutter.id, entry.area_mm2, int(mine.sum()), Verdicts(**found),
+        entry.id, entry.name, entry.component, entry.target, cutter.id, entry.area_mm2, int(whole_face.sum()), Verdicts(**found),
         shares, reasons, max(deepest, key=lambda w: w.depth_mm or 0.0, default=None), least, unknown,
         doubtful, _unjudged(entry),
     )  # fmt: skip
@@ -106,10 +111,7 @@ def on_face(
 
 def _words(verdict: NDArray[np.uint8]) -> list[tuple[int, str]]:
     """Codes and words of the verdicts that occur."""
-    return [
-        (code, next(word for word, n in counts(np.array([code], np.uint8)).items() if n))
-        for code in np.unique(verdict).tolist()
-    ]
+    return [(code, WORDS[code]) for code in np.unique(verdict).tolist()]
 
 
 def _least(entry: FaceEntry, mine: NDArray[np.bool_], reach: Reach, found: StickOut | None) -> tuple[float | None, str]:

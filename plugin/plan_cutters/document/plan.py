@@ -2,11 +2,13 @@
 
 import datetime
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cad_io.arrays import Ints
 from plan_cutters.document.answers import mend_entry, radius_entry, stick_out_entry
 from plan_cutters.document.build import (
     area_notes,
@@ -19,7 +21,8 @@ from plan_cutters.document.build import (
     versions,
 )
 from plan_cutters.document.fixtures import fixture_entry
-from plan_cutters.document.frozen import vector
+from plan_cutters.document.frozen import Vector, vector
+from plan_cutters.document.inside import inside_entry
 from plan_cutters.document.judged import scope_of
 from plan_cutters.document.libraries import library_entry, source_entry
 from plan_cutters.document.model import (
@@ -31,15 +34,15 @@ from plan_cutters.document.model import (
     Run,
     SampleCounts,
     Selection,
-    SetupEntry,
-    SetupReach,
 )
 from plan_cutters.document.palette import MEANING, PALETTE
+from plan_cutters.document.setups import SetupEntry, SetupReach
 from plan_cutters.document.shares import counts
 from plan_cutters.document.travel import placement_entry, travel_entry, travel_notes
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.over_setups import positions
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE, Reach
 from plan_cutters.options import Options
@@ -56,6 +59,7 @@ def plan_of(
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
     part, around = scene.part, scene.around
     faces = face_entries(part, samples, choice)
+    absent = {*(() if around.fixtures else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
     return Plan(
         part=part_info(scene),
         effective=Effective(
@@ -99,8 +103,10 @@ def plan_of(
             saddle=int((ready.surface_class == SADDLE).sum()),
             unjudged=int((samples.unjudged >= 0).sum()),
             regions=len(np.unique(ready.region)),
+            inside_bodies=int(ready.inside_bodies.sum()),
         ),
         scope=scope_of(faces),
+        inside_other_bodies=inside_entry(ready, entries[0].faces),
         faces=faces,
         missing=missing_entries(part, around),
         reasons=list(REASONS),
@@ -121,8 +127,8 @@ def plan_of(
             *travel_notes(options),
             *area_notes(entries, doubtful=around.doubtful),
         ],
-        legend=PALETTE if around.fixtures else {word: PALETTE[word] for word in PALETTE if word != "fixture"},
-        legend_words=MEANING if around.fixtures else {word: MEANING[word] for word in PALETTE if word != "fixture"},
+        legend={word: colour for word, colour in PALETTE.items() if word not in absent},
+        legend_words={word: MEANING[word] for word in PALETTE if word not in absent},
         run=Run(time=started.isoformat(timespec="seconds"), seconds={}),
     )
 
@@ -146,32 +152,64 @@ def machine_entry(machine: Machine, kinematics: Kinematics | None) -> MachineEnt
 
 
 #: A setup axis, and what each cutter reaches there by its id.
-Elsewhere = tuple[tuple[float, float, float], Mapping[str, Reach]]
+Elsewhere = tuple[Vector, Mapping[str, Reach]]
 
 
-def _over_setups(
-    ready: Prepared, name: str, reaches: Mapping[str, Reach], elsewhere: Sequence[Elsewhere]
-) -> dict[str, Any]:
+@dataclass(frozen=True, slots=True)
+class OverSetups:
+    """What each cutter reaches, by its id.
+
+    Attributes
+    ----------
+    reaches : mapping
+        In one setup or another.
+    here : mapping
+        In the first one.
+    served_in : mapping
+        The setup that serves each sample, (n,) int32.
+    first : (float, float, float)
+        Its axis.
+    elsewhere : tuple of Elsewhere
+        In each other setup.
+    """
+
+    reaches: Mapping[str, Reach]
+    here: Mapping[str, Reach]
+    served_in: Mapping[str, Ints]
+    first: Vector
+    elsewhere: tuple[Elsewhere, ...] = ()
+
+    def each(self) -> tuple[Elsewhere, ...]:
+        """Every setup with what is reached there, the first one first."""
+        return ((self.first, self.here), *self.elsewhere)
+
+
+def _of_setups(ready: Prepared, name: str, over: OverSetups) -> dict[str, Any]:
     """What a cutter reaches in each of several setups, and in none of them."""
-    if not elsewhere:
+    if not over.elsewhere:
         return {}
-    each = [(ready.scene.setup, reaches[name]), *((axis, found[name]) for axis, found in elsewhere)]
-    lost = np.logical_and.reduce([reach.lost for _, reach in each])
-    entries = [SetupReach(axis=axis, **counts(reach.verdict)) for axis, reach in each]
-    return {"setups": entries, "lost_in_all": int(lost.sum())}
+    inside, serves = ready.inside_bodies, over.served_in[name]
+    entries = [
+        SetupReach(axis=axis, serves=int((serves == k).sum()), **counts(found[name].verdict, inside))
+        for k, (axis, found) in enumerate(over.each())
+    ]
+    return {"setups": entries, "lost_in_all": int((over.reaches[name].lost & ready.finished).sum())}
 
 
-def _singular(ready: Prepared, reach: Reach | None) -> int | None:
+def _singular(ready: Prepared, name: str, over: OverSetups) -> int | None:
     """How many of the postures found lie near the rotary axis next to the part."""
     kinematics = ready.conditions.kinematics
-    if reach is None or kinematics is None or len(kinematics.direction) < 2:
+    if kinematics is None or len(kinematics.direction) < 2:
         return None
-    return int(kinematics.positions(reach.axis[reach.reached])[2].sum())
+    _, _, singular = positions(
+        [each.kinematics for each in ready.setups], over.reaches[name].axis, over.served_in[name]
+    )
+    return int(singular[over.reaches[name].reached].sum())
 
 
 def completed(
-    entries: Sequence[CutterEntry], ready: Prepared, answers: Answers, reaches: Mapping[str, Reach],
-    beyond: NDArray[np.bool_], elsewhere: Sequence[Elsewhere] = (), travels: Mapping[str, Travel] | None = None,
+    entries: Sequence[CutterEntry], ready: Prepared, answers: Answers, over: OverSetups, beyond: NDArray[np.bool_],
+    travels: Mapping[str, Travel] | None = None,
 ) -> list[CutterEntry]:  # fmt: skip
     """The entries of cutters with where they are listed, what the limits lose for all (n,), and what was answered about them."""
     found, sources, samples = [], ready.options.sources, ready.samples
@@ -179,11 +217,12 @@ def completed(
     for entry in entries:
         moved = (travels or {}).get(entry.id)
         stick_out, mend = answers.stick_outs.get(entry.id), answers.mends.get(entry.id)
+        here = over.here[entry.id]
         more = {
-            **_over_setups(ready, entry.id, reaches, elsewhere),
+            **_of_setups(ready, entry.id, over),
             "beyond_setup": lost_to_all,
-            "singular": _singular(ready, reaches.get(entry.id)),
-            "travel": None if moved is None else travel_entry(ready.options.machine, moved, reaches[entry.id], samples),
+            "singular": _singular(ready, entry.id, over),
+            "travel": None if moved is None else travel_entry(ready.options.machine, moved, here, samples),
             "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
             "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, ready.scene.around),
             "mend": None if mend is None else mend_entry(mend),
@@ -196,7 +235,7 @@ def for_setup(entries: Sequence[CutterEntry]) -> str | None:
     """The first cutter that leaves nothing but what no cutter can reach in this setup."""
     for e in entries:
         done = e.interference_free + e.accessible
-        if done and e.beyond_setup and not e.undecided and e.inaccessible == e.beyond_setup:
+        if done and e.beyond_setup and not e.undecided and e.blocked == e.beyond_setup:
             return e.id
     return None
 
@@ -205,8 +244,8 @@ def selection(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:
     """Which cutter wins, of entries from the most wanted down, and why."""
     feasible = [e for e in entries if e.feasible]
     if not feasible:
-        best = min(entries, key=lambda e: e.inaccessible + e.undecided)
-        left = best.inaccessible + best.undecided
+        best = min(entries, key=lambda e: e.lost)
+        left = best.lost
         why = f"no cutter reaches every sample; {best.id} comes nearest, {left} not reached"
         if not left:
             why = f"{best.id} reaches every judged sample, but obstacles are missing: see the notes"

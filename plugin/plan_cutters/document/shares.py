@@ -1,6 +1,6 @@
 """How much of a surface has each verdict: by samples, and by the area that they stand for."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,25 @@ class Verdicts(Frozen):
     inaccessible: int = 0
     undecided: int = 0
     unjudged: int = 0
+    inside_bodies: int = Field(
+        default=0,
+        description="of the inaccessible: samples inside other bodies of the part, which are no surface of the finished part; "
+        "shares and choices are about the others",
+    )
+
+    @property
+    def blocked(self) -> int:
+        """Inaccessible samples of the finished part's surface."""
+        return self.inaccessible - self.inside_bodies
+
+    @property
+    def lost(self) -> int:
+        """Samples of the finished part's surface that are not reached."""
+        return self.blocked + self.undecided
+
+    def of(self, verdict: str) -> int:
+        """Samples of the finished part's surface with a verdict."""
+        return self.blocked if verdict == "inaccessible" else int(getattr(self, verdict))
 
 
 class AreaShare(Frozen):
@@ -38,17 +57,24 @@ class AreaShare(Frozen):
 class FaceVerdicts(Verdicts):
     """What a cutter reaches of a face."""
 
-    area_share: AreaShare = Field(default=AreaShare(), description="of the face's area")
+    area_share: AreaShare = Field(
+        default=AreaShare(),
+        description="of the face's area, without what of it lies inside other bodies; 0 where all does",
+    )
+    inside_share: float = Field(default=0.0, description="of the face's area that lies inside other bodies of the part")
 
 
-def counts(verdict: NDArray[np.uint8]) -> dict[str, Any]:
-    """How many samples have each verdict."""
-    return {name: int((verdict == code).sum()) for code, name in WORDS.items()}
+def counts(verdict: NDArray[np.uint8], inside: NDArray[np.bool_] | None = None) -> dict[str, Any]:
+    """How many samples have each verdict; `inside` (n,): those inside other bodies of the part."""
+    covered = 0 if inside is None else int(inside.sum())
+    return {**{name: int((verdict == code).sum()) for code, name in WORDS.items()}, "inside_bodies": covered}
 
 
-def face_verdicts(samples: SurfaceSamples, reach: Reach) -> dict[str, FaceVerdicts]:
-    """What is reached of each face that has samples, by its id."""
-    found = {}
+def face_verdicts(
+    samples: SurfaceSamples, reach: Reach, inside: NDArray[np.bool_] | None = None
+) -> dict[str, FaceVerdicts]:
+    """What is reached of each face that has samples, by its id; `inside` as in `counts`."""
+    found, inside = {}, np.zeros(len(samples.face), bool) if inside is None else inside
     numbers, first = np.unique(np.sort(samples.face), return_index=True)
     groups = np.split(np.argsort(samples.face, kind="stable"), first[1:])
     for number, mine in zip(numbers.tolist(), groups, strict=False):
@@ -56,23 +82,32 @@ def face_verdicts(samples: SurfaceSamples, reach: Reach) -> dict[str, FaceVerdic
         if not area.sum() > 0.0:
             # How large the face is, is not known: each of its samples stands for as much of it.
             area = np.ones(len(mine))
-        share = _share(reach.verdict[mine], reach.reason[mine], area)
-        found[f"F{number}"] = FaceVerdicts(**counts(reach.verdict[mine]), area_share=share)
+        within, seen = inside[mine], mine[~inside[mine]]
+        share = _share(reach.verdict[seen], reach.reason[seen], area[~within])
+        part = min(1.0, float(area[within].sum() / area.sum())) if len(seen) else 1.0
+        found[f"F{number}"] = FaceVerdicts(**counts(reach.verdict[mine], within), area_share=share, inside_share=part)
     return found
 
 
-def whole_share(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part: Part) -> AreaShare:
-    """What is reached of all target faces: those without samples are not judged; those of unknown area do not count.
+def covered(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part: Part) -> tuple[float, float]:
+    """Area of the target faces that lies inside other bodies of the part, mm2, and its share of all of it."""
+    areas = _areas([*faces, *(f"F{number}" for number, _ in samples.empty)], part)
+    area = float(sum(areas[name] * each.inside_share for name, each in faces.items()))
+    return area, min(1.0, area / max(1e-300, sum(areas.values())))
 
-    Where the area of none is known, every face counts as one.
+
+def whole_share(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part: Part) -> AreaShare:
+    """What is reached of the finished part's surface in all target faces.
+
+    Faces without samples are not judged; those of unknown area do not count. Where the area of none is known, every face counts
+    as one.
     """
-    targets = [*((name, each.area_share) for name, each in faces.items()),
-               *((f"F{number}", AreaShare(unjudged=1.0)) for number, _ in samples.empty)]  # fmt: skip
-    areas = np.array([part.faces[int(name[1:]) - 1].area for name, _ in targets])
-    areas = np.where(np.isfinite(areas), np.maximum(areas, 0.0), 0.0)
-    areas = areas if areas.sum() > 0.0 else np.ones(len(targets))
-    weights = (areas / max(1e-300, areas.sum())).tolist()
-    parts = [(weight, share) for weight, (_, share) in zip(weights, targets, strict=True)]
+    targets = [*((name, each.area_share, 1.0 - each.inside_share) for name, each in faces.items()),
+               *((f"F{number}", AreaShare(unjudged=1.0), 1.0) for number, _ in samples.empty)]  # fmt: skip
+    areas = _areas([name for name, _, _ in targets], part)
+    seen = np.array([areas[name] * finished for name, _, finished in targets])
+    weights = (seen / max(1e-300, seen.sum())).tolist()
+    parts = [(weight, share) for weight, (_, share, _) in zip(weights, targets, strict=True)]
     sums = {word: min(1.0, sum(weight * getattr(share, word) for weight, share in parts)) for word in WORDS.values()}
     lost = {
         reason: min(1.0, sum(weight * share.lost_by.get(reason, 0.0) for weight, share in parts)) for reason in REASONS
@@ -80,8 +115,19 @@ def whole_share(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part
     return AreaShare(**sums, lost_by={reason: share for reason, share in lost.items() if share})
 
 
+def _areas(names: Sequence[str], part: Part) -> dict[str, float]:
+    """Areas of faces by their ids, mm2; 1 each where none is known."""
+    areas = np.array([part.faces[int(name[1:]) - 1].area for name in names])
+    areas = np.where(np.isfinite(areas), np.maximum(areas, 0.0), 0.0)
+    areas = areas if areas.sum() > 0.0 else np.ones(len(names))
+    return dict(zip(names, areas.tolist(), strict=True))
+
+
 def _share(verdict: NDArray[np.uint8], reason: NDArray[np.uint8], area: NDArray[np.float64]) -> AreaShare:
-    area = area / area.sum()
+    if not len(area):
+        return AreaShare()
+    # Where the rest stands for no area, each of its samples stands for as much.
+    area = area / area.sum() if area.sum() > 0.0 else np.full(len(area), 1.0 / len(area))
     shares = {name: min(1.0, float(area[verdict == code].sum())) for code, name in WORDS.items()}
     lost = (verdict == INACCESSIBLE) | (verdict == UNDECIDED)
     by = {

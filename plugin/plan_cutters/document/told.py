@@ -1,9 +1,10 @@
 """What people are told of a plan, wherever they read it: shares in percent, reasons, the worst faces."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from plan_cutters.document.inside import CoveringBody
 from plan_cutters.document.model import CutterEntry, FaceEntry, Plan, WitnessEntry
 from plan_cutters.document.shares import AreaShare, Verdicts
 from plan_cutters.domain.verdicts import WORDS
@@ -72,7 +73,7 @@ def figure(number: float) -> str:
 def part_of(counts: Verdicts, share: AreaShare, words: Iterable[str]) -> str:
     """How much of an area has one of some verdicts, in percent."""
     mine = set(words)
-    there = {word for word in VERDICTS if getattr(counts, word) or getattr(share, word) > 0.0}
+    there = {word for word in VERDICTS if counts.of(word) or getattr(share, word) > 0.0}
     return percent(
         sum(getattr(share, word) for word in mine), some=bool(there & mine), whole=bool(there) and there <= mine
     )
@@ -93,28 +94,97 @@ def main_reason(share: AreaShare) -> str:
     return max(share.lost_by, key=lambda name: share.lost_by[name], default="")
 
 
+def reasons(cutter: CutterEntry) -> list[str]:
+    """Why a cutter loses what it loses, with shares of the area: the reason with the largest one first."""
+    found = []
+    for name, share in sorted(cutter.area_share.lost_by.items(), key=lambda item: -item[1]):
+        text = f"{name.replace('_', ' ')} {percent(share, some=True, whole=False)}"
+        if name == "axis_limit" and cutter.axis_limit_with:
+            ranked = sorted(cutter.axis_limit_with.items(), key=lambda item: (-item[1], item[0]))
+            others = ", ".join(f"{other.replace('_', ' ')} at {count:,}" for other, count in ranked)
+            text += f" (with {others} sample{'' if ranked[-1][1] == 1 else 's'})"
+        found.append(text)
+    return found
+
+
+def inside(plan: Plan, most: int = 5) -> list[str]:
+    """What lies inside other bodies of the part, in sentences: how much, then the bodies that a planner must look at."""
+    found = plan.inside_other_bodies
+    if not found.samples:
+        return []
+    share = percent(found.share, some=True, whole=found.samples == plan.samples.count)
+    lines = [f"{share} of the target area ({found.samples:,} of {plan.samples.count:,} samples) lies inside other bodies of the "
+             "part: it is no surface of the finished part, and what follows is about the rest."]  # fmt: skip
+    standing = sorted((each for each in found.bodies if each.how != "overlaps"), key=lambda each: each.largest)
+    lines += [_standing(each) for each in standing[:most]]
+    lines += _more(standing[most:], "body covers", "bodies cover")
+    over = [each for each in found.bodies if each.how == "overlaps"]
+    if over:
+        each = "; ".join(
+            f"{_called(b)} covers {figure(b.area_mm2)} mm2 of {listed(b.faces, 4)}" for b in over[: most - 2]
+        )
+        rest = len(over) - (most - 2)
+        lines.append(f"Bodies overlap: {each}{f'; {rest} more in plan.json' if rest > 0 else ''}.")
+    if found.sheets is not None:
+        sheets, area = found.sheets, figure(found.sheets.area_mm2)
+        what = "is a construction sheet" if len(sheets.faces) == 1 else "are construction sheets"
+        lines.append(f"{listed(sheets.faces)} {what} on the skin of a body: {area} mm2 face into it. {sheets.option} leaves such "
+                     "sheets out.")  # fmt: skip
+    return lines
+
+
+def _standing(body: CoveringBody) -> str:
+    on, area = listed(body.faces, 4), figure(body.area_mm2)
+    verb = "stands on" if body.how == "stands_on" else "touches or overlaps"
+    if body.largest:
+        touch = "touches" if len(body.faces) == 1 else "touch"
+        return f"{_called(body, first=True)} covers {area} mm2 of {on}, which {touch} it."
+    return (f"{_called(body, first=True)} {verb} {on} and covers {area} mm2 there. If it is not part of what is finished, as a "
+            f"clamp is not, leave it out, or what lies under it is not planned: {body.option}.")  # fmt: skip
+
+
+def _called(body: CoveringBody, *, first: bool = False) -> str:
+    """A body as it is told: its number, its name, its faces."""
+    name = f' "{body.name}"' if body.name else ""
+    return f"{'Body' if first else 'body'} {body.number}{name} ({listed(body.own_faces, 2)})"
+
+
+def _more(bodies: Sequence[CoveringBody], one: str, many: str) -> list[str]:
+    if not bodies:
+        return []
+    area = figure(sum(each.area_mm2 for each in bodies))
+    return [f"{len(bodies)} more {one if len(bodies) == 1 else many} {area} mm2: see plan.json."]
+
+
+def listed(names: Sequence[str], most: int = 8) -> str:
+    """Names in a line, the first ones where there are many."""
+    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
+
+
 def worst_faces(plan: Plan, cutter: CutterEntry, most: int = 5) -> tuple[list[WorstFace], int]:
     """The faces of which a cutter loses the largest area, and how many there are in all."""
     faces = {face.id: face for face in plan.faces}
     shares = {
         name: each.area_share.inaccessible + each.area_share.undecided
         for name, each in cutter.faces.items()
-        if each.inaccessible + each.undecided
+        if each.lost
     }
+    seen = {name: 1.0 - each.inside_share for name, each in cutter.faces.items()}
     area = {
-        name: shares[name] * each.area_mm2 if math.isfinite(each.area_mm2) else 0.0
+        name: shares[name] * seen[name] * each.area_mm2 if math.isfinite(each.area_mm2) else 0.0
         for name, each in faces.items()
         if name in shares
     }
     ranked = sorted(shares, key=lambda name: (-area[name], -shares[name], int(name[1:])))
     found = []
     for name in ranked[:most]:
-        mine, share = [w for w in cutter.witnesses if w.face == name], cutter.faces[name].area_share
+        mine = [w for w in cutter.witnesses if w.face == name and not w.inside_bodies]
+        share = cutter.faces[name].area_share
         reason = main_reason(share) or (mine[0].reason if mine else "")
         unsure = share.undecided > share.inaccessible
         told = "undecided" if unsure else "inaccessible"
         alike = [w for w in mine if w.reason == reason] or mine
         witness = max(alike, key=lambda w: (w.verdict == told, w.depth_mm or 0.0), default=None)
-        lot = shares[name] * faces[name].area_mm2
+        lot = shares[name] * seen[name] * faces[name].area_mm2
         found.append(WorstFace(faces[name], lot, lost(cutter.faces[name], share), reason, unsure, witness))
     return found, len(ranked)

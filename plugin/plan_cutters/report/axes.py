@@ -73,6 +73,9 @@ def columns(result: Any) -> list[Column]:
         Column("nearest_part", near.part, words={-1: "", **part_words()}),
         Column("nearest_face", near.face, words={0: "", **faces}),
     ]
+    if name in result.served_in:
+        setups = range(len(result.elsewhere) + 1)
+        found.append(Column("setup", result.served_in[name], words={-1: "", **{k: str(k) for k in setups}}))
     return found + _machine(result)
 
 
@@ -81,9 +84,8 @@ def _machine(result: Any) -> list[Column]:
     name, machine = result.shown, result.conditions.machine
     if result.kinematics is None:
         return []
-    angles, taken, _ = result.kinematics.positions(result.reaches[name].axis)
+    angles, taken = result.rotary(name)
     moved = result.travels.get(name)
-    taken = taken if moved is None else moved.taken
     first, rows = np.maximum(taken, 0).astype(np.int64), np.arange(len(taken))
     both = [np.where((taken >= 0)[:, None], np.degrees(angles[rows, way]), np.nan) for way in (first, 1 - first)]
     found = [

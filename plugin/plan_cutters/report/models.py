@@ -52,6 +52,8 @@ def split_result(result: Any, cutter: str | None = None) -> Any:
     for verdict, label in _LABEL.items():
         code[verdict] = label
     label = code[result.reaches[cutter or result.shown].verdict]
+    covered = LABELS.index("inside_bodies")
+    label[result.inside_bodies] = covered
     grids = {g.face: g for g in samples.grids}
     check, ignored = LABELS.index("check"), LABELS.index("ignored")
     labels = []
@@ -62,8 +64,9 @@ def split_result(result: Any, cutter: str | None = None) -> Any:
         elif number in grids:
             labels.append(_grid_labels(grids[number], label))
         elif (mine := samples.face == number).any():
-            # Sampled without a grid: its worst verdict stands for the face.
-            labels.append(_whole(number, int(label[mine].max())))
+            # Sampled without a grid: its worst verdict stands for the face, as far as it is one of the finished part.
+            seen = mine & (label != covered)
+            labels.append(_whole(number, int(label[seen].max()) if seen.any() else covered))
         else:
             labels.append(_whole(number, LABELS.index("unjudged")))
     return split(result.part, labels)
@@ -122,7 +125,7 @@ def write_glb(result: Any, split: Any, path: Path, *, merged: bool = False) -> N
     def extras(face: int) -> dict[str, Any]:
         entry = entries[face]
         counts = shown.faces.get(entry.id)
-        reasons = sorted({w.reason for w in shown.witnesses if w.face == entry.id})
+        reasons = sorted({w.reason for w in shown.witnesses if w.face == entry.id and not w.inside_bodies})
         return {
             "face": entry.id,
             "number": face,

@@ -39,6 +39,7 @@ _WORDS = {
     "undecided": "undecided",
     "inaccessible": "inaccessible",
     "unjudged": "unjudged",
+    "inside_bodies": "inside another body",
     "mixed": "mixed: could not be split",
     "check": MEANING["check"],
     "fixture": "fixture",

@@ -39,7 +39,8 @@ def write_regions(result: Any, _split: object, path: Path) -> None:
 def axis_regions(result: Any) -> AxisRegions:
     """The regions of a result, for the cutter shown."""
     samples, name, plan = result.samples, result.shown, result.plan
-    reach, cutter, conditions = result.reaches[name], result.judged(name), result.conditions
+    # Axes are held in the first setup.
+    reach, cutter, conditions = result.here.get(name, result.reaches[name]), result.judged(name), result.conditions
     axes, number = few_axes(samples, cutter, reach, conditions)
     held = held_at(axes, number, samples)
     near = clearances(samples, cutter, held, conditions).distance

@@ -12,6 +12,9 @@ import numpy as np
 def write_npz(result: Any, _split: object, path: Path) -> None:
     """Write `samples.npz`: the samples, and per cutter verdict, axis, lean and reason with its id as suffix.
 
+    Over several setups what one or another reaches, with the posture of the first that does: `setup_ID` is its index into
+    `setups`, -1 where none does, and `reached_in_ID` says which do. `inside_bodies`: what is no surface of the finished part.
+
     With a machine of rotary axes, also their positions at the posture found, in degrees: both solutions, axis by axis from the
     part to the tool, nan where one is beyond a limit, and which of them is to be taken, -1 where there is none. Where linear
     travel is judged, also the positions of the linear axes, mm, in the machine's order, for the solution to be taken. Where they
@@ -27,6 +30,7 @@ def write_npz(result: Any, _split: object, path: Path) -> None:
         "face": samples.face,
         "area": samples.area,
         "surface_class": result.surface_class,
+        "inside_bodies": result.inside_bodies,
     }
     for name, reach in result.reaches.items():
         arrays[f"verdict_{name}"] = reach.verdict
@@ -34,14 +38,15 @@ def write_npz(result: Any, _split: object, path: Path) -> None:
         arrays[f"lean_{name}"] = reach.lean
         arrays[f"reason_{name}"] = reach.reason
         if result.kinematics is not None:
-            angles, taken, _ = result.kinematics.positions(reach.axis)
+            angles, taken = result.rotary(name)
             if name in result.travels:
-                arrays[f"travel_{name}"], taken = result.travels[name].position, result.travels[name].taken
+                arrays[f"travel_{name}"] = result.travels[name].position
             arrays[f"rotary_{name}"], arrays[f"rotary_taken_{name}"] = np.degrees(angles), taken
     if result.elsewhere:
         arrays["setups"] = np.array([result.scene.setup, *(axis for axis, _ in result.elsewhere)])
-        for name, reach in result.reaches.items():
+        for name, reach in result.here.items():
             each = [reach, *(found[name] for _, found in result.elsewhere)]
+            arrays[f"setup_{name}"] = result.served_in[name]
             arrays[f"reached_in_{name}"] = np.stack([one.reached for one in each], axis=1)
     for name, found in result.answers.stick_outs.items():
         if found.each is not None:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints, Orientation, Record, SurfaceSamples
 from cad_io.part.bodies import Body
@@ -53,14 +54,17 @@ def buried(
     Returns
     -------
     (n,) int32
-        Index into `bodies`, -1 where there is none.
+        Index into `bodies`, -1 where there is none. Where a contact lies in the void of a body and in no material besides,
+        that void (`voids`).
     """
     from plan_cutters.kernels.material import far_inside
 
     _, deep = surely.depths(tolerance)
     point = samples.point + _AWAY * deep * samples.normal
     open_rows = (samples.unjudged < 0) & np.isfinite(point).all(axis=1)
-    result = np.full(len(samples), -1, np.int32)
+    result, hollow = np.full(len(samples), -1, np.int32), voids(bodies, orientation)
+    # Every void lies in one more body than there is material.
+    layers, void = np.zeros(len(samples), np.int32), np.full(len(samples), -1, np.int32)
     for index, body in enumerate(bodies):
         mine = np.isin(surely.triangles.face, body.faces) if body.closed else np.zeros(0, bool)
         if not mine.any():
@@ -69,12 +73,34 @@ def buried(
         within = ((point >= vertex.min(axis=(0, 1))) & (point <= vertex.max(axis=(0, 1)))).all(axis=1)
         # A contact on the outer side of a skin is not within that.
         outer = [n for n, side in zip(body.faces, body.sign, strict=True) if n > 0 and orientation.sign[n - 1] == side]
-        rows = np.flatnonzero(open_rows & within & (result < 0) & ~np.isin(samples.face, outer))
+        asked = open_rows & within & ~np.isin(samples.face, outer)
+        if not hollow.any():
+            asked &= result < 0
+        rows = np.flatnonzero(asked)
         if len(rows):
             found = np.zeros(len(rows), bool)
             far_inside(np.ascontiguousarray(point[rows]), _BALL * deep, surely.skin_of(body).solids, found)
-            result[rows[found]] = index
+            if hollow[index]:
+                # In a corner of a void a ball is not all within it, but what lies on its wall looks into it.
+                found |= np.isin(samples.face[rows], body.faces)
+                void[rows[found]] = index
+            layers[rows[found]] += -1 if hollow[index] else 1
+            if not hollow[index]:
+                result[rows[found & (result[rows] < 0)]] = index
+    empty = (result >= 0) & (layers <= 0) & (void >= 0)
+    result[empty] = void[empty]
     return result
+
+
+def voids(bodies: Sequence[Body], orientation: Orientation) -> NDArray[np.bool_]:
+    """Which bodies (m,) are voids: the material is on the outer side of all their faces."""
+    return np.array(
+        [
+            all(n > 0 and orientation.sign[n - 1] == -side for n, side in zip(b.faces, b.sign, strict=True))
+            for b in bodies
+        ],
+        bool,
+    )
 
 
 def cover(point: Floats, normal: Floats, skin: Obstacles) -> Cover | None:

@@ -1,6 +1,6 @@
 """A part that is ready to be judged, cutter by cutter."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +9,7 @@ from cad_io import SurfaceSamples
 from cad_io.arrays import Ints, Record
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.options import Options
+from plan_cutters.scene.buried import voids
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.faces import Chosen
 from plan_cutters.scene.scene import Scene
@@ -53,9 +54,27 @@ class Prepared(Record):
     coarser: float = 1.0
 
     @property
+    def setups(self) -> tuple[Conditions, ...]:
+        """What cutters are judged under in each setup that was asked for, the first one first."""
+        options = self.options
+        places = options.other_placements or (None,) * len(options.other_setups)
+        found = [self.conditions]
+        for axis, place in zip(options.other_setups, places, strict=True):
+            across = None if place is None or place.x is None else np.array(place.x)
+            found.append(replace(self.conditions, setup=np.array(axis), x=across))
+        return tuple(found)
+
+    @property
     def inside_bodies(self) -> NDArray[np.bool_]:
-        """Samples (n,) that lie inside another body of the part: they are no surface of the finished part."""
-        return (self.buried >= 0) & (self.buried < len(self.conditions.around.bodies))
+        """Samples (n,) that lie inside another body of the part: they are no surface of the finished part.
+
+        The wall of a void is one, though no cutter gets there.
+        """
+        bodies = self.conditions.around.bodies
+        mine = (self.buried >= 0) & (self.buried < len(bodies))
+        if mine.any():
+            mine[mine] = ~voids(bodies, self.scene.orientation)[self.buried[mine]]
+        return mine
 
     @property
     def finished(self) -> NDArray[np.bool_]:

@@ -9,13 +9,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
 
-from cad_io.arrays import Floats, Ints, Orientation, Record, SurfaceSamples
+from cad_io.arrays import FaceGrid, Floats, Ints, Orientation, Record, SurfaceSamples
 from cad_io.part import Part
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Reach
 from plan_cutters.scene.conditions import Conditions
-from plan_cutters.stages.cells import CellContacts, laid
+from plan_cutters.stages.cells import CellContacts, Field, laid
 from plan_cutters.stages.site import Site, best
 
 #: Least gain, as a share of the target area for each contact, for which cells are cut into four.
@@ -49,7 +51,8 @@ class Between(Record):
     Attributes
     ----------
     share : float
-        Of the area of all target faces whose area is known, sampled or not, 0 to 1, rounded down.
+        Of the area of all target faces whose area is known, sampled or not, 0 to 1, rounded down; without what surely lies
+        inside other bodies of the part.
     contacts : int
         Contacts looked at, samples included.
     left : int
@@ -86,6 +89,7 @@ def between(
     conditions: Conditions,
     *,
     budget: int,
+    beside: NDArray[np.bool_] | None = None,
 ) -> Between:
     """Find the share of the target area over which a cutter's postures hold.
 
@@ -101,29 +105,38 @@ def between(
     conditions : Conditions
     budget : int
         Most contacts to add to the samples.
+    beside : (n,) bool, optional
+        Samples that are no surface of the finished part: cells about them are left out where all around them are such, too.
     """
     targets = sorted({*np.unique(samples.face).tolist(), *(number for number, _ in samples.empty)})
     areas = {number: part.faces[number - 1].area for number in targets}
     unknown = tuple(number for number, area in areas.items() if not area > 0)
     whole = sum(area for area in areas.values() if area > 0)
-    looked, left, short = int((samples.unjudged < 0).sum()), len(samples), 0
+    beside = np.zeros(len(samples), bool) if beside is None else beside
+    looked, left, short = int(((samples.unjudged < 0) & ~beside).sum()), int((~beside).sum()), 0
     sites, nodes, strips = list[Site](), list[CellContacts](), list[CellContacts]()
     for grid in samples.grids:
         trim = part.trim(grid.face)
         if trim is None or not trim.closed:
             continue  # which part of the surface it uses is not known well enough
-        field, mine, beside = laid(part, orientation, samples, grid, reach, conditions)
-        left -= int((grid.index >= 0).sum())
+        field, mine, bare = laid(part, orientation, samples, grid, reach, conditions)
+        on_grid = grid.index[grid.index >= 0]
+        left -= int((~beside[on_grid]).sum())
+        if beside[on_grid].any():
+            deep = _covered(field, grid, beside)
+            for cells in (mine, bare):
+                whole -= float(cells.area[deep[tuple(cells.home.T)]].sum())
+            mine, bare = (cells.of(~deep[tuple(cells.home.T)]) for cells in (mine, bare))
         sites.append(Site(field, cutter, conditions))
         nodes.append(mine)
-        strips.append(beside)
+        strips.append(bare)
     # The strips come first, the largest ones where the budget is short.
     chosen = best(np.concatenate([np.zeros(0), *(each.area for each in strips)]), budget)
     short += int((~chosen).sum())
     looked, budget = looked + int(chosen.sum()), budget - int(chosen.sum())
     ends = np.cumsum([len(each) for each in strips])
-    for site, mine, beside, kept in zip(sites, nodes, strips, np.split(chosen, ends[:-1]), strict=True):
-        site.add(CellContacts.joined(mine, beside.of(kept)), 0)
+    for site, mine, bare, kept in zip(sites, nodes, strips, np.split(chosen, ends[:-1]), strict=True):
+        site.add(CellContacts.joined(mine, bare.of(kept)), 0)
     # A fair share of the rest for each face, by how many of its cells are open and worth it.
     least = LEAST_GAIN * whole
     wanted = [site.worthy(least) for site in sites]
@@ -135,6 +148,17 @@ def between(
         float(np.floor(1e6 * min(1.0, served + 1e-9)) / 1e6), looked, left, short + sum(site.short for site in sites),
         sum(site.dropped for site in sites), unknown, _cells(sites),
     )  # fmt: skip
+
+
+def _covered(field: Field, grid: FaceGrid, beside: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Tiles (nu, nv) of a face about whose node, and about those around it, nothing is surface of the finished part."""
+    rows = np.unique(grid.index[grid.index >= 0])
+    on = (field.index >= 0) & (field.index < len(rows))
+    covered = on & beside[rows[np.where(on, field.index, 0)]]
+    square = np.ones((3, 3), bool)
+    return np.asarray(
+        ndimage.binary_erosion(covered | ~on, square, border_value=1) & ndimage.binary_dilation(covered, square)
+    )
 
 
 def _cells(sites: Sequence[Site]) -> Cells:

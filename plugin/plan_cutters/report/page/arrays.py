@@ -13,6 +13,8 @@ from plan_cutters.report.page.stored_maps import stored
 from plan_cutters.report.page.surface import Surface
 
 Arrays = dict[str, Stored]
+#: Instead of a setup: none serves the sample.
+NO_SETUP = 255
 
 
 def drawn_arrays(surface: Surface, atlas: Atlas, low: Floats, high: Floats) -> Arrays:
@@ -39,6 +41,10 @@ def sample_arrays(result: Any, low: Floats, high: Floats) -> Arrays:
         "sample.face": samples.face.astype(number),
         "sample.area": halves(samples.area),
     }
+    if result.inside_bodies.any():
+        found["sample.inside"] = result.inside_bodies.astype(np.uint8)
+    for name, which in result.served_in.items():
+        found[f"setup.{name}"] = np.where(which < 0, NO_SETUP, which).astype(np.uint8)
     for name, reach in result.reaches.items():
         found |= {f"verdict.{name}": reach.verdict, f"reason.{name}": reach.reason}
     return {name: Stored.of(array) for name, array in found.items()}

@@ -43,7 +43,7 @@ def ranked_spots(witnesses: Sequence[WitnessEntry]) -> list[WitnessEntry]:
     seen: set[tuple[str, str]] = set()
     first: list[WitnessEntry] = []
     rest: list[WitnessEntry] = []
-    for w in sorted(witnesses, key=lambda w: -(w.depth_mm or 0.0)):
+    for w in sorted((w for w in witnesses if not w.inside_bodies), key=lambda w: -(w.depth_mm or 0.0)):
         (rest if (w.face, w.reason) in seen else first).append(w)
         seen.add((w.face, w.reason))
     return first + rest

@@ -56,6 +56,12 @@ def meta_of(
         "tilt_limit_deg": plan.machine.tilt_limit_deg,
         "rotary": plan.machine.rotary is not None,
         "kinematics": None if result.kinematics is None else _kinematics(result.kinematics),
+        "setups": []
+        if result.ready is None or not result.elsewhere
+        else [
+            {"z": each.setup.tolist(), "kinematics": each.kinematics and _kinematics(each.kinematics)}
+            for each in result.ready.setups
+        ],
         "atlas": [atlas.index.shape[1], atlas.index.shape[0]],
         "faces": [_face(entry, surface) for entry in plan.faces],
         "fixtures": [

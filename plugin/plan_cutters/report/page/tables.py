@@ -3,6 +3,7 @@
 import math
 from typing import Any, NamedTuple
 
+from plan_cutters.document import told
 from plan_cutters.document.model import CutterEntry, FaceEntry, Plan
 from plan_cutters.document.names import named, short_names
 from plan_cutters.document.told import VERDICTS, main_reason, part_of, reached, worst_faces
@@ -33,11 +34,12 @@ def of(result: Any, spots: list[Spot], more: dict[str, int], drawing: Drawing, l
         "plan": plan,
         "title": title,
         "why": why,
+        "inside": [named(plan, line) for line in told.inside(plan)],
         "names": names,
         "named": lambda text: named(plan, text),
         "shown": shown,
         "cutters": [_cutter(plan, c) for c in plan.cutters],
-        "failing": [(c, *worst_faces(plan, c)) for c in first if c.inaccessible + c.undecided][:_CUTTERS],
+        "failing": [(c, *worst_faces(plan, c)) for c in first if c.lost][:_CUTTERS],
         "reasons": [word for word in plan.reasons if any(word in c.area_share.lost_by for c in plan.cutters)],
         "spots": [
             (c, found) for c in first if (found := [(k, s.witness) for k, s in enumerate(spots) if s.cutter == c.id])
@@ -68,8 +70,15 @@ def _cutter(plan: Plan, entry: CutterEntry) -> dict[str, Any]:
         "bars": bars,
         "shares": [(said, share) for said, share in each if share != "0 %"],
         "reason": main_reason(entry.area_share),
+        "besides": _besides(entry),
         "helping": [named(plan, change.why) for change in entry.mend.changes if change.helps] if entry.mend else [],
     }
+
+
+def _besides(entry: CutterEntry) -> str:
+    """What takes part in the axis limit, by samples, the most of them first."""
+    ranked = sorted(entry.axis_limit_with.items(), key=lambda item: (-item[1], item[0]))
+    return ", ".join(f"{words.reason(word)} at {count:,}" for word, count in ranked)
 
 
 def _faces(plan: Plan, shown: CutterEntry) -> list[tuple[FaceEntry, str, str]]:

@@ -20,7 +20,7 @@ class _Reason(NamedTuple):
 
 
 REASONS = {
-    "axis_limit": _Reason("the axis limit", "The machine cannot hold any axis that would serve.",
+    "axis_limit": _Reason("the axis limit", "A posture would serve, but the machine cannot hold it as the part is set up.",
                           "another setup, or a machine that tilts further"),
     "local_gouge": _Reason("local gouge", "The surface curves more than the cutter, right at the contact.",
                            "a smaller radius or corner radius"),
@@ -32,9 +32,11 @@ REASONS = {
                       "--ignore, if that body is not there when the part is machined"),
     "tolerance": _Reason("too coarse a tolerance", "It is no smaller than the cutter's own features.",
                          "a smaller --tolerance"),
-    "neck": _Reason("collision of the neck", "The neck meets the part.", "a thinner or longer neck"),
-    "shank": _Reason("collision of the shank", "The shank meets the part.", "a thinner shank or a longer stick-out"),
-    "holder": _Reason("collision of the holder", "The holder meets the part.", "a longer stick-out or a slimmer holder"),
+    "neck": _Reason("collision of the neck", "The neck is in the way, the flutes are not.", "a thinner or longer neck"),
+    "shank": _Reason("collision of the shank", "The shank is in the way, the flutes are not.",
+                     "a thinner shank or a longer stick-out"),
+    "holder": _Reason("collision of the holder", "The holder is in the way, the flutes are not.",
+                      "a longer stick-out or a slimmer holder"),
     "fixture": _Reason("the fixture", "Without the fixtures the sample would be reached.", "another place for the fixture"),
 }  # fmt: skip
 #: Verdicts, and what they say of a sample.
@@ -204,13 +206,14 @@ def _mended(plan: Plan, entry: CutterEntry) -> list[str]:
 
 def _choice(plan: Plan, names: Mapping[str, str], shown: CutterEntry) -> tuple[str, str]:
     found, name = plan.samples, names[shown.id]
+    # Of several setups one may do by itself.
+    alone = next((setup.axis for setup in shown.setups if not setup.lost), plan.effective.setup)
+    several = bool(shown.setups) and all(setup.lost for setup in shown.setups)
     much = f"It reaches {reached(shown, shown.area_share)} of the target area"
-    if plan.selected:
-        every = f"all {count(found.count - found.unjudged, 'sample')}" + (
-            " that could be judged" if found.unjudged else ""
-        )
+    if plan.selected and not several:
+        every = f"all {count(found.judged, 'sample')}" + (" that could be judged" if found.unjudged else "")
         return (
-            f"Take {name}.",
+            f"Take {name}." if alone == plan.effective.setup else f"Take {name}, in setup {place(alone)}.",
             f"It reaches {every} of the target faces without gouging or collision. {_why(plan, names)}",
         )
     if plan.selected_over_setups:
@@ -222,9 +225,10 @@ def _choice(plan: Plan, names: Mapping[str, str], shown: CutterEntry) -> tuple[s
     if plan.selected_for_setup:
         c = next(c for c in plan.cutters if c.id == plan.selected_for_setup)
         return (
-            f"Take {names[c.id]} for this setup.",
+            f"Take {names[c.id]} for {'these setups' if shown.setups else 'this setup'}.",
             f"It reaches {reached(c, c.area_share)} of the target area: all that any of these cutters can reach here. The axis "
-            f"limit loses {count(c.beyond_setup, 'sample')} of {found.count:,} for every cutter: machine these in another setup.",
+            f"limit loses {count(c.beyond_setup, 'sample')} of {found.finished:,} for every cutter: machine these in another "
+            "setup.",
         )
     if shown.feasible is None and not shown.undecided:
         return (

@@ -1,0 +1,67 @@
+"""What covers surface of the part: bodies that overlap others or stand on them, and sheets that lie on a body."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Record
+from cad_io.part.bodies import Body
+from plan_cutters.scene.prepared import Prepared
+
+How = Literal["overlaps", "stands_on", "touches_or_overlaps"]
+
+#: A contact is surely within a body from so many depths on beyond which a posture is blocked, and on its skin up to so many.
+_DEEP, _ON = 1.5, 1.5
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Covering(Record):
+    """A body, and what of the samples lies inside it.
+
+    Attributes
+    ----------
+    index : int
+        Into the part's bodies.
+    rows : (m,) int64
+        Samples, those of sheets that lie on bodies not among them.
+    how : str
+        `overlaps`: volumes intersect, for some of these contacts lie deep in the body. `stands_on`: all of them lie on its skin.
+        Otherwise neither is sure.
+    """
+
+    index: int
+    rows: NDArray[np.int64]
+    how: How
+
+
+def coverings(ready: Prepared) -> tuple[Covering, ...]:
+    """The bodies of a part that samples lie inside of, those with the largest area first."""
+    inside, around, samples = ready.inside_bodies, ready.conditions.around, ready.samples
+    rows = np.flatnonzero(inside & ~np.isin(samples.face, around.on_bodies))
+    found = []
+    for index in np.unique(ready.buried[rows]).tolist():
+        mine = rows[ready.buried[rows] == index]
+        found.append(Covering(index, mine, _how(ready, around.bodies[index], mine)))
+    return tuple(sorted(found, key=lambda each: (-float(samples.area[each.rows].sum()), each.index)))
+
+
+def sheets(ready: Prepared) -> NDArray[np.int64]:
+    """Samples inside bodies that are those of construction sheets lying on one."""
+    return np.flatnonzero(ready.inside_bodies & np.isin(ready.samples.face, ready.conditions.around.on_bodies))
+
+
+def _how(ready: Prepared, body: Body, rows: NDArray[np.int64]) -> How:
+    """Whether a body lies over contacts or only against them."""
+    from plan_cutters.kernels.material import far_inside, near_skin
+
+    surely = ready.conditions.around.surely
+    _, deep = surely.depths(ready.scene.tolerance)
+    point, skin = np.ascontiguousarray(ready.samples.point[rows]), surely.skin_of(body).solids
+    within, on = np.zeros(len(rows), bool), np.zeros(len(rows), bool)
+    far_inside(point, _DEEP * deep, skin, within)
+    if within.any():
+        return "overlaps"
+    near_skin(point, _ON * deep, skin, on)
+    return "stands_on" if on.all() else "touches_or_overlaps"

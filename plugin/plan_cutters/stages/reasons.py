@@ -1,0 +1,169 @@
+"""Why a sample is lost, by what would free it: the first of these without which there is a posture is the reason.
+
+The axis limit (another setup or machine); the holder, the shank, the neck (a longer stick-out, a slimmer holder); the fixtures.
+Where none of them alone frees it, it is what forbids most tilts to the flutes, whatever limits, holders and fixtures there are:
+only another cutter helps there. No verdict is changed.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import SurfaceSamples
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.nesting import inside
+from plan_cutters.domain.shapes import flute_length
+from plan_cutters.domain.verdicts import (
+    AXIS_LIMIT,
+    BURIED,
+    INACCESSIBLE,
+    LOCAL_GOUGE,
+    NO_REASON,
+    REASONS,
+    TOLERANCE,
+    UNJUDGED,
+    Reach,
+    blank,
+)
+from plan_cutters.scene.conditions import Conditions, contacts_of, search_postures
+from plan_cutters.scene.threads import Progress
+
+_PARTS = tuple(REASONS.index(word) for word in ("neck", "shank", "holder"))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Explained:
+    """The reach of a cutter with the reasons that can be acted on.
+
+    Attributes
+    ----------
+    reach : Reach
+        Verdicts and postures as they were.
+    besides : (n,) uint8
+        Where the reason is the axis limit: what else is in the way within it, index into REASONS; else NO_REASON.
+    """
+
+    reach: Reach
+    besides: NDArray[np.uint8]
+
+
+@dataclass(slots=True)
+class Reasons:
+    """Finds reasons, cutter after cutter; what was found for one spares another some of the search.
+
+    Attributes
+    ----------
+    samples : SurfaceSamples
+    conditions : sequence of Conditions
+        Of each setup.
+    asked : (n,) bool
+        Samples that have a reason to be looked for.
+    """
+
+    samples: SurfaceSamples
+    conditions: Sequence[Conditions]
+    asked: NDArray[np.bool_]
+    _known: dict[str, dict[Cutter, Reach]] = field(default_factory=dict)
+
+    def of(self, cutter: Cutter, reach: Reach, progress: Progress | None = None) -> Explained:
+        """Find the reasons of what a cutter loses.
+
+        Parameters
+        ----------
+        cutter : Cutter
+        reach : Reach
+            What it reaches over all setups, with the reasons that its search found.
+        progress : callable, optional
+            Told how many searches are done, of how many.
+        """
+        tell = progress or (lambda done, total: None)
+        first, n = self.conditions[0], len(reach.verdict)
+        before, reason, besides = reach.reason, reach.reason.copy(), np.full(n, NO_REASON, np.uint8)
+        rows = np.flatnonzero(reach.lost & self.asked & ~np.isin(before, (BURIED, TOLERANCE)))
+        limited, less, alone = first.machine.limited, list(_less(cutter)), first.around.alone
+        if not len(rows) or not (limited or less or alone is not None):
+            return Explained(reach, besides)
+        # Flutes by themselves, without limits and fixtures: what they do not reach nothing else frees, and is done with.
+        bare = replace(first.machineless, around=alone or first.around)
+        found = self._search("flutes", less[-1][1] if less else cutter, rows, bare)
+        shut = rows[~found.reached[rows] & np.isin(before[rows], (AXIS_LIMIT, *_PARTS))]
+        reason[shut] = found.reason[shut]
+        rows = rows[found.reached[rows]]
+        tell(1, 3)
+        if limited:
+            if less or alone is not None:
+                found = self._search("unlimited", cutter, rows, first.machineless)
+            free = found.reached[rows]
+            reason[rows[free]] = AXIS_LIMIT
+            # Where the limit leaves nothing by itself, and so does something without it, both take part.
+            other = np.where(free, before[rows], found.reason[rows])
+            besides[rows] = np.where(
+                (free & (other != AXIS_LIMIT)) | (before[rows] == AXIS_LIMIT) & ~free, other, NO_REASON
+            )
+            rows = rows[~free]
+        tell(2, 3)
+        if less:
+            # Where limits and local gouge alone leave nothing, flutes by themselves find nothing.
+            rows = rows[~np.isin(before[rows], (AXIS_LIMIT, LOCAL_GOUGE))]
+            if limited or alone is not None:
+                rows = rows[self._anywhere(less[-1][1], rows)]
+            self._held(less, rows, reason)
+        tell(3, 3)
+        return Explained(replace(reach, reason=reason), besides)
+
+    def _held(self, less: Sequence[tuple[int, Cutter]], rows: NDArray[np.int64], reason: NDArray[np.uint8]) -> None:
+        """Write which of holder, shank and neck has to be away for there to be a posture, from the top down."""
+        for part, without in less[:-1]:
+            served = self._anywhere(without, rows)
+            reason[rows[served]] = part
+            rows = rows[~served]
+        reason[rows] = less[-1][0]
+
+    def _anywhere(self, cutter: Cutter, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Whether a cutter has a posture in some setup."""
+        served = np.zeros(len(rows), bool)
+        for k, conditions in enumerate(self.conditions):
+            found = self._search(f"setup {k}", cutter, rows[~served], conditions)
+            served |= found.reached[rows]
+        return served
+
+    def _search(self, under: str, cutter: Cutter, rows: NDArray[np.int64], conditions: Conditions) -> Reach:
+        """Search for postures of some samples, but where what was found for other cutters `under` the same tells."""
+        found, known = blank(len(self.asked)), self._known.setdefault(under, {})
+        for other, earlier in known.items():
+            # As `nesting.handed`, but of the samples that were looked at.
+            if cutter == other:
+                mine = rows[earlier.verdict[rows] != UNJUDGED]
+            elif inside(cutter, other):
+                mine = rows[earlier.reached[rows] & (found.verdict[rows] == UNJUDGED)]
+            elif inside(other, cutter):
+                mine = rows[(earlier.verdict[rows] == INACCESSIBLE) & (found.verdict[rows] == UNJUDGED)]
+            else:
+                continue
+            for name in Reach.__slots__:
+                getattr(found, name)[mine] = getattr(earlier, name)[mine]
+        left = rows[found.verdict[rows] == UNJUDGED]
+        if len(left):
+            light, heavy = conditions.light(cutter), conditions.heavy(cutter)
+            search_postures(contacts_of(self.samples), left, light, heavy, conditions, found, fixed=True)
+        known[cutter] = found
+        return found
+
+
+def _less(cutter: Cutter) -> Iterator[tuple[int, Cutter]]:
+    """A cutter without its holder, without its shank as well, and without its neck, too: what there is of them."""
+    parts = {part for part, _, _ in cutter.stages}
+    if cutter.holder is not None:
+        cutter = replace(cutter, holder=None)
+        yield REASONS.index("holder"), cutter
+    if cutter.shape == "lollipop":
+        return  # the neck is what its ball hangs on
+    top = flute_length(cutter)
+    if "shank" in parts:
+        flutes = top if cutter.necks and cutter.shape != "form" else None
+        cutter = replace(cutter, length=top + cutter.neck_length, shank_radius=None, flutes=flutes)
+        yield REASONS.index("shank"), cutter
+    if cutter.necks:
+        yield REASONS.index("neck"), replace(cutter, length=top, neck=None, flutes=None)
