@@ -115,7 +115,7 @@ def run(
         (axis, None if place is None else place.x) for axis, place in zip(options.other_setups, places, strict=True)
     ]
     elsewhere = [(axis, _elsewhere(ready, judged, axis, x, clock)) for axis, x in others]
-    answers = ask(ready, {cutter: each.reach for cutter, each in judged.items()}, clock.stage)
+    answers = ask(ready, {cutter: each.reach for cutter, each in judged.items()}, clock.stage, elsewhere)
     result = assemble(ready, judged, clock, started, answers, elsewhere)
     if not options.posture_maps:
         return result

@@ -77,7 +77,8 @@ class Cutter(Dimensions):
 
     @classmethod
     def parse(cls, spec: str) -> "Cutter":
-        """Read `R6L80`: radius and length in mm; `R6L80rc1` adds a corner radius (`spec.dimensions` has the rest).
+        """Read `R6L80`: radius and length in mm; `R6L80rc1` adds a corner radius (`spec.dimensions` has the rest), and
+        `R6L80HR15L30` a holder (`Holder.parse`).
 
         Raises
         ------
@@ -92,7 +93,10 @@ class Cutter(Dimensions):
         Traceback (most recent call last):
         plan_cutters.errors.CutterError: cutter '' is not of the form R6L80 (radius 6 mm, length 80 mm)
         """
-        return cls(**dimensions(spec))
+        at = spec.upper().find("H") if isinstance(spec, str) else -1
+        if at < 0:
+            return cls(**dimensions(spec))
+        return replace(cls(**dimensions(spec[:at])), holder=Holder.parse(spec[at + 1 :]))
 
     @classmethod
     def of(cls, given: Any) -> "Cutter":
