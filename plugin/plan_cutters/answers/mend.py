@@ -8,7 +8,7 @@ from plan_cutters.answers.option import option
 from plan_cutters.answers.other_cutter import corner_radius, radius, stick_out
 from plan_cutters.answers.other_place import faces, setup, tolerance
 from plan_cutters.answers.other_range import tilt_limit, tilt_range
-from plan_cutters.answers.trial import Case, Trials
+from plan_cutters.answers.trial import Case, Trials, samples
 from plan_cutters.domain.change import THINGS, Change, Mend, Thing
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Reach
@@ -41,7 +41,7 @@ def mend(
     Returns
     -------
     Mend
-        Without changes where no sample is lost.
+        Without changes where no sample of the finished surface is lost.
 
     Examples
     --------
@@ -59,8 +59,12 @@ def mend(
     around = ready.conditions.around
     within = int((ready.inside_bodies & reach.lost).sum())
     if not len(trials.lost):
-        why = "no sample is lost, but faces are missing from what is in the way: no change of the cutter mends that" \
-              if around.doubtful else ""  # fmt: skip
+        inside = f"{samples(within)} within another body, which is no surface of the finished part" if within else ""
+        missing = (
+            f"no {'other ' * bool(within)}sample is lost, but faces are missing from what is in the way: no change of the cutter "
+            "mends that"
+        )
+        why = "; ".join(filter(None, (inside, missing if around.doubtful else inside and "nothing else is lost")))
         return Mend(cutter.id, within, within, (), why)
     case = Case(ready, cutter)
     share = Finished.of(ready).of_rows(trials.lost)

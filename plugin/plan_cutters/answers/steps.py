@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from plan_cutters.answers.areas import Finished, Rows, patches
-from plan_cutters.answers.means import Candidate, Scan, candidates
+from plan_cutters.answers.means import candidates, joined
 from plan_cutters.answers.option import Axis, option
+from plan_cutters.answers.scan import Candidate, Scan
 from plan_cutters.answers.state import Judgements, State, setups_of
 from plan_cutters.domain.area import Patch
 from plan_cutters.domain.change import MEANS, Mend, Move, Step
@@ -16,10 +17,17 @@ from plan_cutters.domain.verdicts import Reach
 from plan_cutters.scene.prepared import Prepared
 from plan_cutters.scene.threads import Progress
 
-#: Steps of one change that are judged, at most; of two, for each of the best so many of one.
+#: A step, and the samples that it leaves.
+Judged = tuple[Candidate, Rows]
+#: A change by which it is known.
+Named = tuple[str, str]
+
+#: Steps of one change that are judged, at most; of two after each of the best so many of one, and of two at once.
 _SINGLES, _PAIRS, _BEST = 7, 2, 2
 #: A second change is worth telling where it frees so much more, of the finished area.
 _WORTH = 0.0005
+#: Nor is a step worth telling that frees less than that, and less than this share of what is lost.
+_LITTLE = 0.02
 #: Shares that differ by less are alike: what asks least comes first.
 _ALIKE = 4
 #: Areas that are told: of a cutter, of a step.
@@ -62,7 +70,7 @@ def steps(
     left = known.left(state, np.flatnonzero(finished.wanted))
     if not len(left):
         return found
-    count, most = 0, _SINGLES + _PAIRS * _BEST
+    count, most = 0, _SINGLES + _PAIRS * (_BEST + 1)
 
     def tell() -> None:
         nonlocal count
@@ -74,7 +82,8 @@ def steps(
     areas = patches(ready.samples, finished, left)
     scan = Scan.of(state, left, finished, known, tuple(reaches))
     made = [(each, known.left(each.state, _rows(scan, each))) for each in candidates(scan)[:_SINGLES]]
-    singles = [each for each in made if finished.of_rows(each[1]) < finished.of_rows(left)]
+    before = finished.of_rows(left)
+    singles = [each for each in made if before - finished.of_rows(each[1]) > min(_WORTH, _LITTLE * before)]
     pairs = _pairs(scan, singles)
     base = (ready, cutter, state)
     listed = [_step(base, finished, left, each, rows) for each, rows in (*singles, *pairs)]
@@ -95,43 +104,52 @@ def _rows(scan: Scan, candidate: Candidate) -> Rows:
     return scan.left if candidate.nested else np.flatnonzero(scan.finished.wanted)
 
 
-def _pairs(scan: Scan, singles: list[tuple[Candidate, Rows]]) -> list[tuple[Candidate, Rows]]:
-    """A second change after each of the best ones, if that is worth it."""
-    found: dict[tuple[tuple[str, object], ...], tuple[Candidate, Rows]] = {}
+def _pairs(scan: Scan, singles: list[Judged]) -> list[Judged]:
+    """Two changes, where both are worth it: a second one after each of the best, and two of which neither gains much alone."""
     finished = scan.finished
     alone = {_name(each.moves[0]): finished.of_rows(rows) for each, rows in singles}
     best = sorted(singles, key=lambda each: (round(finished.of_rows(each[1]), _ALIKE), *effort(each[0].moves)))
+    if best and not len(best[0][1]):
+        return []
+    found: dict[tuple[Named, ...], Judged] = {}
+    tried: set[tuple[Named, ...]] = set()
+
+    def judge(each: Candidate, rows: Rows) -> bool:
+        """Keep it if it is worth it; False if it was tried before."""
+        name = tuple(sorted(_name(move) for move in each.moves))
+        if name in tried:
+            return False
+        tried.add(name)
+        still = scan.known.left(each.state, rows if each.nested else np.flatnonzero(finished.wanted))
+        least = min(alone.get(_name(move), finished.of_rows(scan.left)) for move in each.moves)
+        share = finished.of_rows(still)
+        if share < least - _WORTH or (not len(still) and least > 0.0):
+            found[name] = each, still
+        return True
+
     started: set[str] = set()
     for first, rows in best:
         means = first.moves[0].means
-        if len(started) == _BEST or not len(rows):
-            break
-        if means in started:
+        if means in started or len(started) == _BEST:
             continue
         started.add(means)
-        after = replace(scan, state=first.state, left=rows)
         after = Scan.of(first.state, rows, finished, scan.known, scan.given)
-        tried = 0
-        for second in candidates(after):
-            other = second.moves[0].means
-            if tried == _PAIRS:
-                break
-            if other == means or other in _APART.get(means, ()):
-                continue
-            tried += 1
-            both = replace(second, moves=(*first.moves, *second.moves), nested=first.nested and second.nested)
-            name = tuple(sorted(_name(move) for move in both.moves))
-            if name in found:
-                continue
-            still = scan.known.left(both.state, _rows(after, second))
-            share = finished.of_rows(still)
-            least = min(finished.of_rows(rows), alone.get(_name(second.moves[0]), 1.0))
-            if share < least - _WORTH or (not len(still) and least > 0.0):
-                found[name] = both, still
+        seconds = [
+            replace(second, moves=(*first.moves, *second.moves))
+            for second in candidates(after)
+            if second.moves[0].means not in {means, *_APART.get(means, ())}
+        ]
+        for both in seconds[:_PAIRS]:
+            judge(both, rows)
+    count = 0
+    for both in joined(scan):
+        count += judge(both, scan.left)
+        if count == _PAIRS:
+            break
     return list(found.values())
 
 
-def _name(move: Move) -> tuple[str, object]:
+def _name(move: Move) -> Named:
     return move.means, str(move.asked)
 
 
