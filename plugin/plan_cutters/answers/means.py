@@ -13,6 +13,8 @@ from plan_cutters.domain.machine import Machine
 
 #: What changes the tool alone.
 _TOOLS = (stick_out, given, corner, radius, holder)
+#: Changes of the tool that are looked at together with another axis.
+_JOINED = 3
 
 
 def candidates(scan: Scan) -> list[Candidate]:
@@ -34,8 +36,9 @@ def joined(scan: Scan) -> list[Candidate]:
     if not len(missed):
         return []
     found: list[Candidate] = []
-    for first in (each for tools in _TOOLS for each in tools(replace(scan, state=free, left=missed, few=missed))):
-        tool = under(first.state, conditions)
-        for second in axis(replace(scan, state=tool)):
+    tools = [each for tool in _TOOLS for each in tool(replace(scan, state=free, left=missed, few=missed))]
+    for first in sorted(tools, key=lambda each: each.estimate)[:_JOINED]:
+        held = under(first.state, conditions)
+        for second in axis(replace(scan, state=held), plain=True):
             found.append(replace(second, moves=(*first.moves, *second.moves), nested=first.nested and second.nested))
     return sorted(found, key=lambda candidate: candidate.estimate)

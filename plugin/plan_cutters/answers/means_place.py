@@ -21,6 +21,8 @@ from plan_cutters.options import LEAST_TOLERANCE
 _OWN = 0.1
 #: Steps of a limit of the axis, deg.
 _TURN = 5.0
+#: The most that machines tilt, deg: what asks for more is for another setup.
+_MOST = 120.0
 _ORDER = {2: "second", 3: "third", 4: "fourth"}
 
 
@@ -59,8 +61,11 @@ def tilt_range(scan: Scan) -> Iterator[Candidate]:
         yield scan.found(Move("tilt_range", (low, high), asked, words), state, missed, nested=True)
 
 
-def axis(scan: Scan) -> Iterator[Candidate]:
-    """A machine that tilts further, a second setup, another setup: for what is reached without any limit."""
+def axis(scan: Scan, *, plain: bool = False) -> Iterator[Candidate]:
+    """A machine that tilts further, a second setup, another setup: for what is reached without any limit.
+
+    `plain`: of setups those along the part's own axes alone.
+    """
     state, known = scan.state, scan.known
     conditions = state.ready.conditions
     machine = conditions.machine
@@ -72,7 +77,7 @@ def axis(scan: Scan) -> Iterator[Candidate]:
         return
     now = None if machine.turns or machine.tilt_limit is None else round(math.degrees(machine.tilt_limit), 6)
     first = math.floor((now or 0.0) / _TURN + 1e-9) + 1
-    most = round(180.0 / _TURN) - first
+    most = math.floor(_MOST / _TURN) - first
 
     def limit(at: int) -> State:
         return under(state, replace(conditions, machine=Machine.parse(f"tilt:{(first + at) * _TURN:g}")))
@@ -82,10 +87,10 @@ def axis(scan: Scan) -> Iterator[Candidate]:
         instead = f"every way instead of {machine.name}" if now is None else f"instead of {now:g} deg"
         move = Move("tilt_limit", now, asked, f"a machine that tilts by {asked:g} deg {instead}")
         yield scan.found(move, made, missed, nested=now is not None)
-    yield from _setups(scan, gained)
+    yield from _setups(scan, gained, plain=plain)
 
 
-def _setups(scan: Scan, gained: Rows) -> Iterator[Candidate]:
+def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
     state, known, ready = scan.state, scan.known, scan.state.ready
     blocked = np.setdiff1d(scan.few, gained, assume_unique=True)
     kept = np.setdiff1d(np.flatnonzero(scan.finished.wanted), scan.left, assume_unique=True)
@@ -93,6 +98,8 @@ def _setups(scan: Scan, gained: Rows) -> Iterator[Candidate]:
         axis for axis in directions(ready, Trials(scan.left, kept)) if all(angle(axis, own) > 1.0 for own in state.axes)
     ]
     now = state.axes[0]
+    if plain:
+        axes = [axis for axis in axes if _own(axis)]
     second = []
     for axis in axes:
         made = replace(state, setups=(*state.setups, (axis, None)))
@@ -105,7 +112,7 @@ def _setups(scan: Scan, gained: Rows) -> Iterator[Candidate]:
             "second_setup", now, axis, f"{_clamped(now, axis)} as a {_ORDER.get(len(made.setups), 'further')} setup"
         )
         yield scan.found(move, made, np.union1d(blocked, missed), nested=True)
-    if len(state.setups) > 1:
+    if plain or len(state.setups) > 1:
         return
     some = spread(kept)
     other = []
@@ -130,9 +137,14 @@ def _plain(
     if not gaining:
         return None
     best = min(gaining, key=lambda each: each[:2])
-    own = [each for each in gaining if sorted(map(abs, each[2])) == [0.0, 0.0, 1.0]]
+    own = [each for each in gaining if _own(each[2])]
     plain = min(own, key=lambda each: each[:2], default=best)
     return plain if count - plain[0] >= (1.0 - _OWN) * (count - best[0]) else best
+
+
+def _own(axis: Axis) -> bool:
+    """Whether it is one of the part's own."""
+    return sorted(map(abs, axis)) == [0.0, 0.0, 1.0]
 
 
 def _clamped(now: Axis, axis: Axis) -> str:

@@ -15,7 +15,7 @@ from plan_cutters.scene.conditions import Conditions
 Rows = NDArray[np.int64]
 
 #: Samples on which values are compared, at most.
-_FEW = 192
+_FEW = 96
 #: Shares of what the most would gain, with which less is content.
 NEARLY, HALF = 0.95, 0.5
 

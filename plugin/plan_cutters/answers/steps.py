@@ -10,7 +10,7 @@ from plan_cutters.answers.means import candidates, joined
 from plan_cutters.answers.option import Axis, option
 from plan_cutters.answers.scan import Candidate, Scan
 from plan_cutters.answers.state import Judgements, State, setups_of
-from plan_cutters.domain.area import Patch
+from plan_cutters.domain.area import Patch, size
 from plan_cutters.domain.change import MEANS, Mend, Move, Step
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Reach
@@ -23,7 +23,7 @@ Judged = tuple[Candidate, Rows]
 Named = tuple[str, str]
 
 #: Steps of one change that are judged, at most; of two after each of the best so many of one, and of two at once.
-_SINGLES, _PAIRS, _BEST = 7, 2, 2
+_SINGLES, _PAIRS, _BEST, _JOINED = 5, 1, 2, 2
 #: A second change is worth telling where it frees so much more, of the finished area.
 _WORTH = 0.0005
 #: Nor is a step worth telling that frees less than that, and less than this share of what is lost.
@@ -70,7 +70,7 @@ def steps(
     left = known.left(state, np.flatnonzero(finished.wanted))
     if not len(left):
         return found
-    count, most = 0, _SINGLES + _PAIRS * (_BEST + 1)
+    count, most = 0, _SINGLES + _PAIRS * _BEST + _JOINED
 
     def tell() -> None:
         nonlocal count
@@ -81,15 +81,19 @@ def steps(
     known.tell = tell
     areas = patches(ready.samples, finished, left)
     scan = Scan.of(state, left, finished, known, tuple(reaches))
-    made = [(each, known.left(each.state, _rows(scan, each))) for each in candidates(scan)[:_SINGLES]]
+    # What other given cutters reach is known.
+    listed = candidates(scan)
+    dear = [each for each in listed if each.moves[0].means != "cutter"][:_SINGLES]
+    chosen = [each for each in listed if each in dear or each.moves[0].means == "cutter"]
+    made = [(each, known.left(each.state, _rows(scan, each))) for each in chosen]
     before = finished.of_rows(left)
     singles = [each for each in made if before - finished.of_rows(each[1]) > min(_WORTH, _LITTLE * before)]
     pairs = _pairs(scan, singles)
     base = (ready, cutter, state)
-    listed = [_step(base, finished, left, each, rows) for each, rows in (*singles, *pairs)]
-    listed.sort(key=lambda step: (round(step.after, _ALIKE), *effort(step.moves)))
+    found_steps = [_step(base, finished, left, each, rows) for each, rows in (*singles, *pairs)]
+    found_steps.sort(key=lambda step: (round(step.after, _ALIKE), *effort(step.moves)))
     return replace(
-        found, share=finished.of_rows(left), steps=(*listed, _left_out(base, finished, left, areas)), areas=tuple(areas[:_AREAS]),
+        found, share=finished.of_rows(left), steps=(*found_steps, _left_out(base, finished, left, areas)), areas=tuple(areas[:_AREAS]),
         more_areas=len(areas[_AREAS:]), unsure=ready.conditions.around.doubtful,
     )  # fmt: skip
 
@@ -144,7 +148,7 @@ def _pairs(scan: Scan, singles: list[Judged]) -> list[Judged]:
     count = 0
     for both in joined(scan):
         count += judge(both, scan.left)
-        if count == _PAIRS:
+        if count == _JOINED:
             break
     return list(found.values())
 
@@ -179,7 +183,7 @@ def _left_out(base: tuple[Prepared, Cutter, State], finished: Finished, left: Ro
     said = option(ready, cutter, cutters=(cutter,), faces=rest.tolist()) if whole else None
     area, share = float(finished.area[left].sum()), finished.of_rows(left)
     words = f"{areas[0].words} left to other means" if len(areas) == 1 else (
-        f"{area:.3g} mm2 in {len(areas):,} places left to other means, the largest {areas[0].words}")  # fmt: skip
+        f"{size(area)} in {len(areas):,} places left to other means, the largest {areas[0].words}")  # fmt: skip
     return Step(
         (Move("area", None, round(area, 6), words),), share, 0.0, 0, len(left), (cutter,), state.axes, said,
         tuple(areas[:_REMAINS]),

@@ -39,9 +39,17 @@ class Patch:
         >>> Patch(57.2, 0.01, 9, ("F31",), (12.0, 3.0, -8.04), 4.13).words
         '57 mm2 of F31, about (12, 3, -8.04), 4.1 mm across'
         """
-        much = f"{self.area:,.0f}" if self.area >= 20.0 else f"{self.area:.2g}"
         more = len(self.faces) - _FACES
         on = ", ".join(self.faces[:_FACES]) + (f" and {more} more" if more > 0 else "")
-        where = ", ".join(f"{x + 0.0:.3g}" for x in self.place)
+        where = ", ".join(f"{round(x, 4) + 0.0:.3g}" for x in self.place)
         wide = f", {float(f'{self.across:.2g}'):g} mm across" if self.across else ""
-        return f"{much} mm2 of {on}, about ({where}){wide}"
+        return f"{size(self.area)} of {on}, about ({where}){wide}"
+
+
+def size(area: float) -> str:
+    """An area in words.
+
+    >>> size(12345.6), size(5.76)
+    ('12,346 mm2', '5.8 mm2')
+    """
+    return f"{area:,.0f} mm2" if area >= 20.0 else f"{area:.2g} mm2"
