@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from cad_io.arrays import Floats
 from plan_cutters.answers.option import Axis
 from plan_cutters.answers.other_place import FINER, angle, closer, directions, flip_of
 from plan_cutters.answers.scan import Candidate, Rows, Scan, spread, under
@@ -100,11 +101,12 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
     now = state.axes[0]
     if plain:
         axes = [axis for axis in axes if _own(axis)]
+    facing = towards(ready.samples.normal[gained].mean(axis=0), now)
     second = []
     for axis in axes:
         made = replace(state, setups=(*state.setups, (axis, None)))
         missed = known.glance(made, gained)
-        second.append((len(missed), angle(now, axis), axis, made, missed))
+        second.append((len(missed), angle(facing, axis), axis, made, missed))
     best = _plain(second, len(gained))
     if best is not None:
         _, _, axis, made, missed = best
@@ -132,7 +134,7 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
 def _plain(
     second: list[tuple[int, float, Axis, State, Rows]], count: int
 ) -> tuple[int, float, Axis, State, Rows] | None:  # fmt: skip
-    """Of setups the nearest of those that miss least; one along the part's own axes, where that gains nearly as much."""
+    """Of setups that miss least that which faces the samples; one along the part's own axes, if that gains nearly as much."""
     gaining = [each for each in second if each[0] < count]
     if not gaining:
         return None
@@ -140,6 +142,15 @@ def _plain(
     own = [each for each in gaining if _own(each[2])]
     plain = min(own, key=lambda each: each[:2], default=best)
     return plain if count - plain[0] >= (1.0 - _OWN) * (count - best[0]) else best
+
+
+def towards(vector: Floats, otherwise: Axis) -> Axis:
+    """A direction; another one where there is none."""
+    length = float(np.linalg.norm(vector))
+    if not length > 1e-6:
+        return otherwise
+    x, y, z = (vector / length).tolist()
+    return x, y, z
 
 
 def _own(axis: Axis) -> bool:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
-from plan_cutters.answers.other_cutter import CORNERS, SLIMMEST, THINNEST, highest, longer, made_of, thinner
+from plan_cutters.answers.other_cutter import CORNERS, THINNEST, highest, longer, made_of, thinner
 from plan_cutters.answers.scan import HALF, NEARLY, Candidate, Scan
 from plan_cutters.answers.state import State
 from plan_cutters.domain.change import Move
@@ -16,6 +16,8 @@ _RADII = (
     0.1, 0.2, 0.25, 0.3, 0.4, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.5, 16.0, 20.0, 25.0, 31.5, 40.0,
           50.0)  # fmt: skip
 _THINNER = 0.1
+#: Of their length they are no less: 15 diameters are as much as is sold.
+_SLENDER = 1.0 / 30.0
 #: Shares of its radius to which a holder is slimmed.
 _SLIM = (0.9, 0.8, 0.7, 0.6, 0.5, 0.4)
 #: What a holder is thicker than what it holds, at least, mm.
@@ -101,7 +103,7 @@ def radius(scan: Scan) -> Iterator[Candidate]:
     cutter, conditions = scan.state.cutters[0], scan.state.ready.conditions
     if cutter.shape == "form":
         return
-    least = max(THINNEST * conditions.tolerance, SLIMMEST * cutter.length, _THINNER * cutter.radius)
+    least = max(THINNEST * conditions.tolerance, _SLENDER * cutter.length, _THINNER * cutter.radius)
     radii = [r for r in reversed(_RADII) if least <= r < cutter.radius]
 
     def make(at: int) -> State | None:

@@ -93,7 +93,7 @@ def steps(
     found_steps = [_step(base, finished, left, each, rows) for each, rows in (*singles, *pairs)]
     found_steps.sort(key=lambda step: (round(step.after, _ALIKE), *effort(step.moves)))
     return replace(
-        found, share=finished.of_rows(left), steps=(*found_steps, _left_out(base, finished, left, areas)), areas=tuple(areas[:_AREAS]),
+        found, share=before, steps=(*found_steps, _left_out(base, finished, left, areas)), areas=tuple(areas[:_AREAS]),
         more_areas=len(areas[_AREAS:]), unsure=ready.conditions.around.doubtful,
     )  # fmt: skip
 

@@ -263,6 +263,13 @@ def _area_entry(found: Patch) -> LostAreaEntry:
     )
 
 
+def _joined(words: list[str]) -> str:
+    rest = " for the rest"
+    if len(words) > 1 and all(each.endswith(rest) for each in words):
+        return " and ".join(each.removesuffix(rest) for each in words) + rest
+    return ", and ".join(words)
+
+
 def _step_entry(found: Step) -> StepEntry:
     return StepEntry(
         changes=[MoveEntry(thing=each.means, now=each.now, asked=each.asked, why=each.words) for each in found.moves],
@@ -273,7 +280,7 @@ def _step_entry(found: Step) -> StepEntry:
         cutters=[each.id for each in found.cutters],
         setups=[vector(each) for each in found.setups],
         option=found.option,
-        why=", and ".join(each.words for each in found.moves),
+        why=_joined([each.words for each in found.moves]),
         remains=[_area_entry(each) for each in found.remains],
     )
 
