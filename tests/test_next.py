@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import shapes
-from cad_parts import box, cut
+from cad_parts import box, cut, real
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -107,7 +107,8 @@ def test_a_longer_stick_out_is_a_step_also_where_it_does_not_cure_everything():
     assert step.option == "--cutter R3L40F10S3HR15L200"
     again = followed(pocket(), step, *POCKET)
     assert left(again, step) == pytest.approx(step.lost_after, abs=1e-12)
-    assert again.plan.cutters[0].area_share.inaccessible == pytest.approx(step.lost_after, abs=1e-12)
+    (there,) = [c for c in again.cutters if [c.id] == step.cutters]
+    assert there.area_share.inaccessible == pytest.approx(step.lost_after, abs=1e-12)
 
 
 def test_two_changes_free_what_one_does_not():
@@ -222,6 +223,22 @@ def test_each_advice_that_is_followed_is_true(name):
             count += 1
             assert left(followed(part, step, *words), step) == pytest.approx(step.lost_after, abs=0.005)
     assert count
+
+
+REAL = {
+    "trimesh_featuretype.STEP": ("--cutter", "R3L25", "--holder", "R15L60", "--machine", "tilt:60", "--faces", "all"),
+    "asitus_control_arm.step": ("--cutter", "R1L12", "--holder", "R15L60", "--machine", "trunnion-ac"),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("file", real(*REAL), ids=lambda path: path.stem)
+def test_the_first_advice_is_true_on_real_parts(file):
+    """With default spacing, so that another cutter may bring other samples: within half a point."""
+    part, words = read_part(file), REAL[file.name]
+    step = steps_of(asked(part, *words))[0]
+    assert step.lost_after < 0.5 * step.lost_before
+    assert left(followed(part, step, *words), step) == pytest.approx(step.lost_after, abs=0.005)
 
 
 def test_samples_inside_another_body_are_out_of_the_question():

@@ -28,7 +28,7 @@ def together(plan: Plan) -> str:
     several = len({run.setup for run in plan_runs(plan)}) > 1
     whole = percent(found.share, some=True, whole=not found.left)
     if len(found.runs) == 1:
-        said = f"{_run(found.runs[0], several)} alone reaches {whole} of the area, and nothing else given adds to that"
+        said = f"{_run(found.runs[0], several)} alone reaches all that any cutter given reaches, {whole} of the area"
     else:
         named, last = found.runs[:-1][:_RUNS], found.runs[-1]
         each = [f"{_run(run, several)} for {percent(run.share, some=True, whole=False)}" for run in named]

@@ -73,11 +73,11 @@ class Change:
 #: What a step may change: any of THINGS, a slimmer holder, a second setup beside the present one, another cutter for the
 #: rest, or an area that is left to other means. What asks a planner for least comes first among steps that leave as much.
 Means = Literal[
-    "tolerance", "tilt_range", "stick_out", "cutter", "corner_radius", "radius", "holder", "second_setup", "setup",
+    "tolerance", "tilt_range", "stick_out", "cutter", "corner_radius", "radius", "holder", "setup", "second_setup",
     "tilt_limit", "area"
 ]  # fmt: skip
 MEANS: tuple[Means, ...] = (
-    "tolerance", "tilt_range", "stick_out", "cutter", "corner_radius", "radius", "holder", "second_setup", "setup",
+    "tolerance", "tilt_range", "stick_out", "cutter", "corner_radius", "radius", "holder", "setup", "second_setup",
     "tilt_limit", "area"
 )  # fmt: skip
 
