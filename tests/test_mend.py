@@ -232,7 +232,10 @@ def test_nothing_is_asked_about_what_lies_inside_another_body():
     found, by, _ = asked(stacked(), "R2L30", faces="6,7,11", grid=9)
     assert (found.lost, found.buried) == (90, 90)
     assert not by
-    assert found.why == "90 samples are within another body, which is no surface of the finished part; nothing else is lost"
+    assert (
+        found.why
+        == "90 samples are within another body, which is no surface of the finished part; nothing else is lost"
+    )
     found, by, planned = asked(stacked(), "R2L30", faces="6,7,11", grid=9, machine="tilt:60", setup=(1, 0, 0))
     assert 0 < found.buried < found.lost
     assert by["tilt_limit"].helps

@@ -155,6 +155,30 @@ def test_turned_over_as_a_second_setup():
     assert again.plan.least_set.left == 0
     assert [run.setup for run in again.plan.least_set.runs] == [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0)]
     assert [run.samples for run in again.plan.least_set.runs] == [25, 25]
+    # All of the underside is lost: only whole faces can be left out by an option.
+    out = result.cutters[0].mend.steps[-1]
+    assert is_left_out(out)
+    assert not result.reaches["R3L40"].reached[result.samples.normal[:, 2] < 0].any()
+    (top,) = np.unique(result.samples.face[result.samples.normal[:, 2] > 0])
+    assert out.option == f"--faces F{top}"
+    assert followed(part, out, *words).cutters[0].feasible
+
+
+def test_with_several_setups_steps_are_about_what_all_of_them_leave():
+    """Of the six sides of a block two are reached in two setups; a third setup frees one more."""
+    part = read_part(box(30, 40, 20))
+    words = ("--cutter", "R3L40", "--machine", "tilt:10", "--tilt", "0:30", "--faces", "all", "--grid", "4",
+             "--setup", "0,0,1", "--setup", "1,0,0")  # fmt: skip
+    result = asked(part, *words)
+    (entry,) = result.cutters
+    assert entry.mend.lost_share == pytest.approx(1.0 - (1200 + 800) / 5200)
+    (step,) = single(result, "second_setup")
+    assert step.changes[0].why.endswith("as a third setup")
+    assert (len(step.setups), step.gained, step.left) == (3, 16, entry.lost_in_all - 16)
+    assert step.option.startswith("--setup 0,0,1 --setup 1,0,0 --setup ")
+    assert left(followed(part, step, *words), step) == pytest.approx(step.lost_after, abs=1e-12)
+    # What one setup leaves and the other reaches is not lost: nothing is to be mended.
+    assert asked(part, *words[:4], *words[6:8], "--grid", "4", *words[10:]).cutters[0].mend is None
 
 
 def flat_faces(part):
