@@ -305,6 +305,13 @@ def test_the_nearest_three_are_asked_about_and_the_others_are_named():
     assert every.plan.not_mended == []
 
 
+def test_of_given_cutters_that_leave_as_little_the_most_wanted_does_the_rest():
+    result = asked(pocket(), *POCKET, "--cutter", "R0.5L100", "--cutter", "R1L100", "--cutter", "R0.8L100")
+    entry = next(c for c in result.cutters if c.id.startswith("R3"))
+    (step, *_) = [each for each in entry.mend.steps if [change.thing for change in each.changes] == ["cutter"]]
+    assert step.changes[0].asked.startswith("R1L100")
+
+
 def test_a_change_says_its_effect_and_its_option():
     result = asked(read_part(SAMPLES / "v_groove.step"), "--cutter", "R6L60", "--machine", "tilt:3", "--grid", "9")
     (entry,) = result.cutters

@@ -80,7 +80,7 @@ def steps(
 
     known.tell = tell
     areas = patches(ready.samples, finished, left)
-    scan = Scan.of(state, left, finished, known, tuple(reaches))
+    scan = Scan.of(state, left, finished, known, tuple(each for each in ready.cutters if each in reaches))
     # What other given cutters reach is known.
     listed = candidates(scan)
     dear = [each for each in listed if each.moves[0].means != "cutter"][:_SINGLES]
