@@ -15,7 +15,7 @@ from plan_cutters.answers.trial import Case, Trials
 from plan_cutters.domain.change import Move
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.shapes import modes
-from plan_cutters.domain.verdicts import INACCESSIBLE
+from plan_cutters.domain.verdicts import UNDECIDED
 from plan_cutters.options import LEAST_TOLERANCE
 
 #: A direction along the part's own axes is taken where another one gains no more than this share more.
@@ -24,6 +24,8 @@ _OWN = 0.1
 _TURN = 5.0
 #: The most that machines tilt, deg: what asks for more is for another setup.
 _MOST = 120.0
+#: Share of the samples lost that must be undecided for a finer tolerance to be worth its triangles.
+_UNSURE = 0.1
 _ORDER = {2: "second", 3: "third", 4: "fourth"}
 
 
@@ -31,7 +33,7 @@ def tolerance(scan: Scan) -> Iterator[Candidate]:
     """A finer tolerance, where samples are undecided."""
     ready, cutter = scan.state.ready, scan.state.cutters[0]
     few = scan.few[:: max(1, len(scan.few) // 32)]
-    if not len(few) or (Case(ready, cutter).look(few).verdict == INACCESSIBLE).all():
+    if not len(few) or (Case(ready, cutter).look(few).verdict == UNDECIDED).mean() < _UNSURE:
         return
     now = ready.scene.asked
     asked = float(f"{now * FINER[0]:.6g}")
