@@ -144,7 +144,7 @@ def completed(words, cwd):
         (["--machine", "trunnion-a"], ["plain,trunnion-ac"]),
         (["--machine", "shop.f"], ["file,"]),
         (["--formats", "json,g"], ["plain,json,glb"]),
-        (["--answers", "m"], ["plain,mend"]),
+        (["--answers", "m"], ["plain,mend", "plain,mend-all"]),
         (["--faces", "s"], ["plain,sculptured"]),
         (["--unit", "i"], ["plain,in"]),
         (["--out", ""], ["dir,"]),

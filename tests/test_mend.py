@@ -227,14 +227,20 @@ def test_where_nothing_helps_that_is_said():
 # --- what is not decided, and what lies within a body ---------------------------------------------------------------------
 
 
-def test_what_lies_under_a_body_can_only_be_left_out():
-    found, by, planned = asked(stacked(), "R2L30", faces="6,7,11", grid=9)
-    assert found.buried > 0
-    assert found.why.endswith("nothing but leaving out faces can help")
-    assert [each.thing for each in found.changes if each.helps] == ["faces"]
-    assert set(by["faces"].asked) == {"F6", "F11"}
-    assert all("within a body" in each.why for each in found.changes if each.thing != "faces")
-    holds(by["faces"], planned)
+def test_nothing_is_asked_about_what_lies_inside_another_body():
+    """It is no surface of the finished part: the rest is mended as if it were not there."""
+    found, by, _ = asked(stacked(), "R2L30", faces="6,7,11", grid=9)
+    assert (found.lost, found.buried) == (90, 90)
+    assert not by
+    assert (
+        found.why
+        == "90 samples are within another body, which is no surface of the finished part; nothing else is lost"
+    )
+    found, by, planned = asked(stacked(), "R2L30", faces="6,7,11", grid=9, machine="tilt:60", setup=(1, 0, 0))
+    assert 0 < found.buried < found.lost
+    assert by["tilt_limit"].helps
+    again = plan(planned[0], **(planned[1] | by["tilt_limit"].options))
+    assert not (again.reaches[again.shown].lost & again.ready.finished).any()
 
 
 def test_missing_obstacles_leave_it_open():

@@ -54,12 +54,12 @@ def test_every_row_of_a_table_is_as_wide_as_its_head(text):
         assert set(table) == {table[0]}, table
 
 
-def test_the_first_lines_name_the_holder_and_what_it_needs(planned, text):
+def test_the_first_lines_name_the_holder_and_how_short_it_may_be(planned, text):
     head = text[text.index("<header") : text.index("</header>")]
     entry = next(c for c in planned.plan.cutters if c.id == planned.shown)
     assert entry.holder == "ER32 chuck"
     assert f"It stands {entry.length:g} mm out of ER32 chuck" in head
-    assert f"of which it needs {words.up(entry.least_stick_out.least_mm)}." in head
+    assert f"It can be held shorter: {words.up(entry.least_stick_out.least_mm)} are enough for what it reaches." in head
 
 
 def test_what_would_help_is_told_once_and_in_sentences(planned, text):

@@ -123,7 +123,7 @@ def run(
     ]
     elsewhere = [(axis, _elsewhere(ready, here, axis, x, clock)) for axis, x in others]
     judged = _judged(ready, here, elsewhere, seconds, clock)
-    answers = ask(ready, {cutter: each.here for cutter, each in judged.items()}, clock.stage)
+    answers = ask(ready, {cutter: each.here for cutter, each in judged.items()}, clock.stage, elsewhere)
     result = assemble(ready, judged, clock, started, answers, elsewhere)
     if not options.posture_maps:
         return result

@@ -1,25 +1,37 @@
 """All answers that the options of a plan ask for, one after the other."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 
+import numpy as np
+
+from plan_cutters.answers.areas import Finished
 from plan_cutters.answers.largest_radius import largest_radius
+from plan_cutters.answers.least_set import least_set
 from plan_cutters.answers.mend import mend
+from plan_cutters.answers.steps import steps
 from plan_cutters.answers.stick_out import least_stick_out
 from plan_cutters.domain.answers import Answers
+from plan_cutters.domain.change import Mend
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Reach
 from plan_cutters.scene.prepared import Prepared
 from plan_cutters.scene.threads import Progress
 
+Axis = tuple[float, float, float]
+Elsewhere = Sequence[tuple[Axis, Mapping[str, Reach]]]
+
 #: Of every sample the least stick-out is found to this, mm.
 STEP = 0.5
+#: Cutters that are mended unless all are asked for: those that come nearest.
+NEAREST = 3
 
 
 def ask(
-    ready: Prepared, reaches: Mapping[Cutter, Reach], stage: Callable[[str], AbstractContextManager[Progress]]
-) -> Answers:
-    """Answer what is asked.
+    ready: Prepared, reaches: Mapping[Cutter, Reach], stage: Callable[[str], AbstractContextManager[Progress]],
+    elsewhere: Elsewhere = (),
+) -> Answers:  # fmt: skip
+    """Answer what is asked, and what costs nothing.
 
     Parameters
     ----------
@@ -28,6 +40,8 @@ def ask(
         What each cutter reaches.
     stage : callable
         Opens a stage of work by its name; what it gives is told how much of how much is done.
+    elsewhere : sequence
+        Of each other setup its axis, and what each cutter reaches there by its id.
     """
     asked = ready.options.answers
     stick_outs, radius_maps, mends = {}, [], {}
@@ -41,10 +55,32 @@ def ask(
             for shape in ("flat", "ball"):
                 ratio = ready.options.length_over_radius
                 radius_maps.append(largest_radius(ready, shape, ratio=ratio, progress=tell))
-    if "mend" in asked:
-        for cutter in ready.cutters:
-            reach = reaches[cutter]
-            if reach.lost.any() or ready.conditions.around.doubtful:
-                with stage("mend") as tell:
-                    mends[cutter.id] = mend(ready, cutter, reach, progress=tell)
-    return Answers(stick_outs, tuple(radius_maps), mends)
+    near: list[Cutter] = []
+    failing: list[Cutter] = []
+    if "mend" in asked or "mend-all" in asked:
+        failing = nearest(ready, reaches, elsewhere)
+        near = failing if "mend-all" in asked else failing[:NEAREST]
+        for cutter in near:
+            with stage("mend") as tell:
+                mends[cutter.id] = _mended(ready, cutter, reaches, elsewhere, tell)
+    rest = tuple(cutter.id for cutter in failing if cutter not in near)
+    return Answers(stick_outs, tuple(radius_maps), mends, rest, least_set(ready, reaches, elsewhere))
+
+
+def _mended(
+    ready: Prepared, cutter: Cutter, reaches: Mapping[Cutter, Reach], elsewhere: Elsewhere, tell: Progress
+) -> Mend:  # fmt: skip
+    alone = mend(ready, cutter, reaches[cutter], progress=tell)
+    return steps(ready, alone, cutter, reaches, elsewhere, progress=tell)
+
+
+def nearest(ready: Prepared, reaches: Mapping[Cutter, Reach], elsewhere: Elsewhere) -> list[Cutter]:
+    """Cutters that do not finish the part in all setups together, the one that leaves least first, then by rank."""
+    finished, missing = Finished.of(ready), ready.conditions.around.doubtful
+    left = {}
+    for cutter in ready.cutters:
+        each = [reaches[cutter], *(found[cutter.id] for _, found in elsewhere)]
+        lost = np.logical_and.reduce([reach.lost for reach in each]) & finished.wanted
+        if lost.any() or missing:
+            left[cutter] = finished.of_rows(np.flatnonzero(lost))
+    return sorted(left, key=lambda cutter: round(left[cutter], 9))

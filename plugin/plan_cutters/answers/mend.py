@@ -3,14 +3,13 @@
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
-
+from plan_cutters.answers.areas import Finished
+from plan_cutters.answers.option import option
 from plan_cutters.answers.other_cutter import corner_radius, radius, stick_out
 from plan_cutters.answers.other_place import faces, setup, tolerance
 from plan_cutters.answers.other_range import tilt_limit, tilt_range
-from plan_cutters.answers.outcome import none
 from plan_cutters.answers.trial import Case, Trials, samples
-from plan_cutters.domain.change import THINGS, Change, Mend, Thing, Value
+from plan_cutters.domain.change import THINGS, Change, Mend, Thing
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Reach
 from plan_cutters.scene.prepared import Prepared
@@ -42,7 +41,7 @@ def mend(
     Returns
     -------
     Mend
-        Without changes where no sample is lost.
+        Without changes where no sample of the finished surface is lost.
 
     Examples
     --------
@@ -56,32 +55,30 @@ def mend(
     [('radius', 0.9739), ('tilt_limit', 26.8)]
     """
     tell = progress or (lambda done, total: None)
-    trials = Trials.of(reach)
+    trials = Trials.of(reach, ready.finished)
     around = ready.conditions.around
-    within = int((ready.buried[trials.lost] >= 0).sum())
+    within = int((ready.inside_bodies & reach.lost).sum())
     if not len(trials.lost):
-        why = "no sample is lost, but faces are missing from what is in the way: no change of the cutter mends that" \
-              if around.doubtful else ""  # fmt: skip
-        return Mend(cutter.id, 0, 0, (), why)
+        inside = f"{samples(within)} within another body, which is no surface of the finished part" if within else ""
+        missing = (
+            f"no {'other ' * bool(within)}sample is lost, but faces are missing from what is in the way: no change of the cutter "
+            "mends that"
+        )
+        why = "; ".join(filter(None, (inside, missing if around.doubtful else inside and "nothing else is lost")))
+        return Mend(cutter.id, within, within, (), why)
     case = Case(ready, cutter)
+    share = Finished.of(ready).of_rows(trials.lost)
     found: dict[Thing, Change] = {}
     for done, thing in enumerate(_WORK):
         tell(done, len(_WORK))
-        if within and thing != "faces":
-            found[thing] = none(thing, present(case, thing), len(trials.lost), f"{samples(within)} within a body")
-        else:
-            found[thing] = _change(thing, case, trials, reach, found)
+        found[thing] = _told(case, _change(thing, case, trials, reach, found), share)
     tell(len(_WORK), len(_WORK))
     if around.doubtful:
         found = {thing: _doubted(change) for thing, change in found.items()}
     rank = {True: 0, None: 1, False: 2}
     changes = sorted(found.values(), key=lambda change: (rank[change.helps], THINGS.index(change.thing)))
-    why = ""
-    if within:
-        why = f"{samples(within)} within a body, out of reach of every cutter: nothing but leaving out faces can help"
-    elif not any(change.helps for change in changes):
-        why = "no change of one thing is known to help"
-    return Mend(cutter.id, len(trials.lost), within, tuple(changes), why)
+    why = "" if any(change.helps for change in changes) else "no change of one thing is known to help"
+    return Mend(cutter.id, len(trials.lost) + within, within, tuple(changes), why)
 
 
 def _change(thing: Thing, case: Case, trials: Trials, reach: Reach, found: dict[Thing, Change]) -> Change:
@@ -96,17 +93,22 @@ def _change(thing: Thing, case: Case, trials: Trials, reach: Reach, found: dict[
     return each[thing](case, trials)
 
 
-def present(case: Case, thing: Thing) -> Value:
-    """The value of a thing now."""
-    conditions, scene, cutter = case.ready.conditions, case.ready.scene, case.cutter
-    limit = conditions.machine.tilt_limit
-    low, high = (round(float(np.degrees(tilt)), 6) for tilt in conditions.postures.tilt)
-    values: dict[Thing, Value] = {
-        "tolerance": scene.asked, "tilt_range": (low, high), "stick_out": cutter.length, "setup": scene.setup,
-        "corner_radius": cutter.corner_radius, "radius": cutter.radius,
-        "tilt_limit": None if limit is None else round(float(np.degrees(limit)), 6),
-    }  # fmt: skip
-    return values.get(thing)
+def _told(case: Case, change: Change, share: float) -> Change:
+    """With the share of the finished area that is lost now and with it, and how it is said on the command line."""
+    if not change.helps:
+        return replace(change, before=share)
+    words = dict(change.options)
+    faces = str(words.get("faces", ""))
+    conditions = case.ready.conditions
+    conditions = replace(conditions, machine=words.get("machine", conditions.machine))
+    if "tilt" in words:
+        conditions = replace(conditions, postures=replace(conditions.postures, tilt=words["tilt"]))
+    said = option(
+        case.ready, case.cutter, cutters=words.get("cutters", (case.cutter,)), conditions=conditions,
+        setups=(words["setup"],) if "setup" in words else None, flip=words.get("flip"), tolerance=words.get("tolerance"),
+        faces=[int(each[1:]) for each in faces.split(",")] if faces else None,
+    )  # fmt: skip
+    return replace(change, before=share, after=0.0, option=said)
 
 
 def _doubted(change: Change) -> Change:

@@ -13,6 +13,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Stage
 from plan_cutters.domain.shapes import SAME, flute_length
 from plan_cutters.errors import CutterError
+from plan_cutters.scene.prepared import Prepared
 
 #: Steps of the stick-out, mm.
 GRAIN = 0.01
@@ -31,11 +32,7 @@ def stick_out(case: Case, trials: Trials) -> Change:
     now = cutter.length
     if cutter.holder is None:
         return none("stick_out", now, lost, "no holder is stated, and a longer cutter only adds to what is in the way")
-    # So far out the nose is above all obstacles wherever the cutter touches them.
-    vertex = case.ready.conditions.obstacles.triangles.vertex
-    size = float(np.linalg.norm(vertex.max(axis=(0, 1)) - vertex.min(axis=(0, 1))))
-    highest = size + 2.0 * cutter.radius + flute_length(cutter) + (cutter.clearance or 0.0)
-    most = math.ceil((highest - now) / GRAIN)
+    most = math.ceil((highest(case.ready, cutter) - now) / GRAIN)
     if most < 1:
         return none("stick_out", now, lost, f"its {now:g} mm already hold the holder above all obstacles")
 
@@ -43,7 +40,7 @@ def stick_out(case: Case, trials: Trials) -> Change:
         return round(now + at * GRAIN, 6)
 
     def steps(at: int) -> Case | None:
-        made = _longer(cutter, length(at))
+        made = longer(cutter, length(at))
         return None if made is None else replace(case, cutter=made)
 
     end = steps(most)
@@ -58,6 +55,13 @@ def stick_out(case: Case, trials: Trials) -> Change:
     asked, made = length(found.steps), found.case.cutter
     return Change("stick_out", now, asked, True, 0, lost, trials.count, _beyond(found.beyond, length), made,
                   f"a stick-out of {asked:g} mm instead of {now:g} mm", {"cutters": (made,)})  # fmt: skip
+
+
+def highest(ready: Prepared, cutter: Cutter) -> float:
+    """A stick-out with which the nose is above all obstacles wherever the cutter touches them, mm."""
+    vertex = ready.conditions.obstacles.triangles.vertex
+    size = float(np.linalg.norm(vertex.max(axis=(0, 1)) - vertex.min(axis=(0, 1))))
+    return size + 2.0 * cutter.radius + flute_length(cutter) + (cutter.clearance or 0.0)
 
 
 def radius(case: Case, trials: Trials) -> Change:
@@ -105,7 +109,7 @@ def corner_radius(case: Case, trials: Trials) -> Change:
         return values[at - 1] if at else now
 
     def steps(at: int) -> Case | None:
-        made = _made(cutter, corner_radius=value(at))
+        made = made_of(cutter, corner_radius=value(at))
         return None if made is None else replace(case, cutter=made)
 
     found = first(steps, len(values), trials)
@@ -143,16 +147,16 @@ def thinner(cutter: Cutter, radius: float) -> Cutter | None:
         # The ball at its tip is tangent to its flank, which stays as round as it is.
         inner, outer = cutter.arc_radius - radius, cutter.arc_radius - cutter.corner_radius
         changes["arc_height"] = cutter.corner_radius + math.sqrt(max(0.0, outer**2 - inner**2))
-    return _made(cutter, **changes)
+    return made_of(cutter, **changes)
 
 
-def _longer(cutter: Cutter, length: float) -> Cutter | None:
+def longer(cutter: Cutter, length: float) -> Cutter | None:
     """The same with its nose so far from the tip; what it has right below it goes on, and it cuts no higher up than it does."""
     ends = {} if cutter.shape in ("lollipop", "form") else {"flutes": flute_length(cutter)}
-    return _made(cutter, length=length, **ends)
+    return made_of(cutter, length=length, **ends)
 
 
-def _made(cutter: Cutter, **changes: object) -> Cutter | None:
+def made_of(cutter: Cutter, **changes: object) -> Cutter | None:
     try:
         return replace(cutter, **changes)  # type: ignore[arg-type]
     except CutterError:

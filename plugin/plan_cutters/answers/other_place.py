@@ -70,7 +70,7 @@ def setup(case: Case, trials: Trials, unlimited: Change) -> Change:
         return none("setup", now, left.count, f"none of {len(tried)} directions tried serves, {why}", left.looked)
     options: dict[str, object] = {"setup": found.axis}
     more = ""
-    if (flip := _flip(ready, found.axis)) != ready.options.flip:
+    if (flip := flip_of(ready, found.axis)) != ready.options.flip:
         options["flip"] = flip
         more = ", with --flip" if flip else ", without --flip"
     words = ",".join(f"{each:.4g}" for each in found.axis)
@@ -81,7 +81,7 @@ def setup(case: Case, trials: Trials, unlimited: Change) -> Change:
 def _nearest(case: Case, trials: Trials, end: Axis, found: _Found | None) -> _Found | None:
     """The first axis that serves on the way to another, in steps of `TURN`; None if it is no nearer than what is found."""
     now: Axis = case.ready.scene.setup
-    whole = _angle(now, end)
+    whole = angle(now, end)
     far = whole if found is None else min(whole, found.angle - TURN)
 
     def axis(at: int) -> Axis:
@@ -103,9 +103,9 @@ def directions(ready: Prepared, trials: Trials) -> list[Axis]:
     for vector in [*means, *cube]:
         if np.linalg.norm(vector) > 1e-6:
             axis = _axis(vector)
-            if all(_angle(axis, other) > _ALIKE for other in [now, *found]):
+            if all(angle(axis, other) > _ALIKE for other in [now, *found]):
                 found.append(axis)
-    return sorted(found, key=lambda axis: (round(_angle(now, axis), 6), axis))
+    return sorted(found, key=lambda axis: (round(angle(now, axis), 6), axis))
 
 
 def _axis(vector: Floats) -> Axis:
@@ -114,14 +114,14 @@ def _axis(vector: Floats) -> Axis:
     return x, y, z
 
 
-def _angle(a: Axis, b: Axis) -> float:
+def angle(a: Axis, b: Axis) -> float:
     """Between two directions, deg."""
     return math.degrees(math.atan2(float(np.linalg.norm(np.cross(a, b))), float(np.dot(a, b))))
 
 
 def _towards(now: Axis, end: Axis, degrees: float) -> Axis:
     """The direction so far from the present one on the way to another; no farther than that."""
-    if not 0.0 < degrees < _angle(now, end):
+    if not 0.0 < degrees < angle(now, end):
         return end if degrees > 0.0 else now
     start, other = np.array(now), np.array(end)
     across = other - (other @ start) * start
@@ -135,13 +135,13 @@ def _towards(now: Axis, end: Axis, degrees: float) -> Axis:
 def _turned(case: Case, axis: Axis) -> Case | None:
     """The same under another setup axis; None if a plan would then work on other sides of open faces, flipped or not."""
     ready = case.ready
-    if _flip(ready, axis) is None:
+    if flip_of(ready, axis) is None:
         return None
     conditions = replace(ready.conditions, setup=unit(axis, "setup axis"), x=None)
     return replace(case, ready=replace(ready, conditions=conditions))
 
 
-def _flip(ready: Prepared, axis: Axis) -> bool | None:
+def flip_of(ready: Prepared, axis: Axis) -> bool | None:
     """What to say of `flip` under a setup axis, so that faces keep the sides that they have; None if neither keeps them."""
     scene, flip = ready.scene, ready.options.flip
     if scene.orientation.confident:
@@ -165,11 +165,11 @@ def tolerance(case: Case, trials: Trials, reach: Reach) -> Change:
         finer = float(f"{now * share:.6g}")
         if finer < LEAST_TOLERANCE:
             break
-        closer = _closer(case, finer)
-        if not trials.stopped(closer, everywhere=True) and not len(closer.judged()):
+        finely = closer(case, finer)
+        if not trials.stopped(finely, everywhere=True) and not len(finely.judged()):
             return Change("tolerance", now, finer, True, 0, len(trials.lost), trials.count, before, None,
                           f"a tolerance of {finer:g} mm instead of {now:g} mm", {"tolerance": finer})  # fmt: skip
-        still = Left.by(closer, trials.lost)
+        still = Left.by(finely, trials.lost)
         if still.blocked:
             why = f"with {finer:g} mm {samples(still.blocked)} blocked for certain"
             return none("tolerance", now, still.count, why, still.looked)
@@ -182,7 +182,7 @@ def tolerance(case: Case, trials: Trials, reach: Reach) -> Change:
                   f"is not decided: with {before:g} mm, the finest tried, {samples(left)} undecided")  # fmt: skip
 
 
-def _closer(case: Case, asked: float) -> Case:
+def closer(case: Case, asked: float) -> Case:
     """The same, surrounded anew for a finer tolerance."""
     ready = case.ready
     scene = replace(ready.scene, asked=asked)

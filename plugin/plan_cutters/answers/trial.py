@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import (
     ACCESSIBLE,
+    BURIED,
     CONVEX,
     INACCESSIBLE,
     REASONS,
     TOLERANCE,
     UNDECIDED,
-    UNJUDGED,
     Reach,
     blank,
 )
@@ -55,8 +55,8 @@ class Case:
     cutter: Cutter
 
     def look(self, rows: Rows) -> Reach:
-        """What the cutter reaches of some judged samples that lie in no body: verdicts as `judge` finds them, but for the grain
-        of a search that starts elsewhere."""
+        """What the cutter reaches of some judged samples: verdicts as `judge` finds them, but for the grain of a search
+        that starts elsewhere."""
         from plan_cutters.kernels.search import dummy_clear
 
         ready, conditions, found = self.ready, self.ready.conditions, blank(len(rows))
@@ -72,7 +72,10 @@ class Case:
                 np.flatnonzero(upright), contacts, light.dummy, tool_of(light), conditions.obstacles.solids, free
             )
         found.verdict[free] = ACCESSIBLE
-        search_postures(contacts, np.flatnonzero(~free), light, heavy, conditions, found)
+        # Of the finished surface these lie within a fixture.
+        within = ready.buried[rows] >= 0
+        search_postures(contacts, np.flatnonzero(~free & ~within), light, heavy, conditions, found)
+        found.verdict[within], found.reason[within] = INACCESSIBLE, BURIED
         return found
 
     def misses(self, rows: Rows) -> Rows:
@@ -80,10 +83,9 @@ class Case:
         return rows[~self.look(rows).reached]
 
     def judged(self, rows: Rows | None = None) -> Rows:
-        """Samples that it does not reach, as a plan finds them: of all, or of some, ascending."""
-        reach = judge(self.ready, self.cutter, rows)
-        bad = np.flatnonzero(~reach.reached & (reach.verdict != UNJUDGED))
-        return bad if rows is None else rows[bad]
+        """Samples of the finished surface that it does not reach, as a plan finds them: of all, or of some, ascending."""
+        wanted = np.flatnonzero(self.ready.finished) if rows is None else rows[self.ready.finished[rows]]
+        return wanted[~judge(self.ready, self.cutter, wanted).reached]
 
 
 #: A value's case, by its number of steps from the present one; None where there can be no such cutter or setup.
@@ -97,7 +99,7 @@ class Trials:
     Attributes
     ----------
     lost, kept : (n,) int64
-        Judged samples that the cutter does not reach now, and those that it reaches, ascending.
+        Samples of the finished surface that the cutter does not reach now, and those that it reaches, ascending.
     hard : list of int
         Samples that stopped a value, the last one first.
     """
@@ -107,10 +109,9 @@ class Trials:
     hard: list[int] = field(default_factory=list)
 
     @classmethod
-    def of(cls, reach: Reach) -> "Trials":
-        """The samples of a reach."""
-        bad = np.isin(reach.verdict, (INACCESSIBLE, UNDECIDED))
-        return cls(np.flatnonzero(bad), np.flatnonzero(reach.reached))
+    def of(cls, reach: Reach, finished: NDArray[np.bool_]) -> "Trials":
+        """The samples of a reach that are of the finished surface (n,)."""
+        return cls(np.flatnonzero(reach.lost & finished), np.flatnonzero(reach.reached & finished))
 
     @property
     def count(self) -> int:

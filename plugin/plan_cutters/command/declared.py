@@ -209,8 +209,9 @@ _OPTIONS = (
         default="",
         type=Words("LIST", values.answers, listed=True),
         help="More questions to answer: stick-out (how short each cutter can be held), stick-out-map (that for every sample, "
-        "too), radius (the largest flat and ball end that reaches each sample), mend (what would make each cutter that fails "
-        "feasible), or all (without the map).",
+        "too), radius (the largest flat and ball end that reaches each sample), mend (what to do next where no cutter finishes, "
+        "and what it gains, for the three that come nearest), mend-all (that for every cutter), or all (without the map and "
+        "mend-all).",
     ),
     _answers(
         "--length-over-radius",

@@ -30,7 +30,7 @@ _WORDS = {
     "stick-out": "asking for the least stick-out",
     "stick-out-map": "asking for the least stick-out",
     "radius": "asking for the largest radius",
-    "mend": "asking what would help",
+    "mend": "asking what to do next",
     "area": "looking between the samples",
     "maps": "mapping all postures",
     "files": "writing the plan and the samples",

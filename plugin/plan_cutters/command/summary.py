@@ -12,6 +12,7 @@ from plan_cutters.command.rows import cell, cutter_rows, shown, take, worst_face
 from plan_cutters.command.terminal import say
 from plan_cutters.document.judged import not_judged, not_seen
 from plan_cutters.document.names import named, short_names
+from plan_cutters.document.next_steps import together
 from plan_cutters.document.told import inside, percent, reasons
 from plan_cutters.document.told import lost as lost_percent
 
@@ -35,6 +36,7 @@ def summary(plan: "Plan", *, verbose: bool = False) -> None:
         *_first_of_all(plan),
         *headline(plan, names),
         *map(cell, (*not_judged(plan), *not_seen(plan, names))),
+        *_together(plan),
         *between(plan),
         cell(f"{faces}, with {plan.samples.count} samples, at most {plan.samples.max_gap_mm:.3g} mm apart. {_machine(plan)}"),
         "",
@@ -42,7 +44,7 @@ def summary(plan: "Plan", *, verbose: bool = False) -> None:
         *_unjudged_share(plan),
         *_apart(worst_faces(plan, names[shown(plan).id])),
         *_apart([cell(named(plan, line)) for line in (*setups(plan, verbose=verbose), *_travel(plan, verbose=verbose))]),
-        *_apart([cell(named(plan, line)) for line in answered(plan)]),
+        *_apart([cell(line) for line in answered(plan)]),
         *_apart([*_unsure(plan, verbose=verbose), *(_details(plan) if verbose else ())]),
     )  # fmt: skip
 
@@ -51,6 +53,13 @@ def _first_of_all(plan: "Plan") -> list[Any]:
     """What is no surface of the finished part: before anybody relies on the rest."""
     lines = [cell(named(plan, line)) for line in inside(plan)]
     return [_marked("Inside other bodies:", lines[0].plain), *lines[1:], ""] if lines else []
+
+
+def _together(plan: "Plan") -> list[Text]:
+    """Where no cutter finishes: which of those given do most together, which costs nothing to know."""
+    if plan.selected or plan.selected_over_setups or not (said := together(plan)):
+        return []
+    return [cell(f"{named(plan, said)}.")]
 
 
 def written(plan: "Plan", out: Path | None, formats: Sequence[str]) -> list[Any]:

@@ -7,7 +7,9 @@ from pydantic import Field
 
 from cad_io.arrays import SurfaceSamples
 from plan_cutters.document.frozen import Frozen, Posture, Vector, posture, vector
-from plan_cutters.domain.change import Change, Mend, Value
+from plan_cutters.domain.area import Patch
+from plan_cutters.domain.change import MEANS, Change, Mend, Step, Value
+from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.radius_map import RadiusMap
 from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.domain.verdicts import INACCESSIBLE, NO_REASON, REASONS, UNDECIDED
@@ -77,15 +79,93 @@ class ChangeEntry(Frozen):
     verified: int = Field(description="target samples that were judged with `asked`")
     cutter: str | None = Field(description="id of the cutter with it, where that is another one")
     why: str
+    lost_before: float | None = Field(default=None, description="share of the finished area that is lost now, 0 to 1")
+    lost_after: float | None = Field(default=None, description="and with `asked`; null where nothing is asked or known")
+    option: str | None = Field(
+        default=None, description="what to say on the command line; null where nothing is asked, or no option says it"
+    )
+
+
+class MoveEntry(Frozen):
+    """One change of a step."""
+
+    thing: str = Field(description=", ".join(MEANS))
+    now: float | tuple[float, ...] | str | None = Field(description="mm, deg, a direction, or the id of a cutter")
+    asked: float | tuple[float, ...] | str | None
+    why: str = Field(description="the change in words")
+
+
+class LostAreaEntry(Frozen):
+    """Connected samples that are lost."""
+
+    area_mm2: float
+    share: float = Field(description="of the finished area, 0 to 1")
+    samples: int
+    faces: list[str] = Field(description="the one with the most of it first")
+    point: Vector = Field(description="the sample nearest to its middle")
+    across_mm: float = Field(description="largest extent, from sample to sample")
+    why: str = Field(description="all of it in words")
+
+
+class StepEntry(Frozen):
+    """What to do next, and what it gains: judged on every sample, not estimated."""
+
+    changes: list[MoveEntry] = Field(description="one, or two")
+    lost_before: float = Field(description="share of the finished area that is lost now, 0 to 1")
+    lost_after: float = Field(description="and that stays lost; of an area that is left to other means, 0")
+    gained: int = Field(description="samples that it frees")
+    left: int = Field(description="samples that stay lost")
+    cutters: list[str] = Field(description="ids of those that do it together, what becomes of the mended one first")
+    setups: list[Vector] = Field(description="setup axes in which they do")
+    option: str | None = Field(
+        description="what to say on the command line, --cutter beside what is said there, all else in place of its like; null "
+        "where no option says it"
+    )
+    why: str
+    remains: list[LostAreaEntry] = Field(description="the largest areas that stay lost")
 
 
 class MendEntry(Frozen):
-    """What would make a cutter finish the part: those changes that help first."""
+    """What would make a cutter finish the part, those changes that help first; and what to do next."""
 
     lost: int = Field(description="samples that are inaccessible or undecided now")
-    buried: int = Field(description="those of them that lie within a body")
+    buried: int = Field(description="those of them that lie within another body: nothing is asked about them")
     why: str
     changes: list[ChangeEntry]
+    lost_share: float = Field(default=0.0, description="of the finished area that is lost now in all setups, 0 to 1")
+    steps: list[StepEntry] = Field(
+        default=[],
+        description="by what stays lost, the least first; of those alike what asks least; an area to leave out last",
+    )
+    lost_areas: list[LostAreaEntry] = Field(default=[], description="the largest first")
+    more_lost_areas: int = Field(default=0, description="that are not listed")
+    unsure: bool = Field(default=False, description="obstacles are missing, which may take away what a step gains")
+
+
+class RunEntry(Frozen):
+    """A cutter in a setup, and what it takes: what no run before it reaches."""
+
+    cutter: str
+    setup: Vector
+    samples: int
+    area_mm2: float
+    share: float = Field(description="of the finished area, 0 to 1")
+    faces: list[str] = Field(description="on which it takes samples")
+    alone: int = Field(description="samples that no other run of the set reaches")
+
+
+class LeastSetEntry(Frozen):
+    """The fewest runs, a given cutter in a setup of the plan each, that reach all that any of them reaches."""
+
+    runs: list[RunEntry] = Field(
+        description="by setup, then by rank; of sets of as many that in the fewest setups was taken"
+    )
+    reached: int = Field(description="samples of the finished surface")
+    left: int = Field(description="samples that nothing given reaches for sure")
+    share: float = Field(description="of the finished area that they reach, 0 to 1")
+    left_share: float
+    proven: bool = Field(description="no fewer do")
+    doubtful: bool = Field(default=False, description="obstacles are missing, which might take away some of it")
 
 
 def stick_out_entry(found: StickOut, samples: SurfaceSamples, around: Surroundings) -> StickOutEntry:
@@ -134,7 +214,74 @@ def radius_entry(found: RadiusMap, samples: SurfaceSamples, *, doubtful: bool = 
 def mend_entry(found: Mend) -> MendEntry:
     """What would make a cutter feasible."""
     return MendEntry(
-        lost=found.lost, buried=found.buried, why=found.why, changes=[_change_entry(each) for each in found.changes]
+        lost=found.lost,
+        buried=found.buried,
+        why=found.why,
+        changes=[_change_entry(each) for each in found.changes],
+        lost_share=found.share,
+        steps=[_step_entry(each) for each in found.steps],
+        lost_areas=[_area_entry(each) for each in found.areas],
+        more_lost_areas=found.more_areas,
+        unsure=found.unsure,
+    )
+
+
+def least_set_entry(found: LeastSet, *, doubtful: bool = False) -> LeastSetEntry:
+    """The fewest runs."""
+    runs = [
+        RunEntry(
+            cutter=each.cutter.id,
+            setup=each.setup,
+            samples=each.samples,
+            area_mm2=each.area,
+            share=each.share,
+            faces=list(each.faces),
+            alone=each.alone,
+        )
+        for each in found.runs
+    ]
+    return LeastSetEntry(
+        runs=runs,
+        reached=found.reached,
+        left=found.left,
+        share=found.share,
+        left_share=found.left_share,
+        proven=found.proven,
+        doubtful=doubtful,
+    )
+
+
+def _area_entry(found: Patch) -> LostAreaEntry:
+    return LostAreaEntry(
+        area_mm2=found.area,
+        share=found.share,
+        samples=found.samples,
+        faces=list(found.faces),
+        point=found.place,
+        across_mm=found.across,
+        why=found.words,
+    )
+
+
+def _joined(words: list[str]) -> str:
+    rest = " for the rest"
+    if len(words) > 1 and all(each.endswith(rest) for each in words):
+        return " and ".join(each.removesuffix(rest) for each in words) + rest
+    return ", and ".join(words)
+
+
+def _step_entry(found: Step) -> StepEntry:
+    return StepEntry(
+        changes=[MoveEntry(thing=each.means, now=each.now, asked=each.asked, why=each.words) for each in found.moves],
+        lost_before=found.before,
+        lost_after=found.after,
+        gained=found.gained,
+        left=found.left,
+        cutters=[each.id for each in found.cutters],
+        setups=[vector(each) for each in found.setups],
+        option=found.option,
+        why=_joined([each.words for each in found.moves]),
+        remains=[_area_entry(each) for each in found.remains],
     )
 
 
@@ -150,6 +297,9 @@ def _change_entry(found: Change) -> ChangeEntry:
         verified=found.verified,
         cutter=None if found.cutter is None else found.cutter.id,
         why=found.why,
+        lost_before=found.before,
+        lost_after=found.after,
+        option=found.option,
     )
 
 

@@ -7,7 +7,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from plan_cutters.document.answers import MendEntry, RadiusEntry, StickOutEntry
+from plan_cutters.document.answers import LeastSetEntry, MendEntry, RadiusEntry, StickOutEntry
 from plan_cutters.document.frozen import Frozen, Posture, Vector
 from plan_cutters.document.inside import InsideEntry
 from plan_cutters.document.part_info import PartInfo
@@ -377,6 +377,15 @@ class Plan(Frozen):
     largest_radius: list[RadiusEntry] = Field(
         default=[],
         description="of bare flat and ball ends, whatever cutters there are; empty where it was not asked for",
+    )
+    least_set: LeastSetEntry | None = Field(
+        default=None,
+        description="which of the given cutters and setups reach together all that any of them reaches; null where there "
+        "is one of each",
+    )
+    not_mended: list[str] = Field(
+        default=[],
+        description="ids of cutters that fail and were left out of `mend`, as others come nearer: mend-all has them",
     )
     notes: list[str] = Field(description="what these verdicts do not say")
     legend: dict[str, str] = Field(description="colour of each verdict in the STEP and GLB files, sRGB")

@@ -109,4 +109,5 @@ def named(plan: "Plan", text: str) -> str:
     names = short_names(plan)
     # The longest first: an id may begin as another one does.
     ids = "|".join(re.escape(name) for name in sorted(names, key=len, reverse=True))
-    return re.sub(ids, lambda found: names[found[0]], text)
+    # Nor is it the beginning of another cutter's, which is not of this plan.
+    return re.sub(rf"(?<!\w)(?:{ids})(?!\w|[.:]\d|\+R)", lambda found: names[found[0]], text)

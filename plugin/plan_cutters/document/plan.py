@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Ints
-from plan_cutters.document.answers import mend_entry, radius_entry, stick_out_entry
+from plan_cutters.document.answers import least_set_entry, mend_entry, radius_entry, stick_out_entry
 from plan_cutters.document.build import (
     area_notes,
     degrees,
@@ -119,6 +119,8 @@ def plan_of(
         selected_over_setups=None if around.doubtful else next((e.id for e in entries if e.lost_in_all == 0), None),
         selected_for_setup=None if selected else for_setup(entries),
         setups=list(setups),
+        least_set=None if answers.least_set is None else least_set_entry(answers.least_set, doubtful=around.doubtful),
+        not_mended=list(answers.not_mended),
         largest_radius=[radius_entry(found, samples, doubtful=around.doubtful) for found in answers.radius_maps],
         notes=[
             *notes(scene, options, samples, ready.cutters),

@@ -6,18 +6,21 @@ from typing import Any
 
 from plan_cutters.domain.change import Mend
 from plan_cutters.domain.checks import items, shown
+from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.radius_map import RadiusMap
 from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.errors import OptionError
 
 #: What may be asked for: how short each cutter can be held; the same for every sample; how large a cutter can be where, whatever
-#: cutters there are; what would make each cutter that fails finish the part.
-ANSWERS = ("stick-out", "stick-out-map", "radius", "mend")
+#: cutters there are; what to do next where no cutter finishes, for the cutters that come nearest or for all.
+ANSWERS = ("stick-out", "stick-out-map", "radius", "mend", "mend-all")
+#: What `all` leaves out: it takes long.
+LONG = frozenset({"stick-out-map", "mend-all"})
 
 
 def answers_of(given: Any) -> tuple[str, ...]:
-    """Words of ANSWERS, each once and in that order; `all` for all but the map of stick-outs, which takes long; a text may hold
-    several, joined by commas.
+    """Words of ANSWERS, each once and in that order; `all` for all but those that take long (LONG); a text may hold several,
+    joined by commas.
 
     Raises
     ------
@@ -30,7 +33,7 @@ def answers_of(given: Any) -> tuple[str, ...]:
     ('stick-out', 'mend')
     >>> answers_of("radii")
     Traceback (most recent call last):
-    plan_cutters.errors.OptionError: answers: 'radii' is none of stick-out, stick-out-map, radius, mend and all
+    plan_cutters.errors.OptionError: answers: 'radii' is none of stick-out, stick-out-map, radius, mend, mend-all and all
     """
     if isinstance(given, str):
         words: list[Any] = given.split(",") if given.strip() else []
@@ -40,7 +43,7 @@ def answers_of(given: Any) -> tuple[str, ...]:
     for word in sorted(found - {*ANSWERS, "all"}, key=str):
         raise OptionError(f"answers: {shown(word)} is none of {', '.join(ANSWERS)} and all")
     if "all" in found:
-        found |= {*ANSWERS} - {"stick-out-map"}
+        found |= {*ANSWERS} - LONG
     return tuple(word for word in ANSWERS if word in found)
 
 
@@ -55,9 +58,15 @@ class Answers:
     radius_maps : tuple of RadiusMap
         For flat ends, and for ball ends.
     mends : mapping
-        Cutter id -> Mend, of those that do not finish the part.
+        Cutter id -> Mend, of those that do not finish the part, or of the nearest of them.
+    not_mended : tuple of str
+        Ids of the others of them, where that was asked.
+    least_set : LeastSet, optional
+        The fewest of the given cutters and setups that reach all that any of them reaches; None where there is but one of each.
     """
 
     stick_outs: Mapping[str, StickOut] = field(default_factory=dict)
     radius_maps: tuple[RadiusMap, ...] = ()
     mends: Mapping[str, Mend] = field(default_factory=dict)
+    not_mended: tuple[str, ...] = ()
+    least_set: LeastSet | None = None

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, Literal
 
+from plan_cutters.domain.area import Patch
 from plan_cutters.domain.cutter import Cutter
 
 #: What may be changed, from what asks a planner for least to what asks for most: time to compute, how far the tool is tilted, how
@@ -32,8 +33,8 @@ class Change:
         The change that asks least of those with which the cutter finishes; of faces, the ids of those to leave out. None
         where there is none.
     helps : bool, optional
-        True: every target sample was judged with it, and each has a posture. False: no value that was tried does that. None: it
-        could not be decided, as samples stay undecided or obstacles are missing.
+        True: every sample of the finished surface was judged with it, and each has a posture. False: no value that was
+        tried does that. None: it could not be decided, as samples stay undecided or obstacles are missing.
     left, looked : int
         Samples still inaccessible or undecided with the best value that was tried, of those looked at: of the samples that are
         lost now all or, where these are thousands and there is no help, some of them, spread evenly.
@@ -47,6 +48,10 @@ class Change:
         One sentence for a planner.
     options : mapping
         The options of a plan, by name, that differ with it; none where nothing is asked.
+    before, after : float, optional
+        Share of the finished area that is lost now, and with `asked`; `after` is None where nothing is asked or known.
+    option : str, optional
+        What to say on the command line; None where nothing is asked, or where no option says it.
     """
 
     thing: Thing
@@ -60,6 +65,65 @@ class Change:
     cutter: Cutter | None
     why: str
     options: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    before: float | None = None
+    after: float | None = None
+    option: str | None = None
+
+
+#: What a step may change: any of THINGS, a slimmer holder, a second setup beside the present one, another cutter for the
+#: rest, or an area that is left to other means. What asks a planner for least comes first among steps that leave as much.
+Means = Literal[
+    "tolerance", "tilt_range", "stick_out", "cutter", "corner_radius", "radius", "holder", "setup", "second_setup",
+    "tilt_limit", "area"
+]  # fmt: skip
+MEANS: tuple[Means, ...] = (
+    "tolerance", "tilt_range", "stick_out", "cutter", "corner_radius", "radius", "holder", "setup", "second_setup",
+    "tilt_limit", "area"
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """One change of a step: of what, from which value to which (mm, deg, a direction, the id of a cutter), and in words."""
+
+    means: Means
+    now: float | tuple[float, ...] | str | None
+    asked: float | tuple[float, ...] | str | None
+    words: str
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """What to do next, and what it gains.
+
+    Attributes
+    ----------
+    moves : tuple of Move
+        One change, or two.
+    before, after : float
+        Share of the finished area, 0 to 1, that is lost now, and that stays lost: every sample was judged.
+    gained, left : int
+        Samples that it frees, and that stay lost.
+    cutters : tuple of Cutter
+        That do it together, the one that is mended, or what becomes of it, first.
+    setups : tuple of (float, float, float)
+        Setup axes in which they do.
+    option : str, optional
+        What to say on the command line: `--cutter` beside what is said there, all else in place of its like. None where no option
+        says it.
+    remains : tuple of Patch
+        The largest areas that stay lost.
+    """
+
+    moves: tuple[Move, ...]
+    before: float
+    after: float
+    gained: int
+    left: int
+    cutters: tuple[Cutter, ...]
+    setups: tuple[tuple[float, float, float], ...]
+    option: str | None
+    remains: tuple[Patch, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,11 +135,20 @@ class Mend:
     cutter : str
         Its id.
     lost, buried : int
-        Samples that are inaccessible or undecided now, and those of them that lie within a body.
+        Samples that are inaccessible or undecided now, and those of them that lie within another body of the part: these are no
+        surface of the finished part, and nothing is asked about them.
     changes : tuple of Change
         Those that help first, then those that could not be decided, then those that do not; within each in the order of THINGS.
     why : str
         What is to be said before all of them; empty where that is nothing.
+    share : float
+        Of the finished area that is lost now, in all setups of the plan.
+    steps : tuple of Step
+        What to do next: what leaves least first, an area to leave out last. Empty where they were not looked for.
+    areas : tuple of Patch
+        Connected areas that are lost now, the largest first, and how many more there are.
+    unsure : bool
+        Faces are missing from what is in the way, so that no gain is sure.
     """
 
     cutter: str
@@ -83,6 +156,11 @@ class Mend:
     buried: int
     changes: tuple[Change, ...]
     why: str
+    share: float = 0.0
+    steps: tuple[Step, ...] = ()
+    areas: tuple[Patch, ...] = ()
+    more_areas: int = 0
+    unsure: bool = False
 
     @property
     def least(self) -> Change | None:

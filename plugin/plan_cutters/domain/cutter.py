@@ -77,9 +77,10 @@ class Cutter(Dimensions):
 
     @classmethod
     def parse(cls, spec: str) -> "Cutter":
-        """Read `R6L80` or `D12L80`: radius or diameter, and length, in mm; `rc1` adds a corner radius.
+        """Read `R6L80` or `D12L80`: radius or diameter, and length, in mm; `rc1` adds a corner radius, `HR15L30` a holder.
 
-        `spec.dimensions` has the rest, inches too. A text that is not the id itself becomes the name.
+        `spec.dimensions` has the rest, inches too, and `Holder.parse` what may follow the H. A text that is not the id itself
+        becomes the name.
 
         Raises
         ------
@@ -97,7 +98,10 @@ class Cutter(Dimensions):
         >>> Cutter.parse("D0.5inL3in").id
         'R6.35L76.2'
         """
-        made = cls(**dimensions(spec))
+        at = spec.upper().find("H") if isinstance(spec, str) else -1
+        made = cls(**dimensions(spec if at < 0 else spec[:at]))
+        if at >= 0:
+            made = replace(made, holder=Holder.parse(spec[at + 1 :]))
         given = spec.strip()
         return made if made.id.lower() == given.lower() else replace(made, name=given)
 

@@ -8,6 +8,7 @@ from plan_cutters.document.answers import ChangeEntry, StickOutEntry
 from plan_cutters.document.judged import judged, not_judged, not_seen
 from plan_cutters.document.model import AreaEntry, CutterEntry, Plan, WitnessEntry
 from plan_cutters.document.names import kind, named
+from plan_cutters.document.next_steps import first_step, step_told, together
 from plan_cutters.document.told import figure, part_of, percent, reached
 
 
@@ -39,6 +40,8 @@ REASONS = {
                       "a longer stick-out or a slimmer holder"),
     "fixture": _Reason("the fixture", "Without the fixtures the sample would be reached.", "another place for the fixture"),
 }  # fmt: skip
+#: Stick-outs that differ by less are the same, mm.
+SAME = 0.02
 #: Verdicts, and what they say of a sample.
 VERDICTS = {
     "interference_free": ("interference-free", "The tool can stand along the surface normal, in every rotation."),
@@ -130,6 +133,11 @@ def called(obstacle: str | None) -> str:
     return (obstacle or "").replace("fixture:", "fixture ", 1)
 
 
+def share(part: float) -> str:
+    """A share that is neither nothing nor all, in percent."""
+    return percent(part, some=part > 0.0, whole=False)
+
+
 def spot(witness: WitnessEntry) -> str:
     """A witness in a sentence."""
     if witness.reason == "tolerance":
@@ -180,7 +188,13 @@ def headline(plan: Plan, names: Mapping[str, str], shown: CutterEntry) -> tuple[
     why = " ".join([why, *scope(plan), *not_seen(plan, names)])
     taken = plan.selected or plan.selected_over_setups or plan.selected_for_setup
     told = next((c for c in plan.cutters if c.id == taken), shown)
-    return title, " ".join([why, *_held(told), *_mended(plan, told)])
+    return title, " ".join([why, *_together(plan), *_held(told), *_mended(plan, told)])
+
+
+def _together(plan: Plan) -> list[str]:
+    """Where no cutter finishes: which of those given do most together, in a sentence."""
+    said = "" if plan.selected or plan.selected_over_setups else together(plan)
+    return [f"{named(plan, said)}."] if said else []
 
 
 def scope(plan: Plan) -> list[str]:
@@ -194,12 +208,18 @@ def _held(entry: CutterEntry) -> list[str]:
     if not any(stage.part == "holder" for stage in entry.stages):
         return ["It was judged without a holder."]
     least = entry.least_stick_out.least_mm if entry.least_stick_out else None
-    needed = f", of which it needs {up(least)}" if least is not None else ""
-    return [f"It stands {entry.length:g} mm out of {entry.holder or 'its holder'}{needed}."]
+    held = f"It stands {entry.length:g} mm out of {entry.holder or 'its holder'}"
+    if least is None:
+        return [f"{held}."]
+    if entry.length - least < SAME:
+        return [f"{held}, and cannot be held shorter."]
+    return [f"{held}. It can be held shorter: {up(least)} are enough for what it reaches."]
 
 
 def _mended(plan: Plan, entry: CutterEntry) -> list[str]:
     """What would help a cutter most, in a sentence."""
+    if (step := first_step(entry)) is not None:
+        return [f"Next: {named(plan, step_told(step))}."]
     helping = [each.why for each in entry.mend.changes if each.helps] if entry.mend else []
     return [f"It would finish with {named(plan, helping[0])}."] if helping else []
 
@@ -273,7 +293,7 @@ def limit(found: StickOutEntry) -> str:
     if found.limited_by == "floor" or found.face is None:
         return "Its flutes and neck are that long."
     met = found.obstacle_face or "the part"
-    return f"With less, the holder meets {met} when the tool stands at {place(found.point)} mm on {found.face}."
+    return f"Held shorter, the holder meets {met} when the tool stands at {place(found.point)} mm on {found.face}."
 
 
 #: What `mend` changes, as the subject of a sentence.

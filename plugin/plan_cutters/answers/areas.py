@@ -1,0 +1,101 @@
+"""How much of the finished surface samples stand for, and which connected areas of it some of them are."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from cad_io.arrays import Floats, Record, SurfaceSamples
+from plan_cutters.domain.area import Patch
+from plan_cutters.scene.prepared import Prepared
+
+Rows = NDArray[np.int64]
+
+#: Directions along which the extent of an area is measured: of an area that is wider between them it is 3 % short at most.
+_WAYS = 200
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Finished(Record):
+    """What samples stand for.
+
+    Attributes
+    ----------
+    area : (n,) float
+        mm2 of the finished surface; 0 of samples inside another body.
+    share : (n,) float
+        The same of all target area that is no inside of a body, faces without samples included, as a plan counts it.
+    wanted : (n,) bool
+        Samples of the finished surface that are judged.
+    """
+
+    area: Floats
+    share: Floats
+    wanted: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, ready: Prepared) -> "Finished":
+        """Of the samples of a part: those of a face share its area as they do by their own."""
+        samples, faces = ready.samples, ready.scene.part.faces
+        known = np.array([face.area if np.isfinite(face.area) else 0.0 for face in faces]).clip(min=0.0)
+        judged = sorted({*np.unique(samples.face).tolist(), *(number for number, _ in samples.empty)})
+        if not known[[number - 1 for number in judged]].sum() > 0.0:
+            known[:] = 1.0
+        own = np.where(np.isfinite(samples.area), samples.area, 0.0).clip(min=0.0)
+        whole = np.bincount(samples.face, own, len(faces) + 1)
+        own = np.where(whole[samples.face] > 0.0, own, 1.0)
+        whole = np.bincount(samples.face, own, len(faces) + 1)
+        area = known[samples.face - 1] * own / whole[samples.face]
+        area[ready.inside_bodies] = 0.0
+        total = area.sum() + sum(known[number - 1] for number, _ in samples.empty)
+        return cls(area, area / max(total, 1e-300), ready.finished)
+
+    def of_rows(self, rows: Rows) -> float:
+        """The share that some samples stand for."""
+        return min(1.0, float(self.share[rows].sum()))
+
+
+def patches(samples: SurfaceSamples, finished: Finished, rows: Rows) -> list[Patch]:
+    """Connected areas of some samples (m,), the largest first.
+
+    Neighbours within a face and across smooth joints are connected.
+    """
+    if not len(rows):
+        return []
+    at = np.full(len(samples), -1, np.int64)
+    at[rows] = np.arange(len(rows))
+    one, other = at[samples.neighbours[:, 0]], at[samples.neighbours[:, 1]]
+    both = (one >= 0) & (other >= 0)
+    graph = coo_array((np.ones(int(both.sum()), np.int8), (one[both], other[both])), shape=(len(rows), len(rows)))
+    group = connected_components(graph, directed=False)[1]
+    sequence = np.argsort(group, kind="stable")
+    each = np.split(rows[sequence], np.flatnonzero(np.diff(group[sequence])) + 1)
+    return sorted((_patch(samples, finished, mine) for mine in each), key=lambda found: (-found.area, found.place))
+
+
+def _patch(samples: SurfaceSamples, finished: Finished, rows: Rows) -> Patch:
+    point, area = samples.point[rows], finished.area[rows]
+    weight = area if area.sum() > 0.0 else np.ones(len(rows))
+    middle = weight @ point / weight.sum()
+    x, y, z = point[int(((point - middle) ** 2).sum(axis=1).argmin())].tolist()
+    numbers, inverse = np.unique(samples.face[rows], return_inverse=True)
+    by_face = np.argsort(-np.bincount(inverse, weight), kind="stable")
+    return Patch(
+        float(area.sum()), finished.of_rows(rows), len(rows), tuple(f"F{n}" for n in numbers[by_face].tolist()), (x, y, z),
+        _across(point),
+    )  # fmt: skip
+
+
+def _across(point: Floats) -> float:
+    """Largest extent of points (n, 3) along many directions, mm."""
+    # Evenly over half a sphere, by the golden angle.
+    k = np.arange(_WAYS)
+    z = (k + 0.5) / _WAYS
+    turn = np.pi * (1.0 + 5.0**0.5) * k
+    flat = np.sqrt(1.0 - z**2)
+    way = np.stack([flat * np.cos(turn), flat * np.sin(turn), z])
+    along = point @ way
+    ends = np.linalg.norm(point[along.argmax(axis=0)] - point[along.argmin(axis=0)], axis=1)
+    return float(ends.max(initial=0.0))

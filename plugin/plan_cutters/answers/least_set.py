@@ -1,0 +1,137 @@
+"""Which of the given cutters and setups reach together all that any of them reaches: the fewest, found from what is known."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plan_cutters.answers.areas import Finished
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.least_set import LeastSet, Run
+from plan_cutters.domain.verdicts import Reach
+from plan_cutters.scene.prepared import Prepared
+
+Axis = tuple[float, float, float]
+#: Seconds that the proof may take; then the best set found so far is told as such.
+_SECONDS = 10.0
+#: Rows that are compared with each other, at most.
+_COMPARED = 3000
+
+
+def least_set(
+    ready: Prepared, reaches: Mapping[Cutter, Reach], elsewhere: Sequence[tuple[Axis, Mapping[str, Reach]]] = ()
+) -> LeastSet | None:
+    """Find the fewest runs, a cutter in a setup each, that reach all that any of them reaches of the finished surface.
+
+    Parameters
+    ----------
+    ready : Prepared
+    reaches : mapping
+        What each cutter reaches in the plan's first setup.
+    elsewhere : sequence
+        Of each other setup its axis, and what each cutter reaches there by its id.
+
+    Returns
+    -------
+    LeastSet or None
+        None where one cutter was judged in one setup.
+    """
+    setups = [(ready.scene.setup, {cutter.id: reach for cutter, reach in reaches.items()}), *elsewhere]
+    cutters = [cutter for cutter in ready.cutters if cutter in reaches]
+    if len(cutters) * len(setups) < 2:
+        return None
+    finished = Finished.of(ready)
+    columns = [(s, c) for s in range(len(setups)) for c in range(len(cutters))]
+    reached = np.stack([setups[s][1][cutters[c].id].reached & finished.wanted for s, c in columns], axis=1)
+    chosen, proven = cover(reached, [s for s, _ in columns], [c for _, c in columns])
+    whole, done = reached[:, chosen], np.zeros(len(reached), bool)
+    runs = []
+    for k, column in enumerate(chosen):
+        s, c = columns[column]
+        mine = np.flatnonzero(reached[:, column] & ~done)
+        done[mine] = True
+        runs.append(Run(
+            cutters[c], setups[s][0], len(mine), float(finished.area[mine].sum()), finished.of_rows(mine),
+            tuple(f"F{n}" for n in np.unique(ready.samples.face[mine]).tolist()),
+            int((whole[:, k] & (whole.sum(axis=1) == 1)).sum()),
+        ))  # fmt: skip
+    left = np.flatnonzero(finished.wanted & ~done)
+    return LeastSet(
+        tuple(runs), int(done.sum()), len(left), finished.of_rows(np.flatnonzero(done)), finished.of_rows(left), proven
+    )
+
+
+def cover(reached: NDArray[np.bool_], setup: Sequence[int], rank: Sequence[int]) -> tuple[list[int], bool]:
+    """The fewest columns that cover every row that any column covers.
+
+    Parameters
+    ----------
+    reached : (n, m) bool
+        Which of n samples each of m runs reaches.
+    setup, rank : sequences of int
+        Of each run: its setup, and its cutter's rank, 0 for the most wanted. Of covers with as few runs
+        that in the fewest setups is taken, and of these the one with the least sum of ranks.
+
+    Returns
+    -------
+    chosen : list of int
+        Ascending.
+    proven : bool
+        Whether no fewer do.
+
+    Examples
+    --------
+    >>> cover(np.array([[1, 0, 1], [0, 1, 1], [1, 1, 0]], bool), [0, 0, 0], [0, 1, 2])
+    ([0, 1], True)
+    >>> cover(np.zeros((3, 2), bool), [0, 0], [0, 1])
+    ([], True)
+    """
+    rows = np.unique(reached[reached.any(axis=1)], axis=0)
+    if not len(rows):
+        return [], True
+    alone = np.flatnonzero(rows.all(axis=0))
+    if len(alone):
+        return [min(alone.tolist(), key=lambda k: (rank[k], setup[k]))], True
+    if len(rows) <= _COMPARED:
+        # A row that holds another one is covered with it.
+        both = rows.astype(np.float32) @ rows.T.astype(np.float32)
+        holds = both == rows.sum(axis=1)[None, :]
+        np.fill_diagonal(holds, False)
+        rows = rows[~holds.any(axis=1)]
+    return _cover([np.flatnonzero(row).tolist() for row in rows], setup, rank)
+
+
+def _cover(rows: list[list[int]], setup: Sequence[int], rank: Sequence[int]) -> tuple[list[int], bool]:
+    from scipy.optimize import Bounds, LinearConstraint, milp
+    from scipy.sparse import lil_array
+
+    m, places = len(setup), sorted(set(setup))
+    # Runs, then setups that are used; one of either kind less is worth more than all that comes after it.
+    least = 1.0 + sum(rank)
+    cost = np.concatenate([least * (1.0 + len(places)) + np.array(rank, float), np.full(len(places), least)])
+    held = lil_array((len(rows) + m, m + len(places)))
+    for i, row in enumerate(rows):
+        held[i, row] = 1.0
+    for k in range(m):
+        # A run needs its setup.
+        held[len(rows) + k, k], held[len(rows) + k, m + places.index(setup[k])] = -1.0, 1.0
+    low = np.concatenate([np.ones(len(rows)), np.zeros(m)])
+    found = milp(cost, integrality=np.ones(len(cost)), bounds=Bounds(0, 1), options={"time_limit": _SECONDS, "mip_rel_gap": 0.0},
+                 constraints=LinearConstraint(held.tocsr(), low, np.inf))  # fmt: skip
+    if found.x is None:
+        return _greedy(rows, rank), False
+    chosen = np.flatnonzero(found.x[:m] > 0.5).tolist()
+    if not all(set(row) & set(chosen) for row in rows):
+        return _greedy(rows, rank), False
+    return chosen, found.status == 0
+
+
+def _greedy(rows: list[list[int]], rank: Sequence[int]) -> list[int]:
+    """A cover, not the least: always the run that covers most of what is left."""
+    left, chosen = [set(row) for row in rows], set()
+    while left:
+        count = {k: sum(k in row for row in left) for k in set().union(*left)}
+        best = min(count, key=lambda k: (-count[k], rank[k], k))
+        chosen.add(best)
+        left = [row for row in left if best not in row]
+    return sorted(chosen)

@@ -1,0 +1,44 @@
+"""What a step may change, each with a value that gains nearly all that the thing can gain and asks for no more than that.
+
+Values are those of a shop: whole steps of length and angle, sides of the part, radii that are sold. They are compared on a few of
+the samples that are lost; `steps` judges what is told.
+"""
+
+from dataclasses import replace
+
+from plan_cutters.answers.means_place import axis, tilt_range, tolerance
+from plan_cutters.answers.means_tool import corner, given, holder, radius, stick_out
+from plan_cutters.answers.scan import Candidate, Scan, under
+from plan_cutters.domain.machine import Machine
+
+#: What changes the tool alone.
+_TOOLS = (stick_out, given, corner, radius, holder)
+#: Changes of the tool that are looked at together with another axis.
+_JOINED = 3
+
+
+def candidates(scan: Scan) -> list[Candidate]:
+    """Steps that gain something of a few samples, those that may leave least first."""
+    found: list[Candidate] = []
+    for each in (tolerance, tilt_range, *_TOOLS, axis):
+        found += each(scan)
+    return sorted(found, key=lambda candidate: candidate.estimate)
+
+
+def joined(scan: Scan) -> list[Candidate]:
+    """Steps of another tool and of axes that the machine does not hold now: neither may gain anything alone."""
+    state = scan.state
+    conditions = state.ready.conditions
+    if not conditions.machine.limited:
+        return []
+    free = under(state, replace(conditions, machine=Machine()))
+    missed = scan.known.glance(free, scan.few)
+    if not len(missed):
+        return []
+    found: list[Candidate] = []
+    tools = [each for tool in _TOOLS for each in tool(replace(scan, state=free, left=missed, few=missed))]
+    for first in sorted(tools, key=lambda each: each.estimate)[:_JOINED]:
+        held = under(first.state, conditions)
+        for second in axis(replace(scan, state=held), plain=True):
+            found.append(replace(second, moves=(*first.moves, *second.moves), nested=first.nested and second.nested))
+    return sorted(found, key=lambda candidate: candidate.estimate)

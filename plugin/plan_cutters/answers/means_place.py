@@ -1,0 +1,165 @@
+"""Steps that change how closely is judged, which tilts are searched, how the part is clamped, or what the machine tilts."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from cad_io.arrays import Floats
+from plan_cutters.answers.option import Axis
+from plan_cutters.answers.other_place import FINER, angle, closer, directions, flip_of
+from plan_cutters.answers.scan import Candidate, Rows, Scan, spread, under
+from plan_cutters.answers.state import State
+from plan_cutters.answers.trial import Case, Trials
+from plan_cutters.domain.change import Move
+from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.shapes import modes
+from plan_cutters.domain.verdicts import UNDECIDED
+from plan_cutters.options import LEAST_TOLERANCE
+
+#: A direction along the part's own axes is taken where another one gains no more than this share more.
+_OWN = 0.1
+#: Steps of a limit of the axis, deg.
+_TURN = 5.0
+#: The most that machines tilt, deg: what asks for more is for another setup.
+_MOST = 120.0
+#: Share of the samples lost that must be undecided for a finer tolerance to be worth its triangles.
+_UNSURE = 0.1
+_ORDER = {2: "second", 3: "third", 4: "fourth"}
+
+
+def tolerance(scan: Scan) -> Iterator[Candidate]:
+    """A finer tolerance, where samples are undecided."""
+    ready, cutter = scan.state.ready, scan.state.cutters[0]
+    few = scan.few[:: max(1, len(scan.few) // 32)]
+    if not len(few) or (Case(ready, cutter).look(few).verdict == UNDECIDED).mean() < _UNSURE:
+        return
+    now = ready.scene.asked
+    asked = float(f"{now * FINER[0]:.6g}")
+    if asked < LEAST_TOLERANCE:
+        return
+    state = replace(scan.state, ready=closer(Case(ready, cutter), asked).ready)
+    missed = scan.known.glance(state, scan.few)
+    if len(missed) < len(scan.few):
+        words = f"a tolerance of {asked:g} mm instead of {now:g} mm"
+        yield scan.found(Move("tolerance", now, asked, words), state, missed, nested=False)
+
+
+def tilt_range(scan: Scan) -> Iterator[Candidate]:
+    """All tilts at which the cutter touches."""
+    ready = scan.state.ready
+    low, high = (round(math.degrees(tilt), 6) for tilt in ready.conditions.postures.tilt)
+    touching = modes(scan.state.cutters[0])
+    lowest = min(low, float(math.floor(math.degrees(min(mode.low for mode in touching)) + 1e-6)))
+    highest_tilt = max(high, min(180.0, float(math.ceil(math.degrees(max(mode.high for mode in touching)) - 1e-6))))
+    if (lowest, highest_tilt) == (low, high):
+        return
+    asked = (lowest, highest_tilt)
+    postures = replace(ready.conditions.postures, tilt=(math.radians(lowest), math.radians(highest_tilt)))
+    state = under(scan.state, replace(ready.conditions, postures=postures))
+    missed = scan.known.glance(state, scan.few)
+    if len(missed) < len(scan.few):
+        words = f"tilts from {lowest:g} to {highest_tilt:g} deg in the search instead of {low:g} to {high:g} deg"
+        yield scan.found(Move("tilt_range", (low, high), asked, words), state, missed, nested=True)
+
+
+def axis(scan: Scan, *, plain: bool = False) -> Iterator[Candidate]:
+    """A machine that tilts further, a second setup, another setup: for what is reached without any limit.
+
+    `plain`: of setups those along the part's own axes alone.
+    """
+    state, known = scan.state, scan.known
+    conditions = state.ready.conditions
+    machine = conditions.machine
+    if not machine.limited:
+        return
+    free = under(state, replace(conditions, machine=Machine()))
+    gained = np.setdiff1d(scan.few, known.glance(free, scan.few), assume_unique=True)
+    if not len(gained):
+        return
+    now = None if machine.turns or machine.tilt_limit is None else round(math.degrees(machine.tilt_limit), 6)
+    first = math.floor((now or 0.0) / _TURN + 1e-9) + 1
+    most = math.floor(_MOST / _TURN) - first
+
+    def limit(at: int) -> State:
+        return under(state, replace(conditions, machine=Machine.parse(f"tilt:{(first + at) * _TURN:g}")))
+
+    for at, made, missed in scan.least(limit, most):
+        asked = (first + at) * _TURN
+        instead = f"every way instead of {machine.name}" if now is None else f"instead of {now:g} deg"
+        move = Move("tilt_limit", now, asked, f"a machine that tilts by {asked:g} deg {instead}")
+        yield scan.found(move, made, missed, nested=now is not None)
+    yield from _setups(scan, gained, plain=plain)
+
+
+def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
+    state, known, ready = scan.state, scan.known, scan.state.ready
+    blocked = np.setdiff1d(scan.few, gained, assume_unique=True)
+    kept = np.setdiff1d(np.flatnonzero(scan.finished.wanted), scan.left, assume_unique=True)
+    axes = [
+        axis for axis in directions(ready, Trials(scan.left, kept)) if all(angle(axis, own) > 1.0 for own in state.axes)
+    ]
+    now = state.axes[0]
+    if plain:
+        axes = [axis for axis in axes if _own(axis)]
+    facing = towards(ready.samples.normal[gained].mean(axis=0), now)
+    second = []
+    for axis in axes:
+        made = replace(state, setups=(*state.setups, (axis, None)))
+        missed = known.glance(made, gained)
+        second.append((len(missed), angle(facing, axis), axis, made, missed))
+    best = _plain(second, len(gained))
+    if best is not None:
+        _, _, axis, made, missed = best
+        move = Move(
+            "second_setup", now, axis, f"{_clamped(now, axis)} as a {_ORDER.get(len(made.setups), 'further')} setup"
+        )
+        yield scan.found(move, made, np.union1d(blocked, missed), nested=True)
+    if plain or len(state.setups) > 1:
+        return
+    some = spread(kept)
+    other = []
+    for lost, _, axis, _, missed in second:
+        if lost < len(gained) and flip_of(ready, axis) == ready.options.flip:
+            made = replace(state, setups=((axis, None),))
+            worse = known.glance(made, some)
+            share = scan.finished.of_rows(kept) * len(worse) / max(1, len(some))
+            other.append((scan.estimate(np.union1d(blocked, missed)) + share, angle(now, axis), axis, made))
+    if other:
+        estimate, _, axis, made = min(other, key=lambda each: (round(each[0], 3), each[1]))
+        if estimate < scan.finished.of_rows(scan.left):
+            move = Move("setup", now, axis, f"{_clamped(now, axis)} instead")
+            yield Candidate((move,), made, estimate, nested=False)
+
+
+def _plain(
+    second: list[tuple[int, float, Axis, State, Rows]], count: int
+) -> tuple[int, float, Axis, State, Rows] | None:  # fmt: skip
+    """Of setups that miss least that which faces the samples; one along the part's own axes, if that gains nearly as much."""
+    gaining = [each for each in second if each[0] < count]
+    if not gaining:
+        return None
+    best = min(gaining, key=lambda each: each[:2])
+    own = [each for each in gaining if _own(each[2])]
+    plain = min(own, key=lambda each: each[:2], default=best)
+    return plain if count - plain[0] >= (1.0 - _OWN) * (count - best[0]) else best
+
+
+def towards(vector: Floats, otherwise: Axis) -> Axis:
+    """A direction; another one where there is none."""
+    length = float(np.linalg.norm(vector))
+    if not length > 1e-6:
+        return otherwise
+    x, y, z = (vector / length).tolist()
+    return x, y, z
+
+
+def _own(axis: Axis) -> bool:
+    """Whether it is one of the part's own."""
+    return sorted(map(abs, axis)) == [0.0, 0.0, 1.0]
+
+
+def _clamped(now: Axis, axis: Axis) -> str:
+    words = ",".join(f"{each:.4g}" for each in axis)
+    return f"turned over (setup {words})" if angle(now, axis) > 179.0 else f"clamped with {words} along the spindle"

@@ -1,0 +1,68 @@
+"""How a change is said on the command line, exactly: what is said there gives what was judged."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.spec import written
+from plan_cutters.errors import PlanError
+from plan_cutters.options import Options
+from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.prepared import Prepared
+
+Axis = tuple[float, float, float]
+
+
+def option(
+    ready: Prepared, cutter: Cutter, *, cutters: Sequence[Cutter], setups: Sequence[Axis] | None = None,
+    conditions: Conditions | None = None, tolerance: float | None = None, flip: bool | None = None,
+    faces: Sequence[int] | None = None,
+) -> str | None:  # fmt: skip
+    """What to say so that a plan has these cutters, setups and so on: what differs from now; None where no option says it.
+
+    `--cutter` comes beside what is said now, all else in place of its like.
+    """
+    words: list[str] = []
+    options = ready.options
+    if tuple(cutters) != (cutter,):
+        for each in cutters:
+            text = spoken(each, options)
+            if text is None and each.id not in options.sources:
+                return None
+            words += [] if text is None else ["--cutter", text]
+    if setups is not None:
+        if options.placement is not None or any(options.other_placements):
+            return None
+        words += [word for axis in setups for word in ("--setup", ",".join(f"{each:.6g}" for each in axis))]
+    if conditions is not None:
+        words += _within(ready.conditions, conditions)
+    if tolerance is not None:
+        words += ["--tolerance", f"{tolerance:.6g}"]
+    if flip is not None and flip != options.flip:
+        if not flip:
+            return None
+        words.append("--flip")
+    if faces is not None:
+        words += ["--faces", ",".join(f"F{number}" for number in faces)]
+    return " ".join(words) or None
+
+
+def _within(now: Conditions, then: Conditions) -> list[str]:
+    words = []
+    if then.machine != now.machine:
+        words += ["--machine", then.machine.name]
+    if then.postures.tilt != now.postures.tilt:
+        words += ["--tilt", ":".join(f"{round(float(np.degrees(tilt)), 6):g}" for tilt in then.postures.tilt)]
+    return words
+
+
+def spoken(cutter: Cutter, options: Options) -> str | None:
+    """A cutter in a word that reads as itself in a plan with these options; None if no word does."""
+    try:
+        text = written(replace(cutter, allowance=None, clearance=None))
+        again = Cutter.parse(text).asked(options.allowance, options.holder_clearance, options.holder)
+    except PlanError:
+        return None
+    return text if again.id == cutter.id else None

@@ -1,0 +1,120 @@
+"""Some of the samples that are lost, on which values of a step are compared before any is judged."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plan_cutters.answers.areas import Finished
+from plan_cutters.answers.state import Judgements, State
+from plan_cutters.domain.change import Move
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.scene.conditions import Conditions
+
+Rows = NDArray[np.int64]
+
+#: Samples on which values are compared, at most.
+_FEW = 96
+#: Shares of what the most would gain, with which less is content.
+NEARLY, HALF = 0.95, 0.5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Candidate:
+    """A step that may be worth judging.
+
+    Attributes
+    ----------
+    moves : tuple of Move
+    state : State
+        After it.
+    estimate : float
+        Share of the finished area that it may leave.
+    nested : bool
+        Whether it surely reaches all that is reached now.
+    """
+
+    moves: tuple[Move, ...]
+    state: State
+    estimate: float
+    nested: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scan:
+    """What is lost now, and some of it.
+
+    state : State
+    left : (m,) int64
+        Samples that it leaves.
+    few : int64
+        Some of them.
+    finished : Finished
+    known : Judgements
+    given : tuple of Cutter
+        All that the plan judged.
+    """
+
+    state: State
+    left: Rows
+    few: Rows
+    finished: Finished
+    known: Judgements
+    given: tuple[Cutter, ...]
+
+    @classmethod
+    def of(
+        cls, state: State, left: Rows, finished: Finished, known: Judgements, given: tuple[Cutter, ...]
+    ) -> "Scan":  # fmt: skip
+        """With every so-manieth of the samples that are left."""
+        return cls(state, left, spread(left), finished, known, given)
+
+    def estimate(self, missed: Rows) -> float:
+        """The share of the area that is left, if of the few these are."""
+        whole = float(self.finished.area[self.few].sum())
+        part = float(self.finished.area[missed].sum()) / whole if whole > 0.0 else len(missed) / max(1, len(self.few))
+        return part * self.finished.of_rows(self.left)
+
+    def found(self, move: Move, state: State, missed: Rows, *, nested: bool) -> Candidate:
+        """A candidate by what it misses of the few."""
+        return Candidate((move,), state, self.estimate(missed), nested)
+
+    def least(
+        self, make: Callable[[int], State | None], most: int, shares: Sequence[float] = (NEARLY,)
+    ) -> Iterator[tuple[int, State, Rows]]:  # fmt: skip
+        """Of values 0 to `most`, each of which reaches what those before it reach, the least that gains shares of what the most
+        gains: its number, its state, and what it misses of the few."""
+        while most >= 0 and (end := make(most)) is None:
+            most -= 1
+        if most < 0 or end is None:
+            return
+        missed = self.known.glance(end, self.few)
+        gained = np.setdiff1d(self.few, missed, assume_unique=True)
+        if not len(gained):
+            return
+        told = set()
+        for share in shares:
+            low, high, still = -1, most, gained[:0]
+            while high - low > 1:
+                middle = (low + high) // 2
+                state = make(middle)
+                lost = gained if state is None else self.known.glance(state, gained)
+                if len(lost) <= (1.0 - share) * len(gained):
+                    high, still = middle, lost
+                else:
+                    low = middle
+            made = make(high)
+            if high not in told and made is not None:
+                told.add(high)
+                yield high, made, np.union1d(missed, still)
+
+
+def spread(rows: Rows, most: int = _FEW) -> Rows:
+    """Every so-manieth of some samples."""
+    return rows[:: 1 + (len(rows) - 1) // most] if len(rows) else rows
+
+
+def under(state: State, conditions: Conditions) -> State:
+    """A state under other conditions."""
+    return replace(state, ready=replace(state.ready, conditions=conditions))

@@ -1,0 +1,127 @@
+"""What a plan would be about after a step: which cutters, in which setups, under what; and which samples it would leave."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plan_cutters.answers.trial import Case
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.verdicts import Reach
+from plan_cutters.scene.prepared import Prepared
+
+Rows = NDArray[np.int64]
+Axis = tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class State:
+    """Cutters that share a part: what none of them reaches in any of its setups is lost.
+
+    Attributes
+    ----------
+    ready : Prepared
+    cutters : tuple of Cutter
+        The one that is mended, or what became of it, first.
+    setups : tuple of (axis, x)
+        As `Conditions` has them; x may be None.
+    """
+
+    ready: Prepared
+    cutters: tuple[Cutter, ...]
+    setups: tuple[tuple[Axis, Axis | None], ...]
+
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """The setup axes."""
+        return tuple(axis for axis, _ in self.setups)
+
+    def cases(self) -> Iterator[tuple[Any, Case]]:
+        """Each cutter in each setup, and a key by which it is known."""
+        conditions = self.ready.conditions
+        for axis, x in self.setups:
+            placed = replace(conditions, setup=np.array(axis), x=None if x is None else np.array(x))
+            there = replace(self.ready, conditions=placed)
+            for cutter in self.cutters:
+                yield key(there, cutter, axis, x), Case(there, cutter)
+
+
+def key(ready: Prepared, cutter: Cutter, axis: Axis, x: Axis | None) -> Any:
+    """What the verdicts on the samples of a part depend on."""
+    conditions = ready.conditions
+    return cutter, axis, x, conditions.machine, conditions.postures, conditions.tolerance
+
+
+@dataclass(slots=True)
+class Judgements:
+    """What was judged so far, so that nothing is judged twice.
+
+    Attributes
+    ----------
+    looked, missed : mapping
+        By key: samples (n,) that were judged, and those of them that are not reached.
+    tell : callable
+        Called whenever a case was judged.
+    """
+
+    looked: dict[Any, NDArray[np.bool_]] = field(default_factory=dict)
+    missed: dict[Any, NDArray[np.bool_]] = field(default_factory=dict)
+    tell: Callable[[], None] = lambda: None
+
+    @classmethod
+    def of(
+        cls,
+        ready: Prepared,
+        reaches: Mapping[Cutter, Reach],
+        elsewhere: Sequence[tuple[Axis, Mapping[str, Reach]]] = (),
+    ) -> "Judgements":
+        """Those of a plan."""
+        found, wanted = cls(), ready.finished
+        for (axis, x), each in zip(setups_of(ready), (None, *(reach for _, reach in elsewhere)), strict=False):
+            for cutter, reach in reaches.items():
+                mine = reach if each is None else each[cutter.id]
+                name = key(ready, cutter, axis, x)
+                found.looked[name], found.missed[name] = wanted.copy(), mine.lost & wanted
+        return found
+
+    def left(self, state: State, rows: Rows) -> Rows:
+        """Those of some samples of the finished surface that a state leaves, judged as a plan judges."""
+        for name, case in state.cases():
+            if not len(rows):
+                break
+            looked = self.looked.setdefault(name, np.zeros(len(state.ready.samples), bool))
+            missed = self.missed.setdefault(name, np.zeros(len(looked), bool))
+            new = rows[~looked[rows]]
+            if len(new):
+                missed[case.judged(new)] = True
+                looked[new] = True
+                self.tell()
+            rows = rows[missed[rows]]
+        return rows
+
+    def glance(self, state: State, rows: Rows) -> Rows:
+        """The same, found by a quick search of these alone where they were not judged."""
+        for name, case in state.cases():
+            if not len(rows):
+                break
+            looked = self.looked.get(name)
+            known = np.zeros(len(rows), bool) if looked is None else looked[rows]
+            lost = np.zeros(len(rows), bool)
+            lost[known] = self.missed[name][rows[known]] if known.any() else False
+            new = np.flatnonzero(~known)
+            lost[new] = np.isin(rows[new], case.misses(rows[new])) if len(new) else False
+            rows = rows[lost]
+        return rows
+
+
+def setups_of(ready: Prepared) -> tuple[tuple[Axis, Axis | None], ...]:
+    """The setups of a plan: axis, and the direction along the machine's X where it is known."""
+    options = ready.options
+    places = options.other_placements or (None,) * len(options.other_setups)
+    first = (ready.scene.setup, None if options.placement is None else options.placement.x)
+    return (
+        first,
+        *((axis, None if place is None else place.x) for axis, place in zip(options.other_setups, places, strict=True)),
+    )

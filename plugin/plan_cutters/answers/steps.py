@@ -1,0 +1,190 @@
+"""What next: steps for a cutter that does not finish, each with its effect, judged on all samples; what leaves least first."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from plan_cutters.answers.areas import Finished, Rows, patches
+from plan_cutters.answers.means import candidates, joined
+from plan_cutters.answers.option import Axis, option
+from plan_cutters.answers.scan import Candidate, Scan
+from plan_cutters.answers.state import Judgements, State, setups_of
+from plan_cutters.domain.area import Patch, size
+from plan_cutters.domain.change import MEANS, Mend, Move, Step
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.verdicts import Reach
+from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.threads import Progress
+
+#: A step, and the samples that it leaves.
+Judged = tuple[Candidate, Rows]
+#: A change by which it is known.
+Named = tuple[str, str]
+
+#: Steps of one change that are judged, at most; of two after each of the best so many of one, and of two at once.
+_SINGLES, _PAIRS, _BEST, _JOINED = 5, 1, 2, 2
+#: A second change is worth telling where it frees so much more, of the finished area.
+_WORTH = 0.0005
+#: Nor is a step worth telling that frees less than that, and less than this share of what is lost.
+_LITTLE = 0.02
+#: Shares that differ by less are alike: what asks least comes first.
+_ALIKE = 4
+#: Areas that are told: of a cutter, of a step.
+_AREAS, _REMAINS = 20, 3
+#: What of a step is not to be changed by another one.
+_APART = {"setup": {"second_setup", "tilt_limit"}, "second_setup": {"setup", "tilt_limit"},
+          "tilt_limit": {"setup", "second_setup"}}  # fmt: skip
+
+
+def steps(
+    ready: Prepared, found: Mend, cutter: Cutter, reaches: Mapping[Cutter, Reach],
+    elsewhere: Sequence[tuple[Axis, Mapping[str, Reach]]] = (), *, progress: Progress | None = None,
+) -> Mend:  # fmt: skip
+    """Find what to do next, and what it gains.
+
+    Values are compared on a few samples; each of those that may gain most is judged on all samples that are lost and,
+    where it may lose others, on all. Then a second change is looked for after the best ones.
+
+    Parameters
+    ----------
+    ready : Prepared
+    found : Mend
+        What was found of the cutter so far.
+    cutter : Cutter
+        One of `reaches`.
+    reaches : mapping
+        What each given cutter reaches in the plan's first setup.
+    elsewhere : sequence
+        Of each other setup its axis, and what each cutter reaches there by its id.
+    progress : callable, optional
+        Told how many cases were judged, of how many at most.
+
+    Returns
+    -------
+    Mend
+        With `share`, `steps` and `areas`.
+    """
+    finished, known = Finished.of(ready), Judgements.of(ready, reaches, elsewhere)
+    state = State(ready, (cutter,), setups_of(ready))
+    left = known.left(state, np.flatnonzero(finished.wanted))
+    if not len(left):
+        return found
+    count, most = 0, _SINGLES + _PAIRS * _BEST + _JOINED
+
+    def tell() -> None:
+        nonlocal count
+        count += 1
+        if progress:
+            progress(min(count, most), most)
+
+    known.tell = tell
+    areas = patches(ready.samples, finished, left)
+    scan = Scan.of(state, left, finished, known, tuple(each for each in ready.cutters if each in reaches))
+    # What other given cutters reach is known.
+    listed = candidates(scan)
+    dear = [each for each in listed if each.moves[0].means != "cutter"][:_SINGLES]
+    chosen = [each for each in listed if each in dear or each.moves[0].means == "cutter"]
+    made = [(each, known.left(each.state, _rows(scan, each))) for each in chosen]
+    before = finished.of_rows(left)
+    singles = [each for each in made if before - finished.of_rows(each[1]) > min(_WORTH, _LITTLE * before)]
+    pairs = _pairs(scan, singles)
+    base = (ready, cutter, state)
+    found_steps = [_step(base, finished, left, each, rows) for each, rows in (*singles, *pairs)]
+    found_steps.sort(key=lambda step: (round(step.after, _ALIKE), *effort(step.moves)))
+    return replace(
+        found, share=before, steps=(*found_steps, _left_out(base, finished, left, areas)), areas=tuple(areas[:_AREAS]),
+        more_areas=len(areas[_AREAS:]), unsure=ready.conditions.around.doubtful,
+    )  # fmt: skip
+
+
+def effort(moves: Sequence[Move]) -> tuple[int, int]:
+    """How much a step asks of a planner: the number of changes, and their places in MEANS."""
+    return len(moves), sum(MEANS.index(move.means) for move in moves)
+
+
+def _rows(scan: Scan, candidate: Candidate) -> Rows:
+    """Samples to judge: those that are lost or, where others may be lost by the change, all."""
+    return scan.left if candidate.nested else np.flatnonzero(scan.finished.wanted)
+
+
+def _pairs(scan: Scan, singles: list[Judged]) -> list[Judged]:
+    """Two changes, where both are worth it: a second one after each of the best, and two of which neither gains much alone."""
+    finished = scan.finished
+    alone = {_name(each.moves[0]): finished.of_rows(rows) for each, rows in singles}
+    best = sorted(singles, key=lambda each: (round(finished.of_rows(each[1]), _ALIKE), *effort(each[0].moves)))
+    if best and not len(best[0][1]):
+        return []
+    found: dict[tuple[Named, ...], Judged] = {}
+    tried: set[tuple[Named, ...]] = set()
+
+    def judge(each: Candidate, rows: Rows) -> bool:
+        """Keep it if it is worth it; False if it was tried before."""
+        name = tuple(sorted(_name(move) for move in each.moves))
+        if name in tried:
+            return False
+        tried.add(name)
+        still = scan.known.left(each.state, rows if each.nested else np.flatnonzero(finished.wanted))
+        least = min(alone.get(_name(move), finished.of_rows(scan.left)) for move in each.moves)
+        share = finished.of_rows(still)
+        if share < least - _WORTH or (not len(still) and least > 0.0):
+            found[name] = each, still
+        return True
+
+    started: set[str] = set()
+    for first, rows in best:
+        means = first.moves[0].means
+        if means in started or len(started) == _BEST:
+            continue
+        started.add(means)
+        after = Scan.of(first.state, rows, finished, scan.known, scan.given)
+        seconds = [
+            replace(second, moves=(*first.moves, *second.moves))
+            for second in candidates(after)
+            if second.moves[0].means not in {means, *_APART.get(means, ())}
+        ]
+        for both in seconds[:_PAIRS]:
+            judge(both, rows)
+    count = 0
+    for both in joined(scan):
+        count += judge(both, scan.left)
+        if count == _JOINED:
+            break
+    return list(found.values())
+
+
+def _name(move: Move) -> Named:
+    return move.means, str(move.asked)
+
+
+def _step(base: tuple[Prepared, Cutter, State], finished: Finished, left: Rows, found: Candidate, rows: Rows) -> Step:
+    ready, cutter, state = base
+    after = found.state
+    said = option(
+        ready, cutter, cutters=after.cutters, setups=after.axes if after.axes != state.axes else None,
+        conditions=after.ready.conditions,
+        tolerance=after.ready.scene.asked if after.ready.scene.asked != ready.scene.asked else None,
+    )  # fmt: skip
+    freed = len(np.setdiff1d(left, rows, assume_unique=True))
+    return Step(
+        found.moves, finished.of_rows(left), finished.of_rows(rows), freed, len(rows), after.cutters, after.axes, said,
+        tuple(patches(ready.samples, finished, rows)[:_REMAINS]),
+    )  # fmt: skip
+
+
+def _left_out(base: tuple[Prepared, Cutter, State], finished: Finished, left: Rows, areas: list[Patch]) -> Step:
+    """Nothing changed: what is lost is left to other means."""
+    ready, cutter, state = base
+    face = ready.samples.face
+    bad = np.unique(face[left])
+    rest = np.setdiff1d(ready.chosen.targets, bad)
+    # An option leaves out whole faces alone.
+    whole = len(rest) and len(left) == int((finished.wanted & np.isin(face, bad)).sum())
+    said = option(ready, cutter, cutters=(cutter,), faces=rest.tolist()) if whole else None
+    area, share = float(finished.area[left].sum()), finished.of_rows(left)
+    words = f"{areas[0].words} left to other means" if len(areas) == 1 else (
+        f"{size(area)} in {len(areas):,} places left to other means, the largest {areas[0].words}")  # fmt: skip
+    return Step(
+        (Move("area", None, round(area, 6), words),), share, 0.0, 0, len(left), (cutter,), state.axes, said,
+        tuple(areas[:_REMAINS]),
+    )  # fmt: skip

@@ -1,0 +1,98 @@
+"""What to do next, in words that the terminal and the page share."""
+
+from collections.abc import Sequence
+
+from plan_cutters.document.answers import MendEntry, RunEntry, StepEntry
+from plan_cutters.document.model import CutterEntry, Plan
+from plan_cutters.document.told import percent
+
+#: Runs that are named one by one.
+_RUNS = 6
+
+
+def axis(direction: Sequence[float]) -> str:
+    """A setup axis, as options have it."""
+    return ",".join(f"{each + 0.0:.4g}" for each in direction)
+
+
+def together(plan: Plan) -> str:
+    """Which of the given cutters and setups reach together all that any of them reaches, as one sentence without its stop.
+
+    Empty where the plan does not say, or where one cutter in one setup reaches everything.
+    """
+    found = plan.least_set
+    if found is None or (len(found.runs) < 2 and not found.left):
+        return ""
+    if not found.runs:
+        return "No cutter given reaches any of the area"
+    several = len({run.setup for run in plan_runs(plan)}) > 1
+    whole = percent(found.share, some=True, whole=not found.left)
+    if len(found.runs) == 1:
+        said = f"{_run(found.runs[0], several)} alone reaches all that any cutter given reaches, {whole} of the area"
+    else:
+        named, last = found.runs[:-1][:_RUNS], found.runs[-1]
+        each = [f"{_run(run, several)} for {percent(run.share, some=True, whole=False)}" for run in named]
+        each[0] += " of the area"
+        more = len(found.runs) - 1 - len(named)
+        if more:
+            each.append(
+                f"{more} more cutters for {percent(sum(r.share for r in found.runs[_RUNS:-1]), some=True, whole=False)}"
+            )
+        said = (
+            f"{', '.join(each)} and {_run(last, several)} for the rest reach {'all of it' if not found.left else whole}"
+        )
+    if found.left:
+        said += f"; nothing given reaches the other {percent(found.left_share, some=True, whole=False)}"
+    if not found.proven:
+        said += " (a smaller set may do: the search ended before the proof)"
+    if found.doubtful:
+        said += ", unless something is in the way that is missing from the obstacles"
+    return said
+
+
+def plan_runs(plan: Plan) -> list[RunEntry]:
+    """The runs of the least set."""
+    return plan.least_set.runs if plan.least_set else []
+
+
+def _run(run: RunEntry, several: bool) -> str:
+    return f"{run.cutter} in setup {axis(run.setup)}" if several else run.cutter
+
+
+def effect(step: StepEntry) -> str:
+    """What a step gains.
+
+    >>> effect(StepEntry(changes=[], lost_before=0.348, lost_after=0.322, gained=883, left=9000, cutters=[], setups=[],
+    ...                  option=None, why="", remains=[]))
+    'lost 34.8 to 32.2 % of the area (883 more samples)'
+    """
+    before = percent(step.lost_before, some=True, whole=False).removesuffix(" %")
+    after = percent(step.lost_after, some=bool(step.left), whole=False)
+    many = f"{step.gained:,} more sample{'' if step.gained == 1 else 's'}"
+    end = "; then all of it is reached" if not step.left else ""
+    return f"lost {before} to {after} of the area ({many}){end}"
+
+
+def is_left_out(step: StepEntry) -> bool:
+    """Whether a step changes nothing but leaves what is lost to other means."""
+    return any(change.thing == "area" for change in step.changes)
+
+
+def step_told(step: StepEntry) -> str:
+    """A step and its effect, without its stop."""
+    if is_left_out(step):
+        return step.why
+    return f"{step.why}: {effect(step)}"
+
+
+def first_step(entry: CutterEntry) -> StepEntry | None:
+    """The best step of a cutter; None where there is none but to leave it."""
+    return next((step for step in (entry.mend.steps if entry.mend else []) if not is_left_out(step)), None)
+
+
+def remaining(mend: MendEntry) -> str:
+    """What stays lost after the best step, as a clause; empty where nothing does."""
+    best = next((step for step in mend.steps if not is_left_out(step)), None)
+    if best is None or not best.remains:
+        return ""
+    return "; ".join(each.why for each in best.remains)
