@@ -102,4 +102,4 @@ def not_seen(plan: Plan, names: Mapping[str, str]) -> list[str]:
 
 
 def _nearest(plan: Plan) -> CutterEntry:
-    return min(plan.cutters, key=lambda c: c.inaccessible + c.undecided)
+    return min(plan.cutters, key=lambda c: c.lost)
