@@ -34,6 +34,7 @@ from plan_cutters.scene.buried import buried
 from plan_cutters.scene.conditions import Conditions, contacts_of, found_of, tool_of
 from plan_cutters.scene.faces import choose
 from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.question import question
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.spacing import Spacing, default_spacing
 from plan_cutters.stages.access import witnesses
@@ -125,8 +126,9 @@ def run(
         if ready.conditions.machine.limited:
             reach = judge(replace(ready, conditions=ready.conditions.machineless), cutter)
         maps = posture_maps(
-            ready.samples, cutter, ready.conditions, reach, part=ready.scene.part.sha256 or "", progress=tell
-        )
+            ready.samples, cutter, ready.conditions, reach, part=ready.scene.part.sha256 or "", progress=tell,
+            inside=ready.inside_bodies, about=question(ready, cutter),
+        )  # fmt: skip
     return replace(result, plan=clock.stamp(result.plan), maps=maps)
 
 
