@@ -92,16 +92,26 @@ def changed(draw, good):
                     flat = flat.view(bool)
                 else:
                     info = np.iinfo(array.dtype)
-                    flat[row] = draw(st.one_of(st.sampled_from([info.min, info.max, 0, 1]), st.integers(info.min, info.max)))
+                    flat[row] = draw(
+                        st.one_of(st.sampled_from([info.min, info.max, 0, 1]), st.integers(info.min, info.max))
+                    )
             found[at] = name, npy(flat.reshape(array.shape))
         elif kind == "type" and array.dtype.kind in "biuf":
             wanted = draw(st.sampled_from(["<f8", ">f8", "<f4", "<i8", "<i4", "|u1", "|b1", "<c16", "<M8[s]", "<U3"]))
             with np.errstate(all="ignore"):
-                found[at] = name, npy(array.astype("<f8").astype("<i8").astype(wanted) if wanted[1] in "Mbu" else array.astype(wanted))
+                found[at] = (
+                    name,
+                    npy(
+                        array.astype("<f8").astype("<i8").astype(wanted) if wanted[1] in "Mbu" else array.astype(wanted)
+                    ),
+                )
         elif kind == "shape":
             flat = array.reshape(-1)
             few = draw(st.integers(0, 2 * flat.size + 1))
-            found[at] = name, npy(np.resize(flat, draw(st.sampled_from([(few,), (few, 1), (1, few), (few, 2), (2, 2, few), ()]))))
+            found[at] = (
+                name,
+                npy(np.resize(flat, draw(st.sampled_from([(few,), (few, 1), (1, few), (few, 2), (2, 2, few), ()])))),
+            )
         elif kind == "drop":
             del found[at]
         elif kind == "twice":

@@ -75,6 +75,8 @@ def stored(part: str, postures: str, options: "Options", given: dict[str, Any], 
             lines.append(
                 "What is undecided here, a plan with this machine may decide: the maps leave narrow bands of tilt open."
             )
+        if maps.unmapped:
+            lines.append(f"{maps.unmapped} samples were not mapped (--map-budget): they are undecided.")
         if missing:
             lines.append(f"Obstacles are missing or guessed, so nothing is beyond doubt: {_some(missing)}.")
         if unjudged:

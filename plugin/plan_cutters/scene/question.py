@@ -33,7 +33,7 @@ ANSWERED = frozenset({"machine", "setup", "placement", "tilt", "rotation", "rota
 #: Options that change nothing that maps say.
 IRRELEVANT = frozenset({"jobs", "area_budget", "length_over_radius"})
 #: Options that ask for what maps do not hold.
-BEYOND = frozenset({"other_setups", "other_placements", "answers", "posture_maps"})
+BEYOND = frozenset({"other_setups", "other_placements", "answers", "posture_maps", "map_budget"})
 
 _WORDS = {"libraries": "--cutters", "cutters": "--cutter", "fixtures": "--fixture", "other_setups": "a second --setup"}
 _TOLERATED = 1e-9

@@ -11,11 +11,9 @@ from numpy.typing import NDArray
 
 from cad_io import Part
 from cad_io.arrays import Floats, Record, SurfaceSamples
-from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement, frame_of
-from plan_cutters.domain.posture import lean
 from plan_cutters.domain.verdicts import INACCESSIBLE, INTERFERENCE_FREE, REASONS, UNDECIDED, UNJUDGED, Reach, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.kernels.rows import Ranges
@@ -28,8 +26,10 @@ from plan_cutters.scene.conditions import (
     rotary_of,
     tool_of,
 )
+from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.question import checksum, refuse_others, require_side, setup_of, turns_of, words_of
 from plan_cutters.scene.threads import Progress, in_chunks
+from plan_cutters.stages.map_budget import chosen
 from plan_cutters.stages.map_file import arrays_of, require
 
 #: Ends are certified to this, rad; where that cannot be, the band left is counted as undecided.
@@ -199,6 +199,12 @@ class PostureMaps(Record):
         return words_of(self.about, "missing")
 
     @property
+    def unmapped(self) -> int:
+        """Judged samples that were left out: they are undecided at every tilt."""
+        found = self.about.get("unmapped", 0)
+        return found if type(found) is int else 0
+
+    @property
     def finished(self) -> NDArray[np.bool_]:
         """Judged samples (n,) of the finished part's surface."""
         return np.asarray((self.verdict != UNJUDGED) & ~self.inside)
@@ -284,9 +290,13 @@ class PostureMaps(Record):
 
 def posture_maps(
     samples: SurfaceSamples, cutter: Cutter, conditions: Conditions, reach: Reach, *, part: str = "",
-    inside: NDArray[np.bool_] | None = None, about: Mapping[str, Any] | None = None, progress: Progress | None = None,
+    inside: NDArray[np.bool_] | None = None, about: Mapping[str, Any] | None = None, most: int | None = None,
+    progress: Progress | None = None,
 ) -> PostureMaps:  # fmt: skip
-    """Find the free tilts of all judged samples, whatever the machine; the others have none.
+    """Find the free tilts of judged samples, whatever the machine; the others have none.
+
+    Of samples that are more than the work is worth, as many as that allows, evenly spread: of the others, every tilt is undecided
+    and `about["unmapped"]` says how many there are. The same samples get the same maps whatever the machine's speed.
 
     Parameters
     ----------
@@ -301,62 +311,55 @@ def posture_maps(
         Samples that lie inside another body of the part.
     about : mapping, optional
         What was asked, as `scene.question.question` writes it.
+    most : int, optional
+        Samples to map, at most. None: as many as take `map_budget.WORK`.
     progress : callable, optional
         Told how many pieces of the work are done, of how many.
     """
     from plan_cutters.kernels.free_map import free_map
 
     conditions = conditions.machineless
-    rotations, ranges, obstacles = conditions.postures.rotations, conditions.ranges, conditions.obstacles
-    tree, wide, light = obstacles.tree, obstacles.wide_tree, conditions.light(cutter)
-    tool = tool_of(light)
+    rotations, ranges, light = conditions.postures.rotations, conditions.ranges, conditions.light(cutter)
+    may_be, surely, tool = conditions.obstacles, conditions.around.surely, tool_of(light)
     contacts = contacts_of(samples)
     n, k = len(samples), len(rotations)
     count = np.zeros((n, k), np.int32)
     undecided = np.zeros((n, k), np.float32)
     free: dict[int, Floats] = {}
 
-    def work(rows: NDArray[np.int64]) -> None:
-        # Room for the most intervals only while a piece is worked on: memory grows with what is found.
+    def mapped(rows: NDArray[np.int64], obstacles: Obstacles) -> tuple[Floats, NDArray[np.int32], Floats, int]:
         part = np.empty((len(rows), k, _ROOM, 2))
         mine, unsure = np.empty((len(rows), k), np.int32), np.empty((len(rows), k))
-        free_map(rows, contacts, ranges, tool, NARROWEST, tree, wide, _ROOM, part, mine, unsure)
+        tree, wide = obstacles.tree, obstacles.wide_tree
+        looked = free_map(rows, contacts, ranges, tool, NARROWEST, tree, wide, _ROOM, part, mine, unsure)
+        if obstacles.solids.cell.size:
+            _leave_bodies(samples, rows, light, conditions, part, mine, surely=obstacles is not may_be)
+        return part, mine, unsure, looked
+
+    def work(rows: NDArray[np.int64]) -> None:
+        # Room for the most intervals only while a piece is worked on: memory grows with what is found.
+        part, mine, unsure, _ = mapped(rows, may_be)
+        if surely is not may_be:
+            # What is only perhaps in the way forbids nothing for sure.
+            perhaps, few, more, _ = mapped(rows, surely)
+            unsure = np.maximum(unsure, _width(perhaps, few) + more - _width(part, mine))
         count[rows], undecided[rows] = mine, unsure
-        if conditions.obstacles.solids.cell.size:
-            _leave_bodies(samples, rows, light, conditions, part, mine)
-            count[rows] = mine
         free[int(rows[0])] = part[np.arange(_ROOM) < mine[..., None]]
 
     judged = np.flatnonzero(samples.unjudged < 0)
     require_finite(contacts, judged)
-    in_chunks(work, judged, conditions.jobs, progress)
+    rows = chosen(judged, most, lambda piece: mapped(piece, may_be)[3], conditions.jobs)
+    in_chunks(work, rows, conditions.jobs, progress)
+    left = np.setdiff1d(judged, rows)
+    undecided[left] = conditions.postures.tilt[1] - conditions.postures.tilt[0]
+    known = {**(about or {}), **({"unmapped": len(left)} if len(left) else {})}
     pieces = [free[first] for first in sorted(free)]
     offset = np.concatenate([[0], np.cumsum(count.ravel(), dtype=np.int64)])
     return PostureMaps(rotations, offset, np.concatenate([np.zeros((0, 2)), *pieces]), undecided, samples.normal,
                        samples.direction_max, reach.verdict, reach.reason, conditions.postures.tilt, conditions.tolerance,
-                       cutter.id, part, np.zeros(0, bool) if inside is None else inside, about or {})  # fmt: skip
+                       cutter.id, part, np.zeros(0, bool) if inside is None else inside, known)  # fmt: skip
 
 
-def _leave_bodies(
-    samples: SurfaceSamples, rows: NDArray[np.int64], light: Assembly, conditions: Conditions, part: Floats,
-    count: NDArray[np.int32],
-) -> None:  # fmt: skip
-    """Take out intervals (m, k, room, 2) in which the cutter lies within a body.
-
-    Between the ends of an interval the cutter touches no skin, so it lies within a body all along or nowhere.
-    """
-    rotations = conditions.postures.rotations
-    at = np.argwhere(np.arange(_ROOM) < count[..., None])
-    row, turn = rows[at[:, 0]], rotations[at[:, 1]]
-    tilt = part[at[:, 0], at[:, 1], at[:, 2]].mean(axis=1)
-    inside = conditions.obstacles.holds(
-        light,
-        samples.point[row],
-        samples.normal[row],
-        lean(samples.normal[row], samples.direction_max[row], turn),
-        tilt,
-    )
-    for i, j in np.unique(at[inside, :2], axis=0).tolist():
-        mine = (at[:, 0] == i) & (at[:, 1] == j)
-        kept = part[i, j, : count[i, j]][~inside[mine]]
-        part[i, j, : len(kept)], count[i, j] = kept, len(kept)
+def _width(part: Floats, count: NDArray[np.int32]) -> Floats:
+    """Width (m, k) of intervals (m, k, room, 2), of each cell so many, rad."""
+    return np.where(np.arange(_ROOM) < count[..., None], part[..., 1] - part[..., 0], 0.0).sum(axis=-1)
