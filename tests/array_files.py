@@ -99,12 +99,8 @@ def changed(draw, good):
         elif kind == "type" and array.dtype.kind in "biuf":
             wanted = draw(st.sampled_from(["<f8", ">f8", "<f4", "<i8", "<i4", "|u1", "|b1", "<c16", "<M8[s]", "<U3"]))
             with np.errstate(all="ignore"):
-                found[at] = (
-                    name,
-                    npy(
-                        array.astype("<f8").astype("<i8").astype(wanted) if wanted[1] in "Mbu" else array.astype(wanted)
-                    ),
-                )
+                plain = array.astype("<f8").astype("<i8") if wanted[1] in "Mbu" else array
+                found[at] = name, npy(plain.astype(wanted))
         elif kind == "shape":
             flat = array.reshape(-1)
             few = draw(st.integers(0, 2 * flat.size + 1))

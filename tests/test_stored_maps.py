@@ -91,7 +91,7 @@ def test_it_equals_a_fresh_plan_or_is_refused_by_name(found, file, library, word
     if word == "placement":
         asked["setup"] = value.z
     if refused:
-        with pytest.raises(OptionError, match="plan again|leave it out|plan the part|a second") as caught:
+        with pytest.raises(OptionError, match=r"plan again|leave it out|plan the part|a second") as caught:
             maps.asked(PART, **asked)
         assert refused in str(caught.value)
         return

@@ -324,7 +324,7 @@ def free_map(  # type: ignore[no-untyped-def]
     Returns
     -------
     int
-        Leaves of the tree that were looked at: the same for the same rows, whatever the machine's speed.
+        Leaves of the tree and triangles that were looked at: the same for the same rows, whatever the machine's speed.
     """
     turns, looked = len(ranges.rotation_cos), 0
     c, t, f, e2 = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
@@ -397,4 +397,4 @@ def free_map(  # type: ignore[no-untyped-def]
                 count_out[place, rotation] = _joined(part[place, rotation], count)
                 undecided[place, rotation] += unsure
         looked += view.tally[3]
-    return looked
+    return looked + work.spent[0]

@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 
 from cad_io import Part
 from cad_io.arrays import Floats, Record, SurfaceSamples
+from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement, frame_of
+from plan_cutters.domain.posture import lean
 from plan_cutters.domain.verdicts import INACCESSIBLE, INTERFERENCE_FREE, REASONS, UNDECIDED, UNJUDGED, Reach, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.kernels.rows import Ranges
@@ -363,3 +365,30 @@ def posture_maps(
 def _width(part: Floats, count: NDArray[np.int32]) -> Floats:
     """Width (m, k) of intervals (m, k, room, 2), of each cell so many, rad."""
     return np.where(np.arange(_ROOM) < count[..., None], part[..., 1] - part[..., 0], 0.0).sum(axis=-1)
+
+
+def _leave_bodies(
+    samples: SurfaceSamples, rows: NDArray[np.int64], light: Assembly, conditions: Conditions, part: Floats,
+    count: NDArray[np.int32], *, surely: bool = False,
+) -> None:  # fmt: skip
+    """Take out intervals (m, k, room, 2) in which the cutter lies within a body, or may; or only where it surely does.
+
+    Between the ends of an interval the cutter touches no skin, so it lies within a body all along or nowhere.
+    """
+    rotations = conditions.postures.rotations
+    at = np.argwhere(np.arange(_ROOM) < count[..., None])
+    row, turn = rows[at[:, 0]], rotations[at[:, 1]]
+    tilt = part[at[:, 0], at[:, 1], at[:, 2]].mean(axis=1)
+    obstacles = conditions.around.surely if surely else conditions.obstacles
+    inside = obstacles.holds(
+        light,
+        samples.point[row],
+        samples.normal[row],
+        lean(samples.normal[row], samples.direction_max[row], turn),
+        tilt,
+        surely=surely,
+    )
+    for i, j in np.unique(at[inside, :2], axis=0).tolist():
+        mine = (at[:, 0] == i) & (at[:, 1] == j)
+        kept = part[i, j, : count[i, j]][~inside[mine]]
+        part[i, j, : len(kept)], count[i, j] = kept, len(kept)
