@@ -23,7 +23,7 @@ BASE = {"cutters": CUTTER, "grid": 7, "area_budget": 0, "fixtures": "box:5,5,5@0
 #: By option: values that a plan could be asked for; None: it is refused by name, else it is answered.
 CASES = {
     "cutters": [("R3L40", "cutter R4L40, which was not asked for"), ("R4L40", None), (["R1L9", "R4L40"], None)],
-    "libraries": [("library", "cutter R4L40")],
+    "libraries": [("library", "cutter R4L40, which was not asked for")],
     "holder": [("R15L30", "another holder")],
     "allowance": [(0.2, "allowance 0, not 0.2"), (0.0, None)],
     "holder_clearance": [(0.5, "holder clearance 0, not 0.5")],
@@ -31,7 +31,7 @@ CASES = {
     "setup": [((1, 0.3, 0.2), None), ((0, 0, -1), None)],
     "other_setups": [([(1, 0, 0)], "a second --setup")],
     "other_placements": [([None], "--other-placements")],
-    "faces": [("F1", "faces sculptured, not F1"), ("sculptured", None)],
+    "faces": [("F2", "faces sculptured, not F2"), ("sculptured", None), ("F1", None)],
     "ignore": [("F1", "ignore none, not F1"), ((), None)],
     "grid": [(9, "grid 7, not 9"), (7, None)],
     "spacing": [(4.0, "spacing by default, not 4")],
@@ -70,7 +70,7 @@ def file(found, tmp_path_factory):
 @pytest.fixture(scope="module")
 def library(tmp_path_factory):
     path = tmp_path_factory.mktemp("tools") / "shop.toml"
-    path.write_text('unit = "mm"\n[[tool]]\nnumber = 1\nname = "small"\ntype = "flat"\nDC = 2\nLCF = 8\nLB = 12\n')
+    path.write_text('unit = "mm"\n[[tool]]\ntype = "flat"\nDC = 2\nLCF = 8\nLPR = 12\n')
     return path
 
 
@@ -114,7 +114,7 @@ def told(*words):
     ("words", "name"),
     [
         (["--fixture", "box:200,200,200@-50,-50,-50"], "other fixtures"),
-        (["--faces", "F1"], "faces"),
+        (["--faces", "F2"], "faces"),
         (["--ignore", "F1"], "ignore"),
         (["--flip"], "flip"),
         (["--unit", "in"], "unit"),
@@ -127,7 +127,7 @@ def told(*words):
         (["--grid", "9"], "grid"),
         (["--spacing", "3"], "spacing"),
         (["--tilt", "0:120"], "tilts 0:90"),
-        (["--rotation-step", "7"], "no rotation of 7 deg"),
+        (["--rotation-step", "7"], "no rotation of 6.9"),
         (["--setup", "0,0,1", "--setup", "1,0,0"], "a second --setup"),
         (["--answers", "mend"], "--answers"),
         (["--posture-maps"], "--posture-maps"),

@@ -52,15 +52,19 @@ class Lock:
     def release(self) -> None:
         """Let others write."""
         if self._handle >= 0:
-            # While it is ours, so that no other process loses a lock of its own; Windows removes no open file.
-            if fcntl is None:
-                os.close(self._handle)
-            with contextlib.suppress(OSError):
-                if fcntl is None or _stands(self._handle, self.file):
+            handle, self._handle = self._handle, -1
+            if fcntl is None:  # Windows removes no open file
+                os.close(handle)
+                with contextlib.suppress(OSError):
                     self.file.unlink()
-            if fcntl is not None:
-                os.close(self._handle)
-            self._handle = -1
+                return
+            try:
+                # While it is ours, so that no other process loses a lock of its own.
+                with contextlib.suppress(OSError):
+                    if _stands(handle, self.file):
+                        self.file.unlink()
+            finally:
+                os.close(handle)
 
     def _taken(self, out: Path) -> int:
         """The open file once it is ours, -1 to try again."""

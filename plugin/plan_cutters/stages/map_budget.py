@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from plan_cutters.scene.threads import in_chunks
 
-#: Leaves of the tree that are looked at for all maps, about: some minutes on two cores.
-WORK = 60_000_000
+#: Leaves of the tree and triangles that are looked at for all maps, about: some minutes on two cores.
+WORK = 1_000_000_000
 #: Samples by which the work is estimated, and how many of them at a time.
 PROBED, _AT_A_TIME = 256, 16
 
@@ -25,7 +25,7 @@ def chosen(judged: Rows, most: int | None, looked: Callable[[Rows], int], jobs: 
     most : int, optional
         At most so many. None: as many as take about `WORK`.
     looked : callable
-        Maps some samples and tells at how many leaves it looked: the same for the same samples.
+        Maps some samples and tells at how much it looked: the same for the same samples.
     jobs : int
         Threads.
     """
