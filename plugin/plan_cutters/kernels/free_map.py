@@ -110,7 +110,7 @@ def _reaching(view, block, cosine, sine, gap, count, turning, mask, margin, left
 
 class _View(NamedTuple):
     """What is kept of the tree as seen from one contact, for all rotations: boxes and leaves, what lies below each box, which
-    box each block hangs below, and tallies: blocks and leaves kept, place of the next triangle that is tried first, leaves
+    box each block hangs below, and tallies: blocks and leaves kept, place of the next triangle that is tried first, blocks
     looked at in all.
 
     known (rotations + 1, LANES): triangles that cut gaps of each rotation last, of this sample or the one before, the last row
@@ -163,6 +163,7 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, na
             if count == 0:
                 return 0
             slot, block, mask = queue[w, 0], queue[w, 1], queue[w, 2]
+            tally[3] += 1
             if slot < 0:
                 slot = _SEEN
                 _see(view, slot, blocks, offset[level] + block, p, e1, e2, n, seen.reach)
@@ -174,7 +175,6 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, na
                     continue
                 box = 8 * block + lane
                 if level == levels - 1:
-                    tally[3] += 1
                     begin, end = (triangles * box) >> bottom, (triangles * (box + 1)) >> bottom
                     if inner == _UNSEEN:
                         inner = min(tally[1], _LEAVES)
@@ -324,7 +324,7 @@ def free_map(  # type: ignore[no-untyped-def]
     Returns
     -------
     int
-        Leaves of the tree and triangles that were looked at: the same for the same rows, whatever the machine's speed.
+        Blocks of the tree and triangles that were looked at: the same for the same rows, whatever the machine's speed.
     """
     turns, looked = len(ranges.rotation_cos), 0
     c, t, f, e2 = np.empty(3), np.empty(3), np.empty(3), np.empty(3)

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from plan_cutters.scene.threads import in_chunks
 
-#: Leaves of the tree and triangles that are looked at for all maps, about: some minutes on two cores.
-WORK = 1_000_000_000
+#: Blocks of the tree and triangles that are looked at for all maps, about: some minutes on two cores.
+WORK = 400_000_000
 #: Samples by which the work is estimated, and how many of them at a time.
 PROBED, _AT_A_TIME = 256, 16
 
