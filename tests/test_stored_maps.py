@@ -70,7 +70,7 @@ def file(found, tmp_path_factory):
 @pytest.fixture(scope="module")
 def library(tmp_path_factory):
     path = tmp_path_factory.mktemp("tools") / "shop.toml"
-    path.write_text('unit = "mm"\n[[tool]]\ntype = "flat"\nDC = 2\nLCF = 8\nLPR = 12\n')
+    path.write_text('unit = "mm"\n[[tool]]\ntype = "flat"\nDC = 2\nLCF = 8\nLPR = 12\nDMM = 2\nholder = "none"\n')
     return path
 
 

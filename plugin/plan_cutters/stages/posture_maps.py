@@ -364,7 +364,9 @@ def posture_maps(
 
 def _width(part: Floats, count: NDArray[np.int32]) -> Floats:
     """Width (m, k) of intervals (m, k, room, 2), of each cell so many, rad."""
-    return np.where(np.arange(_ROOM) < count[..., None], part[..., 1] - part[..., 0], 0.0).sum(axis=-1)
+    # What lies beyond the count was never written.
+    there = np.arange(_ROOM) < count[..., None]
+    return np.asarray(np.subtract(part[..., 1], part[..., 0], out=np.zeros(there.shape), where=there).sum(axis=-1))
 
 
 def _leave_bodies(
