@@ -216,7 +216,7 @@ def test_what_is_missing_leaves_doubt_in_stored_maps():
     from test_triangles import triangulated
 
     base = {"cutters": "R4L40", "faces": "6", "grid": 9, "area_budget": 0, "rotation_step": np.pi / 6}
-    scene = compound(box(60, 60, 10), triangulated(box(40, 40, 2, at=(-20, -20, 20))))
+    scene = compound(box(60, 60, 10), triangulated(box(40, 40, 2, at=(-20, -20, 13))))
     maps = plan(scene, posture_maps=True, **base).maps
     assert maps.missing
     assert (maps.verdict == UNDECIDED).any()
