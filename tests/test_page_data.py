@@ -362,9 +362,9 @@ def test_maps_of_some_samples(valley):
     offset = np.concatenate(
         [[0], np.cumsum(np.concatenate([np.diff(maps.offset[r * k : (r + 1) * k + 1]) for r in rows]))]
     )
-    some = replace(maps, offset=offset, free=np.concatenate([maps.free[s] for s in taken]), undecided=maps.undecided[rows], inside=maps.inside[rows],
+    some = replace(maps, offset=offset, free=np.concatenate([maps.free[s] for s in taken]), undecided=maps.undecided[rows],
                    normal=maps.normal[rows], direction_max=maps.direction_max[rows], verdict=maps.verdict[rows],
-                   reason=maps.reason[rows])  # fmt: skip
+                   reason=maps.reason[rows], inside=maps.inside[rows])  # fmt: skip
     read, whole = Page(page(result, maps=some, rows=rows)), Page(page(result, maps=maps))
     assert read.array("maps.row").tolist() == rows.tolist()
     assert read.array("maps.count").tolist() == whole.array("maps.count")[rows].tolist()
