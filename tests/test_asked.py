@@ -230,7 +230,8 @@ FINE = {
     "plan": {
         "cutters": "None, no list", "machine": "None", "faces": "None", "ignore": "None, no list", "grid": "None, three",
         "spacing": "None, three, a half", "rotation_step": "three, a half", "jobs": "None, three", "flip": "True",
-        "area_budget": "None, three", "posture_maps": "True", "unit": "None", "progress": "None, function",
+        "area_budget": "None, three", "posture_maps": "True", "map_budget": "None, three",
+        "unit": "None", "progress": "None, function",
     },
     "posture_map": {
         "rotations": "three, a half, minus one, no list, number in list", "machine": "None", "flip": "True",
@@ -250,7 +251,8 @@ FINE = {
     "Options": {
         "cutters": "None, no list", "machine": "None", "setup": "", "grid": "None, three", "spacing": "None, three, a half",
         "tilt": "", "rotation": "", "rotation_step": "three, a half", "tolerance": "", "jobs": "None, three", "flip": "True",
-        "area_budget": "None, three", "posture_maps": "True", "allowance": "three, a half", "holder_clearance": "three, a half",
+        "area_budget": "None, three", "posture_maps": "True", "map_budget": "None, three",
+        "allowance": "three, a half", "holder_clearance": "three, a half",
         "holder": "None",
         "unit": "None",
     },

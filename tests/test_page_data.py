@@ -88,11 +88,11 @@ def maps_of(intervals, undecided):
     n, k = len(intervals), len(intervals[0])
     flat = [pair for sample in intervals for turn in sample for pair in turn]
     count = [len(turn) for sample in intervals for turn in sample]
-    nothing = np.zeros((n, 3))
+    up, along = (np.tile(each, (n, 1)) for each in np.eye(3)[[2, 0]])
     return PostureMaps(
         np.linspace(0, 1, k), np.concatenate([[0], np.cumsum(count)]), np.radians(np.array(flat).reshape(-1, 2)),
-        np.radians(undecided).astype(np.float32), nothing, nothing, np.zeros(n, np.uint8), np.zeros(n, np.uint8),
-        (0.0, 1.0), 0.01, "R1L2", "",
+        np.radians(undecided).astype(np.float32), up, along, np.zeros(n, np.uint8), np.zeros(n, np.uint8),
+        (0.0, np.pi), 0.01, "R1L2", "",
     )  # fmt: skip
 
 
@@ -364,7 +364,7 @@ def test_maps_of_some_samples(valley):
     )
     some = replace(maps, offset=offset, free=np.concatenate([maps.free[s] for s in taken]), undecided=maps.undecided[rows],
                    normal=maps.normal[rows], direction_max=maps.direction_max[rows], verdict=maps.verdict[rows],
-                   reason=maps.reason[rows])  # fmt: skip
+                   reason=maps.reason[rows], inside=maps.inside[rows])  # fmt: skip
     read, whole = Page(page(result, maps=some, rows=rows)), Page(page(result, maps=maps))
     assert read.array("maps.row").tolist() == rows.tolist()
     assert read.array("maps.count").tolist() == whole.array("maps.count")[rows].tolist()

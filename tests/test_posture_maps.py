@@ -168,3 +168,61 @@ def test_stored_maps_answer_on_the_command_line(tmp_path):
     refused = run(part, "--postures", part, cwd=tmp_path)
     assert refused.returncode == 2
     assert "no posture maps" in refused.stderr
+
+
+def horn(major=3.0, minor=8.0):
+    """A torus through its own axis: a few lines of STEP, one face, hundreds of thousands of triangles."""
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeTorus
+
+    return BRepPrimAPI_MakeTorus(major, minor).Shape()
+
+
+def test_maps_keep_to_an_amount_of_work(monkeypatch):
+    """What would take too long is left out evenly, undecided at every tilt, and said; the rest is as it would be."""
+    from plan_cutters.stages import map_budget
+
+    options = {"cutters": "R0.5L20", "faces": "all", "grid": 21, "tolerance": 0.05, "area_budget": 0, "posture_maps": True,
+               "rotation_step": np.pi / 2}  # fmt: skip
+    whole = plan(horn(), **options)
+    assert whole.maps.unmapped == 0
+    assert not [note for note in whole.plan.notes if "not mapped" in note]
+    monkeypatch.setattr(map_budget, "WORK", 2_000)
+    for more in ({}, {"map_budget": 50}):
+        few = plan(whole.part, **options, **more)
+        n, maps = len(few.samples), few.maps
+        left = (maps.undecided == np.float32(np.pi / 2)).all(axis=1) & (np.diff(maps.offset).reshape(n, -1) == 0).all(
+            axis=1
+        )
+        assert 0 < maps.unmapped < n
+        assert left.sum() >= maps.unmapped
+        (note,) = [note for note in few.plan.notes if "not mapped" in note]
+        assert f"Postures of {maps.unmapped} of {n} samples" in note
+        if more:
+            assert n - maps.unmapped == 50
+        # Evenly spread: no long run without any.
+        mapped = np.flatnonzero(~left)
+        assert np.diff(mapped).max(initial=0) <= 4 * n / max(1, n - maps.unmapped) + 40
+        reach = maps.within("tilt:60")
+        assert not (reach.reached & ~whole.maps.within("tilt:60").reached).any()
+        again = plan(whole.part, **options, **more, jobs=1).maps
+        assert again == maps
+
+
+def test_what_is_missing_leaves_doubt_in_stored_maps():
+    """Where obstacles are only guessed, nothing is called lost that a fresh plan leaves undecided."""
+    from dataclasses import replace
+
+    from cad_parts import box, compound
+    from test_triangles import triangulated
+
+    base = {"cutters": "R4L40", "faces": "6", "grid": 9, "area_budget": 0, "rotation_step": np.pi / 6}
+    scene = compound(box(60, 60, 10), triangulated(box(40, 40, 2, at=(-20, -20, 13))))
+    maps = plan(scene, posture_maps=True, **base).maps
+    assert maps.missing
+    assert (maps.verdict == UNDECIDED).any()
+    for machine in ("unlimited", "tilt:30", "tilt:10"):
+        fresh = plan(scene, machine=machine, **base).reaches["R4L40"]
+        stored = maps.within(machine)
+        assert not (stored.reached & (fresh.verdict == INACCESSIBLE)).any()
+        assert not ((stored.verdict == INACCESSIBLE) & (fresh.verdict != INACCESSIBLE)).any()
+    assert replace(maps, about={}).missing == ()

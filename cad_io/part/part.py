@@ -57,6 +57,8 @@ class Part:
         One shape, located, lengths in mm.
     file, sha256 : str, optional
         Where it was read from, and the checksum of those bytes.
+    unit : str, optional
+        The unit that its lengths were taken to be in, where that is not what the source says.
     names, colours : mapping, optional
         By face number: names and sRGB colours (0 to 1) found in the file.
     layers : mapping, optional
@@ -72,7 +74,7 @@ class Part:
 
     Attributes
     ----------
-    shape, file, sha256, layers, tree, picked : as given
+    shape, file, sha256, unit, layers, tree, picked : as given
     lost : tuple of LostFace
         Where it is not empty, nothing is known of what stood there: no posture may be called safe.
     faces : tuple of FaceInfo
@@ -101,6 +103,7 @@ class Part:
         *,
         file: str | None = None,
         sha256: str | None = None,
+        unit: str | None = None,
         names: Mapping[int, str] | None = None,
         colours: Mapping[int, tuple[float, float, float]] | None = None,
         layers: Mapping[int, tuple[str, ...]] | None = None,
@@ -110,6 +113,7 @@ class Part:
         lost: tuple[LostFace, ...] = (),
     ) -> None:
         self.shape, self.file, self.sha256, self.picked = shape, file, sha256, picked
+        self.unit = unit
         with translated("looking for faces", error=ReadError, file=file):
             self._faces = faces(shape)
         if not self._faces:
@@ -142,8 +146,9 @@ class Part:
 
     def __reduce__(self) -> tuple[Any, ...]:
         found = {
-            "shape": self.shape, "file": self.file, "sha256": self.sha256, "names": self._names, "colours": self._colours,
-            "layers": self.layers, "tree": self.tree, "warnings": self._said, "picked": self.picked, "lost": self.lost,
+            "shape": self.shape, "file": self.file, "sha256": self.sha256, "unit": self.unit, "names": self._names,
+            "colours": self._colours, "layers": self.layers, "tree": self.tree, "warnings": self._said,
+            "picked": self.picked, "lost": self.lost,
         }  # fmt: skip
         return _again, (packed(found),)
 

@@ -88,12 +88,12 @@ def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, ti
         return source
     timeout = min(float(timeout), _LONGEST)
     if not guarded:
-        return Part(**_find(source, unit, timeout))
+        return Part(**_find(source, unit, timeout), unit=unit)
 
     def find() -> Found:
         found = _find(source, unit, timeout)
         Part(**found)  # which asks the kernel more, better here than outside
-        return found
+        return found | {"unit": unit}
 
     return Part(**in_copy(find, timeout, os.fspath(source) if isinstance(source, str | os.PathLike) else None))
 

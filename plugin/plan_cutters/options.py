@@ -110,6 +110,9 @@ class Options:
         100,000.
     posture_maps : bool
         Find every free tilt of every sample, too, for the cutter that the models show.
+    map_budget : int, optional
+        Most samples whose postures are mapped, evenly spread; the others are undecided at every tilt. None: as many as some
+        minutes allow.
     answers : tuple of str
         What is to be answered after the plan, of `domain.answers.ANSWERS`, or `all`; may be given as one text.
     length_over_radius : float
@@ -160,6 +163,7 @@ class Options:
     flip: bool = False
     area_budget: int | None = None
     posture_maps: bool = False
+    map_budget: int | None = None
     answers: tuple[str, ...] = ()
     length_over_radius: float = 10.0
     unit: str | None = None
@@ -191,6 +195,8 @@ class Options:
             raise OptionError(f"unit {self.unit!r} is not one of {', '.join(UNITS)}")
         if self.area_budget is not None and self.area_budget < 0:
             raise OptionError(f"area budget {self.area_budget} must not be negative")
+        if self.map_budget is not None and self.map_budget < 1:
+            raise OptionError(f"map budget {self.map_budget} must be at least 1 sample")
         if not 1 <= self.jobs <= _MOST_JOBS:
             raise OptionError(f"jobs {self.jobs} must be at least 1 and at most {_MOST_JOBS}")
         for cutter in self.judged:
@@ -215,6 +221,8 @@ class Options:
         take(jobs=cores() if self.jobs is None else whole(self.jobs, "jobs"))
         if self.area_budget is not None:
             take(area_budget=whole(self.area_budget, "area budget"))
+        if self.map_budget is not None:
+            take(map_budget=whole(self.map_budget, "map budget"))
         take(flip=flag(self.flip, "flip"), posture_maps=flag(self.posture_maps, "posture_maps"))
         take(answers=answers_of(self.answers))
         take(length_over_radius=number(self.length_over_radius, "length over radius"))

@@ -28,7 +28,7 @@ from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.nesting import handed, order
 from plan_cutters.domain.over_setups import over_setups
-from plan_cutters.domain.verdicts import CONVEX, Reach, blank
+from plan_cutters.domain.verdicts import CONVEX, UNJUDGED, Reach, blank
 from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.options import Options
@@ -37,6 +37,7 @@ from plan_cutters.scene.buried import buried
 from plan_cutters.scene.conditions import Conditions, contacts_of, found_of, tool_of
 from plan_cutters.scene.faces import choose
 from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.question import question
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.spacing import Spacing, default_spacing
 from plan_cutters.stages.access import witnesses
@@ -133,9 +134,16 @@ def run(
         if ready.conditions.machine.limited:
             reach = judge(replace(ready, conditions=ready.conditions.machineless), cutter)
         maps = posture_maps(
-            ready.samples, cutter, ready.conditions, reach, part=ready.scene.part.sha256 or "", progress=tell
-        )
-    return replace(result, plan=clock.stamp(result.plan), maps=maps)
+            ready.samples, cutter, ready.conditions, reach, part=ready.scene.part.sha256 or "", progress=tell,
+            inside=ready.inside_bodies, about=question(ready, cutter), most=options.map_budget,
+        )  # fmt: skip
+    document = result.plan
+    if maps.unmapped:
+        said = (f"Postures of {maps.unmapped} of {int((maps.verdict != UNJUDGED).sum())} samples were not mapped, for it would "
+                "take too long: there every tilt is undecided in postures.npz; sample more coarsely (--spacing), or give "
+                "--map-budget.")  # fmt: skip
+        document = document.model_copy(update={"notes": [*document.notes, said]})
+    return replace(result, plan=clock.stamp(document), maps=maps)
 
 
 def _elsewhere(

@@ -190,6 +190,7 @@ def options_of(given: dict[str, Any]) -> "Options":
         flip=given["flip"],
         area_budget=given["area_budget"],
         posture_maps=given["posture_maps"],
+        map_budget=given["map_budget"],
         answers=given["answers"],
         length_over_radius=given["length_over_radius"],
         unit=given["unit"],

@@ -179,9 +179,16 @@ _OPTIONS = (
         help="Also write every sample's free tilt intervals at every rotation (postures.npz), for the cutter shown.",
     ),
     _postures(
+        "--map-budget",
+        type=int,
+        metavar="N",
+        help="Samples to map, at most, evenly spread; the others are undecided there.  [default: what some minutes allow]",
+    ),
+    _postures(
         "--postures",
         type=File("FILE"),
-        help="Answer for this machine, setup, tilts and rotations from the part's postures.npz alone, without a new search.",
+        help="Answer for this machine, setup, tilts and rotations from the part's postures.npz alone, without a new search. "
+        "What is not given means what the maps were made with; what they cannot answer is refused.",
     ),
     _output("-o", "--out", type=Folder("DIR"), help="Folder for the files.  [default: <part>-plan]"),
     _output(

@@ -26,8 +26,8 @@ def one_part(
 
     `began`: when the command did, for the first part (`time.monotonic`).
     """
-    from plan_cutters.report.folder import DEFAULT_FORMATS, PLAN, Staging, file_name, read_formats, write_all
-    from plan_cutters.report.to_json import dumps, explain
+    from plan_cutters.report.folder import DEFAULT_FORMATS, Staging, ended, file_name, read_formats, write_all
+    from plan_cutters.report.to_json import dumps
 
     formats = DEFAULT_FORMATS if given["formats"] is None else read_formats(given["formats"])
     formats = formats if out else ()
@@ -57,7 +57,7 @@ def one_part(
     except KeyboardInterrupt:
         if watch.plan is None or out is None:
             raise
-        explain(out / PLAN, "interrupted")
+        ended(out, "interrupted")
         return INTERRUPTED, f"plan-cutters: interrupted; the plan is in {out}, not all models are"
     finally:
         watch.end()
@@ -122,18 +122,18 @@ class Onlooker:
             self.display.clear()
 
 
-def without_models(ended: Unfinished, given: dict[str, Any]) -> int:
+def without_models(stopped: Unfinished, given: dict[str, Any]) -> int:
     """The plan was safe when the process that made it was ended: say what is missing; its exit code stands."""
     from plan_cutters.report import PLAN, file_name
-    from plan_cutters.report.to_json import explain
+    from plan_cutters.report.folder import ended
 
-    path = ended.out / PLAN
-    missing = ", ".join(map(file_name, explain(path, str(ended)))) or "a model"
-    terminal.error(f"plan-cutters: {missing} in {ended.out}: not written: {ended}")
+    path = stopped.out / PLAN
+    missing = ", ".join(map(file_name, ended(stopped.out, str(stopped)))) or "a model"
+    terminal.error(f"plan-cutters: {missing} in {stopped.out}: not written: {stopped}")
     if given["json_out"] == "-" and path.is_file():
         terminal.hand_out(path.read_text(encoding="utf-8"))
-    left = given["parts"][ended.parts :]
-    if left and ended.code != INTERRUPTED:
+    left = given["parts"][stopped.parts :]
+    if left and stopped.code != INTERRUPTED:
         terminal.error(f"plan-cutters: not planned: {', '.join(left)}")
-        return max(ended.code, UNREADABLE)
-    return ended.code
+        return max(stopped.code, UNREADABLE)
+    return stopped.code

@@ -348,4 +348,9 @@ class _Watch:
     def clear(self) -> None:
         """Take away what the child had begun to write and not given to the output."""
         for folder in self.staging:
-            shutil.rmtree(Path(folder), ignore_errors=True)
+            from plan_cutters.files.lock import sweep
+
+            if folder.endswith(".lock"):
+                sweep(Path(folder))
+            else:
+                shutil.rmtree(Path(folder), ignore_errors=True)

@@ -65,6 +65,7 @@ class Effective(Frozen):
     flip: bool
     area_budget: int = Field(description="contacts that may be added between the samples")
     posture_maps: bool
+    map_budget: int | None = Field(default=None, description="samples to map, at most; null: what some minutes allow")
     answers: list[str] = Field(default=[], description="what was asked for after the plan")
     length_over_radius: float = Field(default=10.0, description="of the ends whose largest radius is asked for")
 

@@ -91,6 +91,7 @@ def plan_of(
             flip=options.flip,
             area_budget=options.contacts_between(len(samples)),
             posture_maps=options.posture_maps,
+            map_budget=options.map_budget,
             answers=list(options.answers),
             length_over_radius=options.length_over_radius,
         ),

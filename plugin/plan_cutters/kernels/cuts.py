@@ -24,7 +24,7 @@ class Room(NamedTuple):
     """Room to work in: corner (3, 3), first and second (8, 3) polygons, a body, ranges (64, 2) of tilts, arcs (ARCS, 2).
 
     In lanes, as in `planes`: a triangle, boxes or triangles turned, ends, what is clear, by how much ends move. Parts (64, 3, 3)
-    of a triangle, and how often each was cut.
+    of a triangle, and how often each was cut. `spent` (1,) counts how often a triangle was looked at: the work that it took.
     """
 
     corner: Any
@@ -40,6 +40,7 @@ class Room(NamedTuple):
     moves: Any
     parts: Any
     times: Any
+    spent: Any
     scratch: Scratch
 
 
@@ -49,7 +50,7 @@ def room_to_cut():  # type: ignore[no-untyped-def]
     return Room(
         np.empty((3, 3)), np.empty((8, 3)), np.empty((8, 3)), np.empty(BODY), np.empty((64, 2)), np.empty((ARCS, 2)),
         np.empty((11, LANES)), np.empty((BOXES, LANES)), np.empty((ENDS, LANES)), np.empty(LANES), np.empty(LANES),
-        np.empty((64, 3, 3)), np.empty(64, np.int64), scratch(),
+        np.empty((64, 3, 3)), np.empty(64, np.int64), np.zeros(1, np.int64), scratch(),
     )  # fmt: skip
 
 
@@ -120,6 +121,7 @@ def _fill(seen, corner):  # type: ignore[no-untyped-def]
 @kernel
 def _out(corner, ca, sa, cb, sb, turning, k, room):  # type: ignore[no-untyped-def]
     """Whether a triangle, rows (x, z, y) from the centre, is shown to stay out of piece k at all tilts of a gap."""
+    room.spent[0] += 1
     if (turning.eight >> k) & 1:
         return _passes(corner, ca, sa, cb, sb, flutes(turning, k), room.first, room.second)
     _fill(room.seen, corner)
@@ -152,6 +154,7 @@ def _out_in_parts(corner, ca, sa, cb, sb, turning, k, room):  # type: ignore[no-
     all_ends(room.end, ca, sa, cb, sb)
     while top > 0:
         top -= 1
+        room.spent[0] += 1
         cut = times[top] + 1
         _quarters(parts[top], seen)
         if triangles_clear(seen, room.end, turning, k, room.clear):
@@ -179,6 +182,7 @@ def _out_in_parts(corner, ca, sa, cb, sb, turning, k, room):  # type: ignore[no-
 @kernel
 def _in_the_way(vertex, i, frame, tilt, turning, k, room):  # type: ignore[no-untyped-def]
     """Whether a triangle reaches into piece k at a tilt."""
+    room.spent[0] += 1
     stand(room.body, frame, np.cos(tilt), np.sin(tilt), turning.offset, 0.0)
     return triangle_hit(vertex, i, room.body, turning.piece, 1 << k, 0.0, room.scratch)[0] >= 0
 
@@ -195,6 +199,7 @@ def _first_in_the_way(vertex, i, frame, a, b, sign, narrowest, turning, k, room)
     top = 1
     while top > 0:
         top -= 1
+        room.spent[0] += 1
         first, last = ranges[top, 0], ranges[top, 1]
         if not eight and _in_the_way(vertex, i, frame, first if sign > 0.0 else last, turning, k, room):
             return first if sign > 0.0 else last
@@ -227,6 +232,7 @@ def _shrink_in_lanes(corner, gap, g, sign, narrowest, turning, k, room):  # type
     while passed - failed > narrowest:
         if passed == np.inf and failed >= width - narrowest:
             return np.inf, width
+        room.spent[0] += 1
         low, high = failed, passed
         for lane in range(LANES):
             if passed < np.inf:
@@ -269,6 +275,7 @@ def _shrink(corner, gap, g, sign, narrowest, turning, k, room):  # type: ignore[
             move = min(2.0 * failed, width - narrowest)
         if move <= failed or move >= width:
             return np.inf, width
+        room.spent[0] += 1
         end = gap[g, FIRST] + move if sign > 0.0 else gap[g, LAST] - move
         c, s = np.cos(end), np.sin(end)
         if sign > 0.0:

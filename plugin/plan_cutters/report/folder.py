@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from cad_io.errors import CadIoError
 from plan_cutters.errors import OptionError, PlanError
+from plan_cutters.files.lock import Lock
 
 if TYPE_CHECKING:
     # What formats there are is asked before anything heavy is loaded.
@@ -55,16 +56,18 @@ def read_formats(text: str) -> tuple[str, ...]:
 class Staging:
     """A folder beside the output in which files grow; each appears in the output whole, or not at all.
 
+    As long as it is there, no other run writes into the output.
+
     Parameters
     ----------
     out : Path
     named : callable, optional
-        Told the folder before it exists, so that whoever ends this process at any moment can take it away.
+        Told the folder and the lock before they exist, so that whoever ends this process at any moment can take them away.
 
     Raises
     ------
     PlanError
-        At the start if the output can surely not be written: before the work, not after it.
+        At the start if the output can surely not be written, or another run writes there: before the work, not after it.
     """
 
     def __init__(self, out: Path, named: Callable[[Path], None] = lambda _: None) -> None:
@@ -75,8 +78,13 @@ class Staging:
             if out.exists() and not out.is_dir():
                 raise PlanError("the output must be a folder, this is a file; give another with -o", file=str(out))
             out.absolute().parent.mkdir(parents=True, exist_ok=True)
+            self._lock = Lock(out, named)
+        except OSError as error:
+            raise _unwritable(out, error) from None
+        try:
             self.folder.mkdir(mode=0o700)
         except OSError as error:
+            self._lock.release()
             raise _unwritable(out, error) from None
 
     def __enter__(self) -> "Staging":
@@ -94,8 +102,9 @@ class Staging:
             raise _unwritable(self.out, error) from None
 
     def discard(self) -> None:
-        """Forget what has not appeared in the output."""
+        """Forget what has not appeared in the output, and let others write there."""
         shutil.rmtree(self.folder, ignore_errors=True)
+        self._lock.release()
 
 
 class Onlooker(Protocol):
@@ -191,18 +200,23 @@ def write_all(
                         write_plan(plan, staging.folder / PLAN)
                     except PlanError as error:
                         raise PlanError(error.cause, file=str(out / PLAN)) from None
-                    staging.publish(PLAN)
             return plan
+
+        def show() -> None:
+            if "json" in formats:
+                staging.publish(PLAN)
 
         try:
             for name in arrays:
                 write(name, None)
         except OSError as error:
             raise _unwritable(out, error) from None
+        document = put()
+        # All is on disk: from here on files only change their names, and no plan stands beside files that are not its own.
         _clear(out)
         for entry in files.values():
             staging.publish(entry.name)
-        document = put()
+        show()
         if onlooker:
             with clock.stage("show", shown=False):
                 onlooker.safe(document)
@@ -224,8 +238,10 @@ def write_all(
                     onlooker.failed(name, error)
             else:
                 del missing[name]
-                staging.publish(files[name].name)
             document = put()
+            if name in files:
+                staging.publish(files[name].name)
+            show()
     return document
 
 
@@ -246,15 +262,46 @@ def _cause(error: Exception) -> str:
 
 
 def _clear(out: Path) -> None:
-    """Remove what an earlier run of ours has surely written into the output: the plan there lists it as it is."""
+    """Remove what an earlier run of ours has surely written into the output: the plan there lists it as it is.
+
+    The plan goes first: it must not name files that are gone, or others of the same names.
+    """
     from plan_cutters.report.to_json import listed
 
-    for name, checksum in listed(out / PLAN).items():
+    before = listed(out / PLAN)
+    if before is None:
+        return
+    ours = []
+    for name, checksum in before.items():
         path = out / name
         if name in _names() and path.is_file() and not path.is_symlink():
             with suppress(OSError):  # it is named instead
                 if _sha256(path) == checksum:
-                    path.unlink()
+                    ours.append(path)
+    try:
+        (out / PLAN).unlink()
+    except OSError as error:
+        raise _unwritable(out, error) from None
+    for path in ours:
+        with suppress(OSError):
+            path.unlink()
+
+
+def ended(out: Path, cause: str) -> tuple[str, ...]:
+    """Say in the plan of a run that was ended why its pending files were never written; their formats.
+
+    None where another run writes there by now.
+    """
+    from plan_cutters.report.to_json import explain
+
+    try:
+        lock = Lock(out)
+    except (OSError, PlanError):
+        return ()
+    try:
+        return explain(out / PLAN, cause)
+    finally:
+        lock.release()
 
 
 def left_over(out: Path, plan: "Plan", formats: Collection[str]) -> list[str]:

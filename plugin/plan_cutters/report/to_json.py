@@ -40,15 +40,15 @@ def write_plan(plan: Plan, path: Path) -> None:
         raise PlanError(f"cannot write the plan ({error.strerror})", file=str(path)) from None
 
 
-def listed(path: Path) -> dict[str, str]:
-    """Names and checksums of the files that a plan file of any version lists; none if it is no such file."""
+def listed(path: Path) -> dict[str, str] | None:
+    """Names and checksums of the files that a plan file of any version lists; None if it is no such file."""
     try:
         plan = json.loads(path.read_text(encoding="utf-8"))
         if plan["format"] == "plan-cutters-plan":
             return {str(entry["name"]): str(entry["sha256"]) for entry in plan["files"].values()}
     except (OSError, ValueError, LookupError, TypeError, AttributeError):
         pass
-    return {}
+    return None
 
 
 def explain(path: Path, cause: str) -> tuple[str, ...]:

@@ -64,12 +64,13 @@ def write_postures(result: Any, _split: object, path: Path) -> None:
 
     Whatever the machine: `PostureMaps.load` reads it, and `within` answers for another machine or setup.
     """
-    maps, name = result.maps, result.shown
-    about = {"format": "plan-cutters-postures", "version": 1, "cutter": maps.cutter, "part": maps.part, "tilt": maps.tilt,
-             "tolerance": maps.tolerance}  # fmt: skip
+    maps = result.maps
+    name = maps.cutter
+    about = {"format": "plan-cutters-postures", "version": 2, "cutter": name, "part": maps.part, "tilt": maps.tilt,
+             "tolerance": maps.tolerance, "question": dict(maps.about)}  # fmt: skip
     _write({"about": np.array(json.dumps(about)), "rotation": maps.rotations, "normal": maps.normal,
-            "direction_max": maps.direction_max, f"offset_{name}": maps.offset, f"free_{name}": maps.free,
-            f"undecided_{name}": maps.undecided, f"verdict_{name}": maps.verdict,
+            "direction_max": maps.direction_max, "inside": maps.inside, f"offset_{name}": maps.offset,
+            f"free_{name}": maps.free, f"undecided_{name}": maps.undecided, f"verdict_{name}": maps.verdict,
             f"reason_{name}": maps.reason}, path)  # fmt: skip
 
 

@@ -1,24 +1,25 @@
 """Every free tilt of every sample at every rotation, with certified ends."""
 
-import json
 import os
-import zipfile
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cad_io import Part
 from cad_io.arrays import Floats, Record, SurfaceSamples
 from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement, frame_of
 from plan_cutters.domain.posture import lean
 from plan_cutters.domain.verdicts import INACCESSIBLE, INTERFERENCE_FREE, REASONS, UNDECIDED, UNJUDGED, Reach, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.kernels.rows import Ranges
-from plan_cutters.options import machine_given
+from plan_cutters.options import Options, machine_given
 from plan_cutters.scene.conditions import (
     Conditions,
     contacts_of,
@@ -27,7 +28,11 @@ from plan_cutters.scene.conditions import (
     rotary_of,
     tool_of,
 )
+from plan_cutters.scene.obstacles import Obstacles
+from plan_cutters.scene.question import checksum, refuse_others, require_side, setup_of, turns_of, words_of
 from plan_cutters.scene.threads import Progress, in_chunks
+from plan_cutters.stages.map_budget import chosen
+from plan_cutters.stages.map_file import arrays_of, require
 
 #: Ends are certified to this, rad; where that cannot be, the band left is counted as undecided.
 NARROWEST = np.radians(0.1)
@@ -63,8 +68,17 @@ class PostureMaps(Record):
         Its id.
     part : str
         SHA-256 of the part's file; empty where it was no file.
+    inside : (n,) bool, optional
+        Samples that lie inside another body of the part: no surface of the finished part. Empty: none.
+    about : mapping
+        What was asked, as `scene.question.question` writes it; empty where that is not known.
 
-    They hold for any machine and setup: the part's free postures depend on neither.
+    They hold for any machine, and for any setup that turns no side of an open face: the part's free postures depend on neither.
+
+    Raises
+    ------
+    OptionError
+        An array is of the wrong kind or shape, or holds what cannot be; it names array and row.
     """
 
     rotations: Floats
@@ -79,6 +93,29 @@ class PostureMaps(Record):
     tolerance: float
     cutter: str
     part: str
+    inside: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, bool))
+    about: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if isinstance(self.inside, np.ndarray) and not self.inside.size:
+            object.__setattr__(self, "inside", np.zeros(np.shape(self.verdict)[:1], bool))
+        require(self)
+        # Compiled code believes what was checked: nobody is to change it afterwards.
+        for word in (
+            "rotations",
+            "offset",
+            "free",
+            "undecided",
+            "normal",
+            "direction_max",
+            "verdict",
+            "reason",
+            "inside",
+        ):
+            if getattr(self, word).flags.writeable:
+                kept = getattr(self, word).copy()
+                kept.flags.writeable = False
+                object.__setattr__(self, word, kept)
 
     def within(
         self, machine: Any = None, setup: Any = (0.0, 0.0, 1.0), *, tilt: tuple[float, float] | None = None,
@@ -108,16 +145,9 @@ class PostureMaps(Record):
         Raises
         ------
         OptionError
-            A range lies beyond that of the maps, or the machine has fewer than two rotary axes: it needs other rotations.
+            A range lies beyond that of the maps; the machine has fewer than two rotary axes, so that it needs other rotations;
+            or the setup would turn the side of open faces.
         """
-        from plan_cutters.kernels.mask import mask
-
-        machine, place = machine_given(machine), Placement(setup, x)
-        axis = np.array(place.z)
-        frame = frame_of(axis, None if place.x is None else np.array(place.x))
-        if machine.turns and len(machine.rotary) < 2:
-            raise OptionError(f"posture maps say nothing of {machine.name}: with fewer than two rotary axes each sample needs "
-                              "rotations of its own; plan the part with it")  # fmt: skip
         low, high = self.tilt if tilt is None else tilt
         if not self.tilt[0] - _END <= low <= high <= self.tilt[1] + _END:
             raise OptionError("the tilts asked for lie beyond those of the posture maps")
@@ -127,6 +157,73 @@ class PostureMaps(Record):
             turns = turns[(self.rotations >= first - _END) & (self.rotations <= last + _END)]
         if not len(turns):
             raise OptionError("the posture maps have none of the rotations asked for")
+        return self._laid(machine_given(machine), Placement(setup, x), turns, (low, high), jobs)
+
+    def asked(self, part: str | os.PathLike[str] | Part | None = None, **options: Any) -> Reach:
+        """What a plan with these options would find, as far as the maps tell.
+
+        Parameters
+        ----------
+        part : path or Part, optional
+            The maps must be of it; not looked at by default.
+        **options
+            As for `plan`. What is not given means what the maps were made with.
+
+        Returns
+        -------
+        Reach
+            As `within` gives it.
+
+        Raises
+        ------
+        OptionError
+            The maps are of another part, or do not answer an option, which it names.
+        """
+        asked, given = Options.of(options), set(options)
+        if part is not None and (not self.part or checksum(part) != self.part):
+            name = getattr(part, "file", None) if isinstance(part, Part) else os.fspath(part)
+            raise OptionError(f"these maps are of another part than {Path(name or 'this one').name}: plan again")
+        refuse_others(self.about, asked, given, self.cutter)
+        low, high = asked.tilt if "tilt" in given else self.tilt
+        if not self.tilt[0] - _END <= low <= high <= self.tilt[1] + _END:
+            ends = ":".join(f"{np.degrees(end):.6g}" for end in self.tilt)
+            raise OptionError(f"these maps are of tilts {ends} deg, not "
+                              f"{np.degrees(low):.6g}:{np.degrees(high):.6g}: plan again")  # fmt: skip
+        turns = turns_of(self.about, self.rotations, asked, given)
+        place = asked.placement or Placement(asked.setup)
+        if not {"setup", "placement"} & given:
+            place = setup_of(self.about)
+        return self._laid(asked.machine, place, turns, (max(low, self.tilt[0]), min(high, self.tilt[1])), asked.jobs)
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """Obstacles that are missing or only guessed: while there are some, what is reached is so but for them."""
+        return words_of(self.about, "missing")
+
+    @property
+    def unmapped(self) -> int:
+        """Judged samples that were left out: they are undecided at every tilt."""
+        found = self.about.get("unmapped", 0)
+        return found if type(found) is int else 0
+
+    @property
+    def finished(self) -> NDArray[np.bool_]:
+        """Judged samples (n,) of the finished part's surface."""
+        return np.asarray((self.verdict != UNJUDGED) & ~self.inside)
+
+    def _laid(
+        self, machine: Machine, place: Placement, turns: NDArray[np.int64], tilt: tuple[float, float], jobs: int
+    ) -> Reach:
+        """What is reached with a machine at some of the rotations, by their numbers, and tilts."""
+        from plan_cutters.kernels.limits import any_axis
+        from plan_cutters.kernels.mask import mask
+
+        if machine.turns and len(machine.rotary) < 2:
+            raise OptionError(f"posture maps say nothing of {machine.name}: with fewer than two rotary axes each sample needs "
+                              "rotations of its own; plan the part with it")  # fmt: skip
+        require_side(self.about, place.z)
+        axis, (low, high) = np.array(place.z), tilt
+        frame = frame_of(axis, None if place.x is None else np.array(place.x))
         rotary = rotary_of(machine.kinematics(frame))
         ranges = Ranges(np.cos(self.rotations), np.sin(self.rotations), low, high, axis, machine.limit_cos, rotary)
         reach = blank(len(self.verdict))
@@ -145,6 +242,12 @@ class PostureMaps(Record):
             reach.tilt[upright], reach.rotation[upright] = 0.0, 0
         axis_lost = judged & ~lost & np.isin(reach.verdict, (INACCESSIBLE, UNDECIDED))
         reach.reason[axis_lost] = REASONS.index("axis_limit")
+        # What is in doubt without a machine is so with any that holds some posture there.
+        doubt, held = axis_lost & (self.verdict == UNDECIDED), np.zeros(len(self.verdict), bool)
+        few = ranges._replace(rotation_cos=ranges.rotation_cos[turns], rotation_sin=ranges.rotation_sin[turns])
+        any_axis(np.flatnonzero(doubt), self.normal, self.direction_max, few, low, high, held)
+        doubt &= held
+        reach.verdict[doubt], reach.reason[doubt] = UNDECIDED, self.reason[doubt]
         return reach
 
     def held(self, conditions: Conditions) -> "PostureMaps":
@@ -174,33 +277,28 @@ class PostureMaps(Record):
         Raises
         ------
         OptionError
-            The file is none, or is damaged.
+            The file is none, is damaged or was made by an earlier version; it names array and row.
         """
-        name = Path(path).name
         try:
-            with np.load(path, allow_pickle=False) as arrays:
-                about = json.loads(str(arrays["about"].reshape(-1)[0]))
-                cutter = about["cutter"]
-                own = {
-                    word: arrays[f"{word}_{cutter}"] for word in ("offset", "free", "undecided", "verdict", "reason")
-                }
-                low, high = (float(end) for end in about["tilt"])
-                return cls(arrays["rotation"], own["offset"], own["free"], own["undecided"], arrays["normal"],
-                           arrays["direction_max"], own["verdict"], own["reason"], (low, high), float(about["tolerance"]),
-                           str(cutter), str(about["part"]))  # fmt: skip
-        except OSError as error:
-            raise OptionError(f"cannot be read: {error.strerror or 'no archive of arrays'}", file=name) from None
-        except (ValueError, LookupError, TypeError, zipfile.BadZipFile, EOFError):
+            return cls(**arrays_of(path))
+        except OptionError as error:
+            if error.file:
+                raise
+            cause = error.cause.removeprefix("these are no posture maps: ")
             raise OptionError(
-                "holds no posture maps, or is damaged: write it again with --posture-maps", file=name
+                f"holds no posture maps, or is damaged ({cause}): write it again", file=Path(path).name
             ) from None
 
 
 def posture_maps(
     samples: SurfaceSamples, cutter: Cutter, conditions: Conditions, reach: Reach, *, part: str = "",
+    inside: NDArray[np.bool_] | None = None, about: Mapping[str, Any] | None = None, most: int | None = None,
     progress: Progress | None = None,
 ) -> PostureMaps:  # fmt: skip
-    """Find the free tilts of all judged samples, whatever the machine; the others have none.
+    """Find the free tilts of judged samples, whatever the machine; the others have none.
+
+    Of samples that are more than the work is worth, as many as that allows, evenly spread: of the others, every tilt is undecided
+    and `about["unmapped"]` says how many there are. The same samples get the same maps whatever the machine's speed.
 
     Parameters
     ----------
@@ -211,47 +309,71 @@ def posture_maps(
         What the cutter reaches without a machine.
     part : str
         SHA-256 of the part's file.
+    inside : (n,) bool, optional
+        Samples that lie inside another body of the part.
+    about : mapping, optional
+        What was asked, as `scene.question.question` writes it.
+    most : int, optional
+        Samples to map, at most. None: as many as take `map_budget.WORK`.
     progress : callable, optional
         Told how many pieces of the work are done, of how many.
     """
     from plan_cutters.kernels.free_map import free_map
 
     conditions = conditions.machineless
-    rotations, ranges, obstacles = conditions.postures.rotations, conditions.ranges, conditions.obstacles
-    tree, wide, light = obstacles.tree, obstacles.wide_tree, conditions.light(cutter)
-    tool = tool_of(light)
+    rotations, ranges, light = conditions.postures.rotations, conditions.ranges, conditions.light(cutter)
+    may_be, surely, tool = conditions.obstacles, conditions.around.surely, tool_of(light)
     contacts = contacts_of(samples)
     n, k = len(samples), len(rotations)
     count = np.zeros((n, k), np.int32)
     undecided = np.zeros((n, k), np.float32)
     free: dict[int, Floats] = {}
 
-    def work(rows: NDArray[np.int64]) -> None:
-        # Room for the most intervals only while a piece is worked on: memory grows with what is found.
+    def mapped(rows: NDArray[np.int64], obstacles: Obstacles) -> tuple[Floats, NDArray[np.int32], Floats, int]:
         part = np.empty((len(rows), k, _ROOM, 2))
         mine, unsure = np.empty((len(rows), k), np.int32), np.empty((len(rows), k))
-        free_map(rows, contacts, ranges, tool, NARROWEST, tree, wide, _ROOM, part, mine, unsure)
+        tree, wide = obstacles.tree, obstacles.wide_tree
+        looked = free_map(rows, contacts, ranges, tool, NARROWEST, tree, wide, _ROOM, part, mine, unsure)
+        if obstacles.solids.cell.size:
+            _leave_bodies(samples, rows, light, conditions, part, mine, surely=obstacles is not may_be)
+        return part, mine, unsure, looked
+
+    def work(rows: NDArray[np.int64]) -> None:
+        # Room for the most intervals only while a piece is worked on: memory grows with what is found.
+        part, mine, unsure, _ = mapped(rows, may_be)
+        if surely is not may_be:
+            # What is only perhaps in the way forbids nothing for sure.
+            perhaps, few, more, _ = mapped(rows, surely)
+            unsure = np.maximum(unsure, _width(perhaps, few) + more - _width(part, mine))
         count[rows], undecided[rows] = mine, unsure
-        if conditions.obstacles.solids.cell.size:
-            _leave_bodies(samples, rows, light, conditions, part, mine)
-            count[rows] = mine
         free[int(rows[0])] = part[np.arange(_ROOM) < mine[..., None]]
 
     judged = np.flatnonzero(samples.unjudged < 0)
     require_finite(contacts, judged)
-    in_chunks(work, judged, conditions.jobs, progress)
+    rows = chosen(judged, most, lambda piece: mapped(piece, may_be)[3], conditions.jobs)
+    in_chunks(work, rows, conditions.jobs, progress)
+    left = np.setdiff1d(judged, rows)
+    undecided[left] = conditions.postures.tilt[1] - conditions.postures.tilt[0]
+    known = {**(about or {}), **({"unmapped": len(left)} if len(left) else {})}
     pieces = [free[first] for first in sorted(free)]
     offset = np.concatenate([[0], np.cumsum(count.ravel(), dtype=np.int64)])
     return PostureMaps(rotations, offset, np.concatenate([np.zeros((0, 2)), *pieces]), undecided, samples.normal,
                        samples.direction_max, reach.verdict, reach.reason, conditions.postures.tilt, conditions.tolerance,
-                       cutter.id, part)  # fmt: skip
+                       cutter.id, part, np.zeros(0, bool) if inside is None else inside, known)  # fmt: skip
+
+
+def _width(part: Floats, count: NDArray[np.int32]) -> Floats:
+    """Width (m, k) of intervals (m, k, room, 2), of each cell so many, rad."""
+    # What lies beyond the count was never written.
+    there = np.arange(_ROOM) < count[..., None]
+    return np.asarray(np.subtract(part[..., 1], part[..., 0], out=np.zeros(there.shape), where=there).sum(axis=-1))
 
 
 def _leave_bodies(
     samples: SurfaceSamples, rows: NDArray[np.int64], light: Assembly, conditions: Conditions, part: Floats,
-    count: NDArray[np.int32],
+    count: NDArray[np.int32], *, surely: bool = False,
 ) -> None:  # fmt: skip
-    """Take out intervals (m, k, room, 2) in which the cutter lies within a body.
+    """Take out intervals (m, k, room, 2) in which the cutter lies within a body, or may; or only where it surely does.
 
     Between the ends of an interval the cutter touches no skin, so it lies within a body all along or nowhere.
     """
@@ -259,12 +381,14 @@ def _leave_bodies(
     at = np.argwhere(np.arange(_ROOM) < count[..., None])
     row, turn = rows[at[:, 0]], rotations[at[:, 1]]
     tilt = part[at[:, 0], at[:, 1], at[:, 2]].mean(axis=1)
-    inside = conditions.obstacles.holds(
+    obstacles = conditions.around.surely if surely else conditions.obstacles
+    inside = obstacles.holds(
         light,
         samples.point[row],
         samples.normal[row],
         lean(samples.normal[row], samples.direction_max[row], turn),
         tilt,
+        surely=surely,
     )
     for i, j in np.unique(at[inside, :2], axis=0).tolist():
         mine = (at[:, 0] == i) & (at[:, 1] == j)

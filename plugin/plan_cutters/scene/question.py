@@ -1,0 +1,345 @@
+"""What verdicts depend on, written beside them; and whether what is asked later is the same question.
+
+An answer that is stored is one to the question that it was found for. What a machine, a setup or a narrower range of postures
+changes can be found from the maps; what anything else changes cannot, so it is refused by its name.
+"""
+
+import dataclasses
+import hashlib
+import json
+import math
+from collections.abc import Callable, Collection, Mapping
+from typing import Any
+
+import numpy as np
+
+from cad_io import Part
+from cad_io.part.orient import orient
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.holder import Holder
+from plan_cutters.domain.placement import Placement
+from plan_cutters.domain.posture import PostureRange
+from plan_cutters.errors import OptionError
+from plan_cutters.options import Options
+from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.scene import Scene
+
+#: Of the method: raised by one whenever the same question may get another verdict.
+METHOD = 2
+
+#: Options that maps answer, whatever they were made with; of the last three, what lies within theirs.
+ANSWERED = frozenset({"machine", "setup", "placement", "tilt", "rotation", "rotation_step"})
+#: Options that change nothing that maps say.
+IRRELEVANT = frozenset({"jobs", "area_budget", "length_over_radius"})
+#: Options that ask for what maps do not hold.
+BEYOND = frozenset({"other_setups", "other_placements", "answers", "posture_maps", "map_budget"})
+
+_WORDS = {"libraries": "--cutters", "cutters": "--cutter", "fixtures": "--fixture", "other_setups": "a second --setup"}
+_TOLERATED = 1e-9
+_UNSAID = "these maps do not say what they were made for: write them again with --posture-maps"
+
+
+def question(ready: Prepared, cutter: Cutter) -> dict[str, Any]:
+    """What the verdicts of a cutter depend on, as JSON has it; lengths mm, angles rad.
+
+    Parameters
+    ----------
+    ready : Prepared
+    cutter : Cutter
+        As it was judged.
+    """
+    options, scene, chosen, around = ready.options, ready.scene, ready.chosen, ready.conditions.around
+    part = scene.part
+    return {
+        "method": METHOD,
+        "part": part.sha256 or "",
+        "unit": part.unit,
+        "faces": chosen.asked,
+        "targets": list(chosen.targets),
+        "clamped": [] if options.placement is None else list(options.placement.clamped),
+        "ignore": list(scene.ignore),
+        "ignored": list(scene.ignored),
+        "flip": scene.flip,
+        "setup": list(scene.setup),
+        "x": None if options.placement is None or options.placement.x is None else list(options.placement.x),
+        "sides_follow_setup": _sides_follow(scene),
+        "fixtures": [
+            _fixture(each.fixture, None if each.source is None else each.source.sha256) for each in around.fixtures
+        ],
+        "tolerance": scene.asked,
+        "tolerance_kept": scene.tolerance,
+        "chord_error": around.surely.triangles.chord_error,
+        "tool": json.loads(json.dumps(dataclasses.asdict(cutter))),
+        "allowance": options.allowance,
+        "holder_clearance": options.holder_clearance,
+        "holder": None if options.holder is None else json.loads(json.dumps(dataclasses.asdict(options.holder))),
+        "tilt": list(options.postures.tilt),
+        "rotation": list(options.postures.rotation),
+        "rotation_step": options.postures.step,
+        "grid": options.grid,
+        "spacing": options.spacing,
+        "missing": _missing(ready),
+        "unjudged_faces": [f.id for f in part.faces if f.number in chosen.targets and f.unjudged],
+    }
+
+
+def refuse_others(about: Mapping[str, Any], options: Options, given: Collection[str], cutter: str) -> None:
+    """Refuse what posture maps cannot answer; what is not given means what they were made with.
+
+    Parameters
+    ----------
+    about : mapping
+        What `question` wrote.
+    options : Options
+    given : collection of str
+        The options that were asked for by their names: the others are left at their defaults.
+    cutter : str
+        Id of the one that the maps are of.
+
+    Raises
+    ------
+    OptionError
+        It names the option that differs.
+    """
+    if not about:
+        raise OptionError(_UNSAID)
+    if about.get("method") != METHOD:
+        raise OptionError("these maps were made by an earlier version, whose verdicts may differ: plan again")
+    try:
+        for word in sorted(given):
+            if word in ANSWERED or word in IRRELEVANT:
+                continue
+            if word not in _SAME:
+                raise OptionError(f"posture maps do not answer {_called(word)}: leave it out, or plan the part with it")
+            if fault := _SAME[word](about, options):
+                raise OptionError(f"these maps are of {fault}: plan again")
+        _places(about, options)
+        if ({"cutters", "libraries"} & set(given)) and cutter not in (ids := _ids(about, options, given)):
+            raise OptionError(
+                f"these maps are of cutter {cutter}, which was not asked for ({', '.join(ids[:3])}): plan again"
+            )
+    except (KeyError, TypeError, ValueError, AttributeError):
+        # The file was checked as arrays, not as words.
+        raise OptionError(_UNSAID) from None
+
+
+def turns_of(about: Mapping[str, Any], rotations: Any, options: Options, given: Collection[str]) -> Any:
+    """Which of the maps' rotations (k,) a plan with these options would look at; all where none of them was given.
+
+    Raises
+    ------
+    OptionError
+        It would look at others.
+    """
+    words = {"rotation", "rotation_step"} & set(given)
+    if not words:
+        return np.arange(len(rotations))
+    try:
+        ends = options.rotation if "rotation" in words else tuple(about["rotation"])
+        step = options.rotation_step if "rotation_step" in words else about["rotation_step"]
+        wanted = PostureRange(rotation=ends, step=step).rotations
+    except (KeyError, TypeError):
+        raise OptionError(_UNSAID) from None
+    found = np.abs(np.remainder(wanted[:, None] - rotations + math.pi, 2.0 * math.pi) - math.pi) <= _TOLERATED
+    if not found.any(axis=1).all():
+        missing = float(np.degrees(wanted[~found.any(axis=1)][0]))
+        raise OptionError(f"these maps have no rotation of {missing:.6g} deg, which was asked for with "
+                          f"{' and '.join(_called(each) for each in sorted(words))}: plan again")  # fmt: skip
+    return np.flatnonzero(found.any(axis=0))
+
+
+def require_side(about: Mapping[str, Any], setup: Any) -> None:
+    """Refuse a setup axis (3,) that may turn the side of open faces.
+
+    Raises
+    ------
+    OptionError
+    """
+    if not about.get("sides_follow_setup"):
+        return
+    own = setup_of(about).z
+    if math.dist(own, setup) > _TOLERATED:
+        axis = ",".join(f"{x:.4g}" for x in own)
+        raise OptionError(f"these maps are of a part with open faces, whose sides follow from the setup {axis}: give that "
+                          "as the setup, or plan again")  # fmt: skip
+
+
+def setup_of(about: Mapping[str, Any]) -> Placement:
+    """The setup's directions that maps were made with; the part's own Z where that is not said."""
+    try:
+        return Placement(about.get("setup", (0.0, 0.0, 1.0)), about.get("x"))
+    except (TypeError, ValueError):
+        raise OptionError(_UNSAID) from None
+
+
+def words_of(about: Mapping[str, Any], key: str) -> tuple[str, ...]:
+    """Texts that are stored under a key; none where there is none."""
+    found = about.get(key, ())
+    if not isinstance(found, list | tuple) or not all(isinstance(each, str) for each in found):
+        raise OptionError(_UNSAID)
+    return tuple(found)
+
+
+def checksum(part: Any) -> str:
+    """SHA-256 of a part's file.
+
+    Raises
+    ------
+    OptionError
+        It cannot be read.
+    """
+    if isinstance(part, Part):
+        return part.sha256 or ""
+    try:
+        with open(part, "rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except (OSError, ValueError) as error:
+        raise OptionError(f"cannot be read: {getattr(error, 'strerror', None) or error}", file=str(part)) from None
+
+
+def _called(word: str) -> str:
+    return _WORDS.get(word, f"--{word.replace('_', '-')}")
+
+
+def _sides_follow(scene: Scene) -> bool:
+    """Whether the setup decides the side of any face."""
+    if scene.orientation.confident:
+        return False
+    ways = [(sign * x, sign * y, sign * z) for sign in (1.0, -1.0) for x, y, z in np.eye(3).tolist()]
+    return any((orient(scene.part, towards=way, flip=scene.flip).sign != scene.orientation.sign).any() for way in ways)
+
+
+def _missing(ready: Prepared) -> list[str]:
+    """Obstacles that are missing or only guessed."""
+    around = ready.conditions.around
+    return [
+        *(f"F{number}: {why}" for number, why, _ in around.missing),
+        *(str(each) for each in around.lost),
+        *(f"{each.name} {face}: {why}" for each in around.fixtures for face, why, _ in each.missing),
+    ]
+
+
+def _fixture(fixture: Fixture, bytes_of: str | None) -> dict[str, Any]:
+    """A fixture by what it is made of: its words, or the bytes of its file."""
+    made: dict[str, Any] = {"placement": list(fixture.placement), "chord_error": fixture.chord_error}
+    if fixture.kind:
+        return made | {"kind": fixture.kind, "sizes": list(fixture.sizes)}
+    return made | {"sha256": bytes_of, "unit": fixture.unit}
+
+
+def _asked_fixture(fixture: Fixture) -> dict[str, Any]:
+    source, found = fixture.source, None
+    if isinstance(source, str) and not fixture.kind:
+        found = checksum(source)
+    elif not isinstance(source, str):
+        found = getattr(source, "sha256", None)
+    return _fixture(fixture, found)
+
+
+def _fixtures(about: Mapping[str, Any], options: Options) -> str:
+    stored, asked = about["fixtures"], [_asked_fixture(each) for each in options.fixtures]
+    key: Callable[[Any], str] = lambda each: json.dumps(each, sort_keys=True)  # noqa: E731
+    # What has no bytes, as an object of a CAD host, is the same as nothing else.
+    known = all(each.get("kind") or each.get("sha256") for each in (*stored, *asked))
+    if known and sorted(map(key, stored)) == sorted(map(key, asked)):
+        return ""
+    return f"other fixtures ({len(stored)}, {len(asked)} asked for)"
+
+
+def _selection(word: str, numbers: str) -> Callable[[Mapping[str, Any], Options], str]:
+    """Compares words for faces, and lists of their numbers."""
+
+    def differs(about: Mapping[str, Any], options: Options) -> str:
+        stored, asked = about[word], getattr(options, word)
+        texts = [asked] if isinstance(asked, str) else list(asked) if isinstance(asked, list | tuple) else [asked]
+        before = [stored] if isinstance(stored, str) else list(stored)
+        if all(isinstance(each, str) for each in texts):
+            if sorted(_plain(each) for each in texts) == sorted(_plain(each) for each in before):
+                return ""
+            listed = [_listed(each) for each in texts]
+        else:
+            listed = [{each} if type(each) is int else None for each in texts]
+        if all(each is not None for each in listed) and set().union(*listed) == set(about[numbers]):  # type: ignore[arg-type]
+            return ""
+        said = ", ".join(str(each) for each in texts)
+        return f"{word} {', '.join(before) or 'none'}, not {ascii(said)[1:-1][:60] or 'none'}"
+
+    return differs
+
+
+def _plain(text: str) -> str:
+    return "".join(text.split())
+
+
+def _listed(text: str) -> set[int] | None:
+    """Numbers of a text such as F1,F3-5; None for other words."""
+    found: set[int] = set()
+    for item in _plain(text).split(","):
+        ends = [end.lstrip("Ff") for end in item.split("-")]
+        if not 1 <= len(ends) <= 2 or not all(end.isdecimal() and len(end) < 6 for end in ends):
+            return None
+        found.update(range(int(ends[0]), int(ends[-1]) + 1))
+    return found
+
+
+def _number(word: str, unit: str = "") -> Callable[[Mapping[str, Any], Options], str]:
+    def differs(about: Mapping[str, Any], options: Options) -> str:
+        stored, asked = about[word], getattr(options, word)
+        if stored == asked:
+            return ""
+        said = ["as stated" if each is None and word == "unit" else "by default" if each is None else
+                f"{each:g}{unit}" if isinstance(each, float) else str(each) for each in (stored, asked)]  # fmt: skip
+        return f"{word.replace('_', ' ')} {said[0]}, not {said[1]}"
+
+    return differs
+
+
+def _holder(about: Mapping[str, Any], options: Options) -> str:
+    asked = None if options.holder is None else json.loads(json.dumps(dataclasses.asdict(options.holder)))
+    return "" if about["holder"] == asked else "another holder"
+
+
+#: By option: why an answer to it is none of these maps', or an empty text. Of cutters, see `_ids`.
+_SAME: dict[str, Callable[[Mapping[str, Any], Options], str]] = {
+    "cutters": lambda about, options: "",
+    "libraries": lambda about, options: "",
+    "holder": _holder,
+    "allowance": _number("allowance"),
+    "holder_clearance": _number("holder_clearance"),
+    "faces": _selection("faces", "targets"),
+    "ignore": _selection("ignore", "ignored"),
+    "grid": _number("grid"),
+    "spacing": _number("spacing"),
+    "tolerance": _number("tolerance"),
+    "flip": _number("flip"),
+    "unit": _number("unit"),
+    "fixtures": _fixtures,
+}
+COMPARED = frozenset(_SAME)
+
+
+def _places(about: Mapping[str, Any], options: Options) -> None:
+    """Of a setup file, what the maps depend on."""
+    place = options.placement
+    if place is not None:
+        if place.clamped and sorted(map(_plain, place.clamped)) != sorted(map(_plain, about["clamped"])):
+            raise OptionError(f"these maps are of clamped faces {', '.join(about['clamped']) or 'none'}, not "
+                              f"{', '.join(place.clamped)}: plan again")  # fmt: skip
+        if place.fixtures and (fault := _fixtures(about, options)):
+            raise OptionError(f"these maps are of {fault}: plan again")
+
+
+def _ids(about: Mapping[str, Any], options: Options, given: Collection[str]) -> list[str]:
+    """Ids of the cutters asked for, with the allowance, clearance and holder that the maps were made with, where not given."""
+    kept = {word: about[word] for word in ("allowance", "holder_clearance") if word not in given}
+    if "holder" not in given and about["holder"] is not None:
+        kept["holder"] = _made(about["holder"])
+    return [each.id for each in dataclasses.replace(options, **kept).judged]
+
+
+def _made(words: Mapping[str, Any]) -> Holder:
+    """The holder that was written by its numbers."""
+    from plan_cutters.domain.holder import Stage
+
+    return Holder(**{**words, "stages": tuple(Stage(**each) for each in words["stages"])})
