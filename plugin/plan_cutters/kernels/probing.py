@@ -153,42 +153,51 @@ def room_to_search():  # type: ignore[no-untyped-def]
 
 
 @kernel
-def permitted(contacts, row, ranges, rotation, tool, mode, f, intervals):  # type: ignore[no-untyped-def]
-    """Write the tilts of a lean direction f that the axis limit, the range asked for and the tool's own leave, and of these those
-    that local gouging leaves: (width of the first and how many they are, how many of the second).
+def permitted(contacts, row, ranges, tool, mode, f, intervals):  # type: ignore[no-untyped-def]
+    """Write the tilts of a lean direction f that the axis limit, the range asked for and the tool's own leave; their width, and
+    how many intervals they are.
     """
-    n = contacts.normal[row]
     low, high = max(ranges.tilt_low, tool.mode[mode, TILT_FROM]), min(ranges.tilt_high, tool.mode[mode, TILT_TO])
     if low > high:
-        return 0.0, 0, 0
-    count = held_tilts(n, f, ranges, low, high, intervals)
+        return 0.0, 0
+    count = held_tilts(contacts.normal[row], f, ranges, low, high, intervals)
     width = 0.0
     for i in range(count):
         width += intervals[i, 1] - intervals[i, 0]
-    cosine, sine = turn_of(n, contacts.direction_max[row], ranges, rotation)
+    return width, count
+
+
+@kernel
+def unbent(contacts, row, cosine, sine, tool, mode, bent, intervals, count):  # type: ignore[no-untyped-def]
+    """Leave of intervals, at a rotation's cosine and sine, the tilts at which curvature keeps surface and tool apart next to the
+    contact, or, if `bent`, the others; the new count.
+
+    These others gouge, but maybe no deeper than is allowed: the triangles tell (`docs/verdicts.md`).
+    """
     least, most = local_gouge(
         contacts.curvature[row, 0], contacts.curvature[row, 1], cosine, sine, tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE],
     )  # fmt: skip
     if np.isnan(least):
-        return width, count, 0
-    left = count
+        return count if bent else 0
+    if bent:
+        return remove(intervals, count, least if least > 0.0 else -1.0, most, NARROWEST)
     if least > 0.0:
-        left = remove(intervals, left, -1.0, least, 0.0)
-    if most < high:
-        left = remove(intervals, left, most, 4.0, 0.0)
-    return width, count, left
+        count = remove(intervals, count, -1.0, least, 0.0)
+    return remove(intervals, count, most, 4.0, 0.0)
 
 
 @kernel
-def allowed(contacts, row, ranges, rotation, tool, mode, room):  # type: ignore[no-untyped-def]
-    """Write the tilts of a rotation that axis limit and local gouging leave, and its frame; how many intervals they are.
+def allowed(contacts, row, ranges, rotation, tool, mode, bent, room):  # type: ignore[no-untyped-def]
+    """Write the tilts of a rotation that the axis limit leaves and curvature allows, or forbids if `bent`, and its frame; how
+    many intervals they are.
 
     What each of the two leaves is booked on it.
     """
     intervals, tally = room.intervals, room.tally
     cosine, sine = turn_of(contacts.normal[row], contacts.direction_max[row], ranges, rotation)
     lean_frame(contacts.direction_max[row], room.e2, cosine, sine, room.f, room.t)
-    width, before, count = permitted(contacts, row, ranges, rotation, tool, mode, room.f, intervals)
+    width, before = permitted(contacts, row, ranges, tool, mode, room.f, intervals)
+    count = unbent(contacts, row, cosine, sine, tool, mode, bent, intervals, before)
     tally[AXIS_LIMIT] += width + before * NARROWEST
     for i in range(count):
         tally[LOCAL_GOUGE] += intervals[i, 1] - intervals[i, 0] + NARROWEST

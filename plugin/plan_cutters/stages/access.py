@@ -109,11 +109,11 @@ def _for_fixtures(
 def _first_reasons(
     contacts: Contacts, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, reason: NDArray[np.uint8]
 ) -> None:
-    """Where the axis limit or local gouging alone leaves this cutter nothing, that is the reason."""
+    """Where the axis limit, or curvature at the contact, leaves this cutter nothing, the reason is its own."""
     from plan_cutters.kernels.search import first_reason
 
-    ranges, tool = conditions.ranges, tool_of(conditions.light(cutter))
-    in_chunks(lambda piece: first_reason(piece, contacts, ranges, tool, reason), rows, conditions.jobs)
+    ranges, tool, surely = conditions.ranges, tool_of(conditions.heavy(cutter)), conditions.around.surely.solids
+    in_chunks(lambda piece: first_reason(piece, contacts, ranges, tool, surely, reason), rows, conditions.jobs)
 
 
 #: Witnesses kept for each face and reason, and samples tried to find them, in all.
