@@ -219,7 +219,7 @@ def _judged(
     began = time.perf_counter()
     reach = judge(ready, cutter, known=handed(cutter, earlier, len(samples)), progress=tell)
     seconds = time.perf_counter() - began
-    found = witnesses(samples, reach, cutter, ready.conditions, buried=ready.buried)
+    found = witnesses(samples, reach, cutter, ready.conditions, buried=ready.buried, part=ready.scene.part)
     marched = march_differs(samples, convex, ready.region, reach.interference_free)
     around = ready.conditions.around
     return Judged(reach, cutter_entry(cutter, samples, reach, found, marched, seconds, part=ready.scene.part, around=around,

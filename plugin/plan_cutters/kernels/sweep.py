@@ -40,8 +40,8 @@ _KEPT, _POOL = 64, 128
 class Memory(NamedTuple):
     """What the sweeps before have met: points (rotations x modes, k, 3) that forbade tilts of each, and how many of each; the
     last points (3, m) that the tree gave, and the same as seen from the contact, along direction_max, e2 and the normal;
-    how deep each is in the tool (m,), and in which piece; how many the tree gave in all (1,). bent: of sweeps among the tilts that
-    curvature forbids.
+    how deep each is in the tool (m,), and in which piece; how many the tree gave in all (1,). bent: of sweeps among the tilts
+    that curvature forbids.
     """
 
     point: Any
@@ -255,17 +255,13 @@ def sweep_both(contacts, row, ranges, tool, solids, within, narrowest, starts, t
     The parameters are those of `sweep`, one of each kind; the two remember nothing of each other, so that a sample that needs the
     others moves no posture of the samples after it. Returns rotation and tilt, and the starts for the next sample.
     """
-    rotation, tilt = sweep(
-        contacts, row, ranges, tool, solids, within, narrowest, starts[0], turns, pasts[0], rooms[0]
-    )
+    rotation, tilt = sweep(contacts, row, ranges, tool, solids, within, narrowest, starts[0], turns, pasts[0], rooms[0])
     if rotation >= 0:
         return rotation, tilt, ((rotation, tilt), starts[1])
     if ranges.strict:
         rooms[1].tally[:] = 0.0
         return -1, 0.0, starts
-    rotation, tilt = sweep(
-        contacts, row, ranges, tool, solids, within, narrowest, starts[1], turns, pasts[1], rooms[1]
-    )
+    rotation, tilt = sweep(contacts, row, ranges, tool, solids, within, narrowest, starts[1], turns, pasts[1], rooms[1])
     if rotation >= 0:
         return rotation, tilt, (starts[0], (rotation, tilt))
     return -1, 0.0, starts
