@@ -175,7 +175,7 @@ def test_no_smaller_patch_is_served_where_none_is_said_to_be():
     for contacts, outlook in site.pools:
         rows = np.flatnonzero(outlook == NEVER)
         never += len(rows)
-        for smaller in (0.3, 0.1, 0.0625):
+        for smaller in (0.7, 0.5, 0.25):
             shrunk = replace(contacts, patch=smaller * contacts.patch)
             tensor = tensors(shrunk.normal, shrunk.direction_max, shrunk.curvature)
             again = _cover(shrunk, tensor, contacts.axis, contacts.flat, site, rows)

@@ -35,7 +35,7 @@ _MOST_TURN = 0.5
 #: Outlooks of a contact that is not known to serve its patch: most halvings that are told apart; none will do.
 MOST_HALVINGS, NEVER = 3, 255
 #: The smallest patch that is thought of, as a share of the one at hand.
-_SMALLEST = 1.0 / 16.0
+_SMALLEST = 1.0 / 4.0
 #: Row of a distance within which a sixth of the nodes lie.
 _HALF_WAY = 8
 #: Bodies of a patch: the whole, and pieces of it along the lean, 2, 6 and 18.
@@ -386,7 +386,7 @@ def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, outlook):  
         Face numbers of its triangles.
     outlook : (n,) uint8, written
         0: it does. 1 to MOST_HALVINGS: not known; how often the patch must be halved until it may, a guess that tells what to
-        try first. NEVER: it serves no smaller patch, either, down to a 16th, as far as the nodes tell of the surface.
+        try first. NEVER: it serves no smaller patch, either, down to a quarter of its size, as far as the nodes tell of the surface.
     """
     count = sweeping.tool.piece.shape[1]
     room = _Room(np.empty(3), np.empty(3), np.empty((_BODIES, BODY)), np.empty((_BODIES, count, COLUMNS)), np.empty(6), seen(),
