@@ -386,7 +386,7 @@ def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, outlook):  
         Face numbers of its triangles.
     outlook : (n,) uint8, written
         0: it does. 1 to MOST_HALVINGS: not known; how often the patch must be halved until it may, a guess that tells what to
-        try first. NEVER: it serves no smaller patch, either, down to a quarter of its size, as far as the nodes tell of the surface.
+        try first. NEVER: it serves no smaller patch, either, down to a quarter of its size, as far as the nodes tell.
     """
     count = sweeping.tool.piece.shape[1]
     room = _Room(np.empty(3), np.empty(3), np.empty((_BODIES, BODY)), np.empty((_BODIES, count, COLUMNS)), np.empty(6), seen(),
