@@ -168,19 +168,20 @@ def permitted(contacts, row, ranges, tool, mode, f, intervals):  # type: ignore[
 
 
 @kernel
-def unbent(contacts, row, cosine, sine, tool, mode, bent, intervals, count):  # type: ignore[no-untyped-def]
-    """Leave of intervals, at a rotation's cosine and sine, the tilts at which curvature keeps surface and tool apart next to the
-    contact, or, if `bent`, the others; the new count.
-
-    These others gouge, but maybe no deeper than is allowed: the triangles tell (`docs/verdicts.md`).
+def straight(contacts, row, cosine, sine, tool, mode):  # type: ignore[no-untyped-def]
+    """Tilts from and to, at a rotation's cosine and sine, at which curvature keeps surface and tool apart next to the contact;
+    nan if there are none.
     """
-    least, most = local_gouge(
+    return local_gouge(
         contacts.curvature[row, 0], contacts.curvature[row, 1], cosine, sine, tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE],
     )  # fmt: skip
+
+
+@kernel
+def kept_straight(least, most, intervals, count):  # type: ignore[no-untyped-def]
+    """Leave of intervals what `straight` gives; the new count."""
     if np.isnan(least):
-        return count if bent else 0
-    if bent:
-        return remove(intervals, count, least if least > 0.0 else -1.0, most, NARROWEST)
+        return 0
     if least > 0.0:
         count = remove(intervals, count, -1.0, least, 0.0)
     return remove(intervals, count, most, 4.0, 0.0)
@@ -188,17 +189,26 @@ def unbent(contacts, row, cosine, sine, tool, mode, bent, intervals, count):  # 
 
 @kernel
 def allowed(contacts, row, ranges, rotation, tool, mode, bent, room):  # type: ignore[no-untyped-def]
-    """Write the tilts of a rotation that the axis limit leaves and curvature allows, or forbids if `bent`, and its frame; how
+    """Write the tilts of a rotation that the axis limit leaves and curvature allows, or, if `bent`, forbids, and its frame; how
     many intervals they are.
 
-    What each of the two leaves is booked on it.
+    Those that it forbids gouge, but maybe no deeper than is allowed: the triangles tell (`docs/verdicts.md`). What each of the
+    two leaves is booked on it.
     """
     intervals, tally = room.intervals, room.tally
     cosine, sine = turn_of(contacts.normal[row], contacts.direction_max[row], ranges, rotation)
+    least, most = straight(contacts, row, cosine, sine, tool, mode)
+    if bent and least <= 0.0 and most >= np.pi:
+        return 0
     lean_frame(contacts.direction_max[row], room.e2, cosine, sine, room.f, room.t)
     width, before = permitted(contacts, row, ranges, tool, mode, room.f, intervals)
-    count = unbent(contacts, row, cosine, sine, tool, mode, bent, intervals, before)
     tally[AXIS_LIMIT] += width + before * NARROWEST
+    if not bent:
+        count = kept_straight(least, most, intervals, before)
+    elif np.isnan(least):
+        count = before
+    else:
+        count = remove(intervals, before, least if least > 0.0 else -1.0, most, NARROWEST)
     for i in range(count):
         tally[LOCAL_GOUGE] += intervals[i, 1] - intervals[i, 0] + NARROWEST
     return count

@@ -30,9 +30,10 @@ from plan_cutters.kernels.probing import (
     TILT_FROM,
     TILT_TO,
     inside,
+    kept_straight,
     permitted,
     room_to_search,
-    unbent,
+    straight,
 )
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.sweep import both, memory, sweep, sweep_both
@@ -206,7 +207,8 @@ def first_reason(rows, contacts, ranges, heavy, surely, reason):  # type: ignore
             for mode in range(modes):
                 _, count = permitted(contacts, row, ranges, heavy, mode, f, intervals)
                 axis_left = axis_left or count > 0
-                count = unbent(contacts, row, cosine, sine, heavy, mode, False, intervals, count)
+                least, most = straight(contacts, row, cosine, sine, heavy, mode)
+                count = kept_straight(least, most, intervals, count)
                 curvature_left = curvature_left or count > 0
             if curvature_left:
                 break
