@@ -107,7 +107,7 @@ def test_what_neither_proof_decides_is_undecided():
     assert witnesses
     rng = np.random.default_rng(0)
     for witness in witnesses:
-        points = in_fillet(radius, rng, 40_000)
+        points = in_fillet(radius, rng, 40_000, size=1.5)
         point = np.array(witness.point)
         normal = result.samples.normal[np.linalg.norm(result.samples.point - point, axis=1).argmin()]
         tip, (_, _, axis) = Reference(BALL).frame(point, normal, *leaning(normal, np.array(witness.best_posture.axis)))

@@ -184,7 +184,12 @@ def _witness(
         # Its axis lies within material: one that does not says more, if there is any.
         found = _least_depth(samples, row, cutter, conditions) or found
     best, low, high = found
-    met = deepest(part, obstacles, cutter, samples.point[row], samples.normal[row], best, low)
+    there = cutter, samples.point[row], samples.normal[row], best, low
+    met = deepest(part, obstacles, *there)
+    if reason == "fixture":
+        # The part may be as much in the way there: what is named is what would free the sample.
+        own = [deepest(None, each.obstacles, *there) for each in conditions.around.fixtures]
+        met = max((each for each in own if each is not None), key=lambda each: each.depth, default=met)
     return Witness(
         sample=row,
         reason=reason,
