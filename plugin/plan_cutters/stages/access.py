@@ -188,8 +188,8 @@ def _witness(
     met = deepest(part, obstacles, *there)
     if reason == "fixture":
         # The part may be as much in the way there: what is named is what would free the sample.
-        own = [deepest(None, each.obstacles, *there) for each in conditions.around.fixtures]
-        met = max((each for each in own if each is not None), key=lambda each: each.depth, default=met)
+        own = [(each.number, deepest(None, each.obstacles, *there)) for each in conditions.around.fixtures]
+        met = max((replace(it, face=n) for n, it in own if it is not None), key=lambda it: it.depth, default=met)
     return Witness(
         sample=row,
         reason=reason,
