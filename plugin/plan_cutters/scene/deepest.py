@@ -8,6 +8,7 @@ import numpy as np
 
 from cad_io import Part
 from cad_io.arrays import Floats, Record
+from cad_io.errors import SampleError
 from cad_io.sample import foot_on
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.cutter import Cutter
@@ -151,7 +152,10 @@ def _foot(
     part: Part, face: int, point: Floats, size: float, within: float, depth: Callable[[Floats], Floats]
 ) -> Floats | None:
     """The point of a face itself that is deepest in something, near a point of one of its triangles; None if it is not found."""
-    foot, trim = foot_on(part, face, point, within), part.trim(face)
+    try:
+        foot, trim = foot_on(part, face, point, within), part.trim(face)
+    except SampleError:
+        return None
     if foot is None or trim is None:
         return None
     surface, best, line = part.surface(face), np.array(foot), np.linspace(-1, 1, _SIDE_ON)
