@@ -77,7 +77,7 @@ def tool_map(rows, contacts, ranges, tool, narrowest, tree, part, count_out, und
             lean_frame(e1, e2, ranges.rotation_cos[rotation], ranges.rotation_sin[rotation], f, t)
             count, unsure, mine = 0, 0.0, part[place, rotation]
             for mode in range(len(tool.mode)):
-                _, _, left = permitted(contacts, row, ranges, rotation, tool, mode, f, intervals)
+                _, left = permitted(contacts, row, ranges, tool, mode, f, intervals)
                 for i in range(left):
                     done = divide(
                         Frame(p, n, f, t), intervals[i, 0], intervals[i, 1], tool, mode, narrowest, tree, work

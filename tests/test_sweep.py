@@ -103,7 +103,7 @@ def test_the_least_depth_is_that_of_a_grid(comb):
     short = []
     for row in lost[:: max(1, len(lost) // 12)]:
         one = Contacts(*(column[row : row + 1].copy() for column in contacts))
-        best, low, high = access._least_depth(one, 0, "collision", cutter, conditions)
+        best, low, high = access._least_depth(one, 0, cutter, conditions)
         assert low < high <= low * (1 + 2 * share)
         for depth, free in ((high * (1 + 1e-9), True), (low, False)):
             triangle = np.empty(1, np.int32)
@@ -152,10 +152,10 @@ def test_what_is_remembered_is_seen_from_the_contact_at_hand(given):
         return sweep.sweep(contact, 0, RANGES, tool, solids, 0.25, 1e-5, (0, -1.0), TURNS, past,
                            probing.room_to_search())  # fmt: skip
 
-    full = sweep.memory(TURNS, 1)
+    full = sweep.memory(TURNS, 1, False)
     full.given[0], full.pool[:] = given, 1e4
     rng = np.random.default_rng(0)
     full.seen[:] = rng.uniform([[-4], [-4], [0.1]], [[4], [4], [4]], full.seen.shape)
     rotation, tilt = swept(full)
-    assert (rotation, tilt) == swept(sweep.memory(TURNS, 1))
+    assert (rotation, tilt) == swept(sweep.memory(TURNS, 1, False))
     assert (rotation, tilt != np.pi / 4) == (0, True)

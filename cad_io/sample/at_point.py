@@ -79,6 +79,19 @@ def locate(
     )  # fmt: skip
 
 
+def foot_on(part: Part, face: int, point: Sequence[float] | Floats, within: float) -> tuple[float, float] | None:
+    """Parameters of the point of a trimmed face that is nearest to a place, None if none is within so many mm of it.
+
+    Raises
+    ------
+    SampleError
+        The kernel fails on the face.
+    """
+    with translated("projecting a point", error=SampleError, file=part.file, face=f"F{face}"):
+        found = _projected(part, face, np.asarray(point, float), within)
+    return None if found is None else found[1]
+
+
 def nearest(part: Part, point: Sequence[float], *, ignore: Container[int] = ()) -> tuple[Floats, float]:
     """The point (3,) of a part's faces that is nearest to a place, and its distance, mm.
 

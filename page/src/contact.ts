@@ -1,4 +1,4 @@
-// Where a tool stands when it touches at a posture, and what curvature alone forbids there.
+// Where a tool stands when it touches at a posture, and where the surface curves more than it there.
 
 import type { Cutter, Mode, Vec } from "./meta.ts";
 import { type Posture, type Sample, Samples } from "./samples.ts";
@@ -58,7 +58,7 @@ export function gougeBounds(
   return bound > 1 ? null : [Math.asin(bound), Math.PI - Math.asin(bound)];
 }
 
-/** Whether curvature alone forbids a posture. */
+/** Whether the surface curves more than the tool at a posture: then it gouges, however little. */
 export function gouges(cutter: Cutter, sample: Sample, posture: Posture): boolean {
   if (!Number.isFinite(sample.curvature[0]) || !Number.isFinite(sample.curvature[1])) return false;
   const mode = modeAt(cutter, posture.tilt);

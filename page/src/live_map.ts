@@ -81,8 +81,9 @@ export class Probe {
     const placed = place(tool.cutter, sample, posture);
     if (!this.machine.holds(placed.axis)) return { ...NOTHING, state: "axis_limit" };
     if (!modeAt(tool.cutter, posture.tilt)) return { ...NOTHING, state: "no_contact" };
-    if (gouges(tool.cutter, sample, posture)) return { ...NOTHING, state: "local_gouge" };
-    return this.obstacles(tool, sample, placed, thorough);
+    const met = this.obstacles(tool, sample, placed, thorough);
+    // What curvature forbids may still be no deeper than is allowed: then nothing is met.
+    return met.state === "rear_gouge" && gouges(tool.cutter, sample, posture) ? { ...met, state: "local_gouge" } : met;
   }
 
   /** What is in the way at a place, whatever the limits and the curvature. */

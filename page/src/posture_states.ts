@@ -104,7 +104,7 @@ export class SampleMap {
   /** A blocked posture that comes near to being free: of the last cause, the one that meets least. */
   nearest(): Posture | null {
     const { grid, app } = this;
-    const order: State[] = ["holder", "fixture", "shank", "neck", "collision", "rear_gouge"];
+    const order: State[] = ["holder", "fixture", "shank", "neck", "collision", "rear_gouge", "local_gouge"];
     for (const state of order) {
       const cells: Posture[] = [];
       grid.rotations.forEach((rotation, column) =>

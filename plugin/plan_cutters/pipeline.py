@@ -265,9 +265,9 @@ def _judged(
             explained = reasons.of(cutter, over, tell)
             reach = explained.reach
         with clock.stage(cutter.id, shown=False):
-            found = witnesses(samples, reach, cutter, ready.conditions, buried=ready.buried)
-            marched = march_differs(samples, convex, ready.region, mine.interference_free)
             slack, part = ready.conditions.light(cutter).slack, ready.scene.part
+            found = witnesses(samples, reach, cutter, ready.conditions, buried=ready.buried, part=part)
+            marched = march_differs(samples, convex, ready.region, mine.interference_free)
             entry = cutter_entry(cutter, samples, reach, found, marched, seconds[cutter], part=part, around=around, slack=slack,
                                  inside=inside, besides=explained.besides)  # fmt: skip
             judged[cutter] = Judged(reach, which, mine if elsewhere else reach, entry)

@@ -16,6 +16,7 @@ from plan_cutters.domain.stick_out import StickOut, floor_of, held, outline
 from plan_cutters.domain.verdicts import ACCESSIBLE, Reach, blank
 from plan_cutters.kernels.rows import Contacts, Tool
 from plan_cutters.scene.conditions import contacts_of, found_of, rotations_of, tool_of
+from plan_cutters.scene.deepest import deepest_on
 from plan_cutters.scene.prepared import Prepared
 from plan_cutters.scene.threads import CHUNK, in_chunks
 from plan_cutters.stages.judge import judge
@@ -26,9 +27,6 @@ EXACT, BEYOND = 0.005, 0.01
 _FIRST = 400
 #: Intervals of tilt narrower than this are passed over, rad: as in the search that judges.
 _NARROWEST = 1e-5
-
-#: Grids by which the deepest point of a triangle is found, each a fifth as wide as the one before.
-_CLOSER = 10
 
 Progress = Callable[[int, int], None]
 
@@ -84,7 +82,7 @@ def _limited(ready: Prepared, cutter: Cutter, search: "_Search", found: StickOut
     if triangle >= 0:
         light = ready.conditions.light(held(cutter, beyond))
         face = obstacles.face(triangle)
-        point = _deepest(
+        point = deepest_on(
             obstacles.tree.vertex[triangle],
             lambda at: light.depth(at, ready.samples.point[row], normal, posture.lean[row], float(posture.tilt[row])),
         )
@@ -92,18 +90,6 @@ def _limited(ready: Prepared, cutter: Cutter, search: "_Search", found: StickOut
     turn = float(rotations_of(samples.normal[one], samples.direction_max[one], posture.lean[one])[0])
     return replace(found, beyond=beyond, verdict=int(shorter.verdict[0]), sample=row, tilt=float(posture.tilt[row]),
                    rotation=turn, axis=axis, lean=posture.lean[row], obstacle_face=face, obstacle_point=point)  # fmt: skip
-
-
-def _deepest(triangle: Floats, depth: Callable[[Floats], Floats]) -> Floats:
-    """The point of a triangle that is deepest in something: the best of a grid, and of grids about that one, ever finer."""
-    corner, sides = triangle[0], triangle[1:] - triangle[0]
-    grid = np.stack(np.meshgrid(np.linspace(-1, 1, 21), np.linspace(-1, 1, 21)), axis=-1).reshape(-1, 2)
-    best, width = np.zeros(2), 1.0
-    for _ in range(_CLOSER):
-        share = np.vstack([best, best + width * grid])
-        share = share[(share >= 0.0).all(axis=1) & (share.sum(axis=1) <= 1.0)]
-        best, width = share[int(depth(corner + share @ sides).argmax())], 0.2 * width
-    return np.asarray(corner + best @ sides)
 
 
 class _Search:

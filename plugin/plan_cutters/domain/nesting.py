@@ -56,7 +56,7 @@ def handed(cutter: Cutter, judged: Mapping[Cutter, Reach], n: int) -> Reach:
     """What follows for a cutter from those already judged: postures, and samples that it cannot reach either.
 
     A posture that is safe for a cutter is so for every cutter inside it: what reaches into the smaller body reaches at
-    least as deep into the larger one, and local gouging asks for less tilt. So a sample at which the smaller one is
+    least as deep into the larger one. So a sample at which the smaller one is
     blocked at every posture is lost to the larger one too.
 
     Returns

@@ -1,9 +1,10 @@
 """Does the posture of a sample, its axis kept, also serve the surface around it? The argument is in `docs/between_samples.md`.
 
 Obstacles are shared out by distance from the contact. Within `extent` of it the surface that the contact lies on is
-held below a paraboloid by its curvature and a bound on the change of curvature, and the cutter above it: nothing to
-test. Everything else is tested against the cutter moved along with the contact: each of its pieces larger, and drawn out
-across the axis, for the directions in which the contact wanders and the cutter turns about its axis.
+held below a paraboloid by its curvature and a bound on the change of curvature, and the cutter above one that is lower by no
+more than is allowed: nothing to test. Everything else is tested against the cutter moved along with the contact: each of its
+pieces larger, and drawn out across the axis, for the directions in which the contact wanders and the cutter turns about its
+axis.
 """
 
 from typing import Any, NamedTuple
@@ -33,6 +34,8 @@ from plan_cutters.kernels.zone import (
 _MOST_TURN = 0.5
 #: Outlooks of a contact that is not known to serve its patch: most halvings that are told apart; none will do.
 MOST_HALVINGS, NEVER = 3, 255
+#: The smallest patch that is thought of, as a share of the one at hand.
+_SMALLEST = 1.0 / 4.0
 #: Row of a distance within which a sixth of the nodes lie.
 _HALF_WAY = 8
 #: Bodies of a patch: the whole, and pieces of it along the lean, 2, 6 and 18.
@@ -211,8 +214,14 @@ def _motion(row, patches, nodes, frame, sine, h, turn, offset, rise):  # type: i
 
 
 @kernel
+def _spared(distance, safe, chord):  # type: ignore[no-untyped-def]
+    """By how much a paraboloid may curve more than the nose within a distance and gouge no deeper than is allowed, 1/mm."""
+    return 2.0 * max(0.0, safe - chord) / max(distance * distance, 1e-12)
+
+
+@kernel
 def _extent(most, last, full, h, pose, flat, psi, turn, nose, safe, chord, near):  # type: ignore[no-untyped-def]
-    """The largest of the distances up to row `last` within which curvature alone keeps surface and cutter apart.
+    """The largest of the distances up to row `last` within which curvature alone keeps the surface from going too deep.
 
     Returns its row, -1 if there is none. Writes what `near_by` takes.
     """
@@ -232,18 +241,19 @@ def _extent(most, last, full, h, pose, flat, psi, turn, nose, safe, chord, near)
             break
         tangent = np.tan(steep)
         extra = 1.3 * whole * more * (3.5 * tangent + 2.0 * more)
+        spared = _spared(distance, safe, chord)
         if flat or not nose.offset > 0.0:
             # In whatever direction it leans.
             top = 0.5 * (ff + tt) + 0.5 * spread + extra
             if flat:
                 if not 0.5 * max(0.0, top) * distance * distance <= safe:
                     break
-            elif not held_below(pose, turn, top, 0.0, top, distance, nose):
+            elif not held_below(pose, turn, top - spared, 0.0, top - spared, distance, nose):
                 break
             near[2], near[3], near[4] = top, top, 0.0
         else:
             extra += 1.05 * spread * (psi + turn * turn)
-            if not held_below(pose, turn, ff + extra, ft, tt + extra, distance, nose):
+            if not held_below(pose, turn, ff + extra - spared, ft, tt + extra - spared, distance, nose):
                 break
             near[2], near[3], near[4] = ff + extra, tt + extra, ft
         near[0], near[1] = distance - h - chord, 0.6 * whole * distance * distance + chord
@@ -311,7 +321,8 @@ def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, 
     if not begin(frame, h, home, nodes, room.seen):
         return NEVER, -1
     # In the smallest patch there remain the home node's own curvature and what it may differ in its cell.
-    if not flat and not held_below(pose, 0.0, most[0, 0], most[0, 2], most[0, 1], 0.0, nose):
+    least = _spared(chord + distance_of(0) * _SMALLEST * h, safe, chord)
+    if not flat and not held_below(pose, 0.0, most[0, 0] - least, most[0, 2], most[0, 1] - least, 0.0, nose):
         return NEVER, -1
     full, turn, lift, k_ff, k_tt, k_ft, psi, beside, rest = np.inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     # Bounds do not get smaller with distance: what does not hold nearby needs no look farther out.
@@ -375,7 +386,7 @@ def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, outlook):  
         Face numbers of its triangles.
     outlook : (n,) uint8, written
         0: it does. 1 to MOST_HALVINGS: not known; how often the patch must be halved until it may, a guess that tells what to
-        try first. NEVER: it serves no smaller patch, either, as far as the nodes tell of the surface.
+        try first. NEVER: it serves no smaller patch, either, down to a quarter of its size, as far as the nodes tell.
     """
     count = sweeping.tool.piece.shape[1]
     room = _Room(np.empty(3), np.empty(3), np.empty((_BODIES, BODY)), np.empty((_BODIES, count, COLUMNS)), np.empty(6), seen(),

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from plan_cutters.kernels.arcs import local_gouge
 from plan_cutters.kernels.hit import BODY, scratch, stand, tree_hit
 from plan_cutters.kernels.jit import entry
 from plan_cutters.kernels.material import MAYBE_INSIDE
@@ -32,7 +31,7 @@ def served(rows, axis, contacts, low, high, tool, solids, free):  # type: ignore
     solids : Solids
         All that may be in the way.
     free : (n,) bool, written
-        Whether the tool touches there at that tilt, gouges nowhere, meets nothing, and lies in no body.
+        Whether the tool touches there at that tilt, no triangle reaches into it, and it lies in no body.
     """
     body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
     room = scratch()
@@ -52,11 +51,6 @@ def served(rows, axis, contacts, low, high, tool, solids, free):  # type: ignore
         if mode < 0 or tilt < low or tilt > high:
             continue
         offset, rise = tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE]
-        # The sine of the rotation is that of f along n x direction_max.
-        along, across = dot(f, e1), -dot(t, e1)
-        least, most = local_gouge(contacts.curvature[row, 0], contacts.curvature[row, 1], along, across, offset, rise)
-        if not least <= tilt <= most:
-            continue
         stand(body, Frame(contacts.point[row], n, f, t), cosine, sine, offset, rise)
         triangle, _, _, _, _ = tree_hit(solids.tree, body, tool.piece[mode], 0.0, hint, room)
         if triangle >= 0:

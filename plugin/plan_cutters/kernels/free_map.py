@@ -381,7 +381,7 @@ def free_map(  # type: ignore[no-untyped-def]
             for rotation in range(turns):
                 cosine, sine = turn_of(n, e1, ranges, rotation)
                 lean_frame(e1, e2, cosine, sine, f, t)
-                _, _, count = permitted(contacts, row, ranges, rotation, tool, mode, f, arcs)
+                _, count = permitted(contacts, row, ranges, tool, mode, f, arcs)
                 if count == 0:
                     continue
                 gap[GAPS, UF], gap[GAPS, UL] = 0.0, 0.0

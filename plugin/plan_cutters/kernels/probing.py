@@ -153,43 +153,62 @@ def room_to_search():  # type: ignore[no-untyped-def]
 
 
 @kernel
-def permitted(contacts, row, ranges, rotation, tool, mode, f, intervals):  # type: ignore[no-untyped-def]
-    """Write the tilts of a lean direction f that the axis limit, the range asked for and the tool's own leave, and of these those
-    that local gouging leaves: (width of the first and how many they are, how many of the second).
+def permitted(contacts, row, ranges, tool, mode, f, intervals):  # type: ignore[no-untyped-def]
+    """Write the tilts of a lean direction f that the axis limit, the range asked for and the tool's own leave; their width, and
+    how many intervals they are.
     """
-    n = contacts.normal[row]
     low, high = max(ranges.tilt_low, tool.mode[mode, TILT_FROM]), min(ranges.tilt_high, tool.mode[mode, TILT_TO])
     if low > high:
-        return 0.0, 0, 0
-    count = held_tilts(n, f, ranges, low, high, intervals)
+        return 0.0, 0
+    count = held_tilts(contacts.normal[row], f, ranges, low, high, intervals)
     width = 0.0
     for i in range(count):
         width += intervals[i, 1] - intervals[i, 0]
-    cosine, sine = turn_of(n, contacts.direction_max[row], ranges, rotation)
-    least, most = local_gouge(
-        contacts.curvature[row, 0], contacts.curvature[row, 1], cosine, sine, tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE],
-    )  # fmt: skip
-    if np.isnan(least):
-        return width, count, 0
-    left = count
-    if least > 0.0:
-        left = remove(intervals, left, -1.0, least, 0.0)
-    if most < high:
-        left = remove(intervals, left, most, 4.0, 0.0)
-    return width, count, left
+    return width, count
 
 
 @kernel
-def allowed(contacts, row, ranges, rotation, tool, mode, room):  # type: ignore[no-untyped-def]
-    """Write the tilts of a rotation that axis limit and local gouging leave, and its frame; how many intervals they are.
+def straight(contacts, row, cosine, sine, tool, mode):  # type: ignore[no-untyped-def]
+    """Tilts from and to, at a rotation's cosine and sine, at which curvature keeps surface and tool apart next to the contact;
+    nan if there are none.
+    """
+    return local_gouge(
+        contacts.curvature[row, 0], contacts.curvature[row, 1], cosine, sine, tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE],
+    )  # fmt: skip
 
-    What each of the two leaves is booked on it.
+
+@kernel
+def kept_straight(least, most, intervals, count):  # type: ignore[no-untyped-def]
+    """Leave of intervals what `straight` gives; the new count."""
+    if np.isnan(least):
+        return 0
+    if least > 0.0:
+        count = remove(intervals, count, -1.0, least, 0.0)
+    return remove(intervals, count, most, 4.0, 0.0)
+
+
+@kernel
+def allowed(contacts, row, ranges, rotation, tool, mode, bent, room):  # type: ignore[no-untyped-def]
+    """Write the tilts of a rotation that the axis limit leaves and curvature allows, or, if `bent`, forbids, and its frame; how
+    many intervals they are.
+
+    Those that it forbids gouge, but maybe no deeper than is allowed: the triangles tell (`docs/verdicts.md`). What each of the
+    two leaves is booked on it.
     """
     intervals, tally = room.intervals, room.tally
     cosine, sine = turn_of(contacts.normal[row], contacts.direction_max[row], ranges, rotation)
+    least, most = straight(contacts, row, cosine, sine, tool, mode)
+    if bent and least <= 0.0 and most >= np.pi:
+        return 0
     lean_frame(contacts.direction_max[row], room.e2, cosine, sine, room.f, room.t)
-    width, before, count = permitted(contacts, row, ranges, rotation, tool, mode, room.f, intervals)
+    width, before = permitted(contacts, row, ranges, tool, mode, room.f, intervals)
     tally[AXIS_LIMIT] += width + before * NARROWEST
+    if not bent:
+        count = kept_straight(least, most, intervals, before)
+    elif np.isnan(least):
+        count = before
+    else:
+        count = remove(intervals, before, least if least > 0.0 else -1.0, most, NARROWEST)
     for i in range(count):
         tally[LOCAL_GOUGE] += intervals[i, 1] - intervals[i, 0] + NARROWEST
     return count

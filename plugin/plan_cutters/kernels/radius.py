@@ -10,10 +10,9 @@ from typing import Any, NamedTuple
 
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, Solids
-from plan_cutters.kernels.probing import room_to_search
 from plan_cutters.kernels.rows import Tool
-from plan_cutters.kernels.search import _FINEST, _NO_GAP, INACCESSIBLE, UNDECIDED, _reason, _write
-from plan_cutters.kernels.sweep import Memory, memory, sweep
+from plan_cutters.kernels.search import _FINEST, _NO_GAP, INACCESSIBLE, START, UNDECIDED, _reason, _write
+from plan_cutters.kernels.sweep import both, sweep_both
 
 
 class Ladder(NamedTuple):
@@ -37,12 +36,12 @@ class _Side(NamedTuple):
     solids: Solids
     within: float
     narrowest: float
-    past: Memory
+    pasts: Any
 
 
 @kernel
-def _look(contacts, row, ranges, side, level, start, turns, room):  # type: ignore[no-untyped-def]
-    """`sweep` with one tool of a row."""
+def _look(contacts, row, ranges, side, level, starts, turns, rooms):  # type: ignore[no-untyped-def]
+    """`sweep_both` with one tool of a row."""
     tools, piece, mode = side.tools, side.piece, side.mode
     for m in range(len(mode)):
         for column in range(mode.shape[1]):
@@ -51,11 +50,13 @@ def _look(contacts, row, ranges, side, level, start, turns, room):  # type: igno
             for column in range(piece.shape[2]):
                 piece[m, k, column] = tools.piece[level, m, k, column]
     tool = Tool(piece, mode, tools.reach[level], tools.inner[level], tools.end[level])
-    return sweep(contacts, row, ranges, tool, side.solids, side.within, side.narrowest, start, turns, side.past, room)
+    return sweep_both(
+        contacts, row, ranges, tool, side.solids, side.within, side.narrowest, starts, turns, side.pasts, rooms
+    )
 
 
 @kernel
-def _largest(contacts, row, ranges, light, heavy, guess, last, freed, room, found):  # type: ignore[no-untyped-def]
+def _largest(contacts, row, ranges, light, heavy, guess, last, freed, rooms, found):  # type: ignore[no-untyped-def]
     """The number of the largest tool that finds a posture, -1 for none, and the verdict on the next; then where the searches
     of both sides ended.
     """
@@ -64,22 +65,22 @@ def _largest(contacts, row, ranges, light, heavy, guess, last, freed, room, foun
     low, high, free, blocked = -1, count, -1, count
     level, stride = guess, 1
     while high - low > 1:
-        rotation, tilt = _look(contacts, row, ranges, light, level, last, 1, room)
+        rotation, tilt, last = _look(contacts, row, ranges, light, level, last, 1, rooms)
         if rotation < 0 and level > free:
-            turn, at = _look(contacts, row, ranges, heavy, level, freed, turns, room)
+            turn, _, freed = _look(contacts, row, ranges, heavy, level, freed, turns, rooms)
             if turn < 0:
                 blocked = level
-                found.reason[row] = _reason(room.tally)
+                found.reason[row] = _reason(rooms[0].tally, rooms[1].tally)
             else:
-                free, freed = level, (turn, at)
+                free = level
         if rotation < 0 and level < blocked:
-            rotation, tilt = _look(contacts, row, ranges, light, level, last, turns, room)
+            rotation, tilt, last = _look(contacts, row, ranges, light, level, last, turns, rooms)
             if rotation < 0:
-                found.reason[row] = _reason(room.tally)
+                found.reason[row] = _reason(rooms[0].tally, rooms[1].tally)
         if rotation < 0:
             high = level
         else:
-            low, last = level, (rotation, tilt)
+            low = level
             _write(found, row, contacts, ranges, rotation, tilt)
         if low < 0:
             level = max(high - stride, 0)
@@ -112,13 +113,14 @@ def largest(rows, contacts, ranges, light, heavy, may_be, surely, found, level, 
     beyond : (n,) uint8, written
         INACCESSIBLE or UNDECIDED for the tool after it; as it was where there is none.
     """
-    rotations, room = len(ranges.rotation_cos), room_to_search()
-    past, met = memory(rotations, light.mode.shape[1]), memory(rotations, heavy.mode.shape[1])
-    safe = _Side(light, light.piece[0].copy(), light.mode[0].copy(), may_be, MAYBE_INSIDE, _FINEST, past)
+    rotations = len(ranges.rotation_cos)
+    pasts, rooms = both(rotations, light.mode.shape[1])
+    met, _ = both(rotations, heavy.mode.shape[1])
+    safe = _Side(light, light.piece[0].copy(), light.mode[0].copy(), may_be, MAYBE_INSIDE, _FINEST, pasts)
     sure = _Side(heavy, heavy.piece[0].copy(), heavy.mode[0].copy(), surely, SURELY_INSIDE, _NO_GAP, met)
-    guess, last, freed = len(light.reach) // 2, (0, -1.0), (0, -1.0)
+    guess, last, freed = len(light.reach) // 2, START, START
     for row in rows:
-        low, verdict, last, freed = _largest(contacts, row, ranges, safe, sure, guess, last, freed, room, found)
+        low, verdict, last, freed = _largest(contacts, row, ranges, safe, sure, guess, last, freed, rooms, found)
         level[row], guess = low, max(low, 0)
         if low + 1 < len(light.reach):
             beyond[row] = verdict

@@ -37,7 +37,8 @@ class Rotary(NamedTuple):
 
 class Ranges(NamedTuple):
     """Which postures there are: cosines and sines (k,) of the rotations, tilts from and to, rad, and the axis limits: the
-    cosine `limit_cos` about the unit axis `setup` (3,), -2 for none, and rotary axes."""
+    cosine `limit_cos` about the unit axis `setup` (3,), -2 for none, and rotary axes. strict: only those that curvature at the
+    contact allows, as if there were no tolerance."""
 
     rotation_cos: Any
     rotation_sin: Any
@@ -46,6 +47,7 @@ class Ranges(NamedTuple):
     setup: Any
     limit_cos: float
     rotary: Any
+    strict: bool = False
 
 
 class Tool(NamedTuple):

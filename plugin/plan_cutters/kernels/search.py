@@ -5,6 +5,9 @@ at the depth `blocked` decides whether the sample is inaccessible (everything is
 deep) or undecided. What is forbidden at `blocked` is so at `safe`: after a sample without a posture that is asked first,
 and one answer is all that an inaccessible sample takes. A cutter that touches nothing may still lie within a body: then
 so does every posture that it can be turned to without touching a skin.
+
+Curvature at the contact only tells where to look first: a posture that it forbids is one as well if the triangles prove that
+no point of the surface is too deep.
 """
 
 import numpy as np
@@ -27,11 +30,13 @@ from plan_cutters.kernels.probing import (
     TILT_FROM,
     TILT_TO,
     inside,
+    kept_straight,
     permitted,
     room_to_search,
+    straight,
 )
 from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.sweep import memory, sweep
+from plan_cutters.kernels.sweep import both, memory, sweep, sweep_both
 from plan_cutters.kernels.vectors import cross, dot, lean_frame, perpendicular
 
 # As in `plan_cutters.domain.verdicts`, which must not load the compiler; a test holds them together.
@@ -41,21 +46,28 @@ INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 2
 _NO_GAP = 1.7e-4
 #: A posture is searched in gaps down to this, rad: it may stand where arcs leave more than they seem to.
 _FINEST = 1e-5
+#: Where searches begin, among the tilts that curvature allows and among the others: rotation, and the tilt tried first.
+START = ((0, -1.0), (0, -1.0))
 #: Tilts this close to the end of a tool's range are in it, rad.
 _ROUNDING = 1e-9
 
 
 @kernel
-def _reason(tally):  # type: ignore[no-untyped-def]
-    """What leaves no posture: the attribute that leaves none alone, or the one that most tilts are booked on."""
+def _reason(tally, bent):  # type: ignore[no-untyped-def]
+    """What leaves no posture, by what tilts are booked on that curvature allows, and that it forbids (`bent`).
+
+    The attribute that leaves none alone, or the one that most tilts are booked on. Where curvature forbids all tilts, what is in
+    the way near the contact is what it tells of.
+    """
     if tally[AXIS_LIMIT] == 0.0:
         return AXIS_LIMIT
+    reason, most = REAR_GOUGE, tally
     if tally[LOCAL_GOUGE] == 0.0:
-        return LOCAL_GOUGE
-    reason = REAR_GOUGE
+        reason, most = LOCAL_GOUGE, bent
+    least = most[REAR_GOUGE]
     for attribute in (COLLISION, BURIED, NECK, SHANK, HOLDER):
-        if tally[attribute] > tally[reason]:
-            reason = attribute
+        if most[attribute] > least:
+            reason, least = attribute, most[attribute]
     return reason
 
 
@@ -70,17 +82,6 @@ def _write(found, row, contacts, ranges, rotation, tilt):  # type: ignore[no-unt
         i, j = (k + 1) % 3, (k + 2) % 3
         found.lean[row, k] = turn_cos * e1[k] + turn_sin * (n[i] * e1[j] - n[j] * e1[i])
         found.axis[row, k] = cosine * n[k] + sine * found.lean[row, k]
-
-
-@kernel
-def _surely_none(contacts, row, ranges, tool, solids, start, past, room):  # type: ignore[no-untyped-def]
-    """Whether what is surely in the way leaves a sample no posture; the last one that it left to any, and that."""
-    rotation, tilt = sweep(
-        contacts, row, ranges, tool, solids, SURELY_INSIDE, _NO_GAP, start, len(ranges.rotation_cos), past, room
-    )
-    if rotation < 0:
-        return start, True
-    return (rotation, tilt), False
 
 
 @entry
@@ -99,29 +100,35 @@ def search(rows, contacts, ranges, light, heavy, may_be, surely, found):  # type
         All that may be in the way, for calling a posture safe; what certainly is, for calling it blocked.
     found : Found, written
     """
-    rotations, room = len(ranges.rotation_cos), room_to_search()
+    rotations = len(ranges.rotation_cos)
     # What is only perhaps in the way must not count as surely in it: the two are remembered apart.
-    light_past, heavy_past = memory(rotations, len(light.mode)), memory(rotations, len(heavy.mode))
-    last, freed, lost = (0, -1.0), (0, -1.0), False
+    light_pasts, rooms = both(rotations, len(light.mode))
+    heavy_pasts, _ = both(rotations, len(heavy.mode))
+    last, freed, lost = START, START, False
     for row in rows:
         asked, sure = lost, False
         if asked:
-            freed, sure = _surely_none(contacts, row, ranges, heavy, surely, freed, heavy_past, room)
+            turn, _, freed = sweep_both(
+                contacts, row, ranges, heavy, surely, SURELY_INSIDE, _NO_GAP, freed, rotations, heavy_pasts, rooms
+            )
+            sure = turn < 0
         if not sure:
-            rotation, tilt = sweep(
-                contacts, row, ranges, light, may_be, MAYBE_INSIDE, _FINEST, last, rotations, light_past, room
+            rotation, tilt, last = sweep_both(
+                contacts, row, ranges, light, may_be, MAYBE_INSIDE, _FINEST, last, rotations, light_pasts, rooms
             )
             lost = rotation < 0
             if not lost:
-                last = rotation, tilt
                 found.verdict[row] = ACCESSIBLE
                 _write(found, row, contacts, ranges, rotation, tilt)
                 continue
-        found.reason[row] = _reason(room.tally)
+        found.reason[row] = _reason(rooms[0].tally, rooms[1].tally)
         if not asked:
-            freed, sure = _surely_none(contacts, row, ranges, heavy, surely, freed, heavy_past, room)
+            turn, _, freed = sweep_both(
+                contacts, row, ranges, heavy, surely, SURELY_INSIDE, _NO_GAP, freed, rotations, heavy_pasts, rooms
+            )
+            sure = turn < 0
             if sure:
-                found.reason[row] = _reason(room.tally)
+                found.reason[row] = _reason(rooms[0].tally, rooms[1].tally)
         found.verdict[row] = INACCESSIBLE if sure else UNDECIDED
 
 
@@ -133,14 +140,15 @@ def until_lost(rows, at, contacts, ranges, tool, solids, patient, found):  # typ
     about why. Intervals that `search` takes for none are passed over, so that it finds a posture where this does. The other
     parameters are those of `posture`.
     """
-    rotations, room = len(ranges.rotation_cos), room_to_search()
-    past, last = memory(rotations, len(tool.mode)), (0, -1.0)
+    rotations = len(ranges.rotation_cos)
+    (pasts, rooms), last = both(rotations, len(tool.mode)), START
     while at < len(rows):
         row = rows[at]
         at += 1
-        rotation, tilt = sweep(contacts, row, ranges, tool, solids, MAYBE_INSIDE, _NO_GAP, last, rotations, past, room)
+        rotation, tilt, last = sweep_both(
+            contacts, row, ranges, tool, solids, MAYBE_INSIDE, _NO_GAP, last, rotations, pasts, rooms
+        )
         if rotation >= 0:
-            last = rotation, tilt
             found.verdict[row] = ACCESSIBLE
             _write(found, row, contacts, ranges, rotation, tilt)
         else:
@@ -170,37 +178,48 @@ def posture(contacts, ranges, tool, narrowest, start, turns, solids, found):  # 
     found : Found, written
         The posture.
     """
-    past, room = memory(len(ranges.rotation_cos), len(tool.mode)), room_to_search()
-    rotation, tilt = sweep(contacts, 0, ranges, tool, solids, MAYBE_INSIDE, narrowest, start, turns, past, room)
+    pasts, rooms = both(len(ranges.rotation_cos), len(tool.mode))
+    rotation, tilt, _ = sweep_both(
+        contacts, 0, ranges, tool, solids, MAYBE_INSIDE, narrowest, (start, start), turns, pasts, rooms
+    )
     if rotation >= 0:
         _write(found, 0, contacts, ranges, rotation, tilt)
     return rotation >= 0
 
 
 @entry
-def first_reason(rows, contacts, ranges, tool, reason):  # type: ignore[no-untyped-def]
-    """Write AXIS_LIMIT or LOCAL_GOUGE as the reason (n,) of samples to which these alone leave no posture.
+def first_reason(rows, contacts, ranges, heavy, surely, reason):  # type: ignore[no-untyped-def]
+    """Write the reason (n,) of samples that no posture of a tool serves, where axis limit or curvature alone leave none.
 
-    The other parameters are those of `search`; other reasons stay as they are.
+    `heavy` and `surely` as for `search`; other reasons stay as they are.
     """
+    rotations, modes = len(ranges.rotation_cos), len(heavy.mode)
     intervals = np.empty((64, 2))
     f, t, e2 = np.empty(3), np.empty(3), np.empty(3)
+    past, (room, other) = memory(rotations, modes, True), (room_to_search(), room_to_search())
     for row in rows:
         n, e1 = contacts.normal[row], contacts.direction_max[row]
         cross(n, e1, e2)
-        axis_left, gouge_left = False, False
-        for rotation in range(len(ranges.rotation_cos)):
+        axis_left, curvature_left = False, False
+        for rotation in range(rotations):
             cosine, sine = turn_of(n, e1, ranges, rotation)
             lean_frame(e1, e2, cosine, sine, f, t)
-            for mode in range(len(tool.mode)):
-                _, before, left = permitted(contacts, row, ranges, rotation, tool, mode, f, intervals)
-                axis_left, gouge_left = axis_left or before > 0, gouge_left or left > 0
-            if gouge_left:
+            for mode in range(modes):
+                _, count = permitted(contacts, row, ranges, heavy, mode, f, intervals)
+                axis_left = axis_left or count > 0
+                least, most = straight(contacts, row, cosine, sine, heavy, mode)
+                count = kept_straight(least, most, intervals, count)
+                curvature_left = curvature_left or count > 0
+            if curvature_left:
                 break
         if not axis_left:
             reason[row] = AXIS_LIMIT
-        elif not gouge_left:
-            reason[row] = LOCAL_GOUGE
+        elif not curvature_left:
+            # As `search` would have told it.
+            sweep(contacts, row, ranges, heavy, surely, SURELY_INSIDE, _NO_GAP, (0, -1.0), rotations, past, room)
+            other.tally[:] = 0.0
+            other.tally[AXIS_LIMIT] = 1.0
+            reason[row] = _reason(other.tally, room.tally)
 
 
 @entry

@@ -1,5 +1,7 @@
 """All rotations of one sample in turn: a posture, or that there is none.
 
+First among the tilts that curvature allows at the contact, then among the others: there the triangles alone decide.
+
 At each rotation the points that forbade tilts there at the sample before are asked first: a neighbour's obstacles stand
 nearly where its own do, and an arc costs a hundredth of a walk of the tree. A tilt that they leave is shown to the points
 last met at any rotation, and only then to the tree. What nothing forbids is a posture.
@@ -25,6 +27,7 @@ from plan_cutters.kernels.probing import (
     inside,
     next_tilt,
     put,
+    room_to_search,
     turned,
 )
 from plan_cutters.kernels.rows import Frame
@@ -37,7 +40,8 @@ _KEPT, _POOL = 64, 128
 class Memory(NamedTuple):
     """What the sweeps before have met: points (rotations x modes, k, 3) that forbade tilts of each, and how many of each; the
     last points (3, m) that the tree gave, and the same as seen from the contact, along direction_max, e2 and the normal;
-    how deep each is in the tool (m,), and in which piece; how many the tree gave in all (1,).
+    how deep each is in the tool (m,), and in which piece; how many the tree gave in all (1,). bent: of sweeps among the tilts
+    that curvature forbids.
     """
 
     point: Any
@@ -47,14 +51,15 @@ class Memory(NamedTuple):
     depth: Any
     which: Any
     given: Any
+    bent: bool
 
 
 @entry
-def memory(rotations, modes):  # type: ignore[no-untyped-def]
+def memory(rotations, modes, bent):  # type: ignore[no-untyped-def]
     """Nothing remembered yet."""
     return Memory(
         np.empty((rotations * modes, _KEPT, 3)), np.zeros(rotations * modes, np.int64), np.full((3, _POOL), np.inf),
-        np.empty((3, _POOL)), np.empty(_POOL), np.empty(_POOL, np.int64), np.zeros(1, np.int64),
+        np.empty((3, _POOL)), np.empty(_POOL), np.empty(_POOL, np.int64), np.zeros(1, np.int64), bent,
     )  # fmt: skip
 
 
@@ -118,7 +123,7 @@ def _rotation(  # type: ignore[no-untyped-def]
     p, n, e1, e2, f, t = frame.p, frame.n, contacts.direction_max[row], room.e2, room.f, room.t
     intervals, body, tally = room.intervals, room.body, room.tally
     turn, place = turn_of(n, e1, ranges, rotation), rotation * len(tool.mode) + mode
-    count = allowed(contacts, row, ranges, rotation, tool, mode, room)
+    count = allowed(contacts, row, ranges, rotation, tool, mode, past.bent, room)
     known, kept = past.count[place], 0
     for i in range(known):
         if count == 0:
@@ -174,7 +179,8 @@ def _rotation(  # type: ignore[no-untyped-def]
 
 @kernel
 def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, past, room):  # type: ignore[no-untyped-def]
-    """Look for a posture of one sample at all rotations, those next to the first looked at first.
+    """Look for a posture of one sample at all rotations, those next to the first looked at first, among the tilts that `past` is
+    about.
 
     Parameters
     ----------
@@ -234,3 +240,28 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, 
             if tilt >= 0.0:
                 return rotation, tilt
     return -1, 0.0
+
+
+@entry
+def both(rotations, modes):  # type: ignore[no-untyped-def]
+    """Nothing remembered yet of either kind of sweep, and room for each."""
+    return (memory(rotations, modes, False), memory(rotations, modes, True)), (room_to_search(), room_to_search())
+
+
+@kernel
+def sweep_both(contacts, row, ranges, tool, solids, within, narrowest, starts, turns, pasts, rooms):  # type: ignore[no-untyped-def]
+    """`sweep` among the tilts that curvature allows at the contact, and, where these hold no posture, among the others.
+
+    The parameters are those of `sweep`, one of each kind; the two remember nothing of each other, so that a sample that needs the
+    others moves no posture of the samples after it. Returns rotation and tilt, and the starts for the next sample.
+    """
+    rotation, tilt = sweep(contacts, row, ranges, tool, solids, within, narrowest, starts[0], turns, pasts[0], rooms[0])
+    if rotation >= 0:
+        return rotation, tilt, ((rotation, tilt), starts[1])
+    if ranges.strict:
+        rooms[1].tally[:] = 0.0
+        return -1, 0.0, starts
+    rotation, tilt = sweep(contacts, row, ranges, tool, solids, within, narrowest, starts[1], turns, pasts[1], rooms[1])
+    if rotation >= 0:
+        return rotation, tilt, (starts[0], (rotation, tilt))
+    return -1, 0.0, starts

@@ -154,7 +154,7 @@ def require_finite(contacts: Contacts, rows: NDArray[np.int64]) -> None:
 
 def search_postures(
     contacts: Contacts, rows: NDArray[np.int64], light: Assembly, heavy: Assembly, conditions: Conditions, reach: Reach,
-    progress: Progress | None = None, *, fixed: bool = False,
+    progress: Progress | None = None, *, fixed: bool = False, strict: bool = False,
 ) -> None:  # fmt: skip
     """Search a posture for contacts, neighbours in sequence, and write what is found into `reach`.
 
@@ -169,6 +169,8 @@ def search_postures(
     reach : Reach
     fixed : bool
         As for `in_chunks`: each contact starts from what was found at the one before it in its piece.
+    strict : bool
+        Only postures that curvature at the contact allows, as if there were no tolerance.
     progress : callable, optional
         Told how many pieces of the work are done, of how many.
 
@@ -180,7 +182,7 @@ def search_postures(
     from plan_cutters.kernels.search import search
 
     require_finite(contacts, rows)
-    ranges, around = conditions.ranges, conditions.around
+    ranges, around = conditions.ranges._replace(strict=strict), conditions.around
     may_be, surely = around.may_be.solids, around.surely.solids
     tools, found = (tool_of(light), tool_of(heavy)), found_of(reach)
 

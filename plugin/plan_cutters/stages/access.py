@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, Ints, SurfaceSamples
-from plan_cutters.domain.assembly import Assembly, assembly
+from cad_io.arrays import Ints, SurfaceSamples
+from cad_io.part import Part
+from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import (
     AXIS_LIMIT,
@@ -26,6 +27,7 @@ from plan_cutters.domain.verdicts import (
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.buried import cover
 from plan_cutters.scene.conditions import Conditions, contacts_of, found_of, rotations_of, search_postures, tool_of
+from plan_cutters.scene.deepest import deepest, deepest_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.threads import Progress, in_chunks
 
@@ -109,25 +111,31 @@ def _for_fixtures(
 def _first_reasons(
     contacts: Contacts, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, reason: NDArray[np.uint8]
 ) -> None:
-    """Where the axis limit or local gouging alone leaves this cutter nothing, that is the reason."""
+    """Where the axis limit, or curvature at the contact, leaves this cutter nothing, the reason is its own."""
     from plan_cutters.kernels.search import first_reason
 
-    ranges, tool = conditions.ranges, tool_of(conditions.light(cutter))
-    in_chunks(lambda piece: first_reason(piece, contacts, ranges, tool, reason), rows, conditions.jobs)
+    ranges, tool, surely = conditions.ranges, tool_of(conditions.heavy(cutter)), conditions.around.surely.solids
+    in_chunks(lambda piece: first_reason(piece, contacts, ranges, tool, surely, reason), rows, conditions.jobs)
 
 
 #: Witnesses kept for each face and reason, and samples tried to find them, in all.
 _KEPT, _TRIED, _TRIED_IN_ALL = 2, 6, 60
 #: Depths are found to this share of themselves.
 _PRECISION = 0.02
+#: Depths are looked for down to this share of the tolerance.
+_SHALLOWEST = 0.1
 #: How far apart tilts are among which the one of least depth is looked for at first, and at last, rad.
 _COARSE, _FINE = 0.05, 1.7e-4
 
 
 def witnesses(
-    samples: SurfaceSamples, reach: Reach, cutter: Cutter, conditions: Conditions, *, buried: Ints | None = None
-) -> tuple[Witness, ...]:
-    """Samples that are not reached, the deepest tried of each face and reason first; `buried` as in `access`."""
+    samples: SurfaceSamples, reach: Reach, cutter: Cutter, conditions: Conditions, *, buried: Ints | None = None,
+    part: Part | None = None,
+) -> tuple[Witness, ...]:  # fmt: skip
+    """Samples that are not reached, the deepest tried of each face and reason first; `buried` as in `access`.
+
+    Depths are measured on the surface of `part`; without it, on the triangles.
+    """
     lost = np.flatnonzero((reach.verdict == INACCESSIBLE) | (reach.verdict == UNDECIDED))
     groups: dict[tuple[int, int], list[int]] = {}
     for row in lost:
@@ -143,7 +151,7 @@ def witnesses(
         for row in rows.tolist():
             body = -1 if buried is None else int(buried[row])
             if body < 0:
-                looked[row] = _witness(samples, row, reach, cutter, alone)
+                looked[row] = _witness(samples, row, reach, cutter, alone, part)
             else:
                 around = conditions.around
                 skin = around.surely.skin_of(around.enclosing[body])
@@ -157,67 +165,54 @@ def witnesses(
     return tuple(found)
 
 
-def _witness(samples: SurfaceSamples, row: int, reach: Reach, cutter: Cutter, conditions: Conditions) -> Witness:
-    """Find the posture with the least depth by halving the depth that is let pass.
-
-    Local gouging holds as it does in the search, except where it alone leaves no posture: there it is what is measured.
-    """
-    from plan_cutters.kernels.search import probe
-
+def _witness(
+    samples: SurfaceSamples, row: int, reach: Reach, cutter: Cutter, conditions: Conditions, part: Part | None
+) -> Witness:
+    """Find the posture of least depth by halving the depth that is let pass, and measure it on the surface."""
     reason = REASONS[reach.reason[row]]
     nothing = Witness(row, reason, None, None, None, None, None, None)
     if reason == "tolerance":
         return nothing
     if reason == "buried":
         return _covered(samples, row, reason, conditions.around.surely)
-    found = _least_depth(samples, row, reason, cutter, replace(conditions, around=conditions.around.skins))
+    found = _least_depth(samples, row, cutter, replace(conditions, around=conditions.around.skins))
     if found is None:
         return nothing
     obstacles, at, light = conditions.obstacles, slice(row, row + 1), conditions.light(cutter)
     best = found[0]
     if obstacles.holds(light, samples.point[at], samples.normal[at], best.lean, best.tilt)[0]:
         # Its axis lies within material: one that does not says more, if there is any.
-        found = _least_depth(samples, row, reason, cutter, conditions) or found
+        found = _least_depth(samples, row, cutter, conditions) or found
     best, low, high = found
-    first, shallow = np.zeros(1, np.int64), assembly(cutter, low, low)
-    triangle, which = np.full(1, -1, np.int32), np.full(1, -1, np.int32)
-    probe(
-        first,
-        samples.point[at],
-        samples.normal[at],
-        best.axis,
-        best.lean,
-        tool_of(shallow),
-        obstacles.tree,
-        triangle,
-        which,
-    )
-    hit = int(triangle[0])
+    there = cutter, samples.point[row], samples.normal[row], best, low
+    met = deepest(part, obstacles, *there)
+    if reason == "fixture":
+        # The part may be as much in the way there: what is named is what would free the sample.
+        own = [(each.number, deepest(None, each.obstacles, *there)) for each in conditions.around.fixtures]
+        met = max((replace(it, face=n) for n, it in own if it is not None), key=lambda it: it.depth, default=met)
     return Witness(
         sample=row,
         reason=reason,
-        obstacle_face=obstacles.face(hit) if hit >= 0 else None,
-        obstacle_point=None
-        if hit < 0
-        else _deepest(obstacles.tree.vertex[hit], samples.point[row], samples.normal[row], best, shallow),
+        obstacle_face=None if met is None else met.face,
+        obstacle_point=None if met is None else met.point,
         tilt=float(best.tilt[0]),
         rotation=float(rotations_of(samples.normal[at], samples.direction_max[at], best.lean)[0]),
         axis=best.axis[0],
-        depth=high,
+        depth=high if met is None else met.depth,
     )
 
 
 def _least_depth(
-    samples: SurfaceSamples, row: int, reason: str, cutter: Cutter, conditions: Conditions
+    samples: SurfaceSamples, row: int, cutter: Cutter, conditions: Conditions
 ) -> tuple[Reach, float, float] | None:
     """The posture of least depth, and depths, mm, between which that lies; None if no posture is left at any."""
     from plan_cutters.kernels.search import posture
 
     one = slice(row, row + 1)
-    curvature = np.zeros((1, 2)) if reason == "local_gouge" else samples.curvature[one]
-    contact = Contacts(samples.point[one], samples.normal[one], samples.direction_max[one], curvature)
+    # Depth alone counts: curvature has no say.
+    contact = Contacts(samples.point[one], samples.normal[one], samples.direction_max[one], np.zeros((1, 2)))
     ranges, solids, rotations = conditions.ranges, conditions.obstacles.solids, len(conditions.ranges.rotation_cos)
-    least, most, best = conditions.tolerance - conditions.obstacles.triangles.chord_error, _deepest_of(cutter), blank(1)
+    least, most, best = _SHALLOWEST * conditions.tolerance, deepest_of(cutter), blank(1)
     low, high, start = least, np.nan, (0, -1.0)
     # At first among tilts that are `_COARSE` apart at all rotations, then among all tilts at the rotation found.
     for narrowest, near in ((_COARSE, 5.0 * _PRECISION), (_FINE, _PRECISION)):
@@ -237,24 +232,8 @@ def _least_depth(
     return None if np.isnan(high) else (best, low, high)
 
 
-def _deepest_of(cutter: Cutter) -> float:
-    """The largest depth that anything can have in a cutter and leave some of it, mm."""
-    stages = [min(stage.radius, stage.upper_radius, 0.5 * stage.length) for _, _, stage in cutter.stages]
-    return (
-        min(cutter.radius, 0.5 * cutter.length) * (1 - 1e-9) if not stages else max(cutter.radius, *stages) * (1 - 1e-9)
-    )
-
-
 def _covered(samples: SurfaceSamples, row: int, reason: str, skin: Obstacles) -> Witness:
     """What a sample lies within is the witness: where the way out along the normal leaves it."""
     way_out = cover(samples.point[row], samples.normal[row], skin)
     face, point = (None, None) if way_out is None else (way_out.face, way_out.point)
     return Witness(row, reason, face, point, None, None, None, None)
-
-
-def _deepest(triangle: Floats, contact: Floats, normal: Floats, posture: Reach, tool: Assembly) -> Floats:
-    """The point of a triangle that is deepest in the tool, of 66."""
-    share = np.array([(i, j, 10 - i - j) for i in range(11) for j in range(11 - i)]) / 10
-    points = share @ triangle
-    depth = tool.depth(points, contact, normal, posture.lean[0], float(posture.tilt[0]))
-    return np.asarray(points[int(depth.argmax())])

@@ -40,7 +40,8 @@ class PostureMap(Record):
     undecided : tuple of (m, 2) float
         Tilts that are neither called free nor known to be forbidden: the uncertainty of the ends.
     local_gouge : (k,) float
-        Least tilt that local gouging allows, rad; nan if none.
+        Least tilt at which curvature keeps surface and cutter apart at the contact, rad; nan if none. With a tolerance, tilts
+        below it may be free all the same: what gouges there may not be too deep.
     local_gouge_most : (k,) float
         Largest tilt that it allows: pi but for barrels.
     rear_gouge, collision, neck, shank, holder, axis_limit : tuple of (m, 2) float
@@ -141,7 +142,8 @@ def posture_map_of(
             parts += [_parts(obstacles, tool, p, n, f, first, last, narrowest) for first, last in touching.tolist()]
             apart[word].append(_minus(complement(_merged(np.concatenate(parts), OPEN), low, high), no_contact[-1]))
         pieces, sure = [np.zeros((0, 3))], [np.zeros((0, 3))]
-        for first, last in _both(allowed, bounds):
+        # With a tolerance the triangles decide what curvature forbids, too.
+        for first, last in _both(allowed, touching if tolerance > 0 else bounds):
             pieces.append(_parts(whole, light, p, n, f, first, last, narrowest))
             if around.surely is not whole:
                 sure.append(_parts(around.surely, heavy, p, n, f, first, last, narrowest))

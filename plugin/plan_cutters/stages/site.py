@@ -171,7 +171,7 @@ def _served(contacts: CellContacts, site: Site, rooms: Sequence[float]) -> Outlo
         curved = contacts.curvature + room * bends
         at = Contacts(contacts.point, contacts.normal, contacts.direction_max, curved)
         found = blank(len(contacts))
-        search_postures(at, open_rows, light, light, conditions, found)
+        search_postures(at, open_rows, light, light, conditions, found, strict=bends > 0.0)
         rows = open_rows[found.reached[open_rows]]
         if len(rows):
             new = _cover(contacts, tensor, found.axis, np.zeros(len(contacts), bool), site, rows)
