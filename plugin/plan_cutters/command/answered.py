@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from plan_cutters.document.names import named
-from plan_cutters.document.next_steps import is_left_out, remaining, step_told
+from plan_cutters.document.next_steps import cures, is_left_out, remaining, step_told
 from plan_cutters.document.told import percent
 
 if TYPE_CHECKING:
@@ -79,13 +79,14 @@ def _mends(plan: "Plan") -> list[_Line]:
         if c.mend is None:
             continue
         lines += _next(c, c.mend)
-        helping = [change.why for change in c.mend.changes if change.helps]
-        unsure = [change.why for change in c.mend.changes if change.helps is None]
+        helping = [change.why for change in cures(c.mend) if change.helps]
+        unsure = [change.why for change in cures(c.mend) if change.helps is None]
         if helping:
             lines.append((f"{c.id} would finish with {'; or with '.join(helping)}.", ""))
             continue
-        why = c.mend.why or "no change of one thing was found to help"
-        lines.append((f"Nothing sure would make {c.id} finish: {why}.", ""))
+        if not c.mend.steps:
+            why = c.mend.why or "no change of one thing was found to help"
+            lines.append((f"Nothing sure would make {c.id} finish: {why}.", ""))
         if unsure:
             lines.append((f"  Not decided: {'; '.join(unsure)}.", ""))
     if plan.not_mended:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from plan_cutters.document.answers import MendEntry, RunEntry, StepEntry
+from plan_cutters.document.answers import ChangeEntry, MendEntry, RunEntry, StepEntry
 from plan_cutters.document.model import CutterEntry, Plan
 from plan_cutters.document.told import percent
 
@@ -88,6 +88,16 @@ def step_told(step: StepEntry) -> str:
 def first_step(entry: CutterEntry) -> StepEntry | None:
     """The best step of a cutter; None where there is none but to leave it."""
     return next((step for step in (entry.mend.steps if entry.mend else []) if not is_left_out(step)), None)
+
+
+def cures(mend: MendEntry) -> list[ChangeEntry]:
+    """Changes of one thing of which it is known or open that they let a cutter finish.
+
+    Whole faces to leave out say nothing more where steps name the area that is left.
+    """
+    return [
+        change for change in mend.changes if change.helps is not False and not (change.thing == "faces" and mend.steps)
+    ]
 
 
 def remaining(mend: MendEntry) -> str:

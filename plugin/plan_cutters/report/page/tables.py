@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 from plan_cutters.document import told
 from plan_cutters.document.model import CutterEntry, FaceEntry, Plan
 from plan_cutters.document.names import named, short_names
-from plan_cutters.document.next_steps import first_step, step_told
+from plan_cutters.document.next_steps import cures, first_step, step_told
 from plan_cutters.document.told import VERDICTS, main_reason, part_of, reached, worst_faces
 from plan_cutters.report.page import words
 from plan_cutters.report.page.facts import Spot
@@ -73,7 +73,7 @@ def _cutter(plan: Plan, entry: CutterEntry) -> dict[str, Any]:
         "reason": main_reason(entry.area_share),
         "besides": _besides(entry),
         "next": named(plan, step_told(step)) if (step := first_step(entry)) else "",
-        "helping": [named(plan, change.why) for change in entry.mend.changes if change.helps] if entry.mend else [],
+        "helping": [named(plan, change.why) for change in cures(entry.mend) if change.helps] if entry.mend else [],
     }
 
 

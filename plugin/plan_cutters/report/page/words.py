@@ -8,7 +8,7 @@ from plan_cutters.document.answers import ChangeEntry, StickOutEntry
 from plan_cutters.document.judged import judged, not_judged, not_seen
 from plan_cutters.document.model import AreaEntry, CutterEntry, Plan, WitnessEntry
 from plan_cutters.document.names import kind, named
-from plan_cutters.document.next_steps import first_step, step_told, together
+from plan_cutters.document.next_steps import cures, first_step, step_told, together
 from plan_cutters.document.told import figure, part_of, percent, reached
 
 
@@ -220,7 +220,7 @@ def _mended(plan: Plan, entry: CutterEntry) -> list[str]:
     """What would help a cutter most, in a sentence."""
     if (step := first_step(entry)) is not None:
         return [f"Next: {named(plan, step_told(step))}."]
-    helping = [each.why for each in entry.mend.changes if each.helps] if entry.mend else []
+    helping = [each.why for each in cures(entry.mend) if each.helps] if entry.mend else []
     return [f"It would finish with {named(plan, helping[0])}."] if helping else []
 
 
