@@ -31,7 +31,7 @@ CASES = {
     "setup": [((1, 0.3, 0.2), None), ((0, 0, -1), None)],
     "other_setups": [([(1, 0, 0)], "a second --setup")],
     "other_placements": [([None], "--other-placements")],
-    "faces": [("F2", "faces sculptured, not F2"), ("sculptured", None), ("F1", None)],
+    "faces": [("F2", "faces sculptured,blends, not F2"), ("sculptured,blends", None), ("F1", None)],
     "ignore": [("F1", "ignore none, not F1"), ((), None)],
     "grid": [(9, "grid 7, not 9"), (7, None)],
     "spacing": [(4.0, "spacing by default, not 4")],
@@ -144,7 +144,7 @@ def test_the_command_refuses_by_name(file, words, name, capsys):
 
 
 def test_the_command_answers_what_it_can(file, found, capsys):
-    for words in ([], ["--tolerance", "0.01"], ["--faces", "sculptured"], ["--cutter", CUTTER], ["--grid", "7"],
+    for words in ([], ["--tolerance", "0.01"], ["--faces", "sculptured,blends"], ["--cutter", CUTTER], ["--grid", "7"],
                   ["--fixture", "box:5,5,5@0,0,60"], ["--rotation-step", "20"], ["--jobs", "1"]):  # fmt: skip
         code, line = told(PART, "--postures", file, "--json", "-", *words)
         answer = json.loads(capsys.readouterr().out.partition("\n}\n")[0] + "}")
