@@ -80,7 +80,7 @@ def test_no_point_is_farther_than_the_spacing(make, spacing):
     assert set(gaps) == {f.number for f in part.faces}
     assert samples.max_gap == max(gaps.values()) <= spacing * (1 + 1e-9)
     for number, far in farthest(part, samples).items():
-        # Between the places looked at, a quarter of a spacing apart, a point may be a little farther.
+        # Between the places looked at, a twelfth of a spacing apart, a point may be a little farther.
         assert far <= min(1.1 * gaps[number] + 1e-9, 1.05 * spacing)
 
 

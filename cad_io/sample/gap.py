@@ -16,7 +16,7 @@ from cad_io.part import Part
 from cad_io.sample.grid_lines import Lines
 
 _STEPS, _FEW = 20_000, 200  # along the border, at most: among many samples, or about one
-_A_GAP = 4  # probes of the border to a gap
+_A_GAP = 12  # probes of the border to a gap
 _STRAIGHT = 0.98  # cosine of the angle between segments of the border from which on they make a corner
 
 
