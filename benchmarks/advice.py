@@ -15,53 +15,49 @@ import time
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 REAL = Path(__file__).parent.parent.parent / "shared" / "data" / "cad"
 FILES = ("hard/turbo3d_impeller.step", "asitus_repatch-hpdc-colored.stp", "hard/ploopy_secondary_buttons.stp",
          "trimesh_featuretype.STEP", "occt_linkrods.step", "asitus_control_arm.step")  # fmt: skip
-CUTTERS = ("D6L40", "D4L30rc2", "D2L20rc1")
+CUTTERS = ("--cutter", "D6L40", "--cutter", "D4L30rc2", "--cutter", "D2L20rc1")
 WORDS = ("--holder", "er16", "--machine", "trunnion-ac", "--fixture", "table")
+#: As in samples.npz.
+REACHED, UNJUDGED = (1, 2), 255
 
 
-def asked(part: Path, cutters: list[str], words: list[str]) -> tuple[dict[str, Any], float]:
+def asked(part: Path, out: Path, words: list[str]) -> tuple[dict[str, Any], float]:
     """A plan by command, and its seconds."""
-    typed = [word for cutter in cutters for word in ("--cutter", cutter)]
-    with tempfile.TemporaryDirectory() as folder:
-        began = time.monotonic()
-        subprocess.run([sys.executable, "-m", "plan_cutters", str(part), *typed, *words, "--area-budget", "0", "--formats",
-                        "json", "-o", folder, "--quiet"], capture_output=True, check=False)  # fmt: skip
-        return json.loads((Path(folder) / "plan.json").read_text()), time.monotonic() - began
+    began = time.monotonic()
+    subprocess.run([sys.executable, "-m", "plan_cutters", str(part), *words, "--area-budget", "0", "--formats", "json,npz", "-o",
+                    str(out), "--quiet"], capture_output=True, check=False)  # fmt: skip
+    return json.loads((out / "plan.json").read_text()), time.monotonic() - began
 
 
-def lost(plan: dict[str, Any], cutters: list[str]) -> float:
-    """The share of the area that none of some cutters reaches, as the plan's own least set tells; of one its own."""
-    if len(cutters) > 1:
-        return float(plan["least_set"]["left_share"])
-    share = next(c["area_share"] for c in plan["cutters"] if c["id"] == cutters[0])
-    return float(share["inaccessible"] + share["undecided"])
+def lost(folder: Path, cutters: list[str]) -> float:
+    """The share of the finished area, by the areas of samples, that none of some cutters reaches."""
+    with np.load(folder / "samples.npz") as found:
+        wanted = (found["surface_class"] != UNJUDGED) & ~found["inside_bodies"]
+        left = np.logical_and.reduce([~np.isin(found[f"verdict_{name}"], REACHED) for name in cutters])
+        return float(found["area"][wanted & left].sum() / found["area"][wanted].sum())
 
 
 def row(part: Path) -> str:
     """One line of the table."""
-    plan, seconds = asked(part, list(CUTTERS), [*WORDS, "--answers", "mend"])
-    entries = [c for c in plan["cutters"] if c["mend"] and c["mend"]["steps"]]
-    best = min(entries, key=lambda c: c["mend"]["lost_share"], default=None)
-    steps = [s for s in best["mend"]["steps"] if s["option"]] if best else []
-    if not steps:
-        return f"| {part.name} | no step that can be typed | | | | {seconds:.0f} | |"
-    step = steps[0]
-    typed = step["option"].split()
-    pairs = [(typed[k], typed[k + 1]) for k in range(0, len(typed), 2)]
-    cutters = [value for word, value in pairs if word == "--cutter"] or [best["id"]]
-    kept = [w for k in range(0, len(WORDS), 2) if WORDS[k] not in typed for w in WORDS[k : k + 2]]
-    others = [w for word, value in pairs if word != "--cutter" for w in (word, value)]
-    fresh, again = asked(part, cutters, [*kept, *others])
-    found = lost(fresh, step["cutters"] if len(cutters) > 1 else [fresh["cutters"][0]["id"]])
-    numbers = (step["lost_before"], step["lost_after"], found)
-    return (
-        f"| {part.name} | {step['why']} | "
-        + " | ".join(f"{100 * x:.2f} %" for x in numbers)
-        + f" | {seconds:.0f} | {again:.0f} |"
-    )
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        plan, seconds = asked(part, folder / "now", [*CUTTERS, *WORDS, "--answers", "mend"])
+        entries = [c for c in plan["cutters"] if c["mend"]]
+        best = min(entries, key=lambda c: c["mend"]["lost_share"], default=None)
+        step = next((s for s in best["mend"]["steps"] if s["option"]), None) if best else None
+        if step is None:
+            return f"| {part.name} | no step that is typed | | | | {seconds:.0f} | |"
+        typed = step["option"].split()
+        kept = [w for k in range(0, len(WORDS), 2) if WORDS[k] not in typed for w in WORDS[k : k + 2]]
+        _, again = asked(part, folder / "then", [*CUTTERS, *kept, *typed])
+        shares = (lost(folder / "now", [best["id"]]), step["lost_after"], lost(folder / "then", step["cutters"]))
+    told = " | ".join(f"{100 * share:.2f} %" for share in shares)
+    return f"| {part.name} | {step['why']} | {told} | {seconds:.0f} | {again:.0f} |"
 
 
 def main() -> None:

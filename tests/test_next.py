@@ -446,7 +446,7 @@ def test_a_stick_out_that_may_be_shorter_does_not_read_as_one_that_is_too_short(
 def test_what_is_to_be_typed_is_typed_out():
     """Cutters are called as in the summary in sentences, but not in what is to be typed."""
     result = asked(pocket(), *POCKET)
-    lines = [line for line in answered(result.plan) if "[--cutter" in line]
+    lines = [line for line in answered(result.plan) if "[add --cutter" in line]
     assert lines
     assert all("HR" in line.partition("[")[2] for line in lines)
     assert all("HR15L200" not in step_told(step) for step in steps_of(result))

@@ -22,12 +22,16 @@ def option(
 ) -> str | None:  # fmt: skip
     """What to say so that a plan has these cutters, setups and so on: what differs from now; None where no option says it.
 
-    `--cutter` comes beside what is said now, all else in place of its like.
+    `--cutter` comes beside what is said now, all else in place of its like. Cutters that are said now are not said again; the
+    built-in ones are, for they go where others are given.
     """
     words: list[str] = []
     options = ready.options
+    known = {each.id for each in ready.cutters} if options.cutters or options.libraries else set()
     if tuple(cutters) != (cutter,):
         for each in cutters:
+            if each.id in known:
+                continue
             text = spoken(each, options)
             if text is None and each.id not in options.sources:
                 return None

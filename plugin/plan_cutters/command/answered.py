@@ -105,7 +105,10 @@ def _next(c: "CutterEntry", mend: "MendEntry") -> list[_Line]:
     lines: list[_Line] = [(f"What next for {c.id}, which leaves {lost} of the area{unsure}:", "")]
     shown = [step for step in mend.steps if not is_left_out(step)]
     lines += [
-        (f"  {k}. {step_told(step)}.", f" [{step.option}]" if step.option else "")
+        (
+            f"  {k}. {step_told(step)}.",
+            f" [{'add ' * step.option.startswith('--cutter')}{step.option}]" if step.option else "",
+        )
         for k, step in enumerate(shown[:_STEPS], 1)
     ]
     if len(shown) > _STEPS:
