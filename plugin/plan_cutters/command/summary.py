@@ -113,7 +113,7 @@ def _lost(plan: "Plan", c: "CutterEntry") -> str:
     left = c.lost
     why = ", ".join(reasons(c))
     if c.undecided:
-        why += f"; {percent(c.area_share.undecided, some=True, whole=False)} is undecided"
+        why += f"; of it {percent(c.area_share.undecided, some=True, whole=False)} is undecided"
     worst = sorted(((v.lost, name) for name, v in c.faces.items()), key=lambda x: -x[0])
     on = ", ".join(name for count, name in worst[:_PLACES] if count)
     more = sum(count > 0 for count, _ in worst) - _PLACES

@@ -30,7 +30,7 @@ class WorstFace:
     undecided : bool
         More of that is undecided than inaccessible.
     witness : WitnessEntry, optional
-        The deepest there, of that reason where there is one.
+        The deepest there, whatever its reason.
     """
 
     face: FaceEntry
@@ -139,8 +139,9 @@ def _standing(body: CoveringBody) -> str:
     if body.largest:
         touch = "touches" if len(body.faces) == 1 else "touch"
         return f"{_called(body, first=True)} covers {area} mm2 of {on}, which {touch} it."
-    return (f"{_called(body, first=True)} {verb} {on} and covers {area} mm2 there. If it is not part of what is finished, as a "
-            f"clamp is not, leave it out, or what lies under it is not planned: {body.option}.")  # fmt: skip
+    return (f"{_called(body, first=True)} {verb} {on} and covers {area} mm2 there. It stays in the way, and what lies under "
+            f"it is not planned. To plan that, as for another clamping, leave the body out (nothing is then checked against it): "
+            f"{body.option}.")  # fmt: skip
 
 
 def _called(body: CoveringBody, *, first: bool = False) -> str:
@@ -183,8 +184,7 @@ def worst_faces(plan: Plan, cutter: CutterEntry, most: int = 5) -> tuple[list[Wo
         reason = main_reason(share) or (mine[0].reason if mine else "")
         unsure = share.undecided > share.inaccessible
         told = "undecided" if unsure else "inaccessible"
-        alike = [w for w in mine if w.reason == reason] or mine
-        witness = max(alike, key=lambda w: (w.verdict == told, w.depth_mm or 0.0), default=None)
+        witness = max(mine, key=lambda w: (w.verdict == told, w.depth_mm or 0.0), default=None)
         lot = shares[name] * seen[name] * faces[name].area_mm2
         found.append(WorstFace(faces[name], lot, lost(cutter.faces[name], share), reason, unsure, witness))
     return found, len(ranked)

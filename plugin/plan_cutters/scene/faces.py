@@ -90,7 +90,8 @@ def choose(
         )
     if ignored:
         notes.append(
-            f"{len(ignored)} faces are ignored, neither targets nor obstacles: {_some(f'F{n}' for n in sorted(ignored))}."
+            f"{len(ignored)} {'face is' if len(ignored) == 1 else 'faces are'} ignored, neither targets nor obstacles "
+            f"(nothing is checked against them): {_some(f'F{n}' for n in sorted(ignored))}."
         )
     if placed is not None and placed.clamped:
         held = frozenset().union(
