@@ -8,6 +8,7 @@ from rich.text import Text
 from plan_cutters.command.rows import cell
 from plan_cutters.document.judged import judged
 from plan_cutters.document.names import described
+from plan_cutters.document.next_steps import axis
 from plan_cutters.document.told import lost as lost_percent
 from plan_cutters.document.told import percent
 
@@ -26,9 +27,9 @@ def headline(plan: "Plan", names: Mapping[str, str]) -> list[Text]:
     alone = next((s.axis for s in entries[plan.selected].setups if not s.lost), None) if plan.selected else None
     if plan.selected and alone not in (None, plan.effective.setup):
         c = entries[plan.selected]
-        axis = ",".join(f"{x:.4g}" for x in alone or ())
-        return [_marked(f"Take {names[c.id]}", True, f" for {part}, in setup {axis}: {told[c.id]}. It reaches every sample "
-                        "there, and needs no other setup.")]  # fmt: skip
+        where = f"in setup {axis(alone or ())}"
+        return [_marked(f"Take {names[c.id]}", True, f" for {part}, {where}: {told[c.id]}. It reaches every sample there, and "
+                        "needs no other setup.")]  # fmt: skip
     if plan.selected and (setups == 1 or alone):
         c = entries[plan.selected]
         which = (
