@@ -203,7 +203,7 @@ def prepare(
         None if along is None else np.array(along),
     )  # fmt: skip
     with clock.stage("tree"):
-        _ = around.may_be.solids, around.surely.solids
+        around.build(options.jobs)
     with clock.stage("compile"):
         ahead()
         warm(contacts_of(samples), cutters[0], conditions)

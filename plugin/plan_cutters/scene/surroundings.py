@@ -1,6 +1,7 @@
 """What is, and what may be, in a cutter's way: everything that stands around the faces to machine."""
 
 from collections.abc import Collection, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -110,6 +111,12 @@ class Surroundings(Record):
     def sheet(cls, obstacles: Obstacles) -> "Surroundings":
         """Obstacles that are surely in the way and enclose nothing."""
         return cls(obstacles, obstacles, (), ())
+
+    def build(self, jobs: int) -> None:
+        """Build the trees of what may be and of what surely is in the way, where they are not one, side by side."""
+        with ThreadPoolExecutor(min(jobs, 2)) as pool:
+            for _ in pool.map(lambda each: each.solids, {id(o): o for o in (self.may_be, self.surely)}.values()):
+                pass
 
     @property
     def skins(self) -> "Surroundings":
