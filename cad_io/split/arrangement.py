@@ -73,9 +73,7 @@ class Arrangement:
         How often curves cross each other.
     """
 
-    def __init__(
-        self, border: Border, splines: Sequence[Spline], at_end: Callable[[int, float], int | None]
-    ) -> None:
+    def __init__(self, border: Border, splines: Sequence[Spline], at_end: Callable[[int, float], int | None]) -> None:
         """Cut the curves; `at_end` tells whether a parameter of an edge, by its key, is at its end 0 or 1."""
         self.border, self.splines, self._at_end = border, splines, at_end
         self.crossings: list[Crossing] = []

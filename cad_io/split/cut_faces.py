@@ -10,24 +10,20 @@ import mmap
 import os
 import pickle
 import time
-from collections import defaultdict
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
 from OCP.BinTools import BinTools
-from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
-from OCP.TopAbs import TopAbs_FACE
 from OCP.TopoDS import TopoDS, TopoDS_Shape
 
 from cad_io.arrays import FaceLabels
-from cad_io.kernel import edges_of, shape_map
-from cad_io.kernel.components import as_one, children, components, compound
+from cad_io.kernel.components import as_one, children, components
 from cad_io.kernel.limited import ChildDied, TimeLimit, limited
-from cad_io.split.build import Placed, pieces, rewired
-from cad_io.split.check import valid, wrong_pieces, wrong_whole
+from cad_io.split.attempt import Attempt, copied
 from cad_io.split.contour import smoothed
 from cad_io.split.drawing import Drawing, in_words
+from cad_io.split.mend import mend
 from cad_io.split.net import Net
 from cad_io.surface import Surface
 
@@ -137,10 +133,16 @@ class _Watch:
 
 
 def _answer(
-    shape: Any, faces: dict[int, Any], labels: dict[int, FaceLabels], surfaces: dict[int, Surface], worst: int, watch: _Watch
+    shape: Any,
+    faces: dict[int, Any],
+    labels: dict[int, FaceLabels],
+    surfaces: dict[int, Surface],
+    worst: int,
+    watch: _Watch,
 ) -> bytes:
     """What `_unpacked` takes."""
     found = Found()
+    base, faces = copied(shape, faces)
     drawings: dict[int, Drawing] = {}
     for number, mine in labels.items():
         watch.works_on({number})
@@ -154,121 +156,45 @@ def _answer(
     watch.works_on(set(drawings))
     for drawing, lines in zip(drawings.values(), smoothed([d.grid for d in drawings.values()]), strict=True):
         drawing.lines = lines
-    wanted, net = set(drawings), Net(shape)
-    while True:
-        for number in sorted(wanted):
-            watch.works_on({number})
-            if reason := drawings[number].plan(net, worst):
-                found.failed[number] = reason
-                del drawings[number]
-        attempt = _Attempt(shape, faces, drawings, watch)
-        if not attempt.wrong:
-            break
-        wanted = attempt.wrong.keys() - attempt.hopeless
-        found.failed |= attempt.wrong
-        for number in attempt.hopeless:
-            del drawings[number]
+    attempt = _settled(shape, base, faces, drawings, worst, watch, found)
     found.labels = {n: [(part.label, part.counts) for part in d.parts] for n, d in drawings.items()}
     found.joined = {n: d.joined for n, d in drawings.items() if d.joined}
     found.failed = {n: why for n, why in found.failed.items() if n not in drawings}
     return pickle.dumps((attempt.packed(), found))
 
 
-class _Attempt:
-    """All faces of a part cut as they are drawn, on a copy of the part: vertices of it get looser.
-
-    Attributes
-    ----------
-    wrong : dict
-        Number of a face -> why it cannot be cut so.
-    hopeless : set of int
-        Faces among them that other curves would not help.
-    """
-
-    def __init__(self, shape: Any, faces: dict[int, Any], drawings: dict[int, Drawing], watch: _Watch) -> None:
-        self.wrong: dict[int, str] = {}
-        self.hopeless: set[int] = set()
-        self._watch = watch
-        own = BRepBuilderAPI_Copy(shape, False, False).Shape()
-        net = self._net = Net(own)
-        before = shape_map(shape, TopAbs_FACE)
-        index = {number: before.FindIndex(face) for number, face in faces.items()}
-        cutting = {n: d for n, d in drawings.items() if len(d.parts) > 1}
-        places = {number: drawing.places() for number, drawing in cutting.items()}
-        net.cut(place for mine in places.values() for place in mine)
-        self._cutters: dict[int, set[int]] = defaultdict(set)
-        for number, mine in places.items():
-            for key, _ in mine:
-                self._cutters[key].add(number)
-        # Cut there, its neighbour across the edge would not be valid either; no other curve helps.
-        for key, off in net.loose.items():
-            self.hopeless |= self._cutters[key]
-            self.wrong |= dict.fromkeys(self._cutters[key], f"an edge of it lies {off:.2g} mm off the face")
-        changed: dict[int, list[Any]] = {}
-        for number, drawing in cutting.items():
-            if number not in self.wrong:
-                watch.works_on({number})
-                face = TopoDS.Face_s(net.faces.FindKey(index[number]))
-                changed[number] = self._pieces(number, face, drawing)
-        for number, at in index.items():
-            if number not in cutting:
-                face = TopoDS.Face_s(net.faces.FindKey(at))
-                if (fresh := self._rewired(number, face)) is not None:
-                    changed[number] = [fresh]
-        self.units: list[Placed | None] = []
-        if not self.wrong:
-            numbers = {at: number for number, at in index.items()}
-            for unit, old in zip(components(own), components(shape), strict=True):
-                self.units.append(self._placed(unit, old, numbers, changed))
-
-    def _pieces(self, number: int, face: Any, drawing: Drawing) -> list[Any]:
-        regions = [part.region for part in drawing.parts]
-        try:
-            made = pieces(self._net, face, drawing.surface, drawing.found, regions)
-            reason = wrong_pieces(drawing.face, made)
-        except Exception as error:
-            made, reason = [], in_words(error)
-        if reason:
-            self.wrong[number] = reason
-        return made
-
-    def _rewired(self, number: int, face: Any) -> Any | None:
-        """A neighbour of faces that are cut, with the cut edges; None if there is none of them."""
-        cutters = {n for e in edges_of(face) for n in self._cutters.get(self._net.edges.FindIndex(e), ())}
-        if not cutters:
-            return None
-        self._watch.works_on(cutters)
-        fresh = rewired(self._net, face)
-        if not cutters & self.wrong.keys() and not valid(fresh) and valid(face):
-            self.wrong |= dict.fromkeys(cutters, f"with its edges cut there, F{number} beside it is not valid")
-        return fresh
-
-    def _placed(
-        self, unit: Any, old: Any, numbers: dict[int, int], changed: dict[int, list[Any]]
-    ) -> Placed | None:
-        """A component again, if a face of it changed."""
-        mine = shape_map(unit, TopAbs_FACE)
-        within = {numbers[self._net.faces.FindIndex(mine.FindKey(i))] for i in range(1, mine.Extent() + 1)}
-        if within.isdisjoint(changed):
-            return None
-        cut = {n for cutters in self._cutters.values() for n in cutters} | {n for n in changed if len(changed[n]) > 1}
-        self._watch.works_on(within & cut)
-        placed = Placed(unit, numbers, self._net.faces, changed)
-        if reason := wrong_whole(old, as_one(placed.shapes)):
-            self.wrong |= dict.fromkeys(within & cut, reason)
-        return placed
-
-    def packed(self) -> list[tuple[list[int], bytes] | None]:
-        """Of each component that changed, the numbers of its faces, and it with their pieces: sharing survives."""
-        out: list[tuple[list[int], bytes] | None] = []
-        for unit in self.units:
-            if unit is None:
-                out.append(None)
+def _settled(
+    shape: Any, base: Any, faces: dict[int, Any], drawings: dict[int, Drawing], worst: int, watch: _Watch, found: Found
+) -> Attempt:
+    """The first attempt at which nothing is wrong; drawings that cannot be cut are taken out, and why is put down."""
+    wanted, net, mended = set(drawings), Net(base), set[int]()
+    while True:
+        for number in sorted(wanted):
+            watch.works_on({number})
+            if reason := drawings[number].plan(net, worst):
+                found.failed[number] = reason
+                del drawings[number]
+        attempt = Attempt(shape, base, faces, drawings, watch.works_on)
+        found.failed |= attempt.wrong
+        wanted = set(attempt.wrong)
+        for key, (off, cutters) in attempt.loose.items():
+            watch.works_on(cutters)
+            if key not in mended:
+                mended.add(key)
+                mend(net, key)
+                users = {net.faces.FindIndex(face) for face, _ in net.users(key)}
+                concerned = {n for n in drawings if net.faces.FindIndex(faces[n]) in users}
+                for number in concerned:
+                    drawings[number].renew()
+                wanted |= concerned
                 continue
-            stream = io.BytesIO()
-            BinTools.Write_s(compound([compound(unit.shapes), *map(compound, unit.faces.values())]), stream)
-            out.append((list(unit.faces), stream.getvalue()))
-        return out
+            # Cut there, its neighbour across the edge would not be valid either; no other curve helps.
+            for number in cutters & drawings.keys():
+                found.failed[number] = f"an edge of it lies {off:.2g} mm off the face"
+                del drawings[number]
+        wanted &= drawings.keys()
+        if not (attempt.loose or attempt.wrong):
+            return attempt
 
 
 def _unpacked(answer: bytes, shape: Any) -> tuple[Any, Found]:

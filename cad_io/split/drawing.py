@@ -46,7 +46,7 @@ class Drawing:
         self.parts: list[Judged] = []
         self.joined = 0
         self._border: Border | None = None
-        self._fits = list(FITS)
+        self._tried = 0
 
     def plan(self, net: Net, worst: int) -> str:
         """Plan pieces with the next fit that works; why there is none, or nothing.
@@ -59,16 +59,21 @@ class Drawing:
             As in `split`.
         """
         reason = "no curve is left to try"
-        while self._fits:
+        while self._tried < len(FITS):
+            self._tried += 1
             try:
                 self._border = self._border or Border(self.face, self.surface, self.grid, net.edges, net.vertices)
-                self._draw(self._border, self._fits.pop(0), net.at_end, worst)
+                self._draw(self._border, FITS[self._tried - 1], net.at_end, worst)
                 return ""
             except Exception as error:
                 reason = in_words(error)
                 if self._border is None:
                     break  # no curve is to blame
         return reason
+
+    def renew(self) -> None:
+        """Have `plan` look at the border anew and try the last fit again."""
+        self._border, self._tried = None, max(self._tried - 1, 0)
 
     def places(self) -> list[tuple[int, float]]:
         """Where edges of the part are to be cut: number of the edge, parameter."""

@@ -32,7 +32,7 @@ class Cut(NamedTuple):
     parts: list[Any]
 
 
-class _Edge(NamedTuple):
+class Edge(NamedTuple):
     """An edge, FORWARD; whether it is a point; its range; its curve."""
 
     edge: Any
@@ -56,10 +56,12 @@ class Net:
     """
 
     def __init__(self, shape: Any) -> None:
-        self.edges, self.vertices, self.faces = (shape_map(shape, kind) for kind in (TopAbs_EDGE, TopAbs_VERTEX, TopAbs_FACE))
+        self.edges, self.vertices, self.faces = (
+            shape_map(shape, kind) for kind in (TopAbs_EDGE, TopAbs_VERTEX, TopAbs_FACE)
+        )
         self.cuts: dict[int, Cut] = {}
         self.loose: dict[int, float] = {}
-        self._known: dict[int, _Edge] = {}
+        self._known: dict[int, Edge] = {}
         self._surfaces: dict[int, Surface] = {}
         self._builder = BRep_Builder()
         self._users: dict[int, list[tuple[Any, Any]]] = defaultdict(list)
@@ -70,7 +72,7 @@ class Net:
 
     def at_end(self, key: int, s: float) -> int | None:
         """0 or 1 if a parameter of an edge is at that end, else None."""
-        known = self._edge(key)
+        known = self.edge(key)
         span = known.last - known.first
         e = int(s > known.first + 0.5 * span)
         # By the curve's own ends: vertices of loose files lie off them.
@@ -82,7 +84,7 @@ class Net:
         for key, s in places:
             found[key].append(s)
         for key in sorted(found):
-            edge, point, first, last, curve = known = self._edge(key)
+            edge, point, first, last, curve = known = self.edge(key)
             groups: list[list[float]] = []
             for s in sorted(found[key]):
                 if groups and self._same(known, groups[-1][0], s, 1e-9 * (last - first)):
@@ -103,21 +105,29 @@ class Net:
 
     def parts(self, key: int) -> list[Any]:
         """Parts of an edge, FORWARD, by parameter; the edge itself if it is not cut."""
-        return self.cuts[key].parts if key in self.cuts else [self._edge(key).edge]
+        return self.cuts[key].parts if key in self.cuts else [self.edge(key).edge]
 
-    def gap(self, key: int) -> Floats:
-        """How far an edge is off its faces at the same parameter, mm, at places along it."""
-        known = self._edge(key)
-        return self._off(key, known, known.first + (known.last - known.first) * np.linspace(0, 1, _LOOKS))
+    def users(self, key: int) -> list[tuple[Any, Any]]:
+        """Faces that use an edge, FORWARD, each with the edge as it stands there; a seam twice."""
+        return self._users.get(key, [])
 
-    def _edge(self, key: int) -> _Edge:
+    def edge(self, key: int) -> Edge:
+        """An edge by its number."""
         if key not in self._known:
             edge = TopoDS.Edge_s(self.edges.FindKey(key).Oriented(TopAbs_FORWARD))
             point = BRep_Tool.Degenerated_s(edge)
-            self._known[key] = _Edge(edge, point, *BRep_Tool.Range_s(edge), None if point else BRepAdaptor_Curve(edge))
+            first, last = BRep_Tool.Range_s(edge)
+            self._known[key] = Edge(edge, point, first, last, None if point else BRepAdaptor_Curve(edge))
         return self._known[key]
 
-    def _same(self, known: _Edge, a: float, b: float, near: float) -> bool:
+    def surface(self, face: Any) -> Surface:
+        """Of a face."""
+        number = self.faces.FindIndex(face)
+        if number not in self._surfaces:
+            self._surfaces[number] = Surface(face)
+        return self._surfaces[number]
+
+    def _same(self, known: Edge, a: float, b: float, near: float) -> bool:
         """Whether two parameters are one place; of an edge that is a point, if they are so near."""
         return abs(b - a) < near if known.point else known.curve.Value(a).Distance(known.curve.Value(b)) < MERGE
 
@@ -134,12 +144,17 @@ class Net:
         self._builder.Range(part, a, b)
         return part
 
-    def _loosen(self, key: int, known: _Edge) -> None:
+    def _loosen(self, key: int, known: Edge) -> None:
         """Give parts the tolerance that they need: they are looked at in more places than the edge was."""
         stops, _, parts = self.cuts[key]
         shares = np.linspace(0, 1, _LOOKS)
         t = np.concatenate([a + (b - a) * shares for a, b in itertools.pairwise(stops)])
-        off = self._off(key, known, t).reshape(-1, _LOOKS).max(axis=1)
+        off = np.zeros(len(t))
+        for face, edge in self.users(key):
+            plane, _, _ = parameter_curve(edge, face)
+            if plane is not None:
+                off = np.fmax(off, distance(known.curve, plane, self.surface(face), t))
+        off = off.reshape(-1, _LOOKS).max(axis=1)
         for part, far in zip(parts, off.tolist(), strict=True):
             old, new = BRep_Tool.Tolerance_s(part), 1.05 * far + 1e-7
             if new > old + LOOSER:
@@ -149,20 +164,9 @@ class Net:
                 for vertex in (TopExp.FirstVertex_s(part), TopExp.LastVertex_s(part)):
                     self._builder.UpdateVertex(vertex, new)
 
-    def _off(self, key: int, known: _Edge, t: Floats) -> Floats:
-        """Largest distance (n,) of an edge from its faces at parameters (n,), mm."""
-        space = np.array([known.curve.Value(x).Coord() for x in t.tolist()])
-        off = np.zeros(len(t))
-        for face, edge in self._users[key]:
-            curve, _, _ = parameter_curve(edge, face)
-            if curve is not None:
-                uv = np.array([curve.Value(x).Coord() for x in t.tolist()])
-                away = np.linalg.norm(self._surface(face).values(*uv.T) - space, axis=1)
-                off = np.fmax(off, away)
-        return off
 
-    def _surface(self, face: Any) -> Surface:
-        number = self.faces.FindIndex(face)
-        if number not in self._surfaces:
-            self._surfaces[number] = Surface(face)
-        return self._surfaces[number]
+def distance(curve: Any, plane: Any, surface: Surface, t: Floats) -> Floats:
+    """How far (n,) a curve in space is off one in a surface's parameter plane at the same parameters (n,), mm."""
+    space = np.array([curve.Value(x).Coord() for x in t.tolist()])
+    uv = np.array([plane.Value(x).Coord() for x in t.tolist()])
+    return np.asarray(np.linalg.norm(surface.values(*uv.T) - space, axis=1))

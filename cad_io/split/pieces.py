@@ -18,6 +18,7 @@ from cad_io.split.cut_faces import cut_faces
 #: Label of a piece about which nothing is known, and of a face left whole although its labels differ.
 UNKNOWN, MIXED = -1, -2
 
+
 @dataclass(frozen=True, slots=True)
 class Piece:
     """A face of the result.

@@ -83,7 +83,7 @@ def surface_edge(face: Any, surface: Surface, spline: Spline, start: Any, stop: 
     builder, edge, location = BRep_Builder(), TopoDS_Edge(), TopLoc_Location()
     basis = BRep_Tool.Surface_s(face, location)
     builder.MakeEdge(edge, _curve3d(space), tolerance)
-    builder.UpdateEdge(edge, _curve2d(spline), basis, location, tolerance)
+    builder.UpdateEdge(edge, curve_2d(spline), basis, location, tolerance)
     for vertex, orientation, at_end in ((start, TopAbs_FORWARD, sites[0]), (stop, TopAbs_REVERSED, sites[-1])):
         off = BRep_Tool.Pnt_s(vertex).Distance(gp_Pnt(*space(at_end).tolist()))
         builder.UpdateVertex(vertex, max(tolerance, 1.01 * off + 1e-9))
@@ -94,7 +94,7 @@ def surface_edge(face: Any, surface: Surface, spline: Spline, start: Any, stop: 
     return edge
 
 
-def _curve2d(spline: Spline) -> Any:
+def curve_2d(spline: Spline) -> Any:
     poles = TColgp_Array1OfPnt2d(1, len(spline.poles))
     for i, pole in enumerate(spline.poles.tolist(), 1):
         poles.SetValue(i, gp_Pnt2d(*pole))
