@@ -31,8 +31,8 @@ from cad_io.surface import Surface
 TOO_LONG = "splitting it takes too long"
 #: Copies of the process that may hang or crash before the rest is left whole.
 _HANGS = 3
-#: Processor seconds that a node of the labels adds to the limit.
-_A_NODE = 1e-4
+#: Nodes of the labels that double the limit.
+_NODES = 50_000
 #: Limit of a whole copy: that of so many faces, and a part of those of all of them.
 _WHOLE, _EACH = 4, 0.2
 
@@ -93,7 +93,7 @@ def cut_faces(
         rest = {number: each for number, each in labels.items() if number not in lost}
         if not rest:
             break
-        watch = _Watch({number: seconds + _A_NODE * each.label.size for number, each in rest.items()})
+        watch = _Watch({number: seconds * (1 + each.label.size / _NODES) for number, each in rest.items()})
         try:
             answer = limited(partial(_answer, shape, faces, rest, surfaces, worst, watch), watch.whole, processor=True)
         except (TimeLimit, ChildDied) as error:
@@ -159,7 +159,6 @@ def _answer(
     attempt = _settled(shape, base, faces, drawings, worst, watch, found)
     found.labels = {n: [(part.label, part.counts) for part in d.parts] for n, d in drawings.items()}
     found.joined = {n: d.joined for n, d in drawings.items() if d.joined}
-    found.failed = {n: why for n, why in found.failed.items() if n not in drawings}
     return pickle.dumps((attempt.packed(), found))
 
 
@@ -171,12 +170,12 @@ def _settled(
     while True:
         for number in sorted(wanted):
             watch.works_on({number})
-            if reason := drawings[number].plan(net, worst):
-                found.failed[number] = reason
-                del drawings[number]
+            if not drawings[number].plan(net, worst):
+                found.failed[number] = drawings.pop(number).fault
         attempt = Attempt(shape, base, faces, drawings, watch.works_on)
-        found.failed |= attempt.wrong
         wanted = set(attempt.wrong)
+        for number, why in attempt.wrong.items():
+            drawings[number].fault = why
         for key, (off, cutters) in attempt.loose.items():
             watch.works_on(cutters)
             if key not in mended:

@@ -37,6 +37,8 @@ class Drawing:
         One for each piece.
     joined : int
         Slivers that went to the label around them.
+    fault : str
+        Why the curves tried last are no good.
     """
 
     def __init__(self, face: Any, surface: Surface, labels: FaceLabels) -> None:
@@ -46,10 +48,11 @@ class Drawing:
         self.parts: list[Judged] = []
         self.joined = 0
         self._border: Border | None = None
+        self.fault = ""
         self._tried = 0
 
-    def plan(self, net: Net, worst: int) -> str:
-        """Plan pieces with the next fit that works; why there is none, or nothing.
+    def plan(self, net: Net, worst: int) -> bool:
+        """Plan pieces with the next fit that works; False if there is none, then `fault` says why.
 
         Parameters
         ----------
@@ -58,18 +61,17 @@ class Drawing:
         worst : int
             As in `split`.
         """
-        reason = "no curve is left to try"
         while self._tried < len(FITS):
             self._tried += 1
             try:
                 self._border = self._border or Border(self.face, self.surface, self.grid, net.edges, net.vertices)
                 self._draw(self._border, FITS[self._tried - 1], net.at_end, worst)
-                return ""
+                return True
             except Exception as error:
-                reason = in_words(error)
+                self.fault = in_words(error)
                 if self._border is None:
                     break  # no curve is to blame
-        return reason
+        return False
 
     def renew(self) -> None:
         """Have `plan` look at the border anew and try the last fit again."""
