@@ -82,7 +82,7 @@ def surface_edge(face: Any, surface: Surface, spline: Spline, start: Any, stop: 
     tolerance = max(1.2 * worst, 1e-7)
     builder, edge, location = BRep_Builder(), TopoDS_Edge(), TopLoc_Location()
     basis = BRep_Tool.Surface_s(face, location)
-    builder.MakeEdge(edge, _curve3d(space), tolerance)
+    builder.MakeEdge(edge, curve_3d(space), tolerance)
     builder.UpdateEdge(edge, curve_2d(spline), basis, location, tolerance)
     for vertex, orientation, at_end in ((start, TopAbs_FORWARD, sites[0]), (stop, TopAbs_REVERSED, sites[-1])):
         off = BRep_Tool.Pnt_s(vertex).Distance(gp_Pnt(*space(at_end).tolist()))
@@ -101,7 +101,7 @@ def curve_2d(spline: Spline) -> Any:
     return Geom2d_BSplineCurve(poles, *_knots(spline.knots), 3)
 
 
-def _curve3d(curve: BSpline) -> Any:
+def curve_3d(curve: BSpline) -> Any:
     poles = TColgp_Array1OfPnt(1, len(curve.c))
     for i, pole in enumerate(curve.c.tolist(), 1):
         poles.SetValue(i, gp_Pnt(*pole))
