@@ -16,6 +16,7 @@ from cad_io.split.build import Placed, pieces, rewired
 from cad_io.split.check import valid, wrong_pieces, wrong_whole
 from cad_io.split.drawing import Drawing, in_words
 from cad_io.split.net import Net
+from cad_io.surface import Surface
 
 
 def copied(shape: Any, faces: dict[int, Any]) -> tuple[Any, dict[int, Any]]:
@@ -42,13 +43,33 @@ class Attempt:
         base: Any,
         faces: dict[int, Any],
         drawings: dict[int, Drawing],
+        surface_of: Callable[[int], Surface],
         works_on: Callable[[set[int]], None],
+        careful: bool,
     ) -> None:
-        """Try it: `given` is the part, to which the result is compared, `base` a copy of it and `faces` that one's faces."""
+        """Try it.
+
+        Parameters
+        ----------
+        given : TopoDS_Shape
+            The part, to which the result is compared.
+        base : TopoDS_Shape
+            A copy of it.
+        faces : dict
+            Number -> TopoDS_Face, all faces of the copy.
+        drawings : dict
+            Number -> Drawing.
+        surface_of : callable
+            A face's surface, by its number among the faces of the copy.
+        works_on : callable
+            To be told the faces about which the kernel is asked next.
+        careful : bool
+            Ask about the validity of each face alone, also while the whole is valid.
+        """
         self.wrong: dict[int, str] = {}
         self._works_on = works_on
         own, fresh = copied(base, faces)
-        net = self._net = Net(own)
+        net = self._net = Net(own, surface_of)
         before = shape_map(given, TopAbs_FACE)
         self._given = {n: TopoDS.Face_s(before.FindKey(net.faces.FindIndex(face))) for n, face in fresh.items()}
         self._cut = {n for n, drawing in drawings.items() if len(drawing.parts) > 1}
@@ -65,48 +86,56 @@ class Attempt:
         for number in sorted(self._cut):
             works_on({number})
             changed[number] = self._pieces(number, fresh[number], drawings[number])
+        beside: dict[int, set[int]] = {}
         for number, face in fresh.items():
-            if number not in self._cut and (new := self._rewired(number, face)) is not None:
-                changed[number] = [new]
+            cutters = {n for e in edges_of(face) for n in self._cutters.get(net.edges.FindIndex(e), ())}
+            if number not in self._cut and cutters:
+                beside[number] = cutters
+                works_on(cutters)
+                changed[number] = [rewired(net, face)]
+        if careful:
+            self._ask(changed, beside)
         self._units: list[Placed | None] = []
-        if not self.wrong:
-            numbers = {net.faces.FindIndex(face): number for number, face in fresh.items()}
-            for unit, old in zip(components(own), components(given), strict=True):
-                self._units.append(self._placed(unit, old, numbers, changed))
+        if self.wrong:
+            return
+        numbers = {net.faces.FindIndex(face): number for number, face in fresh.items()}
+        for unit, old in zip(components(own), components(given), strict=True):
+            mine = shape_map(unit, TopAbs_FACE)
+            within = {numbers[net.faces.FindIndex(mine.FindKey(i))] for i in range(1, mine.Extent() + 1)}
+            self._units.append(None if within.isdisjoint(changed) else Placed(unit, numbers, net.faces, changed))
+            if (placed := self._units[-1]) is None:
+                continue
+            works_on(within & self._cut)
+            if reason := wrong_whole(old, as_one(placed.shapes)):
+                known = len(self.wrong)
+                self._ask({n: changed[n] for n in within & changed.keys()}, beside)
+                if len(self.wrong) == known:
+                    self.wrong |= dict.fromkeys(within & self._cut, reason)
+
+    def _ask(self, changed: dict[int, list[Any]], beside: dict[int, set[int]]) -> None:
+        """Find faces that are not valid, though they were, and whose fault that is."""
+        for number, made in changed.items():
+            cutters = beside.get(number, {number})
+            self._works_on(cutters)
+            if cutters & self.wrong.keys() or all(map(valid, made)) or not valid(self._given[number]):
+                continue
+            why = (
+                f"with its edges cut there, F{number} beside it is not valid"
+                if number in beside
+                else "a piece of it is not valid"
+            )
+            self.wrong |= dict.fromkeys(cutters, why)
 
     def _pieces(self, number: int, face: Any, drawing: Drawing) -> list[Any]:
         regions = [part.region for part in drawing.parts]
         try:
             made = pieces(self._net, face, drawing.surface, drawing.found, regions)
-            reason = wrong_pieces(drawing.face, made, self._given[number])
+            reason = wrong_pieces(drawing.face, made)
         except Exception as error:
             made, reason = [], in_words(error)
         if reason:
             self.wrong[number] = reason
         return made
-
-    def _rewired(self, number: int, face: Any) -> Any | None:
-        """A neighbour of faces that are cut, with the cut edges; None if there is none of them."""
-        cutters = {n for e in edges_of(face) for n in self._cutters.get(self._net.edges.FindIndex(e), ())}
-        if not cutters:
-            return None
-        self._works_on(cutters)
-        fresh = rewired(self._net, face)
-        if not cutters & self.wrong.keys() and not valid(fresh) and valid(self._given[number]):
-            self.wrong |= dict.fromkeys(cutters, f"with its edges cut there, F{number} beside it is not valid")
-        return fresh
-
-    def _placed(self, unit: Any, old: Any, numbers: dict[int, int], changed: dict[int, list[Any]]) -> Placed | None:
-        """A component again, if a face of it changed."""
-        mine = shape_map(unit, TopAbs_FACE)
-        within = {numbers[self._net.faces.FindIndex(mine.FindKey(i))] for i in range(1, mine.Extent() + 1)}
-        if within.isdisjoint(changed):
-            return None
-        self._works_on(within & self._cut)
-        placed = Placed(unit, numbers, self._net.faces, changed)
-        if reason := wrong_whole(old, as_one(placed.shapes)):
-            self.wrong |= dict.fromkeys(within & self._cut, reason)
-        return placed
 
     def packed(self) -> list[tuple[list[int], bytes] | None]:
         """Of each component that changed, the numbers of its faces, and it with their pieces: sharing survives."""

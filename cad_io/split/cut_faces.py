@@ -10,6 +10,7 @@ import mmap
 import os
 import pickle
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -61,7 +62,12 @@ class Found:
 
 
 def cut_faces(
-    shape: Any, faces: dict[int, Any], labels: dict[int, FaceLabels], worst: int, seconds: float
+    shape: Any,
+    faces: dict[int, Any],
+    labels: dict[int, FaceLabels],
+    surface_of: Callable[[int], Surface],
+    worst: int,
+    seconds: float,
 ) -> tuple[Any, Found]:
     """Cut faces of a shape along the boundaries of their labels.
 
@@ -73,6 +79,8 @@ def cut_faces(
         Number -> TopoDS_Face, all faces of the shape.
     labels : dict
         Number -> FaceLabels, of the faces to cut.
+    surface_of : callable
+        A face's surface, by its number.
     worst : int
         As in `split`.
     seconds : float
@@ -85,20 +93,24 @@ def cut_faces(
     found : Found
     """
     lost: dict[int, str] = {}
-    surfaces = {number: Surface(faces[number]) for number in labels}
-    for number, surface in surfaces.items():
+    for number, each in labels.items():
         # Once here: code that is yet to be compiled may wait for ever in a copy of the process.
-        surface.first(labels[number].u[:1], labels[number].v[:1])
+        surface_of(number).first(each.u[:1], each.v[:1])
+    careful = False
     for _ in range(_HANGS):
         rest = {number: each for number, each in labels.items() if number not in lost}
         if not rest:
             break
         watch = _Watch({number: seconds * (1 + each.label.size / _NODES) for number, each in rest.items()})
+        job = partial(_answer, shape, faces, rest, surface_of, worst, watch, careful)
         try:
-            answer = limited(partial(_answer, shape, faces, rest, surfaces, worst, watch), watch.whole, processor=True)
+            answer = limited(job, watch.whole, processor=True)
         except (TimeLimit, ChildDied) as error:
-            why = TOO_LONG if isinstance(error, TimeLimit) else f"splitting it fails: {error}"
-            lost |= dict.fromkeys(watch.seen() & rest.keys() or rest, why)
+            seen = watch.seen() & rest.keys()
+            if careful or len(seen) < 2:
+                why = TOO_LONG if isinstance(error, TimeLimit) else f"splitting it fails: {error}"
+                lost |= dict.fromkeys(seen or rest, why)
+            careful = careful or len(seen) > 1
             continue
         result, found = _unpacked(answer, shape)
         found.failed |= lost
@@ -136,9 +148,10 @@ def _answer(
     shape: Any,
     faces: dict[int, Any],
     labels: dict[int, FaceLabels],
-    surfaces: dict[int, Surface],
+    surface_of: Callable[[int], Surface],
     worst: int,
     watch: _Watch,
+    careful: bool,
 ) -> bytes:
     """What `_unpacked` takes."""
     found = Found()
@@ -147,7 +160,7 @@ def _answer(
     for number, mine in labels.items():
         watch.works_on({number})
         try:
-            drawing = drawings[number] = Drawing(faces[number], surfaces[number], mine)
+            drawing = drawings[number] = Drawing(faces[number], surface_of(number), mine)
         except Exception as error:
             found.failed[number] = in_words(error)
             continue
@@ -156,23 +169,35 @@ def _answer(
     watch.works_on(set(drawings))
     for drawing, lines in zip(drawings.values(), smoothed([d.grid for d in drawings.values()]), strict=True):
         drawing.lines = lines
-    attempt = _settled(shape, base, faces, drawings, worst, watch, found)
+    numbers = list(faces)
+
+    def attempt_at(drawings: dict[int, Drawing]) -> Attempt:
+        return Attempt(shape, base, faces, drawings, lambda i: surface_of(numbers[i - 1]), watch.works_on, careful)
+
+    net = Net(base, lambda i: surface_of(numbers[i - 1]))
+    attempt = _settled(attempt_at, net, faces, drawings, worst, watch, found)
     found.labels = {n: [(part.label, part.counts) for part in d.parts] for n, d in drawings.items()}
     found.joined = {n: d.joined for n, d in drawings.items() if d.joined}
     return pickle.dumps((attempt.packed(), found))
 
 
 def _settled(
-    shape: Any, base: Any, faces: dict[int, Any], drawings: dict[int, Drawing], worst: int, watch: _Watch, found: Found
+    attempt_at: Callable[[dict[int, Drawing]], Attempt],
+    net: Net,
+    faces: dict[int, Any],
+    drawings: dict[int, Drawing],
+    worst: int,
+    watch: _Watch,
+    found: Found,
 ) -> Attempt:
     """The first attempt at which nothing is wrong; drawings that cannot be cut are taken out, and why is put down."""
-    wanted, net, mended = set(drawings), Net(base), set[int]()
+    wanted, mended = set(drawings), set[int]()
     while True:
         for number in sorted(wanted):
             watch.works_on({number})
             if not drawings[number].plan(net, worst):
                 found.failed[number] = drawings.pop(number).fault
-        attempt = Attempt(shape, base, faces, drawings, watch.works_on)
+        attempt = attempt_at(drawings)
         wanted = set(attempt.wrong)
         for number, why in attempt.wrong.items():
             drawings[number].fault = why

@@ -2,7 +2,7 @@
 
 import itertools
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -55,14 +55,15 @@ class Net:
         Number of an edge that was cut -> how far it is off a face at the same parameter, mm, where that is too far.
     """
 
-    def __init__(self, shape: Any) -> None:
+    def __init__(self, shape: Any, surface_of: Callable[[int], Surface]) -> None:
+        """Look at a shape; `surface_of` gives a face's surface by its number here."""
         self.edges, self.vertices, self.faces = (
             shape_map(shape, kind) for kind in (TopAbs_EDGE, TopAbs_VERTEX, TopAbs_FACE)
         )
         self.cuts: dict[int, Cut] = {}
         self.loose: dict[int, float] = {}
         self._known: dict[int, Edge] = {}
-        self._surfaces: dict[int, Surface] = {}
+        self._surface_of = surface_of
         self._builder = BRep_Builder()
         self._users: dict[int, list[tuple[Any, Any]]] = defaultdict(list)
         for i in range(1, self.faces.Extent() + 1):
@@ -122,10 +123,7 @@ class Net:
 
     def surface(self, face: Any) -> Surface:
         """Of a face."""
-        number = self.faces.FindIndex(face)
-        if number not in self._surfaces:
-            self._surfaces[number] = Surface(face)
-        return self._surfaces[number]
+        return self._surface_of(self.faces.FindIndex(face))
 
     def _same(self, known: Edge, a: float, b: float, near: float) -> bool:
         """Whether two parameters are one place; of an edge that is a point, if they are so near."""

@@ -105,7 +105,7 @@ def split(part: Any, labels: Sequence[FaceLabels], *, worst: int = -1, seconds: 
     faces = {info.number: part.face(info.number) for info in part.faces}
     shares = {number: _shares(fields[number].label) if number in fields else {} for number in faces}
     mixed = {number: fields[number] for number in faces if len(shares[number]) > 1}
-    shape, found = cut_faces(part.shape, faces, mixed, worst, seconds)
+    shape, found = cut_faces(part.shape, faces, mixed, part.surface, worst, seconds)
     pieces: list[Piece] = []
     for number, face in faces.items():
         shapes = found.faces.get(number, [face])
