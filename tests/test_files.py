@@ -13,14 +13,14 @@ import numpy as np
 import pytest
 import trimesh
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder
-from split_parts import block, labels
+from split_parts import labels
 
 from cad_io.arrays import FaceLabels, Style
 from cad_io.errors import WriteError
 from cad_io.kernel.limited import TimeLimit, limited
 from cad_io.part import Part
-from cad_io.split import cut_faces
-from cad_io.split.cut import Fault
+from cad_io.split import attempt
+from cad_io.split.border import CannotSplit
 from cad_io.split.pieces import MIXED, split
 from cad_io.write import write_gltf
 from cad_io.write.canonical import canonical
@@ -120,37 +120,14 @@ def test_a_copy_that_does_nothing_at_all_is_ended(monkeypatch):
     assert limited(lambda: spin(3), 100, processor=True) == b"done"
 
 
-def test_how_often_is_tried_does_not_depend_on_how_long_it_takes(monkeypatch):
-    part = Part(block(1))
-    chosen = [f.number for f in part.faces if f.surface == "bspline"][:2]
-    fields = [labels(part, n, lambda x, y: x > 0.5) for n in chosen]
-    counts = []
-    for delay in (0.0, 0.02):
-        calls = []
-
-        def cut(jobs, seconds, delay=delay, calls=calls):
-            calls.append(sum(job.work for job in jobs))
-            time.sleep(delay)
-            return [Fault("forced")] * len(jobs)
-
-        monkeypatch.setattr(cut_faces, "cut", cut)
-        assert split(part, fields).whole == dict.fromkeys(chosen, "forced")
-        counts.append(calls)
-    assert counts[0] == counts[1]
-
-    monkeypatch.setattr(
-        cut_faces, "cut", lambda jobs, seconds: calls.append(1) or [Fault(cut_faces.TOO_LONG)] * len(jobs)
-    )
-    calls = []
-    assert set(split(part, fields).whole.values()) == {cut_faces.TOO_LONG}
-    assert len(calls) == cut_faces.Effort().hangs
-
-
 # ---- a face that could not be split
 
 
 def test_triangles_of_a_face_left_whole_have_the_label_of_the_nearest_node(tmp_path, monkeypatch):
-    monkeypatch.setattr(cut_faces, "cut", lambda jobs, seconds: [Fault("forced")] * len(jobs))
+    def refused(*_):
+        raise CannotSplit("forced")
+
+    monkeypatch.setattr(attempt, "pieces", refused)
     part = Part(BRepPrimAPI_MakeBox(30, 20, 10).Solid())
     top = next(f.number for f in part.faces if abs(f.area - 600) < 1e-6)
     field = labels(
@@ -397,7 +374,10 @@ def test_what_is_old_is_named(tmp_path):
 def test_the_summary_names_faces_that_were_not_split(result, monkeypatch):
     from plan_cutters.command.summary import written
 
-    monkeypatch.setattr(cut_faces, "cut", lambda jobs, seconds: [Fault("forced")] * len(jobs))
+    def refused(*_):
+        raise CannotSplit("forced")
+
+    monkeypatch.setattr(attempt, "pieces", refused)
     found = models.split_result(result)
     document = result.plan.model_copy(update={"split": models.rungs(found)})
     (line,) = [x for x in written(document, Path("missing"), ()) if "could not be split" in x]

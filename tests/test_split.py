@@ -29,8 +29,9 @@ from cad_io.kernel import faces
 from cad_io.kernel.components import compound
 from cad_io.kernel.limited import ChildDied, TimeLimit, limited
 from cad_io.part import Part
-from cad_io.split import cut_faces
-from cad_io.split.cut import Cut, Fault
+from cad_io.split import attempt, cut_faces, drawing
+from cad_io.split.border import CannotSplit
+from cad_io.split.cut_faces import TOO_LONG
 from cad_io.split.pieces import MIXED, UNKNOWN, split
 
 
@@ -217,44 +218,118 @@ def test_the_time_limit_leaves_faces_whole():
     assert found.shape.IsSame(part.shape)
 
 
-def test_only_the_face_that_spoils_the_cut_is_left_whole(monkeypatch):
+def centre(face):
+    found = GProp_GProps()
+    BRepGProp.SurfaceProperties_s(face, found)
+    return found.CentreOfMass().Coord()
+
+
+def spoilt(monkeypatch, part, number, how):
+    """Have the pieces of one face made by `how(make)`, where `make()` makes them."""
+    real, place = attempt.pieces, centre(part.face(number))
+
+    def pieces(net, face, surface, found, regions):
+        def make():
+            return real(net, face, surface, found, regions)
+
+        return how(make) if centre(face) == pytest.approx(place) else make()
+
+    monkeypatch.setattr(attempt, "pieces", pieces)
+
+
+def three_sides():
+    """A block with three of its sides to split."""
     part = Part(block(1))
     chosen = [f.number for f in part.faces if f.surface == "bspline"][:3]
+    return part, chosen, [labels(part, n, lambda x, y: x > 0.45) for n in chosen]
+
+
+def refuse(make):
+    raise CannotSplit("forced")
+
+
+def test_only_the_face_that_fails_is_left_whole(monkeypatch):
+    part, chosen, fields = three_sides()
     bad = chosen[1]
-    bad_edges = []
-    real_cut, real_rescue = cut_faces.cut, cut_faces._rescue
-
-    def spy(unit, numbers, drawings, attempt, first):
-        bad_edges.append(drawings[bad])
-        return real_rescue(unit, numbers, drawings, attempt, first)
-
-    def cut(jobs, seconds):
-        if not bad_edges:
-            return [Fault("forced")] * len(jobs)
-        return [
-            Fault("forced") if any(e in bad_edges[0].edges for e in job.edges) else real_cut([job], seconds)[0]
-            for job in jobs
-        ]
-
-    monkeypatch.setattr(cut_faces, "_rescue", spy)
-    monkeypatch.setattr(cut_faces, "cut", cut)
-    found = split(part, [labels(part, n, lambda x, y: x > 0.45) for n in chosen])
+    spoilt(monkeypatch, part, bad, refuse)
+    found = split(part, fields)
     assert found.whole == {bad: "forced"}
     assert [p.label for p in found.pieces if p.face == bad] == [MIXED]
     for n in set(chosen) - {bad}:
         assert sorted(p.label for p in found.pieces if p.face == n) == [0, 1]
     assert Part(found.shape).closed
+    assert BRepCheck_Analyzer(found.shape).IsValid()
+
+
+def spin(make):
+    while True:
+        pass
+
+
+@pytest.mark.parametrize(
+    ("how", "why"), [(spin, TOO_LONG), (lambda make: os.abort(), "splitting it fails: the kernel crashed (status 6)")]
+)
+def test_a_face_that_never_splits_ends_within_its_bound_and_costs_itself_alone(how, why, monkeypatch):
+    part, chosen, fields = three_sides()
+    bad = chosen[1]
+    spoilt(monkeypatch, part, bad, how)
+    began = os.times()
+    found = split(part, fields, seconds=1)
+    spent = os.times()
+    assert spent.children_user + spent.children_system - began.children_user - began.children_system < 10
+    assert found.whole == {bad: why}
+    for n in set(chosen) - {bad}:
+        assert sorted(p.label for p in found.pieces if p.face == n) == [0, 1]
+    assert Part(found.shape).closed
+
+
+def test_where_all_faces_hang_a_few_are_tried(monkeypatch):
+    part = Part(BRepPrimAPI_MakeBox(30, 20, 10).Solid())
+    monkeypatch.setattr(attempt, "pieces", lambda *_: spin(None))
+    monkeypatch.setattr(cut_faces, "_HANGS", 2)
+    found = split(part, [labels(part, f.number, lambda x, y: x > 0.5) for f in part.faces], seconds=1)
+    assert sorted(found.whole) == [1, 2, 3, 4, 5, 6]
+    assert list(found.whole.values()).count(TOO_LONG) == 2
+    assert found.shape.IsSame(part.shape)
+
+
+def test_an_invalid_neighbour_is_the_fault_of_the_face_that_cuts_its_edge(monkeypatch):
+    part = Part(BRepPrimAPI_MakeBox(30, 20, 10).Solid())
+    real, others = attempt.valid, {f.number: f.area for f in part.faces}
+    first = labels(part, 1, lambda x, y: x > 0.5)
+
+    def valid(shape):
+        # Only the neighbours of F1 are looked at; with five edges they are those that F1 cuts.
+        cut = len(list(attempt.edges_of(shape))) == 5
+        return not cut and real(shape)
+
+    monkeypatch.setattr(attempt, "valid", valid)
+    monkeypatch.setattr(attempt, "wrong_whole", lambda before, after: "forced")
+    found = split(part, [first])
+    assert list(found.whole) == [1]
+    assert "beside it is not valid" in found.whole[1]
+    assert len(others) == face_count(found.shape)
+
+
+def test_a_face_is_split_alike_whatever_else_is_split():
+    part, chosen, fields = three_sides()
+    alone = [split(part, [field]) for field in fields]
+    together = split(part, fields)
+    for n, one in zip(chosen, alone, strict=True):
+        here, there = (sorted(round(area(p.shape), 5) for p in s.pieces if p.face == n) for s in (one, together))
+        assert here == pytest.approx(there, rel=1e-5)
 
 
 def test_a_failed_cut_is_tried_with_other_curves(monkeypatch):
-    real, calls = cut_faces.cut, []
+    part, tried = Part(patch()), []
 
-    def cut(jobs, seconds):
-        calls.append(jobs)
-        return [Fault("forced")] * len(jobs) if len(calls) < 4 else real(jobs, seconds)
+    def twice(make):
+        tried.append(1)
+        if len(tried) < len(drawing.FITS):
+            raise CannotSplit("forced")
+        return make()
 
-    monkeypatch.setattr(cut_faces, "cut", cut)
-    part = Part(patch())
+    spoilt(monkeypatch, part, 1, twice)
     found = split(part, [labels(part, 1, lambda x, y: x > 0.5)])
     assert found.whole == {}
     assert sorted(p.label for p in found.pieces) == [0, 1]
@@ -262,9 +337,7 @@ def test_a_failed_cut_is_tried_with_other_curves(monkeypatch):
 
 def test_pieces_that_do_not_follow_the_labels_are_refused(monkeypatch):
     part = Part(patch())
-    monkeypatch.setattr(
-        cut_faces, "cut", lambda jobs, _: [Cut(j.shape, {n: [f] for n, f in j.faces.items()}) for j in jobs]
-    )
+    monkeypatch.setattr(drawing, "curves", lambda *_: [])
     found = split(part, [labels(part, 1, lambda x, y: x > 0.5)])
     assert "piece of another label" in found.whole[1]
 

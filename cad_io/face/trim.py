@@ -156,10 +156,10 @@ def trim_of(face: TopoDS_Face, surface: Surface) -> Trim | None:
     if not pieces:
         return None
     tolerance = min(tolerance, ON_MOST, 1e-4 * size)
-    joins, gap = _joins(pieces, scale)
-    segments = np.concatenate([np.stack([p[:-1], p[1:]], axis=1) for p in pieces] + [joins])
+    between, gap = joins(pieces, scale)
+    segments = np.concatenate([np.stack([p[:-1], p[1:]], axis=1) for p in pieces] + [between])
     straight = np.concatenate([np.full(len(p) - 1, e) for p, e in zip(pieces, exact, strict=True)])
-    straight = np.append(straight, np.ones(len(joins), bool))
+    straight = np.append(straight, np.ones(len(between), bool))
     low, high = segments.min(axis=(0, 1)), segments.max(axis=(0, 1))
     box = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
     closed = gap < max(10 * tolerance, 1e-3 * size)
@@ -212,7 +212,7 @@ def _polyline(curve: BRepAdaptor_Curve2d, scale: Floats, deflection: float) -> t
     return np.array(points), worst
 
 
-def _joins(pieces: list[Floats], scale: Floats) -> tuple[Floats, float]:
+def joins(pieces: list[Floats], scale: Floats) -> tuple[Floats, float]:
     """Segments that lead from each piece's end to the start that continues it, and the longest of them in mm."""
     start, end = np.array([p[0] for p in pieces]), np.array([p[-1] for p in pieces])
     distance = np.linalg.norm((end[:, None] - start[None]) * scale, axis=2)

@@ -9,46 +9,71 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
-from OCP.GeomAbs import GeomAbs_CN, GeomAbs_Line
+from OCP.GeomAbs import GeomAbs_BSplineCurve, GeomAbs_CN, GeomAbs_Line
 from OCP.gp import gp_Pnt2d, gp_Vec2d
 from OCP.TColStd import TColStd_Array1OfReal
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopoDS import TopoDS
+from scipy.interpolate import BSpline
 
 from cad_io.arrays import Floats
-from cad_io.face.trim import even_odd
+from cad_io.face.trim import even_odd, joins
 from cad_io.kernel import edges_of
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)  # exact for polynomial curves up to degree 6
 _CHORDS = 4  # of an interval, in an outline
 _OFF = 1e-7  # of the grid, that rows are moved by
+_FEW = 50  # places of a curve that are asked of the kernel one by one
 _ARCS = 8  # intervals that a curve without knots (conic) is cut into
 
 
 def outline(face: Any) -> Floats:
-    """Segments (n, 2, 2) between (u, v) points of the face's boundary, in no order; empty for an unbounded face."""
-    out = []
-    for curve, ends, _ in boundary(face):
+    """Segments (n, 2, 2) between (u, v) points of the face's boundary, in no order; empty for an unbounded face.
+
+    Curves do not meet exactly at their vertex: what is between their ends are segments, too, or rows would slip through.
+    """
+    pieces = []
+    for curve, ends, sign in boundary(face):
         t = ends
         if len(ends) > 2 or curve.GetType() != GeomAbs_Line:
             t = np.append((ends[:-1, None] + np.diff(ends)[:, None] * np.arange(_CHORDS) / _CHORDS).ravel(), ends[-1])
         uv = np.array([curve.Value(x).Coord() for x in t.tolist()])
-        out.append(np.stack([uv[:-1], uv[1:]], axis=1))
-    return np.concatenate(out) if out else np.empty((0, 2, 2))
+        pieces.append(uv if sign > 0 else uv[::-1])
+    if not pieces:
+        return np.empty((0, 2, 2))
+    extent = np.ptp(np.concatenate(pieces), axis=0)
+    between, _ = joins(pieces, 1 / np.maximum(extent, 1e-300))
+    return np.concatenate([*(np.stack([uv[:-1], uv[1:]], axis=1) for uv in pieces), between])
 
 
 def uv_area(face: Any) -> float:
     """Area of the region in (u, v), exact for polynomial boundaries: the integral of u dv around it."""
     total = 0.0
-    point, tangent = gp_Pnt2d(), gp_Vec2d()
     for curve, ends, sign in boundary(face):
         half = 0.5 * np.diff(ends)
-        t = (0.5 * (ends[1:] + ends[:-1]))[:, None] + half[:, None] * _NODES
-        weight = half[:, None] * _WEIGHTS
-        for x, w in zip(t.ravel().tolist(), weight.ravel().tolist(), strict=True):
-            curve.D1(x, point, tangent)
-            total += sign * w * point.X() * tangent.Y()
+        t = ((0.5 * (ends[1:] + ends[:-1]))[:, None] + half[:, None] * _NODES).ravel()
+        place, slope = _followed(curve, t)
+        total += sign * float(((half[:, None] * _WEIGHTS).ravel() * place[:, 0] * slope[:, 1]).sum())
     return total
+
+
+def _followed(curve: Any, t: Floats) -> tuple[Floats, Floats]:
+    """Places and slopes (n, 2) of a curve at its parameters (n,)."""
+    if curve.GetType() == GeomAbs_BSplineCurve and len(t) > _FEW:
+        spline = curve.BSpline()
+        if not (spline.IsRational() or spline.IsPeriodic()):
+            poles = np.array([spline.Pole(i).Coord() for i in range(1, spline.NbPoles() + 1)])
+            flat = spline.KnotSequence()
+            knots = np.array([flat.Value(i) for i in range(flat.Lower(), flat.Upper() + 1)])
+            known = BSpline(knots, poles, spline.Degree())
+            return known(t), known.derivative()(t)
+    point, tangent = gp_Pnt2d(), gp_Vec2d()
+    rows = []
+    for x in t.tolist():
+        curve.D1(x, point, tangent)
+        rows.append((point.X(), point.Y(), tangent.X(), tangent.Y()))
+    found = np.array(rows).reshape(-1, 4)
+    return found[:, :2], found[:, 2:]
 
 
 def inside(segments: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:

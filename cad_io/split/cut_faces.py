@@ -1,217 +1,236 @@
-"""Cut all faces that can be cut: everything in one go, and only where that fails, less and less at a time.
+"""Cut all faces that can be cut, in a copy of the process that can be ended; what fails or hangs costs its own face alone.
 
-How often is counted in advance (`Effort`): what comes out does not depend on how busy the machine is. What remains of
-time is a guard against calls of the kernel that never end, in processor seconds (`cad_io.kernel.limited`). Ended by it, one
-call in two runs might do what it could not in the other only where it takes as long as the guard, minutes.
+Cost is linear in the length of the curves. Time decides nothing but whether a call of the kernel is endless, in processor
+seconds (`cad_io.kernel.limited`): what comes out does not depend on how busy the machine is.
 """
 
-from collections.abc import Callable, Hashable, Iterable
-from dataclasses import dataclass
-from typing import Any, Protocol
+import io
+import math
+import mmap
+import os
+import pickle
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
 
-from OCP.BRepBuilderAPI import BRepBuilderAPI_Sewing
-from OCP.TopAbs import TopAbs_FACE
-from OCP.TopoDS import TopoDS
+from OCP.BinTools import BinTools
+from OCP.TopoDS import TopoDS, TopoDS_Shape
 
-from cad_io.kernel import faces as faces_of
-from cad_io.kernel import shape_map
-from cad_io.kernel.components import components, compound
-from cad_io.split.cut import FUZZY, TOO_LONG, Cut, Fault, Job, cut
+from cad_io.arrays import FaceLabels
+from cad_io.kernel.components import as_one, children, components
+from cad_io.kernel.limited import ChildDied, TimeLimit, limited
+from cad_io.split.attempt import Attempt, copied
+from cad_io.split.contour import smoothed
+from cad_io.split.drawing import Drawing, in_words
+from cad_io.split.mend import mend
+from cad_io.split.net import Net
+from cad_io.surface import Surface
 
-#: Fits of the drawn curves that are tried, cells of root mean square distance; the first one first.
-FITS = (0.1, 0.05, 0.2)
-#: Into how many parts the spans of a face's surface are cut: a remedy for rough ones.
-DENSITIES = (1, 4, 8)
-
-
-#: Work above which a call gets more than the usual time, in proportion.
-_USUAL = 10_000
+#: Why a face is not cut if the limit ended the work.
+TOO_LONG = "splitting it takes too long"
+#: Copies of the process that may hang or crash before the rest is left whole.
+_HANGS = 3
+#: Nodes of the labels that double the limit.
+_NODES = 50_000
+#: Limit of a whole copy: that of so many faces, and a part of those of all of them.
+_WHOLE, _EACH = 4, 0.2
 
 
 @dataclass(slots=True)
-class Effort:
-    """What may still be tried on a part: counts, which are the same on any machine.
+class Found:
+    """What came of it.
 
     Attributes
     ----------
-    work : int
-        Of the calls after the first of each shape, as `Job.work` counts it.
-    hangs : int
-        Calls that may run into the time limit.
+    faces : dict
+        Number of a face that changed -> TopoDS_Face list.
+    labels : dict
+        Number of a face that is cut -> label of each piece, and how many of its known nodes have which label.
+    failed : dict
+        Number -> why a face was not cut.
+    specks, joined : dict
+        Number -> nodes that were islands of one node; slivers that went to the label around them.
     """
 
-    work: int = 100_000
-    hangs: int = 2
-
-    def cut(self, jobs: list[Job], seconds: float) -> list[Cut | Fault]:
-        """As `cut`, where there is effort left."""
-        if self.work <= 0 or self.hangs <= 0:
-            return [Fault(TOO_LONG if self.hangs <= 0 else "too many other splits were tried")] * len(jobs)
-        wanted = sum(job.work for job in jobs)
-        self.work -= wanted
-        found = cut(jobs, seconds * max(1.0, wanted / _USUAL))
-        self.hangs -= Fault(TOO_LONG) in found
-        return found
-
-
-class Drawing(Protocol):
-    """Edges on a face that are to cut it."""
-
-    edges: list[Any]
-
-    def draw(self, fit: float) -> str:
-        """Draw the edges anew; why that is not possible, or nothing."""
-
-    def differs(self, pieces: list[Any]) -> str:
-        """Why these pieces are not what was asked for, or nothing."""
-
-
-@dataclass(slots=True)
-class _Unit:
-    """A component of the part, its faces by number, and the result."""
-
-    shape: Any
-    faces: dict[int, Any]
-    cut: Cut | None = None
+    faces: dict[int, list[Any]] = field(default_factory=dict)
+    labels: dict[int, list[tuple[int, dict[int, int]]]] = field(default_factory=dict)
+    failed: dict[int, str] = field(default_factory=dict)
+    specks: dict[int, int] = field(default_factory=dict)
+    joined: dict[int, int] = field(default_factory=dict)
 
 
 def cut_faces(
-    shape: Any, faces: dict[int, Any], drawings: dict[int, Drawing], seconds: float, effort: Effort
-) -> tuple[Any, dict[int, list[Any]], dict[int, str]]:
-    """Cut faces of a shape along the edges drawn on them.
-
-    Components of the shape (solids, shells, loose faces) are cut one by one. Where the cut of a component fails, its
-    faces are halved until the ones that spoil it are found; those are tried with denser
-    surfaces and other curves.
+    shape: Any,
+    faces: dict[int, Any],
+    labels: dict[int, FaceLabels],
+    surface_of: Callable[[int], Surface],
+    worst: int,
+    seconds: float,
+) -> tuple[Any, Found]:
+    """Cut faces of a shape along the boundaries of their labels.
 
     Parameters
     ----------
     shape : TopoDS_Shape
+        Left as it is.
     faces : dict
         Number -> TopoDS_Face, all faces of the shape.
-    drawings : dict
-        Number -> Drawing, of the faces to cut; drawn.
+    labels : dict
+        Number -> FaceLabels, of the faces to cut.
+    surface_of : callable
+        A face's surface, by its number.
+    worst : int
+        As in `split`.
     seconds : float
-        Of processor time, after which a call of the kernel is taken for endless.
-    effort : Effort
-        What may be tried; less afterwards.
+        Of processor time, after which the work on one face is taken for endless; more for fine grids.
 
     Returns
     -------
     shape : TopoDS_Shape
-        Components that were cut are copies; the shape itself if there is none.
-    pieces : dict
-        Number -> list of TopoDS_Face, all faces.
-    failed : dict
-        Number -> why a face was not cut.
+        Components that changed are copies; the shape itself if there is none.
+    found : Found
     """
-    units = _units(shape, faces)
-    failed: dict[int, str] = {}
-
-    def attempt(jobs: list[Job], numbers: list[list[int]]) -> list[Cut | Fault]:
-        found = effort.cut(jobs, seconds)
-        for i, mine in enumerate(numbers):
-            result = found[i]
-            if isinstance(result, Cut):
-                faults = (Fault(reason, n) for n in mine if (reason := drawings[n].differs(result.pieces[n])))
-                found[i] = next(faults, result)
-        return found
-
-    asked = [(unit, [n for n in unit.faces if n in drawings]) for unit in units]
-    asked = [(unit, numbers) for unit, numbers in asked if numbers]
-    jobs = [Job(unit.shape, unit.faces, _edges(drawings, numbers)) for unit, numbers in asked]
-    for (unit, numbers), result in zip(asked, attempt(jobs, [n for _, n in asked]), strict=True):
-        if isinstance(result, Cut):
-            unit.cut = result
-        else:
-            failed |= _rescue(unit, numbers, drawings, lambda job, numbers: attempt([job], [numbers])[0], result)
-
-    pieces = {number: [face] for number, face in faces.items()}
-    for unit in units:
-        if unit.cut:
-            pieces |= unit.cut.pieces
-    if not any(unit.cut for unit in units):
-        return shape, pieces, failed
-    shapes = [unit.cut.shape if unit.cut else unit.shape for unit in units]
-    return shapes[0] if len(shapes) == 1 else compound(shapes), pieces, failed
+    lost: dict[int, str] = {}
+    for number, each in labels.items():
+        # Once here: code that is yet to be compiled may wait for ever in a copy of the process.
+        surface_of(number).first(each.u[:1], each.v[:1])
+    careful = False
+    for _ in range(_HANGS):
+        rest = {number: each for number, each in labels.items() if number not in lost}
+        if not rest:
+            break
+        watch = _Watch({number: seconds * (1 + each.label.size / _NODES) for number, each in rest.items()})
+        job = partial(_answer, shape, faces, rest, surface_of, worst, watch, careful)
+        try:
+            answer = limited(job, watch.whole, processor=True)
+        except (TimeLimit, ChildDied) as error:
+            seen = watch.seen() & rest.keys()
+            if careful or len(seen) < 2:
+                why = TOO_LONG if isinstance(error, TimeLimit) else f"splitting it fails: {error}"
+                lost |= dict.fromkeys(seen or rest, why)
+            careful = careful or len(seen) > 1
+            continue
+        result, found = _unpacked(answer, shape)
+        found.failed |= lost
+        return result, found
+    return shape, Found(failed=lost | {n: "too many other faces could not be split" for n in labels if n not in lost})
 
 
-def _units(shape: Any, faces: dict[int, Any]) -> list[_Unit]:
+class _Watch:
+    """Which faces a copy of the process works on, told to the one that waits for it; and how long it may."""
+
+    def __init__(self, limits: dict[int, float]) -> None:
+        self._limits = limits
+        self.whole = _WHOLE * max(limits.values()) + _EACH * sum(limits.values())
+        self._page = mmap.mmap(-1, 8 * (len(limits) + 1))
+
+    def works_on(self, numbers: set[int]) -> None:
+        """From now on, until it is told anew."""
+        told = sorted(numbers & self._limits.keys())
+        for i, number in enumerate((len(told), *told)):
+            self._page[8 * i : 8 * i + 8] = number.to_bytes(8, "little")
+        if hasattr(os, "fork") and told:
+            import resource  # of systems that can fork
+
+            _, hard = resource.getrlimit(resource.RLIMIT_CPU)
+            most = time.process_time() + max(self._limits[n] for n in told)
+            resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(min(most, self.whole)), hard))
+
+    def seen(self) -> set[int]:
+        """What was told last."""
+        numbers = [int.from_bytes(self._page[8 * i : 8 * i + 8], "little") for i in range(len(self._limits) + 1)]
+        return set(numbers[1 : 1 + numbers[0]])
+
+
+def _answer(
+    shape: Any,
+    faces: dict[int, Any],
+    labels: dict[int, FaceLabels],
+    surface_of: Callable[[int], Surface],
+    worst: int,
+    watch: _Watch,
+    careful: bool,
+) -> bytes:
+    """What `_unpacked` takes."""
+    found = Found()
+    base, faces = copied(shape, faces)
+    drawings: dict[int, Drawing] = {}
+    for number, mine in labels.items():
+        watch.works_on({number})
+        try:
+            drawing = drawings[number] = Drawing(faces[number], surface_of(number), mine)
+        except Exception as error:
+            found.failed[number] = in_words(error)
+            continue
+        if drawing.specks:
+            found.specks[number] = drawing.specks
+    watch.works_on(set(drawings))
+    for drawing, lines in zip(drawings.values(), smoothed([d.grid for d in drawings.values()]), strict=True):
+        drawing.lines = lines
     numbers = list(faces)
-    known = shape_map(shape, TopAbs_FACE)
-    units = []
-    for part in components(shape):
-        mine = {numbers[known.FindIndex(face) - 1]: face for face in faces_of(part)}
-        units.append(_Unit(part, mine))
-    return units
+
+    def attempt_at(drawings: dict[int, Drawing]) -> Attempt:
+        return Attempt(shape, base, faces, drawings, lambda i: surface_of(numbers[i - 1]), watch.works_on, careful)
+
+    net = Net(base, lambda i: surface_of(numbers[i - 1]))
+    attempt = _settled(attempt_at, net, faces, drawings, worst, watch, found)
+    found.labels = {n: [(part.label, part.counts) for part in d.parts] for n, d in drawings.items()}
+    found.joined = {n: d.joined for n, d in drawings.items() if d.joined}
+    return pickle.dumps((attempt.packed(), found))
 
 
-def _bases(unit: _Unit) -> list[tuple[Any, dict[int, Any]]]:
-    """Shapes to try the cut on, with their faces by number."""
-    bases = [(unit.shape, unit.faces)]
-    if unit.shape.ShapeType() == TopAbs_FACE:
-        # IGES closes a face with two edges in one place; the kernel splits it only with a true seam.
-        sewing = BRepBuilderAPI_Sewing(FUZZY)
-        sewing.Add(unit.shape)
-        sewing.Perform()
-        sewn = sewing.SewedShape()
-        if sewn.ShapeType() == TopAbs_FACE:
-            bases.append((sewn, {n: TopoDS.Face_s(sewn) for n in unit.faces}))
-    return bases
-
-
-def _edges(drawings: dict[int, Drawing], numbers: Iterable[int]) -> list[Any]:
-    return [edge for n in numbers for edge in drawings[n].edges]
-
-
-def _rescue(
-    unit: _Unit, numbers: list[int], drawings: dict[int, Drawing], attempt: Callable[[Job, list[int]], Cut | Fault],
-    first: Fault,
-) -> dict[int, str]:  # fmt: skip
-    """Cut as many of the faces as possible; why the others were not cut. `first`: why all of them could not be."""
-    failed: dict[int, str] = {}
-    bases = _bases(unit)
-    done: list[int] = []
-    rough: dict[int, int] = {}
-    fits = dict.fromkeys(numbers, FITS[0])
-
-    def way(group: list[int], base: int, dense: dict[int, int]) -> Hashable:
-        return base, frozenset((n, fits[n]) for n in done + group), frozenset(dense.items())
-
-    # What is left of a group when half of it is done is the same attempt again.
-    tried = {way(numbers, 0, rough): first}
-    groups = [numbers]
-    while groups:
-        group = groups.pop()
-        alone = len(group) == 1
-        faults = []
-        ways = [(b, f, d) for f in FITS for d in DENSITIES for b in range(len(bases))] if alone else [(0, FITS[0], 1)]
-        for base, fit, dense in ways:
-            if alone:
-                fits[group[0]] = fit
-                if reason := drawings[group[0]].draw(fit):
-                    faults.append(Fault(reason))
-                    continue
-            denser = rough | ({group[0]: dense} if dense > 1 else {})
-            this = way(group, base, denser)
-            if this in tried:
-                faults.append(tried[this])
+def _settled(
+    attempt_at: Callable[[dict[int, Drawing]], Attempt],
+    net: Net,
+    faces: dict[int, Any],
+    drawings: dict[int, Drawing],
+    worst: int,
+    watch: _Watch,
+    found: Found,
+) -> Attempt:
+    """The first attempt at which nothing is wrong; drawings that cannot be cut are taken out, and why is put down."""
+    wanted, mended = set(drawings), set[int]()
+    while True:
+        for number in sorted(wanted):
+            watch.works_on({number})
+            if not drawings[number].plan(net, worst):
+                found.failed[number] = drawings.pop(number).fault
+        attempt = attempt_at(drawings)
+        wanted = set(attempt.wrong)
+        for number, why in attempt.wrong.items():
+            drawings[number].fault = why
+        for key, (off, cutters) in attempt.loose.items():
+            watch.works_on(cutters)
+            if key not in mended:
+                mended.add(key)
+                mend(net, key)
+                users = {net.faces.FindIndex(face) for face, _ in net.users(key)}
+                concerned = {n for n in drawings if net.faces.FindIndex(faces[n]) in users}
+                for number in concerned:
+                    drawings[number].renew()
+                wanted |= concerned
                 continue
-            found = attempt(Job(*bases[base], _edges(drawings, done + group), denser), done + group)
-            if isinstance(found, Cut):
-                unit.cut = found
-                done += group
-                rough = denser
-                break
-            tried[this] = found
-            faults.append(found)
-        else:
-            culprit = faults[0].face
-            if alone:
-                failed[group[0]] = faults[0].reason
-            elif culprit in group:
-                groups += [[culprit], [n for n in group if n != culprit]]
-            else:
-                half = len(group) // 2
-                groups += [group[half:], group[:half]]
-    return failed
+            # Cut there, its neighbour across the edge would not be valid either; no other curve helps.
+            for number in cutters & drawings.keys():
+                found.failed[number] = f"an edge of it lies {off:.2g} mm off the face"
+                del drawings[number]
+        wanted &= drawings.keys()
+        if not (attempt.loose or attempt.wrong):
+            return attempt
+
+
+def _unpacked(answer: bytes, shape: Any) -> tuple[Any, Found]:
+    units, found = pickle.loads(answer)
+    made: list[Any] = []
+    for old, unit in zip(components(shape), units, strict=True):
+        if unit is None:
+            made.append(old)
+            continue
+        whole = TopoDS_Shape()
+        BinTools.Read_s(whole, io.BytesIO(unit[1]))
+        result, *groups = children(whole)
+        made += children(result)
+        found.faces |= {n: [TopoDS.Face_s(f) for f in children(g)] for n, g in zip(unit[0], groups, strict=True)}
+    return (as_one(made) if any(units) else shape), found

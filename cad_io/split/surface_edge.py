@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 from OCP.BRep import BRep_Builder, BRep_Tool
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeVertex
 from OCP.Geom import Geom_BSplineCurve
 from OCP.Geom2d import Geom2d_BSplineCurve
 from OCP.gp import gp_Pnt, gp_Pnt2d
@@ -24,7 +23,18 @@ DEVIATION = 1e-4
 _MOST_SITES = 5000
 
 
-def surface_edge(face: Any, surface: Surface, spline: Spline) -> Any:
+def trimmed(spline: Spline, a: float, b: float) -> Spline:
+    """The same cubic between two of its parameters."""
+    near = 1e-6 * (b - a)
+    inner = spline.knots[(spline.knots > a + near) & (spline.knots < b - near)]
+    knots = np.concatenate([[a] * 4, inner, [b] * 4])
+    # By rounding, means of equal knots lie beyond them.
+    sites = np.clip(np.convolve(knots[1:-1], np.ones(3) / 3, mode="valid"), a, b)
+    poles = make_interp_spline(sites, BSpline(spline.knots, spline.poles, 3)(sites), k=3, t=knots).c
+    return Spline(knots, np.array(poles), False)
+
+
+def surface_edge(face: Any, surface: Surface, spline: Spline, start: Any, stop: Any) -> Any:
     """Edge with the given parameter curve on the face's surface and a cubic curve in space of the same parameter.
 
     The kernel's own builder of curves in space stops silently up to 1 mm off (OCCT 7.9); here the surface is
@@ -37,6 +47,8 @@ def surface_edge(face: Any, surface: Surface, spline: Spline) -> Any:
         The face's own.
     spline : Spline
         In surface parameters.
+    start, stop : TopoDS_Vertex
+        Its ends; their tolerance grows where they are farther off.
 
     Returns
     -------
@@ -63,21 +75,18 @@ def surface_edge(face: Any, surface: Surface, spline: Spline) -> Any:
         worst = float(error.max())
         if worst < DEVIATION:
             break
-        if len(sites) > _MOST_SITES:
+        if len(sites) > _MOST_SITES or not np.isfinite(worst):
             raise ValueError(f"a curve on the surface stays {worst:.1e} mm off its curve in space")
         sites = np.union1d(sites, between[1][error >= DEVIATION])
 
     tolerance = max(1.2 * worst, 1e-7)
     builder, edge, location = BRep_Builder(), TopoDS_Edge(), TopLoc_Location()
     basis = BRep_Tool.Surface_s(face, location)
-    builder.MakeEdge(edge, _curve3d(space), tolerance)
-    builder.UpdateEdge(edge, _curve2d(spline), basis, location, tolerance)
-    first, last = (gp_Pnt(*xyz) for xyz in space(np.array([sites[0], sites[-1]])).tolist())
-    start = BRepBuilderAPI_MakeVertex(first).Vertex()
-    # A curve from seam to seam is closed in space alone; two vertices in one place would make the kernel ignore it.
-    stop = start if first.Distance(last) < DEVIATION else BRepBuilderAPI_MakeVertex(last).Vertex()
-    for vertex, orientation in ((start, TopAbs_FORWARD), (stop, TopAbs_REVERSED)):
-        builder.UpdateVertex(vertex, tolerance)
+    builder.MakeEdge(edge, curve_3d(space), tolerance)
+    builder.UpdateEdge(edge, curve_2d(spline), basis, location, tolerance)
+    for vertex, orientation, at_end in ((start, TopAbs_FORWARD, sites[0]), (stop, TopAbs_REVERSED, sites[-1])):
+        off = BRep_Tool.Pnt_s(vertex).Distance(gp_Pnt(*space(at_end).tolist()))
+        builder.UpdateVertex(vertex, max(tolerance, 1.01 * off + 1e-9))
         builder.Add(edge, vertex.Oriented(orientation))
     builder.Range(edge, float(sites[0]), float(sites[-1]))
     builder.SameRange(edge, True)
@@ -85,14 +94,14 @@ def surface_edge(face: Any, surface: Surface, spline: Spline) -> Any:
     return edge
 
 
-def _curve2d(spline: Spline) -> Any:
+def curve_2d(spline: Spline) -> Any:
     poles = TColgp_Array1OfPnt2d(1, len(spline.poles))
     for i, pole in enumerate(spline.poles.tolist(), 1):
         poles.SetValue(i, gp_Pnt2d(*pole))
     return Geom2d_BSplineCurve(poles, *_knots(spline.knots), 3)
 
 
-def _curve3d(curve: BSpline) -> Any:
+def curve_3d(curve: BSpline) -> Any:
     poles = TColgp_Array1OfPnt(1, len(curve.c))
     for i, pole in enumerate(curve.c.tolist(), 1):
         poles.SetValue(i, gp_Pnt(*pole))

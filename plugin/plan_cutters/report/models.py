@@ -69,7 +69,8 @@ def split_result(result: Any, cutter: str | None = None) -> Any:
             labels.append(_whole(number, int(label[seen].max()) if seen.any() else covered))
         else:
             labels.append(_whole(number, LABELS.index("unjudged")))
-    return split(result.part, labels)
+    # Slivers may join what is worse, but not what is not judged.
+    return split(result.part, labels, worst=LABELS.index("inaccessible"))
 
 
 def _whole(face: int, label: int) -> FaceLabels:
@@ -88,6 +89,10 @@ def rungs(split: Any) -> dict[str, SplitEntry]:
     shown = {number: SplitEntry(rung="contour", why=None) for number, count in counts.items() if count > 1}
     for number, why in split.whole.items():
         shown[number] = SplitEntry(rung="beside" if number in split.beside else "whole", why=why)
+    for number in split.joined.keys() | split.dropped.keys():
+        entry = shown.get(number) or SplitEntry(rung="contour", why=None)
+        told = {"joined": split.joined.get(number, 0), "dropped": split.dropped.get(number, 0)}
+        shown[number] = entry.model_copy(update=told)
     return {f"F{number}": shown[number] for number in sorted(shown)}
 
 

@@ -1,0 +1,170 @@
+"""Edges of a part, each cut once at all places where curves of any of its faces meet it."""
+
+import itertools
+from collections import defaultdict
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+from OCP.BRep import BRep_Builder, BRep_Tool
+from OCP.BRepAdaptor import BRepAdaptor_Curve
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_FORWARD, TopAbs_REVERSED, TopAbs_VERTEX
+from OCP.TopExp import TopExp
+from OCP.TopoDS import TopoDS, TopoDS_Vertex
+
+from cad_io.arrays import Floats
+from cad_io.kernel import edges_of, shape_map
+from cad_io.split.arrangement import MERGE
+from cad_io.split.border import parameter_curve
+from cad_io.surface import Surface
+
+#: Places where an edge is compared with its faces; the kernel's check takes 23 of them.
+_LOOKS = 45
+#: Most that the tolerance of an edge may grow by, mm.
+LOOSER = 0.1
+
+
+class Cut(NamedTuple):
+    """An edge in parts: the parameters of its ends and of the cuts between, its vertices there, the parts between."""
+
+    stops: list[float]
+    vertices: list[Any]
+    parts: list[Any]
+
+
+class Edge(NamedTuple):
+    """An edge, FORWARD; whether it is a point; its range; its curve."""
+
+    edge: Any
+    point: bool
+    first: float
+    last: float
+    curve: Any
+
+
+class Net:
+    """Edges, vertices and faces of a shape.
+
+    Attributes
+    ----------
+    edges, vertices, faces : TopTools_IndexedMapOfShape
+        Numbers of them are counted from 1.
+    cuts : dict
+        Number of an edge -> Cut.
+    loose : dict
+        Number of an edge that was cut -> how far it is off a face at the same parameter, mm, where that is too far.
+    """
+
+    def __init__(self, shape: Any, surface_of: Callable[[int], Surface]) -> None:
+        """Look at a shape; `surface_of` gives a face's surface by its number here."""
+        self.edges, self.vertices, self.faces = (
+            shape_map(shape, kind) for kind in (TopAbs_EDGE, TopAbs_VERTEX, TopAbs_FACE)
+        )
+        self.cuts: dict[int, Cut] = {}
+        self.loose: dict[int, float] = {}
+        self._known: dict[int, Edge] = {}
+        self._surface_of = surface_of
+        self._builder = BRep_Builder()
+        self._users: dict[int, list[tuple[Any, Any]]] = defaultdict(list)
+        for i in range(1, self.faces.Extent() + 1):
+            plain = TopoDS.Face_s(self.faces.FindKey(i).Oriented(TopAbs_FORWARD))
+            for edge in edges_of(plain):
+                self._users[self.edges.FindIndex(edge)].append((plain, edge))
+
+    def at_end(self, key: int, s: float) -> int | None:
+        """0 or 1 if a parameter of an edge is at that end, else None."""
+        known = self.edge(key)
+        span = known.last - known.first
+        e = int(s > known.first + 0.5 * span)
+        # By the curve's own ends: vertices of loose files lie off them.
+        return e if self._same(known, s, known.last if e else known.first, 1e-7 * span) else None
+
+    def cut(self, places: Iterable[tuple[int, float]]) -> None:
+        """Cut edges: (number of the edge, parameter). Places nearer than MERGE are one."""
+        found: dict[int, list[float]] = defaultdict(list)
+        for key, s in places:
+            found[key].append(s)
+        for key in sorted(found):
+            edge, point, first, last, curve = known = self.edge(key)
+            groups: list[list[float]] = []
+            for s in sorted(found[key]):
+                if groups and self._same(known, groups[-1][0], s, 1e-9 * (last - first)):
+                    groups[-1].append(s)
+                else:
+                    groups.append([s])
+            start, stop = TopExp.FirstVertex_s(edge), TopExp.LastVertex_s(edge)
+            stops = [first, *(group[len(group) // 2] for group in groups), last]
+            vertices = [start, *(start if point else self._vertex(edge, curve, s) for s in stops[1:-1]), stop]
+            parts = [self._part(edge, *vertices[i : i + 2], *stops[i : i + 2]) for i in range(len(stops) - 1)]
+            self.cuts[key] = Cut(stops, vertices, parts)
+            if not point:
+                self._loosen(key, known)
+
+    def stop(self, key: int, s: float) -> int:
+        """Which of the stops of a cut edge a place on it became."""
+        return 1 + int(np.argmin(np.abs(np.array(self.cuts[key].stops[1:-1]) - s)))
+
+    def parts(self, key: int) -> list[Any]:
+        """Parts of an edge, FORWARD, by parameter; the edge itself if it is not cut."""
+        return self.cuts[key].parts if key in self.cuts else [self.edge(key).edge]
+
+    def users(self, key: int) -> list[tuple[Any, Any]]:
+        """Faces that use an edge, FORWARD, each with the edge as it stands there; a seam twice."""
+        return self._users.get(key, [])
+
+    def edge(self, key: int) -> Edge:
+        """An edge by its number."""
+        if key not in self._known:
+            edge = TopoDS.Edge_s(self.edges.FindKey(key).Oriented(TopAbs_FORWARD))
+            point = BRep_Tool.Degenerated_s(edge)
+            first, last = BRep_Tool.Range_s(edge)
+            self._known[key] = Edge(edge, point, first, last, None if point else BRepAdaptor_Curve(edge))
+        return self._known[key]
+
+    def surface(self, face: Any) -> Surface:
+        """Of a face."""
+        return self._surface_of(self.faces.FindIndex(face))
+
+    def _same(self, known: Edge, a: float, b: float, near: float) -> bool:
+        """Whether two parameters are one place; of an edge that is a point, if they are so near."""
+        return abs(b - a) < near if known.point else known.curve.Value(a).Distance(known.curve.Value(b)) < MERGE
+
+    def _vertex(self, edge: Any, curve: Any, s: float) -> Any:
+        vertex = TopoDS_Vertex()
+        self._builder.MakeVertex(vertex, curve.Value(s), max(BRep_Tool.Tolerance_s(edge), 1e-7))
+        return vertex
+
+    def _part(self, edge: Any, start: Any, stop: Any, a: float, b: float) -> Any:
+        """The edge between two of its parameters, with all its curves."""
+        part = TopoDS.Edge_s(edge.EmptyCopied())
+        self._builder.Add(part, start.Oriented(TopAbs_FORWARD))
+        self._builder.Add(part, stop.Oriented(TopAbs_REVERSED))
+        self._builder.Range(part, a, b)
+        return part
+
+    def _loosen(self, key: int, known: Edge) -> None:
+        """Give parts the tolerance that they need: they are looked at in more places than the edge was."""
+        stops, _, parts = self.cuts[key]
+        shares = np.linspace(0, 1, _LOOKS)
+        t = np.concatenate([a + (b - a) * shares for a, b in itertools.pairwise(stops)])
+        off = np.zeros(len(t))
+        for face, edge in self.users(key):
+            plane, _, _ = parameter_curve(edge, face)
+            if plane is not None:
+                off = np.fmax(off, distance(known.curve, plane, self.surface(face), t))
+        off = off.reshape(-1, _LOOKS).max(axis=1)
+        for part, far in zip(parts, off.tolist(), strict=True):
+            old, new = BRep_Tool.Tolerance_s(part), 1.05 * far + 1e-7
+            if new > old + LOOSER:
+                self.loose[key] = max(far, self.loose.get(key, 0.0))
+            elif new > old:
+                self._builder.UpdateEdge(part, new)
+                for vertex in (TopExp.FirstVertex_s(part), TopExp.LastVertex_s(part)):
+                    self._builder.UpdateVertex(vertex, new)
+
+
+def distance(curve: Any, plane: Any, surface: Surface, t: Floats) -> Floats:
+    """How far (n,) a curve in space is off one in a surface's parameter plane at the same parameters (n,), mm."""
+    space = np.array([curve.Value(x).Coord() for x in t.tolist()])
+    uv = np.array([plane.Value(x).Coord() for x in t.tolist()])
+    return np.asarray(np.linalg.norm(surface.values(*uv.T) - space, axis=1))

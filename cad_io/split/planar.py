@@ -1,0 +1,106 @@
+"""Segments and loops in a plane: where they cross, what lies inside, how they turn. Only arrays."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+
+#: Pairs of segments that are looked at together.
+_TOGETHER = 400_000
+
+
+class Crossings(NamedTuple):
+    """Pairs of segments that cross: numbers i and j, and the shares of their lengths at which they do."""
+
+    i: NDArray[np.intp]
+    j: NDArray[np.intp]
+    at_i: Floats
+    at_j: Floats
+
+
+def crossings(p: Floats, q: Floats) -> Crossings:
+    """Tell where segments p (n, 2, 2) cross segments q (m, 2, 2).
+
+    Of each segment one end counts and the other does not, so that a chain is crossed once where two of its segments meet.
+    """
+    found: list[Crossings] = []
+    low, high = p.min(axis=(0, 1)), p.max(axis=(0, 1))
+    near = np.flatnonzero(((q.min(axis=1) <= high) & (q.max(axis=1) >= low)).all(axis=1))
+    q = q[near]
+    q_low, q_high = q.min(axis=1), q.max(axis=1)
+    rows = max(1, _TOGETHER // max(len(q), 1))
+    for begin in range(0, len(p) if len(q) else 0, rows):
+        some = p[begin : begin + rows]
+        low, high = some.min(axis=1), some.max(axis=1)
+        apart = (low[:, :1] > q_high[:, 0]) | (high[:, :1] < q_low[:, 0])
+        apart |= (low[:, 1:] > q_high[:, 1]) | (high[:, 1:] < q_low[:, 1])
+        i, j = np.nonzero(~apart)
+        a, b, c, d = some[i, 0], some[i, 1], q[j, 0], q[j, 1]
+        of_c, of_d, of_a, of_b = _side(a, b, c), _side(a, b, d), _side(c, d, a), _side(c, d, b)
+        hit = ((of_c >= 0) != (of_d >= 0)) & ((of_a >= 0) != (of_b >= 0))
+        i, j, of_a, of_b, of_c, of_d = (x[hit] for x in (i, j, of_a, of_b, of_c, of_d))
+        found.append(Crossings(i + begin, near[j], of_a / (of_a - of_b), of_c / (of_c - of_d)))
+    if not found:
+        none = np.empty(0, np.intp)
+        return Crossings(none, none, np.empty(0), np.empty(0))
+    return Crossings(*(np.concatenate(each) for each in zip(*found, strict=True)))
+
+
+def _side(a: Floats, b: Floats, p: Floats) -> Floats:
+    """Positive where p lies left of the line from a to b."""
+    return np.asarray((b[:, 0] - a[:, 0]) * (p[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (p[:, 0] - a[:, 0]))
+
+
+def within(points: Floats, segments: Floats) -> NDArray[np.bool_]:
+    """Which points (n, 2) lie in the even-odd region that segments (m, 2, 2) bound."""
+    (x0, y0), (x1, y1) = segments[:, 0].T, segments[:, 1].T
+    x, y = points[:, :1], points[:, 1:]
+    hit = (y0 <= y) != (y1 <= y)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        at = x0 + (y - y0) / (y1 - y0) * (x1 - x0)
+    return np.asarray((hit & (at > x)).sum(axis=1) % 2 == 1)
+
+
+def nearest(segments: Floats, point: Floats) -> tuple[int, float, float]:
+    """The segment of (n, 2, 2) that is nearest to a point (2,): its number, the share of its length, the distance."""
+    start, step = segments[:, 0], segments[:, 1] - segments[:, 0]
+    share = np.clip(((point - start) * step).sum(axis=1) / np.maximum((step * step).sum(axis=1), 1e-300), 0, 1)
+    away = np.linalg.norm(start + share[:, None] * step - point, axis=1)
+    k = int(away.argmin())
+    return k, float(share[k]), float(away[k])
+
+
+def chain(path: Floats) -> Floats:
+    """Segments (n - 1, 2, 2) of a path (n, 2)."""
+    return np.stack([path[:-1], path[1:]], axis=1)
+
+
+def enclosed(path: Floats) -> float:
+    """Area that a closed path (n, 2) encloses, positive if it runs counter-clockwise."""
+    x, y = (path - path[0]).T
+    return 0.5 * float(np.dot(x, np.roll(y, -1)) - np.dot(np.roll(x, -1), y))
+
+
+def extent(path: Floats) -> float:
+    """How far a path (n, 2) leads away from its start at most."""
+    return float(np.linalg.norm(path - path[0], axis=1).max())
+
+
+def bearing(path: Floats, radius: float) -> float:
+    """Direction, rad, in which a path (n, 2) first leaves a circle around its start; of its farthest point if it does not."""
+    away = np.linalg.norm(path - path[0], axis=1)
+    k = max(1, int(np.argmax(away >= radius)) if (away >= radius).any() else int(away.argmax()))
+    share = (radius - away[k - 1]) / (away[k] - away[k - 1]) if away[k] > away[k - 1] else 1.0
+    x, y = path[k - 1] + min(max(share, 0.0), 1.0) * (path[k] - path[k - 1]) - path[0]
+    return float(np.arctan2(y, x))
+
+
+def left_of(path: Floats, reach: float) -> Floats:
+    """A point (2,) close to the left of the longest step of a closed path (n, 2), at most `reach` away."""
+    step = np.roll(path, -1, axis=0) - path
+    length = np.linalg.norm(step, axis=1)
+    k = int(length.argmax())
+    normal = np.array([-step[k, 1], step[k, 0]]) / max(length[k], 1e-300)
+    return np.asarray(path[k] + 0.5 * step[k] + normal * min(1e-3 * float(length[k]), reach))
