@@ -1,7 +1,6 @@
 """Triangles close to a part's surface, with the distance proved.
 
-The kernel's mesher gives a start: triangles in each face's parameter plane, to which gaps between the mesh and the true
-ends of border curves are added. Every triangle is cut until a bound says that it is near enough: the bound follows from how
+They start with a few in each face's parameter plane, to which gaps between them and the true ends of border curves are added. Every triangle is cut until a bound says that it is near enough: the bound follows from how
 the surface and the border curves bend about it, so nothing needs measuring but what only the kernel can evaluate.
 """
 
@@ -11,18 +10,20 @@ from contextlib import contextmanager
 from typing import TypeVar
 
 import numpy as np
+from OCP.BRepTools import BRepTools
 
 from cad_io.arrays import Triangles
 from cad_io.kernel import translated
 from cad_io.part import Part
-from cad_io.tessellate.mesh import UVMesh, uv_meshes
+from cad_io.tessellate.mesh import UVMesh
 from cad_io.tessellate.patch import NO_ROOM, Patch, Tried, room
 from cad_io.tessellate.refine import Found
+from cad_io.tessellate.start import At, starts
 
-#: The start is asked of the kernel's mesher this much coarser than wanted: splitting is quicker.
-_COARSER = 32.0
-_COARSE = 3e-4  # of the part's size: never asked to be finer than this
-_ANGLE = 0.5
+#: The start is this much coarser than wanted: cutting is quicker, and halves twice each way go on evenly.
+_COARSER = 16.0
+#: Triangles of a start that is coarse enough, whatever the budget.
+_FEW = 16
 #: A face is missing if more than this share of it has no triangles.
 _UNCOVERED = 0.01
 #: Times the budget at which counting ends; how much the chord error grows at least where the budget binds.
@@ -32,9 +33,6 @@ _ROOM = 1 << 19
 
 Item = TypeVar("Item")
 Done = TypeVar("Done")
-
-#: Told who is at work, `kernel` or `own`, and at which face (0: all of them): for who watches the time.
-At = Callable[[str, int], None]
 
 
 def tessellate(
@@ -50,7 +48,7 @@ def tessellate(
     chord : float
         mm, positive.
     budget : int
-        Most triangles, but for those that the kernel's mesher begins with. Where it binds, all are laid for a larger chord
+        Most triangles, but for those that it begins with. Where it binds, all are laid for a larger chord
         error, and `chord_error` says which.
     faces : sequence of int, optional
         Face numbers; default all.
@@ -72,11 +70,11 @@ def tessellate(
     missing = {n: str(part.faces[n - 1].unjudged) for n in numbers if part.faces[n - 1].unjudged is not None}
     wanted = [n for n in numbers if n not in missing]
     with translated("meshing", file=part.file):
-        meshes = _start(part, wanted, chord, budget, at)
-        missing.update({n: "the kernel's mesher fails on it" for n in wanted if n not in meshes})
+        meshes, why = _started(part, wanted, chord, budget, at)
+        missing.update(why)
         patches = []
         for number in list(meshes):
-            at("kernel", number)
+            at("own", number)
             patches.append(Patch.of(part, number, meshes.pop(number)))
         patches, tried = _affordable(part, patches, chord, budget, jobs, at)
         laid = []
@@ -111,22 +109,18 @@ def tessellate(
     )
 
 
-def _start(part: Part, wanted: Sequence[int], chord: float, budget: int, at: At) -> dict[int, UVMesh]:
-    """The kernel's triangles; coarser where they would take the whole budget, finer where a face gets none."""
-    if not wanted:
-        return {}
-    size = float(np.linalg.norm(part.size))
-    deflection = max(_COARSER * chord, _COARSE * size)
-    at("kernel", 0)
-    meshes = uv_meshes(part, wanted, deflection, _ANGLE)
-    while sum(len(m.corner) for m in meshes.values()) > budget and deflection < size:
-        deflection *= 4
-        meshes = uv_meshes(part, wanted, deflection, 2 * _ANGLE)
-    for number in wanted:
-        if number not in meshes:
-            at("kernel", number)
-            meshes.update(uv_meshes(part, [number], 0.1 * chord, 0.2 * _ANGLE))
-    return meshes
+def _started(
+    part: Part, wanted: Sequence[int], chord: float, budget: int, at: At
+) -> tuple[dict[int, UVMesh], dict[int, str]]:
+    """What the triangles of each face begin with, and why a face has none; coarser where they would take the whole budget."""
+    BRepTools.Clean_s(part.shape)
+    size, chord = float(np.linalg.norm(part.size)), _COARSER * chord
+    meshes, why = starts(part, wanted, chord, at)
+    while sum(len(mesh.corner) for mesh in meshes.values()) > budget and chord < size:
+        chord *= _COARSER
+        again = [number for number in meshes if len(meshes[number].corner) > _FEW]
+        meshes.update(starts(part, again, chord, at)[0])
+    return {number: meshes[number] for number in wanted if number in meshes}, why
 
 
 def _affordable(
