@@ -13,6 +13,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Face
 from cad_io.arrays import Floats, Ints
 from cad_io.face.trim import continuing
 from cad_io.kernel import edges_of, interval_ends
+from cad_io.tessellate.planar import places
 
 #: Chords of a bent border curve, at least; how often one is halved, at most.
 _CHORDS, _HALVINGS = 4, 14
@@ -79,9 +80,7 @@ def uses_of(face: TopoDS_Face) -> list[Use]:
         if edge.Orientation() not in (TopAbs_FORWARD, TopAbs_REVERSED):
             continue
         curve = BRepAdaptor_Curve2d(edge, forward)
-        found.append(
-            Use(curve, curve.FirstParameter(), curve.LastParameter(), edge.Orientation() == TopAbs_FORWARD)
-        )
+        found.append(Use(curve, curve.FirstParameter(), curve.LastParameter(), edge.Orientation() == TopAbs_FORWARD))
     return found
 
 
@@ -101,13 +100,12 @@ def joined(sampled: Sequence[Sampled], scale: Floats) -> Outline:
     """The outline of sampled uses: nodes at one place are one, and each use ends where the one that continues it starts."""
     start, end = (np.array([each.on_curve[k] for each in sampled]) for k in (0, -1))
     following = continuing(start, end, scale)
-    places = np.concatenate([
+    at = np.concatenate([
         np.concatenate([each.on_curve[:-1], start[next_][None]]) for each, next_ in zip(sampled, following, strict=True)
     ])  # fmt: skip
-    # Zeros of both signs are one place.
-    uv, row = np.unique(places + 0.0, axis=0, return_inverse=True)
+    first, row = places(at)
     ends = np.cumsum([len(each.parameter) for each in sampled])
-    return Outline(uv, tuple(np.split(row.ravel().astype(np.int32), ends[:-1])), tuple(sampled))
+    return Outline(at[first], tuple(np.split(row.astype(np.int32), ends[:-1])), tuple(sampled))
 
 
 def _sampled(use: Use, steps: Steps, most: int) -> Sampled:

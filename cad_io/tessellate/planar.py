@@ -11,7 +11,11 @@ from cad_io.tessellate.mesh import upright
 _AWAY = 0.3
 #: What areas of one region may differ by, found in two ways.
 _SAME = 1e-9
+#: Corners of a cell's two triangles.
+_HALVES = np.array([[0, 1, 2], [0, 2, 3]])
+
 Bools = NDArray[np.bool_]
+Indices = NDArray[np.int64]
 
 
 def triangulated(uv: Floats, chords: Ints, lines: tuple[Floats, Floats], metric: Floats) -> tuple[Floats, Ints] | None:
@@ -44,7 +48,7 @@ def triangulated(uv: Floats, chords: Ints, lines: tuple[Floats, Floats], metric:
     filled, corner = cells(whole)
     node = np.stack([grid.ravel() for grid in np.meshgrid(lines[0], lines[1], indexing="ij")], axis=1)
     used, filled = np.unique(filled, return_inverse=True)
-    corner = (filled.ravel()[corner] if len(corner) else corner).reshape(-1, 3) + len(uv)
+    corner = filled.ravel()[corner] + len(uv)
     points = np.concatenate([uv, node[used]])
     if whole.any():
         region = shapely.difference(region, _cells_region(whole, u, v))
@@ -55,19 +59,27 @@ def triangulated(uv: Floats, chords: Ints, lines: tuple[Floats, Floats], metric:
     return (points, found) if bounded_by(found, border) else None
 
 
-def cells(whole: Bools) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def cells(whole: Bools) -> tuple[Indices, Indices]:
     """Of cells (nu, nv) of a grid: numbers of their nodes, u first, and two triangles each, rows of these."""
     i, j = np.nonzero(whole)
     wide = whole.shape[1] + 1
     node = np.stack([i * wide + j, (i + 1) * wide + j, (i + 1) * wide + j + 1, i * wide + j + 1], axis=1)
-    first = 4 * np.arange(len(i))[:, None]
-    return node.ravel(), np.concatenate([first + [[0, 1, 2]], first + [[0, 2, 3]]])
+    return node.ravel(), (4 * np.arange(len(i))[:, None, None] + _HALVES).reshape(-1, 3)
 
 
 def odd(chords: Ints) -> Ints:
     """Chords (k, 2) that are run along an odd number of times, once each."""
-    each, count = np.unique(np.sort(chords, axis=1), axis=0, return_counts=True)
-    return np.asarray(each[count % 2 == 1])
+    each, count = _edges(chords)
+    return each[count % 2 == 1]
+
+
+def _edges(ends: Ints) -> tuple[Ints, Indices]:
+    """Edges (k, 2) between nodes in order, each once, the smaller number first, and how often each is there."""
+    low, high = np.min(ends, axis=1).astype(np.int64), np.max(ends, axis=1).astype(np.int64)
+    wide = int(high.max(initial=0)) + 1
+    # Numbers are sorted much faster than pairs.
+    key, count = np.unique(low * wide + high, return_counts=True)
+    return np.stack([key // wide, key % wide], axis=1).astype(np.int32), count
 
 
 def bounded_by(corner: Ints, border: Ints) -> bool:
@@ -75,9 +87,17 @@ def bounded_by(corner: Ints, border: Ints) -> bool:
 
     Then a point within the border is covered by an odd number of them: by one at least.
     """
-    edges = np.sort(np.stack([corner, np.roll(corner, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
-    each, count = np.unique(edges, axis=0, return_counts=True)
+    each, count = _edges(np.stack([corner, np.roll(corner, -1, axis=1)], axis=2).reshape(-1, 2))
     return bool((count <= 2).all()) and np.array_equal(each[count == 1], border)
+
+
+def places(uv: Floats) -> tuple[Indices, Indices]:
+    """Rows of points (n, 2) that stand for each place, and the number of the place of each (n,)."""
+    # Complex numbers are sorted by both parts, and faster than pairs; zeros of both signs are one.
+    _, first, place = np.unique(
+        np.ascontiguousarray(uv + 0.0).view(complex).ravel(), return_index=True, return_inverse=True
+    )
+    return first, place.ravel()
 
 
 def _region(segments: Floats) -> shapely.Geometry | None:
@@ -99,7 +119,10 @@ def _whole_cells(region: shapely.Geometry, u: Floats, v: Floats) -> Bools:
     if min(none.shape) < 2:
         return none
     du, dv = _AWAY * np.diff(u), _AWAY * np.diff(v)
-    low_u, high_u = np.broadcast_to((u[:-1] - du)[:, None], none.shape), np.broadcast_to((u[1:] + du)[:, None], none.shape)
+    low_u, high_u = (
+        np.broadcast_to((u[:-1] - du)[:, None], none.shape),
+        np.broadcast_to((u[1:] + du)[:, None], none.shape),
+    )
     low_v, high_v = np.broadcast_to(v[:-1] - dv, none.shape), np.broadcast_to(v[1:] + dv, none.shape)
     shapely.prepare(region)
     return np.asarray(shapely.contains_properly(region, shapely.box(low_u, low_v, high_u, high_v)))
@@ -113,10 +136,9 @@ def _cells_region(whole: Bools, u: Floats, v: Floats) -> shapely.Geometry:
 def _corners(region: shapely.Geometry, points: Floats) -> Ints | None:
     """Rows (t, 3) of points, each place once, at the corners of a region's triangles; None where a corner is at none of them."""
     triangles = shapely.constrained_delaunay_triangles(region)
-    place = shapely.get_coordinates(triangles).reshape(-1, 4, 2)[:, :3].reshape(-1, 2) + 0.0
-    whole = np.concatenate([points + 0.0, place])
-    _, first, row = np.unique(whole, axis=0, return_index=True, return_inverse=True)
-    corner = first[row.ravel()[len(points) :]]
+    place = shapely.get_coordinates(triangles).reshape(-1, 4, 2)[:, :3].reshape(-1, 2)
+    first, row = places(np.concatenate([points, place]))
+    corner = first[row[len(points) :]]
     if (corner >= len(points)).any():
         return None
     return corner.reshape(-1, 3).astype(np.int32)

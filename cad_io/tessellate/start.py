@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import shapely
 
-from cad_io.arrays import Floats
+from cad_io.arrays import Floats, Ints
 from cad_io.face.trim import Trim
 from cad_io.kernel import is_kernel_error
 from cad_io.kernel.limited import TimeLimit
@@ -17,7 +17,7 @@ from cad_io.part import Part
 from cad_io.surface import Surface
 from cad_io.tessellate.mesh import BorderCurve, UVMesh, bordered, kernel_start
 from cad_io.tessellate.outline import Outline, Steps, Use, outline_of, uses_of
-from cad_io.tessellate.planar import bounded_by, cells, odd, triangulated
+from cad_io.tessellate.planar import cells, odd, triangulated
 
 #: Places each way where bends are looked at, to lay out a grid.
 _LOOKED = 13
@@ -85,6 +85,23 @@ def _second(part: Part, number: int, chord: float, seconds: float) -> tuple[UVMe
     return mesh, spent + more
 
 
+def expected(part: Part, numbers: Sequence[int], chord: float) -> float:
+    """How many triangles faces take for a chord error, mm, about: of each at least two."""
+    total = 0.0
+    for number in numbers:
+        trim = part.trim(number)
+        with np.errstate(all="ignore"):
+            density = None if trim is None else _density(part.surface(number), trim)
+        total += 2.0
+        if trim is not None and density is not None:
+            wide = (trim.box[1] - trim.box[0], trim.box[3] - trim.box[2])
+            p, q = trim.segments[:, 0], trim.segments[:, 1]
+            share = abs(0.5 * float((p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]).sum())) / (wide[0] * wide[1])
+            steps = [_steps(each, width, chord).sum() for each, width in zip(density, wide, strict=True)]
+            total += 2.0 * share * float(max(1.0, steps[0]) * max(1.0, steps[1]))
+    return total
+
+
 def own_start(part: Part, number: int, chord: float) -> UVMesh | None:
     """Triangles of our own; None where there are none that cover the face. As in `starts`."""
     try:
@@ -125,7 +142,7 @@ def _own_start(part: Part, number: int, chord: float) -> UVMesh | None:
 
 
 def _density(surface: Surface, trim: Trim) -> tuple[Floats, Floats] | None:
-    """How much a surface bends along u, most at each place (k,), and along v: mm for a squared step of 1; None where not known."""
+    """How much a surface bends along u at each place (k,) at most, and along v, mm for a squared step of 1; None where not known."""
     u0, u1, v0, v1 = trim.box
     share = (np.arange(_LOOKED) + 0.5) / _LOOKED
     u, v = (each.ravel() for each in np.meshgrid(u0 + share * (u1 - u0), v0 + share * (v1 - v0), indexing="ij"))
@@ -140,9 +157,7 @@ def _density(surface: Surface, trim: Trim) -> tuple[Floats, Floats] | None:
 
 def _lines(density: Floats, ends: tuple[float, ...], chord: float) -> Floats:
     """Lines from end to end, nearer to each other where the surface bends more."""
-    # Both ways together may be off by the chord: each by half of it.
-    each = np.sqrt(np.maximum(density, 1e-3 * density.max()) / (4.0 * chord)) * (ends[1] - ends[0]) / len(density)
-    total = np.concatenate([[0.0], np.cumsum(each)])
+    total = np.concatenate([[0.0], np.cumsum(_steps(density, ends[1] - ends[0], chord))])
     count = max(1, int(min(np.ceil(total[-1] - 1e-6), _CELLS)))
     if count == 1 or not total[-1] > 0.0:
         return np.array(ends)
@@ -150,6 +165,12 @@ def _lines(density: Floats, ends: tuple[float, ...], chord: float) -> Floats:
     found = np.interp(np.linspace(0.0, total[-1], count + 1), total, along)
     found[0], found[-1] = ends
     return found
+
+
+def _steps(density: Floats, width: float, chord: float) -> Floats:
+    """How many steps it takes through each of the places (k,) at which bends are known."""
+    # Both ways together may be off by the chord: each by half of it.
+    return np.asarray(np.sqrt(np.maximum(density, 1e-3 * density.max()) / (4.0 * chord)) * (width / len(density)))
 
 
 def _metric(bend: Floats, trim: Trim, lines: list[Floats]) -> Floats:
@@ -161,9 +182,10 @@ def _metric(bend: Floats, trim: Trim, lines: list[Floats]) -> Floats:
     return np.asarray(np.maximum(steps, _STRAIGHT * steps.max()) / wide)
 
 
-def _finished(outline: Outline, uv: Floats, corner: Floats, surface: Surface) -> UVMesh:
+def _finished(outline: Outline, uv: Floats, corner: Ints, surface: Surface) -> UVMesh:
     border = tuple(
-        BorderCurve(nodes, each.parameter, each.use.curve) for nodes, each in zip(outline.nodes, outline.uses, strict=True)
+        BorderCurve(nodes, each.parameter, each.use.curve)
+        for nodes, each in zip(outline.nodes, outline.uses, strict=True)
     )
     return bordered(UVMesh(uv, corner, border), [each.on_curve for each in outline.uses], surface)
 
@@ -184,35 +206,29 @@ def _on_grid(surface: Surface, trim: Trim, uses: list[Use], lines: tuple[Floats,
     if (len(grid[0]) - 1) * (len(grid[1]) - 1) > _CELLS:
         return None
     filled, corner = cells(np.ones((len(grid[0]) - 1, len(grid[1]) - 1), bool))
-    corner = filled[corner].astype(np.int32)
     uv = np.stack([each.ravel() for each in np.meshgrid(*grid, indexing="ij")], axis=1)
-    sampled, nodes = [], []
-    wide = len(grid[1])
+    number = np.arange(len(uv), dtype=np.int32).reshape(len(grid[0]), len(grid[1]))
+    border, on_curve = [], []
     for use, (along, far, span) in zip(uses, known, strict=True):
         low, high = (int(np.argmin(np.abs(grid[along] - t))) for t in sorted(span))
-        if low == high:
-            return None
-        rows = np.arange(low, high + 1)
-        at = grid[along][low : high + 1]
-        if span[0] > span[1]:
-            rows, at = rows[::-1], at[::-1]
-        parameter = _found_at(use, along, at)
+        way = slice(None, None, 1 if span[0] < span[1] else -1)
+        parameter = _found_at(use, along, grid[along][low : high + 1][way])
         if parameter is None:
             return None
-        other = (len(grid[1 - along]) - 1) if far else 0
-        nodes.append((rows * wide + other if along == 0 else other * wide + rows).astype(np.int32))
-        sampled.append(np.array([use.curve.Value(t).Coord() for t in parameter.tolist()]))
-        border = BorderCurve(nodes[-1], parameter, use.curve)
-        nodes[-1] = border
-    chords = np.concatenate([np.stack([b.nodes[:-1], b.nodes[1:]], axis=1) for b in nodes])
-    if len(odd(chords)) != len(chords) or not bounded_by(corner, odd(chords)):
+        row = -1 if far else 0
+        nodes = (number[:, row] if along == 0 else number[row])[low : high + 1][way]
+        border.append(BorderCurve(nodes, parameter, use.curve))
+        on_curve.append(np.array([use.curve.Value(t).Coord() for t in parameter.tolist()]))
+    chords = np.concatenate([np.stack([each.nodes[:-1], each.nodes[1:]], axis=1) for each in border])
+    around = [np.stack([line[:-1], line[1:]], axis=1) for line in (number[0], number[-1], number[:, 0], number[:, -1])]
+    if len(chords) != len(np.concatenate(around)) or not np.array_equal(odd(chords), odd(np.concatenate(around))):
         return None
-    return bordered(UVMesh(uv, corner, tuple(nodes)), sampled, surface)
+    return bordered(UVMesh(uv, filled[corner].astype(np.int32), tuple(border)), on_curve, surface)
 
 
 def _side(use: Use, trim: Trim) -> tuple[int, bool, tuple[float, float]] | None:
-    """The side of the box that a border curve runs along, from end to end: 0 for one along u, whether it is the one with the larger
-    other parameter, and from where to where; None for a curve that runs along none."""
+    """The side of the box that a curve runs along: 0 for one along u, whether it is the one with the larger other parameter, and
+    from where to where; None for a curve that runs along none."""
     at = np.array([use.curve.Value(t).Coord() for t in np.linspace(use.first, use.last, 5).tolist()])
     low, high = np.array(trim.box[0::2]), np.array(trim.box[1::2])
     for along in range(2):
@@ -238,13 +254,16 @@ def _through(lines: Floats, ends: Floats) -> Floats | None:
         return None
     inner = lines[1:-1]
     room = _MOVED * np.interp(inner, 0.5 * (lines[1:] + lines[:-1]), np.diff(lines)) if len(inner) else inner
-    after = np.clip(np.searchsorted(wanted, inner), 1, len(wanted) - 1) if len(wanted) > 1 else np.zeros(len(inner), int)
+    after = (
+        np.clip(np.searchsorted(wanted, inner), 1, len(wanted) - 1) if len(wanted) > 1 else np.zeros(len(inner), int)
+    )
     apart = np.minimum(np.abs(inner - wanted[after]), np.abs(inner - wanted[np.maximum(after - 1, 0)]))
     return np.unique(np.concatenate([[low], inner[apart > room], wanted, [high]]))
 
 
 def _found_at(use: Use, along: int, at: Floats) -> Floats | None:
     """Parameters (k,) at which a curve passes values of u (0) or v (1), which run with or against it."""
+
     def off(t: float, wanted: float) -> float:
         point = use.curve.Value(t)
         return float(point.X() if along == 0 else point.Y()) - wanted
@@ -278,4 +297,3 @@ def _found_at(use: Use, along: int, at: Floats) -> Floats | None:
     ordered[0], ordered[-1] = (ends[1], ends[0]) if backwards else ends
     step = np.diff(ordered)
     return ordered if (step > 0).all() or (step < 0).all() else None
-

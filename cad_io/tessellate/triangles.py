@@ -1,9 +1,11 @@
 """Triangles close to a part's surface, with the distance proved.
 
-They start with a few in each face's parameter plane, to which gaps between them and the true ends of border curves are added. Every triangle is cut until a bound says that it is near enough: the bound follows from how
-the surface and the border curves bend about it, so nothing needs measuring but what only the kernel can evaluate.
+They start with a few in each face's parameter plane, to which gaps between them and the true ends of border curves are
+added. Every triangle is cut until a bound says that it is near enough: the bound follows from how the surface and the border
+curves bend about it, so nothing needs measuring but what only the kernel can evaluate.
 """
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -15,19 +17,18 @@ from OCP.BRepTools import BRepTools
 from cad_io.arrays import Triangles
 from cad_io.kernel import translated
 from cad_io.part import Part
-from cad_io.tessellate.mesh import UVMesh
 from cad_io.tessellate.patch import NO_ROOM, Patch, Tried, room
 from cad_io.tessellate.refine import Found
-from cad_io.tessellate.start import At, starts
+from cad_io.tessellate.start import At, expected, starts
 
 #: The start is this much coarser than wanted: cutting is quicker, and halves twice each way go on evenly.
 _COARSER = 16.0
-#: Triangles of a start that is coarse enough, whatever the budget.
-_FEW = 16
 #: A face is missing if more than this share of it has no triangles.
 _UNCOVERED = 0.01
 #: Times the budget at which counting ends; how much the chord error grows at least where the budget binds.
 _TOO_MANY, _STEP = 4, 1.02
+#: Where triangles fill so much of the budget, or chord errors have been tried so often, no smaller one is looked for.
+_FILLED, _TURNS = 0.95, 5
 #: Triangles of a face that are kept as they are counted; more are counted first and laid then.
 _ROOM = 1 << 19
 
@@ -70,13 +71,17 @@ def tessellate(
     missing = {n: str(part.faces[n - 1].unjudged) for n in numbers if part.faces[n - 1].unjudged is not None}
     wanted = [n for n in numbers if n not in missing]
     with translated("meshing", file=part.file):
-        meshes, why = _started(part, wanted, chord, budget, at)
+        BRepTools.Clean_s(part.shape)
+        guess, size = chord, float(np.linalg.norm(part.size))
+        while (count := expected(part, wanted, guess)) > budget and guess < size:
+            guess *= max(_STEP, count / budget)
+        meshes, why = starts(part, wanted, _COARSER * guess, at)
         missing.update(why)
         patches = []
         for number in list(meshes):
             at("own", number)
             patches.append(Patch.of(part, number, meshes.pop(number)))
-        patches, tried = _affordable(part, patches, chord, budget, jobs, at)
+        patches, tried = _affordable(part, patches, (chord, guess), budget, jobs, at)
         laid = []
         for patch, each in zip(
             patches, _each(lambda i: patches[i].laid(tried[i], budget), range(len(tried)), jobs), strict=True
@@ -109,30 +114,15 @@ def tessellate(
     )
 
 
-def _started(
-    part: Part, wanted: Sequence[int], chord: float, budget: int, at: At
-) -> tuple[dict[int, UVMesh], dict[int, str]]:
-    """What the triangles of each face begin with, and why a face has none; coarser where they would take the whole budget."""
-    BRepTools.Clean_s(part.shape)
-    size, chord = float(np.linalg.norm(part.size)), _COARSER * chord
-    meshes, why = starts(part, wanted, chord, at)
-    while sum(len(mesh.corner) for mesh in meshes.values()) > budget and chord < size:
-        chord *= _COARSER
-        again = [number for number in meshes if len(meshes[number].corner) > _FEW]
-        meshes.update(starts(part, again, chord, at)[0])
-    return {number: meshes[number] for number in wanted if number in meshes}, why
-
-
 def _affordable(
-    part: Part, patches: Sequence[Patch], chord: float, budget: int, jobs: int, at: At
+    part: Part, patches: Sequence[Patch], asked: tuple[float, float], budget: int, jobs: int, at: At
 ) -> tuple[list[Patch], list[Tried]]:
-    """Patches with tables as fine as is worth while, and triangles of each for the smallest chord error found, from that asked
-    for upwards, at which they are within the budget."""
+    """Patches with tables as fine as is worth while, and triangles of each for the smallest chord error found at which they are
+    within the budget; `asked`: the chord error asked for, and the one at which to begin to look."""
     size, most = float(np.linalg.norm(part.size)), _TOO_MANY * budget
     # Room to work in: one for each thread.
     rooms = [room(min(budget, _ROOM)) for _ in range(jobs)]
-    total = 0
-    tried: list[Tried] = []
+    least, chord = asked
 
     def begun(patch: Patch) -> tuple[Patch, Tried]:
         with _lent(rooms) as mine:
@@ -142,22 +132,32 @@ def _affordable(
         with _lent(rooms) as mine:
             return patch.tried(chord, most, mine if total <= budget else NO_ROOM)
 
-    finer = []
+    finer, tried, total = [], [], 0
     for patch, each in _each(begun, patches, jobs):
         at("own", patch.number)
         finer.append(patch)
         tried.append(each)
-        total += each.triangles if total <= most else 0
-    while total > budget and chord <= size:
+        total += each.triangles
+    over, within, turn = 0.0, math.inf, 0
+    while True:
+        if total <= budget:
+            within, best = chord, tried
+        else:
+            over = chord
+        turn += 1
+        if within <= max(least, _STEP * over) or (within < math.inf and (turn > _TURNS or total >= _FILLED * budget)):
+            return finer, best
+        if over > size:
+            return finer, tried
         # Their number falls about as the chord error grows.
-        chord *= max(_STEP, total / budget)
+        chord *= total / budget
+        chord = min(max(least, chord, _STEP**0.5 * over), within * _STEP**-0.5)
         tried, total = [], 0
         for each in _each(again, finer, jobs):
             tried.append(each)
             total += each.triangles
             if total > most and chord <= size:
                 break
-    return finer, tried
 
 
 @contextmanager
