@@ -142,7 +142,7 @@ def _own_start(part: Part, number: int, chord: float) -> UVMesh | None:
 
 
 def _density(surface: Surface, trim: Trim) -> tuple[Floats, Floats] | None:
-    """How much a surface bends along u at each place (k,) at most, and along v, mm for a squared step of 1; None where not known."""
+    """How much a surface bends at each place (k,) along u, and along v, mm for a squared step of 1; None where not known."""
     u0, u1, v0, v1 = trim.box
     share = (np.arange(_LOOKED) + 0.5) / _LOOKED
     u, v = (each.ravel() for each in np.meshgrid(u0 + share * (u1 - u0), v0 + share * (v1 - v0), indexing="ij"))
