@@ -140,7 +140,7 @@ def test_a_face_that_cannot_be_meshed_stands_as_its_box(monkeypatch):
     assert result.cutters[0].undecided == 16
     assert result.cutters[0].feasible is None
     assert [(m.face, m.stand_in) for m in result.plan.missing] == [("F7", "box")]
-    assert "does not end on it" in result.plan.missing[0].reason
+    assert "does not end on it" in result.plan.missing[0].why
 
 
 def test_a_face_without_area_hides_nothing_and_leaves_no_doubt():
