@@ -1,5 +1,6 @@
 """Parts for the tests of `cad_io`: solids and patches made with the kernel, real files, and what independent code says."""
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -13,9 +14,11 @@ from OCP.BRepPrimAPI import (
     BRepPrimAPI_MakeSphere,
     BRepPrimAPI_MakeTorus,
 )
+from OCP.Geom import Geom_BSplineSurface
 from OCP.GeomAPI import GeomAPI_PointsToBSplineSurface
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.TColgp import TColgp_Array2OfPnt
+from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal, TColStd_Array2OfReal
 from OCP.TopoDS import TopoDS_Compound
 
 from cad_io.kernel import faces
@@ -123,3 +126,40 @@ def holed_patch(seed=1):
     for r, x, y in ((12, 0, 5), (7, 25, -20), (20, 42, 42)):
         shape = cut(shape, rod(r, 200, (x, y, -100)))
     return shape
+
+
+def spring(turns=6, radius=10.0, wire=1.5, pitch=5.0, count=99):
+    """A tube along a helix without its ends: rational, 9 poles around, cubic along."""
+    half = math.sqrt(0.5)
+    around = [
+        (1, 0, 1),
+        (1, 1, half),
+        (0, 1, 1),
+        (-1, 1, half),
+        (-1, 0, 1),
+        (-1, -1, half),
+        (0, -1, 1),
+        (1, -1, half),
+        (1, 0, 1),
+    ]
+    poles, weights = TColgp_Array2OfPnt(1, 9, 1, count), TColStd_Array2OfReal(1, 9, 1, count)
+    for j, angle in enumerate(np.linspace(0, 2 * np.pi * turns, count).tolist()):
+        out = np.array([math.cos(angle), math.sin(angle), 0.0])
+        rise = pitch / (2 * math.pi)
+        along = np.array([-radius * out[1], radius * out[0], rise]) / math.hypot(radius, rise)
+        across = np.cross(along, out)
+        middle = radius * out + [0, 0, rise * angle]
+        for i, (x, y, weight) in enumerate(around):
+            poles.SetValue(i + 1, j + 1, gp_Pnt(*(middle + wire * (x * out + y * across)).tolist()))
+            weights.SetValue(i + 1, j + 1, float(weight))
+    (knots_u, times_u), (knots_v, times_v) = _knots(4, 3, 2), _knots(count - 3, 4, 1)
+    surface = Geom_BSplineSurface(poles, weights, knots_u, knots_v, times_u, times_v, 2, 3)
+    return BRepBuilderAPI_MakeFace(surface, 1e-6).Face()
+
+
+def _knots(spans, at_ends, between):
+    knots, times = TColStd_Array1OfReal(1, spans + 1), TColStd_Array1OfInteger(1, spans + 1)
+    for k in range(spans + 1):
+        knots.SetValue(k + 1, k / spans)
+        times.SetValue(k + 1, at_ends if k in (0, spans) else between)
+    return knots, times

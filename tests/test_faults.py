@@ -14,7 +14,7 @@ from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader, STEPControl_Wr
 from cad_io import LostFace, Part, ReadError, read_part
 from cad_io.read import read
 from cad_io.read.altered import misfit, open_border
-from cad_io.tessellate import tessellate
+from cad_io.tessellate import start, tessellate
 from plan_cutters.command.supervise import _Watch
 
 
@@ -269,9 +269,15 @@ def test_tessellation_tells_where_it_is():
     part = read_part(as_nurbs(rod()))
     tessellate(part, 1e-4, at=lambda who, face: told.append((who, face)))
     numbers = [face.number for face in part.faces]
-    assert told[0] == ("kernel", 0)
-    # As they are counted, and as they are laid.
-    assert [face for who, face in told if who == "own"] == 2 * numbers
+    # As they are begun, bounded, counted and laid.
+    assert told == [("own", number) for _ in range(4) for number in numbers]
+
+
+def test_tessellation_tells_of_what_is_left_to_the_kernel(monkeypatch):
+    told = []
+    monkeypatch.setattr(start, "own_start", lambda *_: None)
+    tessellate(read_part(as_nurbs(rod())), 0.1, faces=[2], at=lambda who, face: told.append((who, face)))
+    assert ("kernel", 2) in told
 
 
 def test_our_tessellation_is_named_where_it_takes_too_long():

@@ -121,19 +121,26 @@ def test_no_cutter_is_safe_within_a_hood_of_triangles(more):
 
 
 def test_a_face_that_cannot_be_meshed_stands_as_its_box(monkeypatch):
-    from cad_io.tessellate import mesh, triangles
+    """Our own start fails on it, and the kernel's mesher never ends."""
+    from cad_io.tessellate import mesh, start
 
-    original = mesh.uv_meshes
+    own, kernel = start.own_start, mesh._meshed
 
-    def refuses(part, numbers, *more):
-        return {n: found for n, found in original(part, numbers, *more).items() if n != 7}
+    def never(part, number, *more):
+        while number == 7:
+            pass
+        return kernel(part, number, *more)
 
-    monkeypatch.setattr(triangles, "uv_meshes", refuses)
+    monkeypatch.setattr(start, "own_start", lambda part, n, chord: None if n == 7 else own(part, n, chord))
+    monkeypatch.setattr(mesh, "_meshed", never)
+    monkeypatch.setattr(start, "_SECONDS", 1.0)
     # The lower face of a lid 3 mm above the plate.
     lid = shapes.plane((-20, 60), (-20, 60), origin=(0, 0, 13))
     result = judged(compound(box(40, 40, 10), lid), faces="6", grid=4)
     assert result.cutters[0].undecided == 16
+    assert result.cutters[0].feasible is None
     assert [(m.face, m.stand_in) for m in result.plan.missing] == [("F7", "box")]
+    assert "does not end on it" in result.plan.missing[0].why
 
 
 def test_a_face_without_area_hides_nothing_and_leaves_no_doubt():

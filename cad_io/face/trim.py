@@ -215,13 +215,19 @@ def _polyline(curve: BRepAdaptor_Curve2d, scale: Floats, deflection: float) -> t
 def joins(pieces: list[Floats], scale: Floats) -> tuple[Floats, float]:
     """Segments that lead from each piece's end to the start that continues it, and the longest of them in mm."""
     start, end = np.array([p[0] for p in pieces]), np.array([p[-1] for p in pieces])
+    following = continuing(start, end, scale)
+    joins = np.stack([end, start[following]], axis=1)
+    gap = np.linalg.norm((end - start[following]) * scale, axis=1)
+    return joins[gap > 0], float(gap.max())
+
+
+def continuing(start: Floats, end: Floats, scale: Floats) -> NDArray[np.intp]:
+    """Which piece's start (n, 2) continues each piece's end (n, 2), each only once, nearest in mm."""
     distance = np.linalg.norm((end[:, None] - start[None]) * scale, axis=2)
     following = distance.argmin(axis=1)
     if len(np.unique(following)) < len(following):
         following = linear_sum_assignment(distance)[1]
-    joins = np.stack([end, start[following]], axis=1)
-    gap = distance[np.arange(len(end)), following]
-    return joins[gap > 0], float(gap.max())
+    return np.asarray(following)
 
 
 def _is_rectangle(segments: Floats, low: Floats, high: Floats, scale: Floats, tolerance: float) -> bool:

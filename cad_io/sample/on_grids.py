@@ -18,7 +18,7 @@ from cad_io.sample.at_point import locate
 from cad_io.sample.gap import border_probes, denser, halves_inside, inner_probes
 from cad_io.sample.grid_lines import Lines, spaced, uniform
 from cad_io.sample.joints import smooth_joints
-from cad_io.tessellate.mesh import uv_meshes
+from cad_io.tessellate.start import starts
 
 __all__ = ["locate", "sample"]
 
@@ -204,7 +204,7 @@ def _on_grid(part: Part, number: int, trim: Trim, lines: Lines, inside: NDArray[
 def _in_triangles(part: Part, number: int, step: float | None) -> _FaceSamples | None:
     """Middles of the face's triangles, halved down to a step, for a face that no grid hits."""
     size = float(np.linalg.norm(part.size))
-    mesh = uv_meshes(part, [number], 1e-3 * size, 0.5).get(number)
+    mesh = starts(part, [number], 1e-3 * size)[0].get(number)
     if mesh is None:
         return None
     corners = _halved_to(part, number, mesh.uv[mesh.corner], step or np.inf)

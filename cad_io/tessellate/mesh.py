@@ -1,12 +1,15 @@
 """The kernel's triangulation of faces, as triangles in the parameter plane.
 
 Only the parameter plane is taken from it: that it covers the trim. How near its triangles come to the surface is a
-wish (0.107 mm was found where 0.01 was asked), so points are evaluated, and refined, by who asks.
+wish (0.107 mm was found where 0.01 was asked), so points are evaluated, and refined, by who asks. It works in a copy of the
+process: on some faces it never ends.
 """
 
+import pickle
+import time
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +23,7 @@ from OCP.TopoDS import TopoDS
 
 from cad_io.arrays import Floats, Ints
 from cad_io.kernel import edges_of
-from cad_io.kernel.components import as_one
+from cad_io.kernel.limited import ChildDied, limited
 from cad_io.part import Part
 from cad_io.surface import Surface
 
@@ -45,47 +48,40 @@ class UVMesh(NamedTuple):
     border: tuple[BorderCurve, ...]
 
 
-def uv_meshes(part: Part, numbers: Sequence[int], deflection: float, angle: float) -> dict[int, UVMesh]:
-    """Mesh faces and leave the shape without a mesh again; faces that cannot be meshed are not in the result.
+def kernel_start(
+    part: Part, number: int, deflection: float, angle: float, seconds: float
+) -> tuple[UVMesh | None, float]:
+    """Mesh a face by the kernel's mesher, which may never end: its triangles, None where it fails, and the seconds it took.
 
     Parameters
     ----------
     part : Part
-    numbers : sequence of int
-        Faces to mesh.
+    number : int
     deflection, angle : float
         What is asked of the kernel's mesher: mm, rad.
+    seconds : float
+        Of processor time that it may take.
+
+    Raises
+    ------
+    TimeLimit
+        It does not end.
     """
-    whole = len(numbers) == len(part.faces)
-    shape = part.shape if whole else as_one([part.face(n) for n in numbers])
-    BRepTools.Clean_s(shape)
+
+    def call() -> bytes:
+        start = time.process_time()
+        return pickle.dumps((_meshed(part, number, deflection, angle), time.process_time() - start))
+
     try:
-        BRepMesh_IncrementalMesh(shape, deflection, False, angle, False)
-        meshes = {n: _taken(part, n) for n in numbers}
-    finally:
-        BRepTools.Clean_s(shape)
-    return {n: mesh for n, mesh in meshes.items() if mesh is not None}
-
-
-def _taken(part: Part, number: int) -> UVMesh | None:
-    face, place = part.face(number), TopLoc_Location()
-    mesh = BRep_Tool.Triangulation_s(face, place)
-    if mesh is None or not mesh.NbTriangles() or not mesh.HasUVNodes():
-        return None
-    uv = np.array([mesh.UVNode(i).Coord() for i in range(1, mesh.NbNodes() + 1)])
-    corner = np.array([mesh.Triangle(i).Get() for i in range(1, mesh.NbTriangles() + 1)], dtype=np.int32) - 1
-    corner = upright(uv, corner)
-    forward = TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
+        taken, spent = pickle.loads(limited(call, seconds, processor=True))
+    except ChildDied:
+        return None, 0.0
+    if taken is None:
+        return None, spent
+    uv, corner, runs = taken
+    forward = TopoDS.Face_s(part.face(number).Oriented(TopAbs_FORWARD))
     border, on_curve = [], []
-    for edge in edges_of(forward):
-        if edge.Orientation() not in (TopAbs_FORWARD, TopAbs_REVERSED):
-            continue
-        polygon = BRep_Tool.PolygonOnTriangulation_s(edge, mesh, place)
-        if polygon is None or not polygon.HasParameters():
-            return None  # how far its triangles stay from this edge could not be told
-        count = range(1, polygon.NbNodes() + 1)
-        nodes = np.array([polygon.Node(i) for i in count], dtype=np.int32) - 1
-        parameter = np.array([polygon.Parameter(i) for i in count])
+    for edge, (nodes, parameter) in zip(_used(forward), runs, strict=True):
         # A seam has two curves, and the mesher does not always give each its own polygon: take the one that fits.
         uses = (edge, TopoDS.Edge_s(edge.Reversed())) if BRep_Tool.IsClosed_s(edge, forward) else (edge,)
         curves = [BRepAdaptor_Curve2d(use, forward) for use in uses]
@@ -93,10 +89,47 @@ def _taken(part: Part, number: int) -> UVMesh | None:
         best = int(np.argmin([np.abs(on - uv[nodes]).max() for on in there]))
         border.append(BorderCurve(nodes, parameter, curves[best]))
         on_curve.append(there[best])
-    return _bordered(UVMesh(uv, corner, tuple(border)), on_curve, part.surface(number))
+    return bordered(UVMesh(uv, upright(uv, corner), tuple(border)), on_curve, part.surface(number)), spent
 
 
-def _bordered(mesh: UVMesh, on_curve: Sequence[Floats], surface: Surface) -> UVMesh:
+_Taken = tuple[Floats, Ints, list[tuple[Ints, Floats]]]
+
+
+def _meshed(part: Part, number: int, deflection: float, angle: float) -> _Taken | None:
+    """Nodes and triangles of the mesher, and of each edge's use the nodes and their parameters."""
+    face = part.face(number)
+    BRepTools.Clean_s(face)
+    try:
+        BRepMesh_IncrementalMesh(face, deflection, False, angle, False)
+        return _taken(face)
+    finally:
+        BRepTools.Clean_s(face)
+
+
+def _taken(face: Any) -> _Taken | None:
+    place = TopLoc_Location()
+    mesh = BRep_Tool.Triangulation_s(face, place)
+    if mesh is None or not mesh.NbTriangles() or not mesh.HasUVNodes():
+        return None
+    uv = np.array([mesh.UVNode(i).Coord() for i in range(1, mesh.NbNodes() + 1)])
+    corner = np.array([mesh.Triangle(i).Get() for i in range(1, mesh.NbTriangles() + 1)], dtype=np.int32) - 1
+    runs = []
+    for edge in _used(TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))):
+        polygon = BRep_Tool.PolygonOnTriangulation_s(edge, mesh, place)
+        if polygon is None or not polygon.HasParameters():
+            return None  # how far its triangles stay from this edge could not be told
+        count = range(1, polygon.NbNodes() + 1)
+        runs.append((
+            np.array([polygon.Node(i) for i in count], dtype=np.int32) - 1, np.array([polygon.Parameter(i) for i in count])
+        ))  # fmt: skip
+    return uv, corner, runs
+
+
+def _used(forward: Any) -> list[Any]:
+    return [edge for edge in edges_of(forward) if edge.Orientation() in (TopAbs_FORWARD, TopAbs_REVERSED)]
+
+
+def bordered(mesh: UVMesh, on_curve: Sequence[Floats], surface: Surface) -> UVMesh:
     """The mesh, and triangles from its outline to the border curves where these pass its nodes.
 
     The mesher has one node for all edges that end in a vertex, however far apart their curves end (0.01 mm was found

@@ -1,40 +1,39 @@
 """Triangles close to a part's surface, with the distance proved.
 
-The kernel's mesher gives a start: triangles in each face's parameter plane, to which gaps between the mesh and the true
-ends of border curves are added. Every triangle is cut until a bound says that it is near enough: the bound follows from how
-the surface and the border curves bend about it, so nothing needs measuring but what only the kernel can evaluate.
+They start with a few in each face's parameter plane, to which gaps between them and the true ends of border curves are
+added. Every triangle is cut until a bound says that it is near enough: the bound follows from how the surface and the border
+curves bend about it, so nothing needs measuring but what only the kernel can evaluate.
 """
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import TypeVar
 
 import numpy as np
+from OCP.BRepTools import BRepTools
 
 from cad_io.arrays import Triangles
 from cad_io.kernel import translated
 from cad_io.part import Part
-from cad_io.tessellate.mesh import UVMesh, uv_meshes
 from cad_io.tessellate.patch import NO_ROOM, Patch, Tried, room
 from cad_io.tessellate.refine import Found
+from cad_io.tessellate.start import At, expected, starts
 
-#: The start is asked of the kernel's mesher this much coarser than wanted: splitting is quicker.
-_COARSER = 32.0
-_COARSE = 3e-4  # of the part's size: never asked to be finer than this
-_ANGLE = 0.5
+#: The start is this much coarser than wanted: cutting is quicker, and halves twice each way go on evenly.
+_COARSER = 16.0
 #: A face is missing if more than this share of it has no triangles.
 _UNCOVERED = 0.01
 #: Times the budget at which counting ends; how much the chord error grows at least where the budget binds.
 _TOO_MANY, _STEP = 4, 1.02
+#: Where triangles fill so much of the budget, or chord errors have been tried so often, no smaller one is looked for.
+_FILLED, _TURNS = 0.95, 5
 #: Triangles of a face that are kept as they are counted; more are counted first and laid then.
 _ROOM = 1 << 19
 
 Item = TypeVar("Item")
 Done = TypeVar("Done")
-
-#: Told who is at work, `kernel` or `own`, and at which face (0: all of them): for who watches the time.
-At = Callable[[str, int], None]
 
 
 def tessellate(
@@ -50,7 +49,7 @@ def tessellate(
     chord : float
         mm, positive.
     budget : int
-        Most triangles, but for those that the kernel's mesher begins with. Where it binds, all are laid for a larger chord
+        Most triangles, but for those that it begins with. Where it binds, all are laid for a larger chord
         error, and `chord_error` says which.
     faces : sequence of int, optional
         Face numbers; default all.
@@ -72,13 +71,17 @@ def tessellate(
     missing = {n: str(part.faces[n - 1].unjudged) for n in numbers if part.faces[n - 1].unjudged is not None}
     wanted = [n for n in numbers if n not in missing]
     with translated("meshing", file=part.file):
-        meshes = _start(part, wanted, chord, budget, at)
-        missing.update({n: "the kernel's mesher fails on it" for n in wanted if n not in meshes})
+        BRepTools.Clean_s(part.shape)
+        guess, size = chord, float(np.linalg.norm(part.size))
+        while (count := expected(part, wanted, guess)) > budget and guess < size:
+            guess *= max(_STEP, count / budget)
+        meshes, why = starts(part, wanted, _COARSER * guess, at)
+        missing.update(why)
         patches = []
         for number in list(meshes):
-            at("kernel", number)
+            at("own", number)
             patches.append(Patch.of(part, number, meshes.pop(number)))
-        patches, tried = _affordable(part, patches, chord, budget, jobs, at)
+        patches, tried = _affordable(part, patches, (chord, guess), budget, jobs, at)
         laid = []
         for patch, each in zip(
             patches, _each(lambda i: patches[i].laid(tried[i], budget), range(len(tried)), jobs), strict=True
@@ -111,34 +114,15 @@ def tessellate(
     )
 
 
-def _start(part: Part, wanted: Sequence[int], chord: float, budget: int, at: At) -> dict[int, UVMesh]:
-    """The kernel's triangles; coarser where they would take the whole budget, finer where a face gets none."""
-    if not wanted:
-        return {}
-    size = float(np.linalg.norm(part.size))
-    deflection = max(_COARSER * chord, _COARSE * size)
-    at("kernel", 0)
-    meshes = uv_meshes(part, wanted, deflection, _ANGLE)
-    while sum(len(m.corner) for m in meshes.values()) > budget and deflection < size:
-        deflection *= 4
-        meshes = uv_meshes(part, wanted, deflection, 2 * _ANGLE)
-    for number in wanted:
-        if number not in meshes:
-            at("kernel", number)
-            meshes.update(uv_meshes(part, [number], 0.1 * chord, 0.2 * _ANGLE))
-    return meshes
-
-
 def _affordable(
-    part: Part, patches: Sequence[Patch], chord: float, budget: int, jobs: int, at: At
+    part: Part, patches: Sequence[Patch], asked: tuple[float, float], budget: int, jobs: int, at: At
 ) -> tuple[list[Patch], list[Tried]]:
-    """Patches with tables as fine as is worth while, and triangles of each for the smallest chord error found, from that asked
-    for upwards, at which they are within the budget."""
+    """Patches with tables as fine as is worth while, and triangles of each for the smallest chord error found at which they are
+    within the budget; `asked`: the chord error asked for, and the one at which to begin to look."""
     size, most = float(np.linalg.norm(part.size)), _TOO_MANY * budget
     # Room to work in: one for each thread.
     rooms = [room(min(budget, _ROOM)) for _ in range(jobs)]
-    total = 0
-    tried: list[Tried] = []
+    least, chord = asked
 
     def begun(patch: Patch) -> tuple[Patch, Tried]:
         with _lent(rooms) as mine:
@@ -148,22 +132,32 @@ def _affordable(
         with _lent(rooms) as mine:
             return patch.tried(chord, most, mine if total <= budget else NO_ROOM)
 
-    finer = []
+    finer, tried, total = [], [], 0
     for patch, each in _each(begun, patches, jobs):
         at("own", patch.number)
         finer.append(patch)
         tried.append(each)
-        total += each.triangles if total <= most else 0
-    while total > budget and chord <= size:
+        total += each.triangles
+    over, within, turn = 0.0, math.inf, 0
+    while True:
+        if total <= budget:
+            within, best = chord, tried
+        else:
+            over = chord
+        turn += 1
+        if within <= max(least, _STEP * over) or (within < math.inf and (turn > _TURNS or total >= _FILLED * budget)):
+            return finer, best
+        if over > size:
+            return finer, tried
         # Their number falls about as the chord error grows.
-        chord *= max(_STEP, total / budget)
+        chord *= total / budget
+        chord = min(max(least, chord, _STEP**0.5 * over), within * _STEP**-0.5)
         tried, total = [], 0
         for each in _each(again, finer, jobs):
             tried.append(each)
             total += each.triangles
             if total > most and chord <= size:
                 break
-    return finer, tried
 
 
 @contextmanager

@@ -9,8 +9,6 @@ from OCP.Bnd import Bnd_Box
 from OCP.BRep import BRep_Tool
 from OCP.BRepBndLib import BRepBndLib
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
-from OCP.BRepMesh import BRepMesh_IncrementalMesh
-from OCP.BRepTools import BRepTools
 from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
@@ -18,6 +16,7 @@ from OCP.TopoDS import TopoDS
 from cad_io.arrays import FaceLabels, Floats
 from cad_io.errors import WriteError
 from cad_io.kernel import translated
+from cad_io.kernel.mesher import give_triangles
 from cad_io.part import Part
 from cad_io.surface import Surface
 from cad_io.write.label_mesh import label_mesh
@@ -75,8 +74,7 @@ def drawn(part: Part, sides: Sequence[float] | Floats, *, most: int, deflection:
         shape, deflection, angle = copy.Shape(), usual if deflection is None else deflection, ANGLE
         faces = [TopoDS.Face_s(copy.ModifiedShape(part.face(f.number))) for f in part.faces]
         for tried in range(_ROUNDS):
-            BRepTools.Clean_s(shape)
-            BRepMesh_IncrementalMesh(shape, deflection, False, angle, False)
+            give_triangles(shape, deflection, angle)
             if sum(map(_count, faces)) <= most or tried == _ROUNDS - 1:
                 break
             deflection *= _COARSER

@@ -16,13 +16,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
-from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.TopoDS import TopoDS
 
 from cad_io.arrays import Floats, Style
 from cad_io.errors import WriteError
 from cad_io.kernel import translated
 from cad_io.kernel.components import compound
+from cad_io.kernel.mesher import give_triangles
 from cad_io.split.pieces import MIXED, Piece, Split
 from cad_io.write.aside import aside
 from cad_io.write.drawn import ANGLE, FINE, Mesh, diagonal, face_mesh
@@ -132,7 +132,7 @@ def meshes_of(split: Split, deflection: float | None = None) -> Iterator[tuple[P
     copy = BRepBuilderAPI_Copy(whole, False, False)
     if deflection is None:
         deflection = FINE * diagonal(split.shape)
-    BRepMesh_IncrementalMesh(copy.Shape(), deflection, False, ANGLE, False)
+    give_triangles(copy.Shape(), deflection, ANGLE)
     for piece in (shown for each in split.pieces for shown in _shown(split, each)):
         labels = split.labels.get(piece.face) if piece.label == MIXED else None
         meshes = face_mesh(piece.shape, TopoDS.Face_s(copy.ModifiedShape(piece.shape)), labels)

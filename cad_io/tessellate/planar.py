@@ -1,0 +1,144 @@
+"""Triangles of a region in the plane: cells of a grid where they fit, a constrained Delaunay triangulation around them."""
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats, Ints
+from cad_io.tessellate.mesh import upright
+
+#: How far from the border cells stay, in cells: triangles between are not to be slivers.
+_AWAY = 0.3
+#: What areas of one region may differ by, found in two ways.
+_SAME = 1e-9
+#: Corners of a cell's two triangles.
+_HALVES = np.array([[0, 1, 2], [0, 2, 3]])
+
+Bools = NDArray[np.bool_]
+Indices = NDArray[np.int64]
+
+
+def triangulated(uv: Floats, chords: Ints, lines: tuple[Floats, Floats], metric: Floats) -> tuple[Floats, Ints] | None:
+    """Triangles that fill the region that chords enclose, and no other place; None where chords enclose none, or cross.
+
+    Parameters
+    ----------
+    uv : (n, 2) float
+        Nodes, each place once.
+    chords : (k, 2) int
+        Rows of `uv`. What is run along twice bounds nothing.
+    lines : (nu,) and (nv,) float
+        Of the grid.
+    metric : (2,) float
+        Triangles are well shaped where u and v are multiplied by it.
+
+    Returns
+    -------
+    (n + m, 2) float, (t, 3) int
+        Nodes, those given first, and triangles, counter-clockwise.
+    """
+    # A power of two takes no digit.
+    factor = np.exp2(np.round(np.log2(metric)))
+    border = odd(chords)
+    region = _region(uv[border] * factor)
+    if region is None:
+        return None
+    u, v = lines[0] * factor[0], lines[1] * factor[1]
+    whole = _whole_cells(region, u, v)
+    filled, corner = cells(whole)
+    node = np.stack([grid.ravel() for grid in np.meshgrid(lines[0], lines[1], indexing="ij")], axis=1)
+    used, filled = np.unique(filled, return_inverse=True)
+    corner = filled.ravel()[corner] + len(uv)
+    points = np.concatenate([uv, node[used]])
+    if whole.any():
+        region = shapely.difference(region, _cells_region(whole, u, v))
+    around = _corners(region, points * factor)
+    if around is None:
+        return None
+    found = upright(points, np.concatenate([corner, around]).astype(np.int32))
+    return (points, found) if bounded_by(found, border) else None
+
+
+def cells(whole: Bools) -> tuple[Indices, Indices]:
+    """Of cells (nu, nv) of a grid: numbers of their nodes, u first, and two triangles each, rows of these."""
+    i, j = np.nonzero(whole)
+    wide = whole.shape[1] + 1
+    node = np.stack([i * wide + j, (i + 1) * wide + j, (i + 1) * wide + j + 1, i * wide + j + 1], axis=1)
+    return node.ravel(), (4 * np.arange(len(i))[:, None, None] + _HALVES).reshape(-1, 3)
+
+
+def odd(chords: Ints) -> Ints:
+    """Chords (k, 2) that are run along an odd number of times, once each."""
+    each, count = _edges(chords)
+    return each[count % 2 == 1]
+
+
+def _edges(ends: Ints) -> tuple[Ints, Indices]:
+    """Edges (k, 2) between nodes in order, each once, the smaller number first, and how often each is there."""
+    low, high = np.min(ends, axis=1).astype(np.int64), np.max(ends, axis=1).astype(np.int64)
+    wide = int(high.max(initial=0)) + 1
+    # Numbers are sorted much faster than pairs.
+    key, count = np.unique(low * wide + high, return_counts=True)
+    return np.stack([key // wide, key % wide], axis=1).astype(np.int32), count
+
+
+def bounded_by(corner: Ints, border: Ints) -> bool:
+    """Whether triangles (t, 3) have these edges (k, 2), once each in order, for a border, and all others in common by two.
+
+    Then a point within the border is covered by an odd number of them: by one at least.
+    """
+    each, count = _edges(np.stack([corner, np.roll(corner, -1, axis=1)], axis=2).reshape(-1, 2))
+    return bool((count <= 2).all()) and np.array_equal(each[count == 1], border)
+
+
+def places(uv: Floats) -> tuple[Indices, Indices]:
+    """Rows of points (n, 2) that stand for each place, and the number of the place of each (n,)."""
+    # Complex numbers are sorted by both parts, and faster than pairs; zeros of both signs are one.
+    _, first, place = np.unique(
+        np.ascontiguousarray(uv + 0.0).view(complex).ravel(), return_index=True, return_inverse=True
+    )
+    return first, place.ravel()
+
+
+def _region(segments: Floats) -> shapely.Geometry | None:
+    """What segments (k, 2, 2) enclose by the even-odd rule; None where they cross, or do not close."""
+    if len(segments) < 3:
+        return None
+    lines = shapely.multilinestrings(shapely.linestrings(segments))
+    if not shapely.is_simple(lines):
+        return None
+    region = shapely.build_area(lines)
+    if shapely.is_empty(region) or not shapely.is_valid(region):
+        return None
+    return region if shapely.count_coordinates(shapely.boundary(region)) >= len(segments) else None
+
+
+def _whole_cells(region: shapely.Geometry, u: Floats, v: Floats) -> Bools:
+    """Cells (nu - 1, nv - 1) that lie in a region and not next to its border."""
+    none = np.zeros((len(u) - 1, len(v) - 1), bool)
+    if min(none.shape) < 2:
+        return none
+    du, dv = _AWAY * np.diff(u), _AWAY * np.diff(v)
+    low_u, high_u = (
+        np.broadcast_to((u[:-1] - du)[:, None], none.shape),
+        np.broadcast_to((u[1:] + du)[:, None], none.shape),
+    )
+    low_v, high_v = np.broadcast_to(v[:-1] - dv, none.shape), np.broadcast_to(v[1:] + dv, none.shape)
+    shapely.prepare(region)
+    return np.asarray(shapely.contains_properly(region, shapely.box(low_u, low_v, high_u, high_v)))
+
+
+def _cells_region(whole: Bools, u: Floats, v: Floats) -> shapely.Geometry:
+    i, j = np.nonzero(whole)
+    return shapely.coverage_union_all(shapely.box(u[i], v[j], u[i + 1], v[j + 1]))
+
+
+def _corners(region: shapely.Geometry, points: Floats) -> Ints | None:
+    """Rows (t, 3) of points, each place once, at the corners of a region's triangles; None where a corner is at none of them."""
+    triangles = shapely.constrained_delaunay_triangles(region)
+    place = shapely.get_coordinates(triangles).reshape(-1, 4, 2)[:, :3].reshape(-1, 2)
+    first, row = places(np.concatenate([points, place]))
+    corner = first[row[len(points) :]]
+    if (corner >= len(points)).any():
+        return None
+    return corner.reshape(-1, 3).astype(np.int32)

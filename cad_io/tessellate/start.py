@@ -1,0 +1,299 @@
+"""Triangles in a face's parameter plane to begin with: of our own, and where these fail, of the kernel's mesher.
+
+Ours are cells of a grid as fine as the surface bends, and between them and the face's border a constrained Delaunay
+triangulation. Nothing in it can run for ever.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import shapely
+
+from cad_io.arrays import Floats, Ints
+from cad_io.face.trim import Trim
+from cad_io.kernel import is_kernel_error
+from cad_io.kernel.limited import TimeLimit
+from cad_io.part import Part
+from cad_io.surface import Surface
+from cad_io.tessellate.mesh import BorderCurve, UVMesh, bordered, kernel_start
+from cad_io.tessellate.outline import Outline, Steps, Use, outline_of, uses_of
+from cad_io.tessellate.planar import cells, odd, triangulated
+
+#: Places each way where bends are looked at, to lay out a grid.
+_LOOKED = 13
+#: Nodes of a border, and cells of a grid, at most.
+_NODES, _CELLS = 20_000, 100_000
+#: Chords of a border that cross are made this much nearer to it, so many times.
+_NEARER, _TIMES = 8.0, 5
+#: How much of a steps' length one along which the surface is straight counts.
+_STRAIGHT = 0.03
+#: How far a grid's line may be moved to where an edge ends, in cells; lines more than cells, at most.
+_MOVED, _MORE = 0.35, 16
+_TURNS = 60  # of a search for a place on a curve
+
+
+#: What the kernel's mesher is asked for: rad, and that once more, finer, where it makes nothing.
+_ANGLE, _FINER = 0.5, 0.02
+#: Processor time of the kernel's mesher, s: for a face, and for all.
+_SECONDS, _TOTAL = 5.0, 20.0
+
+#: Told who is at work, `kernel` or `own`, and at which face (0: all of them): for who watches the time.
+At = Callable[[str, int], None]
+
+
+def starts(
+    part: Part, numbers: Sequence[int], chord: float, at: At = lambda who, face: None
+) -> tuple[dict[int, UVMesh], dict[int, str]]:
+    """Triangles of faces to begin with, whose distance from them is about `chord`, mm; and why a face has none.
+
+    Parameters
+    ----------
+    part : Part
+    numbers : sequence of int
+    chord : float
+    at : callable, optional
+        Told who is at work at which face.
+    """
+    found: dict[int, UVMesh | None] = {}
+    why: dict[int, str] = {}
+    left = _TOTAL
+    for number in numbers:
+        at("own", number)
+        found[number] = own_start(part, number, chord)
+        if found[number] is not None:
+            continue
+        at("kernel", number)
+        if left <= 0.0:
+            why[number] = "the kernel's mesher, which it is left to, has spent its time on others"
+            continue
+        try:
+            found[number], spent = _second(part, number, chord, min(left, _SECONDS))
+        except TimeLimit:
+            why[number], spent = "the kernel's mesher, which it is left to, does not end on it", _SECONDS
+        else:
+            if found[number] is None:
+                why[number] = "the kernel's mesher fails on it"
+        left -= spent
+    return {number: mesh for number, mesh in found.items() if mesh is not None}, why
+
+
+def _second(part: Part, number: int, chord: float, seconds: float) -> tuple[UVMesh | None, float]:
+    mesh, spent = kernel_start(part, number, chord, _ANGLE, seconds)
+    if mesh is not None:
+        return mesh, spent
+    mesh, more = kernel_start(part, number, _FINER * chord, 0.2 * _ANGLE, seconds)
+    return mesh, spent + more
+
+
+def expected(part: Part, numbers: Sequence[int], chord: float) -> float:
+    """How many triangles faces take for a chord error, mm, about: of each at least two."""
+    total = 0.0
+    for number in numbers:
+        trim = part.trim(number)
+        with np.errstate(all="ignore"):
+            density = None if trim is None else _density(part.surface(number), trim)
+        total += 2.0
+        if trim is not None and density is not None:
+            wide = (trim.box[1] - trim.box[0], trim.box[3] - trim.box[2])
+            p, q = trim.segments[:, 0], trim.segments[:, 1]
+            share = abs(0.5 * float((p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]).sum())) / (wide[0] * wide[1])
+            steps = [_steps(each, width, chord).sum() for each, width in zip(density, wide, strict=True)]
+            total += 2.0 * share * float(max(1.0, steps[0]) * max(1.0, steps[1]))
+    return total
+
+
+def own_start(part: Part, number: int, chord: float) -> UVMesh | None:
+    """Triangles of our own; None where there are none that cover the face. As in `starts`."""
+    try:
+        return _own_start(part, number, chord)
+    except shapely.errors.ShapelyError:
+        return None
+    except Exception as thrown:
+        if not is_kernel_error(thrown):
+            raise
+        return None
+
+
+def _own_start(part: Part, number: int, chord: float) -> UVMesh | None:
+    trim = part.trim(number)
+    if trim is None or not trim.closed:
+        return None
+    surface, uses = part.surface(number), uses_of(part.face(number))
+    with np.errstate(all="ignore"):
+        density = _density(surface, trim)
+    if density is None:
+        return None
+    bend = np.array([each.max() for each in density])
+    steps = Steps(bend, 0.5 * chord, trim.scale, chord)
+    lines = [_lines(each, trim.box[2 * k : 2 * k + 2], chord) for k, each in enumerate(density)]
+    if trim.rectangular:
+        mesh = _on_grid(surface, trim, uses, (lines[0], lines[1]))
+        if mesh is not None:
+            return mesh
+    for _ in range(_TIMES):
+        outline = outline_of(uses, steps, _NODES)
+        if outline is None:
+            return None
+        filled = triangulated(outline.uv, outline.chords, (lines[0], lines[1]), _metric(bend, trim, lines))
+        if filled is not None:
+            return _finished(outline, *filled, surface)
+        steps = steps._replace(sag=steps.sag / _NEARER)
+    return None
+
+
+def _density(surface: Surface, trim: Trim) -> tuple[Floats, Floats] | None:
+    """How much a surface bends at each place (k,) along u, and along v, mm for a squared step of 1; None where not known."""
+    u0, u1, v0, v1 = trim.box
+    share = (np.arange(_LOOKED) + 0.5) / _LOOKED
+    u, v = (each.ravel() for each in np.meshgrid(u0 + share * (u1 - u0), v0 + share * (v1 - v0), indexing="ij"))
+    found = np.linalg.norm(surface.second(u, v), axis=2).reshape(_LOOKED, _LOOKED, -1)
+    if not np.isfinite(found).all():
+        return None
+    # The twist is shared out in the ratio in which steps of one length stand.
+    ratio = trim.scale[0] / trim.scale[1]
+    uu, vv, uv = found[:, :, 3], found[:, :, 4], found[:, :, 5]
+    return (uu + ratio * uv).max(axis=1), (vv + uv / ratio).max(axis=0)
+
+
+def _lines(density: Floats, ends: tuple[float, ...], chord: float) -> Floats:
+    """Lines from end to end, nearer to each other where the surface bends more."""
+    total = np.concatenate([[0.0], np.cumsum(_steps(density, ends[1] - ends[0], chord))])
+    count = max(1, int(min(np.ceil(total[-1] - 1e-6), _CELLS)))
+    if count == 1 or not total[-1] > 0.0:
+        return np.array(ends)
+    along = np.linspace(ends[0], ends[1], len(total))
+    found = np.interp(np.linspace(0.0, total[-1], count + 1), total, along)
+    found[0], found[-1] = ends
+    return found
+
+
+def _steps(density: Floats, width: float, chord: float) -> Floats:
+    """How many steps it takes through each of the places (k,) at which bends are known."""
+    # Both ways together may be off by the chord: each by half of it.
+    return np.asarray(np.sqrt(np.maximum(density, 1e-3 * density.max()) / (4.0 * chord)) * (width / len(density)))
+
+
+def _metric(bend: Floats, trim: Trim, lines: list[Floats]) -> Floats:
+    """What to multiply u and v by, so that triangles that are well shaped there bend evenly."""
+    if max(map(len, lines)) == 2:
+        return trim.scale
+    wide = np.array([trim.box[1] - trim.box[0], trim.box[3] - trim.box[2]])
+    steps = np.sqrt(bend) * wide
+    return np.asarray(np.maximum(steps, _STRAIGHT * steps.max()) / wide)
+
+
+def _finished(outline: Outline, uv: Floats, corner: Ints, surface: Surface) -> UVMesh:
+    border = tuple(
+        BorderCurve(nodes, each.parameter, each.use.curve)
+        for nodes, each in zip(outline.nodes, outline.uses, strict=True)
+    )
+    return bordered(UVMesh(uv, corner, border), [each.on_curve for each in outline.uses], surface)
+
+
+def _on_grid(surface: Surface, trim: Trim, uses: list[Use], lines: tuple[Floats, Floats]) -> UVMesh | None:
+    """A whole rectangle of the parameter plane: cells alone; None where its border does not run along its sides."""
+    sides = [_side(use, trim) for use in uses]
+    if any(side is None for side in sides):
+        return None
+    known = [side for side in sides if side is not None]
+    ends = [np.array([t for along, _, span in known if along == k for t in span]) for k in range(2)]
+    grid = []
+    for k in range(2):
+        laid = _through(lines[k], ends[k])
+        if laid is None:
+            return None
+        grid.append(laid)
+    if (len(grid[0]) - 1) * (len(grid[1]) - 1) > _CELLS:
+        return None
+    filled, corner = cells(np.ones((len(grid[0]) - 1, len(grid[1]) - 1), bool))
+    uv = np.stack([each.ravel() for each in np.meshgrid(*grid, indexing="ij")], axis=1)
+    number = np.arange(len(uv), dtype=np.int32).reshape(len(grid[0]), len(grid[1]))
+    border, on_curve = [], []
+    for use, (along, far, span) in zip(uses, known, strict=True):
+        low, high = (int(np.argmin(np.abs(grid[along] - t))) for t in sorted(span))
+        way = slice(None, None, 1 if span[0] < span[1] else -1)
+        parameter = _found_at(use, along, grid[along][low : high + 1][way])
+        if parameter is None:
+            return None
+        row = -1 if far else 0
+        nodes = (number[:, row] if along == 0 else number[row])[low : high + 1][way]
+        border.append(BorderCurve(nodes, parameter, use.curve))
+        on_curve.append(np.array([use.curve.Value(t).Coord() for t in parameter.tolist()]))
+    chords = np.concatenate([np.stack([each.nodes[:-1], each.nodes[1:]], axis=1) for each in border])
+    around = [np.stack([line[:-1], line[1:]], axis=1) for line in (number[0], number[-1], number[:, 0], number[:, -1])]
+    if len(chords) != len(np.concatenate(around)) or not np.array_equal(odd(chords), odd(np.concatenate(around))):
+        return None
+    return bordered(UVMesh(uv, filled[corner].astype(np.int32), tuple(border)), on_curve, surface)
+
+
+def _side(use: Use, trim: Trim) -> tuple[int, bool, tuple[float, float]] | None:
+    """The side of the box that a curve runs along: 0 for one along u, whether it is the one with the larger other parameter, and
+    from where to where; None for a curve that runs along none."""
+    at = np.array([use.curve.Value(t).Coord() for t in np.linspace(use.first, use.last, 5).tolist()])
+    low, high = np.array(trim.box[0::2]), np.array(trim.box[1::2])
+    for along in range(2):
+        other = 1 - along
+        for far, place in ((False, low[other]), (True, high[other])):
+            if (np.abs(at[:, other] - place) * trim.scale[other] <= trim.tolerance).all():
+                step = np.diff(at[:, along])
+                if (step > 0).all() or (step < 0).all():
+                    return along, far, (float(at[0, along]), float(at[-1, along]))
+    return None
+
+
+def _through(lines: Floats, ends: Floats) -> Floats | None:
+    """Lines that go through places where edges end, moved there or added; None where that takes many more."""
+    low, high = lines[0], lines[-1]
+    near = 1e-9 * (high - low)
+    wanted = np.unique(np.clip(ends, low, high))
+    wanted = wanted[(wanted > low + near) & (wanted < high - near)]
+    if not len(wanted):
+        return lines
+    wanted = wanted[np.concatenate([[True], np.diff(wanted) > near])]
+    if len(wanted) > len(lines) + _MORE:
+        return None
+    inner = lines[1:-1]
+    room = _MOVED * np.interp(inner, 0.5 * (lines[1:] + lines[:-1]), np.diff(lines)) if len(inner) else inner
+    after = (
+        np.clip(np.searchsorted(wanted, inner), 1, len(wanted) - 1) if len(wanted) > 1 else np.zeros(len(inner), int)
+    )
+    apart = np.minimum(np.abs(inner - wanted[after]), np.abs(inner - wanted[np.maximum(after - 1, 0)]))
+    return np.unique(np.concatenate([[low], inner[apart > room], wanted, [high]]))
+
+
+def _found_at(use: Use, along: int, at: Floats) -> Floats | None:
+    """Parameters (k,) at which a curve passes values of u (0) or v (1), which run with or against it."""
+
+    def off(t: float, wanted: float) -> float:
+        point = use.curve.Value(t)
+        return float(point.X() if along == 0 else point.Y()) - wanted
+
+    ends = (use.first, use.last)
+    start, stop = off(ends[0], 0.0), off(ends[1], 0.0)
+    if start == stop:
+        return None
+    order = 1.0 if stop > start else -1.0
+    found = []
+    for wanted in at.tolist():
+        low, high = ends
+        t = low + (wanted - start) / (stop - start) * (high - low)
+        t = min(max(t, low), high)
+        for _ in range(_TURNS):
+            here = off(t, wanted)
+            if abs(here) <= 1e-14 * max(abs(start), abs(stop)):
+                break
+            if order * here < 0:
+                low = t
+            else:
+                high = t
+            # A step along the whole curve's slope, where it leads between.
+            t -= here / (stop - start) * (ends[1] - ends[0])
+            if not low < t < high:
+                t = 0.5 * (low + high)
+        found.append(t)
+    ordered = np.array(found)
+    # Its own ends are those of the curve.
+    backwards = (at[0] > at[-1]) == (stop > start)
+    ordered[0], ordered[-1] = (ends[1], ends[0]) if backwards else ends
+    step = np.diff(ordered)
+    return ordered if (step > 0).all() or (step < 0).all() else None
