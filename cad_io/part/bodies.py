@@ -68,7 +68,7 @@ def bodies(part: Part, *, without: Collection[int] = ()) -> tuple[Body, ...]:
         groups = joined_faces(shapes)
         if not all(_boundless([shapes[i] for i in g.members], flags[g.members]) for g in groups):
             # Faces that lie edge to edge without sharing it: joined as loose ones are.
-            shapes = join(shapes, float(np.linalg.norm(part.size)))[0]
+            shapes = join(shapes, float(np.linalg.norm(part.size))).faces
             groups = joined_faces(shapes)
         for group in groups:
             mine, sign = [shapes[i] for i in group.members], flags[group.members]
