@@ -8,7 +8,7 @@ import signal
 import struct
 import warnings
 from collections.abc import Callable, Iterator, Sequence
-from typing import TypeVar
+from typing import TypeVar, cast
 
 from cad_io.kernel.limited import _end_alone, _stuck
 
@@ -60,7 +60,7 @@ def each(
                 first += 1
                 if isinstance(answer, Exception):
                     raise answer
-                yield answer
+                yield cast(Done, answer)
         except TimeoutError:
             why = "waits for ever"
         finally:
