@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 from plan_cutters.command import terminal
 from plan_cutters.command.codes import UNREADABLE, code_of
 from plan_cutters.command.progress import Display, Teller
-from plan_cutters.command.summary import not_reached, summary, written
 from plan_cutters.command.stopped import Unfinished
+from plan_cutters.command.summary import not_reached, summary, written
 from plan_cutters.command.supervise import INTERRUPTED, is_child, report, report_work
 from plan_cutters.document.names import called
 
