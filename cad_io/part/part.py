@@ -71,12 +71,12 @@ class Part:
         Numbers of the faces that were picked on the object which the part was made from.
     lost : sequence of LostFace, optional
         Faces written in the file that are not here, or not as written; faces without a finite size are added here.
-    aside : mapping, optional
-        By face number: why nothing more is to be asked of the kernel about this face. It is not judged.
 
     Attributes
     ----------
-    shape, file, sha256, unit, layers, tree, picked, aside : as given
+    shape, file, sha256, unit, layers, tree, picked : as given
+    aside : mapping
+        By face number: why nothing more is to be asked of the kernel about this face. It is not judged. See `without`.
     lost : tuple of LostFace
         Where it is not empty, nothing is known of what stood there: no posture may be called safe.
     faces : tuple of FaceInfo
@@ -113,10 +113,9 @@ class Part:
         warnings: tuple[str, ...] = (),
         picked: tuple[int, ...] = (),
         lost: tuple[LostFace, ...] = (),
-        aside: Mapping[int, str] | None = None,
     ) -> None:
         self.shape, self.file, self.sha256, self.picked = shape, file, sha256, picked
-        self.aside = dict(aside or {})
+        self.aside: Mapping[int, str] = {}
         self.unit = unit
         with translated("looking for faces", error=ReadError, file=file):
             self._faces = faces(shape)
@@ -150,14 +149,14 @@ class Part:
         )  # fmt: skip
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _again, (packed(self._found()),)
+        return _again, (packed(self._found()), dict(self.aside))
 
     def _found(self) -> Found:
         """What it was made of."""
         return {
             "shape": self.shape, "file": self.file, "sha256": self.sha256, "unit": self.unit, "names": self._names,
             "colours": self._colours, "layers": self.layers, "tree": self.tree, "warnings": self._said,
-            "picked": self.picked, "lost": self.lost, "aside": self.aside,
+            "picked": self.picked, "lost": self.lost,
         }  # fmt: skip
 
     def __repr__(self) -> str:
@@ -180,7 +179,9 @@ class Part:
 
     def without(self, aside: Mapping[int, str]) -> "Part":
         """The same part with more faces set aside, by number: why."""
-        return Part(**{**self._found(), "aside": self.aside | dict(aside)})
+        part = Part(**self._found())
+        part.aside = {**self.aside, **aside}
+        return part
 
     @cached_property
     def size(self) -> tuple[float, float, float]:
@@ -324,9 +325,11 @@ class Part:
         return None, measured.area
 
 
-def _again(found: Found) -> Part:
+def _again(found: Found, aside: Mapping[int, str]) -> Part:
     """A part that was pickled."""
-    return Part(**unpacked(found))
+    part = Part(**unpacked(found))
+    part.aside = aside
+    return part
 
 
 def _box(found: list[TopoDS_Face], aside: Container[int]) -> tuple[Floats, Floats]:
