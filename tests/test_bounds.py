@@ -193,15 +193,15 @@ module._sample_face = sample
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs Linux: a face's processor time is asked of it")
 @pytest.mark.parametrize(
-    ("module", "code", "fault", "parts", "said"),
+    ("module", "code", "fault", "parts", "timeout", "said"),
     [
-        ("cad_io.part.part", MEASURE, HANG, ["a.step"], "did not end its measuring of faces within 2 s"),
-        ("cad_io.sample.on_grids", SAMPLE, HANG, ["a.step"], "did not end its sampling within 2 s"),
-        ("cad_io.sample.on_grids", SAMPLE, CRASH, ["a.step", "b.step"], "crashed (SIGSEGV) at its sampling"),
+        ("cad_io.part.part", MEASURE, HANG, ["a.step"], 8, "did not end its measuring of faces within 2 s"),
+        ("cad_io.sample.on_grids", SAMPLE, HANG, ["a.step"], 4, "did not end its sampling within 4 s"),
+        ("cad_io.sample.on_grids", SAMPLE, CRASH, ["a.step", "b.step"], 60, "crashed (SIGSEGV) at its sampling"),
     ],
     ids=["measure", "sample", "crash"],
 )
-def test_a_face_that_never_ends_costs_itself_alone(tmp_path, module, code, fault, parts, said):
+def test_a_face_that_never_ends_costs_itself_alone(tmp_path, module, code, fault, parts, timeout, said):
     plan(GROOVE, cutters=["R6L80"], grid=9, area_budget=0)  # machine code is at hand then
     (tmp_path / "sitecustomize.py").write_text(HOOK.format(module=module, code=code.format(fault=fault)))
     for name in parts:
@@ -209,7 +209,7 @@ def test_a_face_that_never_ends_costs_itself_alone(tmp_path, module, code, fault
     paths = (tmp_path, ROOT / "plugin", ROOT)
     ran = subprocess.run(
         [sys.executable, "-m", "plan_cutters", *parts, "--cutter", "R6L80", "--grid", "9", "--area-budget",
-         "0", "--formats", "json", "-o", "out", "--read-timeout", "8", "--quiet"],
+         "0", "--formats", "json", "-o", "out", "--read-timeout", str(timeout), "--quiet"],
         cwd=tmp_path, env={**os.environ, "PYTHONPATH": os.pathsep.join(map(str, paths))}, capture_output=True, text=True,
         timeout=120, check=False,
     )  # fmt: skip

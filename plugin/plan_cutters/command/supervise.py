@@ -34,8 +34,8 @@ LIMITED = {"read": 1.0, "measure": 5.0, "sew": 5.0, "orient": 5.0, "fixtures": 5
            "write": 5.0}  # fmt: skip
 _WORK = {"measure": "measuring of faces", "sew": "sewing", "orient": "search for the inside", "fixtures": "reading of fixtures",
          "sample": "sampling", "tessellate": "tessellation", "write": "splitting and writing"}  # fmt: skip
-#: Share of the limit of reading that the kernel may take for one face, in processor time.
-A_FACE = 0.25
+#: Of these, how many times the limit of reading one face may take, in processor time. Samples may be asked for by the million.
+A_FACE = {"measure": 0.25, "sample": 1.0, "tessellate": 0.25}
 
 
 def can_supervise() -> bool:
@@ -318,8 +318,8 @@ class _Watch:
         return self.read_timeout * LIMITED.get(self.stage, math.inf)
 
     def late(self) -> bool:
-        if self.stage in LIMITED and self.work.startswith("kernel F"):
-            within = A_FACE * self.read_timeout
+        if self.stage in A_FACE and self.work.startswith("kernel F"):
+            within = A_FACE[self.stage] * self.read_timeout
             if _processor(self.child) - self.spent > within:
                 work = _WORK.get(self.stage, self.stage)
                 self.why = f"the CAD kernel did not end its {work} within {within:g} s of processor time"
