@@ -52,12 +52,13 @@ class _Side(NamedTuple):
 
 
 class Bare(NamedTuple):
-    """A face of a part: what is known of it, the kernel's face with the edges that it shares, its border and its surface."""
+    """A face of a part: what is known of it, the kernel's face with the edges that it shares, its border and its surface; None
+    where it is not to be asked for."""
 
     info: FaceInfo
     shape: TopoDS_Face
     trim: Trim | None
-    surface: Surface
+    surface: Surface | None
 
 
 def blends(faces: Sequence[Bare], size: float) -> frozenset[int]:
@@ -125,7 +126,7 @@ def _of_one(one: NDArray[np.int32], i: int, turned: Mapping[int, Floats]) -> Flo
 
 def _side(face: Bare, size: float, edges: list[TopoDS_Edge]) -> _Side | None:
     """One face along some of its edges; None where it cannot be evaluated."""
-    if face.trim is None:
+    if face.trim is None or face.surface is None:
         return None
     points, (u0, u1, v0, v1) = len(_ALONG), face.trim.box
     along = np.concatenate([_parameters(edge, face.shape) for edge in edges])

@@ -68,7 +68,7 @@ def bodies(part: Part, *, without: Collection[int] = ()) -> tuple[Body, ...]:
         groups = joined_faces(shapes)
         if not all(_boundless([shapes[i] for i in g.members], flags[g.members]) for g in groups):
             # Faces that lie edge to edge without sharing it: joined as loose ones are.
-            shapes = join(shapes, float(np.linalg.norm(part.size)))[0]
+            shapes = join(shapes, float(np.linalg.norm(part.size))).faces
             groups = joined_faces(shapes)
         for group in groups:
             mine, sign = [shapes[i] for i in group.members], flags[group.members]
@@ -113,15 +113,15 @@ def _body(
         outward = -sign if volume(part, index, sign.astype(float)) < 0 else sign
         yield Body(tuple(numbers), tuple(int(s) for s in outward), True, np.zeros((0, 3, 3)))
         return
+    area, vector = vector_area(part, index, sign.astype(float))
+    sure = solid or touching or float(np.linalg.norm(vector)) < NEARLY_CLOSED * area
+    # In a file that lost faces, what is open may have been closed.
+    if not (sure or part.lost):
+        return
     cap = cap_of(shapes, sign.astype(float), float(np.linalg.norm(part.size)))
-    if not (solid or touching):
-        normal = np.cross(cap[:, 1] - cap[:, 0], cap[:, 2] - cap[:, 0])
-        area, vector = vector_area(part, index, sign.astype(float))
-        nearly = float(np.linalg.norm(vector)) < NEARLY_CLOSED * area
-        # In a file that lost faces, what is open may have been closed.
-        small = bool(part.lost) and 0.5 * float(np.linalg.norm(normal, axis=1).sum()) < _SMALL_CAP * area
-        if not (nearly or small):
-            return
+    normal = np.cross(cap[:, 1] - cap[:, 0], cap[:, 2] - cap[:, 0])
+    if not (sure or 0.5 * float(np.linalg.norm(normal, axis=1).sum()) < _SMALL_CAP * area):
+        return
     flux = sum(s * m.flux for s, m in zip(sign, measured, strict=True) if m is not None and np.isfinite(m.flux))
     if flux + flux_of(cap, part.middle) < 0:
         sign, cap = -sign, cap[:, ::-1]

@@ -4,6 +4,7 @@ How a cap runs between its borders is a guess. What follows from it alone is nev
 """
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 from OCP.BRepAdaptor import BRepAdaptor_Curve
@@ -15,12 +16,15 @@ from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats
 from cad_io.kernel import is_kernel_error
+from cad_io.kernel.each import Ended, each
 from cad_io.part.sew import edge_uses
 
 #: Deflections of a cap's border, rad, and mm as a share of the part's diagonal.
 _ANGLE, _CHORD = 0.2, 1e-4
 #: Ends of open edges so near, as a share of the part's diagonal, are one.
 _SAME = 1e-5
+#: Processor seconds that one edge may take: it takes less than a millisecond.
+SECONDS = 5.0
 
 
 def flux_of(cap: Floats, origin: Floats) -> float:
@@ -40,11 +44,13 @@ def cap_of(shapes: Sequence[TopoDS_Face], sign: Floats, diagonal: float) -> Floa
     diagonal : float
         Of the part, mm.
     """
+    nets = [(edge, sum(way * int(sign[i]) for i, way in users)) for edge, users in edge_uses(shapes)]
+    border = [(edge, net) for edge, net in nets if net]
     lines, ways = [], []
-    for edge, users in edge_uses(shapes):
-        net = sum(way * int(sign[i]) for i, way in users)
-        line = _polyline(edge, diagonal) if net else np.zeros((0, 3))
-        if len(line) > 1:
+    drawn = each(partial(_polyline, diagonal=diagonal), [edge for edge, _ in border], seconds=SECONDS)
+    for line, (_, net) in zip(drawn, border, strict=True):
+        # An edge that cannot be drawn to an end is left out, as one without a curve is.
+        if not isinstance(line, Ended) and len(line) > 1:
             lines.append(line if net > 0 else line[::-1])
             ways.append(abs(net))
     if not lines:

@@ -9,6 +9,7 @@ from collections import defaultdict, deque
 from collections.abc import Iterable, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 from OCP.TopAbs import TopAbs_FACE, TopAbs_REVERSED
 from OCP.TopoDS import TopoDS, TopoDS_Face
 
@@ -84,6 +85,8 @@ def _orient_solid(part: Part, members: Sequence[tuple[int, TopoDS_Face]], sign: 
     said.append("faces of solids as the solid says")
     if not closed:
         said.append("a solid is not closed, so its side is a guess")
+    elif part.aside.keys() & set((index + 1).tolist()):
+        said.append("a face of a solid was not measured, so its side is a guess")
     return closed and enclosed != 0
 
 
@@ -183,8 +186,11 @@ def joined_faces(shapes: Sequence[TopoDS_Face]) -> list[Joined]:
     ]
 
 
-def volume(part: Part, index: Iterable[int], sign: Floats, cap: Floats | None = None) -> float:
-    """Signed volume of a closed set of faces, mm3, openings closed by a cap (t, 3, 3); 0 if there is none to speak of."""
+def volume(part: Part, index: Sequence[int] | NDArray[np.int_], sign: Floats, cap: Floats | None = None) -> float:
+    """Signed volume of a closed set of faces, mm3, openings closed by a cap (t, 3, 3); 0 if there is none to speak of, or a
+    face is set aside: without it, even the sign would be a guess."""
+    if part.aside.keys() & {int(i) + 1 for i in index}:
+        return 0.0
     measures = [part.measure(int(i) + 1) for i in index]
     flux = sum(s * m.flux for s, m in zip(sign, measures, strict=True) if m and np.isfinite(m.flux))
     flux += 0.0 if cap is None else flux_of(cap, part.middle)

@@ -3,7 +3,7 @@
 Making a part costs next to nothing beside reading it: what is known about a face is worked out when first asked for.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Container, Iterator, Mapping
 from functools import cached_property
 from typing import Any
 
@@ -75,6 +75,8 @@ class Part:
     Attributes
     ----------
     shape, file, sha256, unit, layers, tree, picked : as given
+    aside : mapping
+        By face number: why nothing more is to be asked of the kernel about this face. It is not judged. See `without`.
     lost : tuple of LostFace
         Where it is not empty, nothing is known of what stood there: no posture may be called safe.
     faces : tuple of FaceInfo
@@ -113,6 +115,7 @@ class Part:
         lost: tuple[LostFace, ...] = (),
     ) -> None:
         self.shape, self.file, self.sha256, self.picked = shape, file, sha256, picked
+        self.aside: Mapping[int, str] = {}
         self.unit = unit
         with translated("looking for faces", error=ReadError, file=file):
             self._faces = faces(shape)
@@ -120,6 +123,7 @@ class Part:
             raise ReadError("holds no surface (no faces): export it as a solid or surface model", file=file)
         self.layers = dict(layers or {})
         self.tree = tree or (Node("", "", TopLoc_Location(), faces=tuple(range(1, len(self._faces) + 1))),)
+        self._infos: tuple[FaceInfo, ...] = ()
         self._surfaces: dict[int, Surface] = {}
         self._trims: dict[int, Trim | None] = {}
         self._measures: dict[int, Measure | None] = {}
@@ -145,29 +149,49 @@ class Part:
         )  # fmt: skip
 
     def __reduce__(self) -> tuple[Any, ...]:
-        found = {
+        return _again, (packed(self._found()), dict(self.aside))
+
+    def _found(self) -> Found:
+        """What it was made of."""
+        return {
             "shape": self.shape, "file": self.file, "sha256": self.sha256, "unit": self.unit, "names": self._names,
             "colours": self._colours, "layers": self.layers, "tree": self.tree, "warnings": self._said,
             "picked": self.picked, "lost": self.lost,
         }  # fmt: skip
-        return _again, (packed(found),)
 
     def __repr__(self) -> str:
         size = " x ".join(f"{length:.4g}" for length in self.size)
         return f"Part({self.file or 'shape'}, {len(self._faces)} faces, {size} mm)"
 
-    @cached_property
+    @property
     def faces(self) -> tuple[FaceInfo, ...]:
-        return tuple(self._describe(number) for number in range(1, len(self._faces) + 1))
+        return self.measured()
+
+    def measured(self, at: Callable[[int], None] = lambda face: None) -> tuple[FaceInfo, ...]:
+        """`faces`; where they are yet to be measured, `at` is told which one is."""
+        if not self._infos:
+            found = []
+            for number in range(1, len(self._faces) + 1):
+                at(number)
+                found.append(self._describe(number))
+            self._infos = tuple(found)
+        return self._infos
+
+    def without(self, aside: Mapping[int, str]) -> "Part":
+        """The same part with more faces set aside, by number: why."""
+        part = Part(**self._found())
+        part.aside = {**self.aside, **aside}
+        return part
 
     @cached_property
     def size(self) -> tuple[float, float, float]:
         low, high = self._box
         return tuple((high - low).tolist())
 
-    @cached_property
+    @property
     def warnings(self) -> tuple[str, ...]:
-        return (*self._said, *_size_warnings(self.size), *self._loose_warnings())
+        stopped = self.sewn.stopped if "sewn" in self.__dict__ else None
+        return (*self._said, *_size_warnings(self.size), *self._loose_warnings(), *_sewing_warnings(stopped))
 
     def face(self, number: int) -> TopoDS_Face:
         """The kernel's face of a number from 1."""
@@ -186,6 +210,8 @@ class Part:
 
     def trim(self, number: int) -> Trim | None:
         """Border of a face in its parameter plane; None where it has none."""
+        if number in self.aside:
+            return None
         if number not in self._trims:
             with translated("reading a border", file=self.file, face=f"F{number}"):
                 self._trims[number] = trim_of(self.face(number), self.surface(number))
@@ -202,7 +228,7 @@ class Part:
     @cached_property
     def _box(self) -> tuple[Floats, Floats]:
         with translated("measuring the part", error=ReadError, file=self.file):
-            return _box(self._faces)
+            return _box(self._faces, self.aside)
 
     @cached_property
     def middle(self) -> Floats:
@@ -232,7 +258,12 @@ class Part:
         with translated("looking for blends", file=self.file):
             joined, trim, surface = self.sewn.faces, self.trim, self.surface
             faces = [
-                Bare(f, joined.get(f.number) or self.face(f.number), trim(f.number), surface(f.number))
+                Bare(
+                    f,
+                    joined.get(f.number) or self.face(f.number),
+                    trim(f.number),
+                    None if f.number in self.aside else surface(f.number),
+                )
                 for f in self.faces
             ]
             return blends(faces, float(np.linalg.norm(self.size)))
@@ -254,7 +285,10 @@ class Part:
         return number
 
     def _describe(self, number: int) -> FaceInfo:
-        surface, shape, area, reason = "other", "sculptured", 0.0, None
+        surface, shape, area, reason = "other", "sculptured", 0.0, self.aside.get(number)
+        name, colour = self._names.get(number, ""), self._colours.get(number)
+        if reason is not None:
+            return FaceInfo(number, name, surface, shape, area, colour, reason)
         try:
             kind = str(self.adaptor(number).GetType()).rsplit("GeomAbs_", 1)[-1]
             surface = _KINDS.get(kind, "other")
@@ -271,7 +305,6 @@ class Part:
         if altered is not None and reason is None:
             # What it encloses and how large it is would be those of another face.
             reason, area = f"is not as it was written in the file: {altered}", 0.0
-        name, colour = self._names.get(number, ""), self._colours.get(number)
         return FaceInfo(number, name, surface, shape, area, colour, reason)
 
     def _judgeable(self, number: int, surface: str) -> tuple[str | None, float]:
@@ -292,16 +325,18 @@ class Part:
         return None, measured.area
 
 
-def _again(found: Found) -> Part:
+def _again(found: Found, aside: Mapping[int, str]) -> Part:
     """A part that was pickled."""
-    return Part(**unpacked(found))
+    part = Part(**unpacked(found))
+    part.aside = aside
+    return part
 
 
-def _box(found: list[TopoDS_Face]) -> tuple[Floats, Floats]:
+def _box(found: list[TopoDS_Face], aside: Container[int]) -> tuple[Floats, Floats]:
     """Tight corners of the box around faces.
 
     The kernel's quick box is padded and its tight one is slow, so the tight one is asked only of faces whose padded
-    box still sticks out of what is covered, the farthest first.
+    box still sticks out of what is covered, the farthest first; of faces set aside it is not asked at all.
     """
     loose = np.array([face_box(face, tight=False) for face in found])
     usable = np.isfinite(loose).all(axis=(1, 2))
@@ -312,7 +347,7 @@ def _box(found: list[TopoDS_Face]) -> tuple[Floats, Floats]:
                             np.nanmax(loose[usable, 1], axis=0) - loose[:, 1]], axis=1)  # fmt: skip
     for i in np.argsort(np.where(usable, stick.min(axis=1), np.inf), kind="stable")[: usable.sum()]:
         if (loose[i, 0] < low).any() or (loose[i, 1] > high).any():
-            tight = face_box(found[i], tight=True)
+            tight = loose[i] if i + 1 in aside else face_box(found[i], tight=True)
             tight = tight if np.isfinite(tight).all() else loose[i]
             low, high = np.minimum(low, tight[0]), np.maximum(high, tight[1])
     return low, high
@@ -334,6 +369,11 @@ def face_box(face: TopoDS_Face, *, tight: bool) -> Floats:
         return np.full((2, 3), np.nan)
     box.SetGap(0.0)
     return np.array([box.CornerMin().Coord(), box.CornerMax().Coord()])
+
+
+def _sewing_warnings(stopped: str | None) -> Iterator[str]:
+    if stopped is not None:
+        yield f"sewing was stopped: {stopped}; faces that may belong together stay apart, and their sides are guesses"
 
 
 def _size_warnings(size: tuple[float, float, float]) -> Iterator[str]:

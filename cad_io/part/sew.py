@@ -3,13 +3,19 @@
 Each rung goes on from the one before, so what fits closely is joined closely, and a rung counts only if it leaves less
 open. The first that leaves nothing open is the last. The part itself is not changed: the joined faces lie on the same
 surfaces, and only say who is whose neighbour.
+
+A copy of the process joins, rung by rung. One that takes longer than its edges explain, or crashes, ends the ladder: the
+faces stay as the rungs before it left them.
 """
 
+import io
 import math
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
+from OCP.BinTools import BinTools
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Sewing
@@ -19,12 +25,16 @@ from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cad_io.kernel import edges_of, explore, is_kernel_error, shape_map
+from cad_io.kernel.components import children, compound
+from cad_io.kernel.limited import ChildDied, TimeLimit, limited
 
 #: Tolerances to try, as shares of the part's diagonal; in mm none below the kernel's precision nor above the most.
 RUNGS = (1e-6, 1e-5, 1e-4, 1e-3)
 LEAST, MOST = 1e-6, 0.1
 #: A rung that takes less than this share of the open length has joined nothing.
 _GAIN = 1e-3
+#: Processor seconds that a rung may take, and more for each open edge: 2 to 5 ms each are usual.
+SECONDS, _AN_EDGE = 20.0, 0.02
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +53,8 @@ class Sewn:
         Edges that still belong to one face alone.
     open_length : float
         Their length, mm.
+    stopped : str, optional
+        Why the ladder ended before its time; None where it did not.
     """
 
     faces: dict[int, TopoDS_Face]
@@ -50,6 +62,7 @@ class Sewn:
     tried: float | None
     open_edges: int
     open_length: float
+    stopped: str | None = None
 
 
 def sew(shape: TopoDS_Shape, faces: Sequence[TopoDS_Face], diagonal: float) -> Sewn:
@@ -64,31 +77,63 @@ def sew(shape: TopoDS_Shape, faces: Sequence[TopoDS_Face], diagonal: float) -> S
         Of its box, mm.
     """
     numbers = _outside_solids(shape)
-    now, kept, tried, left = join([faces[number - 1] for number in numbers], diagonal)
-    return Sewn(dict(zip(numbers, now, strict=True)), kept, tried, len(left), float(sum(left)))
+    found = join([faces[number - 1] for number in numbers], diagonal)
+    open_edges, length = len(found.left), float(sum(found.left))
+    return Sewn(
+        dict(zip(numbers, found.faces, strict=True)), found.kept, found.tried, open_edges, length, found.stopped
+    )
 
 
-def join(
-    shapes: Sequence[TopoDS_Face], diagonal: float
-) -> tuple[list[TopoDS_Face], float | None, float | None, list[float]]:
-    """Faces joined on the ladder of tolerances for a part of a diagonal, mm.
+class Join(NamedTuple):
+    """Faces that share edges; `kept`, `tried` and `stopped` as in `Sewn`; `left`: the length of each open edge, mm."""
 
-    Returns
-    -------
-    faces, kept, tried, left
-        The faces, sharing edges; as `Sewn.tolerance` and `Sewn.tried`; the length of each edge that is still open, mm.
-    """
+    faces: list[TopoDS_Face]
+    kept: float | None
+    tried: float | None
+    left: list[float]
+    stopped: str | None
+
+
+def join(shapes: Sequence[TopoDS_Face], diagonal: float) -> Join:
+    """Join faces on the ladder of tolerances for a part of a diagonal, mm."""
     now = list(shapes)
-    left, kept, tried = _open(now), None, None
+    left, kept, tried, stopped = _open(now), None, None, None
     for tolerance in _ladder(diagonal):
         if not left or len(now) < 2:
             break
         tried = tolerance
-        joined = _joined(now, tolerance)
-        still = _open(joined)
-        if sum(still) < (1 - _GAIN) * sum(left):
-            kept, now, left = tolerance, joined, still
-    return now, kept, tried, left
+        try:
+            joined = _bounded(now, tolerance, SECONDS + _AN_EDGE * len(left), sum(left))
+        except TimeLimit:
+            stopped = f"the CAD kernel does not come to an end of joining edges within {tolerance:.3g} mm"
+        except ChildDied as died:
+            stopped = f"the CAD kernel fails to join edges within {tolerance:.3g} mm ({died})"
+        if stopped:
+            break
+        if joined is not None:
+            kept, now, left = tolerance, joined, _open(joined)
+    return Join(now, kept, tried, left, stopped)
+
+
+def _bounded(
+    shapes: Sequence[TopoDS_Face], tolerance: float, seconds: float, before: float
+) -> list[TopoDS_Face] | None:
+    """`_joined` in a copy of the process; None where it leaves about as much open as `before`, mm."""
+
+    def work() -> bytes:
+        joined = _joined(shapes, tolerance)
+        if not sum(_open(joined)) < (1 - _GAIN) * before:
+            return b""
+        stream = io.BytesIO()
+        BinTools.Write_s(compound(joined), stream)
+        return stream.getvalue()
+
+    data = limited(work, seconds, processor=True)
+    if not data:
+        return None
+    whole = TopoDS_Shape()
+    BinTools.Read_s(whole, io.BytesIO(data))
+    return [TopoDS.Face_s(face) for face in children(whole)]
 
 
 def edge_uses(shapes: Sequence[TopoDS_Face]) -> list[tuple[TopoDS_Edge, list[tuple[int, int]]]]:

@@ -2,6 +2,7 @@
 
 import itertools
 from collections.abc import Container, Sequence
+from typing import Any
 
 import numpy as np
 from OCP.Bnd import Bnd_Box
@@ -18,9 +19,12 @@ from cad_io.face.curvature import curvature
 from cad_io.face.trim import Trim
 from cad_io.kernel import translated
 from cad_io.kernel.components import compound
+from cad_io.kernel.each import Ended, each
 from cad_io.part import Part
 
 _PRECISION = 1e-9  # mm, asked of the projection
+#: Processor seconds that a projection may take, and a distance more for each face: they take milliseconds.
+SECONDS, _A_FACE = 5.0, 0.1
 
 
 def locate(
@@ -53,14 +57,21 @@ def locate(
     if place.shape != (3,) or not np.isfinite(place).all():
         raise SampleError(f"a point has three finite coordinates, not {point}", file=part.file)
     target = gp_Pnt(*place.tolist())
+    near = [f.number for f in part.faces if f.number not in ignore and f.unjudged is None
+            and _may_be_near(part, f.number, target, within)]  # fmt: skip
+
+    def projected(number: int) -> tuple[float, tuple[float, float]] | None:
+        with translated("projecting a point", error=SampleError, file=part.file, face=f"F{number}"):
+            return _projected(part, number, place, within)
+
     best: tuple[float, int, tuple[float, float]] | None = None
-    for info in part.faces:
-        if info.number in ignore or info.unjudged is not None or not _may_be_near(part, info.number, target, within):
-            continue
-        with translated("projecting a point", error=SampleError, file=part.file, face=info.id):
-            found = _projected(part, info.number, place, within)
+    for number, found in zip(near, each(projected, near, seconds=SECONDS, hangs=1), strict=True):
+        if isinstance(found, Ended):
+            # The face may be the nearest one: without it there is no answer.
+            cause = f"projecting a point on it {found}: give a point on another face, or export the part again"
+            raise SampleError(cause, file=part.file, face=f"F{number}")
         if found is not None and (best is None or found[0] < best[0] - _PRECISION):
-            best = (found[0], info.number, found[1])
+            best = (found[0], number, found[1])
     if best is None:
         foot, distance = nearest(part, point, ignore=ignore)
         where, there = (", ".join(f"{x:.6g}" for x in each) for each in (place, foot))
@@ -111,13 +122,20 @@ def nearest(part: Part, point: Sequence[float], *, ignore: Container[int] = ()) 
     place = np.asarray(point, float)
     if place.shape != (3,) or not np.isfinite(place).all():
         raise SampleError(f"a point has three finite coordinates, not {point}", file=part.file)
-    with translated("measuring a distance", error=SampleError, file=part.file):
-        vertex = BRepBuilderAPI_MakeVertex(gp_Pnt(*place.tolist())).Vertex()
-        faces = compound([part.face(info.number) for info in part.faces if info.number not in ignore])
-        found = BRepExtrema_DistShapeShape(vertex, faces)
-        if not (found.IsDone() and found.NbSolution()):
-            raise SampleError("the part has no face to measure a distance from", file=part.file)
-        return np.array(found.PointOnShape2(1).Coord()), float(found.Value())
+    looked_at = [part.face(info.number) for info in part.faces if info.number not in ignore]
+
+    def measured(shapes: list[Any]) -> tuple[tuple[float, float, float], float] | None:
+        with translated("measuring a distance", error=SampleError, file=part.file):
+            vertex = BRepBuilderAPI_MakeVertex(gp_Pnt(*place.tolist())).Vertex()
+            found = BRepExtrema_DistShapeShape(vertex, compound(shapes))
+            return (found.PointOnShape2(1).Coord(), float(found.Value())) if found.NbSolution() else None
+
+    (found,) = each(measured, [looked_at], seconds=SECONDS + _A_FACE * len(looked_at))
+    if isinstance(found, Ended):
+        raise SampleError(f"measuring the distance of a point {found}", file=part.file)
+    if found is None:
+        raise SampleError("the part has no face to measure a distance from", file=part.file)
+    return np.array(found[0]), found[1]
 
 
 def _may_be_near(part: Part, number: int, target: gp_Pnt, within: float) -> bool:

@@ -1,6 +1,6 @@
 """Sample faces on parameter grids, with the kernel's exact normals and curvatures."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -56,6 +56,7 @@ def sample(
     grid: int | None = None,
     spacing: float | Mapping[int, float] | None = None,
     faces: Sequence[int],
+    at: Callable[[int], None] = lambda face: None,
 ) -> SurfaceSamples:
     """Sample faces of a part.
 
@@ -72,6 +73,8 @@ def sample(
         sample, for all faces or by face number. `max_gap` says where that was not to be had.
     faces : sequence of int
         Face numbers.
+    at : callable, optional
+        Told at which face the work is; 0: at none of them.
 
     Returns
     -------
@@ -90,6 +93,7 @@ def sample(
         raise SampleError(f"a grid needs at least 2 lines each way, not {grid}", file=part.file)
     taken, empty = [], []
     for number in faces:
+        at(number)
         info, trim = part.faces[number - 1], part.trim(number)
         if info.unjudged is not None or trim is None:
             empty.append((number, info.unjudged or "has no border"))
@@ -103,6 +107,7 @@ def sample(
             empty.append((number, "no sample lies inside its border"))
         else:
             taken.append(found)
+    at(0)
     return _together(part, orientation, taken, tuple(empty))
 
 

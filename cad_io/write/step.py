@@ -4,6 +4,7 @@ The same input gives the same bytes. Two instances of one product differ in thei
 Solids, shells and sheets are put into products so that FreeCAD shows their colours, too.
 """
 
+import pickle
 import re
 import unicodedata
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -34,6 +35,7 @@ from cad_io.kernel import edges_of, explore, faces, shape_map, silence, translat
 from cad_io.kernel.assembly import Node
 from cad_io.kernel.bodies import placed
 from cad_io.kernel.components import compound, flat
+from cad_io.kernel.limited import ChildDied, TimeLimit, limited
 from cad_io.split.pieces import Piece, Split
 from cad_io.write.aside import aside
 from cad_io.write.canonical import canonical
@@ -41,6 +43,8 @@ from cad_io.write.canonical import canonical
 #: Of every file: a fixed one, so that the same input gives the same bytes.
 TIME_STAMP = "2000-01-01T00:00:00"
 ORIGIN = "plan-cutters"
+#: Processor seconds that writing may take, and more for each piece of a face: a few ms each are usual.
+SECONDS, _A_FACE = 60.0, 0.1
 
 
 class Other(NamedTuple):
@@ -88,29 +92,72 @@ def write_step(
     Raises
     ------
     WriteError
-        The file cannot be written, or the kernel lost a face, name or colour on the way.
+        The file cannot be written, or the kernel lost a face, name or colour on the way, or does not come to an end.
+
+    Notes
+    -----
+    A copy of the process writes, which is ended where it takes longer than so many faces explain.
     """
     silence()
     file = str(path)
-    with aside(path) as temporary, translated("writing STEP", error=WriteError, file=file):
-        with _settings(schema, file):
-            document = TDocStd_Document(TCollection_ExtendedString("BinXCAF"))
-            filled = _Document(document, style, layers or {}, product, file)
-            filled.fill(split, tree)
-            if others:
-                filled.add(others)
-            writer = STEPCAFControl_Writer()
-            writer.SetColorMode(True)
-            writer.SetNameMode(True)
-            writer.SetLayerMode(True)
-            if not writer.Transfer(document, STEPControl_AsIs):
-                raise WriteError("the CAD kernel cannot turn the part into STEP", file=file)
-            _head(writer.ChangeWriter().Model(), product)
-            if writer.Write(str(temporary)) != IFSelect_RetDone:
-                raise WriteError("the CAD kernel cannot write the file (is the disk full?)", file=file)
-        text = temporary.read_bytes()
-        _recount(text, filled, file)
-        temporary.write_bytes(canonical(text))
+    every = (*split.pieces, *(piece for pieces in split.beside.values() for piece in pieces))
+    styles = {id(piece): style(piece) for piece in every}
+    with aside(path) as temporary:
+
+        def write() -> bytes:
+            try:
+                with translated("writing STEP", error=WriteError, file=file):
+                    _write(
+                        split,
+                        temporary,
+                        lambda piece: styles[id(piece)],
+                        product,
+                        tree,
+                        layers or {},
+                        schema,
+                        others,
+                        file,
+                    )
+            except WriteError as error:
+                return pickle.dumps((error.cause, error.face))
+            except OSError as error:
+                return pickle.dumps((f"cannot be written: {error.strerror}", None))
+            return b""
+
+        try:
+            failed = limited(write, SECONDS + _A_FACE * len(split.pieces), processor=True)
+        except TimeLimit:
+            raise WriteError("the CAD kernel does not come to an end of writing STEP", file=file) from None
+        except ChildDied as died:
+            raise WriteError(f"the CAD kernel fails to write STEP ({died})", file=file) from None
+        if failed:
+            cause, face = pickle.loads(failed)
+            raise WriteError(cause, file=file, face=face)
+
+
+def _write(
+    split: Split, temporary: Path, style: Callable[[Piece], Style], product: str, tree: Sequence[Node],
+    layers: Mapping[int, Sequence[str]], schema: str, others: Sequence[Other], file: str,
+) -> None:  # fmt: skip
+    """Write the file without a limit; errors name `file`."""
+    with _settings(schema, file):
+        document = TDocStd_Document(TCollection_ExtendedString("BinXCAF"))
+        filled = _Document(document, style, layers, product, file)
+        filled.fill(split, tree)
+        if others:
+            filled.add(others)
+        writer = STEPCAFControl_Writer()
+        writer.SetColorMode(True)
+        writer.SetNameMode(True)
+        writer.SetLayerMode(True)
+        if not writer.Transfer(document, STEPControl_AsIs):
+            raise WriteError("the CAD kernel cannot turn the part into STEP", file=file)
+        _head(writer.ChangeWriter().Model(), product)
+        if writer.Write(str(temporary)) != IFSelect_RetDone:
+            raise WriteError("the CAD kernel cannot write the file (is the disk full?)", file=file)
+    text = temporary.read_bytes()
+    _recount(text, filled, file)
+    temporary.write_bytes(canonical(text))
 
 
 @contextmanager

@@ -5,6 +5,7 @@ import inspect
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -100,15 +101,15 @@ vars(plan)["__signature__"] = inspect.Signature(
 
 def run(
     part: Any, options: Options, clock: Clock, *, read_timeout: float = TIMEOUT, at: At = lambda whose, face: None,
-    ahead: Callable[[], None] = lambda: None,
+    ahead: Callable[[], None] = lambda: None, aside: Mapping[int, str] | None = None,
 ) -> Result:  # fmt: skip
     """`plan` with its options gathered.
 
     `read_timeout` is the most seconds that a faulty file may take to read; `at` is told whose work goes on at which face;
-    `ahead` waits for machine code that is made meanwhile.
+    `ahead` waits for machine code that is made meanwhile; `aside` says by number why faces are not to be worked on at all.
     """
     started = datetime.datetime.now(datetime.UTC)
-    ready = prepare(part, options, clock, read_timeout=read_timeout, at=at, ahead=ahead)
+    ready = prepare(part, options, clock, read_timeout=read_timeout, at=at, ahead=ahead, aside=aside)
     here: dict[Cutter, Reach] = {}
     seconds: dict[Cutter, float] = {}
     for cutter in order(ready.cutters):
@@ -159,16 +160,18 @@ def _elsewhere(
 
 def prepare(
     part: Any, options: Options, clock: Clock | None = None, *, read_timeout: float = TIMEOUT,
-    at: At = lambda whose, face: None, ahead: Callable[[], None] = lambda: None,
+    at: At = lambda whose, face: None, ahead: Callable[[], None] = lambda: None, aside: Mapping[int, str] | None = None,
 ) -> Prepared:  # fmt: skip
     """Read, sample, classify and surround with obstacles; arguments as for `run`."""
     clock = clock or Clock()
     with clock.stage("read"):
         stands = _read(part, options, read_timeout)
+        if aside and isinstance(stands, Part):
+            stands = stands.without(aside)
     cutters = tuple(ranked(options.judged))
     whole = stands.part if isinstance(stands, Scene) else stands
     with clock.stage("measure"):
-        _ = whole.faces
+        whole.measured(partial(at, "kernel"))
     with clock.stage("sew"):
         _ = whole.sewn
     with clock.stage("orient"):
@@ -186,7 +189,8 @@ def prepare(
         if options.grid is None and options.spacing is None:
             spacing, coarser = default_spacing(whole, scene.orientation, chosen.targets, cutters)
         _affordable(whole, chosen.targets, options)
-        samples = sample(whole, scene.orientation, grid=options.grid, spacing=spacing, faces=chosen.targets)
+        samples = sample(whole, scene.orientation, grid=options.grid, spacing=spacing, faces=chosen.targets,
+                         at=partial(at, "kernel"))  # fmt: skip
     with clock.stage("classify"):
         surface_class = classify(samples, float(np.linalg.norm(whole.size)))
         region = regions(samples, surface_class)

@@ -14,9 +14,9 @@ from click.core import ParameterSource
 from plan_cutters.command import grouped, terminal
 from plan_cutters.command.codes import ended, guarded, invoked
 from plan_cutters.command.declared import CODES, EXAMPLES, options
+from plan_cutters.command.stopped import Unfinished
 from plan_cutters.command.supervise import (
     INTERRUPTED,
-    Unfinished,
     began,
     can_supervise,
     default_memory,
@@ -25,7 +25,6 @@ from plan_cutters.command.supervise import (
     keep_output,
     limit_memory,
     report,
-    supervise,
 )
 from plan_cutters.command.values import File
 
@@ -41,6 +40,7 @@ def command(parts: tuple[str, ...], **given: Any) -> int:
     Each is judged at samples of the surface: interference-free, accessible, undecided or inaccessible, and why. The plan,
     models coloured by verdict and the samples are written into a folder.
     """
+    from plan_cutters.command.again import set_aside
     from plan_cutters.command.asked import check, folders
     from plan_cutters.command.one_part import one_part
 
@@ -52,12 +52,16 @@ def command(parts: tuple[str, ...], **given: Any) -> int:
     codes = []
     outs = folders(parts, given)
     since: float | None = began()
+    done, aside = set_aside()
     for i, part in enumerate(parts):
+        if i < done:
+            continue
         out = outs[i] if outs else None
         code, line = guarded(
-            lambda part=part, out=out, since=since: one_part(part, out, asked, given, since), given["debug"]
+            lambda part=part, out=out, since=since, aside=aside: one_part(part, out, asked, given, since, aside),
+            given["debug"],
         )
-        since = None
+        since, aside = None, {}
         codes.append(code)
         report("done", str(code))
         if len(parts) > 1 and not given["quiet"]:
@@ -103,6 +107,7 @@ def main(args: Sequence[str] | None = None) -> NoReturn:
 
 def _watched(words: list[str]) -> int:
     """Look at the words here, so that help and mistakes cost nothing; leave the work to a child."""
+    from plan_cutters.command.again import supervised
     from plan_cutters.command.asked import check
     from plan_cutters.command.progress import Display
     from plan_cutters.document.names import called
@@ -125,7 +130,7 @@ def _watched(words: list[str]) -> int:
     memory = default_memory() if given["memory"] is None else int(given["memory"] * 1e9)
     display.stage("start")
     try:
-        return supervise(words, read_timeout=given["read_timeout"], memory=memory, display=display)
+        return supervised(words, read_timeout=given["read_timeout"], memory=memory, display=display)
     except Unfinished as stopped:
         from plan_cutters.command.one_part import without_models
 

@@ -234,7 +234,7 @@ _OPTIONS = (
         type=float,
         default=120.0,
         metavar="S",
-        help="Seconds that reading a part may take; later stages of the CAD kernel five times as long.  [default: 120]",
+        help="Seconds that reading a part may take; from it follow the limits of later stages and single faces.  [default: 120]",
     ),
     _run("--memory", type=float, metavar="GB", help="Most memory to use.  [default: 3/4 of the machine's]"),
     _run("--debug", is_flag=True, help="Show tracebacks."),

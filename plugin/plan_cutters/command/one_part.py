@@ -3,15 +3,16 @@
 import gc
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from plan_cutters.command import terminal
 from plan_cutters.command.codes import UNREADABLE, code_of
 from plan_cutters.command.progress import Display, Teller
+from plan_cutters.command.stopped import Unfinished
 from plan_cutters.command.summary import not_reached, summary, written
-from plan_cutters.command.supervise import INTERRUPTED, Unfinished, is_child, report, report_work
+from plan_cutters.command.supervise import INTERRUPTED, is_child, report, report_work
 from plan_cutters.document.names import called
 
 if TYPE_CHECKING:
@@ -20,11 +21,12 @@ if TYPE_CHECKING:
 
 
 def one_part(
-    part: str, out: Path | None, options: "Options", given: dict[str, Any], began: float | None = None
-) -> tuple[int, str]:
+    part: str, out: Path | None, options: "Options", given: dict[str, Any], began: float | None = None,
+    aside: Mapping[int, str] | None = None,
+) -> tuple[int, str]:  # fmt: skip
     """Plan one part into a folder, None for none; exit code and a line about it.
 
-    `began`: when the command did, for the first part (`time.monotonic`).
+    `began`: when the command did, for the first part (`time.monotonic`); `aside`: why faces are not to be worked on, by number.
     """
     from plan_cutters.report.folder import DEFAULT_FORMATS, Staging, ended, file_name, read_formats, write_all
     from plan_cutters.report.to_json import dumps
@@ -46,7 +48,8 @@ def one_part(
         gc.freeze()
         gc.enable()
         clock = Clock(watch.tell, began=began)
-        result = run(part, options, clock, read_timeout=given["read_timeout"], at=report_work, ahead=ahead)
+        result = run(part, options, clock, read_timeout=given["read_timeout"], at=report_work, ahead=ahead,
+                     aside=aside)  # fmt: skip
         document = result.plan
         if out is None:
             watch.summarise(document)

@@ -16,9 +16,11 @@ import sys
 import threading
 import time
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Protocol
+
+from plan_cutters.command.stopped import Stuck, Supervised, Unfinished
 
 #: Environment variables by which the child knows its number of the pipe to report on, its memory limit in bytes, and when
 #: the command began.
@@ -32,28 +34,8 @@ LIMITED = {"read": 1.0, "measure": 5.0, "sew": 5.0, "orient": 5.0, "fixtures": 5
            "write": 5.0}  # fmt: skip
 _WORK = {"measure": "measuring of faces", "sew": "sewing", "orient": "search for the inside", "fixtures": "reading of fixtures",
          "sample": "sampling", "tessellate": "tessellation", "write": "splitting and writing"}  # fmt: skip
-
-
-class Supervised(Exception):
-    """The child did not end by itself: `str` says what happened, in words for the user."""
-
-
-class Unfinished(Supervised):
-    """So it was, but the plan was in the output already: what is missing are models.
-
-    Attributes
-    ----------
-    code : int
-        The exit code that the plans so far ask for.
-    out : Path
-        The output.
-    parts : int
-        Parts that were begun.
-    """
-
-    def __init__(self, text: str, code: int, out: Path, parts: int) -> None:
-        super().__init__(text)
-        self.code, self.out, self.parts = code, out, parts
+#: Of these, how many times the limit of reading one face may take, in processor time. Samples may be asked for by the million.
+A_FACE = {"measure": 0.25, "sample": 1.0, "tessellate": 0.25}
 
 
 def can_supervise() -> bool:
@@ -168,7 +150,10 @@ class Display(Protocol):
         """A little time has passed."""
 
 
-def supervise(words: Sequence[str], *, read_timeout: float, memory: int, display: Display | None = None) -> int:
+def supervise(
+    words: Sequence[str], *, read_timeout: float, memory: int, display: Display | None = None,
+    more: Mapping[str, str] | None = None,
+) -> int:  # fmt: skip
     """Run the command in a child.
 
     Parameters
@@ -181,6 +166,8 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int, display
         Bytes of address space that the child may use.
     display : Display, optional
         Told what the child tells.
+    more : mapping, optional
+        More environment variables of the child.
 
     Returns
     -------
@@ -190,10 +177,10 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int, display
     Raises
     ------
     Supervised
-        It crashed or was stopped.
+        It crashed or was stopped; `Stuck` where this was at a face.
     """
     here, there = os.pipe()
-    environment = {**os.environ, REPORT: str(there), MEMORY: str(memory), BEGAN: str(began())}
+    environment = {**os.environ, REPORT: str(there), MEMORY: str(memory), BEGAN: str(began()), **(more or {})}
     watch = _Watch(here, read_timeout, display)
     child: subprocess.Popen[bytes] | None = None
     asked: list[int] = []
@@ -212,6 +199,7 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int, display
         # A session of its own: an interrupt from the terminal reaches the child once, through us.
         child = subprocess.Popen([sys.executable, "-m", "plan_cutters", *words], env=environment, pass_fds=(there,),
                                  start_new_session=True)  # fmt: skip
+        watch.child = child.pid
         if asked:  # before there was anyone to tell
             raise KeyboardInterrupt
         os.close(there)
@@ -240,6 +228,8 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int, display
     if asked:
         raise watch.ended("interrupted", "", interrupted=True)
     name = signal.Signals(-child.returncode).name
+    if name != "SIGKILL":  # which comes from outside
+        watch.why = f"the CAD kernel crashed ({name}) at its {_WORK.get(watch.stage, watch.stage)}"
     at = " ".join(filter(None, (watch.stage, watch.face)))
     raise watch.ended(f"the CAD kernel crashed ({name}, while it was at '{at}')",
                       "the file may be damaged: export it again")  # fmt: skip
@@ -260,13 +250,23 @@ def _end(child: "subprocess.Popen[bytes]") -> None:
     child.wait()
 
 
+def _processor(child: int | None) -> float:
+    """Processor seconds that a process has used, without its children; 0 where the system does not tell (only Linux does)."""
+    try:
+        fields = Path(f"/proc/{child}/stat").read_text(errors="replace").rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    except (OSError, IndexError, ValueError):
+        return 0.0
+
+
 class _Watch:
     """What the child has told so far."""
 
     def __init__(self, pipe: int, read_timeout: float, display: Display | None = None) -> None:
         self.pipe, self.read_timeout, self.display = pipe, read_timeout, display
         self.part, self.stage, self.since = "part", "start", time.monotonic()
-        self.work = ""
+        self.work, self.spent, self.why = "", 0.0, ""
+        self.child: int | None = None
         self.staging: set[str] = set()
         self.rest = b""
         self.parts, self.code = 0, 0
@@ -286,7 +286,7 @@ class _Watch:
                 if word == "stage":
                     self.stage, self.since, self.work = text, time.monotonic(), ""
                 elif word == "work":
-                    self.work = text
+                    self.work, self.spent = text, _processor(self.child)
                 elif word == "part":
                     self.part, self.parts, self.safe = text, self.parts + 1, None
                 elif word == "safe":
@@ -318,6 +318,12 @@ class _Watch:
         return self.read_timeout * LIMITED.get(self.stage, math.inf)
 
     def late(self) -> bool:
+        if self.stage in A_FACE and self.work.startswith("kernel F"):
+            within = A_FACE[self.stage] * self.read_timeout
+            if _processor(self.child) - self.spent > within:
+                work = _WORK.get(self.stage, self.stage)
+                self.why = f"the CAD kernel did not end its {work} within {within:g} s of processor time"
+                return True
         return time.monotonic() - self.since > self.limit
 
     @property
@@ -340,6 +346,9 @@ class _Watch:
 
     def ended(self, what: str, advice: str, *, interrupted: bool = False) -> Supervised:
         """What to raise when the child is gone."""
+        if self.safe is None and self.face and self.why and not interrupted:
+            face, before = int(self.face[1:]), self.parts - 1
+            return Stuck(f"{self.part}: {what}; {advice}", self.part, face, self.why, before, self.code)
         if self.safe is None:
             return Supervised(f"{self.part}: {what}; {advice}")
         code, out = self.safe

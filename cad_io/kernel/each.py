@@ -1,0 +1,132 @@
+"""The kernel's work on one thing after another, in a copy that can be ended: what hangs or crashes costs that thing alone."""
+
+import faulthandler
+import os
+import pickle
+import select
+import signal
+import struct
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from typing import TypeVar, cast
+
+from cad_io.kernel.limited import _end_alone, _stuck
+
+Item = TypeVar("Item")
+Done = TypeVar("Done")
+
+#: Answers begin with their length in bytes.
+_LENGTH = struct.Struct("<q")
+
+
+class Ended(Exception):
+    """There is no answer about an item: `str` says why, as the end of a sentence about it."""
+
+
+def each(
+    call: Callable[[Item], Done], items: Sequence[Item], *, seconds: float, hangs: int = 2
+) -> Iterator[Done | Ended]:
+    """What `call` makes of each item, in their order.
+
+    It runs in a forked copy of this process, which is made again behind an item that ends it. Where the system cannot fork
+    (Windows), it runs here, without a limit.
+
+    Parameters
+    ----------
+    call : callable
+        Must use nothing but Python and the kernel; its results are pickled. What it raises is raised here.
+    items : sequence
+    seconds : float
+        Processor time that one item may take.
+    hangs : int
+        So many items may take longer, or crash the copy: behind the last of them, nothing is tried any more.
+
+    Yields
+    ------
+    What `call` returned, or an `Ended` for an item that has no answer.
+    """
+    if not hasattr(os, "fork"):
+        yield from map(call, items)
+        return
+    first, left = 0, hangs
+    while first < len(items):
+        if left <= 0:
+            yield from (Ended("was not tried, for others before it did not come to an end") for _ in items[first:])
+            return
+        end, child = _begin(call, items[first:], seconds)
+        why = ""
+        try:
+            for answer in _answers(end, child):
+                first += 1
+                if isinstance(answer, Exception):
+                    raise answer
+                yield cast(Done, answer)
+        except TimeoutError:
+            why = "waits for ever"
+        finally:
+            os.close(end)
+            os.kill(child, signal.SIGKILL)
+            _, status = os.waitpid(child, 0)
+        if first < len(items):
+            left -= 1
+            first += 1
+            yield Ended(why or _told(status, seconds))
+
+
+def _told(status: int, seconds: float) -> str:
+    if os.WIFSIGNALED(status) and os.WTERMSIG(status) in (signal.SIGPROF, signal.SIGXCPU):
+        return f"does not come to an end within {seconds:g} s"
+    return f"crashes (status {status})"
+
+
+def _begin(call: Callable[[Item], Done], items: Sequence[Item], seconds: float) -> tuple[int, int]:
+    """The end of a pipe on which a copy answers, and the copy."""
+    end, start = os.pipe()
+    with warnings.catch_warnings():
+        # Python 3.12 warns of locks held by other threads; at worst the copy waits for one, which is noticed.
+        warnings.simplefilter("ignore", DeprecationWarning)
+        child = os.fork()
+    if child:
+        os.close(start)
+        return end, child
+    try:
+        faulthandler.disable()  # a crash here is told by the other side
+        _end_alone(seconds * (len(items) + 1))
+        signal.signal(signal.SIGPROF, signal.SIG_DFL)
+        with os.fdopen(start, "wb") as pipe:
+            for item in items:
+                # The system ends the copy after so much processor time: the kernel cannot be asked to.
+                signal.setitimer(signal.ITIMER_PROF, seconds)
+                try:
+                    answer: object = call(item)
+                except Exception as error:
+                    answer = error
+                signal.setitimer(signal.ITIMER_PROF, 0.0)
+                data = pickle.dumps(answer)
+                pipe.write(_LENGTH.pack(len(data)) + data)
+                pipe.flush()
+                if isinstance(answer, Exception):
+                    break
+    finally:
+        os._exit(0)
+
+
+def _answers(end: int, child: int) -> Iterator[object]:
+    """Whole answers as they come, until the copy ends; TimeoutError if it sleeps and does nothing."""
+    late, data = _stuck(child), b""
+    while True:
+        wait = late()
+        if wait <= 0:
+            raise TimeoutError
+        if not select.select([end], [], [], wait)[0]:
+            continue
+        part = os.read(end, 1 << 20)
+        if not part:
+            return
+        data += part
+        while len(data) >= _LENGTH.size:
+            (length,) = _LENGTH.unpack_from(data)
+            if len(data) < _LENGTH.size + length:
+                break
+            yield pickle.loads(data[_LENGTH.size : _LENGTH.size + length])
+            data = data[_LENGTH.size + length :]

@@ -1,0 +1,46 @@
+"""How a child that did the job did not end by itself."""
+
+from pathlib import Path
+
+
+class Supervised(Exception):
+    """The child did not end by itself: `str` says what happened, in words for the user."""
+
+
+class Stuck(Supervised):
+    """So it was, at a face: without it, there may be a plan.
+
+    Attributes
+    ----------
+    part : str
+    face : int
+        Its number.
+    why : str
+        What happened there.
+    before : int
+        Parts that were done.
+    code : int
+        The exit code that these ask for.
+    """
+
+    def __init__(self, text: str, part: str, face: int, why: str, before: int, code: int) -> None:
+        super().__init__(text)
+        self.part, self.face, self.why, self.before, self.code = part, face, why, before, code
+
+
+class Unfinished(Supervised):
+    """So it was, but the plan was in the output already: what is missing are models.
+
+    Attributes
+    ----------
+    code : int
+        The exit code that the plans so far ask for.
+    out : Path
+        The output.
+    parts : int
+        Parts that were begun.
+    """
+
+    def __init__(self, text: str, code: int, out: Path, parts: int) -> None:
+        super().__init__(text)
+        self.code, self.out, self.parts = code, out, parts
