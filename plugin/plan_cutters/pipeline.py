@@ -40,7 +40,6 @@ from plan_cutters.scene.prepared import Prepared
 from plan_cutters.scene.question import question
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.spacing import Spacing, default_spacing
-from plan_cutters.stages.access import witnesses
 from plan_cutters.stages.between import between
 from plan_cutters.stages.classify import classify, regions
 from plan_cutters.stages.decompose import march_differs
@@ -50,6 +49,7 @@ from plan_cutters.stages.posture_maps import posture_maps
 from plan_cutters.stages.reasons import Reasons
 from plan_cutters.stages.select_cutters import ranked
 from plan_cutters.stages.setups import AXES, within_limits
+from plan_cutters.stages.witness import witnesses
 
 #: Samples that a plan may take.
 MOST_SAMPLES = 5_000_000
