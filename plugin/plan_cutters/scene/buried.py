@@ -112,7 +112,8 @@ def cover(point: Floats, normal: Floats, surely: Obstacles, body: Body | None = 
     face = surely.faces[rows]
     weight = surely.weight[surely.order[rows]]
     if body is not None:
-        rows, face, weight = (each[np.isin(face, body.faces)] for each in (rows, face, weight))
+        mine = np.isin(face, body.faces)
+        rows, face, weight = rows[mine], face[mine], weight[mine]
         if min(body.faces) > 0:
             # A fixture is one body whatever it consists of, and its triangles know what they count.
             weight = np.array([dict(zip(body.faces, body.sign, strict=True))[n] for n in face.tolist()], np.int8)

@@ -23,6 +23,7 @@ from plan_cutters.domain.verdicts import (
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Conditions, contacts_of, search_postures, tool_of
 from plan_cutters.scene.threads import Progress, in_chunks
+from plan_cutters.scene.work import Work
 
 
 def access(
@@ -35,6 +36,7 @@ def access(
     known: Reach | None = None,
     rows: NDArray[np.int64] | None = None,
     progress: Progress | None = None,
+    work: Work | None = None,
 ) -> Reach:
     """Search a posture for every judged sample that is not interference-free.
 
@@ -53,6 +55,8 @@ def access(
         other postures may be found for the same sample.
     progress : callable, optional
         Told how many pieces of the work are done, of how many.
+    work : Work, optional
+        Where what is looked at is counted.
     """
     n = len(samples)
     reach = blank(n)
@@ -81,7 +85,7 @@ def access(
         )
         wanted &= ~follows
     light, heavy = conditions.light(cutter), conditions.heavy(cutter)
-    search_postures(contacts, np.flatnonzero(wanted), light, heavy, conditions, reach, progress, fixed=True)
+    search_postures(contacts, np.flatnonzero(wanted), light, heavy, conditions, reach, progress, fixed=True, work=work)
     if conditions.around.alone is not None:
         searched = wanted | (buried >= len(conditions.around.bodies) if buried is not None else False)
         handed = judged & (reach.reason == FIXTURE)
