@@ -58,8 +58,8 @@ def measured(prepared: Any, cutter: Any) -> dict[str, float]:
     """Processor seconds of one cutter, and what they were spent on."""
     from plan_cutters.domain.verdicts import BURIED, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, blank
     from plan_cutters.scene.conditions import contacts_of, search_postures
-    from plan_cutters.stages.access import witnesses
     from plan_cutters.stages.judge import judge
+    from plan_cutters.stages.witness import witnesses
 
     samples, conditions = prepared.samples, prepared.conditions
     began = time.process_time()

@@ -215,7 +215,8 @@ def test_axes_between_samples_keep_the_machines_limit():
     field = Field(whole, orient(whole, towards=UP, flip=False), 1, whole.trim(1), lines, np.zeros((1, 1), np.int32),
                   np.zeros(2, bool), point, normal, np.zeros((1, 3, 3)))  # fmt: skip
     cell = CellContacts(point, normal, direction, curvature, normal, np.array([True]), np.ones(1), np.zeros((1, 2), np.int32),
-                    np.zeros((1, 2), np.int64), uv, np.full((1, 2), 0.4), np.array([True]), np.ones(1), np.ones(1))  # fmt: skip
+                    np.zeros((1, 2), np.int64), uv, np.full((1, 2), 0.4), np.array([True]), np.ones(1), np.ones(1),
+                            np.zeros(1, bool))  # fmt: skip
     plane = Surroundings.sheet(Obstacles(tessellate(part, 0.002)))
     conditions = Conditions(Machine.parse("tilt:10"), UP, PostureRange(), plane, 0.01, 1)
     quarters = quartered(cell, field, 0, conditions)

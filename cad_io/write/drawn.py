@@ -1,4 +1,4 @@
-"""Faces as triangles to look at: from the kernel's mesh of a copy, with exact normals and surface parameters."""
+"""Faces as triangles to look at, with exact normals and surface parameters."""
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -8,26 +8,25 @@ from numpy.typing import NDArray
 from OCP.Bnd import Bnd_Box
 from OCP.BRep import BRep_Tool
 from OCP.BRepBndLib import BRepBndLib
-from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
 from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
-from OCP.TopoDS import TopoDS
 
-from cad_io.arrays import FaceLabels, Floats
+from cad_io.arrays import FaceLabels, Floats, Ints
 from cad_io.errors import WriteError
 from cad_io.kernel import translated
-from cad_io.kernel.mesher import give_triangles
 from cad_io.part import Part
 from cad_io.surface import Surface
+from cad_io.tessellate.start import starts
 from cad_io.write.label_mesh import label_mesh
+from cad_io.write.net import Net, cut
 
 #: Largest angle between neighbouring facets, rad.
 ANGLE = 0.35
 #: Default chord error as a share of the part's diagonal.
 FINE = 5e-4
 _METRE = 1e-3
-#: By how much the chord error grows where there are too many triangles, and how often; the angle grows beyond the default chord.
-_COARSER, _WIDER, _ROUNDS = 2.0, 1.3, 12
+#: How much coarser the triangles are that drawing begins with.
+_COARSER = 8.0
 
 
 class Mesh(NamedTuple):
@@ -53,13 +52,16 @@ class Drawn(NamedTuple):
 def drawn(part: Part, sides: Sequence[float] | Floats, *, most: int, deflection: float | None = None) -> Drawn:
     """Mesh all faces of a part to be looked at; the part itself stays without a mesh.
 
+    Coarse triangles are cut where they lie farthest from the surface, until they are near enough or there are as many as are
+    wanted: the time goes with what is drawn.
+
     Parameters
     ----------
     part : Part
     sides : (faces,) float
         As `Orientation.sign`: normals point out of the material.
     most : int
-        Triangles to have at most: where there are more, the chord error grows, as far as that helps.
+        Triangles to have at most, but for those to begin with: where there would be more, the chord error grows.
     deflection : float, optional
         The chord error to begin with, mm; default FINE times the part's diagonal.
 
@@ -69,33 +71,23 @@ def drawn(part: Part, sides: Sequence[float] | Floats, *, most: int, deflection:
         The kernel fails, or makes no triangle at all.
     """
     with translated("meshing", error=WriteError, file=part.file):
-        copy = BRepBuilderAPI_Copy(part.shape, False, False)
-        usual = FINE * diagonal(part.shape)
-        shape, deflection, angle = copy.Shape(), usual if deflection is None else deflection, ANGLE
-        faces = [TopoDS.Face_s(copy.ModifiedShape(part.face(f.number))) for f in part.faces]
-        for tried in range(_ROUNDS):
-            give_triangles(shape, deflection, angle)
-            if sum(map(_count, faces)) <= most or tried == _ROUNDS - 1:
-                break
-            deflection *= _COARSER
-            angle = min(1.5, angle * (_WIDER if deflection > usual else 1.0))
+        wanted = FINE * diagonal(part.shape) if deflection is None else deflection
+        begun, _ = starts(part, [f.number for f in part.faces], _COARSER * wanted)
+        nets = {number: Net.of(part.surface(number), start) for number, start in begun.items()}
+        off = cut(list(nets.values()), wanted, ANGLE, most)
         meshes, periods = {}, {}
-        for info, face in zip(part.faces, faces, strict=True):
-            found = face_mesh(part.face(info.number), face, None, outward=sides[info.number - 1] > 0)
+        for number, net in nets.items():
+            whole = np.zeros(len(net.corner), np.int32)
+            found = _finished(net.surface, net.uv, net.point, net.corner, whole, turned=not sides[number - 1] > 0)
             if found:
-                meshes[info.number] = found[0]
-                surface = BRep_Tool.Surface_s(face)
-                periods[info.number] = (
+                meshes[number] = found[0]
+                surface = BRep_Tool.Surface_s(part.face(number))
+                periods[number] = (
                     surface.UPeriod() if surface.IsUPeriodic() else 0.0, surface.VPeriod() if surface.IsVPeriodic() else 0.0
                 )  # fmt: skip
     if not meshes:
         raise WriteError("the CAD kernel made no triangle of the part", file=part.file)
-    return Drawn(meshes, periods, deflection, tuple(f.number for f in part.faces if f.number not in meshes))
-
-
-def _count(face: Any) -> int:
-    mesh = BRep_Tool.Triangulation_s(face, TopLoc_Location())
-    return 0 if mesh is None else int(mesh.NbTriangles())
+    return Drawn(meshes, periods, max(wanted, off), tuple(f.number for f in part.faces if f.number not in meshes))
 
 
 def diagonal(shape: Any) -> float:
@@ -105,9 +97,7 @@ def diagonal(shape: Any) -> float:
     return float(np.sqrt(box.SquareExtent()))
 
 
-def face_mesh(
-    face: Any, meshed: Any, labels: FaceLabels | None, *, outward: bool | None = None
-) -> dict[int, Mesh] | None:
+def face_mesh(face: Any, meshed: Any, labels: FaceLabels | None) -> dict[int, Mesh] | None:
     """Mesh of a face by label, all of it by the label 0 where there are none; None if the kernel made none.
 
     Parameters
@@ -115,8 +105,6 @@ def face_mesh(
     face, meshed : TopoDS_Face
         The face, and its copy that the kernel has meshed.
     labels : FaceLabels, optional
-    outward : bool, optional
-        `dS/du x dS/dv` points out of the material. Default: as the face is turned.
     """
     location = TopLoc_Location()
     triangulation = BRep_Tool.Triangulation_s(meshed, location)
@@ -130,11 +118,17 @@ def face_mesh(
     point, label = np.array(list(nodes)), np.zeros(len(triangle), np.int32)
     if labels is not None:
         uv, point, triangle, label = label_mesh(face, uv, point, triangle, labels)
-    s = Surface(face).first(uv[:, 0], uv[:, 1])
-    normal = np.cross(s[:, 1], s[:, 2])
-    turned = face.Orientation() == TopAbs_REVERSED
     # The kernel's triangles run counter-clockwise in the parameter plane, whichever way the face is turned.
-    if turned if outward is None else not outward:
+    return _finished(Surface(face), uv, point, triangle, label, turned=face.Orientation() == TopAbs_REVERSED)
+
+
+def _finished(
+    surface: Surface, uv: Floats, point: Floats, triangle: NDArray[np.int64], label: Ints, *, turned: bool
+) -> dict[int, Mesh]:
+    """Meshes by label, with exact normals; `turned`: `dS/du x dS/dv` points into the material."""
+    s = surface.first(uv[:, 0], uv[:, 1])
+    normal = np.cross(s[:, 1], s[:, 2])
+    if turned:
         triangle, normal = triangle[:, ::-1], -normal
     # Corners that are one point in 32 bits make a triangle without a normal or an inside.
     corner = (point * _METRE).astype(np.float32)[triangle]

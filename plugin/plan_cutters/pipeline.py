@@ -41,7 +41,7 @@ from plan_cutters.scene.prepared import Prepared
 from plan_cutters.scene.question import question
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.spacing import Spacing, default_spacing
-from plan_cutters.stages.access import witnesses
+from plan_cutters.scene.work import Work
 from plan_cutters.stages.between import between
 from plan_cutters.stages.classify import classify, regions
 from plan_cutters.stages.decompose import march_differs
@@ -51,7 +51,10 @@ from plan_cutters.stages.posture_maps import posture_maps
 from plan_cutters.stages.reasons import Reasons
 from plan_cutters.stages.select_cutters import ranked
 from plan_cutters.stages.setups import AXES, within_limits
+from plan_cutters.stages.witness import witnesses
 
+#: The work between samples, as a share of that of the searches, and so much of it in any case: boxes.
+_WORK_SHARE, _WORK_LEAST = 1.5, 4e7
 #: Samples that a plan may take.
 MOST_SAMPLES = 5_000_000
 
@@ -112,12 +115,14 @@ def run(
     ready = prepare(part, options, clock, read_timeout=read_timeout, at=at, ahead=ahead, aside=aside)
     here: dict[Cutter, Reach] = {}
     seconds: dict[Cutter, float] = {}
+    searched = Work()
     for cutter in order(ready.cutters):
         with clock.stage(cutter.id) as tell:
             # In the order of rank, whatever the order of work.
             earlier = {c: here[c] for c in ready.cutters if c in here}
             began = time.perf_counter()
-            here[cutter] = judge(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell)
+            here[cutter] = judge(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell,
+                                 work=searched)  # fmt: skip
             seconds[cutter] = time.perf_counter() - began
     places = options.other_placements or (None,) * len(options.other_setups)
     others = [
@@ -126,7 +131,7 @@ def run(
     elsewhere = [(axis, _elsewhere(ready, here, axis, x, clock)) for axis, x in others]
     judged = _judged(ready, here, elsewhere, seconds, clock)
     answers = ask(ready, {cutter: each.here for cutter, each in judged.items()}, clock.stage, elsewhere)
-    result = assemble(ready, judged, clock, started, answers, elsewhere)
+    result = assemble(ready, judged, clock, started, answers, elsewhere, searched)
     if not options.posture_maps:
         return result
     with clock.stage("maps") as tell:
@@ -281,9 +286,12 @@ def _judged(
 def assemble(
     ready: Prepared, judged: Mapping[Cutter, Judged], clock: Clock | None = None,
     started: datetime.datetime | None = None, answers: Answers | None = None,
-    elsewhere: Sequence[Elsewhere] = (),
+    elsewhere: Sequence[Elsewhere] = (), searched: Work | None = None,
 ) -> Result:  # fmt: skip
-    """The result of all cutters: the choice, the area between the samples for the one chosen, what was answered, the plan."""
+    """The result of all cutters: the choice, the area between the samples for the one chosen, what was answered, the plan.
+
+    `searched`: the work of all searches, which bounds that between the samples unless a budget was asked for.
+    """
     clock, answers = clock or Clock(), answers or Answers()
     reaches = {cutter.id: each.reach for cutter, each in judged.items()}
     here = {cutter.id: each.here for cutter, each in judged.items()}
@@ -300,8 +308,11 @@ def assemble(
     if best and budget:
         with clock.stage("area"):
             cutter = next(c for c in ready.cutters if c.id == best)
+            most = np.inf
+            if searched is not None and ready.options.area_budget is None:
+                most = _WORK_LEAST + _WORK_SHARE * searched.looked
             served = between(ready.samples, judged[cutter].reach, cutter, ready.scene.part, ready.scene.orientation,
-                             ready.conditions, budget=budget, beside=ready.inside_bodies)  # fmt: skip
+                             ready.conditions, budget=budget, most=most, beside=ready.inside_bodies)  # fmt: skip
         area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
                          short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
         entries = [

@@ -111,6 +111,7 @@ def cutter_entry(
         faces=faces,
         area_share=whole_share(faces, samples, part),
         witnesses=[_witness_entry(w, samples, around, reach, inside) for w in found],
+        witnesses_untried=sum(w.untried for w in found),
         seconds=seconds,
     )
 
@@ -131,6 +132,7 @@ def _witness_entry(
         best_posture=best,
         depth_mm=witness.depth,
         inside_bodies=bool(inside[witness.sample]),
+        samples=witness.samples,
     )
 
 

@@ -140,6 +140,7 @@ class WitnessEntry(Frozen):
         description="how deep the part reaches into the cutter at the best posture, or may do"
     )
     inside_bodies: bool = Field(default=False, description="it lies inside another body of the part")
+    samples: int = Field(default=1, description="of its face that are lost for its reason, inside the same body if any")
 
 
 class AreaEntry(Frozen):
@@ -282,7 +283,10 @@ class CutterEntry(Verdicts):
         "and those of unknown area not; what "
         "the samples stand for, not what is shown between them: that is in `area`",
     )
-    witnesses: list[WitnessEntry]
+    witnesses: list[WitnessEntry] = Field(description="for each face and reason, the deepest that was tried first")
+    witnesses_untried: int = Field(
+        default=0, description="those without a depth, for others of larger area took all tries"
+    )
     area: AreaEntry | None = Field(default=None, description="of the selected cutter; null where it was not asked for")
     setups: list[SetupReach] = Field(
         default=[], description="where several setups were asked for: what it reaches in each, the plan's own first"

@@ -87,7 +87,11 @@ class Witness(Record):
         rad; None where the axis limit leaves no posture at all.
     axis : (3,) float, optional
     depth : float, optional
-        How deep the part reaches into the cutter there, mm, to the resolution of the search.
+        How deep the part reaches into the cutter there, mm, to the resolution of the search; None where it was not searched for.
+    samples : int
+        How many samples it stands for: those lost on its face for its reason, and within its body where it lies in one.
+    untried : bool
+        No posture was looked for, though there may be a depth.
     """
 
     sample: int
@@ -98,6 +102,8 @@ class Witness(Record):
     rotation: float | None
     axis: Floats | None
     depth: float | None
+    samples: int = 1
+    untried: bool = False
 
 
 def blank(n: int) -> Reach:

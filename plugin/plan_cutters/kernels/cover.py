@@ -148,6 +148,7 @@ def _reaches(vertex, i, mask, room):  # type: ignore[no-untyped-def]
         for sixth in range(3 * half, 3 * half + 3):
             if not drawn_hit(vertex, i, bodies[3 + sixth], pieces[3 + sixth], mask, scratch):
                 continue
+            room.scratch.looked[0] += 3
             for last in range(3 * sixth, 3 * sixth + 3):
                 if drawn_hit(vertex, i, bodies[9 + last], pieces[9 + last], mask, scratch):
                     return True
@@ -158,6 +159,7 @@ def _reaches(vertex, i, mask, room):  # type: ignore[no-untyped-def]
 def _blocks(i, mask, nose, whole, frame, face, tree, triangle_face, room):  # type: ignore[no-untyped-def]
     """Whether triangle i reaches into a piece of the moved cutter; into its nose only if it is not near."""
     vertex = tree.vertex
+    room.scratch.looked[0] += 1
     hit = drawn_hit(vertex, i, room.bodies[0], room.pieces[0], mask, room.scratch)
     if hit & nose and near_by(vertex, triangle_face, i, frame, face, room.near):
         hit &= ~nose
@@ -176,6 +178,7 @@ def _first(hint, nose, whole, frame, face, tree, triangle_face, room):  # type: 
     while top > 0:
         top -= 1
         node = stack[top]
+        room.scratch.looked[0] += 1
         mask = hit.alive(box, node, room.bodies[0], room.pieces[0], masks[top], 0.0)
         if mask == 0:
             continue
@@ -387,6 +390,11 @@ def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, outlook):  
     outlook : (n,) uint8, written
         0: it does. 1 to MOST_HALVINGS: not known; how often the patch must be halved until it may, a guess that tells what to
         try first. NEVER: it serves no smaller patch, either, down to a quarter of its size, as far as the nodes tell.
+
+    Returns
+    -------
+    int
+        How many boxes, triangles and nodes were looked at.
     """
     count = sweeping.tool.piece.shape[1]
     room = _Room(np.empty(3), np.empty(3), np.empty((_BODIES, BODY)), np.empty((_BODIES, count, COLUMNS)), np.empty(6), seen(),
@@ -397,3 +405,4 @@ def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, outlook):  
         # What was in the way of one contact is likely in the way of the next.
         if found >= 0:
             blocker = found
+    return room.scratch.looked[0] + room.seen.looked[0]

@@ -43,7 +43,7 @@ def scratch():  # type: ignore[no-untyped-def]
     """Room for walks of a tree."""
     return Scratch(
         np.empty(64, np.int64), np.empty(64, np.int64), np.empty((3, 3)), np.empty((4, 3)), np.empty((8, 3)), np.empty((8, 3)),
-        np.empty((64, 3, 3)),
+        np.empty((64, 3, 3)), np.zeros(1, np.int64),
     )  # fmt: skip
 
 
@@ -337,6 +337,7 @@ def tree_hit(tree, body, piece, rate, hint, scratch):  # type: ignore[no-untyped
     while top > 0:
         top -= 1
         node = stack[top]
+        scratch.looked[0] += 1
         mask = alive(box, node, body, piece, masks[top], rate)
         if mask == 0:
             continue
@@ -376,6 +377,7 @@ def deep_hit(tree, body, piece, scratch):  # type: ignore[no-untyped-def]
     while top > 0:
         top -= 1
         node = stack[top]
+        scratch.looked[0] += 1
         mask = alive(box, node, body, piece, masks[top], 0.0)
         if mask == 0:
             continue

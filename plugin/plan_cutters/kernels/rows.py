@@ -85,7 +85,8 @@ class Frame(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Room to work in: stack and masks (64,) int64, corner (3, 3), drawn (4, 3), polygon and spare (8, 3), pieces (k, 3, 3)."""
+    """Room to work in: stack and masks (64,) int64, corner (3, 3), drawn (4, 3), polygon and spare (8, 3), pieces (k, 3, 3).
+    looked (1,) int64: boxes looked at since there is this room, and what else takes as long."""
 
     stack: Any
     masks: Any
@@ -94,6 +95,7 @@ class Scratch(NamedTuple):
     polygon: Any
     spare: Any
     pieces: Any
+    looked: Any
 
 
 class Found(NamedTuple):

@@ -99,6 +99,11 @@ def search(rows, contacts, ranges, light, heavy, may_be, surely, found):  # type
     may_be, surely : Solids
         All that may be in the way, for calling a posture safe; what certainly is, for calling it blocked.
     found : Found, written
+
+    Returns
+    -------
+    int
+        How many boxes were looked at, and what else takes as long (`sweep.ROTATION`).
     """
     rotations = len(ranges.rotation_cos)
     # What is only perhaps in the way must not count as surely in it: the two are remembered apart.
@@ -130,6 +135,7 @@ def search(rows, contacts, ranges, light, heavy, may_be, surely, found):  # type
             if sure:
                 found.reason[row] = _reason(rooms[0].tally, rooms[1].tally)
         found.verdict[row] = INACCESSIBLE if sure else UNDECIDED
+    return rooms[0].scratch.looked[0] + rooms[1].scratch.looked[0]
 
 
 @entry
@@ -237,6 +243,11 @@ def dummy_clear(rows, contacts, dummy, tool, solids, clear):  # type: ignore[no-
         All that may be in the way.
     clear : (n,) bool, written
         True where nothing reaches into the dummy, and the dummy lies in no body.
+
+    Returns
+    -------
+    int
+        How many boxes were looked at.
     """
     body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
     room = scratch()
@@ -250,6 +261,7 @@ def dummy_clear(rows, contacts, dummy, tool, solids, clear):  # type: ignore[no-
         clear[row] = triangle < 0 and inside(body, tool, 0, solids, room.stack) < MAYBE_INSIDE
         if triangle >= 0:
             hint = triangle
+    return room.looked[0]
 
 
 @kernel

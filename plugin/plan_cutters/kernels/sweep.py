@@ -35,6 +35,8 @@ from plan_cutters.kernels.vectors import cross
 
 #: Points remembered for each rotation, and of those that the tree gave last.
 _KEPT, _POOL = 64, 128
+#: Boxes in whose time a rotation is gone through, of a tool that touches in one way, about.
+ROTATION = 16
 
 
 class Memory(NamedTuple):
@@ -220,6 +222,7 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, 
     for step in range(turns):
         side = (step + 1) // 2 if step % 2 else -(step // 2)
         rotation = (start[0] + side) % rotations
+        room.scratch.looked[0] += ROTATION * modes
         for mode in range(modes):
             tilt, pooled = _rotation(
                 contacts,

@@ -109,19 +109,23 @@ class Seen(NamedTuple):
     distance k - 1: the largest normal curvature along f and t, the largest mixed term, the largest curvature and spread of
     curvatures, the largest square of the distance between the nodes' normals and n, and the largest radius of a cell.
     lines (4,) int: grid lines looked at before and after the home node, along u and along v. nearest (4,): how far from the
-    patch the nodes on the outermost of them are at least. gap (4,) bool: some of these lie outside the trim.
+    patch the nodes on the outermost of them are at least. gap (4,) bool: some of these lie outside the trim. looked (1,) int:
+    nodes looked at since there is this room.
     """
 
     most: Any
     lines: Any
     nearest: Any
     gap: Any
+    looked: Any
 
 
 @entry
 def seen():  # type: ignore[no-untyped-def]
     """Room for it."""
-    return Seen(np.empty((EXTENTS, 7)), np.empty(4, np.int64), np.empty(4), np.empty(4, np.bool_))
+    return Seen(
+        np.empty((EXTENTS, 7)), np.empty(4, np.int64), np.empty(4), np.empty(4, np.bool_), np.zeros(1, np.int64)
+    )
 
 
 @kernel
@@ -228,6 +232,7 @@ def _outer(frame, h, home, nodes, out, side):  # type: ignore[no-untyped-def]
             return True
         line %= length
     low, high = 2 * other, 2 * other + 1
+    out.looked[0] += lines[low] + lines[high] + 1
     nearest, first, last, gap = _line(
         frame, h, nodes, axis, line, home[other] - lines[low], home[other] + lines[high], out.most
     )

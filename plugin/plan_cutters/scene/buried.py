@@ -103,18 +103,52 @@ def voids(bodies: Sequence[Body], orientation: Orientation) -> NDArray[np.bool_]
     )
 
 
-def cover(point: Floats, normal: Floats, skin: Obstacles) -> Cover | None:
-    """Where the way out of a body along a normal (3,) leads from a contact (3,); None if it meets no skin."""
-    vertex = skin.triangles.vertex
+def cover(point: Floats, normal: Floats, surely: Obstacles, body: Body | None = None) -> Cover | None:
+    """Where the way out of a body along a normal (3,) leads from a contact (3,); None if it meets no skin.
+
+    Without a body, that of all that encloses something.
+    """
+    rows = _met(point, normal, surely)
+    face = surely.faces[rows]
+    weight = surely.weight[surely.order[rows]]
+    if body is not None:
+        mine = np.isin(face, body.faces)
+        rows, face, weight = rows[mine], face[mine], weight[mine]
+        if min(body.faces) > 0:
+            # A fixture is one body whatever it consists of, and its triangles know what they count.
+            weight = np.array([dict(zip(body.faces, body.sign, strict=True))[n] for n in face.tolist()], np.int8)
+    vertex = surely.tree.vertex[rows]
     a, b, c = vertex[:, 0] - point, vertex[:, 1] - point, vertex[:, 2] - point
     # Signed volumes tell on which side of each edge the ray passes; the corners' sense does not matter.
     sides = np.stack([np.cross(q, r) @ normal for q, r in ((a, b), (b, c), (c, a))])
     area = np.cross(b - a, c - a)
     with np.errstate(all="ignore"):
         along = (area * a).sum(axis=1) / (area @ normal)
-    leaving = ((sides >= 0).all(axis=0) | (sides <= 0).all(axis=0)) & (np.sign(area @ normal) * skin.weight > 0)
+    leaving = ((sides >= 0).all(axis=0) | (sides <= 0).all(axis=0)) & (np.sign(area @ normal) * weight > 0)
     leaving &= np.isfinite(along) & (along > 0)
     if not leaving.any():
         return None
     first = int(np.where(leaving, along, np.inf).argmin())
-    return Cover(int(skin.triangles.face[first]), point + along[first] * normal)
+    return Cover(int(face[first]), point + along[first] * normal)
+
+
+def _met(point: Floats, normal: Floats, surely: Obstacles) -> NDArray[np.int64]:
+    """Triangles, in tree order, in whose leaves' boxes a ray comes."""
+    tree, node = surely.tree, np.zeros(1, np.int64)
+    for level in range(tree.depth + 1):
+        box = tree.box[node]
+        axes, half = box[:, 3:12].reshape(-1, 3, 3), box[:, 12:15]
+        start, step = np.einsum("nki,ni->nk", axes, point - box[:, :3]), axes @ normal
+        with np.errstate(all="ignore"):
+            ends = np.stack([(-half - start) / step, (half - start) / step])
+        # Along a side of the box, the ray is between its ends all the way, or never.
+        beside = step == 0.0
+        low = np.where(beside, -np.inf, ends.min(axis=0)).max(axis=1)
+        high = np.where(beside, np.inf, ends.max(axis=0)).min(axis=1)
+        hit = ~(beside & (np.abs(start) > half)).any(axis=1) & (high >= np.maximum(low, 0.0) - 1e-9)
+        node = node[hit]
+        if level < tree.depth:
+            node = np.concatenate([2 * node + 1, 2 * node + 2])
+    count, leaf = len(tree.vertex), np.sort(node) - ((1 << tree.depth) - 1)
+    runs = [np.arange((count * i) >> tree.depth, (count * (i + 1)) >> tree.depth) for i in leaf.tolist()]
+    return np.concatenate([np.zeros(0, np.int64), *runs])

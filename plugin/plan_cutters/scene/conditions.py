@@ -17,6 +17,7 @@ from plan_cutters.kernels.rows import Contacts, Found, Ranges, Rotary, Tool
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.scene.threads import Progress, in_chunks
+from plan_cutters.scene.work import Work
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -154,7 +155,7 @@ def require_finite(contacts: Contacts, rows: NDArray[np.int64]) -> None:
 
 def search_postures(
     contacts: Contacts, rows: NDArray[np.int64], light: Assembly, heavy: Assembly, conditions: Conditions, reach: Reach,
-    progress: Progress | None = None, *, fixed: bool = False, strict: bool = False,
+    progress: Progress | None = None, *, fixed: bool = False, strict: bool = False, work: Work | None = None,
 ) -> None:  # fmt: skip
     """Search a posture for contacts, neighbours in sequence, and write what is found into `reach`.
 
@@ -173,6 +174,8 @@ def search_postures(
         Only postures that curvature at the contact allows, as if there were no tolerance.
     progress : callable, optional
         Told how many pieces of the work are done, of how many.
+    work : Work, optional
+        Where what is looked at is counted.
 
     Raises
     ------
@@ -184,9 +187,11 @@ def search_postures(
     require_finite(contacts, rows)
     ranges, around = conditions.ranges._replace(strict=strict), conditions.around
     may_be, surely = around.may_be.solids, around.surely.solids
-    tools, found = (tool_of(light), tool_of(heavy)), found_of(reach)
+    tools, found, looked = (tool_of(light), tool_of(heavy)), found_of(reach), list[int]()
 
-    def work(piece: NDArray[np.int64]) -> None:
-        search(piece, contacts, ranges, *tools, may_be, surely, found)
+    def searched(piece: NDArray[np.int64]) -> None:
+        looked.append(search(piece, contacts, ranges, *tools, may_be, surely, found))
 
-    in_chunks(work, rows, conditions.jobs, progress, fixed=fixed)
+    in_chunks(searched, rows, conditions.jobs, progress, fixed=fixed)
+    if work is not None:
+        work.add(sum(looked))

@@ -188,6 +188,11 @@ class Obstacles(Record):
         """Face numbers (n,) in tree order."""
         return np.ascontiguousarray(self.triangles.face[self._built[0]])
 
+    @property
+    def order(self) -> Ints:
+        """Rows (n,) of `triangles` in tree order."""
+        return self._built[0]
+
     def face(self, triangle: int) -> int:
         """Face number of a triangle in tree order."""
         return int(self.faces[triangle])
@@ -210,11 +215,23 @@ class Obstacles(Record):
         return bare
 
     def skin_of(self, body: Body) -> "Obstacles":
-        """The triangles of one body."""
+        """The triangles of one body; their tree is built once."""
+        key = (tuple(body.faces), tuple(body.sign))
+        if key not in self._skins:
+            self._skins[key] = self._skin_of(body)
+        return self._skins[key]
+
+    @cached_property
+    def _skins(self) -> "dict[tuple[tuple[int, ...], tuple[int, ...]], Obstacles]":
+        return {}
+
+    def _skin_of(self, body: Body) -> "Obstacles":
         mine = np.isin(self.triangles.face, body.faces)
         triangles = replace(self.triangles, vertex=self.triangles.vertex[mine], face=self.triangles.face[mine])
         # A fixture is one body whatever it consists of, and its triangles know what they count.
         weight = self.weight[mine] if min(body.faces) < 0 else weights(triangles, [body])
+        if mine.all() and (weight == self.weight).all():
+            return self
         return Obstacles(triangles, weight)
 
     def holds(

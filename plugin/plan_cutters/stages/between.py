@@ -17,6 +17,7 @@ from cad_io.part import Part
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Reach
 from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.work import Work
 from plan_cutters.stages.cells import CellContacts, Field, laid
 from plan_cutters.stages.site import Site, best
 
@@ -89,6 +90,8 @@ def between(
     conditions: Conditions,
     *,
     budget: int,
+    most: float = np.inf,
+    work: Work | None = None,
     beside: NDArray[np.bool_] | None = None,
 ) -> Between:
     """Find the share of the target area over which a cutter's postures hold.
@@ -105,6 +108,10 @@ def between(
     conditions : Conditions
     budget : int
         Most contacts to add to the samples.
+    most : float
+        Most work to do, counted as `Work` does.
+    work : Work, optional
+        Where it is counted.
     beside : (n,) bool, optional
         Samples that are no surface of the finished part: cells about them are left out where all around them are such, too.
     """
@@ -114,6 +121,8 @@ def between(
     whole = sum(area for area in areas.values() if area > 0)
     beside = np.zeros(len(samples), bool) if beside is None else beside
     looked, left, short = int(((samples.unjudged < 0) & ~beside).sum()), int((~beside).sum()), 0
+    work = Work() if work is None else work
+    upto = work.looked + most
     sites, nodes, strips = list[Site](), list[CellContacts](), list[CellContacts]()
     for grid in samples.grids:
         trim = part.trim(grid.face)
@@ -127,21 +136,32 @@ def between(
             for cells in (mine, bare):
                 whole -= float(cells.area[deep[tuple(cells.home.T)]].sum())
             mine, bare = (cells.of(~deep[tuple(cells.home.T)]) for cells in (mine, bare))
-        sites.append(Site(field, cutter, conditions))
+        sites.append(Site(field, cutter, conditions, work))
         nodes.append(mine)
         strips.append(bare)
     # The strips come first, the largest ones where the budget is short.
     chosen = best(np.concatenate([np.zeros(0), *(each.area for each in strips)]), budget)
     short += int((~chosen).sum())
-    looked, budget = looked + int(chosen.sum()), budget - int(chosen.sum())
+    budget -= int(chosen.sum())
     ends = np.cumsum([len(each) for each in strips])
-    for site, mine, bare, kept in zip(sites, nodes, strips, np.split(chosen, ends[:-1]), strict=True):
-        site.add(CellContacts.joined(mine, bare.of(kept)), 0)
+    laid_out = [
+        CellContacts.joined(mine, bare.of(kept))
+        for mine, bare, kept in zip(nodes, strips, np.split(chosen, ends[:-1]), strict=True)
+    ]
+    looked -= sum(len(mine) for mine in nodes)
+    # Faces with the largest cells first: there each contact may gain most.
+    gains = [float(cells.area.sum()) / max(1, len(cells)) for cells in laid_out]
+    for i in sorted(range(len(sites)), key=lambda i: -gains[i]):
+        looked += sites[i].begin(laid_out[i], upto)
     # A fair share of the rest for each face, by how many of its cells are open and worth it.
     least = LEAST_GAIN * whole
     wanted = [site.worthy(least) for site in sites]
+    behind = sum(wanted)
     for site, share in zip(sites, wanted, strict=True):
-        looked += site.refine(budget * share // max(1, sum(wanted)), least)
+        # What one face leaves of the work goes to those after it.
+        until = work.looked + max(0.0, upto - work.looked) * share / behind if share else 0.0
+        looked += site.refine(budget * share // max(1, sum(wanted)), least, until)
+        behind -= share
     left += int((~chosen).sum()) + sum(site.left for site in sites)
     served = sum(site.served for site in sites) / whole if whole > 0 else 0.0
     return Between(

@@ -35,6 +35,7 @@ class CellContacts:
     lies. home (n, 2): the grid's tile, of which the cell is a part. tile (n, 2): among the lines of its level. middle,
     span (n, 2): rectangle in parameters. whole (n,): it lies in the trim altogether. size (n,): largest distance from its
     middle, mm, nan where that is not known. area (n,): mm2 of what lies in the trim.
+    lost (n,): a posture was searched for, and there is none.
     """
 
     point: Floats
@@ -51,6 +52,7 @@ class CellContacts:
     whole: NDArray[np.bool_]
     size: Floats
     area: Floats
+    lost: NDArray[np.bool_]
 
     def of(self, rows: NDArray[Any]) -> "CellContacts":
         return CellContacts(*(getattr(self, name)[rows] for name in self.__slots__))
@@ -165,7 +167,7 @@ def laid(
     contacts = CellContacts(
         samples.point[mine], samples.normal[mine], samples.direction_max[mine], samples.curvature[mine],
         reach.axis[mine], reach.verdict[mine] == INTERFERENCE_FREE, size[judged], tile[judged].astype(np.int32), tile[judged],
-        middle[judged], span[judged], clip.whole[judged], size[judged], area[judged],
+        middle[judged], span[judged], clip.whole[judged], size[judged], area[judged], reach.lost[mine],
     )  # fmt: skip
     bare = node < 0
     geometry = field.at(clip.middle[bare])
@@ -173,7 +175,7 @@ def laid(
     strips = CellContacts(
         *geometry, _started(axis, flat, geometry[1], conditions), flat, np.zeros(len(flat)),
         tile[bare].astype(np.int32), tile[bare], middle[bare], span[bare], clip.whole[bare], np.full(len(flat), np.nan),
-        area[bare],
+        area[bare], np.zeros(len(flat), bool),
     )  # fmt: skip
     _add_nodes(field, strips, clip.low[bare], clip.high[bare])
     return field, contacts, strips
@@ -211,7 +213,7 @@ def quartered(contacts: CellContacts, field: Field, level: int, conditions: Cond
     flat = contacts.flat[parent]
     return CellContacts(*geometry, _started(contacts.axis[parent], flat, geometry[1], conditions), flat, patch,
                     contacts.home[parent], tile, middle, span, clip.whole, size,
-                    contacts.area[parent] * weight / np.where(whole > 0, whole, 1.0))  # fmt: skip
+                    contacts.area[parent] * weight / np.where(whole > 0, whole, 1.0), np.zeros(len(flat), bool))  # fmt: skip
 
 
 def _tiles(

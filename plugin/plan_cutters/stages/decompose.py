@@ -9,11 +9,12 @@ from cad_io.arrays import Ints, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.scene.conditions import Conditions, contacts_of, tool_of
 from plan_cutters.scene.threads import in_chunks
+from plan_cutters.scene.work import Work
 
 
 def decompose(
     samples: SurfaceSamples, convex: NDArray[np.bool_], cutter: Cutter, conditions: Conditions,
-    *, buried: Ints | None = None, rows: NDArray[np.int64] | None = None,
+    *, buried: Ints | None = None, rows: NDArray[np.int64] | None = None, work: Work | None = None,
 ) -> NDArray[np.bool_]:  # fmt: skip
     """Test convex samples with the dummy cutter: which need no posture search?
 
@@ -26,6 +27,8 @@ def decompose(
         The body that each sample lies within, -1 for none (default): none of those within is free.
     rows : (m,) int64, optional
         The samples to test, all by default.
+    work : Work, optional
+        Where what is looked at is counted.
 
     Returns
     -------
@@ -44,10 +47,14 @@ def decompose(
     if not len(dummy):
         return interference_free
 
-    def work(piece: NDArray[np.int64]) -> None:
-        dummy_clear(piece, contacts, dummy, tool, solids, interference_free)
+    looked = list[int]()
 
-    in_chunks(work, asked, conditions.jobs)
+    def tested(piece: NDArray[np.int64]) -> None:
+        looked.append(dummy_clear(piece, contacts, dummy, tool, solids, interference_free))
+
+    in_chunks(tested, asked, conditions.jobs)
+    if work is not None:
+        work.add(sum(looked))
     return interference_free
 
 

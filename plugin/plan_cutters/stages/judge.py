@@ -9,6 +9,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import CONVEX, Reach
 from plan_cutters.scene.prepared import Prepared
 from plan_cutters.scene.threads import with_company
+from plan_cutters.scene.work import Work
 from plan_cutters.stages.access import access
 from plan_cutters.stages.decompose import decompose
 
@@ -20,6 +21,7 @@ def judge(
     known: Reach | None = None,
     *,
     progress: Callable[[int, int], None] | None = None,
+    work: Work | None = None,
 ) -> Reach:
     """What a cutter reaches of some samples, or of all; nothing else is looked at or changed.
 
@@ -34,6 +36,8 @@ def judge(
         What follows from other cutters (`nesting.handed`), for all samples.
     progress : callable, optional
         Told how many pieces of the work are done, of how many.
+    work : Work, optional
+        Where what is looked at is counted.
 
     Returns
     -------
@@ -42,6 +46,10 @@ def judge(
     """
     samples, conditions = ready.samples, ready.conditions
     whole = None if rows is None else with_company(rows, len(samples))
-    free = decompose(samples, ready.surface_class == CONVEX, cutter, conditions, buried=ready.buried, rows=whole)
-    reach = access(samples, free, cutter, conditions, buried=ready.buried, known=known, rows=whole, progress=progress)
+    free = decompose(
+        samples, ready.surface_class == CONVEX, cutter, conditions, buried=ready.buried, rows=whole, work=work
+    )
+    reach = access(
+        samples, free, cutter, conditions, buried=ready.buried, known=known, rows=whole, progress=progress, work=work
+    )
     return reach if rows is None else reach.of(rows)

@@ -13,6 +13,7 @@ from plan_cutters.domain.verdicts import blank
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Conditions, search_postures, tool_of
 from plan_cutters.scene.threads import in_chunks
+from plan_cutters.scene.work import Work
 from plan_cutters.stages.cells import CellContacts, Field, quartered, tensors
 
 #: Times that a cell is cut into four, at most.
@@ -24,6 +25,10 @@ _ROOM = ((0.5,), (0.5, 0.2), (0.5, 0.2), (0.5, 0.2, 0.05))
 _UPRIGHT = 1e-9
 #: Cells are cut together as long as they are worth no less than the best one by this factor.
 _ALIKE = 0.25
+#: Contacts looked at between two looks at the work done.
+_BATCH = 4096
+#: Work of laying out a contact, and a round of them, beside that of kernels: boxes looked at in the time.
+_CONTACT, _ROUND = 200, 20_000
 #: The gain is judged over at least so many of the last contacts.
 _JUDGED = 4000
 
@@ -43,12 +48,18 @@ class Site:
     field : Field
     cutter : Cutter
     conditions : Conditions
+    work : Work
+        What was looked at, for this face and others.
     found : list of CellContacts
         Served.
     pools : list of (CellContacts, outlook)
         Open, by how often they were cut into four.
+    unseen : int
+        Contacts that were not looked at, for the budget was spent.
     short, dropped : int
-        Open cells that would be cut if the budget were not spent, and that are not for the gain is too small.
+        Those, and open cells that would be cut if the budget were not spent; and those that are not for the gain is too small.
+    seen, spent : int
+        Contacts looked at, and the work that they took.
     about : (k, 16) float
         What kernels take of the nodes.
     """
@@ -56,10 +67,14 @@ class Site:
     field: Field
     cutter: Cutter
     conditions: Conditions
+    work: Work = dataclasses_field(default_factory=Work)
     found: list[CellContacts] = dataclasses_field(default_factory=list)
     pools: list[tuple[CellContacts, Outlook]] = dataclasses_field(default_factory=list)
+    unseen: int = 0
     short: int = 0
     dropped: int = 0
+    seen: int = 0
+    spent: int = 0
     about: Floats = dataclasses_field(init=False)
 
     def __post_init__(self) -> None:
@@ -73,11 +88,26 @@ class Site:
     @property
     def left(self) -> int:
         """Open cells."""
-        return sum(len(contacts) for contacts, _ in self.pools)
+        return self.unseen + sum(len(contacts) for contacts, _ in self.pools)
 
-    def add(self, contacts: CellContacts, level: int) -> float:
-        """Look at contacts of cells that were cut so many times; the area that is served by them."""
-        outlook = _served(contacts, self, _ROOM[min(level, len(_ROOM) - 1)])
+    def begin(self, contacts: CellContacts, upto: float) -> int:
+        """Look at contacts of cells that are not cut yet, in turn, until so much work is done; how many it was."""
+        for first in range(0, len(contacts), _BATCH):
+            if self.work.looked >= upto:
+                self.unseen = len(contacts) - first
+                return first
+            self.add(contacts.of(np.arange(first, min(first + _BATCH, len(contacts)))), 0, upto)
+        return len(contacts)
+
+    def add(self, contacts: CellContacts, level: int, upto: float = np.inf) -> float:
+        """Look at contacts of cells that were cut so many times; the area that is served by them.
+
+        Where so much work is done, other postures are not tried any more.
+        """
+        began = self.work.looked
+        self.work.add(_ROUND + _CONTACT * len(contacts))
+        outlook = _served(contacts, self, _ROOM[min(level, len(_ROOM) - 1)], upto)
+        self.seen, self.spent = self.seen + len(contacts), self.spent + self.work.looked - began
         good = outlook == 0
         self.found.append(contacts.of(good))
         if level == len(self.pools):
@@ -105,31 +135,35 @@ class Site:
         self.pools[level] = contacts.of(np.delete(np.arange(len(contacts)), rows)), np.delete(outlook, rows)
         return contacts.of(rows)
 
-    def refine(self, budget: int, least: float) -> int:
+    def refine(self, budget: int, least: float, upto: float = np.inf) -> int:
         """Cut cells into four, those of the largest worth first; how many contacts were looked at.
 
-        Ends when the budget is spent, when no cell is worth more than `least`, mm2 a contact, or when the last contacts
-        gained less than that.
+        Ends when the budget is spent or so much work is done, when no cell is worth more than `least`, mm2 a contact, or when the
+        last contacts gained less than that.
         """
         looked, poor, rounds = 0, False, list[tuple[int, float]]()
         while budget >= 4 and not poor:
+            # As many contacts as the work that is left is likely to be enough for.
+            left = (upto - self.work.looked - _ROUND) * max(1, self.seen) / max(1, self.spent)
+            if left < 4.0:
+                break
             worth = [self.worth(level) for level in range(LEVELS)]
             every = np.concatenate(worth)
             alike = every >= max(_ALIKE * every.max(initial=0.0), np.nextafter(least, np.inf))
-            chosen = best(np.where(alike, every, 0.0), min(budget // 4, int(alike.sum())))
+            chosen = best(np.where(alike, every, 0.0), min(int(min(budget, left, _BATCH)) // 4, int(alike.sum())))
             if not chosen.any():
                 break
             gained, count = 0.0, 0
             cuts = [np.flatnonzero(part) for part in np.split(chosen, np.cumsum([len(each) for each in worth])[:-1])]
             for level, contacts in [(level, self._taken(level, rows)) for level, rows in enumerate(cuts) if len(rows)]:
                 quarters = quartered(contacts, self.field, level, self.conditions)
-                gained += self.add(quarters, level + 1)
+                gained += self.add(quarters, level + 1, upto)
                 count += len(quarters)
             looked, budget = looked + count, budget - 4 * int(chosen.sum())
             rounds.append((count, gained))
             poor = _poor(rounds, least)
-        self.short = 0 if poor else self.worthy(least)
-        self.dropped = self.worthy(0.0) - self.short
+        cut_short = 0 if poor else self.worthy(least)
+        self.short, self.dropped = self.unseen + cut_short, self.worthy(0.0) - cut_short
         return looked
 
 
@@ -150,7 +184,7 @@ def _poor(rounds: Sequence[tuple[int, float]], least: float) -> bool:
     return False
 
 
-def _served(contacts: CellContacts, site: Site, rooms: Sequence[float]) -> Outlook:
+def _served(contacts: CellContacts, site: Site, rooms: Sequence[float], upto: float) -> Outlook:
     """Outlook of contacts whose posture, or another one, serves their cell (0) or may serve parts of it.
 
     Of the postures found on the way, the one with the best outlook is kept.
@@ -166,12 +200,15 @@ def _served(contacts: CellContacts, site: Site, rooms: Sequence[float]) -> Outlo
         # A ball gouges at every tilt or at none.
         bends = 0.0
     for room in rooms:
-        open_rows = np.flatnonzero((outlook > 0) & _whole(contacts))
+        if site.work.looked >= upto:
+            break
+        # Where there is no posture there is none with more room.
+        open_rows = np.flatnonzero((outlook > 0) & _whole(contacts) & ~contacts.lost)
         # A posture with room to the local gouging bound: the search is told that the surface is more concave.
         curved = contacts.curvature + room * bends
         at = Contacts(contacts.point, contacts.normal, contacts.direction_max, curved)
         found = blank(len(contacts))
-        search_postures(at, open_rows, light, light, conditions, found, strict=bends > 0.0)
+        search_postures(at, open_rows, light, light, conditions, found, strict=bends > 0.0, work=site.work)
         rows = open_rows[found.reached[open_rows]]
         if len(rows):
             new = _cover(contacts, tensor, found.axis, np.zeros(len(contacts), bool), site, rows)
@@ -196,10 +233,13 @@ def _cover(
     sweeping = Sweeping(tool_of(light), light.dummy, *light.noses(cutter.taper, cutter.shape), light.flutes,
                         conditions.tolerance - chord, chord)  # fmt: skip
 
-    def work(piece: NDArray[np.int64]) -> None:
-        cover(piece, patches, nodes, field.number, sweeping, obstacles.tree, obstacles.faces, outlook)
+    looked = list[int]()
 
-    in_chunks(work, rows, conditions.jobs)
+    def covered(piece: NDArray[np.int64]) -> None:
+        looked.append(cover(piece, patches, nodes, field.number, sweeping, obstacles.tree, obstacles.faces, outlook))
+
+    in_chunks(covered, rows, conditions.jobs)
+    site.work.add(sum(looked))
     # A cell that is served touches no skin with any of its cutters: within a body are all of them or none.
     mine = rows[outlook[rows] == 0]
     axis, normal = axes[mine], contacts.normal[mine]
