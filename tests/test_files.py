@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from forked import run
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder
 from split_parts import block, labels
 
@@ -388,8 +389,7 @@ def test_what_is_old_is_named(tmp_path):
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "merged.glb").write_text("whose?")
     words = [SAMPLES / "pocket_top.step", "--cutter", "R4L60", "--grid", "9", "--formats", "json", "-o", "out"]
-    done = subprocess.run([sys.executable, "-m", "plan_cutters", *map(str, words)], cwd=tmp_path, env=ENV, check=False,
-                          capture_output=True, text=True, timeout=240)  # fmt: skip
+    done = run(*words, cwd=tmp_path)
     assert "merged.glb" in next(line for line in done.stderr.splitlines() if line.startswith("Left over"))
     assert (tmp_path / "out" / "merged.glb").read_text() == "whose?"
 
