@@ -155,7 +155,8 @@ def test_output_that_cannot_be_written(tmp_path):
 
 
 def test_the_files_of_a_plan(tmp_path):
-    done = run(SAMPLES / "pocket_top.step", "--cutter", "R3L60", "--cutter", "R40L60", "--spacing", "2.5", cwd=tmp_path)
+    done = run(SAMPLES / "pocket_top.step", "--cutter", "R3L60", "--cutter", "R40L60", "--spacing", "4",
+               "--area-budget", "300", cwd=tmp_path)  # fmt: skip
     assert done.returncode == 0, done.stderr
     out = tmp_path / "pocket_top-plan"
     assert leftovers(tmp_path) == ["pocket_top-plan"]
@@ -179,7 +180,7 @@ def test_the_files_of_a_plan(tmp_path):
 
 def test_two_runs_give_the_same_bytes(tmp_path):
     """One in a process that begins with nothing, one in a copy of this one, which has done much else before."""
-    words = [SAMPLES / "pocket_top.step", "--cutter", "R4L60", "--grid", "21", "--quiet"]
+    words = [SAMPLES / "pocket_top.step", "--cutter", "R4L60", "--grid", "21", "--area-budget", "300", "--quiet"]
     for name, jobs, how in (("a", 1, run_anew), ("b", 2, run)):
         done = how(*words, "-o", name, "--jobs", jobs, cwd=tmp_path)
         assert done.returncode == 0
@@ -199,6 +200,8 @@ def test_plan_on_standard_output_and_exit_1(tmp_path):
         "R8L90",
         "--grid",
         "9",
+        "--area-budget",
+        "0",
         "--json",
         "-",
         "--machine",
@@ -214,7 +217,17 @@ def test_plan_on_standard_output_and_exit_1(tmp_path):
 def test_several_parts_the_largest_code(tmp_path):
     (tmp_path / "bad.step").write_text("no")
     done = run(
-        SAMPLES / "v_groove.step", "bad.step", "--cutter", "R2L90", "--grid", "9", "--formats", "json", cwd=tmp_path
+        SAMPLES / "v_groove.step",
+        "bad.step",
+        "--cutter",
+        "R2L90",
+        "--grid",
+        "9",
+        "--area-budget",
+        "0",
+        "--formats",
+        "json",
+        cwd=tmp_path,
     )
     assert done.returncode == 3
     assert leftovers(tmp_path, "bad.step") == ["v_groove-plan"]
