@@ -201,7 +201,7 @@ def test_the_postures_told_hold_the_tolerance(shape):
     vertex = stands.conditions.obstacles.triangles.vertex
     points = np.concatenate([vertex.reshape(-1, 3), vertex.mean(axis=1)])
     samples, deepest = stands.samples, []
-    for row in np.flatnonzero(found.radius > 0):
+    for row in np.flatnonzero(found.radius > 0)[::3]:
         r, n, axis, lean = found.radius[row], samples.normal[row], found.axis[row], found.lean[row]
         contact = samples.point[row]
         if shape == "flat":
@@ -214,7 +214,7 @@ def test_the_postures_told_hold_the_tolerance(shape):
             depth = np.where(height > 0.0, side, r - np.linalg.norm(from_centre, axis=1))
         deepest.append(depth.max())
         assert axis @ n == pytest.approx(math.cos(found.tilt[row]))
-    assert len(deepest) > 100
+    assert len(deepest) > 50
     assert max(deepest) < 0.02
     # The tolerance is used: not every cutter stands clear.
     assert max(deepest) > 0.5 * 0.02
