@@ -335,7 +335,7 @@ WORDS = (
     "--cutter",
     "R12L120",
     "--grid",
-    "81",
+    "41",
     "--area-budget",
     "0",
 )
