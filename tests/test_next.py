@@ -228,7 +228,7 @@ TRIED = {
         "--machine",
         "tilt:5",
         "--grid",
-        "31",
+        "21",
     ),
     "peaks_and_valleys.step": ("--cutter", "R4L15F10S4", "--holder", "R20L60", "--machine", "tilt:35", "--grid", "21"),
     "v_groove.step": ("--cutter", "R6L20", "--machine", "tilt:8", "--grid", "21"),
