@@ -90,7 +90,9 @@ def test_no_contact_of_a_served_cell_gouges_a_random_surface(kind):
     cutter = TOOLS[kind]
     rng = np.random.default_rng(1)
     part = read_part(shapes.shell(shapes.Patch.random(rng, height=4.0).face()))
-    found, geometry, whole = served(part, cutter, budget=8000, grid=81)
+    # Of a lens little is served where samples are far apart.
+    budget, grid = (8000, 81) if kind == "lens" else (3000, 51)
+    found, geometry, whole = served(part, cutter, budget=budget, grid=grid)
     print(kind, found.share, found.contacts)
     assert found.cells.face.size > 50, "nothing to look at"
     assert deepest(found, geometry, whole, cutter, dense(whole, 0.5), 120, rng) < 0.01 + 2e-3

@@ -87,7 +87,7 @@ def test_a_clearance_is_never_more_than_the_distance_and_little_less(peaks, spec
     cutter, reach = result.judged(result.shown), result.reaches[result.shown]
     found, points = result.clearances, dense(result, 0.8)
     tip = tips(cutter, result.samples.point, result.samples.normal, reach)
-    rows = np.flatnonzero(reach.reached)[:: max(1, int(reach.reached.sum()) // 25)]
+    rows = np.flatnonzero(reach.reached)[:: max(1, int(reach.reached.sum()) // 16)]
     distances = set()
     for row in rows.tolist():
         true = true_clearance(cutter, tip[row], reach.axis[row], points)
@@ -97,7 +97,7 @@ def test_a_clearance_is_never_more_than_the_distance_and_little_less(peaks, spec
         share = 0.7 if found.part[row] == 0 else 0.975
         assert told == MOST or told >= share * true - 0.8 - 0.02, (row, told, true)
         distances.add(told)
-    assert len(distances) > 10
+    assert len(distances) > 5
 
 
 def test_clearances_stay_unknown_where_there_is_no_posture_or_nothing_that_counts(peaks):

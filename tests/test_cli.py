@@ -11,15 +11,15 @@ from pathlib import Path
 
 import jsonschema
 import pytest
+from forked import ENV, ROOT, run
 
 from plan_cutters.report import Staging
 
-ROOT = Path(__file__).parent.parent
 SAMPLES = ROOT / "samples"
-ENV = {**os.environ, "PYTHONPATH": f"{ROOT / 'plugin'}{os.pathsep}{ROOT}"}
 
 
-def run(*words, cwd, timeout=240):
+def run_anew(*words, cwd, timeout=240):
+    """The command in a process that begins with nothing imported."""
     return subprocess.run([sys.executable, "-m", "plan_cutters", *map(str, words)], cwd=cwd, env=ENV,
                           capture_output=True, text=True, timeout=timeout, check=False)  # fmt: skip
 
@@ -54,7 +54,7 @@ def leftovers(folder, *known):
 
 
 def test_help_and_version_do_not_load_the_kernel(tmp_path):
-    done = run("--help", cwd=tmp_path)
+    done = run_anew("--help", cwd=tmp_path)
     assert done.returncode == 0
     assert "R6L80" in done.stdout
     code = "import sys; sys.argv = ['x', '--help']\nfrom plan_cutters.command.cli import main\n"
@@ -155,7 +155,8 @@ def test_output_that_cannot_be_written(tmp_path):
 
 
 def test_the_files_of_a_plan(tmp_path):
-    done = run(SAMPLES / "pocket_top.step", "--cutter", "R3L60", "--cutter", "R40L60", "--spacing", "2.5", cwd=tmp_path)
+    done = run(SAMPLES / "pocket_top.step", "--cutter", "R3L60", "--cutter", "R40L60", "--spacing", "4",
+               "--area-budget", "300", cwd=tmp_path)  # fmt: skip
     assert done.returncode == 0, done.stderr
     out = tmp_path / "pocket_top-plan"
     assert leftovers(tmp_path) == ["pocket_top-plan"]
@@ -178,9 +179,10 @@ def test_the_files_of_a_plan(tmp_path):
 
 
 def test_two_runs_give_the_same_bytes(tmp_path):
-    words = [SAMPLES / "pocket_top.step", "--cutter", "R4L60", "--grid", "21", "--quiet"]
-    for name, jobs in (("a", 1), ("b", 2)):
-        done = run(*words, "-o", name, "--jobs", jobs, cwd=tmp_path)
+    """One in a process that begins with nothing, one in a copy of this one, which has done much else before."""
+    words = [SAMPLES / "pocket_top.step", "--cutter", "R4L60", "--grid", "21", "--area-budget", "300", "--quiet"]
+    for name, jobs, how in (("a", 1, run_anew), ("b", 2, run)):
+        done = how(*words, "-o", name, "--jobs", jobs, cwd=tmp_path)
         assert done.returncode == 0
         assert done.stderr == ""
     for file in ("annotated.glb", "annotated.step", "samples.npz"):
@@ -198,6 +200,8 @@ def test_plan_on_standard_output_and_exit_1(tmp_path):
         "R8L90",
         "--grid",
         "9",
+        "--area-budget",
+        "0",
         "--json",
         "-",
         "--machine",
@@ -213,7 +217,17 @@ def test_plan_on_standard_output_and_exit_1(tmp_path):
 def test_several_parts_the_largest_code(tmp_path):
     (tmp_path / "bad.step").write_text("no")
     done = run(
-        SAMPLES / "v_groove.step", "bad.step", "--cutter", "R2L90", "--grid", "9", "--formats", "json", cwd=tmp_path
+        SAMPLES / "v_groove.step",
+        "bad.step",
+        "--cutter",
+        "R2L90",
+        "--grid",
+        "9",
+        "--area-budget",
+        "0",
+        "--formats",
+        "json",
+        cwd=tmp_path,
     )
     assert done.returncode == 3
     assert leftovers(tmp_path, "bad.step") == ["v_groove-plan"]
@@ -298,6 +312,19 @@ def test_debug_shows_the_traceback_and_keeps_the_code(tmp_path):
     assert done.returncode == 3
     assert "Traceback" in done.stderr
     assert done.stderr.strip().splitlines()[-1].startswith("plan-cutters: missing.step")
+
+
+def test_a_copy_of_this_process_says_what_a_new_one_does(tmp_path):
+    """What lets most tests of the command run without the start of an interpreter."""
+    (tmp_path / "bad.step").write_text("no")
+    quick = (SAMPLES / "v_groove.step", "--cutter", "R2L90", "--grid", "5", "--area-budget", "0", "--formats", "json")
+    seconds = re.compile(
+        r"^ +[0-9.]+ s  .*$|[0-9.]+ s\b", re.MULTILINE
+    )  # which stage began when, and how long all took
+    for words in ((*quick, "bad.step"), (*quick, "--grid", "1")):
+        anew, copied = run_anew(*words, cwd=tmp_path), run(*words, cwd=tmp_path)
+        assert anew.returncode == copied.returncode
+        assert seconds.sub("", anew.stderr).split() == seconds.sub("", copied.stderr).split()
 
 
 def test_too_little_memory_is_said(tmp_path):

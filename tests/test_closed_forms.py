@@ -176,7 +176,7 @@ def test_axis_of_a_posture():
 
 def test_flat_and_convex_faces_are_interference_free():
     for face in (shapes.plane((-50, 50), (-50, 50)), shapes.dome(40.0), shapes.ridge(30.0, 60)):
-        result = plan(shapes.shell(face), cutters=[Cutter.flat(radius=4, length=40)], grid=15)
+        result = plan(shapes.shell(face), cutters=[Cutter.flat(radius=4, length=40)], grid=15, area_budget=0)
         entry = result.cutters[0]
         assert entry.feasible
         assert entry.interference_free == result.plan.samples.count
@@ -186,7 +186,9 @@ def test_flat_and_convex_faces_are_interference_free():
 def test_a_hole_narrower_than_the_cutter_is_out_of_reach():
     """A trough of radius 5 that closes over its bottom: R 6 cannot touch the bottom line, R 2 can."""
     part = shapes.shell(shapes.trough(5.0, 60, span=4.2))
-    small, large = (plan(part, cutters=[Cutter.flat(radius=r, length=60)], grid=15).cutters[0] for r in (2, 6))
+    small, large = (
+        plan(part, cutters=[Cutter.flat(radius=r, length=60)], grid=15, area_budget=0).cutters[0] for r in (2, 6)
+    )
     assert small.feasible
     assert large.feasible is False
     assert large.by_reason["local_gouge"] + large.by_reason["rear_gouge"] > 0
@@ -204,7 +206,7 @@ def test_a_hole_narrower_than_the_cutter_is_out_of_reach():
 
 def test_the_axis_limit_is_a_reason():
     wall = shapes.shell(shapes.plane((-20, 20), (-20, 20), z=(1, 0, 0), x=(0, 1, 0)))
-    entry = plan(wall, cutters=[Cutter.flat(radius=4, length=40)], grid=5, tilt=(0, math.radians(30)),
+    entry = plan(wall, cutters=[Cutter.flat(radius=4, length=40)], grid=5, area_budget=0, tilt=(0, math.radians(30)),
                  machine=Machine.parse("tilt:20")).cutters[0]  # fmt: skip
     assert entry.by_reason["axis_limit"] == entry.inaccessible == 25
     assert entry.witnesses[0].best_posture is None
@@ -212,6 +214,6 @@ def test_the_axis_limit_is_a_reason():
 
 def test_without_tilt_0_nothing_is_interference_free():
     part = shapes.shell(shapes.plane((-50, 50), (-50, 50)))
-    entry = plan(part, cutters=[Cutter.flat(radius=4, length=40)], grid=7, tilt=(0.1, 1.0)).cutters[0]
+    entry = plan(part, cutters=[Cutter.flat(radius=4, length=40)], grid=7, area_budget=0, tilt=(0.1, 1.0)).cutters[0]
     assert entry.interference_free == 0
     assert entry.accessible == 49

@@ -36,15 +36,15 @@ MODULES = (
 
 #: Samples without a posture among the tilts that curvature allows are searched among the others, too (decision 19).
 #: What the searches below cost together, at most. Lower is better: store what you reach; higher needs a reason in the commit.
-STORED = {"deep_hit": 5360, "alive": 207040, "triangle_hit": 39880, "point_arc": 18800, "remove": 30090}
+STORED = {"deep_hit": 1780, "alive": 68770, "triangle_hit": 12880, "point_arc": 6260, "remove": 10010}
 #: What samples without a posture cost, 72 of them.
-STORED_LOST = {"sweep": 468, "deep_hit": 2230, "alive": 51130, "point_arc": 27750, "_deepest": 11900}
+STORED_LOST = {"sweep": 156, "deep_hit": 725, "alive": 16650, "point_arc": 9200, "_deepest": 3950}
 #: The same of the posture maps.
 STORED_MAPS = {
-    "_boxes_pass": 1445, "_triangles_pass": 1140, "_see": 295, "cut_gaps": 1111, "_shrink": 403, "_first_in_the_way": 279,
+    "_boxes_pass": 721, "_triangles_pass": 573, "_see": 147, "cut_gaps": 558, "_shrink": 206, "_first_in_the_way": 137,
 }  # fmt: skip
 #: One last digit of the input moves one search's counts by up to 2 %, and those of all together by less than 1 %.
-SLACK, NUDGES = 0.03, range(6)
+SLACK, NUDGES = 0.03, range(2)
 
 
 @contextmanager
@@ -118,7 +118,7 @@ def lost(nudge):
 
 def test_samples_without_a_posture_cost_no_more_than_they_did():
     with counted() as calls:
-        plain = [lost(nudge) for nudge in NUDGES[:3]]
+        plain = [lost(nudge) for nudge in NUDGES[:1]]
     for nudge, verdict in zip(NUDGES, plain, strict=False):
         assert (lost(nudge) == verdict).all()
         assert np.bincount(verdict)[0] > 36
@@ -140,7 +140,7 @@ def maps(nudge):
 
 def test_posture_maps_do_no_more_work_than_they_did():
     with counted() as calls:
-        plain = [maps(nudge) for nudge in NUDGES[:2]]
+        plain = [maps(nudge) for nudge in NUDGES[:1]]
     for nudge, found in zip(NUDGES, plain, strict=False):
         for compiled, interpreted in zip(maps(nudge), found, strict=True):
             assert compiled == pytest.approx(interpreted, abs=1e-9)

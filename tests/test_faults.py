@@ -267,7 +267,7 @@ def test_the_line_says_whose_work_it_was_and_where(told, line):
 def test_tessellation_tells_where_it_is():
     told = []
     part = read_part(as_nurbs(rod()))
-    tessellate(part, 1e-4, at=lambda who, face: told.append((who, face)))
+    tessellate(part, 0.05, at=lambda who, face: told.append((who, face)))
     numbers = [face.number for face in part.faces]
     # As they are begun, bounded, counted and laid.
     assert told == [("own", number) for _ in range(4) for number in numbers]

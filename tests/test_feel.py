@@ -90,11 +90,7 @@ def test_mistakes_cost_little_and_load_no_kernel(tmp_path, words, code, cause):
     (tmp_path / "folder.step").mkdir()
     (tmp_path / "text.step").write_text("a shopping list")
     (tmp_path / "-x.step").write_bytes(GROOVE.read_bytes())
-    trap = "import sys; sys.modules['OCP'] = sys.modules['numba'] = None\nimport subprocess; subprocess.Popen = None\n"
-    call = f"{trap}from plan_cutters.command.cli import main; main({[*map(str, words)]!r})"
-    done = subprocess.run(
-        [sys.executable, "-c", call], cwd=tmp_path, env=ENV, capture_output=True, text=True, check=False
-    )
+    done = run(*words, cwd=tmp_path, bare=True)
     assert_one_line(done, code, cause)
     assert len(done.stderr.splitlines()) == 1
     assert leftovers(tmp_path, "empty.step", "folder.step", "text.step", "-x.step") == []
@@ -132,9 +128,8 @@ def completed(words, cwd):
     """What bash is offered after these words."""
     asked = {"_PLAN_CUTTERS_COMPLETE": "bash_complete", "COMP_WORDS": " ".join(["plan-cutters", *words]),
              "COMP_CWORD": str(len(words))}  # fmt: skip
-    trap = "import sys; sys.modules['OCP'] = sys.modules['numba'] = None\n"
-    done = subprocess.run([sys.executable, "-c", f"{trap}from plan_cutters.command.cli import main; main([])"], cwd=cwd,
-                          env=ENV | asked, capture_output=True, text=True, check=True)  # fmt: skip
+    done = run(cwd=cwd, environment=ENV | asked, bare=True)
+    assert done.returncode == 0
     return done.stdout.split()
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from forked import run
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder
 from split_parts import labels
 
@@ -72,7 +73,7 @@ write_gltf(found, sys.argv[1] + ".glb", style, extras=lambda n: {}, piece_extras
 
 
 def test_an_assembly_has_the_same_bytes_in_every_process(tmp_path):
-    for name, seed, blocks in (("a", "1", 2), ("b", "22", 70001), ("c", "333", 3000), ("d", "4", 9001)):
+    for name, seed, blocks in (("a", "1", 2), ("b", "22", 70001)):
         subprocess.run([sys.executable, "-c", ASSEMBLY, str(tmp_path / name), str(blocks)], check=True,
                        env={**ENV, "PYTHONHASHSEED": seed}, timeout=120)  # fmt: skip
     for suffix in ("step", "glb"):
@@ -112,12 +113,12 @@ def test_processor_time_is_counted_not_the_clocks():
 
 
 def test_a_copy_that_does_nothing_at_all_is_ended(monkeypatch):
-    monkeypatch.setattr("cad_io.kernel.limited._ASLEEP", 2)
+    monkeypatch.setattr("cad_io.kernel.limited._ASLEEP", 1)
     began = time.monotonic()
     with pytest.raises(TimeLimit):
         limited(lambda: time.sleep(60) or b"", 100, processor=True)
     assert time.monotonic() - began < 30
-    assert limited(lambda: spin(3), 100, processor=True) == b"done"
+    assert limited(lambda: spin(1.5), 100, processor=True) == b"done"
 
 
 # ---- a face that could not be split
@@ -311,7 +312,7 @@ WORDS = (
     "--cutter",
     "R12L120",
     "--grid",
-    "81",
+    "41",
     "--area-budget",
     "0",
 )
@@ -323,7 +324,7 @@ def child_of(process):
 
 @pytest.mark.parametrize(("number", "word"), [(signal.SIGSEGV, "SIGSEGV"), (signal.SIGSTOP, "within")])
 def test_a_crash_or_hang_while_splitting_costs_the_models_alone(tmp_path, number, word):
-    process, said = start(*WORDS, "--read-timeout", "5", "--json", "-", "-o", "out", cwd=tmp_path)
+    process, said = start(*WORDS, "--read-timeout", "3", "--json", "-", "-o", "out", cwd=tmp_path)
     assert "flat end D8 x 60" in said
     os.kill(child_of(process), number)
     shown, rest = process.communicate(timeout=120)
@@ -364,9 +365,9 @@ def test_a_crash_at_one_part_is_not_taken_for_the_end_of_all(tmp_path):
 def test_what_is_old_is_named(tmp_path):
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "merged.glb").write_text("whose?")
-    words = [SAMPLES / "pocket_top.step", "--cutter", "R4L60", "--grid", "9", "--formats", "json", "-o", "out"]
-    done = subprocess.run([sys.executable, "-m", "plan_cutters", *map(str, words)], cwd=tmp_path, env=ENV, check=False,
-                          capture_output=True, text=True, timeout=240)  # fmt: skip
+    words = [SAMPLES / "pocket_top.step", "--cutter", "R4L60", "--grid", "3", "--area-budget", "0", "--formats", "json",
+             "-o", "out"]  # fmt: skip
+    done = run(*words, cwd=tmp_path)
     assert "merged.glb" in next(line for line in done.stderr.splitlines() if line.startswith("Left over"))
     assert (tmp_path / "out" / "merged.glb").read_text() == "whose?"
 

@@ -159,7 +159,7 @@ def test_the_command_refuses_in_one_line(tmp_path, words, code, said):
 
 def test_the_command_names_and_draws_fixtures(tmp_path):
     solid(np.array([61.0, -5, 0]), np.array([80.0, 45, 70])).export(tmp_path / "jaw.stl")
-    done = run(SAMPLES / "pocket_top.step", "--cutter", "R9L40", "--spacing", "3", "--tilt", "0:10",
+    done = run(SAMPLES / "pocket_top.step", "--cutter", "R9L40", "--spacing", "3", "--tilt", "0:10", "--area-budget", "0",
                "--formats", "json,glb,merged", "--fixture", "jaw.stl", "--fixture", "table:0",
                "-o", "out", cwd=tmp_path)  # fmt: skip
     assert done.returncode == 1, done.stderr

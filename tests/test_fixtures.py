@@ -305,7 +305,7 @@ def test_a_compound_holds_its_part_by_its_own_solids():
 
 
 def test_a_vise_of_many_triangles_adds_little_to_the_search(pocket):
-    """Boxes and triangles that the search of 60 samples looks at, with 50,000 triangles more around 20,000 of the part."""
+    """Boxes and triangles that the search of 20 samples looks at, with 50,000 triangles more around 20,000 of the part."""
     from test_counts import counted
 
     from plan_cutters.options import Options
@@ -316,16 +316,16 @@ def test_a_vise_of_many_triangles_adds_little_to_the_search(pocket):
     assert len(found) > 50_000
     calls = []
     for fixtures in ([], [Fixture(trimesh.Trimesh(*_indexed(found), process=False))]):
-        ready = prepare(pocket, Options.of({"cutters": "R6L60", "spacing": 0.5, "fixtures": fixtures} | FLAT))
+        ready = prepare(pocket, Options.of({"cutters": "R6L60", "spacing": 1.0, "fixtures": fixtures} | FLAT))
         few = np.zeros_like(ready.samples.unjudged)
-        few[5000:5060] = -1
+        few[1250:1270] = -1
         some = replace(ready, samples=replace(ready.samples, unjudged=few))
         with counted() as each:
             reach = judge(some, Cutter.parse("R6L60"))
-        assert reach.reached.sum() == 60
+        assert reach.reached.sum() == 20
         calls.append(each)
     alone, held = calls
-    assert alone["alive"] > 1000
+    assert alone["alive"] > 300
     assert held["alive"] <= 1.4 * alone["alive"]
     assert held["triangle_hit"] <= 1.1 * alone["triangle_hit"]
     assert held["_solid_angle"] == 0

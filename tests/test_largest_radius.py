@@ -57,7 +57,7 @@ def assert_within_a_step(found, rows, nominal, slack):
 
 @pytest.fixture(scope="module")
 def groove():
-    return ready(SAMPLES / "v_groove.step", grid=21, tolerance=0.005)
+    return ready(SAMPLES / "v_groove.step", grid=13, tolerance=0.005)
 
 
 def test_balls_in_a_v_groove(groove):
@@ -69,7 +69,7 @@ def test_balls_in_a_v_groove(groove):
     s = np.hypot(x, z - line)
     limit = np.where(groove.samples.curvature[:, 0] > 0.1, 5.0, s * math.tan(math.radians(60)))
     fits = limit < 29.0
-    assert fits.sum() > 100
+    assert fits.sum() > 30
     assert (~fits).any()
     assert_within_a_step(found, fits, limit, 2.0 * 0.005)
     assert found.no_less[limit > 30.01].all()
@@ -201,7 +201,7 @@ def test_the_postures_told_hold_the_tolerance(shape):
     vertex = stands.conditions.obstacles.triangles.vertex
     points = np.concatenate([vertex.reshape(-1, 3), vertex.mean(axis=1)])
     samples, deepest = stands.samples, []
-    for row in np.flatnonzero(found.radius > 0):
+    for row in np.flatnonzero(found.radius > 0)[::3]:
         r, n, axis, lean = found.radius[row], samples.normal[row], found.axis[row], found.lean[row]
         contact = samples.point[row]
         if shape == "flat":
@@ -214,7 +214,7 @@ def test_the_postures_told_hold_the_tolerance(shape):
             depth = np.where(height > 0.0, side, r - np.linalg.norm(from_centre, axis=1))
         deepest.append(depth.max())
         assert axis @ n == pytest.approx(math.cos(found.tilt[row]))
-    assert len(deepest) > 100
+    assert len(deepest) > 50
     assert max(deepest) < 0.02
     # The tolerance is used: not every cutter stands clear.
     assert max(deepest) > 0.5 * 0.02

@@ -95,13 +95,13 @@ def test_more_obstacles_never_give_more(seed, x, height):
 def test_refinement_never_turns_safe_into_blocked():
     part = read_part(patch(11, height=14.0))
     cutter = Cutter.flat(radius=4, length=30)
-    coarse = plan(part, cutters=[cutter], grid=31, tolerance=0.04).reaches[cutter.id]
-    fine = plan(part, cutters=[cutter], grid=31, tolerance=0.03999).reaches[cutter.id]
+    coarse = plan(part, cutters=[cutter], grid=31, tolerance=0.04, area_budget=0).reaches[cutter.id]
+    fine = plan(part, cutters=[cutter], grid=31, tolerance=0.03999, area_budget=0).reaches[cutter.id]
     assert min(coarse.reached.sum(), (fine.verdict == INACCESSIBLE).sum()) > 20
     assert ((coarse.reached) & (fine.verdict == INACCESSIBLE)).sum() == 0
     # A wider posture range never gives less.
-    narrow = plan(part, cutters=[cutter], grid=31, tilt=(0, math.radians(30))).reaches[cutter.id]
-    wide = plan(part, cutters=[cutter], grid=31).reaches[cutter.id]
+    narrow = plan(part, cutters=[cutter], grid=31, area_budget=0, tilt=(0, math.radians(30))).reaches[cutter.id]
+    wide = plan(part, cutters=[cutter], grid=31, area_budget=0).reaches[cutter.id]
     assert 20 < narrow.reached.sum() < wide.reached.sum()
     assert not (narrow.reached & (wide.verdict == INACCESSIBLE)).any()
 

@@ -3,20 +3,19 @@
 import json
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
+from forked import ROOT
+from forked import run as run_copied
 from tool_files import HOLDER, ID, fusion, write_bit, write_json
 
 from plan_cutters.library import read_library
 
-ROOT = Path(__file__).parent.parent
 CALL = "from plan_cutters.command.tools import main; main()"
 
 
 def run(*words):
-    done = subprocess.run([sys.executable, "-c", CALL, *map(str, words)], capture_output=True, text=True, check=False,
-                          env={"PYTHONPATH": f"{ROOT / 'plugin'}:{ROOT}", "PYTHONIOENCODING": "utf-8", "PATH": ""})  # fmt: skip
+    done = run_copied(*words, command="plan-cutters-tools")
     assert "Traceback" not in done.stderr
     return done
 

@@ -271,8 +271,8 @@ BASE, CLAMP = ((0, 0, 0), (80, 80, 20)), ((30, 0, 20), (50, 80, 60))
 def test_bodies_of_loose_faces_that_touch_are_told_apart(low, size):
     """Joining faces edge to edge must not turn one body inside out because the edges of another lie there."""
     high = np.add(low, size)
-    result = judged(loose(box(80, 80, 20), box(*size, at=low)), grid=9, cutter=Cutter.flat(radius=2, length=12))
-    assert reached(result).sum() > 300
+    result = judged(loose(box(80, 80, 20), box(*size, at=low)), grid=5, cutter=Cutter.flat(radius=2, length=12))
+    assert reached(result).sum() > 80
     assert within(result, *BASE) == []
     assert within(result, low, high) == []
 

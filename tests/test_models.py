@@ -26,7 +26,7 @@ SAMPLES = ROOT / "samples"
 @pytest.fixture(scope="module", params=["pocket_top", "peaks_and_valleys", "blade", "v_groove"])
 def written(request, tmp_path_factory):
     out = tmp_path_factory.mktemp(request.param)
-    result = plan(SAMPLES / f"{request.param}.step", cutters=[Cutter.flat(radius=8, length=90)], grid=61)
+    result = plan(SAMPLES / f"{request.param}.step", cutters=[Cutter.flat(radius=8, length=90)], grid=61, area_budget=0)
     return result, result.write(out, (*DEFAULT_FORMATS, "merged")), out
 
 

@@ -228,9 +228,9 @@ TRIED = {
         "--machine",
         "tilt:5",
         "--grid",
-        "31",
+        "21",
     ),
-    "peaks_and_valleys.step": ("--cutter", "R4L15F10S4", "--holder", "R20L60", "--machine", "tilt:35", "--grid", "31"),
+    "peaks_and_valleys.step": ("--cutter", "R4L15F10S4", "--holder", "R20L60", "--machine", "tilt:35", "--grid", "21"),
     "v_groove.step": ("--cutter", "R6L20", "--machine", "tilt:8", "--grid", "21"),
 }
 
@@ -287,7 +287,7 @@ def test_samples_inside_another_body_are_out_of_the_question():
 def test_the_nearest_three_are_asked_about_and_the_others_are_named():
     words = [word for r in (3, 4, 5, 6, 8) for word in ("--cutter", f"R{r}L60")]
     part = read_part(SAMPLES / "v_groove.step")
-    few = asked(part, *words, "--machine", "tilt:3", "--grid", "9")
+    few = asked(part, *words, "--machine", "tilt:3", "--grid", "5")
     lost = {c.id: c.area_share.inaccessible + c.area_share.undecided for c in few.cutters}
     failing = sorted((c.id for c in few.cutters if lost[c.id]), key=lambda name: lost[name])
     assert len(failing) > 3
@@ -298,7 +298,7 @@ def test_the_nearest_three_are_asked_about_and_the_others_are_named():
     assert any("not asked about: --answers mend-all" in line for line in answered(few.plan))
     every = run(
         part,
-        options(*words, "--machine", "tilt:3", "--grid", "9", "--answers", "mend-all", "--area-budget", "0"),
+        options(*words, "--machine", "tilt:3", "--grid", "5", "--answers", "mend-all", "--area-budget", "0"),
         Clock(),
     )
     assert {c.id for c in every.cutters if c.mend} == set(failing)

@@ -93,7 +93,7 @@ def dense_points(part, n):
 
 def deepest_of_free_postures(name, cutter, count, dense, grid):
     part = read_part(SAMPLES / f"{name}.step")
-    result = plan(part, cutters=[cutter], grid=grid, tolerance=0.01)
+    result = plan(part, cutters=[cutter], grid=grid, tolerance=0.01, area_budget=0)
     reach, samples = result.reaches[cutter.id], result.samples
     rng = np.random.default_rng(7)
     rows = rng.choice(np.flatnonzero(reach.reached), count)

@@ -2,15 +2,15 @@
 
 import json
 import math
-import subprocess
-import sys
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 import shapes
 from cad_parts import box
+from forked import run
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -177,23 +177,22 @@ class TestStandardHolders:
             Holder((Stage(15, 30),), bore=bore)
 
     def test_the_command_lists_and_draws_them(self, tmp_path):
-        tools = [sys.executable, "-c", "from plan_cutters.command.tools import main; main()"]
-        done = subprocess.run(
-            [*tools, "--list-holders", "--draw", tmp_path / "all"], capture_output=True, text=True, check=True
-        )
+        tools = partial(run, command="plan-cutters-tools")
+        done = tools("--list-holders", "--draw", tmp_path / "all")
+        assert done.returncode == 0
         assert all(f"\n{word} " in done.stdout for word in words())
         assert max(map(len, done.stdout.splitlines())) <= 130
         drawn = list((tmp_path / "all").iterdir())
         assert len(drawn) == len(words())
         assert 'class="part' in drawn[0].read_text("utf-8")
         given = ["--cutter", "D12L80", "--holder", "hsk63a-er32", "--draw", tmp_path / "one", "--json"]
-        done = subprocess.run([*tools, *given], capture_output=True, text=True, check=True)
+        done = tools(*given)
         (library,) = json.loads(done.stdout)["libraries"]
         assert library["cutters"][0]["holder"]["name"] == "HSK63A-ER32x70"
         (sheet,) = (tmp_path / "one").iterdir()
         assert "flat end D12 x 80, HSK63A-ER32x70" in sheet.read_text("utf-8")
         for wrong in ([], ["--list-holders", "shop.tools"], ["--list-holders", "--cutter", "D12L80"]):
-            assert subprocess.run([*tools, *wrong], capture_output=True, check=False).returncode == 2
+            assert tools(*wrong).returncode == 2
 
 
 class TestSetups:

@@ -195,7 +195,9 @@ def test_a_machine_of_three_axes_reaches_a_floor_up_to_its_wall():
     floor = shapes.plane((0, 20), (0, 20))
     wall = shapes.plane((0, 20), (0, 10), (0, 0, 0), (0, 1, 0), (-1, 0, 0))
     cutter = Cutter.flat(radius=3, length=30)
-    result = plan(shapes.shell(floor, wall), cutters=[cutter], faces="1", grid=9, machine=Machine.parse("tilt:0"))
+    result = plan(
+        shapes.shell(floor, wall), cutters=[cutter], faces="1", grid=9, area_budget=0, machine=Machine.parse("tilt:0")
+    )
     reach, y = result.reaches[cutter.id], result.samples.point[:, 1]
     assert not (reach.verdict[y > 0.1] == INACCESSIBLE).any()
     assert reach.axis[reach.reached][:, 2] == pytest.approx(1, abs=1e-12)

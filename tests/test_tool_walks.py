@@ -166,7 +166,7 @@ def test_what_is_called_inside_lies_inside():
     """At the same contact and axis each point of the one, and of what its stages keep clear, is one of the other."""
     rng = np.random.default_rng(0)
     within, apart, rounded = 0, 0, 0
-    for _ in range(4000):
+    for _ in range(1600):
         larger = end_mill(rng)
         smaller = end_mill(rng, larger) if larger else None
         if not smaller:
@@ -191,9 +191,9 @@ def test_what_is_called_inside_lies_inside():
             stage = mine.above.depth(q, w) > 1e-7 if mine.above else np.zeros(len(q), bool)
             if stage.any():
                 assert (theirs.above.depth(p, h)[stage] > -1e-9).all(), (smaller, larger, tilt)
-    assert within > 100
-    assert apart > 100
-    assert rounded > 20
+    assert within > 40
+    assert apart > 40
+    assert rounded > 8
 
 
 def test_inside_at_every_end_of_its_conditions():

@@ -2,11 +2,10 @@
 
 import json
 import math
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
+from forked import run
 
 from plan_cutters import Cutter, CutterError, Holder, Options, Stage, plan
 from plan_cutters.domain.drawer import builtin
@@ -93,9 +92,7 @@ def test_the_built_in_drawer_has_every_kind_and_ranks_from_the_largest():
 
 
 def test_the_drawer_is_listed():
-    done = subprocess.run(
-        [sys.executable, "-m", "plan_cutters", "--list-cutters"], capture_output=True, text=True, check=False
-    )
+    done = run("--list-cutters")
     assert done.returncode == 0
     assert [line.split()[0] for line in done.stdout.splitlines()[1:]] == [c.id for c in builtin()]
 
