@@ -20,6 +20,7 @@ from plan_cutters.command.supervise import (
     began,
     can_supervise,
     default_memory,
+    follow_parent,
     is_child,
     keep_interrupts,
     keep_output,
@@ -84,6 +85,7 @@ def main(args: Sequence[str] | None = None) -> NoReturn:
         map_of_a_point(words[1:])
     if not is_child():
         ended(_SELF, words, lambda: _watched(words))
+    follow_parent()
     # Whoever started the command may ignore interrupts, as a shell does for what runs in the background: the parent does not.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     keep_interrupts()
@@ -127,7 +129,7 @@ def _watched(words: list[str]) -> int:
     try:
         return supervise(words, read_timeout=given["read_timeout"], memory=memory, display=display)
     except Unfinished as stopped:
-        from plan_cutters.command.one_part import without_models
+        from plan_cutters.command.stopped import without_models
 
         display.clear()
         return without_models(stopped, given)

@@ -20,13 +20,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Protocol
 
-#: Environment variables by which the child knows its number of the pipe to report on, its memory limit in bytes, and when
-#: the command began.
-REPORT, MEMORY, BEGAN = "PLAN_CUTTERS_REPORT", "PLAN_CUTTERS_MEMORY", "PLAN_CUTTERS_BEGAN"
+#: Environment variables by which the child knows its number of the pipe to report on, its memory limit in bytes, when the
+#: command began, and its parent.
+REPORT, MEMORY = "PLAN_CUTTERS_REPORT", "PLAN_CUTTERS_MEMORY"
+BEGAN, PARENT = "PLAN_CUTTERS_BEGAN", "PLAN_CUTTERS_PARENT"
 #: One line at a time: stages tell from their threads.
 _TELLING = threading.Lock()
 #: Exit code of an interrupted run.
 INTERRUPTED = 130
+#: Seconds that an interrupted child has to end in order; it has not if the kernel does not come back to it.
+GRACE = 0.25
 #: Stages in which the kernel works on what the file says, and how many times the limit of reading each may take.
 LIMITED = {"read": 1.0, "measure": 5.0, "sew": 5.0, "orient": 5.0, "fixtures": 5.0, "sample": 5.0, "tessellate": 5.0,
            "write": 5.0}  # fmt: skip
@@ -78,6 +81,14 @@ def began() -> float:
         ticks = int(Path("/proc/self/stat").read_text().rpartition(")")[2].split()[19])
         age = max(age, time.clock_gettime(time.CLOCK_BOOTTIME) - ticks / os.sysconf("SC_CLK_TCK"))
     return time.monotonic() - age
+
+
+def follow_parent() -> None:
+    """End when the parent does, however it ends: nobody else would wait for what this process makes."""
+    if PARENT in os.environ:
+        from cad_io.lifetime import end_with
+
+        end_with(int(os.environ[PARENT]))
 
 
 def limit_memory() -> None:
@@ -168,8 +179,13 @@ class Display(Protocol):
         """A little time has passed."""
 
 
-def supervise(words: Sequence[str], *, read_timeout: float, memory: int, display: Display | None = None) -> int:
-    """Run the command in a child.
+def supervise(
+    words: Sequence[str], *, read_timeout: float = math.inf, memory: int | None = None, display: Display | None = None,
+    entry: str = "plan_cutters",
+) -> int:  # fmt: skip
+    """Run a command in a child.
+
+    An interrupt, a request to end or a closed terminal ends it within GRACE, whatever it is doing.
 
     Parameters
     ----------
@@ -177,10 +193,12 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int, display
         Its arguments.
     read_timeout : float
         Seconds that reading one part may take; the limits of later stages follow from it.
-    memory : int
+    memory : int, optional
         Bytes of address space that the child may use.
     display : Display, optional
         Told what the child tells.
+    entry : str
+        The command's function in `entry`.
 
     Returns
     -------
@@ -193,24 +211,29 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int, display
         It crashed or was stopped.
     """
     here, there = os.pipe()
-    environment = {**os.environ, REPORT: str(there), MEMORY: str(memory), BEGAN: str(began())}
+    environment = {**os.environ, REPORT: str(there), BEGAN: str(began()), PARENT: str(os.getpid())}
+    if memory is not None:
+        environment[MEMORY] = str(memory)
     watch = _Watch(here, read_timeout, display)
     child: subprocess.Popen[bytes] | None = None
     asked: list[int] = []
 
     def stop(number: int, _: object) -> None:
-        # Ask once; a child that has not begun, or is deep in the kernel when asked again, has nothing to tidy itself.
+        # Ask once; a child that has not begun, or is asked again, has nothing to tidy that this process does not.
         asked.append(number)
         if child is not None and (len(asked) > 1 or watch.stage == "start"):
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(child.pid, signal.SIGKILL)
+            _kill(child)
         elif child is not None:
             child.send_signal(signal.SIGINT)
+            # The system's timer, for this process may be waiting for its reader just now.
+            signal.setitimer(signal.ITIMER_REAL, GRACE)
 
     previous = {number: signal.signal(number, stop) for number in _stopping()}
+    previous[signal.SIGALRM] = signal.signal(signal.SIGALRM, lambda *_: child is not None and _kill(child))
     try:
         # A session of its own: an interrupt from the terminal reaches the child once, through us.
-        child = subprocess.Popen([sys.executable, "-m", "plan_cutters", *words], env=environment, pass_fds=(there,),
+        run = f"from plan_cutters.command.entry import {entry}; {entry}()"
+        child = subprocess.Popen([sys.executable, "-c", run, *words], env=environment, pass_fds=(there,),
                                  start_new_session=True)  # fmt: skip
         if asked:  # before there was anyone to tell
             raise KeyboardInterrupt
@@ -231,6 +254,7 @@ def supervise(words: Sequence[str], *, read_timeout: float, memory: int, display
         watch.listen(0.0)
         watch.clear()
         os.close(here)
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
         for number, handler in previous.items():
             signal.signal(number, handler)
     if child.returncode >= 0:
@@ -253,10 +277,15 @@ def _stopping() -> list[int]:
     return [int(number) for number in found]
 
 
-def _end(child: "subprocess.Popen[bytes]") -> None:
-    """Kill the child and the copies that it has made of itself for the kernel: a session of its own."""
-    with contextlib.suppress(ProcessLookupError):
+def _kill(child: "subprocess.Popen[bytes]") -> None:
+    """Kill the child, the copies that it has made of itself for the kernel, and who compiles for it: a session of its own."""
+    with contextlib.suppress(ProcessLookupError, PermissionError):  # macOS says so of those that have ended
         os.killpg(child.pid, signal.SIGKILL)
+
+
+def _end(child: "subprocess.Popen[bytes]") -> None:
+    """Leave nothing of the child running."""
+    _kill(child)
     child.wait()
 
 
@@ -353,4 +382,6 @@ class _Watch:
             if folder.endswith(".lock"):
                 sweep(Path(folder))
             else:
-                shutil.rmtree(Path(folder), ignore_errors=True)
+                with contextlib.suppress(OSError):
+                    Path(folder).unlink()
+                shutil.rmtree(folder, ignore_errors=True)

@@ -1,0 +1,150 @@
+"""Nothing is left running: every process ends with the one that asked for it, also while the CAD kernel does not come back."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from test_cli import ENV, SAMPLES, leftovers
+
+from plan_cutters.files.lock import lock_of
+
+pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks at processes in /proc")
+
+#: An interpreter that begins with this is stuck in the stage asked for: in one call of C that never lets go of the interpreter, as
+#: the kernel does. `where` is a stage's name; with `copy` a forked copy is stuck, and the stage waits for it.
+STUCK = """
+import contextlib, importlib.util, itertools, os, sys
+from pathlib import Path
+where, how = os.environ.get("STUCK", ":").split(":")
+
+def spin():
+    Path(os.environ["STUCK_SIGN"]).touch()
+    any(itertools.repeat(False))
+
+def trap(name):
+    if name == where and how == "copy":
+        from cad_io.kernel.limited import limited
+        limited(lambda: spin() or b"", 600.0)
+    elif name == where:
+        spin()
+
+def patch(module):
+    real = module.Clock.stage
+    @contextlib.contextmanager
+    def stage(clock, what, **more):
+        with real(clock, what, **more) as tell:
+            trap(what)
+            yield tell
+    module.Clock.stage = stage
+
+class Finder:
+    after = {"plan_cutters.document.clock": patch, "plan_cutters.point": lambda _: trap("map"),
+             "plan_cutters.scene.conditions": lambda _: "plan_cutters.command.ahead" in sys.orig_argv and trap("ahead"),
+             "plan_cutters.command.tools": lambda _: trap("tools"), "plan_cutters.command.machines": lambda _: trap("machines")}
+
+    def find_spec(self, name, path=None, target=None):
+        if name not in self.after:
+            return None
+        sys.meta_path.remove(self)
+        spec = importlib.util.find_spec(name)
+        sys.meta_path.insert(0, self)
+        load = spec.loader.exec_module
+        def run(module):
+            load(module)
+            self.after[name](module)
+        spec.loader.exec_module = run
+        return spec
+
+if where:
+    sys.meta_path.insert(0, Finder())
+"""
+WORDS = (str(SAMPLES / "v_groove.step"), "--cutter", "R6L80", "--grid", "5", "--area-budget", "100", "-o", "out")
+#: Before the plan is written, and after it.
+EARLY = ("read", "measure", "sew", "sample", "tessellate", "compile", "R6L80", "area")
+LATE = ("html", "split", "step")
+
+
+class Run:
+    """A command that is stuck somewhere, and all processes that belong to it."""
+
+    def __init__(self, folder, where, *, words=WORDS, command=("-m", "plan_cutters"), wrapped=()):
+        hooks = folder / "hooks"
+        hooks.mkdir()
+        (hooks / "sitecustomize.py").write_text(STUCK)
+        self.sign, self.folder = hooks / "stuck", folder
+        environment = ENV | {"STUCK": where, "STUCK_SIGN": str(self.sign), "MARK": str(folder)}
+        environment["PYTHONPATH"] = f"{hooks}{os.pathsep}{ENV['PYTHONPATH']}"
+        self.process = subprocess.Popen(
+            [*wrapped, sys.executable, *command, *words], cwd=folder, env=environment, stderr=subprocess.PIPE, text=True,
+            start_new_session=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+        )  # fmt: skip
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        for pid in self.alive():
+            os.kill(pid, signal.SIGKILL)
+        self.process.communicate()
+
+    def until_stuck(self):
+        until = time.monotonic() + 120
+        while not self.sign.exists():
+            assert self.process.poll() is None, self.process.stderr.read()
+            assert time.monotonic() < until
+            time.sleep(0.02)
+
+    def alive(self):
+        """All processes that began with this one's environment, but for those that have ended and are not waited for."""
+        found, mark = [], f"MARK={self.folder}".encode()
+        for each in Path("/proc").iterdir():
+            try:
+                if each.name.isdigit() and mark in (each / "environ").read_bytes().split(b"\0"):
+                    if (each / "stat").read_text().rpartition(")")[2].split()[0] not in "ZX":
+                        found.append(int(each.name))
+            except OSError:
+                continue
+        return found
+
+    def gone_within(self, seconds):
+        until = time.monotonic() + seconds
+        while self.alive():
+            assert time.monotonic() < until
+            time.sleep(0.02)
+
+
+#: Half a second on a machine that does nothing else; tests run beside others.
+SOON = 2.0
+
+
+@pytest.mark.parametrize("where", [*(f"{stage}:" for stage in (*EARLY, *LATE)), "read:copy", "split:copy"])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL], ids=lambda n: n.name)
+def test_a_command_that_is_ended_leaves_nothing_running(tmp_path, where, number):
+    with Run(tmp_path, where) as run:
+        run.until_stuck()
+        assert len(run.alive()) == (3 if "copy" in where else 2)
+        run.process.send_signal(number)
+        run.gone_within(SOON)
+        _, said = run.process.communicate(timeout=5)
+    assert "Traceback" not in said
+    stage, late = where.partition(":")[0], where.partition(":")[0] in LATE
+    if number != signal.SIGKILL:
+        assert run.process.returncode == 130
+        assert "interrupted" in said.splitlines()[-1]
+        assert leftovers(tmp_path, "hooks") == (["out"] if late else [])
+    if late:
+        plan = json.loads((tmp_path / "out" / "plan.json").read_text())
+        assert stage == "split" or stage in plan["not_written"]
+        assert number == signal.SIGKILL or set(plan["not_written"].values()) == {"interrupted"}
+    if number == signal.SIGKILL:
+        # Whatever was killed could not tidy: the next run into that folder does.
+        assert any(each.name.startswith(".out-") for each in tmp_path.iterdir())
+        from plan_cutters.report import Staging
+
+        Staging(tmp_path / "out").discard()
+        assert leftovers(tmp_path, "hooks", "out") == []
