@@ -11,12 +11,10 @@ from pathlib import Path
 import pytest
 from test_cli import ENV, SAMPLES, leftovers
 
-from plan_cutters.files.lock import lock_of
-
 pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks at processes in /proc")
 
-#: An interpreter that begins with this is stuck in the stage asked for: in one call of C that never lets go of the interpreter, as
-#: the kernel does. `where` is a stage's name; with `copy` a forked copy is stuck, and the stage waits for it.
+#: An interpreter that begins with this is stuck in the stage asked for: in one call of C that never lets go of the interpreter,
+#: as the kernel does. `where` is a stage's name; with `copy` a forked copy is stuck, and the stage waits for it.
 STUCK = """
 import contextlib, importlib.util, itertools, os, sys
 from pathlib import Path
@@ -104,9 +102,9 @@ class Run:
         found, mark = [], f"MARK={self.folder}".encode()
         for each in Path("/proc").iterdir():
             try:
-                if each.name.isdigit() and mark in (each / "environ").read_bytes().split(b"\0"):
-                    if (each / "stat").read_text().rpartition(")")[2].split()[0] not in "ZX":
-                        found.append(int(each.name))
+                ours = each.name.isdigit() and mark in (each / "environ").read_bytes().split(b"\0")
+                if ours and (each / "stat").read_text().rpartition(")")[2].split()[0] not in "ZX":
+                    found.append(int(each.name))
             except OSError:
                 continue
         return found

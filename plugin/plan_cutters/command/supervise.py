@@ -229,7 +229,7 @@ def supervise(
             signal.setitimer(signal.ITIMER_REAL, GRACE)
 
     previous = {number: signal.signal(number, stop) for number in _stopping()}
-    previous[signal.SIGALRM] = signal.signal(signal.SIGALRM, lambda *_: child is not None and _kill(child))
+    previous[signal.SIGALRM] = signal.signal(signal.SIGALRM, lambda *_: None if child is None else _kill(child))
     try:
         # A session of its own: an interrupt from the terminal reaches the child once, through us.
         run = f"from plan_cutters.command.entry import {entry}; {entry}()"
