@@ -43,7 +43,7 @@ def _killed_by_the_system() -> bool:
 
 
 def _looked_after(parent: int) -> None:
-    """Start a copy that kills this process once its parent is gone."""
+    """Start a copy that kills this process once its parent is gone, and has been waited for where it had a parent itself."""
     me = os.getpid()
     if os.fork():
         return

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="lo
 #: An interpreter that begins with this is stuck in the stage asked for: in one call of C that never lets go of the interpreter,
 #: as the kernel does. `where` is a stage's name; with `copy` a forked copy is stuck, and the stage waits for it.
 STUCK = """
-import contextlib, importlib.util, itertools, os, sys
+import contextlib, importlib.util, itertools, os, sys, time
 from pathlib import Path
 where, how = os.environ.get("STUCK", ":").split(":")
 
@@ -28,6 +28,9 @@ def trap(name):
     if name == where and how == "copy":
         from cad_io.kernel.limited import limited
         limited(lambda: spin() or b"", 600.0)
+    elif name == where and how == "sleep":
+        Path(os.environ["STUCK_SIGN"]).touch()
+        time.sleep(600)
     elif name == where:
         spin()
 
@@ -146,3 +149,93 @@ def test_a_command_that_is_ended_leaves_nothing_running(tmp_path, where, number)
 
         Staging(tmp_path / "out").discard()
         assert leftovers(tmp_path, "hooks", "out") == []
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL], ids=lambda n: n.name)
+@pytest.mark.parametrize("command", ["point_map", "tools", "machines"])
+def test_the_other_commands_end_too(tmp_path, command, number):
+    """The map of a point asks the kernel, in a child; the others are plain Python and end in order where they are."""
+    entry = ("-c", f"from plan_cutters.command.entry import {command}; {command}()")
+    words = (WORDS[0], "--at", "0,0,0", "--cutter", "R6L80") if command == "point_map" else ("list",)
+    with Run(tmp_path, "map:" if command == "point_map" else f"{command}:sleep", words=words, command=entry) as run:
+        run.until_stuck()
+        assert len(run.alive()) == (2 if command == "point_map" else 1)
+        run.process.send_signal(number)
+        run.gone_within(SOON)
+        _, said = run.process.communicate(timeout=5)
+    assert "Traceback" not in said
+    assert run.process.returncode in ((-number,) if number == signal.SIGKILL else (130, -number))
+    assert leftovers(tmp_path, "hooks") == []
+
+
+def test_asked_twice_it_ends_at_once(tmp_path):
+    with Run(tmp_path, "step:") as run:
+        run.until_stuck()
+        for _ in range(2):
+            run.process.send_signal(signal.SIGINT)
+            time.sleep(0.02)
+        run.gone_within(SOON)
+        _, said = run.process.communicate(timeout=5)
+    assert (run.process.returncode, "Traceback" in said) == (130, False)
+    assert leftovers(tmp_path, "hooks") == ["out"]
+
+
+@pytest.mark.parametrize("number", ["TERM", "KILL"])
+def test_a_time_limit_from_outside_ends_it_all(tmp_path, number):
+    """`timeout` sends to the command and its group: the worker is in neither."""
+    with Run(tmp_path, "measure:", wrapped=("timeout", "-s", number, "12")) as run:
+        run.until_stuck()
+        assert run.process.wait(timeout=30) in (124, 137, -9)
+        run.gone_within(SOON)
+
+
+def test_a_script_that_gives_up_is_not_held(tmp_path):
+    """`subprocess.run` kills on its time limit, then waits for the pipes that the worker had, too."""
+    with Run(tmp_path, "measure:") as run:
+        run.until_stuck()
+        run.process.kill()
+        began = time.monotonic()
+        run.process.communicate(timeout=30)
+        assert time.monotonic() - began < SOON
+
+
+CALLER = """
+import itertools, os, sys, threading
+from pathlib import Path
+import cad_io.lifetime as lifetime
+from cad_io.kernel.limited import limited
+if sys.argv[2] == "looked after":
+    lifetime._killed_by_the_system = lambda: False
+def spin():
+    Path(sys.argv[1]).touch()
+    any(itertools.repeat(False))
+work = threading.Thread(target=lambda: limited(lambda: spin() or b"", 600.0))
+work.start()
+work.join()
+"""
+
+
+@pytest.mark.parametrize("how", ["killed by the system", "looked after"])
+def test_copies_end_with_the_program_that_plans(tmp_path, how):
+    """Whoever calls `plan` from Python and dies leaves no copy behind: on Linux, and by the way of all others."""
+    with Run(tmp_path, ":", command=("-c", CALLER), words=(str(tmp_path / "hooks" / "stuck"), how)) as run:
+        run.until_stuck()
+        assert len(run.alive()) == (3 if how == "looked after" else 2)
+        run.process.kill()
+        run.process.wait()
+        run.gone_within(SOON)
+
+
+def test_a_parent_that_was_gone_before_it_was_followed(tmp_path):
+    code = "import os; from cad_io.lifetime import end_with; end_with(os.getppid() + 1); print('alive')"
+    done = subprocess.run([sys.executable, "-c", code], env=ENV, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (-signal.SIGKILL, "")
+
+
+def test_the_process_that_compiles_ends_with_the_worker(tmp_path, monkeypatch):
+    monkeypatch.setitem(ENV, "NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    with Run(tmp_path, "ahead:", words=(*WORDS, "--jobs", "2")) as run:
+        run.until_stuck()
+        assert len(run.alive()) >= 3
+        run.process.kill()
+        run.gone_within(SOON)

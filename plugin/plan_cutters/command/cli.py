@@ -82,7 +82,7 @@ def main(args: Sequence[str] | None = None) -> NoReturn:
     if words[:1] == ["map"] and not os.path.exists("map"):
         from plan_cutters.command.map import main as map_of_a_point
 
-        map_of_a_point(words[1:])
+        map_of_a_point(words[1:], apart=args is None)
     if not is_child():
         ended(_SELF, words, lambda: _watched(words))
     follow_parent()

@@ -363,10 +363,15 @@ def _spans(intervals: Any, inward: bool = True) -> str:
     return ", ".join(found)
 
 
-def main(args: Sequence[str] | None = None) -> NoReturn:
-    """Entry point of the command: the work is done in a child process, which can be ended while the kernel is busy."""
+def main(args: Sequence[str] | None = None, *, apart: bool | None = None) -> NoReturn:
+    """Entry point of the command.
+
+    The work is done in a child process, which can be ended while the CAD kernel is busy; not where Python gives the words,
+    unless it is to be `apart`.
+    """
     words = list(sys.argv[1:] if args is None else args)
-    if can_supervise() and not is_child():
+    apart = args is None if apart is None else apart
+    if apart and can_supervise() and not is_child():
         ended(_SELF, words, lambda: _watched(words))
     follow_parent()
     ended(_SELF, words, lambda: invoked(command, _SELF, words))
