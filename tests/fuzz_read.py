@@ -189,7 +189,7 @@ def _forked(cases: Sequence[Case]) -> tuple[list[int], Outcome | None]:
             os.setsid()  # reading may fork again
             os.close(here)
             os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-            os.environ[supervise.REPORT], os.environ[supervise.MEMORY] = str(there), str(8 << 30)
+            os.environ[worker.REPORT], os.environ[worker.MEMORY] = str(there), str(8 << 30)
             supervise.limit_memory()
             supervise.keep_output()
             for case in cases:

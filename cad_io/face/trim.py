@@ -19,7 +19,6 @@ from OCP.GeomAbs import GeomAbs_C2, GeomAbs_Line
 from OCP.gp import gp_Pnt2d
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_IN, TopAbs_ON, TopAbs_REVERSED
 from OCP.TopoDS import TopoDS, TopoDS_Face
-from scipy.optimize import linear_sum_assignment
 
 from cad_io.arrays import Floats, Record
 from cad_io.kernel import edges_of, interval_ends
@@ -218,6 +217,8 @@ def _joins(pieces: list[Floats], scale: Floats) -> tuple[Floats, float]:
     distance = np.linalg.norm((end[:, None] - start[None]) * scale, axis=2)
     following = distance.argmin(axis=1)
     if len(np.unique(following)) < len(following):
+        from scipy.optimize import linear_sum_assignment  # takes a quarter of a second to load
+
         following = linear_sum_assignment(distance)[1]
     joins = np.stack([end, start[following]], axis=1)
     gap = distance[np.arange(len(end)), following]

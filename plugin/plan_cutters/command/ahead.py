@@ -5,7 +5,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 
-from plan_cutters.command.supervise import PARENT, REPORT, follow_parent
+from plan_cutters.command.worker import PARENT, REPORT, follow_parent
 
 #: The longest that is waited for it, s: what is not there by then is compiled here.
 _PATIENCE = 120.0

@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
+from importlib import import_module
 from typing import Any, NoReturn
 
 import click
@@ -15,13 +16,8 @@ from plan_cutters.command import grouped, terminal
 from plan_cutters.command.codes import ended, guarded, invoked
 from plan_cutters.command.declared import CODES, EXAMPLES, options
 from plan_cutters.command.supervise import (
-    INTERRUPTED,
     Unfinished,
-    began,
-    can_supervise,
     default_memory,
-    follow_parent,
-    is_child,
     keep_interrupts,
     keep_output,
     limit_memory,
@@ -29,6 +25,7 @@ from plan_cutters.command.supervise import (
     supervise,
 )
 from plan_cutters.command.values import File
+from plan_cutters.command.worker import GO, INTERRUPTED, began, can_supervise, follow_parent, is_child, wait_to_begin
 
 _SELF = "plan-cutters"
 
@@ -90,9 +87,12 @@ def main(args: Sequence[str] | None = None) -> NoReturn:
     signal.signal(signal.SIGINT, signal.default_int_handler)
     keep_interrupts()
     gc.disable()  # nothing of what imports make is garbage; `one_part` turns it on again
-    limit_memory()
     terminal.keep_streams()
     keep_output()
+    if GO in os.environ:
+        load()
+        wait_to_begin()
+    limit_memory()
     code, line = guarded(lambda: (invoked(command, _SELF, words), ""), "--debug" in words)
     if line:
         terminal.error(line)
@@ -101,6 +101,13 @@ def main(args: Sequence[str] | None = None) -> NoReturn:
         sys.stdout.flush()
         sys.stderr.flush()
     os._exit(code)
+
+
+def load() -> None:
+    """Load what every plan needs."""
+    import_module("plan_cutters.command.one_part")
+    import_module("plan_cutters.report.models")
+    import_module("plan_cutters.pipeline")
 
 
 def _watched(words: list[str]) -> int:

@@ -15,9 +15,10 @@ from plan_cutters import __version__
 from plan_cutters.command.codes import ended, invoked
 from plan_cutters.command.grouped import Command, heading
 from plan_cutters.command.progress import Display
-from plan_cutters.command.supervise import began, can_supervise, follow_parent, is_child, report, supervise
+from plan_cutters.command.supervise import report, supervise
 from plan_cutters.command.terminal import clean, hand_out, paper
 from plan_cutters.command.values import File, Words, cutter_ids, holder_words, machine_names
+from plan_cutters.command.worker import began, can_supervise, follow_parent, is_child
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -4,7 +4,8 @@ from typing import Any
 
 from plan_cutters.command import terminal
 from plan_cutters.command.codes import UNREADABLE
-from plan_cutters.command.supervise import INTERRUPTED, Unfinished
+from plan_cutters.command.supervise import Unfinished
+from plan_cutters.command.worker import INTERRUPTED
 
 
 def without_models(stopped: Unfinished, given: dict[str, Any]) -> int:

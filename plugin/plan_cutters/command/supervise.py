@@ -20,14 +20,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Protocol
 
-#: Environment variables by which the child knows its number of the pipe to report on, its memory limit in bytes, when the
-#: command began, and its parent.
-REPORT, MEMORY = "PLAN_CUTTERS_REPORT", "PLAN_CUTTERS_MEMORY"
-BEGAN, PARENT = "PLAN_CUTTERS_BEGAN", "PLAN_CUTTERS_PARENT"
+from plan_cutters.command.worker import INTERRUPTED, MEMORY, REPORT, Worker, early, is_child
+
 #: One line at a time: stages tell from their threads.
 _TELLING = threading.Lock()
-#: Exit code of an interrupted run.
-INTERRUPTED = 130
 #: Seconds that an interrupted child has to end in order; it has not if the kernel does not come back to it.
 GRACE = 0.25
 #: Stages in which the kernel works on what the file says, and how many times the limit of reading each may take.
@@ -57,38 +53,6 @@ class Unfinished(Supervised):
     def __init__(self, text: str, code: int, out: Path, parts: int) -> None:
         super().__init__(text)
         self.code, self.out, self.parts = code, out, parts
-
-
-def can_supervise() -> bool:
-    """Whether this system lets one process hand a pipe to another and end it with all its copies (not Windows)."""
-    return hasattr(os, "killpg") and hasattr(os, "sysconf")
-
-
-def is_child() -> bool:
-    """Whether this process was started by `supervise`."""
-    return REPORT in os.environ
-
-
-def began() -> float:
-    """When the command began, as `time.monotonic()` counts, which does so alike in all processes that there are parents of.
-
-    Where the system does not tell, it is what the processor has spent on this process ago, or longer.
-    """
-    if is_child():
-        return float(os.environ[BEGAN])
-    age = time.process_time()
-    with contextlib.suppress(OSError, ValueError, AttributeError, IndexError):  # only Linux has all of it
-        ticks = int(Path("/proc/self/stat").read_text().rpartition(")")[2].split()[19])
-        age = max(age, time.clock_gettime(time.CLOCK_BOOTTIME) - ticks / os.sysconf("SC_CLK_TCK"))
-    return time.monotonic() - age
-
-
-def follow_parent() -> None:
-    """End when the parent does, however it ends: nobody else would wait for what this process makes."""
-    if PARENT in os.environ:
-        from cad_io.lifetime import end_with
-
-        end_with(int(os.environ[PARENT]))
 
 
 def limit_memory() -> None:
@@ -210,60 +174,55 @@ def supervise(
     Supervised
         It crashed or was stopped.
     """
-    here, there = os.pipe()
-    environment = {**os.environ, REPORT: str(there), BEGAN: str(began()), PARENT: str(os.getpid())}
-    if memory is not None:
-        environment[MEMORY] = str(memory)
-    watch = _Watch(here, read_timeout, display)
-    child: subprocess.Popen[bytes] | None = None
+    watch = _Watch(read_timeout, display)
+    child: Worker | None = None
     asked: list[int] = []
 
     def stop(number: int, _: object) -> None:
         # Ask once; a child that has not begun, or is asked again, has nothing to tidy that this process does not.
         asked.append(number)
         if child is not None and (len(asked) > 1 or watch.stage == "start"):
-            _kill(child)
+            child.kill()
         elif child is not None:
-            child.send_signal(signal.SIGINT)
+            child.process.send_signal(signal.SIGINT)
             # The system's timer, for this process may be waiting for its reader just now.
             signal.setitimer(signal.ITIMER_REAL, GRACE)
 
     previous = {number: signal.signal(number, stop) for number in _stopping()}
-    previous[signal.SIGALRM] = signal.signal(signal.SIGALRM, lambda *_: None if child is None else _kill(child))
+    previous[signal.SIGALRM] = signal.signal(signal.SIGALRM, lambda *_: None if child is None else child.kill())
     try:
-        # A session of its own: an interrupt from the terminal reaches the child once, through us.
-        run = f"from plan_cutters.command.entry import {entry}; {entry}()"
-        child = subprocess.Popen([sys.executable, "-c", run, *words], env=environment, pass_fds=(there,),
-                                 start_new_session=True)  # fmt: skip
+        child = early(words) or Worker(words, entry, memory)
+        watch.pipe = child.here
         if asked:  # before there was anyone to tell
             raise KeyboardInterrupt
-        os.close(there)
-        while child.poll() is None:
+        child.begin(memory)
+        while child.process.poll() is None:
             watch.listen(0.2)
             if watch.over:  # neither the child nor a copy of it holds the other end: it has ended, or is about to
                 with contextlib.suppress(subprocess.TimeoutExpired):
-                    child.wait(0.2)
+                    child.process.wait(0.2)
             if watch.late():
                 raise watch.ended(*watch.verdict())
             if display is not None:
                 display.tick()
     finally:
         if child is not None:
-            _end(child)
-        # What it said last counts, too: a folder is named before it exists.
-        watch.listen(0.0)
+            child.end()
+            # What it said last counts, too: a folder is named before it exists.
+            watch.listen(0.0)
+            os.close(child.here)
         watch.clear()
-        os.close(here)
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         for number, handler in previous.items():
             signal.signal(number, handler)
-    if child.returncode >= 0:
-        return child.returncode
+    code = child.process.returncode
+    if code >= 0:
+        return code
     if asked and watch.safe is None:
         raise KeyboardInterrupt
     if asked:
         raise watch.ended("interrupted", "", interrupted=True)
-    name = signal.Signals(-child.returncode).name
+    name = signal.Signals(-code).name
     at = " ".join(filter(None, (watch.stage, watch.face)))
     raise watch.ended(f"the CAD kernel crashed ({name}, while it was at '{at}')",
                       "the file may be damaged: export it again")  # fmt: skip
@@ -277,23 +236,11 @@ def _stopping() -> list[int]:
     return [int(number) for number in found]
 
 
-def _kill(child: "subprocess.Popen[bytes]") -> None:
-    """Kill the child, the copies that it has made of itself for the kernel, and who compiles for it: a session of its own."""
-    with contextlib.suppress(ProcessLookupError, PermissionError):  # macOS says so of those that have ended
-        os.killpg(child.pid, signal.SIGKILL)
-
-
-def _end(child: "subprocess.Popen[bytes]") -> None:
-    """Leave nothing of the child running."""
-    _kill(child)
-    child.wait()
-
-
 class _Watch:
     """What the child has told so far."""
 
-    def __init__(self, pipe: int, read_timeout: float, display: Display | None = None) -> None:
-        self.pipe, self.read_timeout, self.display = pipe, read_timeout, display
+    def __init__(self, read_timeout: float, display: Display | None = None) -> None:
+        self.pipe, self.read_timeout, self.display = -1, read_timeout, display
         self.part, self.stage, self.since = "part", "start", time.monotonic()
         self.work = ""
         self.staging: set[str] = set()
