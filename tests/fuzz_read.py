@@ -35,7 +35,7 @@ from cad_io import Part
 from cad_io.kernel import silence
 from cad_io.read.altered import edge_count
 from plan_cutters import pipeline
-from plan_cutters.command import cli, codes, supervise
+from plan_cutters.command import cli, codes, supervise, worker
 from plan_cutters.document import plan as plan_module
 from plan_cutters.report.to_json import schema
 from plan_cutters.scene import surroundings
