@@ -35,7 +35,7 @@ from cad_io import Part
 from cad_io.kernel import silence
 from cad_io.read.altered import edge_count
 from plan_cutters import pipeline
-from plan_cutters.command import cli, codes, supervise
+from plan_cutters.command import cli, codes, supervise, worker
 from plan_cutters.document import plan as plan_module
 from plan_cutters.report.to_json import schema
 from plan_cutters.scene import surroundings
@@ -189,7 +189,7 @@ def _forked(cases: Sequence[Case]) -> tuple[list[int], Outcome | None]:
             os.setsid()  # reading may fork again
             os.close(here)
             os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-            os.environ[supervise.REPORT], os.environ[supervise.MEMORY] = str(there), str(8 << 30)
+            os.environ[worker.REPORT], os.environ[worker.MEMORY] = str(there), str(8 << 30)
             supervise.limit_memory()
             supervise.keep_output()
             for case in cases:

@@ -19,7 +19,6 @@ from OCP.GeomAbs import GeomAbs_C2, GeomAbs_Line
 from OCP.gp import gp_Pnt2d
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_IN, TopAbs_ON, TopAbs_REVERSED
 from OCP.TopoDS import TopoDS, TopoDS_Face
-from scipy.optimize import linear_sum_assignment
 
 from cad_io.arrays import Floats, Record
 from cad_io.kernel import edges_of, interval_ends
@@ -226,6 +225,8 @@ def continuing(start: Floats, end: Floats, scale: Floats) -> NDArray[np.intp]:
     distance = np.linalg.norm((end[:, None] - start[None]) * scale, axis=2)
     following = distance.argmin(axis=1)
     if len(np.unique(following)) < len(following):
+        from scipy.optimize import linear_sum_assignment  # takes a quarter of a second to load
+
         following = linear_sum_assignment(distance)[1]
     return np.asarray(following)
 

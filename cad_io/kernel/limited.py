@@ -10,6 +10,8 @@ import warnings
 from collections.abc import Callable
 from contextvars import ContextVar
 
+from cad_io.lifetime import end_with
+
 #: How many threads of the kernel's own a copy may use. They are kept in a pool that does not survive a fork: more than one only
 #: where this process has never had the kernel use any.
 KERNEL_THREADS: ContextVar[int] = ContextVar("KERNEL_THREADS", default=1)
@@ -29,7 +31,8 @@ class ChildDied(Exception):
 def limited(call: Callable[[], bytes], seconds: float, *, processor: bool = False) -> bytes:
     """Result of `call()`, run in a forked copy of this process for at most `seconds`.
 
-    Also survives a crash of the kernel. Where the system cannot fork (Windows), the call runs here, without a limit.
+    Also survives a crash of the kernel. The copy ends with this process, whatever ends that. Where the system cannot fork
+    (Windows), the call runs here, without a limit.
     By the clock a busy machine may get another result than an idle one; by processor time it gets the same, later.
 
     Parameters
@@ -51,13 +54,14 @@ def limited(call: Callable[[], bytes], seconds: float, *, processor: bool = Fals
     if not hasattr(os, "fork"):
         return call()
     end, start = os.pipe()
+    caller = os.getpid()
     with warnings.catch_warnings():
         # Python 3.12 warns of locks held by other threads; at worst the copy waits for one until the limit.
         warnings.simplefilter("ignore", DeprecationWarning)
         child = os.fork()
     if child == 0:
-        # By the clock the other side ends it; the processor's limit is for when that side is killed.
-        _answer(call, start, seconds if processor else seconds + 2)
+        # By the clock the other side ends it.
+        _answer(call, start, seconds if processor else seconds + 2, caller)
     os.close(start)
     answer = b""
     try:
@@ -111,11 +115,12 @@ def _stuck(child: int) -> Callable[[], float]:
     return late
 
 
-def _answer(call: Callable[[], bytes], start: int, seconds: float) -> None:
+def _answer(call: Callable[[], bytes], start: int, seconds: float, caller: int) -> None:
     """The copy's side: write the answer, `+` and the result or `-` and what was raised, and end without clean-up."""
     try:
         try:
             faulthandler.disable()  # a crash here is told by the other side
+            end_with(caller)
             _end_alone(seconds)
             answer = b"+" + call()
         except Exception as error:

@@ -5,7 +5,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 
-from plan_cutters.command.supervise import REPORT
+from plan_cutters.command.worker import PARENT, REPORT, follow_parent
 
 #: The longest that is waited for it, s: what is not there by then is compiled here.
 _PATIENCE = 120.0
@@ -23,7 +23,7 @@ def begin(maps: bool) -> Callable[[], None] | None:
 
     if at_hand("search.search") is not False:
         return None
-    environment = {name: value for name, value in os.environ.items() if name != REPORT}
+    environment = {name: value for name, value in os.environ.items() if name != REPORT} | {PARENT: str(os.getpid())}
     words = [sys.executable, "-m", "plan_cutters.command.ahead", *(["maps"] if maps else [])]
     try:
         other = subprocess.Popen(words, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
@@ -65,4 +65,5 @@ def compile_all(maps: bool) -> None:
 
 
 if __name__ == "__main__":
+    follow_parent()
     compile_all("maps" in sys.argv[1:])

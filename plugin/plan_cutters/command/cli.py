@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
+from importlib import import_module
 from typing import Any, NoReturn
 
 import click
@@ -16,17 +17,14 @@ from plan_cutters.command.codes import ended, guarded, invoked
 from plan_cutters.command.declared import CODES, EXAMPLES, options
 from plan_cutters.command.stopped import Unfinished
 from plan_cutters.command.supervise import (
-    INTERRUPTED,
-    began,
-    can_supervise,
     default_memory,
-    is_child,
     keep_interrupts,
     keep_output,
     limit_memory,
     report,
 )
 from plan_cutters.command.values import File
+from plan_cutters.command.worker import GO, INTERRUPTED, began, can_supervise, follow_parent, is_child, wait_to_begin
 
 _SELF = "plan-cutters"
 
@@ -85,16 +83,20 @@ def main(args: Sequence[str] | None = None) -> NoReturn:
     if words[:1] == ["map"] and not os.path.exists("map"):
         from plan_cutters.command.map import main as map_of_a_point
 
-        map_of_a_point(words[1:])
+        map_of_a_point(words[1:], apart=args is None)
     if not is_child():
         ended(_SELF, words, lambda: _watched(words))
+    follow_parent()
     # Whoever started the command may ignore interrupts, as a shell does for what runs in the background: the parent does not.
     signal.signal(signal.SIGINT, signal.default_int_handler)
     keep_interrupts()
     gc.disable()  # nothing of what imports make is garbage; `one_part` turns it on again
-    limit_memory()
     terminal.keep_streams()
     keep_output()
+    if GO in os.environ:
+        load()
+        wait_to_begin()
+    limit_memory()
     code, line = guarded(lambda: (invoked(command, _SELF, words), ""), "--debug" in words)
     if line:
         terminal.error(line)
@@ -103,6 +105,13 @@ def main(args: Sequence[str] | None = None) -> NoReturn:
         sys.stdout.flush()
         sys.stderr.flush()
     os._exit(code)
+
+
+def load() -> None:
+    """Load what every plan needs."""
+    import_module("plan_cutters.command.one_part")
+    import_module("plan_cutters.report.models")
+    import_module("plan_cutters.pipeline")
 
 
 def _watched(words: list[str]) -> int:
@@ -132,7 +141,7 @@ def _watched(words: list[str]) -> int:
     try:
         return supervised(words, read_timeout=given["read_timeout"], memory=memory, display=display)
     except Unfinished as stopped:
-        from plan_cutters.command.one_part import without_models
+        from plan_cutters.command.unfinished import without_models
 
         display.clear()
         return without_models(stopped, given)

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from plan_cutters.command import terminal
-from plan_cutters.command.supervise import INTERRUPTED, Supervised
+from plan_cutters.command.supervise import Supervised
+from plan_cutters.command.worker import INTERRUPTED
 
 if TYPE_CHECKING:
     from plan_cutters.document.model import Plan

@@ -14,8 +14,11 @@ from cad_io.units import UNITS
 from plan_cutters import __version__
 from plan_cutters.command.codes import ended, invoked
 from plan_cutters.command.grouped import Command, heading
+from plan_cutters.command.progress import Display
+from plan_cutters.command.supervise import report, supervise
 from plan_cutters.command.terminal import clean, hand_out, paper
 from plan_cutters.command.values import File, Words, cutter_ids, holder_words, machine_names
+from plan_cutters.command.worker import began, can_supervise, follow_parent, is_child
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -130,6 +133,7 @@ def command(part: str, **given: Any) -> int:
     from plan_cutters.errors import OptionError
 
     given["part"] = part
+    report("part", part)
     place, setup = _numbers(given["at"], "--at", 3), _setup(given["setup"])
     tilt, rotation = (_numbers(given[word], f"--{word}", 2, ":") for word in ("tilt", "rotation"))
     postures = PostureRange.degrees((tilt[0], tilt[1]), (rotation[0], rotation[1]), given["rotation_step"])
@@ -314,6 +318,8 @@ def _draw(found: "PostureMap", tilt: tuple[float, float], about: list[str], outs
     from plan_cutters.report.map_picture import draw_map
 
     asides = [out.with_name(f".{out.stem}.part{out.suffix}") for out in outs]
+    for aside in asides:
+        report("staging", str(aside.absolute()))
     try:
         draw_map(found, tilt, about[0], about[1:], asides)
         for aside, out in zip(asides, outs, strict=True):
@@ -358,7 +364,26 @@ def _spans(intervals: Any, inward: bool = True) -> str:
     return ", ".join(found)
 
 
-def main(args: Sequence[str] | None = None) -> NoReturn:
-    """Entry point of the command."""
+def main(args: Sequence[str] | None = None, *, apart: bool | None = None) -> NoReturn:
+    """Entry point of the command.
+
+    The work is done in a child process, which can be ended while the CAD kernel is busy; not where Python gives the words,
+    unless it is to be `apart`.
+    """
     words = list(sys.argv[1:] if args is None else args)
+    apart = args is None if apart is None else apart
+    if apart and can_supervise() and not is_child():
+        ended(_SELF, words, lambda: _watched(words))
+    follow_parent()
     ended(_SELF, words, lambda: invoked(command, _SELF, words))
+
+
+def _watched(words: list[str]) -> int:
+    """Look at the words here, so that help and mistakes cost nothing; leave the work to a child."""
+    if "_PLAN_CUTTERS_MAP_COMPLETE" in os.environ:
+        return invoked(command, _SELF, words)
+    try:
+        command.make_context(_SELF, list(words)).close()
+    except click.exceptions.Exit as done:
+        return done.exit_code
+    return supervise(words, display=Display(True, 1, began()), entry="point_map")

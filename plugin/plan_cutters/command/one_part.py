@@ -1,4 +1,4 @@
-"""One part: planned, written, summarised; and what is said when its models could not be made to an end."""
+"""One part: planned, written, summarised."""
 
 import gc
 import time
@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from plan_cutters.command import terminal
-from plan_cutters.command.codes import UNREADABLE, code_of
+from plan_cutters.command.codes import code_of
 from plan_cutters.command.progress import Display, Teller
-from plan_cutters.command.stopped import Unfinished
 from plan_cutters.command.summary import not_reached, summary, written
-from plan_cutters.command.supervise import INTERRUPTED, is_child, report, report_work
+from plan_cutters.command.supervise import report, report_work
+from plan_cutters.command.worker import INTERRUPTED, is_child
 from plan_cutters.document.names import called
 
 if TYPE_CHECKING:
@@ -123,20 +123,3 @@ class Onlooker:
         """Leave the line to others."""
         if self.display is not None:
             self.display.clear()
-
-
-def without_models(stopped: Unfinished, given: dict[str, Any]) -> int:
-    """The plan was safe when the process that made it was ended: say what is missing; its exit code stands."""
-    from plan_cutters.report import PLAN, file_name
-    from plan_cutters.report.folder import ended
-
-    path = stopped.out / PLAN
-    missing = ", ".join(map(file_name, ended(stopped.out, str(stopped)))) or "a model"
-    terminal.error(f"plan-cutters: {missing} in {stopped.out}: not written: {stopped}")
-    if given["json_out"] == "-" and path.is_file():
-        terminal.hand_out(path.read_text(encoding="utf-8"))
-    left = given["parts"][stopped.parts :]
-    if left and stopped.code != INTERRUPTED:
-        terminal.error(f"plan-cutters: not planned: {', '.join(left)}")
-        return max(stopped.code, UNREADABLE)
-    return stopped.code

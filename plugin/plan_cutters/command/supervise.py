@@ -21,14 +21,12 @@ from pathlib import Path
 from typing import Protocol
 
 from plan_cutters.command.stopped import Stuck, Supervised, Unfinished
+from plan_cutters.command.worker import INTERRUPTED, MEMORY, REPORT, Worker, early, is_child
 
-#: Environment variables by which the child knows its number of the pipe to report on, its memory limit in bytes, and when
-#: the command began.
-REPORT, MEMORY, BEGAN = "PLAN_CUTTERS_REPORT", "PLAN_CUTTERS_MEMORY", "PLAN_CUTTERS_BEGAN"
 #: One line at a time: stages tell from their threads.
 _TELLING = threading.Lock()
-#: Exit code of an interrupted run.
-INTERRUPTED = 130
+#: Seconds that an interrupted child has to end in order; it has not if the kernel does not come back to it.
+GRACE = 0.25
 #: Stages in which the kernel works on what the file says, and how many times the limit of reading each may take.
 LIMITED = {"read": 1.0, "measure": 5.0, "sew": 5.0, "orient": 5.0, "fixtures": 5.0, "sample": 5.0, "tessellate": 5.0,
            "write": 5.0}  # fmt: skip
@@ -36,30 +34,6 @@ _WORK = {"measure": "measuring of faces", "sew": "sewing", "orient": "search for
          "sample": "sampling", "tessellate": "tessellation", "write": "splitting and writing"}  # fmt: skip
 #: Of these, how many times the limit of reading one face may take, in processor time. Samples may be asked for by the million.
 A_FACE = {"measure": 0.25, "sample": 1.0, "tessellate": 0.25}
-
-
-def can_supervise() -> bool:
-    """Whether this system lets one process hand a pipe to another and end it with all its copies (not Windows)."""
-    return hasattr(os, "killpg") and hasattr(os, "sysconf")
-
-
-def is_child() -> bool:
-    """Whether this process was started by `supervise`."""
-    return REPORT in os.environ
-
-
-def began() -> float:
-    """When the command began, as `time.monotonic()` counts, which does so alike in all processes that there are parents of.
-
-    Where the system does not tell, it is what the processor has spent on this process ago, or longer.
-    """
-    if is_child():
-        return float(os.environ[BEGAN])
-    age = time.process_time()
-    with contextlib.suppress(OSError, ValueError, AttributeError, IndexError):  # only Linux has all of it
-        ticks = int(Path("/proc/self/stat").read_text().rpartition(")")[2].split()[19])
-        age = max(age, time.clock_gettime(time.CLOCK_BOOTTIME) - ticks / os.sysconf("SC_CLK_TCK"))
-    return time.monotonic() - age
 
 
 def limit_memory() -> None:
@@ -151,10 +125,12 @@ class Display(Protocol):
 
 
 def supervise(
-    words: Sequence[str], *, read_timeout: float, memory: int, display: Display | None = None,
-    more: Mapping[str, str] | None = None,
+    words: Sequence[str], *, read_timeout: float = math.inf, memory: int | None = None, display: Display | None = None,
+    entry: str = "plan_cutters", more: Mapping[str, str] | None = None,
 ) -> int:  # fmt: skip
-    """Run the command in a child.
+    """Run a command in a child.
+
+    An interrupt, a request to end or a closed terminal ends it within GRACE, whatever it is doing.
 
     Parameters
     ----------
@@ -162,10 +138,12 @@ def supervise(
         Its arguments.
     read_timeout : float
         Seconds that reading one part may take; the limits of later stages follow from it.
-    memory : int
+    memory : int, optional
         Bytes of address space that the child may use.
     display : Display, optional
         Told what the child tells.
+    entry : str
+        The command's function in `entry`.
     more : mapping, optional
         More environment variables of the child.
 
@@ -179,55 +157,55 @@ def supervise(
     Supervised
         It crashed or was stopped; `Stuck` where this was at a face.
     """
-    here, there = os.pipe()
-    environment = {**os.environ, REPORT: str(there), MEMORY: str(memory), BEGAN: str(began()), **(more or {})}
-    watch = _Watch(here, read_timeout, display)
-    child: subprocess.Popen[bytes] | None = None
+    watch = _Watch(read_timeout, display)
+    child: Worker | None = None
     asked: list[int] = []
 
     def stop(number: int, _: object) -> None:
-        # Ask once; a child that has not begun, or is deep in the kernel when asked again, has nothing to tidy itself.
+        # Ask once; a child that has not begun, or is asked again, has nothing to tidy that this process does not.
         asked.append(number)
         if child is not None and (len(asked) > 1 or watch.stage == "start"):
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(child.pid, signal.SIGKILL)
+            child.kill()
         elif child is not None:
-            child.send_signal(signal.SIGINT)
+            child.process.send_signal(signal.SIGINT)
+            # The system's timer, for this process may be waiting for its reader just now.
+            signal.setitimer(signal.ITIMER_REAL, GRACE)
 
     previous = {number: signal.signal(number, stop) for number in _stopping()}
+    previous[signal.SIGALRM] = signal.signal(signal.SIGALRM, lambda *_: None if child is None else child.kill())
     try:
-        # A session of its own: an interrupt from the terminal reaches the child once, through us.
-        child = subprocess.Popen([sys.executable, "-m", "plan_cutters", *words], env=environment, pass_fds=(there,),
-                                 start_new_session=True)  # fmt: skip
-        watch.child = child.pid
+        child = (None if more else early(words)) or Worker(words, entry, memory, more=more)
+        watch.pipe, watch.child = child.here, child.process.pid
         if asked:  # before there was anyone to tell
             raise KeyboardInterrupt
-        os.close(there)
-        while child.poll() is None:
+        child.begin(memory)
+        while child.process.poll() is None:
             watch.listen(0.2)
             if watch.over:  # neither the child nor a copy of it holds the other end: it has ended, or is about to
                 with contextlib.suppress(subprocess.TimeoutExpired):
-                    child.wait(0.2)
+                    child.process.wait(0.2)
             if watch.late():
                 raise watch.ended(*watch.verdict())
             if display is not None:
                 display.tick()
     finally:
         if child is not None:
-            _end(child)
-        # What it said last counts, too: a folder is named before it exists.
-        watch.listen(0.0)
+            child.end()
+            # What it said last counts, too: a folder is named before it exists.
+            watch.listen(0.0)
+            os.close(child.here)
         watch.clear()
-        os.close(here)
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
         for number, handler in previous.items():
             signal.signal(number, handler)
-    if child.returncode >= 0:
-        return child.returncode
+    code = child.process.returncode
+    if code >= 0:
+        return code
     if asked and watch.safe is None:
         raise KeyboardInterrupt
     if asked:
         raise watch.ended("interrupted", "", interrupted=True)
-    name = signal.Signals(-child.returncode).name
+    name = signal.Signals(-code).name
     if name != "SIGKILL":  # which comes from outside
         watch.why = f"the CAD kernel crashed ({name}) at its {_WORK.get(watch.stage, watch.stage)}"
     at = " ".join(filter(None, (watch.stage, watch.face)))
@@ -243,13 +221,6 @@ def _stopping() -> list[int]:
     return [int(number) for number in found]
 
 
-def _end(child: "subprocess.Popen[bytes]") -> None:
-    """Kill the child and the copies that it has made of itself for the kernel: a session of its own."""
-    with contextlib.suppress(ProcessLookupError):
-        os.killpg(child.pid, signal.SIGKILL)
-    child.wait()
-
-
 def _processor(child: int | None) -> float:
     """Processor seconds that a process has used, without its children; 0 where the system does not tell (only Linux does)."""
     try:
@@ -262,8 +233,8 @@ def _processor(child: int | None) -> float:
 class _Watch:
     """What the child has told so far."""
 
-    def __init__(self, pipe: int, read_timeout: float, display: Display | None = None) -> None:
-        self.pipe, self.read_timeout, self.display = pipe, read_timeout, display
+    def __init__(self, read_timeout: float, display: Display | None = None) -> None:
+        self.pipe, self.read_timeout, self.display = -1, read_timeout, display
         self.part, self.stage, self.since = "part", "start", time.monotonic()
         self.work, self.spent, self.why = "", 0.0, ""
         self.child: int | None = None
@@ -362,4 +333,6 @@ class _Watch:
             if folder.endswith(".lock"):
                 sweep(Path(folder))
             else:
-                shutil.rmtree(Path(folder), ignore_errors=True)
+                with contextlib.suppress(OSError):
+                    Path(folder).unlink()
+                shutil.rmtree(folder, ignore_errors=True)

@@ -4,6 +4,8 @@ import contextlib
 import errno
 import json
 import os
+import re
+import shutil
 import socket
 from collections.abc import Callable
 from datetime import UTC, datetime
@@ -34,6 +36,8 @@ class Lock:
         The folder; it need not be there.
     named : callable, optional
         Told the lock's file before it exists.
+    staging : Path, optional
+        The folder beside it that its owner is about to make, which goes with it: the one of an owner that was killed is removed.
 
     Raises
     ------
@@ -43,8 +47,8 @@ class Lock:
         The file cannot be written.
     """
 
-    def __init__(self, out: Path, named: Callable[[Path], None] = lambda _: None) -> None:
-        self.file, self._handle = lock_of(out), -1
+    def __init__(self, out: Path, named: Callable[[Path], None] = lambda _: None, staging: Path | None = None) -> None:
+        self.file, self._handle, self._staging = lock_of(out), -1, staging
         named(self.file)
         while self._handle < 0:
             self._handle = self._taken(out)
@@ -86,10 +90,14 @@ class Lock:
             if not _stands(handle, self.file):
                 os.close(handle)
                 return -1
-            if not made and _said(self.file).get("host", socket.gethostname()) != socket.gethostname():
+            before = {} if made else _said(self.file)
+            if before.get("host", socket.gethostname()) != socket.gethostname():
                 raise _busy(out, self.file, alive=False)
+            _discard(out, before.get("staging"))
             since = datetime.now(UTC).isoformat(timespec="seconds")
             text = {"host": socket.gethostname(), "pid": os.getpid(), "since": since}
+            if self._staging is not None:
+                text["staging"] = str(self._staging)
             os.ftruncate(handle, 0)
             os.write(handle, (json.dumps(text) + "\n").encode())
         except OSError:
@@ -122,6 +130,15 @@ def sweep(file: Path) -> None:
                 file.unlink()
         finally:
             os.close(handle)
+
+
+def _discard(out: Path, staging: object) -> None:
+    """Remove the folder in which the files of a run that was killed grew; nothing but such a folder of this output."""
+    if not isinstance(staging, str):
+        return
+    folder, name = Path(staging), re.compile(rf"\.{re.escape(out.name)}-[0-9a-f]{{8}}")
+    if folder.parent == out.absolute().parent and name.fullmatch(folder.name) and not folder.is_symlink():
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _locked(handle: int) -> bool | None:

@@ -78,7 +78,7 @@ class Staging:
             if out.exists() and not out.is_dir():
                 raise PlanError("the output must be a folder, this is a file; give another with -o", file=str(out))
             out.absolute().parent.mkdir(parents=True, exist_ok=True)
-            self._lock = Lock(out, named)
+            self._lock = Lock(out, named, self.folder)
         except OSError as error:
             raise _unwritable(out, error) from None
         try:

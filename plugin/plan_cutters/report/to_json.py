@@ -3,22 +3,27 @@
 import json
 import os
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from plan_cutters.document.model import Plan
 from plan_cutters.errors import PlanError
+
+if TYPE_CHECKING:
+    # The model takes a second to load: who says why a run was ended has not got that.
+    from plan_cutters.document.model import Plan
 
 #: Why a file is missing while it is being made: what stays in the plan if the run is ended then.
 PENDING = "the run ended before it was written"
 
 
-def dumps(plan: Plan) -> str:
+def dumps(plan: "Plan") -> str:
     """The plan's text; the same plan gives the same bytes."""
     return plan.model_dump_json(indent=2) + "\n"
 
 
 def schema() -> dict[str, Any]:
     """JSON Schema of the plan file (draft 2020-12), made from the model."""
+    from plan_cutters.document.model import Plan
+
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         **Plan.model_json_schema(mode="serialization"),
@@ -29,11 +34,15 @@ def schema_text() -> str:
     return json.dumps(schema(), indent=2) + "\n"
 
 
-def write_plan(plan: Plan, path: Path) -> None:
+def write_plan(plan: "Plan", path: Path) -> None:
     """Write the plan, whole or not at all."""
+    _write(dumps(plan), path)
+
+
+def _write(text: str, path: Path) -> None:
     aside = path.with_name(f".{path.name}.part")
     try:
-        aside.write_text(dumps(plan), encoding="utf-8")
+        aside.write_text(text, encoding="utf-8")
         os.replace(aside, path)
     except OSError as error:
         aside.unlink(missing_ok=True)
@@ -54,12 +63,15 @@ def listed(path: Path) -> dict[str, str] | None:
 def explain(path: Path, cause: str) -> tuple[str, ...]:
     """Say in a plan file why its pending files were never written; their formats."""
     try:
-        plan = Plan.model_validate_json(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        plan = json.loads(path.read_text(encoding="utf-8"))
+        if plan["format"] != "plan-cutters-plan":
+            return ()
+        pending = tuple(name for name, why in plan["not_written"].items() if why == PENDING)
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):
         return ()
-    pending = tuple(name for name, why in plan.not_written.items() if why == PENDING)
     if pending:
-        write_plan(plan.model_copy(update={"not_written": plan.not_written | dict.fromkeys(pending, cause)}), path)
+        plan["not_written"] |= dict.fromkeys(pending, cause)
+        _write(json.dumps(plan, indent=2, ensure_ascii=False) + "\n", path)
     return pending
 
 

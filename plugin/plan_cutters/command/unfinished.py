@@ -1,0 +1,25 @@
+"""What is said when models could not be made to an end; loads next to nothing, for an interrupted command ends at once."""
+
+from typing import Any
+
+from plan_cutters.command import terminal
+from plan_cutters.command.codes import UNREADABLE
+from plan_cutters.command.stopped import Unfinished
+from plan_cutters.command.worker import INTERRUPTED
+
+
+def without_models(stopped: Unfinished, given: dict[str, Any]) -> int:
+    """The plan was safe when the process that made it was ended: say what is missing; its exit code stands."""
+    from plan_cutters.report import PLAN, file_name
+    from plan_cutters.report.folder import ended
+
+    path = stopped.out / PLAN
+    missing = ", ".join(map(file_name, ended(stopped.out, str(stopped)))) or "a model"
+    terminal.error(f"plan-cutters: {missing} in {stopped.out}: not written: {stopped}")
+    if given["json_out"] == "-" and path.is_file():
+        terminal.hand_out(path.read_text(encoding="utf-8"))
+    left = given["parts"][stopped.parts :]
+    if left and stopped.code != INTERRUPTED:
+        terminal.error(f"plan-cutters: not planned: {', '.join(left)}")
+        return max(stopped.code, UNREADABLE)
+    return stopped.code
