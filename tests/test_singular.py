@@ -72,7 +72,7 @@ def points_by_the_arc(draw):
 
 
 @given(points_by_the_arc(), near(0.0, RIGHT, RIGHT / 2))
-@settings(max_examples=1000, deadline=None)
+@settings(max_examples=400, deadline=None)
 def test_an_arc_is_where_the_point_is_inside(case, tilt):
     radius, length, s, (x, y, z) = case
     assume(s < length / 2)
@@ -170,7 +170,7 @@ def test_an_umbilic_gouges_alike_at_every_rotation(kappa, rotation):
 @given(n=near(0.0, RIGHT, math.pi), f=near(0.0, RIGHT, math.pi), m=near(0.0, RIGHT, math.pi),
        limit=st.sampled_from([0.0, 1e-9, 1e-4, 0.5, RIGHT, 2.0, math.pi - 1e-9]) | st.floats(0, 3.14))  # fmt: skip
 @example(n=0.0, f=0.0, m=0.0, limit=0.0)
-@settings(max_examples=600, deadline=None)
+@settings(max_examples=300, deadline=None)
 def test_axis_arcs_by_the_angle_itself(n, f, m, limit):
     """Setup axis along the normal, along the lean, across both, opposite; a cone that just touches the great circle."""
     normal, first = np.array([math.cos(n), math.sin(n), 0.0]), np.array([-math.sin(n), math.cos(n), 0.0])
