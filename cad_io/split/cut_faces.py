@@ -50,14 +50,14 @@ class Found:
         Number of a face that is cut -> label of each piece, and how many of its known nodes have which label.
     failed : dict
         Number -> why a face was not cut.
-    specks, joined : dict
-        Number -> nodes that were islands of one node; slivers that went to the label around them.
+    missed, joined : dict
+        Number -> nodes that have no piece of their label; slivers that went to the label around them.
     """
 
     faces: dict[int, list[Any]] = field(default_factory=dict)
     labels: dict[int, list[tuple[int, dict[int, int]]]] = field(default_factory=dict)
     failed: dict[int, str] = field(default_factory=dict)
-    specks: dict[int, int] = field(default_factory=dict)
+    missed: dict[int, int] = field(default_factory=dict)
     joined: dict[int, int] = field(default_factory=dict)
 
 
@@ -160,12 +160,9 @@ def _answer(
     for number, mine in labels.items():
         watch.works_on({number})
         try:
-            drawing = drawings[number] = Drawing(faces[number], surface_of(number), mine)
+            drawings[number] = Drawing(faces[number], surface_of(number), mine)
         except Exception as error:
             found.failed[number] = in_words(error)
-            continue
-        if drawing.specks:
-            found.specks[number] = drawing.specks
     watch.works_on(set(drawings))
     for drawing, lines in zip(drawings.values(), smoothed([d.grid for d in drawings.values()]), strict=True):
         drawing.lines = lines
@@ -177,6 +174,7 @@ def _answer(
     net = Net(base, lambda i: surface_of(numbers[i - 1]))
     attempt = _settled(attempt_at, net, faces, drawings, worst, watch, found)
     found.labels = {n: [(part.label, part.counts) for part in d.parts] for n, d in drawings.items()}
+    found.missed = {n: d.missed for n, d in drawings.items() if d.missed}
     found.joined = {n: d.joined for n, d in drawings.items() if d.joined}
     return pickle.dumps((attempt.packed(), found))
 

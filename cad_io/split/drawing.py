@@ -28,7 +28,7 @@ class Drawing:
     face : TopoDS_Face
     surface : Surface
         The face's own.
-    grid, known, specks
+    grid, known
         As of `label_grid`.
     lines : list of Line
         Along the boundaries of the labels; to be set before `plan`.
@@ -37,16 +37,18 @@ class Drawing:
         One for each piece.
     joined : int
         Slivers that went to the label around them.
+    missed : int
+        Nodes that have no piece of their label.
     fault : str
         Why the curves tried last are no good.
     """
 
     def __init__(self, face: Any, surface: Surface, labels: FaceLabels) -> None:
         self.number, self.face, self.surface = labels.face, face, surface
-        self.grid, self.known, self.specks = label_grid(face, labels)
+        self.grid, self.known, self._specks = label_grid(face, labels)
         self.lines: list[Line] = []
         self.parts: list[Judged] = []
-        self.joined = 0
+        self.joined = self.missed = 0
         self._border: Border | None = None
         self.fault = ""
         self._tried = 0
@@ -86,6 +88,9 @@ class Drawing:
         self.found = Arrangement(border, curves(self.grid, self.lines, fit), at_end)
         regions = regions_of(self.found)
         self.parts = judged(regions, border.scale, self.grid, self.known)
+        # Some lie next to the border, and their boundary runs outside.
+        lost = self._specks | ((self.known >= 0) & ~np.isin(self.known, [part.label for part in self.parts]))
+        self.missed = int(lost.sum())
         kept, group, self.joined = slivers(self.found, self.parts, worst)
         if self.joined:
             self.found.keep(kept)

@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from scipy.ndimage import maximum_filter
@@ -16,7 +17,7 @@ from cad_io.split.contour import REACH, LabelGrid, fill, without_specks
 _OVER = 0.25
 
 
-def label_grid(face: Any, labels: FaceLabels) -> tuple[LabelGrid, Ints, int]:
+def label_grid(face: Any, labels: FaceLabels) -> tuple[LabelGrid, Ints, NDArray[np.bool_]]:
     """Contourable grid of a face.
 
     Parameters
@@ -31,7 +32,7 @@ def label_grid(face: Any, labels: FaceLabels) -> tuple[LabelGrid, Ints, int]:
         Its field holds ranks of the labels that occur, so that absent labels make no boundary.
     known : (nu, nv) int32
         The labels at the grid's nodes, -1 where unknown.
-    dropped : int
+    dropped : (nu, nv) bool
         Known nodes that were islands of one node and went to their surroundings.
 
     Raises
@@ -86,7 +87,7 @@ def label_grid(face: Any, labels: FaceLabels) -> tuple[LabelGrid, Ints, int]:
     modes = ["wrap" if c else "nearest" for c in closed]
     on_face = (label >= 0) | inside(segments, *(line[:n] for line, n in zip(lines, label.shape, strict=True)))
     near = maximum_filter(on_face.astype(np.uint8), size=2 * REACH + 1, mode=modes) > 0
-    dropped = int(((despeckled != field) & (label >= 0)).sum())
+    dropped = (despeckled != field) & (label >= 0)
     return LabelGrid(lines[0], lines[1], despeckled, near, closed[0], closed[1]), label, dropped
 
 

@@ -54,9 +54,10 @@ class Split:
     whole : dict
         Face number -> why a face of several labels was left whole; its piece is MIXED.
     beside : dict
-        Face number -> pieces of a copy of such a face, which could be split alone: they stand beside `shape`.
+        Always empty: pieces of copies of faces left whole. What cannot be split in its place cannot be split as a copy.
     dropped : dict
-        Face number -> how many known nodes were single-node islands and got no piece of their own.
+        Face number -> how many known nodes got no piece of their label: islands of one node, and nodes so close to the
+        border that their boundary runs outside.
     labels : dict
         Face number -> the labels of a face left whole.
     joined : dict
@@ -117,7 +118,7 @@ def split(part: Any, labels: Sequence[FaceLabels], *, worst: int = -1, seconds: 
             label = MIXED if number in mixed else max(shares[number], key=lambda k: shares[number][k], default=UNKNOWN)
             pieces += [Piece(number, label, piece, shares[number]) for piece in shapes]
     left = {number: fields[number] for number in sorted(found.failed)}
-    return Split(shape, tuple(pieces), found.failed, found.specks, {}, left, found.joined)
+    return Split(shape, tuple(pieces), found.failed, found.missed, {}, left, found.joined)
 
 
 def _shares(label: Ints) -> dict[int, float]:

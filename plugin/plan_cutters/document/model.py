@@ -332,13 +332,8 @@ class SplitEntry(Frozen):
         description="split in its place; split as a copy of the face beside the part; coloured whole"
     )
     why: str | None = Field(description="why it could not be split in its place")
-    joined: int = Field(
-        default=0,
-        description="slivers (three samples at most, less than a square of the spacing) coloured as the worse one around them",
-    )
-    dropped: int = Field(
-        default=0, description="single samples without a piece of their own, coloured as what is around them"
-    )
+    joined: int = Field(default=0, description="slivers coloured as what is worse and around them")
+    dropped: int = Field(default=0, description="samples without a piece, coloured as what is around them")
 
 
 class Run(Frozen):
