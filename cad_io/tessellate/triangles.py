@@ -27,8 +27,8 @@ _COARSER = 16.0
 _UNCOVERED = 0.01
 #: Times the budget at which counting ends; how much the chord error grows at least where the budget binds.
 _TOO_MANY, _STEP = 4, 1.02
-#: Where triangles fill so much of the budget, or chord errors have been tried so often, no smaller one is looked for.
-_FILLED, _TURNS = 0.95, 5
+#: No smaller chord error is looked for where triangles fill so much of the budget, or so many have been tried; what is aimed at.
+_FILLED, _AIMED, _TURNS = 0.95, 0.98, 5
 #: Triangles of a face that are kept as they are counted; more are counted first and laid then.
 _ROOM = 1 << 19
 
@@ -150,7 +150,7 @@ def _affordable(
         if over > size:
             return finer, tried
         # Their number falls about as the chord error grows.
-        chord *= total / budget
+        chord *= total / (_AIMED * budget)
         chord = min(max(least, chord, _STEP**0.5 * over), within * _STEP**-0.5)
         tried, total = [], 0
         for each in _each(again, finer, jobs):
