@@ -90,8 +90,10 @@ def test_one_that_waits_ends_where_the_words_are_wrong(tmp_path):
     """It is ended when the command ends, and it has touched nothing."""
     mark = f"MARK_OF_START={tmp_path}"
     name, _, value = mark.partition("=")
-    done = subprocess.run([sys.executable, "-m", "plan_cutters", GROOVE, "--cutter", "R6Q"], cwd=tmp_path, env=ENV | {name: value},
-                          capture_output=True, text=True, check=False, timeout=60)  # fmt: skip
+    words = [sys.executable, "-m", "plan_cutters", GROOVE, "--cutter", "R6Q"]
+    done = subprocess.run(
+        words, cwd=tmp_path, env=ENV | {name: value}, capture_output=True, text=True, check=False, timeout=60
+    )
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1
     assert leftovers(tmp_path) == []
