@@ -121,7 +121,7 @@ def test_samples_tried_are_far_apart(count, most, seed):
 
 @pytest.fixture(scope="module")
 def valley():
-    asked = {"cutters": ["R6L60"], "grid": 41, "area_budget": 0, "rotation_step": 0.35}
+    asked = {"cutters": ["R12L100"], "grid": 31, "area_budget": 0, "rotation_step": 0.35}
     ready = prepare(SAMPLES / "peaks_and_valleys.step", Options.of(asked))
     cutter = ready.cutters[0]
     return ready, cutter, judge(ready, cutter)
