@@ -41,6 +41,7 @@ from plan_cutters.scene.prepared import Prepared
 from plan_cutters.scene.question import question
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.spacing import Spacing, default_spacing
+from plan_cutters.scene.threads import part_of
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.between import between
 from plan_cutters.stages.classify import classify, regions
@@ -267,12 +268,15 @@ def _judged(
     samples, convex, around = ready.samples, ready.surface_class == CONVEX, ready.conditions.around
     inside = ready.inside_bodies
     reasons = Reasons(samples, ready.setups, ready.finished & (ready.buried < 0))
+    told = {}
+    with clock.stage("reasons") as tell:
+        for k, (cutter, mine) in enumerate(here.items()):
+            over, which = over_setups([mine, *(found[cutter.id] for _, found in elsewhere)])
+            told[cutter] = reasons.of(cutter, over, part_of(tell, k, len(here))), which
     judged = {}
     for cutter, mine in here.items():
-        with clock.stage("reasons") as tell:
-            over, which = over_setups([mine, *(found[cutter.id] for _, found in elsewhere)])
-            explained = reasons.of(cutter, over, tell)
-            reach = explained.reach
+        explained, which = told[cutter]
+        reach = explained.reach
         with clock.stage(cutter.id, shown=False):
             slack, part = ready.conditions.light(cutter).slack, ready.scene.part
             found = witnesses(samples, reach, cutter, ready.conditions, buried=ready.buried, part=part)

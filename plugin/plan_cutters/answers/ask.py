@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
+from typing import Literal
 
 import numpy as np
 
@@ -14,15 +15,17 @@ from plan_cutters.answers.stick_out import least_stick_out
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.change import Mend
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.radius_map import RadiusMap
 from plan_cutters.domain.verdicts import Reach
 from plan_cutters.scene.prepared import Prepared
-from plan_cutters.scene.threads import Progress
+from plan_cutters.scene.threads import Progress, part_of
 
 Axis = tuple[float, float, float]
 Elsewhere = Sequence[tuple[Axis, Mapping[str, Reach]]]
 
 #: Of every sample the least stick-out is found to this, mm.
 STEP = 0.5
+_ENDS: tuple[Literal["flat", "ball"], ...] = ("flat", "ball")
 #: Cutters that are mended unless all are asked for: those that come nearest.
 NEAREST = 3
 
@@ -44,25 +47,28 @@ def ask(
         Of each other setup its axis, and what each cutter reaches there by its id.
     """
     asked = ready.options.answers
-    stick_outs, radius_maps, mends = {}, [], {}
+    stick_outs, mends = {}, {}
+    radius_maps: list[RadiusMap] = []
     if "stick-out" in asked or "stick-out-map" in asked:
         step = STEP if "stick-out-map" in asked else None
-        for cutter in ready.cutters:
-            with stage("stick-out") as tell:
-                stick_outs[cutter.id] = least_stick_out(ready, cutter, reaches[cutter], step=step, progress=tell)
+        with stage("stick-out") as tell:
+            for k, cutter in enumerate(ready.cutters):
+                mine = part_of(tell, k, len(ready.cutters))
+                stick_outs[cutter.id] = least_stick_out(ready, cutter, reaches[cutter], step=step, progress=mine)
     if "radius" in asked:
         with stage("radius") as tell:
-            for shape in ("flat", "ball"):
-                ratio = ready.options.length_over_radius
-                radius_maps.append(largest_radius(ready, shape, ratio=ratio, progress=tell))
+            ratio = ready.options.length_over_radius
+            radius_maps = [
+                largest_radius(ready, shape, ratio=ratio, progress=part_of(tell, k, 2)) for k, shape in enumerate(_ENDS)
+            ]
     near: list[Cutter] = []
     failing: list[Cutter] = []
     if "mend" in asked or "mend-all" in asked:
         failing = nearest(ready, reaches, elsewhere)
         near = failing if "mend-all" in asked else failing[:NEAREST]
-        for cutter in near:
-            with stage("mend") as tell:
-                mends[cutter.id] = _mended(ready, cutter, reaches, elsewhere, tell)
+        with stage("mend") as tell:
+            for k, cutter in enumerate(near):
+                mends[cutter.id] = _mended(ready, cutter, reaches, elsewhere, part_of(tell, k, len(near)))
     rest = tuple(cutter.id for cutter in failing if cutter not in near)
     return Answers(stick_outs, tuple(radius_maps), mends, rest, least_set(ready, reaches, elsewhere))
 
@@ -70,8 +76,8 @@ def ask(
 def _mended(
     ready: Prepared, cutter: Cutter, reaches: Mapping[Cutter, Reach], elsewhere: Elsewhere, tell: Progress
 ) -> Mend:  # fmt: skip
-    alone = mend(ready, cutter, reaches[cutter], progress=tell)
-    return steps(ready, alone, cutter, reaches, elsewhere, progress=tell)
+    alone = mend(ready, cutter, reaches[cutter], progress=part_of(tell, 0, 2))
+    return steps(ready, alone, cutter, reaches, elsewhere, progress=part_of(tell, 1, 2))
 
 
 def nearest(ready: Prepared, reaches: Mapping[Cutter, Reach], elsewhere: Elsewhere) -> list[Cutter]:

@@ -10,6 +10,23 @@ from numpy.typing import NDArray
 CHUNK = 512
 
 Progress = Callable[[int, int], None]
+#: Steps in which the progress of a part of some work is told.
+_STEPS = 1000
+
+
+def part_of(tell: Progress, part: int, parts: int) -> Progress:
+    """Tell the progress of one of several like parts of some work as that of all of it.
+
+    >>> told = []
+    >>> part_of(lambda done, total: told.append(done / total), 1, 4)(1, 2)
+    >>> told
+    [0.375]
+    """
+
+    def told(done: int, total: int) -> None:
+        tell(_STEPS * part + _STEPS * done // max(1, total), _STEPS * parts)
+
+    return told
 
 
 def in_chunks(
