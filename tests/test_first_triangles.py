@@ -6,15 +6,21 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+import shapely
 from cad_parts import as_nurbs, ball, box, compound, patch, pocketed, real, ring, spring
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from OCP.BRep import BRep_Builder, BRep_Tool
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire
+from OCP.BRepBuilderAPI import (
+    BRepBuilderAPI_MakeEdge,
+    BRepBuilderAPI_MakeFace,
+    BRepBuilderAPI_MakePolygon,
+    BRepBuilderAPI_MakeWire,
+)
 from OCP.BRepLib import BRepLib
 from OCP.GCE2d import GCE2d_MakeSegment
 from OCP.Geom2d import Geom2d_Circle
-from OCP.gp import gp_Ax22d, gp_Dir2d, gp_Pnt2d
+from OCP.gp import gp_Ax22d, gp_Dir2d, gp_Pln, gp_Pnt, gp_Pnt2d
 from OCP.IGESControl import IGESControl_Writer
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
@@ -308,3 +314,23 @@ def test_a_face_without_a_border_is_left_to_the_mesher():
     BRep_Builder().NaturalRestriction(bare, False)
     part = read_part(compound(box(), bare))
     assert start.own_start(part, 7, 0.1) is None
+
+
+@pytest.mark.parametrize("corners", [
+    [(0, 0), (10, 10), (10, 0), (0, 10)],  # crosses itself
+    [(0, 0), (10, 0), (10, 10), (5, 10), (5, 15), (5, 10), (0, 10)],  # runs out and back along itself
+    [(0, 0), (10, 0), (10, 10), (6, 10), (5, 0), (4, 10), (0, 10)],  # touches itself with a corner
+])  # fmt: skip
+def test_a_border_that_crosses_or_touches_itself_is_filled_by_the_even_odd_rule(corners):
+    wire = BRepBuilderAPI_MakePolygon()
+    for x, y in corners:
+        wire.Add(gp_Pnt(x, y, 0))
+    wire.Close()
+    part = read_part(BRepBuilderAPI_MakeFace(gp_Pln(), wire.Wire()).Face())
+    found = start.own_start(part, 1, 0.1)
+    assert found is not None
+    ring = np.array([*corners, corners[0]], float)
+    enclosed = shapely.build_area(shapely.node(shapely.linestrings(ring)))
+    covered = shapely.union_all(shapely.polygons(found.uv[found.corner]))
+    assert covered.symmetric_difference(enclosed).area == pytest.approx(0.0, abs=1e-9)
+    assert shapely.area(shapely.polygons(found.uv[found.corner])).sum() == pytest.approx(enclosed.area)

@@ -4,11 +4,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from OCP.GeomAbs import GeomAbs_C2, GeomAbs_Line
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopoDS import TopoDS, TopoDS_Face
+from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, Ints
 from cad_io.face.trim import continuing
@@ -17,6 +19,8 @@ from cad_io.tessellate.planar import places
 
 #: Chords of a bent border curve, at least; how often one is halved, at most.
 _CHORDS, _HALVINGS = 4, 14
+#: A node so near to a chord is on it: a share of the border's extent.
+_MET = 1e-12
 #: Shares of a chord at which a curve is held against it.
 _TRIED = (0.25, 0.5, 0.75)
 
@@ -106,6 +110,39 @@ def joined(sampled: Sequence[Sampled], scale: Floats) -> Outline:
     first, row = places(at)
     ends = np.cumsum([len(each.parameter) for each in sampled])
     return Outline(at[first], tuple(np.split(row.astype(np.int32), ends[:-1])), tuple(sampled))
+
+
+def cut_where_they_meet(outline: Outline) -> Outline:
+    """The outline with nodes where its chords meet each other: for a border that crosses or touches itself, or runs along itself.
+
+    A new node lies on the chord, at the parameter that is as far along; the curve may pass beside it.
+    """
+    ends = np.concatenate([np.stack([each[:-1], each[1:]], axis=1) for each in outline.nodes])
+    lines = shapely.linestrings(outline.uv[ends])
+    near = _MET * float(np.ptp(outline.uv, axis=0).max())
+    met = shapely.get_coordinates(shapely.union_all(lines))
+    known = cKDTree(outline.uv)
+    met = np.unique(met[known.query(met)[0] > near], axis=0)
+    nodes = np.concatenate([outline.uv, met])
+    row, chord = shapely.STRtree(lines).query(shapely.points(nodes), predicate="dwithin", distance=near)
+    apart = (row != ends[chord, 0]) & (row != ends[chord, 1])
+    row, chord = row[apart], chord[apart]
+    start, step = nodes[ends[chord, 0]], nodes[ends[chord, 1]] - nodes[ends[chord, 0]]
+    share = ((nodes[row] - start) * step).sum(axis=1) / (step * step).sum(axis=1)
+    within = (share > 0.0) & (share < 1.0)
+    row, chord, share = row[within], chord[within], share[within]
+    order = np.lexsort((share, chord))
+    row, chord, share = row[order], chord[order], share[order]
+    found, first = [], 0
+    for mine, each in zip(outline.nodes, outline.uses, strict=True):
+        here = (chord >= first) & (chord < first + len(mine) - 1)
+        at = chord[here] - first
+        t = each.parameter
+        t = np.insert(t, at + 1, t[at] + share[here] * (t[at + 1] - t[at]))
+        on_curve = np.array([each.use.curve.Value(x).Coord() for x in t.tolist()])
+        found.append((np.insert(mine, at + 1, row[here]), Sampled(each.use, t, on_curve)))
+        first += len(mine) - 1
+    return Outline(nodes, tuple(mine for mine, _ in found), tuple(each for _, each in found))
 
 
 def _sampled(use: Use, steps: Steps, most: int) -> Sampled:

@@ -4,7 +4,7 @@ Ours are cells of a grid as fine as the surface bends, and between them and the 
 triangulation. Nothing in it can run for ever.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 import shapely
@@ -16,7 +16,7 @@ from cad_io.kernel.limited import TimeLimit
 from cad_io.part import Part
 from cad_io.surface import Surface
 from cad_io.tessellate.mesh import BorderCurve, UVMesh, bordered, kernel_start
-from cad_io.tessellate.outline import Outline, Steps, Use, outline_of, uses_of
+from cad_io.tessellate.outline import Outline, Steps, Use, cut_where_they_meet, outline_of, uses_of
 from cad_io.tessellate.planar import cells, odd, triangulated
 
 #: Places each way where bends are looked at, to lay out a grid.
@@ -34,6 +34,8 @@ _TURNS = 60  # of a search for a place on a curve
 
 #: What the kernel's mesher is asked for: rad, and that once more, finer, where it makes nothing.
 _ANGLE, _FINER = 0.5, 0.02
+#: How much more area than a face's its triangles may have in the parameter plane.
+_TOO_LARGE = 1.1
 #: Processor time of the kernel's mesher, s: for a face, and for all.
 _SECONDS, _TOTAL = 5.0, 20.0
 
@@ -79,10 +81,21 @@ def starts(
 
 def _second(part: Part, number: int, chord: float, seconds: float) -> tuple[UVMesh | None, float]:
     mesh, spent = kernel_start(part, number, chord, _ANGLE, seconds)
-    if mesh is not None:
+    if mesh is not None and _fits(mesh, part.trim(number)):
         return mesh, spent
     mesh, more = kernel_start(part, number, _FINER * chord, 0.2 * _ANGLE, seconds)
-    return mesh, spent + more
+    return mesh if mesh is not None and _fits(mesh, part.trim(number)) else None, spent + more
+
+
+def _fits(mesh: UVMesh, trim: Trim | None) -> bool:
+    """Whether triangles have no more area in the parameter plane than the trim: where borders cross themselves, the kernel's
+    mesher may cover something else than what they enclose. Whether they have less is asked of the finished triangles."""
+    if trim is None:
+        return True
+    p, q = trim.segments[:, 0], trim.segments[:, 1]
+    a, b, c = np.moveaxis(mesh.uv[mesh.corner], 1, 0)
+    (ab, ac), within = (b - a, c - a), abs(float((p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]).sum()))
+    return float(np.abs(ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]).sum()) <= _TOO_LARGE * within
 
 
 def expected(part: Part, numbers: Sequence[int], chord: float) -> float:
@@ -130,15 +143,22 @@ def _own_start(part: Part, number: int, chord: float) -> UVMesh | None:
         mesh = _on_grid(surface, trim, uses, (lines[0], lines[1]))
         if mesh is not None:
             return mesh
-    for _ in range(_TIMES):
-        outline = outline_of(uses, steps, _NODES)
-        if outline is None:
-            return None
+    for outline in _outlines(uses, steps):
         filled = triangulated(outline.uv, outline.chords, (lines[0], lines[1]), _metric(bend, trim, lines))
         if filled is not None:
             return _finished(outline, *filled, surface)
-        steps = steps._replace(sag=steps.sag / _NEARER)
     return None
+
+
+def _outlines(uses: Sequence[Use], steps: Steps) -> Iterator[Outline]:
+    """The border as chords, nearer and nearer to it, for they may cross where it does not; then cut where they meet."""
+    for time in range(_TIMES):
+        outline = outline_of(uses, steps._replace(sag=steps.sag / _NEARER**time), _NODES)
+        if outline is None:
+            break
+        yield outline
+    if (outline := outline_of(uses, steps, _NODES)) is not None:
+        yield cut_where_they_meet(outline)
 
 
 def _density(surface: Surface, trim: Trim) -> tuple[Floats, Floats] | None:
