@@ -104,26 +104,43 @@ def _command(command, words, cwd, environment, streams, bare):
         for name in [n for n in sys.modules if n.partition(".")[0] in ("plan_cutters", "cad_io", "OCP", "numba")]:
             del sys.modules[name]
         sys.modules["OCP"] = sys.modules["numba"] = subprocess.Popen = None
-    supervise = importlib.import_module("plan_cutters.command.supervise")
+    worker = importlib.import_module("plan_cutters.command.worker")
     if not bare:
-        supervise.subprocess = SimpleNamespace(**{**vars(subprocess), "Popen": _worker})
-    importlib.import_module(f"plan_cutters.command.{MODULES[command]}").main()
+        worker.subprocess = SimpleNamespace(**{**vars(subprocess), "Popen": _worker})
+    entry = importlib.import_module("plan_cutters.command.entry")
+    vars(entry)[next(name for name, each in _ENTRIES.items() if each == command)]()
 
 
-def _worker(words, *, env, start_new_session=False, **more):
-    """Start the command's worker: a copy of this process where it would start the same program anew."""
-    if words[:3] != [sys.executable, "-m", "plan_cutters"]:
-        return subprocess.Popen(words, env=env, start_new_session=start_new_session, **more)
+_ENTRIES = {
+    "plan_cutters": "plan-cutters",
+    "tools": "plan-cutters-tools",
+    "machines": "plan-cutters-machines",
+    "point_map": "plan-cutters-map",
+}
+
+
+def _worker(words, *, env, start_new_session, pass_fds):
+    """Start the command's worker: a copy of this process in place of a new interpreter that calls the same entry."""
+    python, option, run, *words = words
+    name = run.partition(" import ")[2].partition(";")[0]
+    assert (python, option) == (sys.executable, "-c"), "the worker is started in another way: copy that"
+    assert run == f"from plan_cutters.command.entry import {name}; {name}()"
 
     def work():
         if start_new_session:
             os.setsid()
+        # Who waits for the end of a pipe must not wait for this copy.
+        first = 3
+        for number in sorted(pass_fds):
+            os.closerange(first, number)
+            first = number + 1
+        os.closerange(first, 1 << 12)
         for number in (signal.SIGTERM, signal.SIGHUP):
             signal.signal(number, signal.SIG_DFL)
         os.environ.clear()
         os.environ.update(env)
-        sys.argv = list(words[2:])
-        importlib.import_module("plan_cutters.command.cli").main(words[3:])
+        sys.argv = [_ENTRIES[name], *words]
+        vars(importlib.import_module("plan_cutters.command.entry"))[name]()
 
     pid = os.fork()
     if pid == 0:
