@@ -6,11 +6,14 @@ with. A distance is never told too small, so that what is not understood stays a
 the work is bounded by the number of pieces and of ends that lie next to each other.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats
@@ -123,7 +126,7 @@ def _cuts(curves: Curves, table: _Table, alone: NDArray[np.bool_], tolerance: fl
         raise TooMany
     balls = tree.query_ball_point(middle, radius, return_sorted=False)
     many = np.array([len(ball) for ball in balls], np.intp)
-    node = np.concatenate([np.asarray(ball, np.intp) for ball in balls])
+    node = np.fromiter(chain.from_iterable(balls), np.intp, int(many.sum()))
     chord, piece, bulge = (np.repeat(x, many) for x in (chord, piece, radius - 0.5 * np.linalg.norm(b - a, axis=1)))
     other = node // 2 != piece
     node, chord, piece, bulge = node[other], chord[other], piece[other], bulge[other]
@@ -184,7 +187,9 @@ def _joined(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group], t
     for k in order.tolist():
         allowed.setdefault((int(i[k]), int(j[k])), set()).add(int(way[k]))
     owner = list(range(len(groups)))
-    members = [np.flatnonzero(table.group == g).tolist() for g in range(len(groups))]
+    members: list[list[int]] = [[] for _ in groups]
+    for m, g in enumerate(table.group.tolist()):
+        members[g].append(m)
     ways = [list(group.way) for group in groups]
     for k in order.tolist():
         p, q, same = int(i[k]), int(j[k]), int(way[k])
@@ -196,8 +201,9 @@ def _joined(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group], t
                for a, w in zip(members[g], ways[g], strict=True) for b, v in zip(members[h], ways[h], strict=True)):  # fmt: skip
             members[g] += members[h]
             ways[g] += [turn * v for v in ways[h]]
+            for m in members[h]:
+                owner[table.group[m]] = g
             members[h], ways[h] = [], []
-            owner = [g if x == h else x for x in owner]
     pieces = [piece for group in groups for piece in group.pieces]
     return [Group(tuple(pieces[m] for m in mine), tuple(way))
             for mine, way in zip(members, ways, strict=True) if mine]  # fmt: skip
@@ -268,6 +274,35 @@ class _Tubes:
         line = curves.at(np.full(65, edge), inner)[0]
         gap = float(np.linalg.norm(np.diff(line, axis=0), axis=1).max())
         return bool(cKDTree(line).query(points)[0].max() > gap + _AWAY * tolerance)
+
+
+def points(curves: Curves, faces: list[tuple[int, ...]], groups: Sequence[Group], tolerance: float) -> list[Group]:
+    """Groups that are no more than a point within a tolerance, but for their faces' only edges.
+
+    What one face has alone is a point together with all such pieces that go on at its ends: of a hole made of short pieces, each
+    would be one.
+    """
+    short = []
+    for group in groups:
+        if len(group.pieces) == 1 and len(faces[group.pieces[0].edge]) == 1 and curves.drawn[group.pieces[0].edge]:
+            short.append(group)
+    table = _Table.of(short)
+    small = np.flatnonzero(table.lengths(curves) <= tolerance)
+    if not len(small):
+        return []
+    ends = table.ends(curves).reshape(-1, 2, 3)[small]
+    tree = cKDTree(ends.reshape(-1, 3))
+    if tree.count_neighbors(tree, tolerance) > 2 * MOST_NEIGHBOURS:
+        raise TooMany
+    pairs = tree.query_pairs(tolerance, output_type="ndarray") // 2
+    chains = coo_array((np.ones(len(pairs), np.int8), pairs.T), shape=(len(small), len(small)))
+    label = connected_components(chains, directed=False)[1]
+    found = []
+    for which in range(int(label.max()) + 1):
+        mine = label == which
+        if np.linalg.norm(np.ptp(ends[mine].reshape(-1, 3), axis=0)) <= tolerance:
+            found += [short[k] for k in small[mine].tolist()]
+    return found
 
 
 def _whole(groups: list[Group]) -> Iterator[Group]:

@@ -33,8 +33,9 @@ _LEAST = 9
 
 
 def on_common_edges(
-    shapes: Sequence[TopoDS_Face], sources: Sequence[Use], curves: Curves, groups: Sequence[Group], tolerance: float
-) -> list[TopoDS_Face]:
+    shapes: Sequence[TopoDS_Face], sources: Sequence[Use], curves: Curves, groups: Sequence[Group], gone: Sequence[Piece],
+    tolerance: float,
+) -> list[TopoDS_Face]:  # fmt: skip
     """Faces that use one edge for each group of pieces.
 
     Parameters
@@ -46,48 +47,93 @@ def on_common_edges(
         Of these edges.
     groups : sequence of Group
         All of them.
+    gone : sequence of Piece
+        What is left out of its face.
     tolerance : float
         How far the pieces of one group may be apart, mm.
     """
     parts: dict[int, list[Part]] = {}
-    for group in groups:
-        first = group.pieces[0]
-        drawn, low, high = curves.drawn[first.edge], curves.low[first.edge], curves.high[first.edge]
-        if len(group.pieces) > 1 or (drawn and (first.low > low or first.high < high)):
-            edge = _common(shapes, sources, curves, group, tolerance)
-            for piece, way in zip(group.pieces, group.way, strict=True):
-                parts.setdefault(piece.edge, []).append((piece.low, edge, way))
+    changed_groups = [group for group in groups if len(group.pieces) > 1 or _cut(curves, group)]
+    fits = iter(_fits(curves, changed_groups))
+    for group in changed_groups:
+        edge = _common(sources[group.pieces[0].edge][0], group.pieces[0], tolerance)
+        for number, (piece, way) in enumerate(zip(group.pieces, group.way, strict=True)):
+            parts.setdefault(piece.edge, []).append((piece.low, edge, way))
+            if number:
+                source, uses = sources[piece.edge]
+                fit = next(fits)
+                for face, _ in uses:
+                    _lie_on(edge, shapes[face], fit, source)
+    for piece in gone:
+        parts.setdefault(piece.edge, [])
     index = TopTools_IndexedMapOfShape()
     instead = {index.Add(sources[place][0]): sorted(found, key=lambda x: x[0]) for place, found in parts.items()}
     changed = {face for place in parts for face, _ in sources[place][1]}
     return [_rebuilt(shape, index, instead) if i in changed else shape for i, shape in enumerate(shapes)]
 
 
-def _common(
-    shapes: Sequence[TopoDS_Face], sources: Sequence[Use], curves: Curves, group: Group, tolerance: float
-) -> TopoDS_Edge:
-    """One edge for all pieces of a group, with a line in the parameter plane of each face."""
-    builder, first = BRep_Builder(), group.pieces[0]
-    edge = TopoDS.Edge_s(sources[first.edge][0].EmptyCopied().Oriented(TopAbs_FORWARD))
-    builder.Range(edge, first.low, first.high)
-    loose = max(tolerance, BRep_Tool.Tolerance_s(edge))
-    builder.UpdateEdge(edge, loose)
-    for piece, way in zip(group.pieces[1:], group.way[1:], strict=True):
-        line = _Fit.of(curves, first, piece, way)
-        source, uses = sources[piece.edge]
-        for face, _ in uses:
-            fitted = line.on(source, shapes[face])
-            if fitted is not None:
-                _set(builder, edge, fitted, shapes[face], loose)
+def _cut(curves: Curves, group: Group) -> bool:
+    """Whether a group is a part of an edge."""
+    edge, low, high = group.pieces[0]
+    return bool(curves.drawn[edge] and (low > curves.low[edge] or high < curves.high[edge]))
+
+
+def _common(source: TopoDS_Edge, piece: Piece, tolerance: float) -> TopoDS_Edge:
+    """An edge along a piece of another."""
+    builder, edge = BRep_Builder(), TopoDS.Edge_s(source.EmptyCopied().Oriented(TopAbs_FORWARD))
+    builder.Range(edge, piece.low, piece.high)
+    builder.UpdateEdge(edge, max(tolerance, BRep_Tool.Tolerance_s(edge)))
     return edge
 
 
-def _set(builder: BRep_Builder, edge: TopoDS_Edge, line: Geom2d_BSplineCurve, face: TopoDS_Face, loose: float) -> None:
+def _lie_on(edge: TopoDS_Edge, face: TopoDS_Face, fit: "_Fit", source: TopoDS_Edge) -> None:
+    """Give an edge a line in the parameter plane of a face, that of the face's own edge."""
     low, high = BRep_Tool.Range_s(edge)
     # Where two faces of a group lie on one surface, the line of the first holds: it runs through the same points.
-    if BRep_Tool.CurveOnSurface_s(edge, face, low, high) is None:
-        builder.UpdateEdge(edge, line, face, loose)
+    if BRep_Tool.CurveOnSurface_s(edge, face, low, high) is not None:
+        return
+    line = fit.on(source, face)
+    if line is not None:
+        builder = BRep_Builder()
+        builder.UpdateEdge(edge, line, face, BRep_Tool.Tolerance_s(edge))
         builder.Range(edge, face, low, high)
+
+
+def _fits(curves: Curves, groups: Sequence[Group]) -> "list[_Fit]":
+    """How each piece but the first of each group runs along that first one."""
+    rows = [(group.pieces[0], piece, way) for group in groups
+            for piece, way in zip(group.pieces[1:], group.way[1:], strict=True)]  # fmt: skip
+    if not rows:
+        return []
+    spans = [curves.breaks(*first) for first, _, _ in rows]
+    spans = [t if len(t) >= _LEAST else np.linspace(t[0], t[-1], _LEAST) for t in spans]
+    counts = [len(t) for t in spans]
+    starts = np.cumsum([0, *counts])
+    t = np.concatenate(spans)
+
+    def each(values: list[float]) -> Floats:
+        return np.repeat(np.array(values, float), counts)
+
+    here = np.repeat(np.array([first.edge for first, _, _ in rows], np.intp), counts)
+    there = np.repeat(np.array([piece.edge for _, piece, _ in rows], np.intp), counts)
+    low, high = each([piece.low for _, piece, _ in rows]), each([piece.high for _, piece, _ in rows])
+    ahead = each([way for _, _, way in rows]) > 0
+    point, along = curves.at(here, t)
+    length = curves.length(here, t)
+    begin, end = np.repeat(length[starts[:-1]], counts), np.repeat(length[starts[1:] - 1], counts)
+    share = (length - begin) / (end - begin)
+    share = np.where(ahead, share, 1 - share)
+    begin, end = curves.length(there, low), curves.length(there, high)
+    guess = curves.at_length(there, begin + share * (end - begin)).clip(low, high)
+    s, _ = curves.near(there, guess, low, high, point)
+    ends = np.concatenate([starts[:-1], starts[1:] - 1])
+    s[ends] = np.where(ahead == (share < 0.5), low, high)[ends]
+    beside = curves.at(there, s)[1]
+    with np.errstate(all="ignore"):
+        speed = (along * beside).sum(axis=1) / (beside * beside).sum(axis=1)
+    return [
+        _Fit.of(t[a:b], s[a:b], speed[a:b], way) for a, b, (_, _, way) in zip(starts[:-1], starts[1:], rows, strict=True)
+    ]
 
 
 class _Fit(NamedTuple):
@@ -98,25 +144,9 @@ class _Fit(NamedTuple):
     speed: Floats
 
     @classmethod
-    def of(cls, curves: Curves, first: Piece, piece: Piece, way: int) -> "_Fit":
-        t = curves.breaks(first.edge, first.low, first.high)
-        if len(t) < _LEAST:
-            t = np.linspace(first.low, first.high, _LEAST)
-        here, there = np.full(len(t), first.edge), np.full(len(t), piece.edge)
-        point, along = curves.at(here, t)
-        length = curves.length(here, t)
-        share = (length - length[0]) / (length[-1] - length[0])
-        ends = curves.length(there[:2], np.array([piece.low, piece.high]))
-        share = share if way > 0 else 1 - share
-        guess = curves.at_length(there, ends[0] + share * (ends[1] - ends[0])).clip(piece.low, piece.high)
-        low, high = np.full(len(t), piece.low), np.full(len(t), piece.high)
-        s, _ = curves.near(there, guess, low, high, point)
-        s[[0, -1]] = (piece.low, piece.high) if way > 0 else (piece.high, piece.low)
+    def of(cls, t: Floats, s: Floats, speed: Floats, way: int) -> "_Fit":
         s = np.maximum.accumulate(s) if way > 0 else np.minimum.accumulate(s)
-        beside = curves.at(there, s)[1]
-        with np.errstate(all="ignore"):
-            speed = (along * beside).sum(axis=1) / (beside * beside).sum(axis=1)
-        return cls(t, s, np.where(np.isfinite(speed), speed, np.gradient(s, t)))
+        return cls(t, s, speed if np.isfinite(speed).all() else np.gradient(s, t))
 
     def on(self, edge: TopoDS_Edge, face: TopoDS_Face) -> Geom2d_BSplineCurve | None:
         """The other edge's line in the parameter plane of a face, by the common parameter; None where it has none."""
@@ -159,10 +189,10 @@ def _rebuilt(face: TopoDS_Face, index: TopTools_IndexedMapOfShape, instead: dict
         for edge in children(ahead):
             # Internal edges are nobody's border.
             way = {TopAbs_FORWARD: 1, TopAbs_REVERSED: -1}.get(edge.Orientation(), 0)
-            parts = instead.get(index.FindIndex(edge), ()) if way else ()
-            for _, common, same in parts:
+            parts = instead.get(index.FindIndex(edge)) if way else None
+            for _, common, same in parts or ():
                 builder.Add(fresh, common.Oriented(TopAbs_FORWARD if same * way > 0 else TopAbs_REVERSED))
-            if not parts:
+            if parts is None:
                 builder.Add(fresh, edge)
         builder.Add(made, fresh.Oriented(border.Orientation()))
     return TopoDS.Face_s(made.Oriented(face.Orientation()))

@@ -25,8 +25,8 @@ _HALVINGS, MOST_PIECES, _MOST_INTERVALS = 12, 4096, 2000
 _FIRST = 4
 #: Chords of a piece that lengths are measured along.
 _CHORDS = 8
-#: Steps of a projection.
-_STEPS = 8
+#: Steps of a projection; it ends where a step comes not nearer than this share of the distance before.
+_STEPS, _NEARER = 8, 1 - 1e-9
 #: Parameters beyond this are infinite to the kernel.
 _INFINITE = 1e50
 
@@ -103,16 +103,20 @@ class Curves:
 
         A distance is never less than the true one.
         """
-        best, found = t, np.full(len(t), np.inf)
+        best, found = t.copy(), np.full(len(t), np.inf)
+        going = np.arange(len(t))
         for _ in range(_STEPS):
-            p, d = self.at(which, t)
-            away = point - p
+            p, d = self.at(which[going], t)
+            away = point[going] - p
             distance = np.linalg.norm(away, axis=1)
-            nearer = distance < found
-            best, found = np.where(nearer, t, best), np.where(nearer, distance, found)
+            nearer = distance < _NEARER * found[going]
+            going, t, away, d = going[nearer], t[nearer], away[nearer], d[nearer]
+            if not len(going):
+                break
+            best[going], found[going] = t, distance[nearer]
             with np.errstate(all="ignore"):
                 step = (away * d).sum(axis=1) / (d * d).sum(axis=1)
-            t = np.clip(t + np.where(np.isfinite(step), step, 0.0), low, high)
+            t = np.clip(t + np.where(np.isfinite(step), step, 0.0), low[going], high[going])
         return best, found
 
     def chord_parameter(self, chord: Indices, share: Floats) -> Floats:

@@ -20,7 +20,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cad_io.kernel import edges_of, explore, is_kernel_error, shape_map
-from cad_io.part.coincide import Group, Piece, TooMany, coinciding
+from cad_io.part.coincide import Group, Piece, TooMany, coinciding, points
 from cad_io.part.common_edges import on_common_edges
 from cad_io.part.curves import Curves
 
@@ -100,20 +100,23 @@ def join(shapes: Sequence[TopoDS_Face], diagonal: float) -> Join:
     groups = [Group((Piece(i, float(curves.low[i]), float(curves.high[i])),), (1,)) for i in range(len(sources))]
     blank = sum(not drawn and len(users) == 1 for drawn, users in zip(curves.drawn.tolist(), faces, strict=True))
     stopped = f"the curves of {blank} open edges cannot be followed" if blank else None
-    left, kept, tried = _left(curves, faces, groups), None, None
+    left, kept, tried, gone = _left(curves, faces, groups), None, None, list[Piece]()
     for tolerance in _ladder(diagonal):
         if not _alone(faces, groups):
             break
         tried = tolerance
         try:
             found = coinciding(curves, faces, groups, tolerance)
+            no_more = points(curves, faces, found, tolerance)
         except TooMany:
             stopped = f"more ends of edges lie within {tolerance:.3g} mm of each other than can be compared"
             break
+        found = [group for group in found if group not in no_more]
         after = _left(curves, faces, found)
         if after < (1 - _GAIN) * left:
             kept, groups, left = tolerance, found, after
-    now = list(shapes) if kept is None else on_common_edges(shapes, sources, curves, groups, kept)
+            gone += [group.pieces[0] for group in no_more]
+    now = list(shapes) if kept is None else on_common_edges(shapes, sources, curves, groups, gone, kept)
     return Join(now, kept, tried, _open(edge_uses(now)), stopped)
 
 
