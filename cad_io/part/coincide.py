@@ -70,12 +70,19 @@ def coinciding(
         edges = [piece.edge for piece in group.pieces]
         fixed = any(not curves.drawn[e] or len(set(faces[e])) < len(faces[e]) for e in edges)
         (still if fixed else moving).append(group)
-    table = _Table.of(moving)
-    # Only what one face has alone is cut; at each joint, one side at least is such a piece.
-    alone = np.array([len(g.pieces) == 1 and len(faces[g.pieces[0].edge]) == 1 for g in moving], bool)
-    cut = [part for group, cuts in zip(moving, _cuts(curves, table, alone, tolerance), strict=True)
-           for part in _cut(group, cuts)]  # fmt: skip
-    return [*still, *_whole(_joined(curves, faces, cut, tolerance))]
+    # What fits as a whole is not cut. At each joint, one side at least is what one face has alone.
+    moving = _joined(curves, faces, moving, tolerance)
+    table, alone = _Table.of(moving), _alone(faces, moving)
+    parts = [part for group, cuts in zip(moving, _cuts(curves, table, alone, tolerance), strict=True)
+             for part in _cut(group, cuts)]  # fmt: skip
+    if len(parts) > len(moving):
+        moving = _joined(curves, faces, parts, tolerance)
+    return [*still, *_whole(moving)]
+
+
+def _alone(faces: list[tuple[int, ...]], groups: Sequence[Group]) -> NDArray[np.bool_]:
+    """Which groups (n,) are what one face has alone."""
+    return np.array([len(g.pieces) == 1 and len(faces[g.pieces[0].edge]) == 1 for g in groups], bool)
 
 
 class _Table(NamedTuple):
@@ -172,7 +179,7 @@ def _runs(piece: Indices, place: Floats, tolerance: float) -> list[slice]:
 def _joined(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group], tolerance: float) -> list[Group]:
     """Groups that lie on each other become one, the nearest first."""
     table = _Table.of(groups)
-    alone = np.array([len(g.pieces) == 1 and len(faces[g.pieces[0].edge]) == 1 for g in groups], bool)
+    alone = _alone(faces, groups)
     i, j, way = _candidates(curves, table, alone, tolerance)
     distance = _distances(curves, table, i, j, way)
     near = np.flatnonzero(distance <= tolerance)
@@ -282,10 +289,7 @@ def points(curves: Curves, faces: list[tuple[int, ...]], groups: Sequence[Group]
     What one face has alone is a point together with all such pieces that go on at its ends: of a hole made of short pieces, each
     would be one.
     """
-    short = []
-    for group in groups:
-        if len(group.pieces) == 1 and len(faces[group.pieces[0].edge]) == 1 and curves.drawn[group.pieces[0].edge]:
-            short.append(group)
+    short = [g for g, alone in zip(groups, _alone(faces, groups), strict=True) if alone and curves.drawn[g.pieces[0].edge]]
     table = _Table.of(short)
     small = np.flatnonzero(table.lengths(curves) <= tolerance)
     if not len(small):

@@ -127,7 +127,7 @@ def _fits(curves: Curves, groups: Sequence[Group]) -> "list[_Fit]":
     guess = curves.at_length(there, begin + share * (end - begin)).clip(low, high)
     s, _ = curves.near(there, guess, low, high, point)
     ends = np.concatenate([starts[:-1], starts[1:] - 1])
-    s[ends] = np.where(ahead == (share < 0.5), low, high)[ends]
+    s[ends] = np.where(share < 0.5, low, high)[ends]
     beside = curves.at(there, s)[1]
     with np.errstate(all="ignore"):
         speed = (along * beside).sum(axis=1) / (beside * beside).sum(axis=1)
