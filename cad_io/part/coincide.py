@@ -123,8 +123,9 @@ def _cuts(curves: Curves, table: _Table, alone: NDArray[np.bool_], tolerance: fl
     if not alone.any():
         return found
     mine = np.flatnonzero(alone[table.group])
+    table = _Table(*(column[mine] for column in table))
     tree = cKDTree(table.ends(curves))
-    chord, piece = _chords(curves, table, mine)
+    chord, piece = _chords(curves, table)
     a, b = curves.table_point[chord], curves.table_point[chord + 1]
     middle = curves.at(table.edge[piece], curves.chord_parameter(chord, np.full(len(chord), 0.5)))[0]
     # A chord and its arc lie within this ball.
@@ -133,6 +134,7 @@ def _cuts(curves: Curves, table: _Table, alone: NDArray[np.bool_], tolerance: fl
         raise TooMany
     balls = tree.query_ball_point(middle, radius, return_sorted=False)
     many = np.array([len(ball) for ball in balls], np.intp)
+    if __import__("os").environ.get("DBG"): print("cuts", len(mine), len(chord), many.sum(), tolerance)
     node = np.fromiter(chain.from_iterable(balls), np.intp, int(many.sum()))
     chord, piece, bulge = (np.repeat(x, many) for x in (chord, piece, radius - 0.5 * np.linalg.norm(b - a, axis=1)))
     other = node // 2 != piece
@@ -154,10 +156,10 @@ def _cuts(curves: Curves, table: _Table, alone: NDArray[np.bool_], tolerance: fl
     return found
 
 
-def _chords(curves: Curves, table: _Table, mine: Indices) -> tuple[Indices, Indices]:
+def _chords(curves: Curves, table: _Table) -> tuple[Indices, Indices]:
     """Chords of the curves' table within pieces, and the piece of each."""
     chords, pieces = [], []
-    for k in mine.tolist():
+    for k in range(len(table.edge)):
         first, last = curves.table_first[table.edge[k]], curves.table_first[table.edge[k] + 1] - 1
         t = curves.chord_parameter(np.arange(first, last), np.zeros(last - first))
         start = max(int(np.searchsorted(t, table.low[k], side="right")) - 1, 0)
