@@ -22,7 +22,7 @@ from cad_io.part.curves import Curves, Indices
 #: Ends next to each other: more of them are no edges of faces, and the ladder ends.
 MOST_NEIGHBOURS = 2_000_000
 #: Points of a piece that are compared: at least, for each piece of its curve, at most.
-_LEAST, _EACH, _MOST = 17, 4, 1025
+_LEAST, _EACH, _MOST = 17, 2, 1025
 #: A face joined with itself (a tube that is slit) reaches so many tolerances away from the joint.
 _AWAY = 8.0
 
@@ -130,11 +130,12 @@ def _cuts(curves: Curves, table: _Table, alone: NDArray[np.bool_], tolerance: fl
     middle = curves.at(table.edge[piece], curves.chord_parameter(chord, np.full(len(chord), 0.5)))[0]
     # A chord and its arc lie within this ball.
     radius = 0.5 * np.linalg.norm(b - a, axis=1) + 2 * np.linalg.norm(middle - 0.5 * (a + b), axis=1) + tolerance
-    if int(np.sum(tree.query_ball_point(middle, radius, return_length=True))) > 10 * MOST_NEIGHBOURS:
+    many = tree.query_ball_point(middle, radius, return_length=True)
+    if int(many.sum()) > 10 * MOST_NEIGHBOURS:
         raise TooMany
-    balls = tree.query_ball_point(middle, radius, return_sorted=False)
-    many = np.array([len(ball) for ball in balls], np.intp)
-    if __import__("os").environ.get("DBG"): print("cuts", len(mine), len(chord), many.sum(), tolerance)
+    some = many > 0
+    many, chord, piece, radius, a, b = many[some], chord[some], piece[some], radius[some], a[some], b[some]
+    balls = tree.query_ball_point(middle[some], radius, return_sorted=False)
     node = np.fromiter(chain.from_iterable(balls), np.intp, int(many.sum()))
     chord, piece, bulge = (np.repeat(x, many) for x in (chord, piece, radius - 0.5 * np.linalg.norm(b - a, axis=1)))
     other = node // 2 != piece

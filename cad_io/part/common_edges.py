@@ -30,6 +30,8 @@ Part = tuple[float, TopoDS_Edge, int]
 
 #: A common edge has at least so many points in a parameter plane.
 _LEAST = 9
+#: Of the ends of a curve's pieces, every so many is a point there.
+_EVERY = 4
 
 
 def on_common_edges(
@@ -106,6 +108,8 @@ def _fits(curves: Curves, groups: Sequence[Group]) -> "list[_Fit]":
     if not rows:
         return []
     spans = [curves.breaks(*first) for first, _, _ in rows]
+    # Pieces of curves are far finer than what is asked of a parameter plane.
+    spans = [np.append(t[:-1:_EVERY], t[-1]) for t in spans]
     spans = [t if len(t) >= _LEAST else np.linspace(t[0], t[-1], _LEAST) for t in spans]
     counts = [len(t) for t in spans]
     starts = np.cumsum([0, *counts])

@@ -21,12 +21,14 @@ Indices = NDArray[np.intp]
 
 #: Halvings of the first pieces; pieces of one curve; intervals of smoothness of one curve. What needs more is not drawn.
 _HALVINGS, MOST_PIECES, _MOST_INTERVALS = 12, 4096, 2000
-#: First pieces of each interval of smoothness.
+#: First pieces of a curve, at least.
 _FIRST = 4
 #: Chords of a piece that lengths are measured along.
-_CHORDS = 8
+_CHORDS = 2
 #: Steps of a projection; it ends where a step comes not nearer than this share of the distance before.
 _STEPS, _NEARER = 8, 1 - 1e-9
+#: Halves follow sixteen times as well as the whole; half of that is taken for sure.
+_HALVES = 8.0
 #: Parameters beyond this are infinite to the kernel.
 _INFINITE = 1e50
 
@@ -182,7 +184,8 @@ class _Kernel(NamedTuple):
             if not is_kernel_error(thrown):
                 raise
             return None
-        share = np.arange(_FIRST) / _FIRST
+        each = max(_FIRST // (len(ends) - 1), 1) if len(ends) > 1 else 1
+        share = np.arange(each) / each
         t = (ends[:-1, None] + share * np.diff(ends)[:, None]).ravel()
         return cls(curve, np.append(t, ends[-1])) if len(ends) > 1 else None
 
@@ -223,10 +226,10 @@ def _follow(kernel: _Kernel, chord: float) -> _Drawing | None:
         guess = 0.5 * (p[i] + p[i + 1]) + across * (d[i] - d[i + 1]) / 8
         slope = 1.5 * (p[i + 1] - p[i]) - across * (d[i] + d[i + 1]) / 4
         off = np.maximum(np.linalg.norm(guess - middle, axis=1), np.linalg.norm(slope - across * along, axis=1) / 8)
-        # Both halves are kept in any case: they follow sixteen times as well as what was looked at.
+        # Both halves are kept in any case.
         at = i + 1
         t, p, d = np.insert(t, at, 0.5 * (t[i] + t[i + 1])), np.insert(p, at, middle, 0), np.insert(d, at, along, 0)
-        where, bad = i + np.arange(len(i)), off > chord
+        where, bad = i + np.arange(len(i)), off > _HALVES * chord
         doubtful = np.zeros(len(t) - 1, bool)
         doubtful[where], doubtful[where + 1] = bad, bad
         if not bad.any():
