@@ -7,7 +7,7 @@ the work is bounded by the number of pieces and of ends that lie next to each ot
 """
 
 from collections.abc import Iterator, Sequence
-from itertools import chain
+from itertools import chain, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -46,9 +46,7 @@ class Group(NamedTuple):
     way: tuple[int, ...]
 
 
-def coinciding(
-    curves: Curves, faces: list[tuple[int, ...]], groups: list[Group], tolerance: float
-) -> list[Group]:
+def coinciding(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group], tolerance: float) -> list[Group]:
     """Groups after joining what lies within a tolerance.
 
     Parameters
@@ -112,7 +110,7 @@ def _cut(group: Group, cuts: list[float]) -> Iterator[Group]:
     if not cuts:
         yield group
         return
-    (edge, low, high), = group.pieces
+    ((edge, low, high),) = group.pieces
     for a, b in zip([low, *cuts], [*cuts, high], strict=True):
         yield Group((Piece(edge, a, b),), (1,))
 
@@ -176,7 +174,7 @@ def _runs(piece: Indices, place: Floats, tolerance: float) -> list[slice]:
         return []
     new = np.flatnonzero((np.diff(piece) != 0) | (np.diff(place) > tolerance)) + 1
     ends = [0, *new.tolist(), len(piece)]
-    return [slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+    return [slice(a, b) for a, b in pairwise(ends)]
 
 
 def _joined(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group], tolerance: float) -> list[Group]:
@@ -186,8 +184,8 @@ def _joined(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group], t
     i, j, way = _candidates(curves, table, alone, tolerance)
     distance = _distances(curves, table, i, j, way)
     near = np.flatnonzero(distance <= tolerance)
-    itself = np.array([bool(set(faces[a]) & set(faces[b])) for a, b in zip(table.edge[i[near]], table.edge[j[near]], strict=True)],
-                      bool)  # fmt: skip
+    ends = zip(table.edge[i[near]].tolist(), table.edge[j[near]].tolist(), strict=True)
+    itself = np.array([bool(set(faces[a]) & set(faces[b])) for a, b in ends], bool)
     if itself.any():
         tubes = _Tubes(curves, faces)
         good = [not own or tubes.wide(table, int(i[k]), tolerance) for own, k in zip(itself, near, strict=True)]
@@ -287,12 +285,14 @@ class _Tubes:
 
 
 def points(curves: Curves, faces: list[tuple[int, ...]], groups: Sequence[Group], tolerance: float) -> list[Group]:
-    """Groups that are no more than a point within a tolerance, but for their faces' only edges.
+    """Groups that are no more than a point within a tolerance, but for faces that have no other edges.
 
     What one face has alone is a point together with all such pieces that go on at its ends: of a hole made of short pieces, each
     would be one.
     """
-    short = [g for g, alone in zip(groups, _alone(faces, groups), strict=True) if alone and curves.drawn[g.pieces[0].edge]]
+    short = [
+        g for g, alone in zip(groups, _alone(faces, groups), strict=True) if alone and curves.drawn[g.pieces[0].edge]
+    ]
     table = _Table.of(short)
     small = np.flatnonzero(table.lengths(curves) <= tolerance)
     if not len(small):
@@ -309,7 +309,9 @@ def points(curves: Curves, faces: list[tuple[int, ...]], groups: Sequence[Group]
         mine = label == which
         if np.linalg.norm(np.ptp(ends[mine].reshape(-1, 3), axis=0)) <= tolerance:
             found += [short[k] for k in small[mine].tolist()]
-    return found
+    few = {group.pieces[0].edge for group in found}
+    kept = {face for edge, users in enumerate(faces) if edge not in few for face in users}
+    return [group for group in found if faces[group.pieces[0].edge][0] in kept]
 
 
 def _whole(groups: list[Group]) -> Iterator[Group]:

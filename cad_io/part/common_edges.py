@@ -1,7 +1,7 @@
 """Faces on common edges: the kernel's faces, made anew on their own surfaces, so that faces that touch share edges.
 
-Nothing is moved. A common edge runs along the curve of the first face; in the parameter plane of another it has a line of its own,
-fitted to what that face's own edge has at the same points. Vertices are left out: nobody asks for them.
+Nothing is moved. A common edge runs along the curve of the first face; in the parameter plane of another it has a line of its
+own, fitted to what that face's own edge has at the same points. Vertices are left out: nobody asks for them.
 """
 
 from collections.abc import Sequence
@@ -136,7 +136,8 @@ def _fits(curves: Curves, groups: Sequence[Group]) -> "list[_Fit]":
     with np.errstate(all="ignore"):
         speed = (along * beside).sum(axis=1) / (beside * beside).sum(axis=1)
     return [
-        _Fit.of(t[a:b], s[a:b], speed[a:b], way) for a, b, (_, _, way) in zip(starts[:-1], starts[1:], rows, strict=True)
+        _Fit.of(t[a:b], s[a:b], speed[a:b], way)
+        for a, b, (_, _, way) in zip(starts[:-1], starts[1:], rows, strict=True)
     ]
 
 
