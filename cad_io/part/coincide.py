@@ -63,7 +63,8 @@ def coinciding(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group]
     ------
     TooMany
     """
-    still, moving = [], []
+    still: list[Group] = []
+    moving: list[Group] = []
     for group in groups:
         edges = [piece.edge for piece in group.pieces]
         fixed = any(not curves.drawn[e] or len(set(faces[e])) < len(faces[e]) for e in edges)
@@ -121,7 +122,7 @@ def _cuts(curves: Curves, table: _Table, alone: NDArray[np.bool_], tolerance: fl
     if not alone.any():
         return found
     mine = np.flatnonzero(alone[table.group])
-    table = _Table(*(column[mine] for column in table))
+    table = _Table(table.edge[mine], table.low[mine], table.high[mine], table.group[mine])
     tree = cKDTree(table.ends(curves))
     chord, piece = _chords(curves, table)
     a, b = curves.table_point[chord], curves.table_point[chord + 1]

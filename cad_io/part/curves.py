@@ -228,7 +228,7 @@ def _follow(kernel: _Kernel, chord: float) -> _Drawing | None:
         off = np.maximum(np.linalg.norm(guess - middle, axis=1), np.linalg.norm(slope - across * along, axis=1) / 8)
         # Both halves are kept in any case.
         at = i + 1
-        t, p, d = np.insert(t, at, 0.5 * (t[i] + t[i + 1])), np.insert(p, at, middle, 0), np.insert(d, at, along, 0)
+        t, p, d = _with(t, at, 0.5 * (t[i] + t[i + 1])), _with(p, at, middle), _with(d, at, along)
         where, bad = i + np.arange(len(i)), off > _HALVES * chord
         doubtful = np.zeros(len(t) - 1, bool)
         doubtful[where], doubtful[where + 1] = bad, bad
@@ -237,3 +237,13 @@ def _follow(kernel: _Kernel, chord: float) -> _Drawing | None:
         if len(t) > MOST_PIECES:
             return None
     return None
+
+
+def _with(rows: Floats, at: Indices, more: Floats) -> Floats:
+    """Rows with more of them, each before the row that it names."""
+    result = np.empty((len(rows) + len(more), *rows.shape[1:]))
+    fresh = at + np.arange(len(at))
+    old = np.ones(len(result), bool)
+    old[fresh] = False
+    result[fresh], result[old] = more, rows
+    return result

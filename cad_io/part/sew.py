@@ -107,7 +107,7 @@ def join(shapes: Sequence[TopoDS_Face], diagonal: float) -> Join:
         tried = tolerance
         try:
             found = coinciding(curves, faces, groups, tolerance)
-            no_more = points(curves, faces, found, tolerance)
+            no_more = set(points(curves, faces, found, tolerance))
         except TooMany:
             stopped = f"more ends of edges lie within {tolerance:.3g} mm of each other than can be compared"
             break
