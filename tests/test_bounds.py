@@ -9,14 +9,17 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 from cad_parts import box, compound, loose
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
 
 from cad_io import read_part
 from cad_io.errors import SampleError, WriteError
+from cad_io.kernel import faces
 from cad_io.kernel.each import Ended, each
-from cad_io.part import sew
+from cad_io.part import coincide, curves, sew
+from cad_io.part.coincide import TooMany
 from cad_io.part.orient import orient
 from cad_io.part.sew import edge_uses
 from cad_io.sample import at_point, locate, nearest
@@ -79,11 +82,21 @@ def test_what_a_call_raises_is_raised():
 # --- each stage, from Python -----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("fault", [spin, crash])
-def test_a_shell_that_never_sews_stays_as_it_is_and_the_plan_says_so(monkeypatch, fault):
-    monkeypatch.setattr(sew, "_joined", fault)
-    monkeypatch.setattr(sew, "SECONDS", 0.3)
-    monkeypatch.setattr(sew, "_AN_EDGE", 0.0)
+def noise(_, t):
+    """A curve that is another one however near it is looked at."""
+    return np.random.default_rng(0).normal(size=(2, len(t), 3))
+
+
+def crowded(*_):
+    raise TooMany
+
+
+@pytest.mark.parametrize(
+    ("where", "name", "fault"),
+    [(curves._Kernel, "at", noise), (curves._Kernel, "at", lambda *_: None), (sew, "coinciding", crowded)],
+)
+def test_a_shell_that_cannot_be_sewn_stays_as_it_is_and_the_plan_says_so(monkeypatch, where, name, fault):
+    monkeypatch.setattr(where, name, fault)
     part = read_part(loose(box(), 1e-3))
     assert (part.sewn.tolerance, part.sewn.open_edges) == (None, 24)
     assert part.sewn.stopped
@@ -93,11 +106,23 @@ def test_a_shell_that_never_sews_stays_as_it_is_and_the_plan_says_so(monkeypatch
     assert not result.plan.part.orientation.confident
 
 
-def test_a_rung_that_never_ends_leaves_what_was_joined_before(monkeypatch):
-    joined = sew._joined
-    monkeypatch.setattr(sew, "_joined", lambda shapes, by: joined(shapes, by) if by < 1e-4 else spin())
-    monkeypatch.setattr(sew, "SECONDS", 0.5)
-    monkeypatch.setattr(sew, "_AN_EDGE", 0.0)
+def test_a_curve_that_is_never_followed_costs_a_number_of_points(monkeypatch):
+    asked = []
+    monkeypatch.setattr(curves._Kernel, "at", lambda self, t: (asked.append(len(t)), noise(self, t))[1])
+    assert not curves.Curves([edge for edge, _ in edge_uses(faces(box()))[:1]], 1e-9).drawn.any()
+    assert 0 < sum(asked) <= 2 * curves.MOST_PIECES
+
+
+def test_ends_next_to_each_other_are_counted_before_they_are_compared(monkeypatch):
+    monkeypatch.setattr(coincide, "MOST_NEIGHBOURS", 10)
+    sewn = read_part(loose(box())).sewn
+    assert (sewn.tolerance, sewn.open_edges) == (None, 24)
+    assert "more ends of edges" in sewn.stopped
+
+
+def test_a_rung_that_is_given_up_leaves_what_was_joined_before(monkeypatch):
+    join = sew.coinciding
+    monkeypatch.setattr(sew, "coinciding", lambda *each: join(*each) if each[-1] < 1e-4 else crowded())
     part = read_part(compound(loose(box()), loose(box(at=(50, 0, 0)), 0.5)))
     edges, sewn = edge_uses(part.sewn.faces.values()), part.sewn
     assert sewn.tolerance is not None

@@ -3,38 +3,34 @@
 Each rung goes on from the one before, so what fits closely is joined closely, and a rung counts only if it leaves less
 open. The first that leaves nothing open is the last. The part itself is not changed: the joined faces lie on the same
 surfaces, and only say who is whose neighbour.
-
-A copy of the process joins, rung by rung. One that takes longer than its edges explain, or crashes, ends the ladder: the
-faces stay as the rungs before it left them.
 """
 
-import io
 import math
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from OCP.BinTools import BinTools
+import numpy as np
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve
-from OCP.BRepBuilderAPI import BRepBuilderAPI_Sewing
 from OCP.GCPnts import GCPnts_AbscissaPoint
-from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_FORWARD, TopAbs_REVERSED, TopAbs_SOLID
+from OCP.TopAbs import TopAbs_FACE, TopAbs_FORWARD, TopAbs_REVERSED, TopAbs_SOLID
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cad_io.kernel import edges_of, explore, is_kernel_error, shape_map
-from cad_io.kernel.components import children, compound
-from cad_io.kernel.limited import ChildDied, TimeLimit, limited
+from cad_io.part.coincide import Group, Piece, TooMany, coinciding, points
+from cad_io.part.common_edges import on_common_edges
+from cad_io.part.curves import Curves
 
 #: Tolerances to try, as shares of the part's diagonal; in mm none below the kernel's precision nor above the most.
 RUNGS = (1e-6, 1e-5, 1e-4, 1e-3)
 LEAST, MOST = 1e-6, 0.1
 #: A rung that takes less than this share of the open length has joined nothing.
 _GAIN = 1e-3
-#: Processor seconds that a rung may take, and more for each open edge: 2 to 5 ms each are usual.
-SECONDS, _AN_EDGE = 20.0, 0.02
+#: Share of the first tolerance by which curves may be drawn beside themselves.
+_CHORD = 0.05
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,44 +92,45 @@ class Join(NamedTuple):
 
 def join(shapes: Sequence[TopoDS_Face], diagonal: float) -> Join:
     """Join faces on the ladder of tolerances for a part of a diagonal, mm."""
-    now = list(shapes)
-    left, kept, tried, stopped = _open(now), None, None, None
+    sources = edge_uses(shapes)
+    if len(shapes) < 2 or all(len(users) > 1 for _, users in sources):
+        return Join(list(shapes), None, None, _open(sources), None)
+    faces = [tuple(face for face, _ in users) for _, users in sources]
+    curves = Curves([edge for edge, _ in sources], _CHORD * next(_ladder(diagonal)))
+    groups = [Group((Piece(i, float(curves.low[i]), float(curves.high[i])),), (1,)) for i in range(len(sources))]
+    blank = sum(not drawn and len(users) == 1 for drawn, users in zip(curves.drawn.tolist(), faces, strict=True))
+    stopped = f"the curves of {blank} open edges cannot be followed" if blank else None
+    left, kept, tried, gone = _left(curves, faces, groups), None, None, list[Piece]()
     for tolerance in _ladder(diagonal):
-        if not left or len(now) < 2:
+        if not _alone(faces, groups):
             break
         tried = tolerance
         try:
-            joined = _bounded(now, tolerance, SECONDS + _AN_EDGE * len(left), sum(left))
-        except TimeLimit:
-            stopped = f"the CAD kernel does not come to an end of joining edges within {tolerance:.3g} mm"
-        except ChildDied as died:
-            stopped = f"the CAD kernel fails to join edges within {tolerance:.3g} mm ({died})"
-        if stopped:
+            found = coinciding(curves, faces, groups, tolerance)
+            no_more = set(points(curves, faces, found, tolerance))
+        except TooMany:
+            stopped = f"more ends of edges lie within {tolerance:.3g} mm of each other than can be compared"
             break
-        if joined is not None:
-            kept, now, left = tolerance, joined, _open(joined)
-    return Join(now, kept, tried, left, stopped)
+        found = [group for group in found if group not in no_more]
+        after = _left(curves, faces, found)
+        if after < (1 - _GAIN) * left:
+            kept, groups, left = tolerance, found, after
+            gone += [group.pieces[0] for group in no_more]
+    now = list(shapes) if kept is None else on_common_edges(shapes, sources, curves, groups, gone, kept)
+    return Join(now, kept, tried, _open(edge_uses(now)), stopped)
 
 
-def _bounded(
-    shapes: Sequence[TopoDS_Face], tolerance: float, seconds: float, before: float
-) -> list[TopoDS_Face] | None:
-    """`_joined` in a copy of the process; None where it leaves about as much open as `before`, mm."""
+def _alone(faces: Sequence[tuple[int, ...]], groups: Sequence[Group]) -> list[Piece]:
+    """The pieces that one face has alone."""
+    return [g.pieces[0] for g in groups if len(g.pieces) == 1 and len(faces[g.pieces[0].edge]) == 1]
 
-    def work() -> bytes:
-        joined = _joined(shapes, tolerance)
-        if not sum(_open(joined)) < (1 - _GAIN) * before:
-            return b""
-        stream = io.BytesIO()
-        BinTools.Write_s(compound(joined), stream)
-        return stream.getvalue()
 
-    data = limited(work, seconds, processor=True)
-    if not data:
-        return None
-    whole = TopoDS_Shape()
-    BinTools.Read_s(whole, io.BytesIO(data))
-    return [TopoDS.Face_s(face) for face in children(whole)]
+def _left(curves: Curves, faces: Sequence[tuple[int, ...]], groups: Sequence[Group]) -> float:
+    """Open length, mm, as far as it could be drawn."""
+    alone = [piece for piece in _alone(faces, groups) if curves.drawn[piece.edge]]
+    edge = np.array([piece.edge for piece in alone], np.intp)
+    low, high = (np.array([piece[k] for piece in alone], float) for k in (1, 2))
+    return float((curves.length(edge, high) - curves.length(edge, low)).sum())
 
 
 def edge_uses(shapes: Sequence[TopoDS_Face]) -> list[tuple[TopoDS_Edge, list[tuple[int, int]]]]:
@@ -166,24 +163,9 @@ def _ladder(diagonal: float) -> Iterator[float]:
         last = tolerance
 
 
-def _joined(shapes: Sequence[TopoDS_Face], tolerance: float) -> list[TopoDS_Face]:
-    """The faces after joining edges that coincide; a face that sewing drops stays as it was."""
-    # More than two faces may share an edge: where two bodies touch, pairing them off would join one with the other.
-    sewing = BRepBuilderAPI_Sewing(tolerance, True, True, True, True)
-    for face in shapes:
-        sewing.Add(face)
-    sewing.Perform()
-    result = []
-    for face in shapes:
-        joined = sewing.ModifiedSubShape(face) if sewing.IsModifiedSubShape(face) else face
-        whole = not joined.IsNull() and joined.ShapeType() == TopAbs_FACE and any(explore(joined, TopAbs_EDGE))
-        result.append(TopoDS.Face_s(joined) if whole else face)
-    return result
-
-
-def _open(shapes: Sequence[TopoDS_Face]) -> list[float]:
+def _open(uses: Sequence[tuple[TopoDS_Edge, list[tuple[int, int]]]]) -> list[float]:
     """Length of each edge that belongs to one face alone, mm."""
-    return [_length(edge) for edge, users in edge_uses(shapes) if len(users) == 1]
+    return [_length(edge) for edge, users in uses if len(users) == 1]
 
 
 def _length(edge: TopoDS_Edge) -> float:

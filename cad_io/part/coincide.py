@@ -1,0 +1,335 @@
+"""Which edges, or which parts of them, lie on each other within a tolerance?
+
+Edges of one face alone are cut where others end on them. Two pieces belong together where both ends do and no point of one is
+farther from the other than the tolerance, looked at in both directions; what is joined is within it of all that it is joined
+with. A distance is never told too small, so that what is not understood stays apart. No step here asks the kernel anything:
+the work is bounded by the number of pieces and of ends that lie next to each other.
+"""
+
+from collections.abc import Iterator, Sequence
+from itertools import chain, pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from cad_io.arrays import Floats
+from cad_io.part.curves import Curves, Indices
+
+#: Ends next to each other: more of them are no edges of faces, and the ladder ends.
+MOST_NEIGHBOURS = 2_000_000
+#: Points of a piece that are compared: at least, for each piece of its curve, at most.
+_LEAST, _EACH, _MOST = 17, 2, 1025
+#: A face joined with itself (a tube that is slit) reaches so many tolerances away from the joint.
+_AWAY = 8.0
+
+
+class TooMany(Exception):
+    """More ends lie next to each other than can be looked at."""
+
+
+class Piece(NamedTuple):
+    """A part of an edge, from `low` to `high` by its curve's parameter."""
+
+    edge: int
+    low: float
+    high: float
+
+
+class Group(NamedTuple):
+    """Pieces that lie on each other; `way`: +1 for those that run as the first does, else -1."""
+
+    pieces: tuple[Piece, ...]
+    way: tuple[int, ...]
+
+
+def coinciding(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group], tolerance: float) -> list[Group]:
+    """Groups after joining what lies within a tolerance.
+
+    Parameters
+    ----------
+    curves : Curves
+    faces : list of tuple of int
+        By edge: the faces that use it. An edge that one face uses twice is a seam, and stays as it is.
+    groups : list of Group
+        As they are: the pieces of an edge follow each other from its start to its end.
+    tolerance : float
+        mm.
+
+    Raises
+    ------
+    TooMany
+    """
+    still: list[Group] = []
+    moving: list[Group] = []
+    for group in groups:
+        edges = [piece.edge for piece in group.pieces]
+        fixed = any(not curves.drawn[e] or len(set(faces[e])) < len(faces[e]) for e in edges)
+        (still if fixed else moving).append(group)
+    # What fits as a whole is not cut. At each joint, one side at least is what one face has alone.
+    moving = _joined(curves, faces, moving, tolerance)
+    table, alone = _Table.of(moving), _alone(faces, moving)
+    parts = [part for group, cuts in zip(moving, _cuts(curves, table, alone, tolerance), strict=True)
+             for part in _cut(group, cuts)]  # fmt: skip
+    if len(parts) > len(moving):
+        moving = _joined(curves, faces, parts, tolerance)
+    return [*still, *_whole(moving)]
+
+
+def _alone(faces: list[tuple[int, ...]], groups: Sequence[Group]) -> NDArray[np.bool_]:
+    """Which groups (n,) are what one face has alone."""
+    return np.array([len(g.pieces) == 1 and len(faces[g.pieces[0].edge]) == 1 for g in groups], bool)
+
+
+class _Table(NamedTuple):
+    """Pieces as arrays (m,): edge, ends by parameter, and number of the group."""
+
+    edge: Indices
+    low: Floats
+    high: Floats
+    group: Indices
+
+    @classmethod
+    def of(cls, groups: list[Group]) -> "_Table":
+        rows = [(*piece, number) for number, group in enumerate(groups) for piece in group.pieces]
+        edge, low, high, group = zip(*rows, strict=True) if rows else ((), (), (), ())
+        return cls(np.array(edge, np.intp), np.array(low, float), np.array(high, float), np.array(group, np.intp))
+
+    def ends(self, curves: Curves) -> Floats:
+        """Points (2 m, 3) of starts and ends in turn."""
+        at = np.stack([self.low, self.high], axis=1).ravel()
+        return curves.at(np.repeat(self.edge, 2), at)[0]
+
+    def lengths(self, curves: Curves) -> Floats:
+        return curves.length(self.edge, self.high) - curves.length(self.edge, self.low)
+
+
+def _cut(group: Group, cuts: list[float]) -> Iterator[Group]:
+    if not cuts:
+        yield group
+        return
+    ((edge, low, high),) = group.pieces
+    for a, b in zip([low, *cuts], [*cuts, high], strict=True):
+        yield Group((Piece(edge, a, b),), (1,))
+
+
+def _cuts(curves: Curves, table: _Table, alone: NDArray[np.bool_], tolerance: float) -> list[list[float]]:
+    """By group: the parameters at which ends of other pieces lie on it, ascending; none for groups that are not `alone`."""
+    found: list[list[float]] = [[] for _ in alone]
+    if not alone.any():
+        return found
+    mine = np.flatnonzero(alone[table.group])
+    table = _Table(table.edge[mine], table.low[mine], table.high[mine], table.group[mine])
+    tree = cKDTree(table.ends(curves))
+    chord, piece = _chords(curves, table)
+    a, b = curves.table_point[chord], curves.table_point[chord + 1]
+    middle = curves.at(table.edge[piece], curves.chord_parameter(chord, np.full(len(chord), 0.5)))[0]
+    # A chord and its arc lie within this ball.
+    radius = 0.5 * np.linalg.norm(b - a, axis=1) + 2 * np.linalg.norm(middle - 0.5 * (a + b), axis=1) + tolerance
+    many = tree.query_ball_point(middle, radius, return_length=True)
+    if int(many.sum()) > 10 * MOST_NEIGHBOURS:
+        raise TooMany
+    some = many > 0
+    many, chord, piece, radius, a, b = many[some], chord[some], piece[some], radius[some], a[some], b[some]
+    balls = tree.query_ball_point(middle[some], radius, return_sorted=False)
+    node = np.fromiter(chain.from_iterable(balls), np.intp, int(many.sum()))
+    chord, piece, bulge = (np.repeat(x, many) for x in (chord, piece, radius - 0.5 * np.linalg.norm(b - a, axis=1)))
+    other = node // 2 != piece
+    node, chord, piece, bulge = node[other], chord[other], piece[other], bulge[other]
+    a, b, point = curves.table_point[chord], curves.table_point[chord + 1], tree.data[node]
+    with np.errstate(all="ignore"):
+        share = np.nan_to_num(((point - a) * (b - a)).sum(axis=1) / ((b - a) ** 2).sum(axis=1)).clip(0.0, 1.0)
+    close = np.linalg.norm(a + share[:, None] * (b - a) - point, axis=1) <= bulge
+    node, chord, piece, point, share = node[close], chord[close], piece[close], point[close], share[close]
+    edge, low, high = table.edge[piece], table.low[piece], table.high[piece]
+    t, distance = curves.near(edge, curves.chord_parameter(chord, share).clip(low, high), low, high, point)
+    place = curves.length(edge, t)
+    inner = (place - curves.length(edge, low) > tolerance) & (curves.length(edge, high) - place > tolerance)
+    keep = (distance <= tolerance) & inner
+    order = np.flatnonzero(keep)[np.lexsort((place[keep], piece[keep]))]
+    for run in _runs(piece[order], place[order], tolerance):
+        best = order[run][np.argmin(distance[order[run]])]
+        found[int(table.group[piece[best]])].append(float(t[best]))
+    return found
+
+
+def _chords(curves: Curves, table: _Table) -> tuple[Indices, Indices]:
+    """Chords of the curves' table within pieces, and the piece of each."""
+    chords, pieces = [], []
+    for k in range(len(table.edge)):
+        first, last = curves.table_first[table.edge[k]], curves.table_first[table.edge[k] + 1] - 1
+        t = curves.chord_parameter(np.arange(first, last), np.zeros(last - first))
+        start = max(int(np.searchsorted(t, table.low[k], side="right")) - 1, 0)
+        end = int(np.searchsorted(t, table.high[k]))
+        chords.append(np.arange(first + start, first + end))
+        pieces.append(np.full(end - start, k))
+    return np.concatenate(chords), np.concatenate(pieces)
+
+
+def _runs(piece: Indices, place: Floats, tolerance: float) -> list[slice]:
+    """Stretches of one piece in which each place is within the tolerance of the one before."""
+    if not len(piece):
+        return []
+    new = np.flatnonzero((np.diff(piece) != 0) | (np.diff(place) > tolerance)) + 1
+    ends = [0, *new.tolist(), len(piece)]
+    return [slice(a, b) for a, b in pairwise(ends)]
+
+
+def _joined(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group], tolerance: float) -> list[Group]:
+    """Groups that lie on each other become one, the nearest first."""
+    table = _Table.of(groups)
+    alone = _alone(faces, groups)
+    i, j, way = _candidates(curves, table, alone, tolerance)
+    distance = _distances(curves, table, i, j, way)
+    near = np.flatnonzero(distance <= tolerance)
+    ends = zip(table.edge[i[near]].tolist(), table.edge[j[near]].tolist(), strict=True)
+    itself = np.array([bool(set(faces[a]) & set(faces[b])) for a, b in ends], bool)
+    if itself.any():
+        tubes = _Tubes(curves, faces)
+        good = [not own or tubes.wide(table, int(i[k]), tolerance) for own, k in zip(itself, near, strict=True)]
+        near = near[np.array(good, bool)]
+    order = near[np.argsort(distance[near], kind="stable")]
+    allowed: dict[tuple[int, int], set[int]] = {}
+    for k in order.tolist():
+        allowed.setdefault((int(i[k]), int(j[k])), set()).add(int(way[k]))
+    owner = list(range(len(groups)))
+    members: list[list[int]] = [[] for _ in groups]
+    for m, g in enumerate(table.group.tolist()):
+        members[g].append(m)
+    ways = [list(group.way) for group in groups]
+    for k in order.tolist():
+        p, q, same = int(i[k]), int(j[k]), int(way[k])
+        g, h = owner[table.group[p]], owner[table.group[q]]
+        if g == h:
+            continue
+        turn = same * ways[g][members[g].index(p)] * ways[h][members[h].index(q)]
+        if all(w * turn * v in allowed.get((min(a, b), max(a, b)), ())
+               for a, w in zip(members[g], ways[g], strict=True) for b, v in zip(members[h], ways[h], strict=True)):  # fmt: skip
+            members[g] += members[h]
+            ways[g] += [turn * v for v in ways[h]]
+            for m in members[h]:
+                owner[table.group[m]] = g
+            members[h], ways[h] = [], []
+    pieces = [piece for group in groups for piece in group.pieces]
+    return [Group(tuple(pieces[m] for m in mine), tuple(way))
+            for mine, way in zip(members, ways, strict=True) if mine]  # fmt: skip
+
+
+def _candidates(
+    curves: Curves, table: _Table, alone: NDArray[np.bool_], tolerance: float
+) -> tuple[Indices, Indices, Indices]:
+    """Pairs of pieces with both ends next to each other, and whether they run the same way: +1 or -1.
+
+    A piece as short as the tolerance lies next to anything there, and is joined with nothing.
+    """
+    long = np.flatnonzero(table.lengths(curves) > tolerance)
+    tree = cKDTree(table.ends(curves).reshape(-1, 2, 3)[long].reshape(-1, 3)) if len(long) else None
+    if tree is None or tree.count_neighbors(tree, tolerance) > 2 * MOST_NEIGHBOURS:
+        if tree is None:
+            return (np.zeros(0, np.intp),) * 3
+        raise TooMany
+    pairs = tree.query_pairs(tolerance, output_type="ndarray")
+    i, j = np.sort(long[pairs // 2], axis=1).T
+    swapped = pairs[:, 0] % 2 != pairs[:, 1] % 2
+    use = (i != j) & (table.group[i] != table.group[j]) & (alone[table.group[i]] | alone[table.group[j]])
+    key = (i[use] * len(table.edge) + j[use]) * 2 + swapped[use]
+    found, times = np.unique(key, return_counts=True)
+    found = found[times == 2]
+    pair = found // 2
+    return pair // len(table.edge), pair % len(table.edge), np.where(found % 2, -1, 1)
+
+
+def _distances(curves: Curves, table: _Table, i: Indices, j: Indices, way: Indices) -> Floats:
+    """Largest distances (k,) from one piece to the other, of both directions."""
+    worst = np.zeros(len(i))
+    for a, b in ((i, j), (j, i)):
+        counts = np.clip(_EACH * curves.count(table.edge[a]) + 1, _LEAST, _MOST)
+        k = np.repeat(np.arange(len(a)), counts)
+        share = (np.arange(len(k)) - np.repeat(np.cumsum(counts) - counts, counts)) / np.repeat(counts - 1, counts)
+        here, there = table.edge[a][k], table.edge[b][k]
+        start, end = curves.length(table.edge[a], table.low[a]), curves.length(table.edge[a], table.high[a])
+        point = curves.at(here, curves.at_length(here, start[k] + share * (end - start)[k]))[0]
+        low, high = table.low[b], table.high[b]
+        start, end = curves.length(table.edge[b], low), curves.length(table.edge[b], high)
+        share = np.where(way[k] > 0, share, 1 - share)
+        guess = curves.at_length(there, start[k] + share * (end - start)[k]).clip(low[k], high[k])
+        distance = curves.near(there, guess, low[k], high[k], point)[1]
+        np.maximum.at(worst, k, np.where(np.isfinite(distance), distance, np.inf))
+    return worst
+
+
+class _Tubes:
+    """May a face be joined with itself? A tube that is slit may, a strip as narrow as the tolerance may not."""
+
+    def __init__(self, curves: Curves, faces: list[tuple[int, ...]]) -> None:
+        self.curves, self.by_face = curves, {}
+        for edge, users in enumerate(faces):
+            for face in users:
+                self.by_face.setdefault(face, []).append(edge)
+        self.faces = faces
+
+    by_face: dict[int, list[int]]
+
+    def wide(self, table: _Table, piece: int, tolerance: float) -> bool:
+        """Whether the face of a piece reaches well away from the piece."""
+        curves, edge = self.curves, int(table.edge[piece])
+        mine = np.array([e for face in self.faces[edge] for e in self.by_face[face] if curves.drawn[e]], np.intp)
+        t = curves.low[mine][:, None] + np.linspace(0.0, 1.0, 9) * (curves.high - curves.low)[mine][:, None]
+        points = curves.at(np.repeat(mine, 9), t.ravel())[0]
+        inner = np.linspace(table.low[piece], table.high[piece], 65)
+        line = curves.at(np.full(65, edge), inner)[0]
+        gap = float(np.linalg.norm(np.diff(line, axis=0), axis=1).max())
+        return bool(cKDTree(line).query(points)[0].max() > gap + _AWAY * tolerance)
+
+
+def points(curves: Curves, faces: list[tuple[int, ...]], groups: Sequence[Group], tolerance: float) -> list[Group]:
+    """Groups that are no more than a point within a tolerance, but for faces that have no other edges.
+
+    What one face has alone is a point together with all such pieces that go on at its ends: of a hole made of short pieces, each
+    would be one.
+    """
+    short = [
+        g for g, alone in zip(groups, _alone(faces, groups), strict=True) if alone and curves.drawn[g.pieces[0].edge]
+    ]
+    table = _Table.of(short)
+    small = np.flatnonzero(table.lengths(curves) <= tolerance)
+    if not len(small):
+        return []
+    ends = table.ends(curves).reshape(-1, 2, 3)[small]
+    tree = cKDTree(ends.reshape(-1, 3))
+    if tree.count_neighbors(tree, tolerance) > 2 * MOST_NEIGHBOURS:
+        raise TooMany
+    pairs = tree.query_pairs(tolerance, output_type="ndarray") // 2
+    chains = coo_array((np.ones(len(pairs), np.int8), pairs.T), shape=(len(small), len(small)))
+    label = connected_components(chains, directed=False)[1]
+    found = []
+    for which in range(int(label.max()) + 1):
+        mine = label == which
+        if np.linalg.norm(np.ptp(ends[mine].reshape(-1, 3), axis=0)) <= tolerance:
+            found += [short[k] for k in small[mine].tolist()]
+    few = {group.pieces[0].edge for group in found}
+    kept = {face for edge, users in enumerate(faces) if edge not in few for face in users}
+    return [group for group in found if faces[group.pieces[0].edge][0] in kept]
+
+
+def _whole(groups: list[Group]) -> Iterator[Group]:
+    """The same without cuts between pieces that nothing was joined with."""
+    alone: dict[int, list[Piece]] = {}
+    for group in groups:
+        if len(group.pieces) == 1:
+            alone.setdefault(group.pieces[0].edge, []).append(group.pieces[0])
+        else:
+            yield group
+    for pieces in alone.values():
+        pieces.sort()
+        run = pieces[0]
+        for piece in pieces[1:]:
+            if piece.low == run.high:
+                run = Piece(run.edge, run.low, piece.high)
+            else:
+                yield Group((run,), (1,))
+                run = piece
+        yield Group((run,), (1,))
