@@ -26,7 +26,7 @@ ANGLE = 0.35
 FINE = 5e-4
 _METRE = 1e-3
 #: How much coarser the triangles are that drawing begins with.
-_COARSER = 8.0
+_COARSER = 2.0
 
 
 class Mesh(NamedTuple):
