@@ -272,22 +272,42 @@ def test_what_crashes_the_mesher_is_missing(monkeypatch):
     assert [why for _, why in triangles.missing] == ["the kernel's mesher fails on it"] * 6
 
 
+def test_what_the_mesher_failed_on_is_not_tried_again_to_be_drawn(monkeypatch):
+    asked = []
+    monkeypatch.setattr(start, "own_start", lambda *_: None)
+    monkeypatch.setattr(start, "kernel_start", lambda _, number, *__: (asked.append(number), (None, 0.1))[1])
+    part = read_part(box())
+    _, why = start.starts(part, [1, 2], 0.1)
+    assert asked == [1, 1, 2, 2]
+    assert start.starts(part, [1, 2], 0.01, again=True) == ({}, why)
+    assert len(asked) == 4
+    start.starts(part, [1], 0.01)
+    assert asked[4:] == [1, 1]
+
+
 def test_a_face_that_never_meshes_is_not_drawn_and_others_are(monkeypatch):
-    shape = compound(box(), ring())
-    bad = faces(shape)[-1]
+    shape = compound(ring(), box())
+    bad = faces(shape)[0]
     kernel = mesher.BRepMesh_IncrementalMesh
 
     def asked(given, *more):
-        while any(each.IsSame(bad) for each in faces(given)):
+        while given.IsSame(bad):
             pass
         return kernel(given, *more)
 
     monkeypatch.setattr(mesher, "BRepMesh_IncrementalMesh", asked)
-    monkeypatch.setattr(mesher, "WHOLE", 1.0)
-    monkeypatch.setattr(mesher, "FACE", 1.0)
-    mesher.give_triangles(shape, 0.1, 0.3)
-    drawn = [BRep_Tool.Triangulation_s(face, TopLoc_Location()) is not None for face in faces(shape)]
-    assert drawn == [True] * 6 + [False]
+    began = time.monotonic()
+    drawn = [found is not None for found in mesher.meshed(faces(shape), 0.1, 0.3)]
+    assert drawn == [False] + [True] * 6
+    assert time.monotonic() - began < 20
+
+
+def test_many_faces_that_never_mesh_end_in_time(monkeypatch):
+    monkeypatch.setattr(mesher, "BRepMesh_IncrementalMesh", never)
+    monkeypatch.setattr(mesher, "HANGS", 2)
+    began = time.monotonic()
+    assert list(mesher.meshed(faces(compound(*[box()] * 20)), 0.1, 0.3)) == [None] * 6
+    assert time.monotonic() - began < 20
 
 
 # --- a spring ---------------------------------------------------------------------------------------------------------------

@@ -127,6 +127,8 @@ class Part:
         self._surfaces: dict[int, Surface] = {}
         self._trims: dict[int, Trim | None] = {}
         self._measures: dict[int, Measure | None] = {}
+        #: Face number -> triangles of the kernel's mesher, or why there are none; kept by `tessellate`, for it takes seconds.
+        self.meshed: dict[int, tuple[Any, str]] = {}
         self.solids = shape_map(shape, TopAbs_SOLID).Extent()
         with translated("measuring the part", error=ReadError, file=file):
             boxes = np.array([face_box(face, tight=False) for face in self._faces])

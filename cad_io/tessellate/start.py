@@ -44,7 +44,7 @@ At = Callable[[str, int], None]
 
 
 def starts(
-    part: Part, numbers: Sequence[int], chord: float, at: At = lambda who, face: None
+    part: Part, numbers: Sequence[int], chord: float, at: At = lambda who, face: None, *, again: bool = False
 ) -> tuple[dict[int, UVMesh], dict[int, str]]:
     """Triangles of faces to begin with, whose distance from them is about `chord`, mm; and why a face has none.
 
@@ -55,6 +55,8 @@ def starts(
     chord : float
     at : callable, optional
         Told who is at work at which face.
+    again : bool
+        Where the kernel's mesher has been at a face, for whatever chord error, take what it made, also if that was nothing.
     """
     found: dict[int, UVMesh | None] = {}
     why: dict[int, str] = {}
@@ -64,27 +66,31 @@ def starts(
         found[number] = own_start(part, number, chord)
         if found[number] is not None:
             continue
-        at("kernel", number)
-        if left <= 0.0:
-            why[number] = "the kernel's mesher, which it is left to, has spent its time on others"
-            continue
-        try:
-            found[number], spent = _second(part, number, chord, min(left, _SECONDS))
-        except TimeLimit:
-            why[number], spent = "the kernel's mesher, which it is left to, does not end on it", _SECONDS
-        else:
-            if found[number] is None:
-                why[number] = "the kernel's mesher fails on it"
-        left -= spent
+        if not (again and number in part.meshed):
+            at("kernel", number)
+            if left <= 0.0:
+                why[number] = "the kernel's mesher, which it is left to, has spent its time on others"
+                continue
+            part.meshed[number], spent = _second(part, number, chord, min(left, _SECONDS))
+            left -= spent
+        found[number], said = part.meshed[number]
+        if said:
+            why[number] = said
     return {number: mesh for number, mesh in found.items() if mesh is not None}, why
 
 
-def _second(part: Part, number: int, chord: float, seconds: float) -> tuple[UVMesh | None, float]:
-    mesh, spent = kernel_start(part, number, chord, _ANGLE, seconds)
-    if mesh is not None and _fits(mesh, part.trim(number)):
-        return mesh, spent
-    mesh, more = kernel_start(part, number, _FINER * chord, 0.2 * _ANGLE, seconds)
-    return mesh if mesh is not None and _fits(mesh, part.trim(number)) else None, spent + more
+def _second(part: Part, number: int, chord: float, seconds: float) -> tuple[tuple[UVMesh | None, str], float]:
+    """What the kernel's mesher makes of a face, why if that is nothing, and the seconds it took."""
+    try:
+        mesh, spent = kernel_start(part, number, chord, _ANGLE, seconds)
+        if mesh is None or not _fits(mesh, part.trim(number)):
+            mesh, more = kernel_start(part, number, _FINER * chord, 0.2 * _ANGLE, seconds)
+            spent += more
+        if mesh is not None and not _fits(mesh, part.trim(number)):
+            mesh = None
+    except TimeLimit:
+        return (None, "the kernel's mesher, which it is left to, does not end on it"), _SECONDS
+    return (mesh, "" if mesh is not None else "the kernel's mesher fails on it"), spent
 
 
 def _fits(mesh: UVMesh, trim: Trim | None) -> bool:

@@ -9,11 +9,11 @@ from OCP.Bnd import Bnd_Box
 from OCP.BRep import BRep_Tool
 from OCP.BRepBndLib import BRepBndLib
 from OCP.TopAbs import TopAbs_REVERSED
-from OCP.TopLoc import TopLoc_Location
 
 from cad_io.arrays import FaceLabels, Floats, Ints
 from cad_io.errors import WriteError
 from cad_io.kernel import translated
+from cad_io.kernel.mesher import Meshed
 from cad_io.part import Part
 from cad_io.surface import Surface
 from cad_io.tessellate.start import starts
@@ -26,7 +26,7 @@ ANGLE = 0.35
 FINE = 5e-4
 _METRE = 1e-3
 #: How much coarser the triangles are that drawing begins with.
-_COARSER = 8.0
+_COARSER = 2.0
 
 
 class Mesh(NamedTuple):
@@ -72,7 +72,7 @@ def drawn(part: Part, sides: Sequence[float] | Floats, *, most: int, deflection:
     """
     with translated("meshing", error=WriteError, file=part.file):
         wanted = FINE * diagonal(part.shape) if deflection is None else deflection
-        begun, _ = starts(part, [f.number for f in part.faces], _COARSER * wanted)
+        begun, _ = starts(part, [f.number for f in part.faces], _COARSER * wanted, again=True)
         nets = {number: Net.of(part.surface(number), start) for number, start in begun.items()}
         off = cut(list(nets.values()), wanted, ANGLE, most)
         meshes, periods = {}, {}
@@ -97,29 +97,25 @@ def diagonal(shape: Any) -> float:
     return float(np.sqrt(box.SquareExtent()))
 
 
-def face_mesh(face: Any, meshed: Any, labels: FaceLabels | None) -> dict[int, Mesh] | None:
+def face_mesh(face: Any, surface: Surface, meshed: Meshed | None, labels: FaceLabels | None) -> dict[int, Mesh] | None:
     """Mesh of a face by label, all of it by the label 0 where there are none; None if the kernel made none.
 
     Parameters
     ----------
-    face, meshed : TopoDS_Face
-        The face, and its copy that the kernel has meshed.
+    face : TopoDS_Face
+    surface : Surface
+        That it lies on.
+    meshed : Meshed, optional
+        Its triangles, of the kernel.
     labels : FaceLabels, optional
     """
-    location = TopLoc_Location()
-    triangulation = BRep_Tool.Triangulation_s(meshed, location)
-    if triangulation is None or not triangulation.HasUVNodes():
+    if meshed is None:
         return None
-    uv = np.array([triangulation.UVNode(i + 1).Coord() for i in range(triangulation.NbNodes())])
-    triangle = np.array([triangulation.Triangle(i + 1).Get() for i in range(triangulation.NbTriangles())]) - 1
-    # The mesh's own nodes, not the surface's points: along an edge both faces have the same ones, and no cracks.
-    place = location.Transformation()
-    nodes = (triangulation.Node(i + 1).Transformed(place).Coord() for i in range(triangulation.NbNodes()))
-    point, label = np.array(list(nodes)), np.zeros(len(triangle), np.int32)
+    uv, point, triangle = meshed
+    label = np.zeros(len(triangle), np.int32)
     if labels is not None:
         uv, point, triangle, label = label_mesh(face, uv, point, triangle, labels)
-    # The kernel's triangles run counter-clockwise in the parameter plane, whichever way the face is turned.
-    return _finished(Surface(face), uv, point, triangle, label, turned=face.Orientation() == TopAbs_REVERSED)
+    return _finished(surface, uv, point, triangle, label, turned=face.Orientation() == TopAbs_REVERSED)
 
 
 def _finished(

@@ -15,15 +15,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
-from OCP.TopoDS import TopoDS
 
 from cad_io.arrays import Floats, Style
 from cad_io.errors import WriteError
 from cad_io.kernel import translated
-from cad_io.kernel.components import compound
-from cad_io.kernel.mesher import give_triangles
+from cad_io.kernel.mesher import meshed
 from cad_io.split.pieces import MIXED, Piece, Split
+from cad_io.surface import Surface
 from cad_io.write.aside import aside
 from cad_io.write.drawn import ANGLE, FINE, Mesh, diagonal, face_mesh
 
@@ -127,15 +125,15 @@ def meshes_of(split: Split, deflection: float | None = None) -> Iterator[tuple[P
     Of a face that could not be split, the triangles of each label are a piece. `deflection`: chord error, mm; default FINE times
     the part's diagonal.
     """
-    # A copy without triangles: the part is not to carry ours, and finer ones that it carries would change the file.
-    whole = compound([split.shape, *(p.shape for beside in split.beside.values() for p in beside)])
-    copy = BRepBuilderAPI_Copy(whole, False, False)
     if deflection is None:
         deflection = FINE * diagonal(split.shape)
-    give_triangles(copy.Shape(), deflection, ANGLE)
-    for piece in (shown for each in split.pieces for shown in _shown(split, each)):
+    pieces = [shown for each in split.pieces for shown in _shown(split, each)]
+    surfaces: dict[int, Surface] = {}
+    for piece, found in zip(pieces, meshed([piece.shape for piece in pieces], deflection, ANGLE), strict=True):
         labels = split.labels.get(piece.face) if piece.label == MIXED else None
-        meshes = face_mesh(piece.shape, TopoDS.Face_s(copy.ModifiedShape(piece.shape)), labels)
+        # To see whether a surface is one that we evaluate takes longer than a small piece: those of a face share it.
+        surface = surfaces.get(piece.face) or surfaces.setdefault(piece.face, Surface(piece.shape))
+        meshes = face_mesh(piece.shape, surface, found, labels)
         for label, mesh in (meshes or {}).items():
             yield (piece if labels is None else Piece(piece.face, label, piece.shape)), mesh
         if not meshes:
