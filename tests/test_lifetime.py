@@ -211,22 +211,26 @@ CALLER = """
 import itertools, os, sys, threading
 from pathlib import Path
 import cad_io.lifetime as lifetime
+from cad_io.kernel.each import each
 from cad_io.kernel.limited import limited
-if sys.argv[2] == "looked after":
+if sys.argv[3] == "looked after":
     lifetime._killed_by_the_system = lambda: False
 def spin():
     Path(sys.argv[1]).touch()
     any(itertools.repeat(False))
-work = threading.Thread(target=lambda: limited(lambda: spin() or b"", 600.0))
+calls = {"one call": lambda: limited(lambda: spin() or b"", 600.0),
+         "each of many": lambda: list(each(lambda _: spin(), [1], seconds=600.0))}
+work = threading.Thread(target=calls[sys.argv[2]])
 work.start()
 work.join()
 """
 
 
+@pytest.mark.parametrize("call", ["one call", "each of many"])
 @pytest.mark.parametrize("how", ["killed by the system", "looked after"])
-def test_copies_end_with_the_program_that_plans(tmp_path, how):
+def test_copies_end_with_the_program_that_plans(tmp_path, how, call):
     """Whoever calls `plan` from Python and dies leaves no copy behind: on Linux, and by the way of all others."""
-    with Run(tmp_path, ":", command=("-c", CALLER), words=(str(tmp_path / "hooks" / "stuck"), how)) as run:
+    with Run(tmp_path, ":", command=("-c", CALLER), words=(str(tmp_path / "hooks" / "stuck"), call, how)) as run:
         run.until_stuck()
         assert len(run.alive()) == (3 if how == "looked after" else 2)
         run.process.kill()

@@ -1,7 +1,6 @@
 """STEP of split parts: names and colours per piece in two readers, one of them without the CAD kernel; same bytes."""
 
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -221,20 +220,6 @@ def test_instances_that_were_not_split_have_colours_of_their_own(tmp_path):
         assert face.colour == pytest.approx(RED if number < 4 else GREEN, abs=1e-5)
         assert again.layers[face.number] == ("left" if number < 4 else "right",)
     assert sorted(f.name for f in again.faces) == [f"F{n}" for n in range(1, 7)]
-
-
-def test_pieces_beside_a_solid_are_a_shell_of_its_product(tmp_path):
-    part = Part(block(1))
-    top = largest_bspline(part)
-    alone = split(Part(part.face(top)), [labels(Part(part.face(top)), 1, lambda x, y: x > 0.5)])
-    beside = tuple(replace(p, face=top) for p in alone.pieces)
-    found = replace(split(part, []), beside={top: beside})
-    write_step(found, tmp_path / "part.step", style, product="part")
-    assert same(styled_faces(tmp_path / "part.step"), sorted([*expected(found), *(tuple(style(p)) for p in beside)]))
-    again = read_part(tmp_path / "part.step")
-    assert (again.solids, len(again.faces), len(again.tree)) == (1, len(part.faces) + 2, 1)
-    shells = [t for t in parse(tmp_path / "part.step").values() if t.startswith("SHELL_BASED_SURFACE_MODEL")]
-    assert [f"'F{top} regions'" in t for t in shells] == [True]
 
 
 def test_a_located_solid_and_a_single_face(tmp_path):

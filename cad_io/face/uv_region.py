@@ -4,21 +4,22 @@ All of it is read off the curves that bound the face in (u, v), as even-odd regi
 degenerated edges need no special care and the order of the edges does not matter.
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
-from OCP.GeomAbs import GeomAbs_BSplineCurve, GeomAbs_CN, GeomAbs_Line
+from OCP.GeomAbs import GeomAbs_BezierCurve, GeomAbs_BSplineCurve, GeomAbs_CN, GeomAbs_Line
 from OCP.gp import gp_Pnt2d, gp_Vec2d
-from OCP.TColStd import TColStd_Array1OfReal
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopoDS import TopoDS
-from scipy.interpolate import BSpline
+from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cad_io.arrays import Floats
 from cad_io.face.trim import even_odd, joins
-from cad_io.kernel import edges_of
+from cad_io.kernel import edges_of, interval_ends
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)  # exact for polynomial curves up to degree 6
 _CHORDS = 4  # of an interval, in an outline
@@ -46,15 +47,47 @@ def outline(face: Any) -> Floats:
     return np.concatenate([*(np.stack([uv[:-1], uv[1:]], axis=1) for uv in pieces), between])
 
 
+def uv_areas(faces: Sequence[Any]) -> list[float]:
+    """Areas of faces of one surface in (u, v), exact for polynomial boundaries: the integrals of u dv around them.
+
+    What bounds two of them is integrated once.
+    """
+    known = TopTools_IndexedMapOfShape()
+    integrals: dict[tuple[int, Any], float] = {}
+    areas = []
+    for face in faces:
+        total, forward = 0.0, TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
+        for edge in edges_of(forward):
+            way = edge.Orientation()
+            if way not in (TopAbs_FORWARD, TopAbs_REVERSED):
+                continue
+            # A seam has two curves, by its orientation.
+            mark = known.Add(edge), way if BRep_Tool.IsClosed_s(edge, forward) else None
+            if mark not in integrals:
+                integrals[mark] = _integral(BRepAdaptor_Curve2d(edge, forward))
+            total += integrals[mark] if way == TopAbs_FORWARD else -integrals[mark]
+        areas.append(total)
+    return areas
+
+
 def uv_area(face: Any) -> float:
-    """Area of the region in (u, v), exact for polynomial boundaries: the integral of u dv around it."""
-    total = 0.0
-    for curve, ends, sign in boundary(face):
-        half = 0.5 * np.diff(ends)
-        t = ((0.5 * (ends[1:] + ends[:-1]))[:, None] + half[:, None] * _NODES).ravel()
-        place, slope = _followed(curve, t)
-        total += sign * float(((half[:, None] * _WEIGHTS).ravel() * place[:, 0] * slope[:, 1]).sum())
-    return total
+    """Area of the region in (u, v), exact for polynomial boundaries."""
+    return uv_areas([face])[0]
+
+
+def _integral(curve: Any) -> float:
+    """The integral of u dv along a curve."""
+    kind, ends = curve.GetType(), _ends(curve)
+    if kind == GeomAbs_Line:
+        (u, v), (to_u, to_v) = (curve.Value(float(t)).Coord() for t in (ends[0], ends[-1]))
+        return 0.5 * float((u + to_u) * (to_v - v))
+    smooth = kind in (GeomAbs_BSplineCurve, GeomAbs_BezierCurve) and curve.NbIntervals(GeomAbs_CN) == 1
+    if smooth and not curve.IsRational() and curve.Degree() <= len(_NODES):
+        ends = ends[[0, -1]]
+    half = 0.5 * np.diff(ends)
+    t = ((0.5 * (ends[1:] + ends[:-1]))[:, None] + half[:, None] * _NODES).ravel()
+    place, slope = _followed(curve, t)
+    return float(((half[:, None] * _WEIGHTS).ravel() * place[:, 0] * slope[:, 1]).sum())
 
 
 def _followed(curve: Any, t: Floats) -> tuple[Floats, Floats]:
@@ -65,6 +98,8 @@ def _followed(curve: Any, t: Floats) -> tuple[Floats, Floats]:
             poles = np.array([spline.Pole(i).Coord() for i in range(1, spline.NbPoles() + 1)])
             flat = spline.KnotSequence()
             knots = np.array([flat.Value(i) for i in range(flat.Lower(), flat.Upper() + 1)])
+            from scipy.interpolate import BSpline  # half a second to load
+
             known = BSpline(knots, poles, spline.Degree())
             return known(t), known.derivative()(t)
     point, tangent = gp_Pnt2d(), gp_Vec2d()
@@ -107,11 +142,12 @@ def boundary(face: Any) -> list[tuple[Any, Floats, float]]:
         if edge.Orientation() not in (TopAbs_FORWARD, TopAbs_REVERSED):
             continue
         curve = BRepAdaptor_Curve2d(edge, forward)
-        count = curve.NbIntervals(GeomAbs_CN)
-        ends = TColStd_Array1OfReal(1, count + 1)
-        curve.Intervals(ends, GeomAbs_CN)
-        t = np.array([ends.Value(i + 1) for i in range(count + 1)])
-        if count == 1 and curve.GetType() != GeomAbs_Line:
-            t = np.linspace(t[0], t[1], _ARCS + 1)
-        out.append((curve, t, 1.0 if edge.Orientation() == TopAbs_FORWARD else -1.0))
+        out.append((curve, _ends(curve), 1.0 if edge.Orientation() == TopAbs_FORWARD else -1.0))
     return out
+
+
+def _ends(curve: Any) -> Floats:
+    """Ends (k + 1,) of the smooth intervals of a curve; one interval that is not straight is cut into arcs."""
+    count = curve.NbIntervals(GeomAbs_CN)
+    t = interval_ends(count, curve.Intervals, GeomAbs_CN)
+    return np.linspace(t[0], t[1], _ARCS + 1) if count == 1 and curve.GetType() != GeomAbs_Line else t

@@ -1,16 +1,14 @@
 """The kernel's work on one thing after another, in a copy that can be ended: what hangs or crashes costs that thing alone."""
 
-import faulthandler
 import os
 import pickle
 import select
-import signal
 import struct
-import warnings
 from collections.abc import Callable, Iterator, Sequence
-from typing import TypeVar, cast
+from functools import partial
+from typing import BinaryIO, TypeVar, cast
 
-from cad_io.kernel.limited import _end_alone, _stuck
+from cad_io.kernel.copies import begin, end_within, ended, out_of_time, stuck
 
 Item = TypeVar("Item")
 Done = TypeVar("Done")
@@ -28,8 +26,8 @@ def each(
 ) -> Iterator[Done | Ended]:
     """What `call` makes of each item, in their order.
 
-    It runs in a forked copy of this process, which is made again behind an item that ends it. Where the system cannot fork
-    (Windows), it runs here, without a limit.
+    It runs in a forked copy of this process, which ends with it and is made again behind an item that ends it. Where the
+    system cannot fork (Windows), it runs here, without a limit.
 
     Parameters
     ----------
@@ -53,8 +51,8 @@ def each(
         if left <= 0:
             yield from (Ended("was not tried, for others before it did not come to an end") for _ in items[first:])
             return
-        end, child = _begin(call, items[first:], seconds)
-        why = ""
+        end, child = begin(partial(_work, call, items[first:], seconds), seconds * (len(items) - first + 1))
+        why, status = "", 0
         try:
             for answer in _answers(end, child):
                 first += 1
@@ -65,8 +63,7 @@ def each(
             why = "waits for ever"
         finally:
             os.close(end)
-            os.kill(child, signal.SIGKILL)
-            _, status = os.waitpid(child, 0)
+            status = ended(child)
         if first < len(items):
             left -= 1
             first += 1
@@ -74,46 +71,30 @@ def each(
 
 
 def _told(status: int, seconds: float) -> str:
-    if os.WIFSIGNALED(status) and os.WTERMSIG(status) in (signal.SIGPROF, signal.SIGXCPU):
+    if out_of_time(status):
         return f"does not come to an end within {seconds:g} s"
     return f"crashes (status {status})"
 
 
-def _begin(call: Callable[[Item], Done], items: Sequence[Item], seconds: float) -> tuple[int, int]:
-    """The end of a pipe on which a copy answers, and the copy."""
-    end, start = os.pipe()
-    with warnings.catch_warnings():
-        # Python 3.12 warns of locks held by other threads; at worst the copy waits for one, which is noticed.
-        warnings.simplefilter("ignore", DeprecationWarning)
-        child = os.fork()
-    if child:
-        os.close(start)
-        return end, child
-    try:
-        faulthandler.disable()  # a crash here is told by the other side
-        _end_alone(seconds * (len(items) + 1))
-        signal.signal(signal.SIGPROF, signal.SIG_DFL)
-        with os.fdopen(start, "wb") as pipe:
-            for item in items:
-                # The system ends the copy after so much processor time: the kernel cannot be asked to.
-                signal.setitimer(signal.ITIMER_PROF, seconds)
-                try:
-                    answer: object = call(item)
-                except Exception as error:
-                    answer = error
-                signal.setitimer(signal.ITIMER_PROF, 0.0)
-                data = pickle.dumps(answer)
-                pipe.write(_LENGTH.pack(len(data)) + data)
-                pipe.flush()
-                if isinstance(answer, Exception):
-                    break
-    finally:
-        os._exit(0)
+def _work(call: Callable[[Item], Done], items: Sequence[Item], seconds: float, pipe: BinaryIO) -> None:
+    """The copy's side: an answer for each item, up to the first that raises."""
+    for item in items:
+        end_within(seconds)
+        try:
+            answer: object = call(item)
+        except Exception as error:
+            answer = error
+        end_within(0.0)
+        data = pickle.dumps(answer)
+        pipe.write(_LENGTH.pack(len(data)) + data)
+        pipe.flush()
+        if isinstance(answer, Exception):
+            break
 
 
 def _answers(end: int, child: int) -> Iterator[object]:
     """Whole answers as they come, until the copy ends; TimeoutError if it sleeps and does nothing."""
-    late, data = _stuck(child), b""
+    late, data = stuck(child), b""
     while True:
         wait = late()
         if wait <= 0:

@@ -1,23 +1,13 @@
 """A time limit for kernel calls: Python cannot interrupt them, but it can end a forked copy of the process."""
 
-import faulthandler
-import math
 import os
 import select
-import signal
 import time
-import warnings
 from collections.abc import Callable
-from contextvars import ContextVar
+from functools import partial
+from typing import BinaryIO
 
-from cad_io.lifetime import end_with
-
-#: How many threads of the kernel's own a copy may use. They are kept in a pool that does not survive a fork: more than one only
-#: where this process has never had the kernel use any.
-KERNEL_THREADS: ContextVar[int] = ContextVar("KERNEL_THREADS", default=1)
-
-#: Looks, one a second, at a copy that sleeps and does nothing before it is taken for stuck.
-_ASLEEP = 60
+from cad_io.kernel.copies import begin, ended, out_of_time, stuck
 
 
 class TimeLimit(Exception):
@@ -53,24 +43,15 @@ def limited(call: Callable[[], bytes], seconds: float, *, processor: bool = Fals
         raise TimeLimit
     if not hasattr(os, "fork"):
         return call()
-    end, start = os.pipe()
-    caller = os.getpid()
-    with warnings.catch_warnings():
-        # Python 3.12 warns of locks held by other threads; at worst the copy waits for one until the limit.
-        warnings.simplefilter("ignore", DeprecationWarning)
-        child = os.fork()
-    if child == 0:
-        # By the clock the other side ends it.
-        _answer(call, start, seconds if processor else seconds + 2, caller)
-    os.close(start)
-    answer = b""
+    # By the clock this side ends it.
+    end, child = begin(partial(_answer, call), seconds if processor else seconds + 2)
+    answer, status = b"", 0
     try:
-        answer = _read(end, _stuck(child) if processor else _until(seconds))
+        answer = _read(end, stuck(child) if processor else _until(seconds))
     finally:
         os.close(end)
-        os.kill(child, signal.SIGKILL)
-        _, status = os.waitpid(child, 0)
-    if os.WIFSIGNALED(status) and os.WTERMSIG(status) == getattr(signal, "SIGXCPU", None):
+        status = ended(child)
+    if out_of_time(status):
         raise TimeLimit
     if not answer.startswith(b"+"):
         raise ChildDied(answer[1:].decode() or f"the kernel crashed (status {status})")
@@ -96,46 +77,10 @@ def _until(seconds: float) -> Callable[[], float]:
     return lambda: deadline - time.monotonic()
 
 
-def _stuck(child: int) -> Callable[[], float]:
-    """Never late while the process works, or waits for a processor: only after so many looks at it sleeping."""
-    idle, before = 0, ""
-
-    def late() -> float:
-        nonlocal idle, before
-        try:
-            with open(f"/proc/{child}/stat", encoding="ascii", errors="replace") as file:
-                state, *fields = file.read().rpartition(")")[2].split()
-        except OSError:
-            return 1.0
-        spent = " ".join(fields[10:12])
-        idle = idle + 1 if state in "SDT" and spent == before else 0
-        before = spent
-        return 1.0 if idle < _ASLEEP else 0.0
-
-    return late
-
-
-def _answer(call: Callable[[], bytes], start: int, seconds: float, caller: int) -> None:
-    """The copy's side: write the answer, `+` and the result or `-` and what was raised, and end without clean-up."""
+def _answer(call: Callable[[], bytes], pipe: BinaryIO) -> None:
+    """The copy's side: write `+` and the result, or `-` and what was raised."""
     try:
-        try:
-            faulthandler.disable()  # a crash here is told by the other side
-            end_with(caller)
-            _end_alone(seconds)
-            answer = b"+" + call()
-        except Exception as error:
-            answer = b"-" + f"{type(error).__name__} {error}".encode()
-        with os.fdopen(start, "wb") as pipe:
-            pipe.write(answer)
-    finally:
-        os._exit(0)
-
-
-def _end_alone(seconds: float) -> None:
-    """Have the system end this process after so much processor time, even if the one that watches is gone; no dump."""
-    import resource  # of systems that can fork
-
-    soft, hard = resource.getrlimit(resource.RLIMIT_CPU)
-    known = [limit for limit in (soft, hard, math.ceil(min(seconds, 1e9))) if limit != resource.RLIM_INFINITY]
-    resource.setrlimit(resource.RLIMIT_CPU, (min(known), hard))
-    resource.setrlimit(resource.RLIMIT_CORE, (0, resource.getrlimit(resource.RLIMIT_CORE)[1]))
+        answer = b"+" + call()
+    except Exception as error:
+        answer = b"-" + f"{type(error).__name__} {error}".encode()
+    pipe.write(answer)

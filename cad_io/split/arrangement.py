@@ -4,15 +4,18 @@ import itertools
 from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from OCP.gp import gp_Pnt2d, gp_Vec2d
-from scipy.interpolate import BSpline
 
 from cad_io.arrays import Floats
 from cad_io.split.border import Border, CannotSplit, Side
 from cad_io.split.contour import Spline
 from cad_io.split.planar import chain, crossings, nearest, within
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline
 
 #: Places on an edge nearer to each other than this are one vertex, and nearer than this to its end they are that end, mm. The
 #: ends of the curves are moved there, so that no tolerance grows.
@@ -71,6 +74,10 @@ class Arrangement:
         Node within the face -> its place (2,).
     met : int
         How often curves cross each other.
+    followed : dict
+        Stretches as curves in space, kept for the next attempt.
+    sound : set
+        Where edges of the border were cut when the pieces were found to tile the face.
     """
 
     def __init__(self, border: Border, splines: Sequence[Spline], at_end: Callable[[int, float], int | None]) -> None:
@@ -79,6 +86,8 @@ class Arrangement:
         self.crossings: list[Crossing] = []
         self.stretches: list[Stretch] = []
         self.free: dict[int, Floats] = {}
+        self.followed: dict[tuple[Any, ...], Any] = {}
+        self.sound: set[tuple[tuple[float, ...], ...]] = set()
         self._nodes = border.nodes
         for i, spline in enumerate(splines):
             self._cut(i, spline)
@@ -104,6 +113,8 @@ class Arrangement:
 
     def _cut(self, number: int, spline: Spline) -> None:
         """Add the stretches of a curve."""
+        from scipy.interpolate import BSpline  # half a second to load
+
         scale, curve = self.border.scale, BSpline(spline.knots, spline.poles, 3)
         knots = np.unique(spline.knots)
         t = np.append((knots[:-1, None] + np.diff(knots)[:, None] * np.arange(_CHORDS) / _CHORDS).ravel(), knots[-1])
@@ -139,7 +150,7 @@ class Arrangement:
             self.stretches.append(Stretch(number, np.concatenate([[a], t[among], [b]]), path, (ca, cb), (na, nb)))
 
     def _bounds(
-        self, spline: Spline, curve: BSpline, t: Floats, xy: Floats
+        self, spline: Spline, curve: "BSpline", t: Floats, xy: Floats
     ) -> list[tuple[float, tuple[int, float] | None]]:
         """Parameters between which a curve is all inside or all outside, each with the side it meets there and where."""
         size, slope, first, last = self.border.size, curve.derivative(), float(t[0]), float(t[-1])

@@ -11,7 +11,7 @@ from OCP.TopAbs import TopAbs_FACE
 from OCP.TopoDS import TopoDS
 
 from cad_io.kernel import edges_of, shape_map
-from cad_io.kernel.components import as_one, components, compound
+from cad_io.kernel.components import as_one, compound
 from cad_io.split.build import Placed, pieces, rewired
 from cad_io.split.check import valid, wrong_pieces, wrong_whole
 from cad_io.split.drawing import Drawing, in_words
@@ -26,8 +26,47 @@ def copied(shape: Any, faces: dict[int, Any]) -> tuple[Any, dict[int, Any]]:
     return own, {n: TopoDS.Face_s(after.FindKey(before.FindIndex(face))) for n, face in faces.items()}
 
 
+class Trial:
+    """A component of a part, of which attempts are made; and what they may keep from each other.
+
+    Attributes
+    ----------
+    given, base : TopoDS_Shape
+        The component, to which results are compared, and a copy of it, which is mended.
+    faces : dict
+        Number -> TopoDS_Face, all faces of the copy.
+    net : Net
+        Of the copy.
+    works_on : callable
+        To be told the faces about which the kernel is asked next.
+    careful : bool
+        Ask about the validity of each face alone, also while the whole is valid.
+    """
+
+    def __init__(
+        self,
+        given: Any,
+        base: Any,
+        faces: dict[int, Any],
+        surface_of: Callable[[int], Surface],
+        works_on: Callable[[set[int]], None],
+        careful: bool,
+    ) -> None:
+        """`surface_of` gives a face's surface by its number."""
+        self.given, self.base, self.faces, self.works_on, self.careful = given, base, faces, works_on, careful
+        known = shape_map(base, TopAbs_FACE)
+        numbers = {known.FindIndex(face): n for n, face in faces.items()}
+        self._surface_of = lambda i: surface_of(numbers[i])
+        self.net = Net(base, self._surface_of)
+
+    def copied(self) -> tuple[Any, dict[int, Any], Net]:
+        """Copy the base: the copy, its faces by number, its net."""
+        own, fresh = copied(self.base, self.faces)
+        return own, fresh, Net(own, self._surface_of, self.net.off)
+
+
 class Attempt:
-    """All faces of a part cut as they are drawn, on a copy of the part: vertices of it get looser.
+    """A component with all its faces cut as they are drawn, on a copy: vertices of it get looser.
 
     Attributes
     ----------
@@ -37,40 +76,14 @@ class Attempt:
         Number of a face -> why it cannot be cut so. Then nothing is put together.
     """
 
-    def __init__(
-        self,
-        given: Any,
-        base: Any,
-        faces: dict[int, Any],
-        drawings: dict[int, Drawing],
-        surface_of: Callable[[int], Surface],
-        works_on: Callable[[set[int]], None],
-        careful: bool,
-    ) -> None:
-        """Try it.
-
-        Parameters
-        ----------
-        given : TopoDS_Shape
-            The part, to which the result is compared.
-        base : TopoDS_Shape
-            A copy of it.
-        faces : dict
-            Number -> TopoDS_Face, all faces of the copy.
-        drawings : dict
-            Number -> Drawing.
-        surface_of : callable
-            A face's surface, by its number among the faces of the copy.
-        works_on : callable
-            To be told the faces about which the kernel is asked next.
-        careful : bool
-            Ask about the validity of each face alone, also while the whole is valid.
-        """
+    def __init__(self, trial: Trial, drawings: dict[int, Drawing]) -> None:
+        """Try it; `drawings` by the number of the face."""
         self.wrong: dict[int, str] = {}
-        self._works_on = works_on
-        own, fresh = copied(base, faces)
-        net = self._net = Net(own, surface_of)
-        before = shape_map(given, TopAbs_FACE)
+        self._placed: Placed | None = None
+        self._works_on = works_on = trial.works_on
+        own, fresh, net = trial.copied()
+        self._net = net
+        before = shape_map(trial.given, TopAbs_FACE)
         self._given = {n: TopoDS.Face_s(before.FindKey(net.faces.FindIndex(face))) for n, face in fresh.items()}
         self._cut = {n for n, drawing in drawings.items() if len(drawing.parts) > 1}
         places = {n: drawings[n].places() for n in sorted(self._cut)}
@@ -93,24 +106,17 @@ class Attempt:
                 beside[number] = cutters
                 works_on(cutters)
                 changed[number] = [rewired(net, face)]
-        if careful:
+        if trial.careful:
             self._ask(changed, beside)
-        self._units: list[Placed | None] = []
-        if self.wrong:
+        if self.wrong or not changed:
             return
         numbers = {net.faces.FindIndex(face): number for number, face in fresh.items()}
-        for unit, old in zip(components(own), components(given), strict=True):
-            mine = shape_map(unit, TopAbs_FACE)
-            within = {numbers[net.faces.FindIndex(mine.FindKey(i))] for i in range(1, mine.Extent() + 1)}
-            self._units.append(None if within.isdisjoint(changed) else Placed(unit, numbers, net.faces, changed))
-            if (placed := self._units[-1]) is None:
-                continue
-            works_on(within & self._cut)
-            if reason := wrong_whole(old, as_one(placed.shapes)):
-                known = len(self.wrong)
-                self._ask({n: changed[n] for n in within & changed.keys()}, beside)
-                if len(self.wrong) == known:
-                    self.wrong |= dict.fromkeys(within & self._cut, reason)
+        self._placed = Placed(own, numbers, net.faces, changed)
+        works_on(self._cut)
+        if reason := wrong_whole(trial.given, as_one(self._placed.shapes)):
+            self._ask(changed, beside)
+            if not self.wrong:
+                self.wrong = dict.fromkeys(self._cut, reason)
 
     def _ask(self, changed: dict[int, list[Any]], beside: dict[int, set[int]]) -> None:
         """Find faces that are not valid, though they were, and whose fault that is."""
@@ -127,24 +133,24 @@ class Attempt:
             self.wrong |= dict.fromkeys(cutters, why)
 
     def _pieces(self, number: int, face: Any, drawing: Drawing) -> list[Any]:
-        regions = [part.region for part in drawing.parts]
+        found, regions = drawing.found, [part.region for part in drawing.parts]
+        mark = tuple(tuple(cut.stops) if (cut := self._net.cuts.get(side.key)) else () for side in found.border.sides)
         try:
-            made = pieces(self._net, face, drawing.surface, drawing.found, regions)
-            reason = wrong_pieces(drawing.face, made)
+            made = pieces(self._net, face, drawing.surface, found, regions)
+            reason = "" if mark in found.sound else wrong_pieces(face, made)
         except Exception as error:
             made, reason = [], in_words(error)
         if reason:
             self.wrong[number] = reason
+        else:
+            found.sound.add(mark)
         return made
 
-    def packed(self) -> list[tuple[list[int], bytes] | None]:
-        """Of each component that changed, the numbers of its faces, and it with their pieces: sharing survives."""
-        out: list[tuple[list[int], bytes] | None] = []
-        for unit in self._units:
-            if unit is None:
-                out.append(None)
-                continue
-            stream = io.BytesIO()
-            BinTools.Write_s(compound([compound(unit.shapes), *map(compound, unit.faces.values())]), stream)
-            out.append((list(unit.faces), stream.getvalue()))
-        return out
+    def packed(self) -> tuple[list[int], bytes] | None:
+        """Numbers of the faces, and the component with their pieces: sharing survives. None if nothing changed."""
+        if self._placed is None:
+            return None
+        stream = io.BytesIO()
+        shapes, faces = self._placed.shapes, self._placed.faces
+        BinTools.Write_s(compound([compound(shapes), *map(compound, faces.values())]), stream)
+        return list(faces), stream.getvalue()

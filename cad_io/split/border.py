@@ -14,7 +14,6 @@ from OCP.GeomAbs import GeomAbs_CN, GeomAbs_Line
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopExp import TopExp
 from OCP.TopoDS import TopoDS
-from scipy.optimize import linear_sum_assignment
 
 from cad_io.arrays import Floats
 from cad_io.kernel import edges_of, interval_ends
@@ -183,6 +182,8 @@ class Border:
         here = [end for end, leaving in zip(ends, leaves, strict=True) if not leaving]
         if len(away) != len(here):
             raise CannotSplit("its border does not close")
+        from scipy.optimize import linear_sum_assignment  # half a second to load
+
         gap = np.array([[np.linalg.norm(place[a] - place[b]) for b in away] for a in here])
         rows, columns = linear_sum_assignment(gap)
         if gap[rows, columns].max() > _GAP * size:

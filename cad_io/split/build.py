@@ -16,7 +16,7 @@ from cad_io.split.arrangement import Arrangement
 from cad_io.split.border import CannotSplit
 from cad_io.split.net import Net
 from cad_io.split.regions import Half, Region
-from cad_io.split.surface_edge import surface_edge, trimmed
+from cad_io.split.surface_edge import followed, surface_edge, trimmed
 from cad_io.surface import Surface
 
 
@@ -129,9 +129,13 @@ def _drawn(net: Net, face: Any, surface: Surface, found: Arrangement) -> list[An
             _inner(free, node, surface, found) if c is None else _crossed(net, found, c)
             for c, node in zip(stretch.crossing, stretch.nodes, strict=True)
         ]
-        spline = trimmed(found.splines[stretch.curve], float(stretch.t[0]), float(stretch.t[-1]))
-        spline.poles[0], spline.poles[-1] = ends[0][1], ends[1][1]
-        edges.append(surface_edge(face, surface, spline, ends[0][0], ends[1][0]))
+        first, last = float(stretch.t[0]), float(stretch.t[-1])
+        mark = stretch.curve, first, last, *ends[0][1].tolist(), *ends[1][1].tolist()
+        if mark not in found.followed:
+            spline = trimmed(found.splines[stretch.curve], first, last)
+            spline.poles[0], spline.poles[-1] = ends[0][1], ends[1][1]
+            found.followed[mark] = followed(surface, spline)
+        edges.append(surface_edge(face, found.followed[mark], ends[0][0], ends[1][0]))
     return edges
 
 

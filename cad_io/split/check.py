@@ -6,7 +6,7 @@ from OCP.BRep import BRep_Tool
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.TopAbs import TopAbs_SHELL, TopAbs_SOLID
 
-from cad_io.face.uv_region import uv_area
+from cad_io.face.uv_region import uv_areas
 from cad_io.kernel import explore, shape_map
 
 #: Relative error of a face's parameter area that is still the same area.
@@ -19,7 +19,7 @@ def wrong_pieces(face: Any, pieces: list[Any]) -> str:
     Areas are those of the region in the parameter plane, integrated exactly along its boundary: pieces that tile the
     region there tile the face, and the kernel's own areas in mm2 are off by up to 9 % on some surfaces.
     """
-    before, areas = uv_area(face), [uv_area(piece) for piece in pieces]
+    before, *areas = uv_areas([face, *pieces])
     if not all(area * before > 0 for area in areas):
         return "a piece of it has no area"
     if not abs(sum(areas) - before) <= _SAME_AREA * abs(before):

@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline, make_interp_spline, splprep
 from scipy.ndimage import distance_transform_edt
 
 from cad_io.arrays import Floats, Ints, Record
@@ -249,15 +248,27 @@ def _relaxed(chains: list[_Chain]) -> list[Floats]:
         free_end[[f, l]] = not c.closed
         jump[f] -= c.turn
         jump[l] += c.turn
-    inner = ~free_end[:, None]
+    # Each coordinate is an array of its own, and neighbours are a shift and the ends put right: fancy indexing costs most.
+    inner, has_before, has_after = ~free_end, before != np.arange(total), after != np.arange(total)
+    ends = np.union1d(first, last)
+    coordinates = list(zip(base.T.copy(), step.T.copy(), jump.T.copy(), strict=True))
+
+    def neighbours(x: Floats) -> tuple[Floats, Floats]:
+        behind, beyond = np.empty_like(x), np.empty_like(x)
+        behind[1:], beyond[:-1] = x[:-1], x[1:]
+        behind[ends], beyond[ends] = x[before[ends]], x[after[ends]]
+        return behind, beyond
 
     t = 0.5 * (lo + hi)
     ahead, momentum = t.copy(), 1.0
     for _ in range(STEPS):
-        x = base + ahead[:, None] * step
-        bend = (x[before] + x[after] + jump - 2 * x) * inner
-        pull = bend[before] * (before != np.arange(total))[:, None] + bend[after] * (after != np.arange(total))[:, None]
-        gradient = ((pull - 2 * bend) * step).sum(1)
+        gradient = np.zeros(total)
+        for at, way, turn in coordinates:
+            x = at + ahead * way
+            behind, beyond = neighbours(x)
+            bend = (behind + beyond + turn - 2 * x) * inner
+            behind, beyond = neighbours(bend)
+            gradient += (behind * has_before + beyond * has_after - 2 * bend) * way
         new = np.clip(ahead - gradient / 16, lo, hi)  # 16: the largest curvature of the sum
         following = 0.5 * (1 + np.sqrt(1 + 4 * momentum * momentum))
         ahead = np.clip(new + (momentum - 1) / following * (new - t), lo, hi)
@@ -295,6 +306,8 @@ def _cut(chain: _Chain, x: Floats, grid: LabelGrid) -> list[Line]:
 
 def _fitted(points: Floats, closed: bool, fit: float) -> tuple[Floats, Floats]:
     """Clamped cubic through the ends of a chain and close to the rest: knots and poles. Lengths in cells."""
+    from scipy.interpolate import BSpline, make_interp_spline, splprep  # half a second to load
+
     while len(points) < 5:  # a cubic needs four points, a closed one five
         halves = 0.5 * (points[1:] + points[:-1])
         points = np.insert(points, np.arange(1, len(points)), halves, axis=0)

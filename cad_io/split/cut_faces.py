@@ -5,27 +5,27 @@ seconds (`cad_io.kernel.limited`): what comes out does not depend on how busy th
 """
 
 import io
-import math
 import mmap
 import os
 import pickle
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
 from OCP.BinTools import BinTools
+from OCP.TopAbs import TopAbs_FACE
 from OCP.TopoDS import TopoDS, TopoDS_Shape
 
 from cad_io.arrays import FaceLabels
+from cad_io.kernel import shape_map
 from cad_io.kernel.components import as_one, children, components
+from cad_io.kernel.copies import end_within
 from cad_io.kernel.limited import ChildDied, TimeLimit, limited
-from cad_io.split.attempt import Attempt, copied
+from cad_io.split.attempt import Attempt, Trial, copied
 from cad_io.split.contour import smoothed
 from cad_io.split.drawing import Drawing, in_words
 from cad_io.split.mend import mend
-from cad_io.split.net import Net
 from cad_io.surface import Surface
 
 #: Why a face is not cut if the limit ended the work.
@@ -92,6 +92,10 @@ def cut_faces(
         Components that changed are copies; the shape itself if there is none.
     found : Found
     """
+    if labels:
+        # Here once, not in each copy: half a second.
+        import scipy.interpolate
+        import scipy.optimize  # noqa: F401
     lost: dict[int, str] = {}
     for number, each in labels.items():
         # Once here: code that is yet to be compiled may wait for ever in a copy of the process.
@@ -132,11 +136,7 @@ class _Watch:
         for i, number in enumerate((len(told), *told)):
             self._page[8 * i : 8 * i + 8] = number.to_bytes(8, "little")
         if hasattr(os, "fork") and told:
-            import resource  # of systems that can fork
-
-            _, hard = resource.getrlimit(resource.RLIMIT_CPU)
-            most = time.process_time() + max(self._limits[n] for n in told)
-            resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(min(most, self.whole)), hard))
+            end_within(max(self._limits[n] for n in told))
 
     def seen(self) -> set[int]:
         """What was told last."""
@@ -166,44 +166,41 @@ def _answer(
     watch.works_on(set(drawings))
     for drawing, lines in zip(drawings.values(), smoothed([d.grid for d in drawings.values()]), strict=True):
         drawing.lines = lines
-    numbers = list(faces)
+    done: dict[int, Drawing] = {}
+    units: list[tuple[list[int], bytes] | None] = []
+    # Components share no edge: what is wrong with one is no reason to build the others again.
+    for given, unit in zip(components(shape), components(base), strict=True):
+        inside = shape_map(unit, TopAbs_FACE)
+        here = {n: face for n, face in faces.items() if inside.FindIndex(face)}
+        drawn = {n: drawing for n, drawing in drawings.items() if n in here}
+        trial = Trial(given, unit, here, surface_of, watch.works_on, careful)
+        units.append(_settled(trial, drawn, worst, found).packed() if drawn else None)
+        done |= drawn
+    found.labels = {n: [(part.label, part.counts) for part in d.parts] for n, d in done.items()}
+    found.missed = {n: d.missed for n, d in done.items() if d.missed}
+    found.joined = {n: d.joined for n, d in done.items() if d.joined}
+    return pickle.dumps((units, found))
 
-    def attempt_at(drawings: dict[int, Drawing]) -> Attempt:
-        return Attempt(shape, base, faces, drawings, lambda i: surface_of(numbers[i - 1]), watch.works_on, careful)
 
-    net = Net(base, lambda i: surface_of(numbers[i - 1]))
-    attempt = _settled(attempt_at, net, faces, drawings, worst, watch, found)
-    found.labels = {n: [(part.label, part.counts) for part in d.parts] for n, d in drawings.items()}
-    found.missed = {n: d.missed for n, d in drawings.items() if d.missed}
-    found.joined = {n: d.joined for n, d in drawings.items() if d.joined}
-    return pickle.dumps((attempt.packed(), found))
-
-
-def _settled(
-    attempt_at: Callable[[dict[int, Drawing]], Attempt],
-    net: Net,
-    faces: dict[int, Any],
-    drawings: dict[int, Drawing],
-    worst: int,
-    watch: _Watch,
-    found: Found,
-) -> Attempt:
+def _settled(trial: Trial, drawings: dict[int, Drawing], worst: int, found: Found) -> Attempt:
     """The first attempt at which nothing is wrong; drawings that cannot be cut are taken out, and why is put down."""
+    net, faces = trial.net, trial.faces
     wanted, mended = set(drawings), set[int]()
     while True:
         for number in sorted(wanted):
-            watch.works_on({number})
+            trial.works_on({number})
             if not drawings[number].plan(net, worst):
                 found.failed[number] = drawings.pop(number).fault
-        attempt = attempt_at(drawings)
+        attempt = Attempt(trial, drawings)
         wanted = set(attempt.wrong)
         for number, why in attempt.wrong.items():
             drawings[number].fault = why
         for key, (off, cutters) in attempt.loose.items():
-            watch.works_on(cutters)
+            trial.works_on(cutters)
             if key not in mended:
                 mended.add(key)
                 mend(net, key)
+                net.forget(key)
                 users = {net.faces.FindIndex(face) for face, _ in net.users(key)}
                 concerned = {n for n in drawings if net.faces.FindIndex(faces[n]) in users}
                 for number in concerned:

@@ -11,13 +11,12 @@ import numpy as np
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.TopExp import TopExp
 from OCP.TopLoc import TopLoc_Location
-from scipy.interpolate import make_interp_spline
 
 from cad_io.arrays import Floats
 from cad_io.split.border import parameter_curve
 from cad_io.split.check import valid
 from cad_io.split.contour import Spline
-from cad_io.split.net import LOOSER, Net, distance
+from cad_io.split.net import LOOSER, Net, along, distance
 from cad_io.split.surface_edge import DEVIATION, curve_2d
 from cad_io.surface import Surface
 
@@ -47,13 +46,13 @@ def mend(net: Net, key: int) -> None:
             continue
         surface, places = net.surface(face), np.linspace(first, last, 4 * _SITES)
         allowed = BRep_Tool.Tolerance_s(edge.edge)
-        if distance(edge.curve, old, surface, places).max() <= allowed + _OFF:
+        if distance(along(edge.curve, places), old, surface, places).max() <= allowed + _OFF:
             continue
         spline = _followed(edge.curve, old, surface, first, last)
         if spline is None:
             continue
         new, sound = curve_2d(spline), valid(face)
-        off = float(distance(edge.curve, new, surface, places).max())
+        off = float(distance(along(edge.curve, places), new, surface, places).max())
         if off > allowed + LOOSER:
             continue  # the edge itself is off the surface
         _put(edge.edge, face, new, off)
@@ -73,6 +72,8 @@ def _put(edge: Any, face: Any, curve: Any, off: float) -> None:
 
 def _followed(curve: Any, old: Any, surface: Surface, first: float, last: float) -> Spline | None:
     """Cubic in the parameter plane that follows a curve in space, with the ends of the old one; None if there is none."""
+    from scipy.interpolate import make_interp_spline  # half a second to load
+
     t = np.linspace(first, last, _SITES)
     while len(t) < _MOST_SITES:
         uv = _nearest(curve, old, surface, t)

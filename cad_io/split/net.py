@@ -24,6 +24,10 @@ _LOOKS = 45
 LOOSER = 0.1
 
 
+#: Number of an edge and where its parts end -> how far each part is off its curves in parameter planes, mm.
+Off = dict[tuple[int, tuple[float, ...]], list[float]]
+
+
 class Cut(NamedTuple):
     """An edge in parts: the parameters of its ends and of the cuts between, its vertices there, the parts between."""
 
@@ -51,12 +55,14 @@ class Net:
         Numbers of them are counted from 1.
     cuts : dict
         Number of an edge -> Cut.
+    off : dict
+        How far parts of edges are off, as measured here or with a copy.
     loose : dict
         Number of an edge that was cut -> how far it is off a face at the same parameter, mm, where that is too far.
     """
 
-    def __init__(self, shape: Any, surface_of: Callable[[int], Surface]) -> None:
-        """Look at a shape; `surface_of` gives a face's surface by its number here."""
+    def __init__(self, shape: Any, surface_of: Callable[[int], Surface], off: Off | None = None) -> None:
+        """Look at a shape; `surface_of` gives a face's surface by its number here, `off` what another copy of it has measured."""
         self.edges, self.vertices, self.faces = (
             shape_map(shape, kind) for kind in (TopAbs_EDGE, TopAbs_VERTEX, TopAbs_FACE)
         )
@@ -64,6 +70,7 @@ class Net:
         self.loose: dict[int, float] = {}
         self._known: dict[int, Edge] = {}
         self._surface_of = surface_of
+        self.off: Off = {} if off is None else off
         self._builder = BRep_Builder()
         self._users: dict[int, list[tuple[Any, Any]]] = defaultdict(list)
         for i in range(1, self.faces.Extent() + 1):
@@ -99,6 +106,11 @@ class Net:
             self.cuts[key] = Cut(stops, vertices, parts)
             if not point:
                 self._loosen(key, known)
+
+    def forget(self, key: int) -> None:
+        """Forget what was measured of an edge, which has changed; also for all copies."""
+        for mark in [mark for mark in self.off if mark[0] == key]:
+            del self.off[mark]
 
     def stop(self, key: int, s: float) -> int:
         """Which of the stops of a cut edge a place on it became."""
@@ -145,15 +157,10 @@ class Net:
     def _loosen(self, key: int, known: Edge) -> None:
         """Give parts the tolerance that they need: they are looked at in more places than the edge was."""
         stops, _, parts = self.cuts[key]
-        shares = np.linspace(0, 1, _LOOKS)
-        t = np.concatenate([a + (b - a) * shares for a, b in itertools.pairwise(stops)])
-        off = np.zeros(len(t))
-        for face, edge in self.users(key):
-            plane, _, _ = parameter_curve(edge, face)
-            if plane is not None:
-                off = np.fmax(off, distance(known.curve, plane, self.surface(face), t))
-        off = off.reshape(-1, _LOOKS).max(axis=1)
-        for part, far in zip(parts, off.tolist(), strict=True):
+        mark = key, tuple(stops)
+        if mark not in self.off:
+            self.off[mark] = self._measured(key, known, stops)
+        for part, far in zip(parts, self.off[mark], strict=True):
             old, new = BRep_Tool.Tolerance_s(part), 1.05 * far + 1e-7
             if new > old + LOOSER:
                 self.loose[key] = max(far, self.loose.get(key, 0.0))
@@ -162,9 +169,24 @@ class Net:
                 for vertex in (TopExp.FirstVertex_s(part), TopExp.LastVertex_s(part)):
                     self._builder.UpdateVertex(vertex, new)
 
+    def _measured(self, key: int, known: Edge, stops: list[float]) -> list[float]:
+        """How far each part of an edge is off its curves in parameter planes, mm."""
+        shares = np.linspace(0, 1, _LOOKS)
+        t = np.concatenate([a + (b - a) * shares for a, b in itertools.pairwise(stops)])
+        space, off = along(known.curve, t), np.zeros(len(t))
+        for face, edge in self.users(key):
+            plane, _, _ = parameter_curve(edge, face)
+            if plane is not None:
+                off = np.fmax(off, distance(space, plane, self.surface(face), t))
+        return [float(far) for far in off.reshape(-1, _LOOKS).max(axis=1)]
 
-def distance(curve: Any, plane: Any, surface: Surface, t: Floats) -> Floats:
-    """How far (n,) a curve in space is off one in a surface's parameter plane at the same parameters (n,), mm."""
-    space = np.array([curve.Value(x).Coord() for x in t.tolist()])
+
+def along(curve: Any, t: Floats) -> Floats:
+    """Places (n, 3) of a curve in space at its parameters (n,)."""
+    return np.array([curve.Value(x).Coord() for x in t.tolist()])
+
+
+def distance(space: Floats, plane: Any, surface: Surface, t: Floats) -> Floats:
+    """How far (n,) places in space (n, 3) are off those of a curve in a surface's parameter plane at its parameters (n,), mm."""
     uv = np.array([plane.Value(x).Coord() for x in t.tolist()])
     return np.asarray(np.linalg.norm(surface.values(*uv.T) - space, axis=1))

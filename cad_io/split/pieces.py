@@ -53,8 +53,6 @@ class Split:
         Of every face of the part, by face number.
     whole : dict
         Face number -> why a face of several labels was left whole; its piece is MIXED.
-    beside : dict
-        Always empty: pieces of copies of faces left whole. What cannot be split in its place cannot be split as a copy.
     dropped : dict
         Face number -> how many known nodes got no piece of their label: islands of one node, and nodes so close to the
         border that their boundary runs outside.
@@ -68,9 +66,13 @@ class Split:
     pieces: tuple[Piece, ...]
     whole: dict[int, str]
     dropped: dict[int, int]
-    beside: dict[int, tuple[Piece, ...]] = field(default_factory=dict)
     labels: dict[int, FaceLabels] = field(default_factory=dict)
     joined: dict[int, int] = field(default_factory=dict)
+
+    @property
+    def beside(self) -> dict[int, tuple[Piece, ...]]:
+        """Pieces of copies of faces left whole: always none. What cannot be split in its place cannot be split as a copy."""
+        return {}
 
 
 def split(part: Any, labels: Sequence[FaceLabels], *, worst: int = -1, seconds: float = 5) -> Split:
@@ -118,7 +120,7 @@ def split(part: Any, labels: Sequence[FaceLabels], *, worst: int = -1, seconds: 
             label = MIXED if number in mixed else max(shares[number], key=lambda k: shares[number][k], default=UNKNOWN)
             pieces += [Piece(number, label, piece, shares[number]) for piece in shapes]
     left = {number: fields[number] for number in sorted(found.failed)}
-    return Split(shape, tuple(pieces), found.failed, found.missed, {}, left, found.joined)
+    return Split(shape, tuple(pieces), found.failed, found.missed, left, found.joined)
 
 
 def _shares(label: Ints) -> dict[int, float]:

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 
-#: Pairs of segments that are looked at together.
-_TOGETHER = 400_000
+#: Pairs of blocks and segments that are looked at together; segments of a block.
+_TOGETHER, _BLOCK = 400_000, 16
 
 
 class Crossings(NamedTuple):
@@ -25,26 +25,34 @@ def crossings(p: Floats, q: Floats) -> Crossings:
 
     Of each segment one end counts and the other does not, so that a chain is crossed once where two of its segments meet.
     """
-    found: list[Crossings] = []
-    low, high = p.min(axis=(0, 1)), p.max(axis=(0, 1))
-    near = np.flatnonzero(((q.min(axis=1) <= high) & (q.max(axis=1) >= low)).all(axis=1))
-    q = q[near]
-    q_low, q_high = q.min(axis=1), q.max(axis=1)
-    rows = max(1, _TOGETHER // max(len(q), 1))
-    for begin in range(0, len(p) if len(q) else 0, rows):
-        some = p[begin : begin + rows]
-        low, high = some.min(axis=1), some.max(axis=1)
-        apart = (low[:, :1] > q_high[:, 0]) | (high[:, :1] < q_low[:, 0])
-        apart |= (low[:, 1:] > q_high[:, 1]) | (high[:, 1:] < q_low[:, 1])
-        i, j = np.nonzero(~apart)
-        a, b, c, d = some[i, 0], some[i, 1], q[j, 0], q[j, 1]
+    none = np.empty(0, np.intp)
+    found = [Crossings(none, none, np.empty(0), np.empty(0))]
+    low, high = np.minimum(p[:, 0], p[:, 1]), np.maximum(p[:, 0], p[:, 1])
+    q_low, q_high = np.minimum(q[:, 0], q[:, 1]), np.maximum(q[:, 0], q[:, 1])
+    near = np.flatnonzero(((q_low <= high.max(axis=0)) & (q_high >= low.min(axis=0))).all(axis=1)) if len(p) else none
+    q_low, q_high = q_low[near], q_high[near]
+    # Of a chain, segments that follow each other lie together: most are told apart by the box around a block of them.
+    starts = np.arange(0, len(p), _BLOCK)
+    rows = max(1, _TOGETHER // max(len(near), 1))
+    for begin in range(0, len(starts) if len(near) else 0, rows):
+        some = starts[begin : begin + rows]
+        stop = min(int(some[-1]) + _BLOCK, len(p))
+        around = np.minimum.reduceat(low[:stop], some), np.maximum.reduceat(high[:stop], some)
+        apart = (around[0][:, :1] > q_high[:, 0]) | (around[1][:, :1] < q_low[:, 0])
+        apart |= (around[0][:, 1:] > q_high[:, 1]) | (around[1][:, 1:] < q_low[:, 1])
+        block, k = np.nonzero(~apart)
+        i = (some[block][:, None] + np.arange(_BLOCK)).ravel()
+        k = np.repeat(k, _BLOCK)[i < stop]
+        i = i[i < stop]
+        touch = ((low[i] <= q_high[k]) & (high[i] >= q_low[k])).all(axis=1)
+        i, k = i[touch], k[touch]
+        order = np.lexsort((k, i))
+        i, j = i[order], near[k[order]]
+        a, b, c, d = p[i, 0], p[i, 1], q[j, 0], q[j, 1]
         of_c, of_d, of_a, of_b = _side(a, b, c), _side(a, b, d), _side(c, d, a), _side(c, d, b)
         hit = ((of_c >= 0) != (of_d >= 0)) & ((of_a >= 0) != (of_b >= 0))
         i, j, of_a, of_b, of_c, of_d = (x[hit] for x in (i, j, of_a, of_b, of_c, of_d))
-        found.append(Crossings(i + begin, near[j], of_a / (of_a - of_b), of_c / (of_c - of_d)))
-    if not found:
-        none = np.empty(0, np.intp)
-        return Crossings(none, none, np.empty(0), np.empty(0))
+        found.append(Crossings(i, j, of_a / (of_a - of_b), of_c / (of_c - of_d)))
     return Crossings(*(np.concatenate(each) for each in zip(*found, strict=True)))
 
 

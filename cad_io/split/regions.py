@@ -237,11 +237,13 @@ def _nested(loops: list[list[Half]], size: float) -> list[Region]:
     if not holes:
         raise CannotSplit("its border runs the wrong way round")
     rings = [chain(np.vstack([path, path[:1]])) for path in paths]
+    lows, highs = ([of(path, axis=0) for path in paths] for of in (np.min, np.max))
     for i in range(len(loops)):
         if i in holes:
             continue
         probe = left_of(paths[i], 1e-3 * size)
-        around = [o for o in holes if within(probe[None], rings[o])[0]]
+        boxed = [o for o in holes if (lows[o] <= probe).all() and (probe <= highs[o]).all()]
+        around = [o for o in boxed if within(probe[None], rings[o])[0]]
         if not around:
             raise CannotSplit("a hole lies in none of its regions")
         holes[min(around, key=lambda o: areas[o])].append(i)

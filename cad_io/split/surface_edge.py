@@ -1,6 +1,6 @@
 """An edge that lies on a face, made from a curve in the face's parameter plane."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from OCP.BRep import BRep_Builder, BRep_Tool
@@ -12,19 +12,34 @@ from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Edge
-from scipy.interpolate import BSpline, make_interp_spline
 
 from cad_io.arrays import Floats
 from cad_io.split.contour import Spline
 from cad_io.surface import Surface
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline
 
 #: Most that an edge's curve in space may leave its curve on the surface, mm.
 DEVIATION = 1e-4
 _MOST_SITES = 5000
 
 
+class Followed(NamedTuple):
+    """A curve on a surface: in space and in the parameter plane, range, ends in space, deviation in mm."""
+
+    space: Any
+    plane: Any
+    first: float
+    last: float
+    ends: tuple[Any, Any]
+    tolerance: float
+
+
 def trimmed(spline: Spline, a: float, b: float) -> Spline:
     """The same cubic between two of its parameters."""
+    from scipy.interpolate import BSpline, make_interp_spline  # half a second to load
+
     near = 1e-6 * (b - a)
     inner = spline.knots[(spline.knots > a + near) & (spline.knots < b - near)]
     knots = np.concatenate([[a] * 4, inner, [b] * 4])
@@ -34,32 +49,29 @@ def trimmed(spline: Spline, a: float, b: float) -> Spline:
     return Spline(knots, np.array(poles), False)
 
 
-def surface_edge(face: Any, surface: Surface, spline: Spline, start: Any, stop: Any) -> Any:
-    """Edge with the given parameter curve on the face's surface and a cubic curve in space of the same parameter.
+def followed(surface: Surface, spline: Spline) -> Followed:
+    """Find the cubic curve in space of the same parameter as a parameter curve.
 
     The kernel's own builder of curves in space stops silently up to 1 mm off (OCCT 7.9); here the surface is
     interpolated and sites are added where the error, measured between the sites, is above DEVIATION.
 
     Parameters
     ----------
-    face : TopoDS_Face
     surface : Surface
-        The face's own.
     spline : Spline
         In surface parameters.
-    start, stop : TopoDS_Vertex
-        Its ends; their tolerance grows where they are farther off.
 
     Returns
     -------
-    TopoDS_Edge
-        In part coordinates; its tolerance is the measured deviation.
+    Followed
 
     Raises
     ------
     ValueError
         The deviation cannot be reached.
     """
+    from scipy.interpolate import BSpline, make_interp_spline
+
     curve = BSpline(spline.knots, spline.poles, 3)
 
     def at(t: Floats) -> Floats:
@@ -79,16 +91,35 @@ def surface_edge(face: Any, surface: Surface, spline: Spline, start: Any, stop: 
             raise ValueError(f"a curve on the surface stays {worst:.1e} mm off its curve in space")
         sites = np.union1d(sites, between[1][error >= DEVIATION])
 
-    tolerance = max(1.2 * worst, 1e-7)
+    ends = gp_Pnt(*space(sites[0]).tolist()), gp_Pnt(*space(sites[-1]).tolist())
+    plane = curve_2d(spline)
+    return Followed(curve_3d(space), plane, float(sites[0]), float(sites[-1]), ends, max(1.2 * worst, 1e-7))
+
+
+def surface_edge(face: Any, curve: Followed, start: Any, stop: Any) -> Any:
+    """Edge along a curve on a face's surface, in part coordinates; its tolerance is the measured deviation.
+
+    Parameters
+    ----------
+    face : TopoDS_Face
+    curve : Followed
+        On the face's surface.
+    start, stop : TopoDS_Vertex
+        Its ends; their tolerance grows where they are farther off.
+
+    Returns
+    -------
+    TopoDS_Edge
+    """
     builder, edge, location = BRep_Builder(), TopoDS_Edge(), TopLoc_Location()
     basis = BRep_Tool.Surface_s(face, location)
-    builder.MakeEdge(edge, curve_3d(space), tolerance)
-    builder.UpdateEdge(edge, curve_2d(spline), basis, location, tolerance)
-    for vertex, orientation, at_end in ((start, TopAbs_FORWARD, sites[0]), (stop, TopAbs_REVERSED, sites[-1])):
-        off = BRep_Tool.Pnt_s(vertex).Distance(gp_Pnt(*space(at_end).tolist()))
-        builder.UpdateVertex(vertex, max(tolerance, 1.01 * off + 1e-9))
+    builder.MakeEdge(edge, curve.space, curve.tolerance)
+    builder.UpdateEdge(edge, curve.plane, basis, location, curve.tolerance)
+    for vertex, orientation, end in zip((start, stop), (TopAbs_FORWARD, TopAbs_REVERSED), curve.ends, strict=True):
+        off = BRep_Tool.Pnt_s(vertex).Distance(end)
+        builder.UpdateVertex(vertex, max(curve.tolerance, 1.01 * off + 1e-9))
         builder.Add(edge, vertex.Oriented(orientation))
-    builder.Range(edge, float(sites[0]), float(sites[-1]))
+    builder.Range(edge, curve.first, curve.last)
     builder.SameRange(edge, True)
     builder.SameParameter(edge, True)
     return edge
@@ -101,7 +132,7 @@ def curve_2d(spline: Spline) -> Any:
     return Geom2d_BSplineCurve(poles, *_knots(spline.knots), 3)
 
 
-def curve_3d(curve: BSpline) -> Any:
+def curve_3d(curve: "BSpline") -> Any:
     poles = TColgp_Array1OfPnt(1, len(curve.c))
     for i, pole in enumerate(curve.c.tolist(), 1):
         poles.SetValue(i, gp_Pnt(*pole))

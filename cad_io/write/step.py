@@ -73,7 +73,6 @@ def write_step(
     Parameters
     ----------
     split : Split
-        Its pieces `beside` go into shells `F<number> regions` of the face's product.
     path : path-like
         Appears whole or not at all.
     style : callable
@@ -100,8 +99,7 @@ def write_step(
     """
     silence()
     file = str(path)
-    every = (*split.pieces, *(piece for pieces in split.beside.values() for piece in pieces))
-    styles = {id(piece): style(piece) for piece in every}
+    styles = {id(piece): style(piece) for piece in split.pieces}
     with aside(path) as temporary:
 
         def write() -> bytes:
@@ -205,12 +203,9 @@ class _Document:
         mine: dict[int, list[_Body]] = {id(leaf): [] for leaf in leaves}
         for shape in flat(split.shape):
             pieces = [found[owner.FindIndex(face) - 1] for face in faces(shape)]
-            numbers = dict.fromkeys(piece.face for piece in pieces)
             # What has no face (curves, points) goes with the first product.
             at = leaf_of[pieces[0].face] if pieces else 0
-            mine[id(leaves[at])].append(
-                _Body(shape, pieces, {n: split.beside[n] for n in numbers if n in split.beside})
-            )
+            mine[id(leaves[at])].append(_Body(shape, pieces))
         for root in tree:
             self.node(root, root.place, mine)
         self.shapes.UpdateAssemblies()
@@ -294,11 +289,10 @@ class _Document:
 
 
 class _Body(NamedTuple):
-    """A solid, a shell, a loose face or a wire; its pieces; and the pieces beside it, by face."""
+    """A solid, a shell, a loose face or a wire; its pieces."""
 
     shape: Any
     pieces: list[Piece]
-    beside: dict[int, tuple[Piece, ...]]
 
     @property
     def solid(self) -> bool:
@@ -327,14 +321,11 @@ def _parted(bodies: Sequence[_Body], style: Callable[[Piece], Style]) -> tuple[l
     for body in bodies:
         if body.shape.ShapeType() == TopAbs_FACE:
             loose.setdefault(body.pieces[0].face, []).extend(body.pieces)
-    beside = {n: pieces for body in bodies for n, pieces in body.beside.items()}
-    if len(whole) + len(loose) + len(beside) > 1 and not any(body.solid for body in bodies):
+    if len(whole) + len(loose) > 1 and not any(body.solid for body in bodies):
         sheets = [p for b in whole for p in b.pieces] + [p for pieces in loose.values() for p in pieces]
-        sheets += [p for pieces in beside.values() for p in pieces]
         return others, [_Shell(_shell([p]), p.face, *style(p)) for p in sheets]
     shells = [_Shell(b.shape, b.pieces[0].face) for b in whole if b.pieces]
     shells += [_Shell(_shell(pieces), n) for n, pieces in loose.items()]
-    shells += [_Shell(_shell(pieces), n, f"F{n} regions") for n, pieces in beside.items()]
     return others, shells
 
 
@@ -348,8 +339,7 @@ def _shell(pieces: Sequence[Piece]) -> TopoDS_Shell:
 
 def _pieces(bodies: Sequence[_Body]) -> list[Piece]:
     """Of a product, each once, also where two bodies share a face."""
-    beside = (p for body in bodies for pieces in body.beside.values() for p in pieces)
-    return list({id(p): p for p in (*(p for body in bodies for p in body.pieces), *beside)}.values())
+    return list({id(p): p for body in bodies for p in body.pieces}.values())
 
 
 def _exact(shape: Any) -> bool:

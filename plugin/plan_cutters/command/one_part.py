@@ -40,11 +40,9 @@ def one_part(
         watch.tell("start", 0, 1)
         ahead = _compiling(options, given["quiet"])
         import plan_cutters.report.models  # noqa: F401  all that takes time to load is loaded in the stage `start`
-        from cad_io.kernel.limited import KERNEL_THREADS
         from plan_cutters.document.clock import Clock
         from plan_cutters.pipeline import run
 
-        KERNEL_THREADS.set(options.jobs)
         gc.freeze()
         gc.enable()
         clock = Clock(watch.tell, began=began)

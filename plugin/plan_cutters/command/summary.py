@@ -74,9 +74,7 @@ def written(plan: "Plan", out: Path | None, formats: Sequence[str]) -> list[Any]
         lines.append(f"Look at it in a browser: {out / plan.files['html'].name}")
     for face, entry in plan.split.items():
         if entry.rung != "contour":
-            how = "it is split beside the part" if entry.rung == "beside" else (
-                "it is one piece in the STEP, and the GLB shows it by its samples"
-            )  # fmt: skip
+            how = "it is one piece in the STEP, and the GLB shows it by its samples"
             lines.append(f"{face} could not be split in its place ({entry.why}): {how}.")
     if out is not None and formats and (old := left_over(out, plan, formats)):
         lines.append(f"Left over from an earlier run, or not ours: {', '.join(old)} in {out}")

@@ -63,11 +63,9 @@ def shown(
     tool = result.judged(cutter)
     split, style = split_result(result, tool.id), styles(result)
     for piece in split.pieces:
-        # What could be split beside its place alone is shown so: here nothing has to hang together.
-        for each in split.beside.get(piece.face, (piece,)):
-            title, colour = style(each)
-            group = {"check": "check faces", "ignored": "ignored faces"}.get(verdict_of(each), "targets")
-            groups[group].append(Shown(each.shape, names.of(title), colour))
+        title, colour = style(piece)
+        group = {"check": "check faces", "ignored": "ignored faces"}.get(verdict_of(piece), "targets")
+        groups[group].append(Shown(piece.shape, names.of(title), colour))
     groups["fixtures"] += [
         Shown(_fixture(each), names.of(each.name), rgb("fixture")) for each in result.scene.around.fixtures
     ]

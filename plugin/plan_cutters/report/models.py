@@ -88,7 +88,7 @@ def rungs(split: Any) -> dict[str, SplitEntry]:
     counts = Counter(piece.face for piece in split.pieces)
     shown = {number: SplitEntry(rung="contour", why=None) for number, count in counts.items() if count > 1}
     for number, why in split.whole.items():
-        shown[number] = SplitEntry(rung="beside" if number in split.beside else "whole", why=why)
+        shown[number] = SplitEntry(rung="whole", why=why)
     for number in split.joined.keys() | split.dropped.keys():
         entry = shown.get(number) or SplitEntry(rung="contour", why=None)
         told = {"joined": split.joined.get(number, 0), "dropped": split.dropped.get(number, 0)}

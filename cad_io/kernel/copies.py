@@ -1,0 +1,95 @@
+"""Forked copies of this process that work for it: how they begin, that they end, and whether they are stuck."""
+
+import faulthandler
+import math
+import os
+import signal
+import warnings
+from collections.abc import Callable
+from typing import BinaryIO
+
+from cad_io.lifetime import end_with
+
+#: Looks, one a second, at a copy that sleeps and does nothing before it is taken for stuck.
+_ASLEEP = 60
+
+
+def begin(work: Callable[[BinaryIO], None], seconds: float) -> tuple[int, int]:
+    """Have a copy of this process do some work. It ends with this process, whatever ends that, and without clean-up.
+
+    Parameters
+    ----------
+    work : callable
+        Gets a pipe to answer on. What it raises is lost.
+    seconds : float
+        Of processor time, after which the system ends the copy, by SIGXCPU.
+
+    Returns
+    -------
+    end, child : int
+        The end of the pipe to read from, which the caller closes, and the number of the copy, for `ended`.
+    """
+    end, start = os.pipe()
+    caller = os.getpid()
+    with warnings.catch_warnings():
+        # Python 3.12 warns of locks held by other threads; at worst the copy waits for one, which is noticed.
+        warnings.simplefilter("ignore", DeprecationWarning)
+        child = os.fork()
+    if child:
+        os.close(start)
+        return end, child
+    try:
+        faulthandler.disable()  # a crash here is told by the other side
+        end_with(caller)
+        _end_alone(seconds)
+        signal.signal(signal.SIGPROF, signal.SIG_DFL)
+        with os.fdopen(start, "wb") as pipe:
+            work(pipe)
+    finally:
+        os._exit(0)
+
+
+def end_within(seconds: float) -> None:
+    """Have the system end this copy after so much more processor time, by SIGPROF; zero: not any more."""
+    # Unlike the limit of a process, it counts fractions of a second.
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+
+
+def ended(child: int) -> int:
+    """End a copy, if it has not ended, and give its status."""
+    os.kill(child, signal.SIGKILL)
+    return os.waitpid(child, 0)[1]
+
+
+def out_of_time(status: int) -> bool:
+    """Whether a copy was ended for its processor time."""
+    return os.WIFSIGNALED(status) and os.WTERMSIG(status) in (signal.SIGPROF, signal.SIGXCPU)
+
+
+def stuck(child: int) -> Callable[[], float]:
+    """Seconds to wait until it is asked again; none once the copy has slept at so many looks. Never while it works."""
+    idle, before = 0, ""
+
+    def late() -> float:
+        nonlocal idle, before
+        try:
+            with open(f"/proc/{child}/stat", encoding="ascii", errors="replace") as file:
+                state, *fields = file.read().rpartition(")")[2].split()
+        except OSError:
+            return 1.0
+        spent = " ".join(fields[10:12])
+        idle = idle + 1 if state in "SDT" and spent == before else 0
+        before = spent
+        return 1.0 if idle < _ASLEEP else 0.0
+
+    return late
+
+
+def _end_alone(seconds: float) -> None:
+    """Have the system end this process after so much processor time, even if the one that watches is gone; no dump."""
+    import resource  # of systems that can fork
+
+    soft, hard = resource.getrlimit(resource.RLIMIT_CPU)
+    known = [limit for limit in (soft, hard, math.ceil(min(seconds, 1e9))) if limit != resource.RLIM_INFINITY]
+    resource.setrlimit(resource.RLIMIT_CPU, (min(known), hard))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, resource.getrlimit(resource.RLIMIT_CORE)[1]))
