@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cad_io import read_part
-from cad_io.tessellate.mesh import uv_meshes
+from cad_io.tessellate.start import starts
 from cad_io.write import drawn as drawing
 from cad_io.write.net import Net, cut
 from plan_cutters import Cutter, Options, plan
@@ -175,7 +175,7 @@ def test_what_the_search_lost_is_not_searched_again(valley):
 
 def test_the_page_asks_for_one_coarse_mesh_and_draws_what_it_may(monkeypatch):
     part, calls = read_part(SAMPLES / "peaks_and_valleys.step"), []
-    monkeypatch.setattr(drawing, "uv_meshes", lambda *a: calls.append(a[2]) or uv_meshes(*a))
+    monkeypatch.setattr(drawing, "starts", lambda *a: calls.append(a[2]) or starts(*a))
     sides = np.ones(len(part.faces))
     for most, chord in ((60_000, 1e-2), (2_000, 1e-6)):
         found = drawing.drawn(part, sides, most=most, deflection=chord)
@@ -191,7 +191,7 @@ def test_the_page_asks_for_one_coarse_mesh_and_draws_what_it_may(monkeypatch):
 def test_triangles_to_look_at_lie_near_the_surface_without_cracks(seed, chord):
     patch = shapes.Patch.random(np.random.default_rng(seed), size=40.0, height=8.0, n=6)
     part = read_part(patch.face())
-    start = uv_meshes(part, [1], 8.0, 1.0)[1]
+    start = starts(part, [1], 8.0)[0][1]
     net = Net.of(part.surface(1), start)
 
     def planar():
