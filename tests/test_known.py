@@ -133,7 +133,7 @@ def area(valley, most, jobs=1):
     ready, cutter, reach = valley
     work = Work()
     conditions = replace(ready.conditions, jobs=jobs)
-    found = between(ready.samples, reach, cutter, ready.scene.part, ready.scene.orientation, conditions, budget=40_000,
+    found = between(ready.samples, reach, cutter, ready.scene.part, ready.scene.orientation, conditions, budget=12_000,
                     most=most, work=work)  # fmt: skip
     return found, work.looked
 
@@ -143,7 +143,7 @@ def test_the_area_ends_where_its_work_is_done_and_says_so(valley):
     assert whole.short < whole.left
     for share in (0.3, 0.6):
         part, looked = area(valley, share * all_of_it)
-        assert looked <= share * all_of_it + 0.3 * all_of_it, "a round may go on beyond it"
+        assert abs(looked - share * all_of_it) < 0.1 * all_of_it, "it is spent, and a round may go on beyond it"
         assert part.short > 0
         assert part.left >= part.short
         assert part.contacts < whole.contacts
@@ -156,6 +156,9 @@ def test_no_work_serves_nothing_and_threads_do_not_matter(valley):
     assert (none.share, looked, none.contacts) == (0.0, 0, 0)
     assert none.left == none.short > 0
     assert not none.feasible
+    some, looked = area(valley, 1.0)
+    assert some.contacts <= 512, "few to begin with"
+    assert looked < 3e5
     (one, first), (two, second) = area(valley, 3e6), area(valley, 3e6, jobs=2)
     assert first == second
     assert (one.share, one.contacts, one.left, one.short) == (two.share, two.contacts, two.left, two.short)
@@ -177,13 +180,13 @@ def test_the_page_asks_for_one_coarse_mesh_and_draws_what_it_may(monkeypatch):
     part, calls = read_part(SAMPLES / "peaks_and_valleys.step"), []
     monkeypatch.setattr(drawing, "starts", lambda *a: calls.append(a[2]) or starts(*a))
     sides = np.ones(len(part.faces))
-    for most, chord in ((60_000, 1e-2), (2_000, 1e-6)):
+    for most, chord in ((60_000, 1e-2), (2_000, 3e-2)):
         found = drawing.drawn(part, sides, most=most, deflection=chord)
         assert len(calls) == 1
         assert calls.pop() > chord
         assert sum(len(mesh.triangle) for mesh in found.meshes.values()) <= most
         assert found.deflection >= chord
-    assert found.deflection > 1e-6, "what could not be drawn is said"
+    assert found.deflection > 3e-2, "what could not be drawn is said"
 
 
 @given(st.integers(0, 50), st.sampled_from([0.3, 0.05, 0.01]))
