@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cad_io import read_part
-from cad_io.tessellate.mesh import uv_meshes
+from cad_io.tessellate.start import starts
 from cad_io.write import drawn as drawing
 from cad_io.write.net import Net, cut
 from plan_cutters import Cutter, Options, plan
@@ -133,7 +133,7 @@ def area(valley, most, jobs=1):
     ready, cutter, reach = valley
     work = Work()
     conditions = replace(ready.conditions, jobs=jobs)
-    found = between(ready.samples, reach, cutter, ready.scene.part, ready.scene.orientation, conditions, budget=40_000,
+    found = between(ready.samples, reach, cutter, ready.scene.part, ready.scene.orientation, conditions, budget=12_000,
                     most=most, work=work)  # fmt: skip
     return found, work.looked
 
@@ -143,7 +143,7 @@ def test_the_area_ends_where_its_work_is_done_and_says_so(valley):
     assert whole.short < whole.left
     for share in (0.3, 0.6):
         part, looked = area(valley, share * all_of_it)
-        assert looked <= share * all_of_it + 0.3 * all_of_it, "a round may go on beyond it"
+        assert abs(looked - share * all_of_it) < 0.1 * all_of_it, "it is spent, and a round may go on beyond it"
         assert part.short > 0
         assert part.left >= part.short
         assert part.contacts < whole.contacts
@@ -156,6 +156,9 @@ def test_no_work_serves_nothing_and_threads_do_not_matter(valley):
     assert (none.share, looked, none.contacts) == (0.0, 0, 0)
     assert none.left == none.short > 0
     assert not none.feasible
+    some, looked = area(valley, 1.0)
+    assert some.contacts <= 512, "few to begin with"
+    assert looked < 3e5
     (one, first), (two, second) = area(valley, 3e6), area(valley, 3e6, jobs=2)
     assert first == second
     assert (one.share, one.contacts, one.left, one.short) == (two.share, two.contacts, two.left, two.short)
@@ -175,15 +178,15 @@ def test_what_the_search_lost_is_not_searched_again(valley):
 
 def test_the_page_asks_for_one_coarse_mesh_and_draws_what_it_may(monkeypatch):
     part, calls = read_part(SAMPLES / "peaks_and_valleys.step"), []
-    monkeypatch.setattr(drawing, "uv_meshes", lambda *a: calls.append(a[2]) or uv_meshes(*a))
+    monkeypatch.setattr(drawing, "starts", lambda *a: calls.append(a[2]) or starts(*a))
     sides = np.ones(len(part.faces))
-    for most, chord in ((60_000, 1e-2), (2_000, 1e-6)):
+    for most, chord in ((60_000, 1e-2), (2_000, 3e-2)):
         found = drawing.drawn(part, sides, most=most, deflection=chord)
         assert len(calls) == 1
         assert calls.pop() > chord
         assert sum(len(mesh.triangle) for mesh in found.meshes.values()) <= most
         assert found.deflection >= chord
-    assert found.deflection > 1e-6, "what could not be drawn is said"
+    assert found.deflection > 3e-2, "what could not be drawn is said"
 
 
 @given(st.integers(0, 50), st.sampled_from([0.3, 0.05, 0.01]))
@@ -191,7 +194,7 @@ def test_the_page_asks_for_one_coarse_mesh_and_draws_what_it_may(monkeypatch):
 def test_triangles_to_look_at_lie_near_the_surface_without_cracks(seed, chord):
     patch = shapes.Patch.random(np.random.default_rng(seed), size=40.0, height=8.0, n=6)
     part = read_part(patch.face())
-    start = uv_meshes(part, [1], 8.0, 1.0)[1]
+    start = starts(part, [1], 8.0)[0][1]
     net = Net.of(part.surface(1), start)
 
     def planar():
@@ -209,7 +212,9 @@ def test_triangles_to_look_at_lie_near_the_surface_without_cracks(seed, chord):
     share = np.random.default_rng(seed).dirichlet([1, 1, 1], 4)
     for each in share:
         uv, flat = np.einsum("c,tcx->tx", each, net.uv[net.corner]), np.einsum("c,tcx->tx", each, net.point[net.corner])
-        assert np.linalg.norm(part.surface(1).values(*uv.T) - flat, axis=1).max() < 1.5 * chord
+        assert np.linalg.norm(part.surface(1).values(*uv.T) - flat, axis=1).max() < 2.0 * chord, (
+            "middles alone are looked at"
+        )
 
 
 def test_a_stage_of_many_cutters_tells_one_progress():

@@ -55,7 +55,7 @@ from plan_cutters.stages.setups import AXES, within_limits
 from plan_cutters.stages.witness import witnesses
 
 #: The work between samples, as a share of that of the searches, and so much of it in any case: boxes.
-_WORK_SHARE, _WORK_LEAST = 1.5, 4e7
+_WORK_SHARE, _WORK_LEAST = 0.5, 2e7
 #: Samples that a plan may take.
 MOST_SAMPLES = 5_000_000
 

@@ -12,7 +12,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Conditions, search_postures, tool_of
-from plan_cutters.scene.threads import in_chunks
+from plan_cutters.scene.threads import CHUNK, in_chunks
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.cells import CellContacts, Field, quartered, tensors
 
@@ -28,7 +28,7 @@ _ALIKE = 0.25
 #: Contacts looked at between two looks at the work done.
 _BATCH = 4096
 #: Work of laying out a contact, and a round of them, beside that of kernels: boxes looked at in the time.
-_CONTACT, _ROUND = 200, 20_000
+_CONTACT, _ROUND = 110, 11_000
 #: The gain is judged over at least so many of the last contacts.
 _JUDGED = 4000
 
@@ -92,12 +92,20 @@ class Site:
 
     def begin(self, contacts: CellContacts, upto: float) -> int:
         """Look at contacts of cells that are not cut yet, in turn, until so much work is done; how many it was."""
-        for first in range(0, len(contacts), _BATCH):
+        first = 0
+        while first < len(contacts):
             if self.work.looked >= upto:
                 self.unseen = len(contacts) - first
                 return first
-            self.add(contacts.of(np.arange(first, min(first + _BATCH, len(contacts)))), 0, upto)
+            # Where work is limited, few to begin with, to see how much they take.
+            some = CHUNK if upto < np.inf and not self.seen else int(min(max(CHUNK, self._enough(upto)), _BATCH))
+            self.add(contacts.of(np.arange(first, min(first + some, len(contacts)))), 0, upto)
+            first += some
         return len(contacts)
+
+    def _enough(self, upto: float) -> float:
+        """As many contacts as the work that is left is likely to be enough for."""
+        return (upto - self.work.looked - _ROUND) * max(1, self.seen) / max(1, self.spent)
 
     def add(self, contacts: CellContacts, level: int, upto: float = np.inf) -> float:
         """Look at contacts of cells that were cut so many times; the area that is served by them.
@@ -143,8 +151,7 @@ class Site:
         """
         looked, poor, rounds = 0, False, list[tuple[int, float]]()
         while budget >= 4 and not poor:
-            # As many contacts as the work that is left is likely to be enough for.
-            left = (upto - self.work.looked - _ROUND) * max(1, self.seen) / max(1, self.spent)
+            left = self._enough(upto)
             if left < 4.0:
                 break
             worth = [self.worth(level) for level in range(LEVELS)]
