@@ -10,12 +10,16 @@ import functools
 import hashlib
 import os
 import tempfile
+import weakref
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numba
+from llvmlite import binding as llvm
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
 from numba.core.types import unliteral  # type: ignore[attr-defined]
 
 VERSION: str = numba.__version__
@@ -58,6 +62,39 @@ def _our_cache(sources: Path) -> Iterator[None]:
         numba.config.CACHE_DIR = before
 
 
+class _Linked(JITCodeLibrary):
+    """Code of a kernel as it is linked into entries, and there made machine code once.
+
+    Left to itself, the compiler optimises what a function calls again for every function that calls it, and makes machine code
+    of each although only that of entries ever runs.
+    """
+
+    def _optimize_final_module(self) -> None:
+        """Leave it to the entry."""
+
+    def _finalize_final_module(self) -> None:
+        self._finalize_dynamic_globals()
+        self._verify_declare_only_symbols()
+        # Of the kernel itself the engine gets what its environments are written to, and no code.
+        names = [v.name for v in self._final_module.global_variables if v.name.startswith("_ZN08NumbaEnv")]
+        lines = [f'target triple = "{llvm.get_process_triple()}"', *(f'@"{name}" = common global ptr null' for name in names)]
+        self._places = llvm.parse_assembly("\n".join(lines))
+        self._places.name = self.name
+        vars(self._places)["_CPUCodeLibrary__library"] = weakref.proxy(self)
+        self._codegen._add_module(self._places)
+        self._codegen._engine.finalize_object()
+        self._finalized = True
+
+
+class _KernelCompiler(Compiler):
+    """Compiles a kernel: as ever, but for the library that its code is put into."""
+
+    def define_pipelines(self) -> Any:
+        self.state.library = _Linked(self.state.targetctx.codegen(), self.state.func_id.func_qualname)
+        self.state.library.enable_object_caching()
+        return super().define_pipelines()
+
+
 def _once(compiled: Any) -> Any:
     """Compile a function once for all numbers that it is called with.
 
@@ -73,6 +110,23 @@ def _once(compiled: Any) -> Any:
     return compiled
 
 
+def _called(compiled: Any) -> Any:
+    """Let Python call a kernel, too, as tests do: through a function of its own, made when it is first called."""
+    function = compiled.py_func
+
+    @functools.cache
+    def from_python() -> Any:
+        before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(Path(cache_folder(Path(function.__code__.co_filename).parent), "called"))
+        try:
+            return numba.njit(cache=True, nogil=True, error_model="numpy", _nrt=False, no_cfunc_wrapper=True)(function)
+        finally:
+            numba.config.CACHE_DIR = before
+
+    compiled._insert = lambda *overload: None
+    compiled._compile_for_args = lambda *args, **kws: from_python()
+    return compiled
+
+
 def decorators(file: str) -> tuple[Decorator, Decorator]:
     """`entry` and `kernel` for the sources in the folder of a file.
 
@@ -84,10 +138,14 @@ def decorators(file: str) -> tuple[Decorator, Decorator]:
 
     def entry(function: Callable[..., Any]) -> Callable[..., Any]:
         with _our_cache(sources):
-            return _once(numba.njit(cache=True, nogil=True, error_model="numpy")(function))
+            return _once(numba.njit(cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True)(function))
 
     def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
         with _our_cache(sources):
-            return _once(numba.njit(cache=True, nogil=True, error_model="numpy", _nrt=False)(function))
+            made = numba.njit(
+                cache=True, nogil=True, error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True,
+                pipeline_class=_KernelCompiler,
+            )(function)  # fmt: skip
+            return _called(_once(made))
 
     return entry, kernel
