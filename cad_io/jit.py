@@ -9,8 +9,8 @@ processes change, whoever imports the compiler first.
 import functools
 import hashlib
 import os
+import struct
 import tempfile
-import weakref
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -23,6 +23,12 @@ from numba.core.compiler import Compiler
 from numba.core.types import unliteral  # type: ignore[attr-defined]
 
 VERSION: str = numba.__version__
+
+#: What the compiler is told of every function. Nothing calls one as C does.
+_ENTRY: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+#: What the names of the compiler's notes begin with: the environments of functions, and addresses that hold in one process
+#: only, where there are any: what names one is not kept on disk.
+_NOTES = ("_ZN08NumbaEnv", "numba.dynamic.globals")
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -53,9 +59,9 @@ def cache_folder(sources: Path) -> str:
 
 
 @contextmanager
-def _our_cache(sources: Path) -> Iterator[None]:
+def _our_cache(sources: Path, *beneath: str) -> Iterator[None]:
     before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = cache_folder(sources)
+    numba.config.CACHE_DIR = str(Path(cache_folder(sources), *beneath))
     try:
         yield
     finally:
@@ -63,27 +69,25 @@ def _our_cache(sources: Path) -> Iterator[None]:
 
 
 class _Linked(JITCodeLibrary):
-    """Code of a kernel as it is linked into entries, and there made machine code once.
+    """The code of a kernel: linked into entries, and made machine code there alone.
 
-    Left to itself, the compiler optimises what a function calls again for every function that calls it, and makes machine code
-    of each although only that of entries ever runs.
+    Left to itself, the compiler optimises what a function calls once more for every function that calls it, and makes machine
+    code of each, although only that of entries ever runs. Both together were half of all that compiling took.
     """
 
     def _optimize_final_module(self) -> None:
         """Leave it to the entry."""
 
     def _finalize_final_module(self) -> None:
-        self._finalize_dynamic_globals()
-        self._verify_declare_only_symbols()
-        # Of the kernel itself the engine gets what its environments are written to, and no code.
-        names = [v.name for v in self._final_module.global_variables if v.name.startswith("_ZN08NumbaEnv")]
-        lines = [f'target triple = "{llvm.get_process_triple()}"', *(f'@"{name}" = common global ptr null' for name in names)]
-        self._places = llvm.parse_assembly("\n".join(lines))
-        self._places.name = self.name
-        vars(self._places)["_CPUCodeLibrary__library"] = weakref.proxy(self)
-        self._codegen._add_module(self._places)
-        self._codegen._engine.finalize_object()
-        self._finalized = True
+        """Give the engine the places of the compiler's notes that the code names, which it looks for, and no code."""
+        linked, kind = self._final_module, f"common global i{8 * struct.calcsize('P')} 0"  # type: ignore[has-type]
+        names = (each.name for each in linked.global_variables)
+        places = "\n".join(f'@"{name}" = {kind}' for name in names if name.startswith(_NOTES))
+        self._final_module = llvm.parse_assembly(f'target triple = "{llvm.get_process_triple()}"\n{places}')
+        self._final_module.name = self.name
+        super()._finalize_final_module()
+        # The engine's module stays alive with it.
+        self._final_module = linked
 
 
 class _KernelCompiler(Compiler):
@@ -110,21 +114,17 @@ def _once(compiled: Any) -> Any:
     return compiled
 
 
-def _called(compiled: Any) -> Any:
-    """Let Python call a kernel, too, as tests do: through a function of its own, made when it is first called."""
-    function = compiled.py_func
+def _also_from_python(kernel: Any, sources: Path) -> Any:
+    """Let Python call a kernel too, as tests and benchmarks do: that compiles it as an entry, beside the others in the cache."""
 
     @functools.cache
-    def from_python() -> Any:
-        before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, str(Path(cache_folder(Path(function.__code__.co_filename).parent), "called"))
-        try:
-            return numba.njit(cache=True, nogil=True, error_model="numpy", _nrt=False, no_cfunc_wrapper=True)(function)
-        finally:
-            numba.config.CACHE_DIR = before
+    def compiled() -> Any:
+        with _our_cache(sources, "called"):
+            return numba.njit(**_ENTRY, _nrt=False)(kernel.py_func)
 
-    compiled._insert = lambda *overload: None
-    compiled._compile_for_args = lambda *args, **kws: from_python()
-    return compiled
+    kernel._insert = lambda *overload: None
+    kernel._compile_for_args = lambda *args, **kws: compiled()
+    return kernel
 
 
 def decorators(file: str) -> tuple[Decorator, Decorator]:
@@ -132,20 +132,18 @@ def decorators(file: str) -> tuple[Decorator, Decorator]:
 
     An entry is compiled on first call, its result kept on disk, and it releases the GIL: what Python calls, and what makes
     arrays. A kernel is what entries call, and makes no array itself: it goes without the counting of references, two atomic
-    instructions for every array at every call, of which a third of all time went. Arrays are kept alive by the entry.
+    instructions for every array at every call, of which a third of all time went. Arrays are kept alive by the entry. It has
+    no machine code of its own.
     """
     sources = Path(file).parent
 
     def entry(function: Callable[..., Any]) -> Callable[..., Any]:
         with _our_cache(sources):
-            return _once(numba.njit(cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True)(function))
+            return _once(numba.njit(**_ENTRY)(function))
 
     def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
         with _our_cache(sources):
-            made = numba.njit(
-                cache=True, nogil=True, error_model="numpy", _nrt=False, no_cpython_wrapper=True, no_cfunc_wrapper=True,
-                pipeline_class=_KernelCompiler,
-            )(function)  # fmt: skip
-            return _called(_once(made))
+            made = numba.njit(**_ENTRY, _nrt=False, no_cpython_wrapper=True, pipeline_class=_KernelCompiler)(function)
+        return _also_from_python(_once(made), sources)
 
     return entry, kernel
