@@ -9,6 +9,7 @@ processes change, whoever imports the compiler first.
 import functools
 import hashlib
 import os
+import struct
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -16,9 +17,18 @@ from pathlib import Path
 from typing import Any
 
 import numba
+from llvmlite import binding as llvm
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
 from numba.core.types import unliteral  # type: ignore[attr-defined]
 
 VERSION: str = numba.__version__
+
+#: What the compiler is told of every function. Nothing calls one as C does.
+_ENTRY: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+#: What the names of the compiler's notes begin with: the environments of functions, and addresses that hold in one process
+#: only, where there are any: what names one is not kept on disk.
+_NOTES = ("_ZN08NumbaEnv", "numba.dynamic.globals")
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -49,13 +59,44 @@ def cache_folder(sources: Path) -> str:
 
 
 @contextmanager
-def _our_cache(sources: Path) -> Iterator[None]:
+def _our_cache(sources: Path, *beneath: str) -> Iterator[None]:
     before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = cache_folder(sources)
+    numba.config.CACHE_DIR = str(Path(cache_folder(sources), *beneath))
     try:
         yield
     finally:
         numba.config.CACHE_DIR = before
+
+
+class _Linked(JITCodeLibrary):
+    """The code of a kernel: linked into entries, and made machine code there alone.
+
+    Left to itself, the compiler optimises what a function calls once more for every function that calls it, and makes machine
+    code of each, although only that of entries ever runs. Both together were half of all that compiling took.
+    """
+
+    def _optimize_final_module(self) -> None:
+        """Leave it to the entry."""
+
+    def _finalize_final_module(self) -> None:
+        """Give the engine the places of the compiler's notes that the code names, which it looks for, and no code."""
+        linked, kind = self._final_module, f"common global i{8 * struct.calcsize('P')} 0"  # type: ignore[has-type]
+        names = (each.name for each in linked.global_variables)
+        places = "\n".join(f'@"{name}" = {kind}' for name in names if name.startswith(_NOTES))
+        self._final_module = llvm.parse_assembly(f'target triple = "{llvm.get_process_triple()}"\n{places}')
+        self._final_module.name = self.name
+        super()._finalize_final_module()
+        # The engine's module stays alive with it.
+        self._final_module = linked
+
+
+class _KernelCompiler(Compiler):
+    """Compiles a kernel: as ever, but for the library that its code is put into."""
+
+    def define_pipelines(self) -> Any:
+        self.state.library = _Linked(self.state.targetctx.codegen(), self.state.func_id.func_qualname)
+        self.state.library.enable_object_caching()
+        return super().define_pipelines()
 
 
 def _once(compiled: Any) -> Any:
@@ -73,21 +114,36 @@ def _once(compiled: Any) -> Any:
     return compiled
 
 
+def _also_from_python(kernel: Any, sources: Path) -> Any:
+    """Let Python call a kernel too, as tests and benchmarks do: that compiles it as an entry, beside the others in the cache."""
+
+    @functools.cache
+    def compiled() -> Any:
+        with _our_cache(sources, "called"):
+            return numba.njit(**_ENTRY, _nrt=False)(kernel.py_func)
+
+    kernel._insert = lambda *overload: None
+    kernel._compile_for_args = lambda *args, **kws: compiled()
+    return kernel
+
+
 def decorators(file: str) -> tuple[Decorator, Decorator]:
     """`entry` and `kernel` for the sources in the folder of a file.
 
     An entry is compiled on first call, its result kept on disk, and it releases the GIL: what Python calls, and what makes
     arrays. A kernel is what entries call, and makes no array itself: it goes without the counting of references, two atomic
-    instructions for every array at every call, of which a third of all time went. Arrays are kept alive by the entry.
+    instructions for every array at every call, of which a third of all time went. Arrays are kept alive by the entry. It has
+    no machine code of its own.
     """
     sources = Path(file).parent
 
     def entry(function: Callable[..., Any]) -> Callable[..., Any]:
         with _our_cache(sources):
-            return _once(numba.njit(cache=True, nogil=True, error_model="numpy")(function))
+            return _once(numba.njit(**_ENTRY)(function))
 
     def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
         with _our_cache(sources):
-            return _once(numba.njit(cache=True, nogil=True, error_model="numpy", _nrt=False)(function))
+            made = numba.njit(**_ENTRY, _nrt=False, no_cpython_wrapper=True, pipeline_class=_KernelCompiler)(function)
+        return _also_from_python(_once(made), sources)
 
     return entry, kernel

@@ -32,8 +32,24 @@ def test_the_second_process_is_waited_for(monkeypatch, maps):
     monkeypatch.setattr(subprocess, "Popen", popen)
     wait = ahead.begin(maps)
     assert wait is not None
-    wait()
+    wait("search.search")
     assert started[0][2:] == ["plan_cutters.command.ahead", *(["maps"] if maps else [])]
+
+
+def test_it_is_waited_for_until_an_entry_is_there(monkeypatch):
+    """Not to its end: what else it makes is needed later."""
+    made, there, real = [], [], subprocess.Popen
+    monkeypatch.setattr(jit, "at_hand", lambda name: name in there)
+    monkeypatch.setattr(subprocess, "Popen", lambda words, **more: made.append(
+        real([sys.executable, "-c", "import time; time.sleep(600)"], **more)) or made[0])  # fmt: skip
+    wait = ahead.begin(maps=False)
+    there.append("search.search")
+    try:
+        wait("search.search")
+        assert made[0].poll() is None
+    finally:
+        made[0].kill()
+        made[0].wait()
 
 
 def test_one_that_does_not_end_is_not_waited_for_for_ever(monkeypatch):
@@ -42,7 +58,7 @@ def test_one_that_does_not_end_is_not_waited_for_for_ever(monkeypatch):
     monkeypatch.setattr(ahead, "_PATIENCE", 0.2)
     monkeypatch.setattr(subprocess, "Popen", lambda words, **more: made.append(
         real([sys.executable, "-c", "import time; time.sleep(600)"], **more)) or made[0])  # fmt: skip
-    ahead.begin(maps=False)()
+    ahead.begin(maps=False)("search.search")
     assert made[0].returncode is not None
 
 

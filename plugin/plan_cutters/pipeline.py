@@ -105,12 +105,13 @@ vars(plan)["__signature__"] = inspect.Signature(
 
 def run(
     part: Any, options: Options, clock: Clock, *, read_timeout: float = TIMEOUT, at: At = lambda whose, face: None,
-    ahead: Callable[[], None] = lambda: None, aside: Mapping[int, str] | None = None,
+    ahead: Callable[[str], None] = lambda entry: None, aside: Mapping[int, str] | None = None,
 ) -> Result:  # fmt: skip
     """`plan` with its options gathered.
 
     `read_timeout` is the most seconds that a faulty file may take to read; `at` is told whose work goes on at which face;
-    `ahead` waits for machine code that is made meanwhile; `aside` says by number why faces are not to be worked on at all.
+    `ahead` waits for the machine code of an entry that is made meanwhile; `aside` says by number why faces are not to be worked
+    on at all.
     """
     started = datetime.datetime.now(datetime.UTC)
     ready = prepare(part, options, clock, read_timeout=read_timeout, at=at, ahead=ahead, aside=aside)
@@ -132,10 +133,11 @@ def run(
     elsewhere = [(axis, _elsewhere(ready, here, axis, x, clock)) for axis, x in others]
     judged = _judged(ready, here, elsewhere, seconds, clock)
     answers = ask(ready, {cutter: each.here for cutter, each in judged.items()}, clock.stage, elsewhere)
-    result = assemble(ready, judged, clock, started, answers, elsewhere, searched)
+    result = assemble(ready, judged, clock, started, answers, elsewhere, searched, ahead)
     if not options.posture_maps:
         return result
     with clock.stage("maps") as tell:
+        ahead("free_map.free_map")
         cutter = next(c for c in ready.cutters if c.id == result.shown)
         reach = judged[cutter].here
         if ready.conditions.machine.limited:
@@ -166,7 +168,7 @@ def _elsewhere(
 
 def prepare(
     part: Any, options: Options, clock: Clock | None = None, *, read_timeout: float = TIMEOUT,
-    at: At = lambda whose, face: None, ahead: Callable[[], None] = lambda: None, aside: Mapping[int, str] | None = None,
+    at: At = lambda whose, face: None, ahead: Callable[[str], None] = lambda entry: None, aside: Mapping[int, str] | None = None,
 ) -> Prepared:  # fmt: skip
     """Read, sample, classify and surround with obstacles; arguments as for `run`."""
     clock = clock or Clock()
@@ -215,7 +217,7 @@ def prepare(
     with clock.stage("tree"):
         around.build(options.jobs)
     with clock.stage("compile"):
-        ahead()
+        ahead("search.search")
         warm(contacts_of(samples), cutters[0], conditions)
     with clock.stage("bodies"):
         within = buried(samples, scene.orientation, around.enclosing, around.surely, scene.tolerance)
@@ -291,6 +293,7 @@ def assemble(
     ready: Prepared, judged: Mapping[Cutter, Judged], clock: Clock | None = None,
     started: datetime.datetime | None = None, answers: Answers | None = None,
     elsewhere: Sequence[Elsewhere] = (), searched: Work | None = None,
+    ahead: Callable[[str], None] = lambda entry: None,
 ) -> Result:  # fmt: skip
     """The result of all cutters: the choice, the area between the samples for the one chosen, what was answered, the plan.
 
@@ -311,6 +314,7 @@ def assemble(
     budget = ready.options.contacts_between(len(ready.samples))
     if best and budget:
         with clock.stage("area"):
+            ahead("cover.cover")
             cutter = next(c for c in ready.cutters if c.id == best)
             most = np.inf
             if searched is not None and ready.options.area_budget is None:

@@ -3,16 +3,21 @@
 import os
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 
 from plan_cutters.command.worker import PARENT, REPORT, follow_parent
 
 #: The longest that is waited for it, s: what is not there by then is compiled here.
 _PATIENCE = 120.0
+#: How often it is looked whether an entry is there, s.
+_LOOK = 0.05
 
 
-def begin(maps: bool) -> Callable[[], None] | None:
-    """Start the second process where there is no machine code yet; what waits for its end, None where it is not needed.
+def begin(maps: bool) -> Callable[[str], None] | None:
+    """Start the second process where there is no machine code yet; what waits for an entry of it, None where it is not needed.
+
+    An entry, `module.function`, is waited for until it is there or the process has ended.
 
     Parameters
     ----------
@@ -31,12 +36,14 @@ def begin(maps: bool) -> Callable[[], None] | None:
     except OSError:
         return None  # it would only have saved time
 
-    def wait() -> None:
-        try:
-            other.wait(_PATIENCE)
-        except subprocess.TimeoutExpired:
-            other.kill()
-            other.wait()
+    ends = time.monotonic() + _PATIENCE
+
+    def wait(entry: str) -> None:
+        while other.poll() is None and not at_hand(entry):
+            if time.monotonic() > ends:
+                other.kill()
+                other.wait()
+            time.sleep(_LOOK)
 
     return wait
 

@@ -73,14 +73,14 @@ def one_part(
     return code_of(document), ""
 
 
-def _compiling(options: "Options", quiet: bool) -> Callable[[], None]:
-    """Let machine code be made meanwhile where there is none, and say so; what waits for it."""
+def _compiling(options: "Options", quiet: bool) -> Callable[[str], None]:
+    """Let machine code be made meanwhile where there is none, and say so; what waits for an entry of it."""
     from plan_cutters.command.ahead import begin
 
     wait = begin(options.posture_maps) if options.jobs > 1 else None
     if wait is not None and not quiet:
         terminal.say("Compiling for this machine, once: the first plan takes about half a minute longer.")
-    return wait or (lambda: None)
+    return wait or (lambda entry: None)
 
 
 class Onlooker:

@@ -15,4 +15,4 @@ def at_hand(name: str) -> bool | None:
     None where it is kept for this process alone, since no folder can be written to.
     """
     folder = Path(cache_folder(Path(__file__).parent))
-    return any(folder.glob(f"**/{name}-*.nbi")) if folder.name.startswith("kernels-") else None
+    return any(folder.glob(f"**/{name}-*.nbc")) if folder.name.startswith("kernels-") else None
