@@ -107,6 +107,9 @@ def _command(command, words, cwd, environment, streams, bare):
     worker = importlib.import_module("plan_cutters.command.worker")
     if not bare:
         worker.subprocess = SimpleNamespace(**{**vars(subprocess), "Popen": _worker})
+    if bare:
+        # No worker begins early.
+        return importlib.import_module(f"plan_cutters.command.{MODULES[command]}").main()
     entry = importlib.import_module("plan_cutters.command.entry")
     vars(entry)[next(name for name, each in _ENTRIES.items() if each == command)]()
 

@@ -113,7 +113,8 @@ def test_crashes_and_chatter_of_the_kernel_are_one_line(tmp_path, name, content,
 
 def test_every_stage_of_the_kernel_has_a_limit():
     here, there = os.pipe()
-    watch = _Watch(here, read_timeout=0.01)
+    watch = _Watch(read_timeout=0.01)
+    watch.pipe = here
     late = {}
     for stage in ("start", "read", "tessellate", "R3L40", "write"):
         os.write(there, f"stage {stage}\n".encode())

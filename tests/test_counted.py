@@ -314,7 +314,7 @@ def test_folded_triangles_are_turned_over():
 @pytest.mark.parametrize("make", [*MOULDS.values(), lambda: shapes.torus(20, 5).Moved(TopLoc_Location(mirror()))])
 def test_triangles_have_the_side_of_the_surface(make):
     part = read_part(make())
-    triangles = tessellate(part, 0.05)
+    triangles = tessellate(part, 0.02)
     a, b, c = (triangles.vertex[:, k] for k in range(3))
     across = np.cross(b - a, c - a)
     for face in part.faces:

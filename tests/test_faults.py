@@ -255,7 +255,8 @@ def test_faces_lost_in_iges_are_named(mode, tmp_path):
 )
 def test_the_line_says_whose_work_it_was_and_where(told, line):
     here, there = os.pipe()
-    watch = _Watch(here, read_timeout=1.0)
+    watch = _Watch(read_timeout=1.0)
+    watch.pipe = here
     os.write(there, told.encode())
     watch.listen(0.0)
     os.close(here)
@@ -282,7 +283,8 @@ def test_tessellation_tells_of_what_is_left_to_the_kernel(monkeypatch):
 
 def test_our_tessellation_is_named_where_it_takes_too_long():
     here, there = os.pipe()
-    watch = _Watch(here, 1e-9)
+    watch = _Watch(1e-9)
+    watch.pipe = here
     os.write(there, b"part part.step\nstage tessellate\nwork own F3\n")
     watch.listen(1.0)
     os.close(there)

@@ -178,7 +178,7 @@ def test_what_the_search_lost_is_not_searched_again(valley):
 
 def test_the_page_asks_for_one_coarse_mesh_and_draws_what_it_may(monkeypatch):
     part, calls = read_part(SAMPLES / "peaks_and_valleys.step"), []
-    monkeypatch.setattr(drawing, "starts", lambda *a: calls.append(a[2]) or starts(*a))
+    monkeypatch.setattr(drawing, "starts", lambda *a, **more: calls.append(a[2]) or starts(*a, **more))
     sides = np.ones(len(part.faces))
     for most, chord in ((60_000, 1e-2), (2_000, 3e-2)):
         found = drawing.drawn(part, sides, most=most, deflection=chord)

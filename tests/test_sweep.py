@@ -15,7 +15,7 @@ from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Conditions, found_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
-from plan_cutters.stages import access
+from plan_cutters.stages import witness
 
 TURNS, SAFE, BLOCKED, LENGTH = 12, 0.02, 0.03, 20.0
 RANGES = waves.ranges(2 * np.pi * np.arange(TURNS) / TURNS)
@@ -91,7 +91,7 @@ def test_verdicts_do_not_hang_on_the_company(comb, radius):
 
 def test_the_least_depth_is_that_of_a_grid(comb):
     contacts, solids = comb
-    radius, share = 2.0, access._PRECISION
+    radius, share = 2.0, witness._PRECISION
     cutter, vertex = Cutter.flat(radius=radius, length=LENGTH), waves.comb_triangles(40)
     walls = Obstacles(Triangles(vertex, np.ones(len(vertex), np.int32), 0.001, ()))
     postures = PostureRange(step=2 * np.pi / TURNS)
@@ -103,7 +103,7 @@ def test_the_least_depth_is_that_of_a_grid(comb):
     short = []
     for row in lost[:: max(1, len(lost) // 12)]:
         one = Contacts(*(column[row : row + 1].copy() for column in contacts))
-        best, low, high = access._least_depth(one, 0, cutter, conditions)
+        best, low, high = witness._least_depth(one, 0, cutter, conditions)
         assert low < high <= low * (1 + 2 * share)
         for depth, free in ((high * (1 + 1e-9), True), (low, False)):
             triangle = np.empty(1, np.int32)

@@ -34,6 +34,9 @@ _TURNS = 60  # of a search for a place on a curve
 
 #: What the kernel's mesher is asked for: rad, and that once more, finer, where it makes nothing.
 _ANGLE, _FINER = 0.5, 0.02
+#: How far chords of a border may be from it, as a share of the triangles' chord error: coarser ones would pass each other on
+#: narrow faces when they are bent onto their curves.
+_SAG = 1 / 8
 #: How much more area than a face's its triangles may have in the parameter plane.
 _TOO_LARGE = 1.1
 #: Processor time of the kernel's mesher, s: for a face, and for all.
@@ -143,7 +146,7 @@ def _own_start(part: Part, number: int, chord: float) -> UVMesh | None:
     if density is None:
         return None
     bend = np.array([each.max() for each in density])
-    steps = Steps(bend, 0.5 * chord, trim.scale, chord)
+    steps = Steps(bend, 0.5 * chord, trim.scale, _SAG * chord)
     lines = [_lines(each, trim.box[2 * k : 2 * k + 2], chord) for k, each in enumerate(density)]
     if trim.rectangular:
         mesh = _on_grid(surface, trim, uses, (lines[0], lines[1]))

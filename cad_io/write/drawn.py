@@ -16,7 +16,7 @@ from cad_io.kernel import translated
 from cad_io.kernel.mesher import Meshed
 from cad_io.part import Part
 from cad_io.surface import Surface
-from cad_io.tessellate.start import starts
+from cad_io.tessellate.start import expected, starts
 from cad_io.write.label_mesh import label_mesh
 from cad_io.write.net import Net, cut
 
@@ -27,6 +27,8 @@ FINE = 5e-4
 _METRE = 1e-3
 #: How much coarser the triangles are that drawing begins with.
 _COARSER = 2.0
+#: The least chord error that it begins with, as a share of the part's diagonal: what is finer is cut.
+_FINEST = 1e-4
 
 
 class Mesh(NamedTuple):
@@ -72,7 +74,8 @@ def drawn(part: Part, sides: Sequence[float] | Floats, *, most: int, deflection:
     """
     with translated("meshing", error=WriteError, file=part.file):
         wanted = FINE * diagonal(part.shape) if deflection is None else deflection
-        begun, _ = starts(part, [f.number for f in part.faces], _COARSER * wanted, again=True)
+        numbers = [f.number for f in part.faces]
+        begun, _ = starts(part, numbers, _begun(part, numbers, wanted, most), again=True)
         nets = {number: Net.of(part.surface(number), start) for number, start in begun.items()}
         off = cut(list(nets.values()), wanted, ANGLE, most)
         meshes, periods = {}, {}
@@ -88,6 +91,15 @@ def drawn(part: Part, sides: Sequence[float] | Floats, *, most: int, deflection:
     if not meshes:
         raise WriteError("the CAD kernel made no triangle of the part", file=part.file)
     return Drawn(meshes, periods, max(wanted, off), tuple(f.number for f in part.faces if f.number not in meshes))
+
+
+def _begun(part: Part, numbers: Sequence[int], wanted: float, most: int) -> float:
+    """The chord error to begin with, mm: one that leaves triangles to be laid where they are wanted most."""
+    size = diagonal(part.shape)
+    chord = max(_COARSER * wanted, _FINEST * size)
+    while chord < size and expected(part, numbers, chord) > 0.5 * most:
+        chord *= 4.0
+    return chord
 
 
 def diagonal(shape: Any) -> float:

@@ -327,15 +327,8 @@ def assemble(
             e.model_copy(update={"area": area, "seen": e.seen or area.feasible}) if e.id == best else e for e in entries
         ]
     with clock.stage("plan", shown=False):
-        document = plan_of(
-            ready,
-            entries,
-            selected,
-            chosen,
-            started or datetime.datetime.now(datetime.UTC),
-            answers,
-            _setups(ready, within, over),
-        )
+        began = started or datetime.datetime.now(datetime.UTC)
+        document = plan_of(ready, entries, selected, chosen, began, answers, _setups(ready, within, over))
     return Result(
         clock.stamp(document),
         ready.scene,

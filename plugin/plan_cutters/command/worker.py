@@ -107,6 +107,7 @@ def begin_early(words: Sequence[str]) -> None:
     It is killed where the words are wrong after all, and where `supervise` is never called.
     """
     asked_otherwise = {"--help", "-h", "--version"}.intersection(words) or "_PLAN_CUTTERS_COMPLETE" in os.environ
+    asked_otherwise = asked_otherwise or list(words[:1]) == ["map"]  # another command, with a child of its own
     if is_child() or asked_otherwise or not can_supervise() or not any(map(os.path.isfile, words)):
         return
     with contextlib.suppress(OSError, ValueError):

@@ -41,7 +41,7 @@ class Effective(Frozen):
     placement: PlacementEntry | None = Field(default=None, description="null where the axis alone was given")
     other_setups: list[Vector] = Field(default=[], description="in which every cutter was judged, too")
     other_placements: list[PlacementEntry | None] = Field(
-        default=[], description="of these; empty where axes alone were given"
+        default=[], description="of these; empty if axes alone were given"
     )
     faces: str
     ignore: list[str] = Field(default=[], description="faces that are neither targets nor obstacles, as asked for")
@@ -284,9 +284,7 @@ class CutterEntry(Verdicts):
         "the samples stand for, not what is shown between them: that is in `area`",
     )
     witnesses: list[WitnessEntry] = Field(description="for each face and reason, the deepest that was tried first")
-    witnesses_untried: int = Field(
-        default=0, description="those without a depth, for others of larger area took all tries"
-    )
+    witnesses_untried: int = Field(default=0, description="those without a depth: others of larger area took all tries")
     area: AreaEntry | None = Field(default=None, description="of the selected cutter; null where it was not asked for")
     setups: list[SetupReach] = Field(
         default=[], description="where several setups were asked for: what it reaches in each, the plan's own first"

@@ -19,16 +19,7 @@ from plan_cutters.kernels.pieces import ARC, BOTTOM, COLUMNS, HIGH, KIND, LOW, R
 from plan_cutters.kernels.rows import Frame, Scratch
 from plan_cutters.kernels.search import mode_at
 from plan_cutters.kernels.vectors import cross, dot, perpendicular
-from plan_cutters.kernels.zone import (
-    EXTENTS,
-    Nose,
-    begin,
-    distance_of,
-    held_below,
-    look_round,
-    near_by,
-    seen,
-)
+from plan_cutters.kernels.zone import EXTENTS, Nose, begin, distance_of, held_below, look_round, near_by, seen
 
 #: Largest angle (rad) between normals within `extent`: up to it, the surface is a graph over its tangent planes.
 _MOST_TURN = 0.5
@@ -359,16 +350,13 @@ def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, 
     body[HALF] = 0.0
     if flat:
         body[OFFSET] = 0.0
-        for k in range(BODY):
-            room.bodies[0, k] = body[k]
+        room.bodies[0] = body
         _grown(sweeping.dummy, room.pieces[0], h + rise * turn, lift + rise * turn * turn)
     else:
         body[OFFSET] = offset
         grow = 0.5 * abs(offset) * psi * psi + lift + rise * rest
         # The centre of curvature wanders less than the contact on a concave surface, and turns with the normal.
-        lever = rise
-        if sine > 0.0:
-            lever += offset / sine
+        lever = rise + (offset / sine if sine > 0.0 else 0.0)
         slides = (1.0 - rise * k_ff, rise * abs(k_ft), lever * k_ft, abs(1.0 - lever * k_tt), abs(offset) * beside)
         _bodies(body, tool.piece[mode], frame, h, pose, slides, grow, room, 18)
     exempt = sweeping.flutes if flat else sweeping.nose[mode]
@@ -407,6 +395,5 @@ def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, outlook):  
     for row in rows:
         outlook[row], found = _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, room)
         # What was in the way of one contact is likely in the way of the next.
-        if found >= 0:
-            blocker = found
+        blocker = found if found >= 0 else blocker
     return room.scratch.looked[0] + room.seen.looked[0] // _NODES

@@ -121,12 +121,12 @@ def far_apart(point: Floats, rows: NDArray[np.int64], most: int) -> list[int]:
 
 
 def _kept(looked: Sequence[Witness], point: Floats) -> list[Witness]:
-    """The deepest, then those with a depth before others, the farthest from it first."""
+    """The deepest, then those with a depth, first with another obstacle, and of these the farthest from it."""
     ranked = sorted(looked, key=lambda w: (-(w.depth or 0.0), w.sample))
-    deepest = point[ranked[0].sample]
-    others = sorted(
-        ranked[1:], key=lambda w: (w.depth is None, -float(np.linalg.norm(point[w.sample] - deepest)), w.sample)
-    )
+    first = ranked[0]
+    others = sorted(ranked[1:], key=lambda w: (
+        w.depth is None, w.obstacle_face == first.obstacle_face,
+        -float(np.linalg.norm(point[w.sample] - point[first.sample])), w.sample))  # fmt: skip
     return [ranked[0], *others[: _KEPT - 1]]
 
 
