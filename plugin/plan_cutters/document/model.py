@@ -32,7 +32,7 @@ class Effective(Frozen):
     holder: str | None = Field(default=None, description="of the cutters that were given without one")
     allowance_mm: float = Field(default=0.0, description="stock left on the surface, unless a cutter says otherwise")
     holder_clearance_mm: float = Field(
-        default=0.0, description="room asked of neck, shank and holder, unless a cutter says otherwise"
+        default=0.0, description="room asked of neck, shank and holder, where a cutter says none"
     )
     unit: str | None = Field(default=None, description="length unit taken instead of the file's")
     fixtures: list[str] = Field(default=[], description="as on a command line: file or word, placement, unit")
@@ -41,7 +41,7 @@ class Effective(Frozen):
     placement: PlacementEntry | None = Field(default=None, description="null where the axis alone was given")
     other_setups: list[Vector] = Field(default=[], description="in which every cutter was judged, too")
     other_placements: list[PlacementEntry | None] = Field(
-        default=[], description="of these; empty if axes alone were given"
+        default=[], description="of these; empty if only axes were given"
     )
     faces: str
     ignore: list[str] = Field(default=[], description="faces that are neither targets nor obstacles, as asked for")

@@ -350,7 +350,8 @@ def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, 
     body[HALF] = 0.0
     if flat:
         body[OFFSET] = 0.0
-        room.bodies[0] = body
+        for k in range(BODY):
+            room.bodies[0, k] = body[k]
         _grown(sweeping.dummy, room.pieces[0], h + rise * turn, lift + rise * turn * turn)
     else:
         body[OFFSET] = offset
