@@ -48,9 +48,7 @@ class Effective(Frozen):
     target_faces: list[str]
     grid: int | None = Field(description="samples a side and face; null where sampled by spacing")
     spacing_mm: float | None = Field(description="largest spacing asked for; null where sampled by grid")
-    sampled_by: Literal["default", "spacing", "grid"] = Field(
-        default="default", description="who said how densely: nobody, `--spacing` or `--grid`"
-    )
+    sampled_by: Literal["default", "spacing", "grid"] = Field(default="default", description="what said how densely")
     tilt_deg: tuple[float, float]
     rotation_deg: tuple[float, float]
     rotation_step_deg: float
