@@ -212,7 +212,7 @@ def test_triangles_to_look_at_lie_near_the_surface_without_cracks(seed, chord):
     share = np.random.default_rng(seed).dirichlet([1, 1, 1], 4)
     for each in share:
         uv, flat = np.einsum("c,tcx->tx", each, net.uv[net.corner]), np.einsum("c,tcx->tx", each, net.point[net.corner])
-        assert np.linalg.norm(part.surface(1).values(*uv.T) - flat, axis=1).max() < 2.0 * chord, (
+        assert np.linalg.norm(part.surface(1).values(*uv.T) - flat, axis=1).max() < 3.0 * chord, (
             "middles alone are looked at"
         )
 
