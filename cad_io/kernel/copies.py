@@ -3,15 +3,17 @@
 import faulthandler
 import math
 import os
+import select
 import signal
+import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import BinaryIO
 
 from cad_io.lifetime import end_with
 
-#: Looks, one a second, at a copy that sleeps and does nothing before it is taken for stuck.
-_ASLEEP = 60
+#: Seconds between two looks at a copy, and looks at one that sleeps and does nothing before it is taken for stuck.
+_LOOK, _ASLEEP = 1.0, 60
 
 
 def begin(work: Callable[[BinaryIO], None], seconds: float) -> tuple[int, int]:
@@ -68,21 +70,42 @@ def out_of_time(status: int) -> bool:
 
 def stuck(child: int) -> Callable[[], float]:
     """Seconds to wait until it is asked again; none once the copy has slept at so many looks. Never while it works."""
-    idle, before = 0, ""
+    idle, before, looked = 0, "", -math.inf
 
     def late() -> float:
-        nonlocal idle, before
+        nonlocal idle, before, looked
+        # Asked after each part of a long answer, too: a copy sleeps while its words are taken.
+        if time.monotonic() - looked < _LOOK:
+            return _LOOK
+        looked = time.monotonic()
         try:
             with open(f"/proc/{child}/stat", encoding="ascii", errors="replace") as file:
                 state, *fields = file.read().rpartition(")")[2].split()
         except OSError:
-            return 1.0
+            return _LOOK
         spent = " ".join(fields[10:12])
         idle = idle + 1 if state in "SDT" and spent == before else 0
         before = spent
-        return 1.0 if idle < _ASLEEP else 0.0
+        return _LOOK if idle < _ASLEEP else 0.0
 
     return late
+
+
+def parts_of(end: int, late: Callable[[], float]) -> Iterator[bytes]:
+    """All that a copy says, as it comes, until its side closes; `late` gives the seconds to wait before it is asked again.
+
+    Raises
+    ------
+    TimeoutError
+        There is nothing left to wait.
+    """
+    while (wait := late()) > 0:
+        if select.select([end], [], [], wait)[0]:
+            part = os.read(end, 1 << 20)
+            if not part:
+                return
+            yield part
+    raise TimeoutError
 
 
 def _end_alone(seconds: float) -> None:

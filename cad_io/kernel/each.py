@@ -2,13 +2,12 @@
 
 import os
 import pickle
-import select
 import struct
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import BinaryIO, TypeVar, cast
 
-from cad_io.kernel.copies import begin, end_within, ended, out_of_time, stuck
+from cad_io.kernel.copies import begin, end_within, ended, out_of_time, parts_of, stuck
 
 Item = TypeVar("Item")
 Done = TypeVar("Done")
@@ -94,16 +93,8 @@ def _work(call: Callable[[Item], Done], items: Sequence[Item], seconds: float, p
 
 def _answers(end: int, child: int) -> Iterator[object]:
     """Whole answers as they come, until the copy ends; TimeoutError if it sleeps and does nothing."""
-    late, data = stuck(child), b""
-    while True:
-        wait = late()
-        if wait <= 0:
-            raise TimeoutError
-        if not select.select([end], [], [], wait)[0]:
-            continue
-        part = os.read(end, 1 << 20)
-        if not part:
-            return
+    data = b""
+    for part in parts_of(end, stuck(child)):
         data += part
         while len(data) >= _LENGTH.size:
             (length,) = _LENGTH.unpack_from(data)

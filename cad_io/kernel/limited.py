@@ -1,13 +1,12 @@
 """A time limit for kernel calls: Python cannot interrupt them, but it can end a forked copy of the process."""
 
 import os
-import select
 import time
 from collections.abc import Callable
 from functools import partial
 from typing import BinaryIO
 
-from cad_io.kernel.copies import begin, ended, out_of_time, stuck
+from cad_io.kernel.copies import begin, ended, out_of_time, parts_of, stuck
 
 
 class TimeLimit(Exception):
@@ -47,7 +46,9 @@ def limited(call: Callable[[], bytes], seconds: float, *, processor: bool = Fals
     end, child = begin(partial(_answer, call), seconds if processor else seconds + 2)
     answer, status = b"", 0
     try:
-        answer = _read(end, stuck(child) if processor else _until(seconds))
+        answer = b"".join(parts_of(end, stuck(child) if processor else _until(seconds)))
+    except TimeoutError:
+        raise TimeLimit from None
     finally:
         os.close(end)
         status = ended(child)
@@ -56,20 +57,6 @@ def limited(call: Callable[[], bytes], seconds: float, *, processor: bool = Fals
     if not answer.startswith(b"+"):
         raise ChildDied(answer[1:].decode() or f"the kernel crashed (status {status})")
     return answer[1:]
-
-
-def _read(end: int, late: Callable[[], float]) -> bytes:
-    """All that comes until the other side closes; `late` gives the seconds to wait before it is asked again."""
-    parts: list[bytes] = []
-    while True:
-        wait = late()
-        if wait <= 0:
-            raise TimeLimit
-        if select.select([end], [], [], wait)[0]:
-            part = os.read(end, 1 << 20)
-            if not part:
-                return b"".join(parts)
-            parts.append(part)
 
 
 def _until(seconds: float) -> Callable[[], float]:

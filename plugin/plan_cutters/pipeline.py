@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from cad_io import Part, read_part
 from cad_io.arrays import Ints
+from cad_io.kernel.meanwhile import Meanwhile
 from cad_io.read.read import TIMEOUT
-from cad_io.sample import sample
 from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
 from plan_cutters.document.build import cutter_entry
@@ -40,7 +40,7 @@ from plan_cutters.scene.faces import choose
 from plan_cutters.scene.prepared import Prepared
 from plan_cutters.scene.question import question
 from plan_cutters.scene.scene import Scene
-from plan_cutters.scene.spacing import Spacing, default_spacing
+from plan_cutters.scene.spacing import affordable, sampled
 from plan_cutters.scene.threads import part_of
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.between import between
@@ -56,8 +56,8 @@ from plan_cutters.stages.witness import witnesses
 
 #: The work between samples, as a share of that of the searches, and so much of it in any case: boxes.
 _WORK_SHARE, _WORK_LEAST = 0.5, 2e7
-#: Samples that a plan may take.
-MOST_SAMPLES = 5_000_000
+#: Faces from which on they are sampled in a copy of the process, and the processor time that it may take, s.
+_MANY_FACES, _SAMPLING = 12, 60.0
 
 
 def plan(part: Any, *, progress: Progress | None = None, **options: Any) -> Result:
@@ -192,13 +192,15 @@ def prepare(
             scene.read_fixtures(read_timeout)
     with clock.stage("sample"):
         chosen = choose(whole, options.faces, scene.ignored, scene.ignore, options.placement)
-        spacing: Spacing = options.spacing
-        coarser = 1.0
-        if options.grid is None and options.spacing is None:
-            spacing, coarser = default_spacing(whole, scene.orientation, chosen.targets, cutters)
-        _affordable(whole, chosen.targets, options)
-        samples = sample(whole, scene.orientation, grid=options.grid, spacing=spacing, faces=chosen.targets,
-                         at=partial(at, "kernel"))  # fmt: skip
+        affordable(whole, chosen.targets, options)
+        job = partial(sampled, whole, scene.orientation, options, chosen.targets, cutters)
+    # Sampling and meshing need nothing of each other.
+    with Meanwhile(job, _SAMPLING, worth=options.jobs > 1 and len(chosen.targets) >= _MANY_FACES) as copy:
+        if copy.works:
+            with clock.stage("tessellate"):
+                scene.surround(at, jobs=options.jobs)
+        with clock.stage("sample"):
+            samples, spacing, coarser = copy.result(partial(job, at=partial(at, "kernel")))
     with clock.stage("classify"):
         surface_class = classify(samples, float(np.linalg.norm(whole.size)))
         region = regions(samples, surface_class)
@@ -220,7 +222,7 @@ def prepare(
         ahead("search.search")
         warm(contacts_of(samples), cutters[0], conditions)
     with clock.stage("bodies"):
-        within = buried(samples, scene.orientation, around.enclosing, around.surely, scene.tolerance)
+        within = buried(samples, scene.orientation, around.enclosing, around.surely, scene.tolerance, options.jobs)
     ready = Prepared(
         scene, options, chosen, spacing, samples, surface_class, region, within, conditions, cutters, coarser
     )
@@ -367,21 +369,6 @@ def _setups(ready: Prepared, within: Sequence[NDArray[np.bool_]], over: OverSetu
             mine = asked & within_limits(ready.samples, ready.cutters, ready.conditions, axis)
             found[axis] = SetupEntry(axis=axis, within=int(mine.sum()), share=share(mine))
     return list(found.values())
-
-
-def _affordable(part: Part, targets: Sequence[int], options: Options) -> None:
-    """Refuse to sample more than memory holds, before it is tried."""
-    wanted = 0.0
-    if options.grid is not None:
-        wanted = len(targets) * float(options.grid) ** 2
-    elif options.spacing is not None:
-        wanted = sum(part.faces[n - 1].area for n in targets) / options.spacing / options.spacing
-    if wanted > MOST_SAMPLES:
-        raise OptionError(
-            f"that would take about {wanted:.2g} samples, at most {MOST_SAMPLES:.0e} are taken: sample more coarsely, "
-            "or choose faces with --faces",
-            file=part.file,
-        )
 
 
 def warm(contacts: Contacts, cutter: Cutter, conditions: Conditions) -> None:

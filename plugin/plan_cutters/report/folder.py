@@ -1,43 +1,25 @@
 """The output folder: every format of a result, each file whole or not at all, the plan and the arrays before the models."""
 
-import hashlib
 import os
 import secrets
 import shutil
 from collections.abc import Callable, Collection, Sequence
-from contextlib import suppress
-from importlib import import_module
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from cad_io.errors import CadIoError
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files.lock import Lock
+from plan_cutters.report.making import LATER, WRITERS, sha256
 
 if TYPE_CHECKING:
     # What formats there are is asked before anything heavy is loaded.
     from plan_cutters.document.clock import Clock
-    from plan_cutters.document.model import Plan
+    from plan_cutters.document.model import FileEntry, Plan
 
 PLAN = "plan.json"
-#: Format -> (file name, module, function).
-_WRITERS = {
-    "html": ("review.html", "page", "write_html"),
-    "step": ("annotated.step", "models", "write_step"),
-    "glb": ("annotated.glb", "models", "write_glb"),
-    "merged": ("merged.glb", "models", "write_merged"),
-    "npz": ("samples.npz", "to_npz", "write_npz"),
-    "postures": ("postures.npz", "to_npz", "write_postures"),
-    "csv": ("axes.csv", "to_csv", "write_csv"),
-    "vtk": ("axes.vtp", "to_vtk", "write_vtk"),
-    "regions": ("axis_regions.json", "regions", "write_regions"),
-    "png": ("review.png", "picture", "write_png"),
-}
-#: What is shown on faces that are split along the verdicts: the CAD kernel has a part in it.
-_MODELS = ("glb", "merged", "png", "step")
-#: What follows the plan and the arrays, the easier ones first.
-_LATER = ("html", "csv", "vtk", "regions", *_MODELS)
-FORMATS = ("json", *(f for f in _WRITERS if f != "postures"))
+FORMATS = ("json", *(f for f in WRITERS if f != "postures"))
 #: What is written unless asked otherwise (`docs/decisions/0017-formats-on-request.md`).
 DEFAULT_FORMATS = ("json", "html", "step", "glb", "npz")
 
@@ -166,30 +148,24 @@ def write_all(
     read_formats(",".join(formats))
     clock = clock or Clock.after(result.plan.run)
     with clock.stage("start", shown=False):
-        from plan_cutters.document.model import FileEntry
-        from plan_cutters.report.models import SCHEMAS, rungs, split_result
+        from plan_cutters.report.making import Making
+        from plan_cutters.report.models import SCHEMAS, rungs
         from plan_cutters.report.to_json import PENDING, write_plan
 
     if step_schema not in SCHEMAS:
         raise OptionError(f"STEP schema {step_schema!r} is not built in; give one of {', '.join(SCHEMAS)}")
-    later = [name for name in _LATER if name in formats]
+    later = [name for name in LATER if name in formats]
     arrays = [name for name in ("npz",) if name in formats] + (["postures"] if result.maps else [])
     with staging or Staging(out) as staging:
         document: Plan = result.plan
         files: dict[str, FileEntry] = {}
         missing = dict.fromkeys(later, PENDING)
-
-        def write(name: str, split: Any, **more: str) -> None:
-            file, module, function = _WRITERS[name]
-            with clock.stage(name, shown=False):
-                writer: Callable[..., None] = getattr(import_module(f"plan_cutters.report.{module}"), function)
-                writer(result, split, staging.folder / file, **more)
-                files[name] = FileEntry(name=file, sha256=_sha256(staging.folder / file))
+        making = Making(result, staging.folder, step_schema, clock, onlooker.begins if onlooker else lambda what: None)
 
         def put() -> "Plan":
             plan = document.model_copy(
                 update={
-                    "files": {name: files[name] for name in _WRITERS if name in files},
+                    "files": {name: files[name] for name in WRITERS if name in files},
                     "not_written": dict(missing),
                 }
             )
@@ -208,7 +184,8 @@ def write_all(
 
         try:
             for name in arrays:
-                write(name, None)
+                with clock.stage(name, shown=False):
+                    files[name] = making.file(name)
         except OSError as error:
             raise _unwritable(out, error) from None
         document = put()
@@ -220,34 +197,31 @@ def write_all(
         if onlooker:
             with clock.stage("show", shown=False):
                 onlooker.safe(document)
-        split = None
-        for name in later:
-            try:
-                if split is None and name in _MODELS:
-                    if onlooker:
-                        onlooker.begins("split")
-                    with clock.stage("split", shown=False):
-                        split = split_result(result)
-                    document = document.model_copy(update={"split": rungs(split)})
+        with closing(making.files(later)) as each:
+            for name, make in each:
                 if onlooker:
                     onlooker.begins(name)
-                write(name, split, **({"schema": step_schema} if name == "step" else {}))
-            except Exception as error:
-                missing[name] = _cause(error)
-                if onlooker:
-                    onlooker.failed(name, error)
-            else:
-                del missing[name]
-            document = put()
-            if name in files:
-                staging.publish(files[name].name)
-            show()
+                try:
+                    with clock.stage(name, shown=False):
+                        files[name] = make()
+                except Exception as error:
+                    missing[name] = _cause(error)
+                    if onlooker:
+                        onlooker.failed(name, error)
+                else:
+                    del missing[name]
+                if making.split is not None:
+                    document = document.model_copy(update={"split": rungs(making.split)})
+                document = put()
+                if name in files:
+                    staging.publish(files[name].name)
+                show()
     return document
 
 
 def file_name(name: str) -> str:
     """Name of the file of a format."""
-    return PLAN if name == "json" else _WRITERS[name][0]
+    return PLAN if name == "json" else WRITERS[name][0]
 
 
 def _cause(error: Exception) -> str:
@@ -276,7 +250,7 @@ def _clear(out: Path) -> None:
         path = out / name
         if name in _names() and path.is_file() and not path.is_symlink():
             with suppress(OSError):  # it is named instead
-                if _sha256(path) == checksum:
+                if sha256(path) == checksum:
                     ours.append(path)
     try:
         (out / PLAN).unlink()
@@ -311,12 +285,8 @@ def left_over(out: Path, plan: "Plan", formats: Collection[str]) -> list[str]:
 
 
 def _names() -> list[str]:
-    return [file for file, _, _ in _WRITERS.values()]
+    return [file for file, _, _ in WRITERS.values()]
 
 
 def _unwritable(out: Path, error: OSError) -> PlanError:
     return PlanError(f"cannot write there ({error.strerror}); give another folder with -o", file=str(out))
-
-
-def _sha256(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints, Orientation, Record, SurfaceSamples
 from cad_io.part.bodies import Body
 from plan_cutters.scene.obstacles import Obstacles
+from plan_cutters.scene.threads import in_chunks
 
 #: Distance of the point from the contact and radius of the ball, in depths beyond which a posture is surely blocked: the
 #: ball is to be free of the skin that the contact lies on, and its radius more than sqrt(2).
@@ -37,8 +38,9 @@ class Cover(Record):
 
 
 def buried(
-    samples: SurfaceSamples, orientation: Orientation, bodies: Sequence[Body], surely: Obstacles, tolerance: float
-) -> Ints:
+    samples: SurfaceSamples, orientation: Orientation, bodies: Sequence[Body], surely: Obstacles, tolerance: float,
+    jobs: int = 1,
+) -> Ints:  # fmt: skip
     """In which body contacts lie so deep that every posture is blocked.
 
     Parameters
@@ -50,6 +52,8 @@ def buried(
     surely : Obstacles
     tolerance : float
         Gouge tolerance that is kept, mm.
+    jobs : int, optional
+        Threads.
 
     Returns
     -------
@@ -57,8 +61,6 @@ def buried(
         Index into `bodies`, -1 where there is none. Where a contact lies in the void of a body and in no material besides,
         that void (`voids`).
     """
-    from plan_cutters.kernels.material import far_inside
-
     _, deep = surely.depths(tolerance)
     point = samples.point + _AWAY * deep * samples.normal
     open_rows = (samples.unjudged < 0) & np.isfinite(point).all(axis=1)
@@ -78,8 +80,7 @@ def buried(
             asked &= result < 0
         rows = np.flatnonzero(asked)
         if len(rows):
-            found = np.zeros(len(rows), bool)
-            far_inside(np.ascontiguousarray(point[rows]), _BALL * deep, surely.skin_of(body).solids, found)
+            found = balls_inside(point[rows], _BALL * deep, surely.skin_of(body), jobs)
             if hollow[index]:
                 # In a corner of a void a ball is not all within it, but what lies on its wall looks into it.
                 found |= np.isin(samples.face[rows], body.faces)
@@ -90,6 +91,21 @@ def buried(
     empty = (result >= 0) & (layers <= 0) & (void >= 0)
     result[empty] = void[empty]
     return result
+
+
+def balls_inside(points: Floats, radius: float, obstacles: Obstacles, jobs: int) -> NDArray[np.bool_]:
+    """Whether balls about points (n, 3), `radius` in mm, lie wholly inside what the obstacles enclose: (n,)."""
+    from plan_cutters.kernels.material import far_inside
+
+    found, solids = np.zeros(len(points), bool), obstacles.solids
+
+    def work(rows: NDArray[np.int64]) -> None:
+        mine = np.zeros(len(rows), bool)
+        far_inside(np.ascontiguousarray(points[rows]), radius, solids, mine)
+        found[rows] = mine
+
+    in_chunks(work, np.arange(len(points)), jobs)
+    return found
 
 
 def voids(bodies: Sequence[Body], orientation: Orientation) -> NDArray[np.bool_]:

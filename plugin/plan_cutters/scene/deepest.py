@@ -163,7 +163,7 @@ def _foot(
     width = size / trim.scale
     for _ in range(_ROUNDS_ON):
         u, v = best[0] + width[0] * line, best[1] + width[1] * line
-        inside = trim.inside_grid(u, v)
+        inside = trim.inside_grid(u, v, beside=False)  # the kernel is slow, and a chord error does not matter here
         at = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1)[inside]
         if len(at):
             points = surface.values(at[:, 0].copy(), at[:, 1].copy())

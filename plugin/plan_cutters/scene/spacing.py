@@ -1,16 +1,21 @@
-"""How densely to sample where nobody said: from the curvature, the smallest cutter and a budget."""
+"""Samples of the target faces, and how dense they are where nobody said: from the curvature, the smallest cutter and a budget."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
-from cad_io import Orientation, Part
+from cad_io import Orientation, Part, SurfaceSamples
 from cad_io.sample import sample
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.errors import OptionError
+from plan_cutters.options import Options
 
 #: Spacing of samples, mm: one, by face number, or none where they are taken on a grid.
 Spacing = float | dict[int, float] | None
 
+#: Samples that a plan may take.
+MOST_SAMPLES = 5_000_000
 #: Samples that a default plan may take, in all.
 BUDGET = 40_000
 #: Share of the smallest radius, and turn of the normal (rad), between neighbouring samples.
@@ -39,3 +44,38 @@ def default_spacing(
     wanted = sum(part.faces[number - 1].area / spacing[number] ** 2 for number in faces)
     coarser = max(1.0, (wanted / BUDGET) ** 0.5)
     return {number: value * coarser for number, value in spacing.items()}, coarser
+
+
+class Sampled(NamedTuple):
+    """Samples, and what `Prepared` says of their spacing."""
+
+    samples: SurfaceSamples
+    spacing: Spacing
+    coarser: float
+
+
+def sampled(
+    part: Part, orientation: Orientation, options: Options, faces: Sequence[int], cutters: Sequence[Cutter],
+    at: Callable[[int], None] = lambda face: None,
+) -> Sampled:  # fmt: skip
+    """Sample faces as the options ask; `at` as in `sample`."""
+    spacing: Spacing = options.spacing
+    coarser = 1.0
+    if options.grid is None and options.spacing is None:
+        spacing, coarser = default_spacing(part, orientation, faces, cutters)
+    return Sampled(sample(part, orientation, grid=options.grid, spacing=spacing, faces=faces, at=at), spacing, coarser)
+
+
+def affordable(part: Part, faces: Sequence[int], options: Options) -> None:
+    """Refuse to sample more than memory holds, before it is tried."""
+    wanted = 0.0
+    if options.grid is not None:
+        wanted = len(faces) * float(options.grid) ** 2
+    elif options.spacing is not None:
+        wanted = sum(part.faces[n - 1].area for n in faces) / options.spacing / options.spacing
+    if wanted > MOST_SAMPLES:
+        raise OptionError(
+            f"that would take about {wanted:.2g} samples, at most {MOST_SAMPLES:.0e} are taken: sample more coarsely, "
+            "or choose faces with --faces",
+            file=part.file,
+        )

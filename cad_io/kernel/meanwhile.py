@@ -1,0 +1,88 @@
+"""Work in a forked copy of this process while the process itself goes on with other work: the second core is idle otherwise.
+
+Nothing depends on the copy: where it crashes, raises, hangs or cannot be made, the work is done here, with all the care
+that is taken here.
+"""
+
+import os
+import pickle
+import struct
+from collections.abc import Callable
+from types import TracebackType
+from typing import BinaryIO, Generic, TypeVar
+
+from cad_io.kernel.copies import begin, ended, parts_of, stuck
+
+Done = TypeVar("Done")
+
+#: Answers begin with their length in bytes: half an answer is none.
+_LENGTH = struct.Struct("<q")
+
+
+class Meanwhile(Generic[Done]):
+    """A call that may be under way in a copy of this process.
+
+    The copy ends with the block of `with`, whatever ends that.
+
+    Parameters
+    ----------
+    call : callable
+        Its result is pickled. It must not depend on threads of this process, and repeats all that it does when called again.
+    seconds : float
+        Of processor time, after which the copy is given up.
+    worth : bool
+        Whether to make a copy at all: that takes some hundredths of a second.
+    """
+
+    def __init__(self, call: Callable[[], Done], seconds: float, *, worth: bool = True) -> None:
+        self._call, self._seconds = call, seconds
+        self._worth = worth and hasattr(os, "fork")
+        self._copy: tuple[int, int] | None = None
+
+    def __enter__(self) -> "Meanwhile[Done]":
+        if self._worth:
+            try:
+                self._copy = begin(self._answer, self._seconds)
+            except OSError:  # no room for another process
+                self._copy = None
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._end()
+
+    @property
+    def works(self) -> bool:
+        """Whether there is a copy: then this process should do something else before it asks for the result."""
+        return self._copy is not None
+
+    def result(self, here: Callable[[], Done] | None = None) -> Done:
+        """What the call returns; `here`: the same call for this process, if it is another one, as it may tell how far it is."""
+        answer = self._read()
+        if len(answer) < _LENGTH.size or len(answer) != _LENGTH.size + _LENGTH.unpack_from(answer)[0]:
+            return (here or self._call)()
+        found: Done = pickle.loads(memoryview(answer)[_LENGTH.size :])
+        return found
+
+    def _answer(self, pipe: BinaryIO) -> None:
+        data = pickle.dumps(self._call(), protocol=pickle.HIGHEST_PROTOCOL)
+        pipe.write(_LENGTH.pack(len(data)) + data)
+
+    def _read(self) -> bytes:
+        """All that the copy says."""
+        if self._copy is None:
+            return b""
+        try:
+            return b"".join(parts_of(self._copy[0], stuck(self._copy[1])))
+        except TimeoutError:
+            return b""
+        finally:
+            self._end()
+
+    def _end(self) -> None:
+        """Leave nothing of the copy."""
+        if self._copy is not None:
+            (end, child), self._copy = self._copy, None
+            os.close(end)
+            ended(child)
