@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 #: Files of tests that begin, in this order; the others follow by name.
-FIRST = ("read_iges", "ahead", "machine_files", "cli", "feel", "files")
+FIRST = ("ahead", "machine_files", "cli", "feel", "files")
 
 
 def pytest_collection_modifyitems(items):

@@ -5,6 +5,7 @@ import subprocess
 import sys
 
 import pytest
+from forked import ROOT
 from test_cli import ENV
 
 from plan_cutters.command import ahead
@@ -85,3 +86,39 @@ def test_what_is_made_ahead_is_a_plan():
     subprocess.run(
         [sys.executable, "-m", "plan_cutters.command.ahead"], env={**os.environ, **ENV}, check=True, timeout=300
     )
+
+
+#: Tells which entries a process has loaded or compiled after each of three plans.
+LOADED = """
+import re, sys
+from pathlib import Path
+import plan_cutters.kernels as room
+from plan_cutters import plan
+from plan_cutters.command.ahead import compile_all
+
+def told():
+    found = []
+    for source in Path(room.__file__).parent.glob("*.py"):
+        module = sys.modules.get(f"{room.__name__}.{source.stem}")
+        for entry in re.findall(r"^@entry\\ndef (\\w+)", source.read_text(), re.M) if module else ():
+            if getattr(module, entry).overloads:
+                found.append(f"{source.stem}.{entry}")
+    print(*sorted(found))
+
+compile_all(maps=False)
+told()
+for maps in (False, True):
+    plan("samples/v_groove.step", cutters=["R6L80"], grid=9, posture_maps=maps)
+    told()
+"""
+
+
+def test_a_plain_cutter_loads_what_it_needs_and_nothing_else():
+    """No posture maps, largest radius, stick-out, fixed axis or picture: each would take seconds to compile on the first run."""
+    said = subprocess.run(
+        [sys.executable, "-c", LOADED], env={**os.environ, **ENV}, cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout
+    ahead, plain, maps = (set(line.split()) for line in said.splitlines())
+    assert plain == {"cover.cover", "material.windings", "search.dummy_clear", "search.search", "tree.build"}
+    assert ahead == plain, "what is made ahead is what a plan needs"
+    assert maps - plain == {"free_map.free_map", "lanes.wide_tree"}

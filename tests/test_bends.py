@@ -296,8 +296,8 @@ def test_real_files_are_proved(path):
 
 def test_where_the_budget_binds_the_error_grows():
     part = read_part(ring())
-    few, many = (tessellate(part, 1e-3, budget=budget) for budget in (3000, 10**6))
-    assert len(few) <= 3000 < len(many)
+    few, many = (tessellate(part, 1e-3, budget=budget) for budget in (20_000, 10**6))
+    assert len(few) <= 20_000 < len(many)
     assert many.chord_error <= 1e-3 < few.chord_error
-    # Twice as near takes about twice as many; few triangles on a ring are farther off than that.
-    assert few.chord_error / many.chord_error == pytest.approx(len(many) / len(few), rel=0.8)
+    # Twice as near takes about twice as many.
+    assert few.chord_error / many.chord_error == pytest.approx(len(many) / len(few), rel=0.25)

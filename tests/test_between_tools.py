@@ -98,6 +98,29 @@ def test_no_contact_of_a_served_cell_gouges_a_random_surface(kind):
     assert deepest(found, geometry, whole, cutter, dense(whole, 0.5), 120, rng) < 0.01 + 2e-3
 
 
+def test_no_contact_between_samples_gouges_deeper_than_is_allowed():
+    """A ball of twice the radius of a shallow trough: the border of the trough lies deepest in it, whatever the axis.
+
+    At an angle phi from the contact the surface lies `r - sqrt(R^2 + d^2 + 2 R d cos(phi))` deep, d = r - R. The samples near the
+    middle are reached. In the outer part of the cells of the last of them a contact gouges too deep: there, less than a cell is
+    served.
+    """
+    R, r, half = 100.0, 200.0, 0.05
+    d = r - R
+
+    def depth(phi):
+        return r - np.sqrt(R * R + d * d + 2.0 * R * d * np.cos(phi))
+
+    allowed = float(depth(1.44 * half))
+    part = read_part(shapes.shell(shapes.trough(R, half * R, 2.0 * half)))
+    found, _, whole = served(part, Cutter.ball(radius=r, length=6 * r), budget=2000, grid=7, tolerance=allowed,
+                             chord=0.01 * allowed)  # fmt: skip
+    u0, u1 = whole.trim(1).box[:2]
+    to_border = np.abs(found.cells.uv[:, 0] - 0.5 * (u0 + u1)) + 0.5 * found.cells.span[:, 0] + half
+    assert found.share > 0.15
+    assert depth(to_border).max() <= allowed
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", TOOLS)
 def test_no_contact_of_a_served_cell_gouges_a_sample_part(kind):

@@ -28,7 +28,7 @@ from test_tessellate import ROUNDING, SHAPES, farthest, farthest_from
 
 from cad_io import read_part
 from cad_io.kernel import faces, mesher, values
-from cad_io.tessellate import mesh, start, tessellate
+from cad_io.tessellate import start, tessellate
 from cad_io.tessellate.planar import bounded_by, odd, triangulated
 
 
@@ -251,7 +251,7 @@ def test_the_second_way_keeps_the_promise_too(make, monkeypatch):
 def test_what_never_meshes_costs_its_own_faces_only(monkeypatch):
     own = start.own_start
     monkeypatch.setattr(start, "own_start", lambda part, n, chord: None if n < 5 else own(part, n, chord))
-    monkeypatch.setattr(mesh, "_meshed", never)
+    monkeypatch.setattr(mesher, "BRepMesh_IncrementalMesh", never)
     monkeypatch.setattr(start, "_SECONDS", 1.0)
     monkeypatch.setattr(start, "_TOTAL", 2.0)
     began = time.process_time()
@@ -267,7 +267,7 @@ def test_what_crashes_the_mesher_is_missing(monkeypatch):
     import os
 
     monkeypatch.setattr(start, "own_start", lambda *_: None)
-    monkeypatch.setattr(mesh, "_meshed", lambda *_: os.abort())
+    monkeypatch.setattr(mesher, "BRepMesh_IncrementalMesh", lambda *_: os.abort())
     triangles = tessellate(read_part(box()), 0.1)
     assert [why for _, why in triangles.missing] == ["the kernel's mesher fails on it"] * 6
 

@@ -202,7 +202,7 @@ def test_triangles_to_look_at_lie_near_the_surface_without_cracks(seed, chord):
         return 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
 
     before = planar().sum()
-    cut([net], chord, 0.35, 1_000_000)
+    left = cut([net], chord, 0.35, 1_000_000)
     assert planar().min() > 0
     assert planar().sum() == pytest.approx(before, rel=1e-6)
     ends = np.sort(np.stack([net.corner, np.roll(net.corner, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
@@ -212,9 +212,12 @@ def test_triangles_to_look_at_lie_near_the_surface_without_cracks(seed, chord):
     share = np.random.default_rng(seed).dirichlet([1, 1, 1], 4)
     for each in share:
         uv, flat = np.einsum("c,tcx->tx", each, net.uv[net.corner]), np.einsum("c,tcx->tx", each, net.point[net.corner])
-        assert np.linalg.norm(part.surface(1).values(*uv.T) - flat, axis=1).max() < 3.0 * chord, (
-            "middles alone are looked at"
-        )
+        off = np.linalg.norm(part.surface(1).values(*uv.T) - flat, axis=1)
+        # Where a surface has no third derivative, no point of a triangle is farther off than 4/3 of the farthest middle of an
+        # edge: with weights a, b, c it is off by 4 (ab e + bc f + ca g), and ab + bc + ca <= 1/3. Small triangles are nearly so.
+        # `left` is what was seen before the last of the rounds.
+        assert off.max() < 1.5 * max(chord, left)
+        assert (off > 4.0 / 3.0 * chord).mean() < 0.003
 
 
 def test_a_stage_of_many_cutters_tells_one_progress():

@@ -11,7 +11,7 @@ from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
 from OCP.TCollection import TCollection_ExtendedString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDocStd import TDocStd_Document
-from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
+from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
 from cad_io import read_part
 from cad_io.errors import ReadError
@@ -20,8 +20,17 @@ from cad_io.kernel import faces
 COLOURS = ((0.1, 0.5, 0.9), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0))  # the last two are numbers of the standard
 
 
+@pytest.fixture(params=[True, False], ids=["named", "unnamed"])
+def naming(request):
+    """Whether the kernel names shapes by itself, in all documents of the process: cadquery's exports turn that off for good."""
+    before = XCAFDoc_ShapeTool.AutoNaming_s()
+    XCAFDoc_ShapeTool.SetAutoNaming_s(request.param)
+    yield
+    XCAFDoc_ShapeTool.SetAutoNaming_s(before)
+
+
 @pytest.fixture(params=[0, 1], ids=["surfaces", "solid"])
-def painted(request, tmp_path):
+def painted(request, naming, tmp_path):
     """A file with three faces coloured, named and on levels of their own, and the shape."""
     shape = compound(drilled())
     document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
@@ -29,6 +38,8 @@ def painted(request, tmp_path):
         getattr(XCAFDoc_DocumentTool, f"{tool}Tool_s")(document.Main()) for tool in ("Shape", "Color", "Layer")
     )
     root = shapes.AddShape(shape, False)
+    # The kernel's writer leaves out all names below a shape that has none.
+    TDataStd_Name.Set_s(root, TCollection_ExtendedString("part"))
     for i, (face, colour) in enumerate(zip(faces(shape), COLOURS, strict=False)):
         label = shapes.AddSubShape(root, face)
         colours.SetColor(label, Quantity_Color(*colour, Quantity_TOC_sRGB), XCAFDoc_ColorSurf)

@@ -18,7 +18,7 @@ from OCP.TDF import TDF_Label, TDF_LabelSequence
 from OCP.TDocStd import TDocStd_Document
 from OCP.TopAbs import TopAbs_SHELL
 from OCP.TopLoc import TopLoc_Location
-from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
+from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 from split_parts import GREEN, GREY, RED, block, labels, largest_bspline, patch
 
 from cad_io import read_part
@@ -149,6 +149,50 @@ def test_settings_of_the_host_are_put_back(halves, tmp_path):
     before = Interface_Static.CVal_s(names[0]), Interface_Static.IVal_s(names[1])
     write_step(halves, tmp_path / "part.step", style, product="part")
     assert (Interface_Static.CVal_s(names[0]), Interface_Static.IVal_s(names[1])) == before
+
+
+@pytest.mark.parametrize("names", [True, False])
+def test_settings_are_put_back_after_reading(names, halves, tmp_path):
+    from cad_io.read.step import Loaded
+
+    write_step(halves, tmp_path / "part.step", style, product="part")
+    setting, naming = "read.stepcaf.subshapes.name", XCAFDoc_ShapeTool.AutoNaming_s()
+    before = Interface_Static.IVal_s(setting)
+    Interface_Static.SetIVal_s(setting, int(not names))
+    try:
+        found = Loaded(str(tmp_path / "part.step"), (tmp_path / "part.step").read_bytes(), names=names).transfer()
+        assert Interface_Static.IVal_s(setting) == int(not names)
+    finally:
+        Interface_Static.SetIVal_s(setting, before)
+    assert XCAFDoc_ShapeTool.AutoNaming_s() == naming
+    assert bool(found.names) == names
+
+
+def test_whether_the_kernel_names_shapes_by_itself_changes_nothing(tmp_path):
+    """cadquery's exports turn it off for the whole process, and leave it off."""
+    part = Part(compound([block(1), block(1), block(1)]))
+    numbers = tuple(range(1, len(part.faces) + 1))
+    one = len(numbers) // 3
+    children = tuple(Node("", "", TopLoc_Location(), faces=some) for some in (numbers[:one], numbers[one:]))
+    tree = [Node("", "", TopLoc_Location(), children=children)]
+    before, found = XCAFDoc_ShapeTool.AutoNaming_s(), []
+    try:
+        for naming in (True, False):
+            XCAFDoc_ShapeTool.SetAutoNaming_s(naming)
+            write_step(split(part, []), tmp_path / "part.step", style, product="part", tree=tree)
+            text = (tmp_path / "part.step").read_bytes()
+            nameless = re.sub(rb"(PRODUCT|NEXT_ASSEMBLY_USAGE_OCCURRENCE)\('[^']*','[^']*'", rb"\1('',''", text)
+            assert nameless != text
+            (tmp_path / "nameless.step").write_bytes(nameless)
+            read = [read_part(tmp_path / name) for name in ("part.step", "nameless.step")]
+            found.append((text, [([f.name for f in p.faces], [name_of(n) for n in p.tree]) for p in read]))
+    finally:
+        XCAFDoc_ShapeTool.SetAutoNaming_s(before)
+    assert found[0] == found[1]
+
+
+def name_of(node: Node) -> tuple:
+    return node.name, node.instance, tuple(name_of(child) for child in node.children)
 
 
 def test_pieces_of_one_loose_face_are_one_shell(tmp_path):

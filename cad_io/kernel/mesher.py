@@ -1,8 +1,8 @@
 """The kernel's mesher, to draw faces: on some it never ends, so it works in a copy of the process, face by face."""
 
 import time
-from collections.abc import Iterator, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,8 @@ from OCP.TopLoc import TopLoc_Location
 from cad_io.arrays import Floats
 from cad_io.kernel.calls import is_kernel_error
 from cad_io.kernel.each import Ended, each
+
+Taken = TypeVar("Taken")
 
 #: Processor time, s: for one face, and for all of them; and so many faces may not end.
 FACE, FACES, HANGS = 1.0, 10.0, 5
@@ -53,32 +55,55 @@ def meshed(faces: Sequence[Any], deflection: float, angle: float) -> Iterator[Me
             yield found
 
 
-def _meshed(face: Any, deflection: float, angle: float) -> tuple[Meshed | None, float]:
-    """A face's triangles, and the processor time that they took, s."""
+def under_mesh(
+    face: Any, deflection: float, angle: float, take: Callable[[Any, TopLoc_Location], Taken]
+) -> tuple[Taken | None, float]:
+    """Mesh a face here, without a limit: what `take` makes of its mesh, and the processor time that both took, s.
+
+    Parameters
+    ----------
+    face : TopoDS_Face
+        It is left without a mesh.
+    deflection, angle : float
+        What is asked of the mesher: mm, rad.
+    take : callable
+        Of the mesh and its place. Not called where the mesher makes no triangle: then None is the answer.
+    """
     start = time.process_time()
     # Finer triangles that it carries would be kept.
     BRepTools.Clean_s(face)
-    found = None
     try:
         BRepMesh_IncrementalMesh(face, deflection, False, angle, False)
-        found = _taken(face)
+        place = TopLoc_Location()
+        mesh = BRep_Tool.Triangulation_s(face, place)
+        empty = mesh is None or not mesh.NbTriangles() or not mesh.HasUVNodes()
+        taken = None if empty else take(mesh, place)
+    finally:
+        BRepTools.Clean_s(face)
+    return taken, time.process_time() - start
+
+
+def uv_triangles(mesh: Any) -> tuple[Floats, NDArray[np.int64]]:
+    """Nodes (n, 2) of a mesh in the parameter plane, and its triangles (m, 3), rows of them."""
+    return (
+        np.array([mesh.UVNode(i).Coord() for i in range(1, mesh.NbNodes() + 1)]),
+        np.array([mesh.Triangle(i).Get() for i in range(1, mesh.NbTriangles() + 1)]) - 1,
+    )
+
+
+def _meshed(face: Any, deflection: float, angle: float) -> tuple[Meshed | None, float]:
+    start = time.process_time()
+    try:
+        return under_mesh(face, deflection, angle, _drawn)
     except Exception as thrown:
         if not is_kernel_error(thrown):
             raise
-    finally:
-        BRepTools.Clean_s(face)
-    return found, time.process_time() - start
+        return None, time.process_time() - start
 
 
-def _taken(face: Any) -> Meshed | None:
-    location = TopLoc_Location()
-    mesh = BRep_Tool.Triangulation_s(face, location)
-    if mesh is None or not mesh.NbTriangles() or not mesh.HasUVNodes():
-        return None
-    place, count = location.Transformation(), range(1, mesh.NbNodes() + 1)
-    return Meshed(
-        np.array([mesh.UVNode(i).Coord() for i in count]),
-        # Its own nodes, not the surface's points: along an edge these differ from face to face, and show cracks.
-        np.array([mesh.Node(i).Transformed(place).Coord() for i in count]),
-        np.array([mesh.Triangle(i).Get() for i in range(1, mesh.NbTriangles() + 1)]) - 1,
-    )
+def _drawn(mesh: Any, location: TopLoc_Location) -> Meshed:
+    place = location.Transformation()
+    uv, triangle = uv_triangles(mesh)
+    # Its own nodes, not the surface's points: along an edge these differ from face to face, and show cracks.
+    points = np.array([mesh.Node(i).Transformed(place).Coord() for i in range(1, mesh.NbNodes() + 1)])
+    return Meshed(uv, points, triangle)

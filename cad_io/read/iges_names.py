@@ -7,9 +7,6 @@ takes a walk through all entities for each. So entities and shapes are walked do
 from collections.abc import Callable, Sequence
 from typing import Any
 
-# Groups and solids have methods of their own only where the modules of their kinds are loaded.
-import OCP.IGESBasic
-import OCP.IGESSolid  # noqa: F401
 from OCP.TopAbs import TopAbs_FACE
 
 from cad_io.kernel import shape_map

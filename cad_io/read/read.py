@@ -66,6 +66,10 @@ def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, ti
     ReadError
         In one line: what is wrong and what to try.
 
+    Notes
+    -----
+    `guarded` is about reading alone. Faces are measured when first asked for, in this process and without a time limit.
+
     Examples
     --------
     >>> part = read_part("samples/v_groove.step")

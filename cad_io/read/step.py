@@ -58,6 +58,7 @@ _BEFORE = tuple(b"%c" % byte for byte in b"0123456789.")
 _SHAPES = (
     StepShape_TopologicalRepresentationItem, StepRepr_ItemDefinedTransformation, StepRepr_RepresentationMap,
 )  # fmt: skip
+_SUBSHAPES = "read.stepcaf.subshapes.name"
 #: Entities named in one warning.
 _MOST_NAMED = 3
 
@@ -97,12 +98,18 @@ class Loaded:
     ) -> None:  # fmt: skip
         self.file, self.data, self.unit, self.names, self.careful = file, data, unit, names, careful
         STEPCAFControl_Controller.Init_s()
-        Interface_Static.SetIVal_s("read.stepcaf.subshapes.name", int(names))
         self.reader = STEPCAFControl_Reader()
         self.reader.SetColorMode(names)
         self.reader.SetNameMode(names)
         self.reader.SetLayerMode(names)
-        if self.reader.ReadFile(file) != IFSelect_RetDone:
+        # The setting is global: it is put back for the host's own imports.
+        before = Interface_Static.IVal_s(_SUBSHAPES)
+        Interface_Static.SetIVal_s(_SUBSHAPES, int(names))
+        try:
+            status = self.reader.ReadFile(file)
+        finally:
+            Interface_Static.SetIVal_s(_SUBSHAPES, before)
+        if status != IFSelect_RetDone:
             cut = b"END-ISO-10303-21" not in data[-4096:]
             raise ReadError(
                 "is cut off (its end is missing): fetch or export it again"

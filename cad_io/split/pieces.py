@@ -69,11 +69,6 @@ class Split:
     labels: dict[int, FaceLabels] = field(default_factory=dict)
     joined: dict[int, int] = field(default_factory=dict)
 
-    @property
-    def beside(self) -> dict[int, tuple[Piece, ...]]:
-        """Pieces of copies of faces left whole: always none. What cannot be split in its place cannot be split as a copy."""
-        return {}
-
 
 def split(part: Any, labels: Sequence[FaceLabels], *, worst: int = -1, seconds: float = 5) -> Split:
     """Split faces along the boundaries of their labels.

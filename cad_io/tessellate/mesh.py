@@ -6,8 +6,8 @@ process: on some faces it never ends.
 """
 
 import pickle
-import time
 from collections.abc import Sequence
+from functools import partial
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -15,8 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
-from OCP.BRepMesh import BRepMesh_IncrementalMesh
-from OCP.BRepTools import BRepTools
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
@@ -24,6 +22,7 @@ from OCP.TopoDS import TopoDS
 from cad_io.arrays import Floats, Ints
 from cad_io.kernel import edges_of
 from cad_io.kernel.limited import ChildDied, limited
+from cad_io.kernel.mesher import under_mesh, uv_triangles
 from cad_io.part import Part
 from cad_io.surface import Surface
 
@@ -68,9 +67,10 @@ def kernel_start(
         It does not end.
     """
 
+    face = part.face(number)
+
     def call() -> bytes:
-        start = time.process_time()
-        return pickle.dumps((_meshed(part, number, deflection, angle), time.process_time() - start))
+        return pickle.dumps(under_mesh(face, deflection, angle, partial(_taken, face)))
 
     try:
         taken, spent = pickle.loads(limited(call, seconds, processor=True))
@@ -79,7 +79,7 @@ def kernel_start(
     if taken is None:
         return None, spent
     uv, corner, runs = taken
-    forward = TopoDS.Face_s(part.face(number).Oriented(TopAbs_FORWARD))
+    forward = TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
     border, on_curve = [], []
     for edge, (nodes, parameter) in zip(_used(forward), runs, strict=True):
         # A seam has two curves, and the mesher does not always give each its own polygon: take the one that fits.
@@ -95,24 +95,8 @@ def kernel_start(
 _Taken = tuple[Floats, Ints, list[tuple[Ints, Floats]]]
 
 
-def _meshed(part: Part, number: int, deflection: float, angle: float) -> _Taken | None:
+def _taken(face: Any, mesh: Any, place: TopLoc_Location) -> _Taken | None:
     """Nodes and triangles of the mesher, and of each edge's use the nodes and their parameters."""
-    face = part.face(number)
-    BRepTools.Clean_s(face)
-    try:
-        BRepMesh_IncrementalMesh(face, deflection, False, angle, False)
-        return _taken(face)
-    finally:
-        BRepTools.Clean_s(face)
-
-
-def _taken(face: Any) -> _Taken | None:
-    place = TopLoc_Location()
-    mesh = BRep_Tool.Triangulation_s(face, place)
-    if mesh is None or not mesh.NbTriangles() or not mesh.HasUVNodes():
-        return None
-    uv = np.array([mesh.UVNode(i).Coord() for i in range(1, mesh.NbNodes() + 1)])
-    corner = np.array([mesh.Triangle(i).Get() for i in range(1, mesh.NbTriangles() + 1)], dtype=np.int32) - 1
     runs = []
     for edge in _used(TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))):
         polygon = BRep_Tool.PolygonOnTriangulation_s(edge, mesh, place)
@@ -122,7 +106,8 @@ def _taken(face: Any) -> _Taken | None:
         runs.append((
             np.array([polygon.Node(i) for i in count], dtype=np.int32) - 1, np.array([polygon.Parameter(i) for i in count])
         ))  # fmt: skip
-    return uv, corner, runs
+    uv, corner = uv_triangles(mesh)
+    return uv, corner.astype(np.int32), runs
 
 
 def _used(forward: Any) -> list[Any]:

@@ -58,7 +58,7 @@ def write_gltf(
     merged: bool = False,
     others: Sequence[Other] = (),
 ) -> tuple[int, ...]:
-    """Write all pieces as triangles; those `beside` the part in the place of their face.
+    """Write all pieces as triangles.
 
     Triangles of a face that was left whole are split along the grid of its labels and stand in a node a label.
 
@@ -108,10 +108,6 @@ def write_gltf(
     return tuple(sorted({piece.face for piece, mesh in meshes if mesh is None}))
 
 
-def _shown(split: Split, piece: Piece) -> tuple[Piece, ...]:
-    return split.beside.get(piece.face, (piece,))
-
-
 def linear(rgb: tuple[float, float, float]) -> list[float]:
     """Linear light of an sRGB colour (IEC 61966-2-1), 0 to 1."""
     c = np.asarray(rgb, float)
@@ -127,9 +123,9 @@ def meshes_of(split: Split, deflection: float | None = None) -> Iterator[tuple[P
     """
     if deflection is None:
         deflection = FINE * diagonal(split.shape)
-    pieces = [shown for each in split.pieces for shown in _shown(split, each)]
     surfaces: dict[int, Surface] = {}
-    for piece, found in zip(pieces, meshed([piece.shape for piece in pieces], deflection, ANGLE), strict=True):
+    shapes = [piece.shape for piece in split.pieces]
+    for piece, found in zip(split.pieces, meshed(shapes, deflection, ANGLE), strict=True):
         labels = split.labels.get(piece.face) if piece.label == MIXED else None
         # To see whether a surface is one that we evaluate takes longer than a small piece: those of a face share it.
         surface = surfaces.get(piece.face) or surfaces.setdefault(piece.face, Surface(piece.shape))

@@ -84,6 +84,11 @@ def plan(part: Any, *, progress: Progress | None = None, **options: Any) -> Resu
     PlanError
         An option has no meaning.
 
+    Notes
+    -----
+    Measuring and sampling have no time limit here: a face on which the CAD kernel never ends keeps this call waiting, and a
+    crash of the kernel ends the process. The command bounds both (`docs/kernel_calls.md`).
+
     Examples
     --------
     >>> result = plan("samples/v_groove.step", cutters=["R6L80", "R2L30"], grid=9, area_budget=0)

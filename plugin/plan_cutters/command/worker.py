@@ -106,9 +106,7 @@ def begin_early(words: Sequence[str]) -> None:
 
     It is killed where the words are wrong after all, and where `supervise` is never called.
     """
-    asked_otherwise = {"--help", "-h", "--version"}.intersection(words) or "_PLAN_CUTTERS_COMPLETE" in os.environ
-    asked_otherwise = asked_otherwise or list(words[:1]) == ["map"]  # another command, with a child of its own
-    if is_child() or asked_otherwise or not can_supervise() or not any(map(os.path.isfile, words)):
+    if is_child() or _asked_otherwise(words) or not can_supervise() or not any(map(os.path.isfile, words)):
         return
     with contextlib.suppress(OSError, ValueError):
         for number in range(3):
@@ -116,6 +114,12 @@ def begin_early(words: Sequence[str]) -> None:
         worker = Worker(words, "plan_cutters", waits=True)
         _early.append(worker)
         atexit.register(worker.drop)
+
+
+def _asked_otherwise(words: Sequence[str]) -> bool:
+    """Whether help, the version or a completion is asked for, or `map`, a command with a child of its own."""
+    helped = not {"--help", "-h", "--version"}.isdisjoint(words) or "_PLAN_CUTTERS_COMPLETE" in os.environ
+    return helped or list(words[:1]) == ["map"]
 
 
 def wait_to_begin() -> None:
