@@ -136,7 +136,7 @@ ENDED = [
 def test_a_command_that_is_ended_leaves_nothing_running(tmp_path, number, where):
     with Run(tmp_path, where) as run:
         run.until_stuck()
-        assert len(run.alive()) == (3 if "copy" in where else 2)
+        assert len(run.alive()) >= (3 if "copy" in where else 2)  # and copies that make the page or the GLB
         run.process.send_signal(number)
         run.gone_within(SOON)
         _, said = run.process.communicate(timeout=5)
