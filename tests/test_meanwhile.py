@@ -1,6 +1,8 @@
 """Work in a copy of the process: the same result as here, whatever becomes of the copy, and nothing left of it."""
 
+import contextlib
 import os
+import resource
 import signal
 import struct
 import time
@@ -11,6 +13,8 @@ import numpy as np
 import pytest
 
 from cad_io.kernel import copies
+from cad_io.kernel.each import each
+from cad_io.kernel.limited import TimeLimit, limited
 from cad_io.kernel.meanwhile import Meanwhile
 from plan_cutters import pipeline, plan
 from plan_cutters.report import making, models
@@ -158,3 +162,64 @@ def test_one_thread_asked_for_is_one_process(tmp_path, monkeypatch):
     result = plan(GROOVE, cutters="R2L30", grid=9, jobs=1)
     write_all(replace(result), tmp_path / "out", ("json", "html"))
     assert not begun
+
+
+def ignored():
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+
+
+def waited_for():
+    def wait(*_):
+        with contextlib.suppress(ChildProcessError):
+            while os.waitpid(-1, os.WNOHANG)[0]:
+                pass
+
+    signal.signal(signal.SIGCHLD, wait)
+
+
+def in_a_process(work):
+    """What became of some work in a process of its own: 0 where it came to its end."""
+    if not (child := os.fork()):
+        try:
+            work()
+            os._exit(0)
+        finally:
+            os._exit(1)
+    return os.waitpid(child, 0)[1]
+
+
+@pytest.mark.parametrize("host", [ignored, waited_for])
+def test_a_program_may_wait_for_the_copies_itself(host):
+    # A server ignores SIGCHLD, or its handler waits for all that ends: then there is nothing left to wait for.
+    def work():
+        host()
+        assert limited(lambda: b"done", 20.0) == b"done"
+        assert list(each(str, [1, 2], seconds=20.0)) == ["1", "2"]
+        with Meanwhile(os.getpid, 20.0) as copy:
+            time.sleep(0.2)
+            assert copy.result() != os.getpid()
+        with pytest.raises(TimeLimit):
+            limited(lambda: time.sleep(60), 0.1)
+
+    assert in_a_process(work) == 0
+
+
+def test_a_program_may_have_many_files_open():
+    def work():
+        resource.setrlimit(resource.RLIMIT_NOFILE, (1100, resource.getrlimit(resource.RLIMIT_NOFILE)[1]))
+        opened = [os.open(os.devnull, os.O_RDONLY) for _ in range(1060)]
+        assert opened
+        assert limited(lambda: b"done", 20.0) == b"done"
+
+    assert in_a_process(work) == 0
+
+
+def test_no_pipe_is_left_where_there_is_no_room_for_a_copy(monkeypatch):
+    def no_room():
+        raise BlockingIOError("no more processes")
+
+    before = os.listdir("/proc/self/fd")
+    monkeypatch.setattr(os, "fork", no_room)
+    with Meanwhile(os.getpid, 5.0) as copy:
+        assert copy.result() == os.getpid()
+    assert os.listdir("/proc/self/fd") == before

@@ -1,5 +1,6 @@
 """Forked copies of this process that work for it: how they begin, that they end, and whether they are stuck."""
 
+import contextlib
 import faulthandler
 import math
 import os
@@ -33,10 +34,15 @@ def begin(work: Callable[[BinaryIO], None], seconds: float) -> tuple[int, int]:
     """
     end, start = os.pipe()
     caller = os.getpid()
-    with warnings.catch_warnings():
-        # Python 3.12 warns of locks held by other threads; at worst the copy waits for one, which is noticed.
-        warnings.simplefilter("ignore", DeprecationWarning)
-        child = os.fork()
+    try:
+        with warnings.catch_warnings():
+            # Python 3.12 warns of locks held by other threads; at worst the copy waits for one, which is noticed.
+            warnings.simplefilter("ignore", DeprecationWarning)
+            child = os.fork()
+    except OSError:  # no room for another process
+        os.close(end)
+        os.close(start)
+        raise
     if child:
         os.close(start)
         return end, child
@@ -58,9 +64,19 @@ def end_within(seconds: float) -> None:
 
 
 def ended(child: int) -> int:
-    """End a copy, if it has not ended, and give its status."""
-    os.kill(child, signal.SIGKILL)
-    return os.waitpid(child, 0)[1]
+    """End a copy, if it has not ended, and give its status.
+
+    That is 0, as if it had ended by itself, where someone else has waited for it: a program that ignores SIGCHLD, or waits
+    for whatever ends.
+    """
+    status = 0
+    with contextlib.suppress(ChildProcessError, ProcessLookupError):
+        # Asked first: the number of one that is waited for may be another process's by now.
+        done, status = os.waitpid(child, os.WNOHANG)
+        if not done:
+            os.kill(child, signal.SIGKILL)
+            status = os.waitpid(child, 0)[1]
+    return status
 
 
 def out_of_time(status: int) -> bool:
@@ -99,8 +115,10 @@ def parts_of(end: int, late: Callable[[], float]) -> Iterator[bytes]:
     TimeoutError
         There is nothing left to wait.
     """
+    ready = select.poll()  # `select` itself knows no numbers above 1023
+    ready.register(end, select.POLLIN)
     while (wait := late()) > 0:
-        if select.select([end], [], [], wait)[0]:
+        if ready.poll(1000.0 * min(wait, _LOOK)):
             part = os.read(end, 1 << 20)
             if not part:
                 return
