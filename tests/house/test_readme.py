@@ -1,0 +1,53 @@
+"""What the README and the docstrings show is what happens."""
+
+import doctest
+import importlib
+import pkgutil
+import re
+import shutil
+
+import pytest
+
+import cad_io
+import plan_cutters
+from tests.support.places import ROOT
+
+MODULES = sorted(
+    module.name
+    for package in (cad_io, plan_cutters)
+    for module in pkgutil.walk_packages(package.__path__, package.__name__ + ".")
+    if not module.name.endswith("__main__")
+)
+#: What a script calls, each shown at work in its docstring.
+SHOWN = ["plan", "posture_map", "Scene", "Options", "Cutter", "Machine", "PostureRange"]
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_examples_in_docstrings(name, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    assert doctest.testmod(importlib.import_module(name), optionflags=doctest.ELLIPSIS).failed == 0
+
+
+def test_what_scripts_call_is_shown_at_work():
+    found = {name for name in SHOWN if ">>>" in _text(getattr(plan_cutters, name))}
+    assert found == set(SHOWN)
+    assert ">>>" in cad_io.read_part.__doc__
+
+
+def _text(thing):
+    return "".join(
+        filter(None, (thing.__doc__, *(getattr(getattr(thing, n, None), "__doc__", "") for n in ("of", "parse"))))
+    )
+
+
+def test_the_python_block_runs_as_it_stands(tmp_path, monkeypatch, capsys):
+    (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    shutil.copytree(ROOT / "samples", tmp_path / "samples")
+    monkeypatch.chdir(tmp_path)
+    exec(compile(code, "README.md", "exec"), {})
+    chosen, intervals = capsys.readouterr().out.splitlines()
+    assert chosen.startswith("R8L90 True {")
+    assert intervals.startswith("[[")
+    assert sorted(p.name for p in (tmp_path / "v_groove-plan").iterdir()) == [
+        "annotated.glb", "annotated.step", "plan.json", "review.html", "samples.npz",
+    ]  # fmt: skip
