@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import shutil
 
 import pytest
@@ -45,10 +46,10 @@ def test_inches_are_honoured_and_said(tmp_path, suffix):
     tool = in_inches(fusion(DC=6.35, LCF=12.7, LB=38.1, OAL=63.5, SFDM=9.525, shoulder_length=None, shoulder_diameter=None,
                             shaft=None))  # fmt: skip
     library = read_library(WRITERS[suffix](tmp_path / f"a.{suffix}", [tool]))
-    assert [cutter.id for cutter in library] == ["R3.175L38.1F12.7S4.7625HR12:15L20+R20L10"] or suffix == "csv"
+    # CSV has six digits of an inch.
+    rounded = [re.sub(r"[0-9.]+", lambda number: f"{round(float(number[0]), 4):g}", cutter.id) for cutter in library]
+    assert rounded == ["R3.175L38.1F12.7S4.7625HR12:15L20+R20L10"]
     assert library.entries[0].unit == "inch"
-    # CSV has six digits.
-    assert library[0].length == pytest.approx(38.1, abs=1e-4)
 
 
 def test_a_holder_has_its_own_unit(tmp_path):
