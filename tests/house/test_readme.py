@@ -40,14 +40,39 @@ def _text(thing):
     )
 
 
-def test_the_python_block_runs_as_it_stands(tmp_path, monkeypatch, capsys):
-    (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+def blocks(page):
+    """Name the kind and the text of each code fence of a page."""
+    return re.findall(r"^```(\w*)\n(.*?)^```$", (ROOT / page).read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+
+
+@pytest.fixture
+def somewhere(tmp_path, monkeypatch):
+    """A folder with the samples, and nothing else."""
     shutil.copytree(ROOT / "samples", tmp_path / "samples")
     monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_the_first_two_fences_are_the_main_job_and_the_tests():
+    (main, run), (tests, check) = blocks("README.md")[:2]
+    assert main == tests == "sh"
+    assert run.startswith("sh setup.sh && .venv/bin/plan-cutters samples/peaks_and_valleys.step ")
+    assert check == "sh setup.sh dev && .venv/bin/python -m pytest -n auto\n"
+
+
+def test_the_python_block_of_the_readme_runs_as_it_stands(somewhere, capsys):
+    (code,) = [text for kind, text in blocks("README.md") if kind == "python"]
     exec(compile(code, "README.md", "exec"), {})
-    chosen, intervals = capsys.readouterr().out.splitlines()
+    (chosen,) = capsys.readouterr().out.splitlines()
     assert chosen.startswith("R8L90 True {")
-    assert intervals.startswith("[[")
-    assert sorted(p.name for p in (tmp_path / "v_groove-plan").iterdir()) == [
+    assert sorted(p.name for p in (somewhere / "v_groove-plan").iterdir()) == [
         "annotated.glb", "annotated.step", "plan.json", "review.html", "samples.npz",
     ]  # fmt: skip
+
+
+def test_the_python_block_of_the_page_runs_as_it_stands(somewhere, capsys):
+    (code,) = [text for kind, text in blocks("docs/python.md") if kind == "python"]
+    exec(compile(code, "docs/python.md", "exec"), {})
+    chosen, intervals = capsys.readouterr().out.splitlines()
+    assert chosen.startswith("R8L90 {")
+    assert intervals.startswith("[[")
