@@ -1,29 +1,37 @@
 #!/bin/sh
 # Make .venv and install plan-cutters into it; `sh setup.sh dev` adds what the tests and linters need.
-# The CAD kernel links libGL and libX11 although nothing is drawn: where they are missing, Debian's packages are
-# installed (this is the one step outside .venv).
+# Packages of the system are installed only where one is missing, and only after a line that says which one and why.
 set -eu
 cd "$(dirname "$0")"
+
+# outside WHY PACKAGE...: install Debian packages, the only step outside this folder.
+outside() {
+    why=$1
+    shift
+    if ! command -v apt-get >/dev/null; then
+        echo "setup.sh: missing: $* ($why). Install them with the package manager of this system." >&2
+        return 1
+    fi
+    sudo=""
+    [ "$(id -u)" = 0 ] || sudo="sudo"
+    echo "setup.sh: installing $* outside .venv, with $sudo apt-get: $why" >&2
+    $sudo apt-get update -qq && $sudo apt-get install -y -qq --no-install-recommends "$@" >/dev/null
+}
+
 [ -x .venv/bin/python ] || python3 -m venv .venv
 extra=""
 [ "${1:-}" = dev ] && extra="[dev]"
 .venv/bin/python -m pip install --quiet --disable-pip-version-check --editable ".$extra"
 if ! .venv/bin/python -c "import OCP" 2>/dev/null; then
-    sudo=""
-    [ "$(id -u)" = 0 ] || sudo="sudo"
-    $sudo apt-get update -qq
-    $sudo apt-get install -y -qq --no-install-recommends libgl1 libx11-6 >/dev/null
+    outside "the CAD kernel links libGL and libX11, although nothing is drawn" libgl1 libx11-6
     .venv/bin/python -c "import OCP"
 fi
-# For the tests: the Khronos validator of GLB files, what the review page is built and checked with, and a browser.
+# For the tests, into node_modules and page/node_modules: the Khronos validator of GLB files, and what the review page is built with.
 if [ "${1:-}" = dev ]; then
     npm install --silent --no-audit --no-fund --no-package-lock
     npm ci --prefix page --silent --no-audit --no-fund
     if ! command -v chromium >/dev/null; then
-        sudo=""
-        [ "$(id -u)" = 0 ] || sudo="sudo"
-        $sudo apt-get update -qq
-        $sudo apt-get install -y -qq --no-install-recommends chromium >/dev/null ||
-            echo "no chromium could be installed: tests of the review page will be skipped" >&2
+        outside "the tests of the review page need a browser" chromium ||
+            echo "setup.sh: no chromium could be installed: tests of the review page will be skipped" >&2
     fi
 fi

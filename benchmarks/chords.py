@@ -184,8 +184,8 @@ def main() -> int:
     if given.files:
         parts = ((path.name, lambda path=path: read_part(path)) for path in given.files)
     else:
-        sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))
-        from moulds import MOULDS
+        sys.path.append(str(Path(__file__).resolve().parents[1]))
+        from tests.support.moulds import MOULDS
 
         parts = ((name, lambda make=make: read_part(make())) for name, make in MOULDS.items())
     bad = 0

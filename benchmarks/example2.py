@@ -1,6 +1,6 @@
 """The seed's second example: `peaks_and_valleys.step`, 201 x 201 samples, 36 rotations, tolerance 0.01 mm.
 
-`python benchmarks/example2.py` prints the figures that the README quotes. Seconds a cutter are dummy tests and search
+`python benchmarks/example2.py` prints the figures that docs/benchmarks.md quotes. Seconds a cutter are dummy tests and search
 with compiled kernels, each cutter alone, so that none hands postures to another; `point obstacles` are the samples
 themselves, as in the paper. `--maps` adds posture maps of all samples at 72 rotations. The whole command is timed in a
 process of its own, files included, after a first one that may compile.

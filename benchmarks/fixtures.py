@@ -23,9 +23,9 @@ from plan_cutters.scene.prepared import Prepared
 from plan_cutters.stages.judge import judge
 
 ROOT = Path(__file__).parent.parent
-sys.path.append(str(ROOT / "tests"))
-from test_counts import counted  # noqa: E402
-from vises import vise  # noqa: E402
+sys.path.append(str(ROOT))
+from tests.support.counted import counted  # noqa: E402
+from tests.support.vises import vise  # noqa: E402
 
 PART, CUTTERS = ROOT / "samples" / "pocket_top.step", ("R3L40", "R6L60", "R3L40F10S3HR15L40", "R6L60rc6")
 WANTED, COUNTED, ROUNDS = 50_000, 400, 5

@@ -1,7 +1,7 @@
 """What each kernel costs: time per call, and instructions per call where valgrind is at hand.
 
-`python benchmarks/kernels.py` prints a table. Inputs are waves by formula (`tests/waves.py`): 7,200 triangles, 400 samples,
-seed 0, 24 rotations, cutter R6L40. Seconds are processor time, the best of five, compiled before. Instructions are
+`python benchmarks/kernels.py` prints a table. Inputs are waves by formula (`tests/support/waves.py`): 7,200 triangles, 400
+samples, seed 0, 24 rotations, cutter R6L40. Seconds are processor time, the best of five, compiled before. Instructions are
 callgrind's for code compiled for one named processor, so they differ between machines only by the compiler's version.
 """
 
@@ -18,14 +18,14 @@ from typing import Any
 
 import numpy as np
 
-sys.path.append(str(Path(__file__).parent.parent / "tests"))
-import waves
-
 from plan_cutters import Cutter
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.kernels import arcs, cover, free_map, free_tilts, hit, lanes, material, probing, search, tree
 from plan_cutters.kernels.jit import kernel
 from plan_cutters.kernels.rows import Contacts, Found, Frame
+
+sys.path.append(str(Path(__file__).parent.parent))
+from tests.support import waves
 
 RADIUS, LENGTH, SAFE, BLOCKED, TURNS = 6.0, 40.0, 0.04, 0.06, 24
 TOOL = waves.flat(RADIUS, LENGTH, SAFE)

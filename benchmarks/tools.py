@@ -5,7 +5,7 @@ tool alone, best of five, as a ratio to the flat end of its radius; then ten too
 
 `python benchmarks/tools.py --exact PART ... [--count 10000]`: random postures reported free, a tool of each kind at each
 part, against points of the exact surface all over and about the contact. The tool's outline and its depth are those of
-`tests/tool_reference.py`, which shares no code with the search. Prints the deepest point, mm.
+`tests/support/tool_reference.py`, which shares no code with the search. Prints the deepest point, mm.
 """
 
 import argparse
@@ -76,7 +76,7 @@ def speed() -> None:
 
 def exact(path: Path, cutter: Cutter, count: int) -> str:
     """The deepest that the exact surface was found in a tool at postures reported free, in words."""
-    from tool_reference import Reference
+    from tests.support.tool_reference import Reference
 
     part = read_part(path)
     side = orient(part, towards=np.array([0.0, 0.0, 1.0]), flip=False)
@@ -118,7 +118,7 @@ def main() -> None:
     if given.exact is None:
         speed()
         return
-    sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+    sys.path.insert(0, str(Path(__file__).parent.parent))
     for path in given.exact:
         for cutter in kinds(given.scale):
             print(exact(path, cutter, given.count), flush=True)

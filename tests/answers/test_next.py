@@ -1,0 +1,451 @@
+"""What next: steps whose effect a fresh plan confirms, the least set against all subsets, areas with their place."""
+
+import math
+import re
+from itertools import combinations
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cad_io import read_part
+from plan_cutters import Cutter, Options, plan
+from plan_cutters.answers.areas import Finished, patches
+from plan_cutters.answers.least_set import cover
+from plan_cutters.command.answered import answered
+from plan_cutters.command.asked import options_of
+from plan_cutters.command.cli import command
+from plan_cutters.document.clock import Clock
+from plan_cutters.document.next_steps import is_left_out, step_told, together
+from plan_cutters.domain.area import Patch
+from plan_cutters.domain.change import MEANS
+from plan_cutters.pipeline import prepare, run
+from tests.support import shapes
+from tests.support.cad_parts import box, cut, real
+from tests.support.places import SAMPLES
+
+LONG = (-60, 60)
+
+
+def options(*words):
+    """Options of a plan, from the words of a command line."""
+    return options_of(command.make_context("plan-cutters", ["part", *words]).params)
+
+
+def asked(part, *words):
+    """A plan by the words of a command line, with its steps."""
+    return run(part, options(*words, "--answers", "mend", "--area-budget", "0"), Clock())
+
+
+def followed(part, step, *words):
+    """A plan with what a step says: `--cutter` beside what is said, all else in place of its like."""
+    typed = step.option.split()
+    given_now = [words[k : k + 2] for k in range(0, len(words), 2)]
+    kept = [word for pair in given_now if pair[0] == "--cutter" or pair[0] not in typed for word in pair]
+    return run(part, options(*kept, *typed, "--area-budget", "0"), Clock())
+
+
+def left(result, step):
+    """The share of the finished area that the cutters and setups of a step leave in a plan."""
+    finished = Finished.of(result.ready)
+    lost = finished.wanted.copy()
+    here = {(0, result.ready.scene.setup): result.reaches}
+    here |= {(k, axis): found for k, (axis, found) in enumerate(result.elsewhere, 1)}
+    used = [
+        found for (_, axis), found in here.items() if any(np.allclose(axis, each, atol=1e-5) for each in step.setups)
+    ]
+    assert len(used) == len(step.setups)
+    for found in used:
+        for name in step.cutters:
+            lost &= found[name].lost
+    return finished.of_rows(np.flatnonzero(lost))
+
+
+def steps_of(result, cutter=None):
+    entries = [c for c in result.plan.cutters if c.mend and (cutter is None or c.id == cutter)]
+    return [step for step in entries[0].mend.steps if not is_left_out(step)]
+
+
+def single(result, thing):
+    """The steps that change one thing alone."""
+    return [step for step in steps_of(result) if [change.thing for change in step.changes] == [thing]]
+
+
+def strip(low, high):
+    return shapes.plane((low, high), (-40, 40), (0, 0, 0))
+
+
+def wall(x, height, way):
+    return shapes.plane((0, height), LONG, (x, 0, 0), (way, 0, 0), (0, 0, 1))
+
+
+# --- steps ----------------------------------------------------------------------------------------------------------------
+
+
+def pocket():
+    """A floor beside a wall of 40 mm, and one between two walls 4 mm apart, where a cutter of 6 mm does not go."""
+    return shapes.shell(strip(0, 7), wall(-4, 40, 1), strip(100.5, 102.5), wall(99.5, 20, 1), wall(103.5, 20, -1))
+
+
+POCKET = ("--cutter", "R3L25F10S3", "--holder", "R15L200", "--faces", "F1,F3", "--grid", "5", "--tilt", "0:0")
+
+
+def test_a_longer_stick_out_is_a_step_also_where_it_does_not_cure_everything():
+    """The floor of 560 mm2 is freed by a nose above the wall, that of 160 mm2 stays lost."""
+    result = asked(pocket(), *POCKET)
+    (entry,) = result.cutters
+    assert not any(change.helps for change in entry.mend.changes if change.thing == "stick_out")
+    assert entry.mend.lost_share == pytest.approx(1.0)
+    (step,) = single(result, "stick_out")
+    assert (step.changes[0].now, step.changes[0].asked) == (25.0, 40.0)
+    assert (step.gained, step.left) == (25, 25)
+    assert step.lost_before == pytest.approx(1.0)
+    assert step.lost_after == pytest.approx(160 / 720)
+    assert step.option == "--cutter R3L40F10S3HR15L200"
+    again = followed(pocket(), step, *POCKET)
+    assert left(again, step) == pytest.approx(step.lost_after, abs=1e-12)
+    (there,) = [c for c in again.cutters if [c.id] == step.cutters]
+    assert there.area_share.inaccessible == pytest.approx(step.lost_after, abs=1e-12)
+
+
+def test_two_changes_free_what_one_does_not():
+    result = asked(pocket(), *POCKET)
+    best = steps_of(result)[0]
+    assert len(best.changes) == 2
+    assert all(step.lost_after > 0.0 for step in steps_of(result) if len(step.changes) == 1)
+    assert (best.lost_after, best.left, best.gained) == (0.0, 0, 50)
+    assert left(followed(pocket(), best, *POCKET), best) == 0.0
+
+
+def test_what_is_left_by_the_best_step_is_an_area_with_its_place():
+    result = asked(pocket(), *POCKET)
+    (step,) = single(result, "stick_out")
+    (area,) = step.remains
+    assert area.area_mm2 == pytest.approx(160.0)
+    assert area.faces == ["F3"]
+    assert area.point == pytest.approx((101.5, 0, 0))
+    assert area.across_mm == pytest.approx(math.hypot(2.0, 80.0), rel=0.03)
+    out = [step for step in result.cutters[0].mend.steps if is_left_out(step)]
+    assert result.cutters[0].mend.steps[-1:] == out
+
+
+def below():
+    """A block with a pocket in its underside, as deep as the holder is wide above it."""
+    return read_part(cut(box(60, 120, 60), box(24, 80, 30, at=(18, 20, 0))))
+
+
+BELOW = ("--cutter", "R3L20F10S3", "--holder", "R15L100", "--machine", "tilt:10", "--grid", "4")
+
+
+def test_turned_over_as_a_second_setup():
+    """On a block whose top and underside are asked for, turned over frees the underside: as many samples as the top has."""
+    part = read_part(box(30, 40, 20))
+    words = ("--cutter", "R3L40", "--machine", "tilt:10", "--faces", flat_faces(part), "--grid", "5")
+    result = asked(part, *words)
+    (step,) = single(result, "second_setup")
+    assert step.changes[0].asked == (0.0, 0.0, -1.0)
+    assert step.changes[0].why.startswith("turned over (setup 0,0,-1)")
+    assert (step.gained, step.left) == (25, 0)
+    assert step.option == "--setup 0,0,1 --setup 0,0,-1"
+    again = followed(part, step, *words)
+    assert left(again, step) == 0.0
+    assert again.plan.least_set.left == 0
+    assert [run.setup for run in again.plan.least_set.runs] == [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0)]
+    assert [run.samples for run in again.plan.least_set.runs] == [25, 25]
+    # All of the underside is lost: only whole faces can be left out by an option.
+    out = result.cutters[0].mend.steps[-1]
+    assert is_left_out(out)
+    assert not result.reaches["R3L40"].reached[result.samples.normal[:, 2] < 0].any()
+    (top,) = np.unique(result.samples.face[result.samples.normal[:, 2] > 0])
+    assert out.option == f"--faces F{top}"
+    assert followed(part, out, *words).cutters[0].feasible
+
+
+def test_with_several_setups_steps_are_about_what_all_of_them_leave():
+    """Of the six sides of a block two are reached in two setups; a third setup frees one more."""
+    part = read_part(box(30, 40, 20))
+    words = ("--cutter", "R3L40", "--machine", "tilt:10", "--tilt", "0:30", "--faces", "all", "--grid", "4",
+             "--setup", "0,0,1", "--setup", "1,0,0")  # fmt: skip
+    result = asked(part, *words)
+    (entry,) = result.cutters
+    assert entry.mend.lost_share == pytest.approx(1.0 - (1200 + 800) / 5200)
+    (step,) = single(result, "second_setup")
+    assert step.changes[0].why.endswith("as a third setup")
+    assert (len(step.setups), step.gained, step.left) == (3, 16, entry.lost_in_all - 16)
+    assert step.option.startswith("--setup 0,0,1 --setup 1,0,0 --setup ")
+    assert left(followed(part, step, *words), step) == pytest.approx(step.lost_after, abs=1e-12)
+    # What one setup leaves and the other reaches is not lost: nothing is to be mended.
+    assert asked(part, *words[:4], *words[6:8], "--grid", "4", *words[10:]).cutters[0].mend is None
+
+
+def flat_faces(part):
+    """Top and underside of a block."""
+    found = plan(part, cutters="R3L40", faces="all", grid=2, area_budget=0).samples
+    return ",".join(f"F{n}" for n in np.unique(found.face[np.abs(found.normal[:, 2]) > 0.5]))
+
+
+def test_a_pocket_from_below_needs_a_setup_and_a_stick_out():
+    """Neither gains anything alone: the two are looked for together."""
+    part = below()
+    normal = plan(part, cutters="R3L40", faces="all", grid=2, area_budget=0).samples
+    deep = np.unique(normal.face[(normal.point[:, 2] == 30.0) & (normal.normal[:, 2] < -0.5)])
+    words = (*BELOW, "--faces", ",".join(f"F{n}" for n in deep))
+    result = asked(part, *words)
+    assert not single(result, "stick_out")
+    assert not single(result, "second_setup")
+    pairs = {tuple(change.thing for change in step.changes): step for step in steps_of(result)}
+    step = pairs["stick_out", "second_setup"]
+    # Its nose has to clear 30 mm.
+    assert step.changes[0].asked >= 30.0
+    assert step.gained > 0
+    assert left(followed(part, step, *words), step) == pytest.approx(step.lost_after, abs=1e-12)
+
+
+def test_steps_are_in_the_order_of_what_stays_lost_then_of_what_they_ask():
+    for entry in asked(SAMPLES / "pocket_top.step", *TRIED["pocket_top.step"]).cutters:
+        if entry.mend is None:
+            continue
+        told = [step for step in entry.mend.steps if not is_left_out(step)]
+        ranks = [
+            (round(step.lost_after, 4), len(step.changes), sum(MEANS.index(c.thing) for c in step.changes))
+            for step in told
+        ]
+        assert ranks == sorted(ranks)
+        assert all(step.lost_after < step.lost_before for step in told)
+
+
+TRIED = {
+    "pocket_top.step": (
+        "--cutter",
+        "R6L20",
+        "--cutter",
+        "R3L15",
+        "--holder",
+        "R25L60",
+        "--machine",
+        "tilt:5",
+        "--grid",
+        "21",
+    ),
+    "peaks_and_valleys.step": ("--cutter", "R4L15F10S4", "--holder", "R20L60", "--machine", "tilt:35", "--grid", "21"),
+    "v_groove.step": ("--cutter", "R6L20", "--machine", "tilt:8", "--grid", "21"),
+}
+
+
+@pytest.mark.parametrize("name", TRIED)
+def test_each_advice_that_is_followed_is_true(name):
+    """Each step of each cutter, typed as it is told, leaves what it says."""
+    part, words = read_part(SAMPLES / name), TRIED[name]
+    result = asked(part, *words)
+    count = 0
+    for entry in [c for c in result.cutters if c.mend]:
+        for step in [each for each in entry.mend.steps if not is_left_out(each)][:3]:
+            assert step.option is not None
+            count += 1
+            assert left(followed(part, step, *words), step) == pytest.approx(step.lost_after, abs=0.005)
+    assert count
+
+
+REAL = {
+    "trimesh_featuretype.STEP": ("--cutter", "R3L25", "--holder", "R15L60", "--machine", "tilt:60", "--faces", "all"),
+    "asitus_control_arm.step": ("--cutter", "R1L12", "--holder", "R15L60", "--machine", "trunnion-ac"),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("file", real(*REAL), ids=lambda path: path.stem)
+def test_the_first_advice_is_true_on_real_parts(file):
+    """With default spacing, so that another cutter may bring other samples: within half a point."""
+    part, words = read_part(file), REAL[file.name]
+    step = steps_of(asked(part, *words))[0]
+    assert step.lost_after < 0.5 * step.lost_before
+    assert left(followed(part, step, *words), step) == pytest.approx(step.lost_after, abs=0.005)
+
+
+def test_samples_inside_another_body_are_out_of_the_question():
+    """A boss stands on a block and hides some of its top: the steps are about the rest, and their shares of the rest."""
+    from tests.support.cad_parts import compound
+
+    part = read_part(compound(box(60, 60, 20), box(20, 20, 20, at=(20, 20, 15))))
+    result = asked(part, "--cutter", "R3L30", "--faces", "all", "--machine", "tilt:20", "--grid", "9")
+    (entry,) = result.cutters
+    inside = result.ready.inside_bodies
+    assert inside.any()
+    assert entry.mend.buried == int(inside.sum())
+    finished = Finished.of(result.ready)
+    assert finished.share[inside].sum() == 0.0
+    assert finished.share.sum() == pytest.approx(1.0)
+    assert entry.mend.lost_share == pytest.approx(
+        finished.share[result.reaches[entry.id].lost & result.ready.finished].sum()
+    )
+    assert any(step.lost_after < 0.5 * step.lost_before for step in steps_of(result))
+
+
+def test_the_nearest_three_are_asked_about_and_the_others_are_named():
+    words = [word for r in (3, 4, 5, 6, 8) for word in ("--cutter", f"R{r}L60")]
+    part = read_part(SAMPLES / "v_groove.step")
+    few = asked(part, *words, "--machine", "tilt:3", "--grid", "5")
+    lost = {c.id: c.area_share.inaccessible + c.area_share.undecided for c in few.cutters}
+    failing = sorted((c.id for c in few.cutters if lost[c.id]), key=lambda name: lost[name])
+    assert len(failing) > 3
+    mended = {c.id for c in few.cutters if c.mend}
+    assert len(mended) == 3
+    assert mended | set(few.plan.not_mended) == set(failing)
+    assert max(lost[name] for name in mended) <= min(lost[name] for name in few.plan.not_mended) + 1e-12
+    assert any("not asked about: --answers mend-all" in line for line in answered(few.plan))
+    every = run(
+        part,
+        options(*words, "--machine", "tilt:3", "--grid", "5", "--answers", "mend-all", "--area-budget", "0"),
+        Clock(),
+    )
+    assert {c.id for c in every.cutters if c.mend} == set(failing)
+    assert every.plan.not_mended == []
+
+
+def test_of_given_cutters_that_leave_as_little_the_most_wanted_does_the_rest():
+    result = asked(pocket(), *POCKET, "--cutter", "R0.5L100", "--cutter", "R1L100", "--cutter", "R0.8L100")
+    entry = next(c for c in result.cutters if c.id.startswith("R3"))
+    (step, *_) = [each for each in entry.mend.steps if [change.thing for change in each.changes] == ["cutter"]]
+    assert step.changes[0].asked.startswith("R1L100")
+
+
+def test_a_change_says_its_effect_and_its_option():
+    result = asked(read_part(SAMPLES / "v_groove.step"), "--cutter", "R6L60", "--machine", "tilt:3", "--grid", "9")
+    (entry,) = result.cutters
+    helping = [change for change in entry.mend.changes if change.helps]
+    assert helping
+    for change in helping:
+        assert change.lost_before == pytest.approx(entry.mend.lost_share)
+        assert change.lost_after == 0.0
+        again = followed(
+            read_part(SAMPLES / "v_groove.step"), change, "--cutter", "R6L60", "--machine", "tilt:3", "--grid", "9"
+        )
+        assert any(c.feasible for c in again.cutters)
+    assert all(change.lost_after is None and change.option is None for change in entry.mend.changes if not change.helps)
+
+
+# --- the least set --------------------------------------------------------------------------------------------------------
+
+
+def brute(reached):
+    """How few columns cover all that any covers, by trying every subset."""
+    every = reached.any(axis=1)
+    for size in range(reached.shape[1] + 1):
+        for chosen in combinations(range(reached.shape[1]), size):
+            if (reached[:, list(chosen)].any(axis=1) == every).all():
+                return size
+    raise AssertionError
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.integers(1, 7), st.integers(1, 40), st.floats(0.1, 0.7), st.integers(1, 3), st.randoms(use_true_random=False))
+def test_the_least_set_is_the_least_of_all_subsets(m, n, dense, setups, random):
+    reached = np.array([[random.random() < dense for _ in range(m)] for _ in range(n)])
+    setup, rank = [k % setups for k in range(m)], [k // setups for k in range(m)]
+    chosen, proven = cover(reached, setup, rank)
+    assert proven
+    assert (reached[:, chosen].any(axis=1) == reached.any(axis=1)).all()
+    assert len(chosen) == brute(reached)
+    # Of sets of as many: fewest setups, then the least sum of ranks.
+    every = reached.any(axis=1)
+    alike = [c for c in combinations(range(m), len(chosen)) if (reached[:, list(c)].any(axis=1) == every).all()]
+    worth = [(len({setup[k] for k in c}), sum(rank[k] for k in c)) for c in alike]
+    assert (len({setup[k] for k in chosen}), sum(rank[k] for k in chosen)) == min(worth)
+
+
+def test_two_cutters_share_a_part_and_that_is_said_in_every_plan():
+    """The large one does not go between the walls, the short one does not clear them: together they reach it all."""
+    part = shapes.shell(strip(0, 7), wall(-4, 40, 1), strip(100.5, 102.5), wall(99.5, 5, 1), wall(103.5, 5, -1))
+    long = Cutter.flat(radius=3, length=60, flutes=10.0, shank_radius=3.0, holder="R15L100")
+    short = Cutter.flat(radius=1, length=10, holder="R15L60")
+    small = Cutter.flat(radius=0.5, length=10, holder="R15L60")
+    result = plan(part, cutters=(long, short, small), faces="F1,F3", grid=5, tilt=(0, 0), area_budget=0)
+    found = result.plan.least_set
+    assert found.proven
+    assert [run.cutter for run in found.runs] == [long.id, short.id]
+    assert [run.faces for run in found.runs] == [["F1"], ["F3"]]
+    assert [run.alone for run in found.runs] == [25, 25]
+    assert together(result.plan) == f"{long.id} for 77.8 % of the area and {short.id} for the rest reach all of it"
+    assert sum(run.samples for run in found.runs) == found.reached
+    assert sum(run.area_mm2 for run in found.runs) == pytest.approx(720.0)
+    any_reaches = np.logical_or.reduce([reach.reached for reach in result.reaches.values()])
+    assert (found.reached, found.left) == (int(any_reaches.sum()), 0)
+
+
+def test_where_nothing_is_shared_no_set_is_told():
+    result = plan(SAMPLES / "v_groove.step", cutters="R6L80", grid=5, area_budget=0)
+    assert result.plan.least_set is None
+    assert together(result.plan) == ""
+
+
+def test_a_set_is_a_sentence():
+    def of(runs, share, left=0, proven=True, doubtful=False):
+        made = [SimpleNamespace(cutter=c, share=s, setup=axis) for c, s, axis in runs]
+        found = SimpleNamespace(
+            runs=made, share=share, left=left, left_share=1 - share, proven=proven, doubtful=doubtful
+        )
+        return together(SimpleNamespace(least_set=found))
+
+    up, down = (0, 0, 1), (0, 0, -1)
+    assert of([("R6L60", 0.81, up), ("R1L12", 0.182, up)], 0.992, left=9) == (
+        "R6L60 for 81 % of the area and R1L12 for the rest reach 99.2 %; nothing given reaches the other 0.8 %"
+    )
+    assert of([("R6L60", 0.6, up), ("R6L60", 0.4, down)], 1.0) == (
+        "R6L60 in setup 0,0,1 for 60 % of the area and R6L60 in setup 0,0,-1 for the rest reach all of it"
+    )
+    assert "before the proof" in of([("A", 0.6, up), ("B", 0.4, up)], 1.0, proven=False)
+    assert "missing from the obstacles" in of([("A", 0.6, up), ("B", 0.4, up)], 1.0, doubtful=True)
+    assert of([("A", 1.0, up)], 1.0) == ""
+
+
+# --- areas ----------------------------------------------------------------------------------------------------------------
+
+
+def test_lost_samples_are_areas_with_place_and_extent():
+    """Two disks of a plane: their areas, middles and diameters, to the grid."""
+    part = shapes.shell(shapes.plane((-20, 20), (-20, 20)))
+    ready = prepare(part, Options(cutters=("R3L40",), grid=161, area_budget=0))
+    point = ready.samples.point
+    large, small = (np.hypot(point[:, 0] - x, point[:, 1] - y) <= r for x, y, r in ((8, 4, 5), (-10, -8, 2)))
+    found = patches(ready.samples, Finished.of(ready), np.flatnonzero(large | small))
+    assert len(found) == 2
+    for patch, (x, y, r) in zip(found, ((8, 4, 5), (-10, -8, 2)), strict=True):
+        assert patch.area == pytest.approx(math.pi * r**2, rel=0.05)
+        assert patch.share == pytest.approx(math.pi * r**2 / 1600.0, rel=0.05)
+        assert patch.place == pytest.approx((x, y, 0), abs=0.3)
+        assert patch.across == pytest.approx(2 * r, abs=0.3)
+        assert patch.faces == ("F1",)
+    assert patches(ready.samples, Finished.of(ready), np.zeros(0, np.int64)) == []
+
+
+def test_an_area_in_words():
+    assert Patch(1234.5, 0.2, 9, ("F1", "F2"), (-7e-15, 3.0, -8.123456), 41.26).words == (
+        "1,234 mm2 of F1, F2, about (0, 3, -8.12), 41 mm across"
+    )
+
+
+# --- stick-outs -----------------------------------------------------------------------------------------------------------
+
+
+def test_a_stick_out_that_may_be_shorter_does_not_read_as_one_that_is_too_short():
+    part = shapes.shell(strip(0, 7), wall(-4, 20, 1))
+    words = ("--cutter", "R3L40F10S3", "--holder", "R15L200", "--faces", "F1", "--grid", "5", "--tilt", "0:0")
+    result = run(part, options(*words, "--answers", "stick-out", "--area-budget", "0"), Clock())
+    (line,) = answered(result.plan)
+    assert re.search(r"can be held shorter: 20\.0. mm of its 40 mm", line)
+    assert "needs" not in line
+    words = ("--cutter", "R3L20.005F10S3", *words[2:])
+    result = run(part, options(*words, "--answers", "stick-out", "--area-budget", "0"), Clock())
+    (line,) = answered(result.plan)
+    assert "cannot be held shorter than the 20" in line
+
+
+def test_what_is_to_be_typed_is_typed_out():
+    """Cutters are called as in the summary in sentences, but not in what is to be typed."""
+    result = asked(pocket(), *POCKET)
+    lines = [line for line in answered(result.plan) if "[add --cutter" in line]
+    assert lines
+    assert all("HR" in line.partition("[")[2] for line in lines)
+    assert all("HR15L200" not in step_told(step) for step in steps_of(result))

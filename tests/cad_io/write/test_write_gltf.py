@@ -1,0 +1,129 @@
+"""GLB of split parts: hierarchy, facts, units, axes, linear colours, normals; read by trimesh and as plain JSON."""
+
+import numpy as np
+import pytest
+import trimesh
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeSphere
+
+from cad_io.arrays import Style
+from cad_io.errors import WriteError
+from cad_io.part import Part
+from cad_io.split import split
+from cad_io.write import gltf as module
+from cad_io.write.gltf import linear, write_gltf
+from tests.support.gltf import read
+from tests.support.split_parts import GREEN, GREY, RED, block, labels, largest_bspline
+
+COLOURS = {0: RED, 1: GREEN, -1: GREY}
+
+
+def write(found, path, **more):
+    return write_gltf(
+        found,
+        path,
+        lambda p: Style(f"F{p.face}_{p.label}", COLOURS[p.label]),
+        extras=lambda n: {"number": n, "list": [1, None, "é"]},
+        piece_extras=lambda p: {"verdict": p.label},
+        **more,
+    )
+
+
+@pytest.fixture(scope="module")
+def halves():
+    part = Part(block(1))
+    return part, split(part, [labels(part, largest_bspline(part), lambda x, y: x > 0.4 + 0.3 * y)])
+
+
+def test_one_node_a_face_and_below_it_one_a_piece(halves, tmp_path):
+    part, found = halves
+    assert write(found, tmp_path / "p.glb") == ()
+    document, _ = read(tmp_path / "p.glb")
+    nodes = document["nodes"]
+    tops = [nodes[i] for i in nodes[0]["children"]]
+    assert [n["name"] for n in tops] == [f.id for f in part.faces]
+    assert [n["extras"]["number"] for n in tops] == [f.number for f in part.faces]
+    assert tops[0]["extras"]["list"] == [1, None, "é"]
+    below = [(n["name"], nodes[i]["name"], nodes[i]["extras"]["verdict"]) for n in tops for i in n["children"]]
+    assert below == [(f"F{p.face}", f"F{p.face}_{p.label}", p.label) for p in found.pieces]
+
+
+def test_colours_are_linear_light(halves, tmp_path):
+    _, found = halves
+    write(found, tmp_path / "p.glb")
+    document, arrays = read(tmp_path / "p.glb")
+    (material,) = document["materials"]
+    pbr = material["pbrMetallicRoughness"]
+    assert (pbr["metallicFactor"], pbr["roughnessFactor"], pbr.get("baseColorFactor")) == (0.0, 0.8, None)
+    shown = set()
+    for mesh in document["meshes"]:
+        light = arrays[mesh["primitives"][0]["attributes"]["COLOR_0"]] / 65535
+        assert (light == light[0]).all()
+        seen = np.where(light[0] <= 0.0031308, 12.92 * light[0], 1.055 * light[0] ** (1 / 2.4) - 0.055)[:3]
+        (label,) = (k for k, c in COLOURS.items() if np.allclose(seen, c, atol=1e-4))
+        assert mesh["name"].endswith(f"_{label}")
+        shown.add(label)
+    assert shown == set(COLOURS)
+    assert linear((0.0, 0.5, 1.0)) == pytest.approx([0, 0.214041, 1], abs=1e-6)
+
+
+def test_metres_and_y_up_in_trimesh(halves, tmp_path):
+    part, found = halves
+    write(found, tmp_path / "p.glb", deflection=0.05)
+    scene = trimesh.load(tmp_path / "p.glb")
+    size = np.ptp(scene.bounds, axis=0) * 1000
+    assert size == pytest.approx([part.size[0], part.size[2], part.size[1]], rel=1e-3)
+    assert len(scene.geometry) == len(found.pieces)
+    total = sum(mesh.area for mesh in scene.geometry.values()) * 1e6
+    assert total == pytest.approx(sum(f.area for f in part.faces), rel=2e-3)
+    names = {mesh.metadata.get("name", key) for key, mesh in scene.geometry.items()}
+    assert "F1_-1" in names
+
+
+def test_meshes_of_a_solid_close_and_face_outwards(halves, tmp_path):
+    _, found = halves
+    write(found, tmp_path / "p.glb")
+    whole = trimesh.load(tmp_path / "p.glb").to_mesh()
+    whole.merge_vertices(merge_norm=True, merge_tex=True)
+    assert whole.is_watertight
+    assert whole.volume > 0
+
+
+@pytest.mark.parametrize("shape", [BRepPrimAPI_MakeSphere(10).Solid(), BRepPrimAPI_MakeBox(1, 2, 3).Solid()])
+def test_normals_are_unit_and_outward(shape, tmp_path):
+    write(split(Part(shape), []), tmp_path / "p.glb")
+    document, arrays = read(tmp_path / "p.glb")
+    for mesh in document["meshes"]:
+        (primitive,) = mesh["primitives"]
+        point, normal = (arrays[primitive["attributes"][name]] for name in ("POSITION", "NORMAL"))
+        triangle = arrays[primitive["indices"]].reshape(-1, 3)
+        assert np.allclose(np.linalg.norm(normal, axis=1), 1, atol=1e-6)
+        facet = np.cross(point[triangle[:, 1]] - point[triangle[:, 0]], point[triangle[:, 2]] - point[triangle[:, 0]])
+        assert ((facet[:, None] * normal[triangle]).sum(-1) > 0).all()
+        if len(document["meshes"]) == 1:
+            assert np.allclose(normal, point / np.linalg.norm(point, axis=1)[:, None], atol=2e-5)
+
+
+def test_same_bytes_whatever_mesh_the_part_carries(halves, tmp_path):
+    from OCP.BRepMesh import BRepMesh_IncrementalMesh
+
+    _, found = halves
+    write(found, tmp_path / "a.glb")
+    BRepMesh_IncrementalMesh(found.shape, 0.05, False, 0.3, False)
+    write(found, tmp_path / "b.glb")
+    assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "b.glb").read_bytes()
+
+
+def test_what_cannot_be_written(halves, tmp_path, monkeypatch):
+    _, found = halves
+    with pytest.raises(WriteError, match="cannot be written"):
+        write(found, tmp_path / "missing" / "p.glb")
+    real = module.face_mesh
+    calls = []
+    monkeypatch.setattr(module, "face_mesh", lambda *a: calls.append(1) or (None if len(calls) == 1 else real(*a)))
+    assert write(found, tmp_path / "p.glb") == (found.pieces[0].face,)
+    document, _ = read(tmp_path / "p.glb")
+    assert len(document["meshes"]) == len(found.pieces) - 1
+    monkeypatch.setattr(module, "face_mesh", lambda *a: None)
+    with pytest.raises(WriteError, match="no triangle"):
+        write(found, tmp_path / "q.glb")
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["p.glb"]

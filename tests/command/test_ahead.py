@@ -1,0 +1,124 @@
+"""Machine code that is made by a second process while the first one reads and meshes."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from plan_cutters.command import ahead
+from plan_cutters.kernels import jit
+from tests.support.forked import ENV
+from tests.support.places import ROOT
+
+
+def test_nothing_is_made_where_it_is_at_hand(monkeypatch):
+    monkeypatch.setattr(subprocess, "Popen", lambda *words, **more: pytest.fail("a process was started"))
+    for found in (True, None):
+        monkeypatch.setattr(jit, "at_hand", lambda name, found=found: found)
+        assert ahead.begin(maps=False) is None
+
+
+@pytest.mark.parametrize("maps", [False, True])
+def test_the_second_process_is_waited_for(monkeypatch, maps):
+    started, real = [], subprocess.Popen
+
+    def popen(words, **more):
+        started.append(words)
+        assert ahead.REPORT not in more["env"]  # it must not speak for this one
+        return real([sys.executable, "-c", "import time; time.sleep(0.2)"], **more)
+
+    monkeypatch.setenv(ahead.REPORT, "1")
+    monkeypatch.setattr(jit, "at_hand", lambda name: False)
+    monkeypatch.setattr(subprocess, "Popen", popen)
+    wait = ahead.begin(maps)
+    assert wait is not None
+    wait("search.search")
+    assert started[0][2:] == ["plan_cutters.command.ahead", *(["maps"] if maps else [])]
+
+
+def test_it_is_waited_for_until_an_entry_is_there(monkeypatch):
+    """Not to its end: what else it makes is needed later."""
+    made, there, real = [], [], subprocess.Popen
+    monkeypatch.setattr(jit, "at_hand", lambda name: name in there)
+    monkeypatch.setattr(subprocess, "Popen", lambda words, **more: made.append(
+        real([sys.executable, "-c", "import time; time.sleep(600)"], **more)) or made[0])  # fmt: skip
+    wait = ahead.begin(maps=False)
+    there.append("search.search")
+    try:
+        wait("search.search")
+        assert made[0].poll() is None
+    finally:
+        made[0].kill()
+        made[0].wait()
+
+
+def test_one_that_does_not_end_is_not_waited_for_for_ever(monkeypatch):
+    made, real = [], subprocess.Popen
+    monkeypatch.setattr(jit, "at_hand", lambda name: False)
+    monkeypatch.setattr(ahead, "_PATIENCE", 0.2)
+    monkeypatch.setattr(subprocess, "Popen", lambda words, **more: made.append(
+        real([sys.executable, "-c", "import time; time.sleep(600)"], **more)) or made[0])  # fmt: skip
+    ahead.begin(maps=False)("search.search")
+    assert made[0].returncode is not None
+
+
+def test_machine_code_is_found_where_the_compiler_keeps_it(tmp_path):
+    """In a process of its own: where the folder is, is asked once."""
+    look = (
+        "from plan_cutters.kernels.jit import at_hand; print(at_hand('rows.none'), at_hand('probing.room_to_search'))"
+    )
+    make = "from plan_cutters.kernels.probing import room_to_search; room_to_search()"
+    environment = {**ENV, "NUMBA_CACHE_DIR": str(tmp_path)}
+
+    def run(text):
+        return subprocess.run(
+            [sys.executable, "-c", text], env=environment, capture_output=True, text=True, check=True
+        ).stdout
+
+    assert run(look).split() == ["False", "False"]
+    run(make)
+    assert run(look).split() == ["False", "True"]
+
+
+def test_what_is_made_ahead_is_a_plan():
+    """What it compiles it runs: nothing of it fails, and the area between samples is among it."""
+    subprocess.run(
+        [sys.executable, "-m", "plan_cutters.command.ahead"], env={**os.environ, **ENV}, check=True, timeout=300
+    )
+
+
+#: Tells which entries a process has loaded or compiled after each of three plans.
+LOADED = """
+import re, sys
+from pathlib import Path
+import plan_cutters.kernels as room
+from plan_cutters import plan
+from plan_cutters.command.ahead import compile_all
+
+def told():
+    found = []
+    for source in Path(room.__file__).parent.glob("*.py"):
+        module = sys.modules.get(f"{room.__name__}.{source.stem}")
+        for entry in re.findall(r"^@entry\\ndef (\\w+)", source.read_text(), re.M) if module else ():
+            if getattr(module, entry).overloads:
+                found.append(f"{source.stem}.{entry}")
+    print(*sorted(found))
+
+compile_all(maps=False)
+told()
+for maps in (False, True):
+    plan("samples/v_groove.step", cutters=["R6L80"], grid=9, posture_maps=maps)
+    told()
+"""
+
+
+def test_a_plain_cutter_loads_what_it_needs_and_nothing_else():
+    """No posture maps, largest radius, stick-out, fixed axis or picture: each would take seconds to compile on the first run."""
+    said = subprocess.run(
+        [sys.executable, "-c", LOADED], env={**os.environ, **ENV}, cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout
+    ahead, plain, maps = (set(line.split()) for line in said.splitlines())
+    assert plain == {"cover.cover", "material.windings", "search.dummy_clear", "search.search", "tree.build"}
+    assert ahead == plain, "what is made ahead is what a plan needs"
+    assert maps - plain == {"free_map.free_map", "lanes.wide_tree"}

@@ -1,0 +1,535 @@
+"""How the command feels: what it says, how soon, how wide, and what it does with streams and names that are odd."""
+
+import json
+import os
+import pty
+import re
+import signal
+import subprocess
+import sys
+import time
+from itertools import takewhile
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from plan_cutters import plan
+from plan_cutters.command import summary as summaries
+from plan_cutters.command.progress import Display
+from plan_cutters.command.rows import _distinct
+from plan_cutters.command.supervise import _Watch
+from plan_cutters.command.terminal import clean, say
+from plan_cutters.document.model import Plan
+from plan_cutters.document.told import percent
+from tests.support.commands import assert_one_line, in_lines, leftovers, said_until
+from tests.support.forked import ENV, run
+from tests.support.places import SAMPLES
+
+GROOVE = SAMPLES / "v_groove.step"
+QUICK = ("--cutter", "R6L80", "--grid", "5", "--area-budget", "0")
+FILES = ("--formats", "json,step,glb,npz", "-o", "out")
+#: A part, cutters that fail and one that does not.
+WAVES = SAMPLES / "peaks_and_valleys.step"
+COLOUR = re.compile(r"\x1b\[[0-9;]*m")
+
+
+@pytest.fixture(scope="module")
+def planned():
+    return plan(WAVES, cutters=["R12L120", "R6L80", "R3L60rc3"], grid=41, area_budget=4000).plan
+
+
+@pytest.fixture(scope="module")
+def failing():
+    return plan(SAMPLES / "pocket_top.step", cutters=["R40L60", "R30L60", "R25L60"], faces="all", grid=7, area_budget=0,
+                machine="tilt:20", other_setups=[(1, 0, 0)]).plan  # fmt: skip
+
+
+def shown(capsys, document, *, verbose=False):
+    """What the summary says."""
+    capsys.readouterr()
+    summaries.summary(document, verbose=verbose)
+    say(*summaries.written(document, Path("out"), ("json",)), *summaries.not_reached(document, verbose=verbose))
+    return capsys.readouterr().err
+
+
+# ---- what is looked at before the kernel
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "cause"),
+    [
+        (["missing.step"], 3, "missing.step: no such file"),
+        (["empty.step"], 3, "empty.step: is empty"),
+        (["folder.step"], 3, "folder.step: is a folder"),
+        (["text.step"], 3, "text.step: is named .step but does not start as STEP does"),
+        ([""], 2, "PART"),
+        ([GROOVE, "--cutter", "X9"], 2, "R6L80"),
+        ([GROOVE, "--formats", "pdf"], 2, "pdf"),
+        ([GROOVE, "--formats", ""], 2, "no format given"),
+        ([GROOVE, "--spacing", "1e300"], 2, "spacing 1e+300 must be"),
+        ([GROOVE, "--spacing", "nan"], 2, "spacing must be a number"),
+        ([GROOVE, "--allowance", "1e300"], 2, "allowance 1e+300 must be"),
+        ([GROOVE, "--holder-clearance", "inf"], 2, "holder clearance inf must be"),
+        ([GROOVE, "--jobs", "99999999999"], 2, "jobs"),
+        ([GROOVE, "--read-timeout", "nan"], 2, "--read-timeout"),
+        ([GROOVE, "--memory", "nan"], 2, "--memory"),
+        ([GROOVE, "--faces", "9-3"], 2, "9-3 runs backwards"),
+        ([GROOVE, "--faces", "F0"], 2, "numbered from 1"),
+        ([GROOVE, "--faces", "name:("], 2, "not a regular expression"),
+        ([GROOVE, "--ignore", "what"], 2, "--ignore what: give sculptured"),
+        ([GROOVE, "--fixture", "vise.stl"], 3, "vise.stl: no such file"),
+        ([GROOVE, "--fixture", "empty.step"], 3, "empty.step: is empty"),
+        ([GROOVE, "--postures", "postures.npz"], 2, "postures.npz"),
+        ([GROOVE, "-o", "text.step"], 2, "text.step: the output must be a folder"),
+        ([GROOVE, "-o", ""], 2, "-o"),
+        ([GROOVE, WAVES, "--json", "-"], 2, "-o DIR --formats json"),
+        (["-x.step"], 2, "./-x.step"),
+    ],
+)
+def test_mistakes_cost_little_and_load_no_kernel(tmp_path, words, code, cause):
+    (tmp_path / "empty.step").touch()
+    (tmp_path / "folder.step").mkdir()
+    (tmp_path / "text.step").write_text("a shopping list")
+    (tmp_path / "-x.step").write_bytes(GROOVE.read_bytes())
+    done = run(*words, cwd=tmp_path, bare=True)
+    assert_one_line(done, code, cause)
+    assert len(done.stderr.splitlines()) == 1
+    assert leftovers(tmp_path, "empty.step", "folder.step", "text.step", "-x.step") == []
+
+
+def test_of_several_parts_those_that_cannot_be_read_are_named_at_once(tmp_path):
+    done = run(GROOVE, "missing.step", *QUICK, "--formats", "json", cwd=tmp_path)
+    assert done.returncode == 3
+    first, *rest = done.stderr.splitlines()
+    assert first == "plan-cutters: missing.step: no such file; the other parts are planned"
+    assert rest[-1] == "missing.step: plan-cutters: missing.step: no such file"
+    assert f"{GROOVE}: a cutter finishes every judged sample" in rest
+    assert leftovers(tmp_path) == ["v_groove-plan"]
+
+
+# ---- help and completion
+
+
+def test_help_is_in_groups_with_examples_and_fits(tmp_path):
+    said = run("--help", cwd=tmp_path).stdout
+    heads = re.findall(r"^(\w.*):$", said, re.MULTILINE)
+    assert heads == ["Cutters", "Machine and setup", "Faces", "Sampling and tolerances", "Postures", "Output", "Answers", "Run",
+                     "Examples", "Exit codes"]  # fmt: skip
+    assert max(map(len, said.splitlines())) <= 80
+    assert "\x1b" not in said
+    examples = [line.split() for line in said.splitlines() if line.strip().startswith("plan-cutters ")]
+    assert len(examples) >= 5
+    from plan_cutters.command.cli import command
+
+    for _, *words in examples:
+        assert command.make_context("plan-cutters", words).params["parts"]
+
+
+def completed(words, cwd):
+    """What bash is offered after these words."""
+    asked = {"_PLAN_CUTTERS_COMPLETE": "bash_complete", "COMP_WORDS": " ".join(["plan-cutters", *words]),
+             "COMP_CWORD": str(len(words))}  # fmt: skip
+    done = run(cwd=cwd, environment=ENV | asked, bare=True)
+    assert done.returncode == 0
+    return done.stdout.split()
+
+
+@pytest.mark.parametrize(
+    ("words", "offered"),
+    [
+        (["--machine", "trunnion-a"], ["plain,trunnion-ac"]),
+        (["--machine", "shop.f"], ["file,"]),
+        (["--formats", "json,g"], ["plain,json,glb"]),
+        (["--answers", "m"], ["plain,mend", "plain,mend-all"]),
+        (["--faces", "s"], ["plain,sculptured"]),
+        (["--unit", "i"], ["plain,in"]),
+        (["--out", ""], ["dir,"]),
+        (["bla"], ["file,"]),
+        (["--list-c"], ["plain,--list-cutters"]),
+    ],
+)
+def test_completion_knows_names_and_loads_no_kernel(tmp_path, words, offered):
+    assert completed(words, tmp_path) == offered
+
+
+# ---- what is said
+
+
+def test_the_first_line_says_which_cutter_to_take(capsys, planned):
+    said = shown(capsys, planned)
+    first = said.split("\n")[1]
+    assert first.startswith("Take flat end D12 x 80 for peaks_and_valleys.step: R6L80, ")
+    assert "without a holder" in in_lines(said)
+    assert re.search(r"^> flat end D12 x 80 +yes ", said, re.MULTILINE)
+    assert re.search(r"^  flat end D24 x 120 +no ", said, re.MULTILINE)
+    # Last is what is not reached, and why.
+    assert re.search(r"\nflat end D24 x 120 does not reach (.*\n  )*.*(rear\s+gouge|collision)(.*\n  )*.*\n$", said)
+
+
+def test_what_is_served_between_samples_is_put_in_words(capsys, planned):
+    (entry,) = [c for c in planned.cutters if c.area]
+    said = in_lines(shown(capsys, planned))
+    assert (
+        f"{percent(entry.area.share, some=True, whole=False)} of the area is proved safe with the tool axis kept"
+        in said
+    )
+    assert "is not proved, which does not mean unsafe" in said
+
+
+def test_where_none_is_feasible_the_worst_faces_are_listed(capsys, failing):
+    said = shown(capsys, failing)
+    assert in_lines(said).startswith("No cutter finishes pocket_top.step. Of 3 cutters, ")
+    assert "--answers mend" in in_lines(said)
+    head = next(i for i, line in enumerate(said.splitlines()) if line.startswith("Where "))
+    rows = [line.split() for line in takewhile(str.strip, said.splitlines()[head + 2 :])]
+    best = max(failing.cutters, key=lambda c: c.interference_free + c.accessible)
+    areas = {face.id: face.area_mm2 for face in failing.faces}
+    lost = {name: areas[name] * (v.area_share.inaccessible + v.area_share.undecided) for name, v in best.faces.items()}
+    worst = sorted(lost.values(), reverse=True)[:5]
+    assert [lost[row[0]] for row in rows] == pytest.approx([each for each in worst if each])
+    assert all(head in said for head in ("mm2 lost", "of the face"))
+    assert "Over the 2 setups" in said
+
+
+def test_percentages_are_never_nicer_than_the_truth(planned):
+    assert percent(0.0, some=False, whole=False) == "0 %"
+    assert percent(1e-9, some=True, whole=False) == "<0.1 %"
+    # A sample without an area is still one.
+    assert percent(0.0, some=True, whole=False) == "<0.1 %"
+    assert percent(1.0, some=True, whole=False) == ">99.9 %"
+    assert percent(0.9996, some=True, whole=False) == ">99.9 %"
+    assert percent(1.0, some=True, whole=True) == "100 %"
+    assert percent(0.123456, some=True, whole=False) == "12.3 %"
+
+
+NASTY = "rim\n\x1b[2J\x9b31m\r\u202eevil\x07\u2028 <b>"
+
+
+def everywhere(value, text):
+    """A plan file's content with a text at the end of each of its own that is only shown."""
+    if isinstance(value, dict):
+        kept = {
+            "format",
+            "id",
+            "selected",
+            "selected_over_setups",
+            "selected_for_setup",
+            "stand_in",
+            "rung",
+            "verdict",
+            "part",
+            "carries",
+            "sampled_by",
+        }
+        return {k: v if k in kept and isinstance(v, str) else everywhere(v, text) for k, v in value.items()}
+    if isinstance(value, list):
+        return [everywhere(each, text) for each in value]
+    return value + text if isinstance(value, str) else value
+
+
+def nasty(document):
+    found = json.loads(document.model_dump_json())
+    return Plan.model_validate(everywhere(found, NASTY) | {"units": found["units"]})
+
+
+@pytest.mark.parametrize("verbose", [False, True])
+def test_no_name_steers_the_terminal(capsys, planned, failing, verbose):
+    for document in (planned, failing):
+        said = COLOUR.sub("", shown(capsys, nasty(document), verbose=verbose))
+        assert set(said) & set(map(chr, range(32))) == {"\n"}
+        assert not set(said) & set("\x7f\x9b\u202e\u2028")
+        assert r"\n\x1b[2J\x9b31m\r\u202eevil\x07\u2028" in said.replace("\n", "").replace("  ", "") or "x1b" in said
+        assert max(map(len, said.splitlines())) <= 80
+
+
+def long_names(document):
+    """The same plan from a library with long names that differ in the middle or at the end."""
+    cutters = []
+    for i, c in enumerate(document.cutters):
+        name = f"{'ultra ' * (i % 3)}long reach high performance end mill for moulds, variant {i} of the series, coated"
+        source = {
+            "file": "a.tools",
+            "place": f"entry {i}",
+            "number": i,
+            "name": name,
+            "kind": "flat",
+            "unit": "mm",
+            "notes": [],
+        }
+        cutters.append(c.model_dump() | {"name": name, "sources": [source], "seconds": 0.0})
+    return Plan.model_validate(document.model_dump() | {"cutters": cutters})
+
+
+@pytest.mark.parametrize("columns", [20, 40, 72, 79, 80, 200])
+def test_it_fits_any_terminal(capsys, monkeypatch, planned, failing, columns):
+    monkeypatch.setattr("plan_cutters.command.terminal.is_terminal", lambda: True)
+    monkeypatch.setenv("COLUMNS", str(columns))
+    monkeypatch.setenv("NO_COLOR", "1")
+    for document in (planned, failing, long_names(planned), long_names(failing)):
+        for verbose in (False, True):
+            said = COLOUR.sub("", shown(capsys, document, verbose=verbose))
+            assert max(map(len, said.splitlines())) <= min(columns, 80)
+
+
+def test_many_cutters_are_said_in_few_lines(capsys, failing):
+    many = [c.model_copy(update={"id": f"{c.id}S{i}"}) for i in range(60) for c in failing.cutters]
+    document = failing.model_copy(update={"cutters": many})
+    said = shown(capsys, document)
+    assert len(said.splitlines()) < 100
+    assert "and 140 more cutters that reach less" in said
+    assert "more cutters leave" in in_lines(said)
+    whole = shown(capsys, document, verbose=True)
+    assert all(f" ({c.id}) " in whole for c in many)
+
+
+def test_names_that_are_shortened_stay_apart():
+    names = [f"a long name of a tool, size {i}, of the same maker" for i in range(12)]
+    short = _distinct(names, 20)
+    assert len(set(short)) == 12
+    assert max(map(len, short)) <= 20
+
+
+def test_colours_where_they_help_and_words_always(capsys, monkeypatch, planned):
+    plain = shown(capsys, planned)
+    assert "\x1b" not in plain
+    monkeypatch.setattr("plan_cutters.command.terminal.is_terminal", lambda: True)
+    monkeypatch.setenv("TERM", "xterm-256color")
+    monkeypatch.setenv("COLUMNS", "80")
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    coloured = shown(capsys, planned)
+    assert "\x1b[32myes" in coloured
+    assert "\x1b[31mno" in coloured
+    monkeypatch.setenv("NO_COLOR", "1")
+    bold = shown(capsys, planned)
+    assert not re.search(r"\x1b\[[0-9;]*3[0-9]", bold)
+    # The same words in all of them.
+    assert COLOUR.sub("", coloured).split() == COLOUR.sub("", bold).split() == plain.split()
+
+
+def test_control_characters_are_written_out():
+    assert clean("Kühlung ø8 ±0.1 工具") == "Kühlung ø8 ±0.1 工具"
+    assert clean("a\tb\udcff") == r"a\tb\udcff"
+
+
+# ---- progress
+
+
+def test_plain_progress_is_a_line_now_and_then(capsys, monkeypatch):
+    now = 0.0
+    monkeypatch.setattr(time, "monotonic", lambda: now)
+    display = Display(False, 40, 0.0)
+    for stage in ("start", "read", "measure", "sew", "sample"):
+        display.stage(stage)
+        now += 0.2
+    for i in range(40):
+        display.stage(f"R{i + 1}L80")
+        for done in range(30):
+            now += 0.1
+            display.at(done, 30)
+            display.tick()
+    said = capsys.readouterr().err.splitlines()
+    assert [line.split("s  ")[1] for line in said[:4]] == [
+        "starting",
+        "reading the part",
+        "taking samples",
+        "judging the cutters",
+    ]
+    assert all(re.fullmatch(r" +\d+\.\d s  .+", line) for line in said)
+    # 121 s of judging: every 5 s in the first minute, then every 30 s.
+    assert 12 <= len(said) - 4 <= 15
+    shares = [int(line.rsplit(" ", 2)[1]) for line in said[4:]]
+    assert shares == sorted(shares)
+    assert shares[-1] > 60
+    assert "(39 of 40)" in said[-1] or "(3" in said[-1]
+
+
+def test_nothing_is_shown_where_it_is_quiet(capsys):
+    display = Display(True, 1, 0.0)
+    display.stage("read")
+    display.tick()
+    assert capsys.readouterr().err == ""
+
+
+def test_what_the_child_says_comes_through_whatever_it_holds():
+    here, there = os.pipe()
+    heard = []
+    display = SimpleNamespace(begins=heard.append, stage=heard.append, at=lambda *n: heard.append(n), say=heard.append)
+    watch = _Watch(1.0, display)
+    watch.pipe = here
+    odd = "a\nsafe 0 /tmp\\x\udcff ü\u2028.step"
+    child = f"from plan_cutters.command.supervise import report as tell; odd = {odd!r}\n"
+    child += "tell('part', odd); tell('at', '3 9'); tell('say', odd)"
+    subprocess.run(
+        [sys.executable, "-c", child], env=ENV | {"PLAN_CUTTERS_REPORT": str(there)}, pass_fds=(there,), check=True
+    )
+    watch.listen(0.0)
+    os.close(here)
+    os.close(there)
+    assert heard == [odd, (3, 9), odd]
+    assert watch.part == odd
+    assert watch.safe is None
+
+
+def test_it_speaks_soon_and_shows_a_clock_on_a_terminal(tmp_path):
+    parent, child = pty.openpty()
+    words = [sys.executable, "-m", "plan_cutters", str(GROOVE), *QUICK, *FILES]
+    process = subprocess.Popen(words, cwd=tmp_path, env=ENV | {"TERM": "xterm", "COLUMNS": "80"}, stderr=child)
+    os.close(child)
+    said = b""
+    while True:
+        try:
+            data = os.read(parent, 1 << 16)
+        except OSError:  # closed at the other end
+            break
+        if not data:
+            break
+        said += data
+    os.close(parent)
+    assert process.wait(120) == 0
+    text = said.decode()
+    before, _, after = text.partition("Take ")
+    assert "starting" in before
+    assert "0:0" in before
+    assert "reading the part" in before
+    assert "R6L80" in after
+    # The line is taken away, and the cursor is there again.
+    assert text.rstrip().endswith("\x1b[2K") or text.rstrip()[-1] in ".,)"
+    assert text.rindex("\x1b[?25h") > text.rindex("\x1b[?25l")
+
+
+# ---- streams
+
+
+def test_a_full_disk_behind_standard_output_is_one_line(tmp_path):
+    for words in ((GROOVE, *QUICK, "--json", "-", "--quiet"), ("--help",)):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([sys.executable, "-m", "plan_cutters", *map(str, words)], cwd=tmp_path, env=ENV, stdout=full,
+                                  stderr=subprocess.PIPE, text=True, check=False)  # fmt: skip
+        assert done.returncode == 2
+        assert done.stderr == "plan-cutters: standard output: cannot be written: No space left on device\n"
+
+
+def closed(*words, cwd, close):
+    """The command in a shell that closes a stream."""
+    line = f'exec "$0" -m plan_cutters "$@" {close}'
+    return subprocess.run(["sh", "-c", line, sys.executable, *map(str, words)], cwd=cwd, env=ENV, capture_output=True,
+                          text=True, check=False)  # fmt: skip
+
+
+def test_closed_streams(tmp_path):
+    done = closed(GROOVE, *QUICK, "--json", "-", cwd=tmp_path, close=">&-")
+    assert (done.returncode, done.stderr) == (2, "plan-cutters: --json -: standard output is closed\n")
+    done = closed(GROOVE, *QUICK, *FILES, cwd=tmp_path, close="<&- >&- 2>&-")
+    assert done.returncode == 0
+    assert leftovers(tmp_path / "out") == ["annotated.glb", "annotated.step", "plan.json", "samples.npz"]
+
+
+def test_a_reader_that_has_seen_enough_ends_it_quietly(tmp_path):
+    for words in ((GROOVE, *QUICK, "--json", "-", "--quiet"), ("--list-cutters",)):
+        process = subprocess.Popen([sys.executable, "-m", "plan_cutters", *map(str, words)], cwd=tmp_path, env=ENV,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)  # fmt: skip
+        process.stdout.close()
+        assert process.stderr.read() == b""
+        process.stderr.close()
+        assert process.wait(120) == 141
+
+
+def test_standard_error_that_cannot_be_written_changes_nothing(tmp_path):
+    with open("/dev/full", "w") as full:
+        done = subprocess.run([sys.executable, "-m", "plan_cutters", str(GROOVE), *QUICK, *FILES], cwd=tmp_path, env=ENV,
+                              stdout=subprocess.PIPE, stderr=full, check=False)  # fmt: skip
+    assert (done.returncode, done.stdout) == (0, b"")
+    assert leftovers(tmp_path / "out") == ["annotated.glb", "annotated.step", "plan.json", "samples.npz"]
+
+
+# ---- names
+
+
+def test_files_with_odd_names(tmp_path):
+    odd = "a\n\x1b[31mß.step"
+    (tmp_path / odd).write_bytes(GROOVE.read_bytes())
+    done = run(odd, *QUICK, "--formats", "json", "-o", "out", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "\x1b" not in done.stderr
+    assert r"Take flat end D12 x 80 for a\n\x1b[31mß.step" in done.stderr
+    (tmp_path / "-x.step").write_bytes(GROOVE.read_bytes())
+    assert run("--quiet", "--formats", "json", "-o", "out", *QUICK, "--", "-x.step", cwd=tmp_path).returncode == 0
+
+
+def test_a_name_that_is_no_text(tmp_path):
+    (tmp_path / "bad\udcff.step").write_bytes(GROOVE.read_bytes())
+    done = run("bad\udcff.step", *QUICK, cwd=tmp_path)
+    assert_one_line(done, 3, r"bad\udcff.step: its name is no text")
+
+
+# ---- signals
+
+
+@pytest.mark.parametrize("until", ["reading", "judging"])
+def test_a_terminal_that_is_closed_ends_the_run(tmp_path, until):
+    process = subprocess.Popen(
+        [sys.executable, "-m", "plan_cutters", str(WAVES), "--grid", "401"], cwd=tmp_path, env=ENV, stderr=subprocess.PIPE,
+        text=True, preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL),  # whoever runs the tests may ignore it
+    )  # fmt: skip
+    said_until(process, until)
+    children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+    process.send_signal(signal.SIGHUP)
+    _, rest = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert rest.strip().splitlines()[-1] == "plan-cutters: interrupted; no file is half-written"
+    assert not any(Path(f"/proc/{child}").exists() for child in children)
+    assert leftovers(tmp_path) == []
+
+
+def test_a_run_that_shall_survive_its_terminal_does(tmp_path):
+    process = subprocess.Popen(
+        [sys.executable, "-m", "plan_cutters", str(GROOVE), *QUICK, "--formats", "json"], cwd=tmp_path, env=ENV,
+        stderr=subprocess.PIPE, text=True, preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN),
+    )  # fmt: skip
+    said_until(process, "reading")
+    process.send_signal(signal.SIGHUP)
+    process.communicate(timeout=60)
+    assert process.returncode == 0
+
+
+def test_an_interrupt_while_it_is_imported_is_one_line(tmp_path):
+    """An interrupt within the imports: what they say is one line."""
+    trap = "import builtins, os, signal\nreal = builtins.__import__\n"
+    trap += "def slow(name, *rest):\n    if name == 'click': os.kill(os.getpid(), signal.SIGINT)\n    return real(name, *rest)\n"
+    trap += "signal.signal(signal.SIGINT, signal.default_int_handler)\nbuiltins.__import__ = slow\n"
+    call = f"{trap}from plan_cutters.command.entry import plan_cutters; plan_cutters()"
+    done = subprocess.run([sys.executable, "-c", call, str(GROOVE)], cwd=tmp_path, env=ENV, capture_output=True, text=True,
+                          check=False)  # fmt: skip
+    assert (done.returncode, done.stderr) == (130, "plan-cutters: interrupted; no file is half-written\n")
+
+
+def test_an_interrupt_where_none_can_be_raised_is_taken_again():
+    code = """
+import os, signal, sys, time
+from plan_cutters.command.supervise import keep_interrupts
+keep_interrupts()
+class Deaf:
+    def __del__(self):
+        os.kill(os.getpid(), signal.SIGINT)
+        for _ in range(1000): pass
+Deaf()
+try:
+    time.sleep(20)
+except KeyboardInterrupt:
+    print("heard")
+"""
+    done = subprocess.run([sys.executable, "-c", code], env=ENV, capture_output=True, text=True, timeout=30, check=False,
+                          preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))  # fmt: skip
+    assert (done.stdout, done.stderr) == ("heard\n", "")
+
+
+@pytest.mark.parametrize("words", [("tools", SAMPLES / "shop.toml"), ("machines",), ("machines", "trunnion-ac")])
+@pytest.mark.parametrize(("close", "code"), [("| true", 141), (">/dev/full", 2), (">&-", 2)])
+def test_the_other_commands_survive_a_closed_output(tmp_path, words, close, code):
+    call = f"from plan_cutters.command.entry import {words[0]}; {words[0]}()"
+    line = f"""{sys.executable} -c '{call}' {" ".join(map(str, words[1:]))} {close}; exit ${{PIPESTATUS[0]}}"""
+    done = subprocess.run(["bash", "-c", line], cwd=tmp_path, env=ENV, capture_output=True, text=True, check=False)
+    assert done.returncode == code
+    assert done.stderr.count("\n") == (0 if code == 141 else 1)
+    assert "internal error" not in done.stderr

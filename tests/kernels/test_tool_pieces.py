@@ -1,0 +1,237 @@
+"""Pieces of tools against outlines with exact distances: never optimistic, and no point further out than what is stated."""
+
+import math
+
+import numpy as np
+import pytest
+
+from plan_cutters import Cutter
+from plan_cutters.domain import pieces as domain
+from plan_cutters.domain.assembly import assembly
+from plan_cutters.kernels import hit, pieces
+from plan_cutters.kernels.jit import kernel
+from plan_cutters.kernels.rows import Frame
+from plan_cutters.scene.conditions import tool_of
+from tests.support.reference import random_frame
+from tests.support.tool_reference import KINDS, Reference, in_row, random_cutter
+
+#: mm to which exact pieces agree.
+EXACT = 1e-9
+#: Shares of the corners of points in which a triangle is looked at first.
+GRID = np.array([(i, j, 7 - i - j) for i in range(8) for j in range(8 - i)]) / 7.0
+
+
+def test_domain_and_kernels_speak_of_the_same_columns():
+    names = (
+        "CYLINDER CONE ARC KIND LOW HIGH RADIUS SLOPE ROUND SCALE BOTTOM TOP WIDE PART COLUMNS FLUTES NECK SHANK HOLDER"
+    )
+    for name in names.split():
+        assert getattr(domain, name) == getattr(pieces, name), name
+
+
+@kernel
+def _hits(vertex, bodies, piece, mask, scratch, which, met):  # type: ignore[no-untyped-def]
+    for i in range(len(vertex)):
+        which[i], met[i, 0], met[i, 1], met[i, 2] = hit.triangle_hit(vertex, i, bodies[i], piece, mask, 0.0, scratch)
+
+
+def stood(rng, tool, reference, n):
+    """n postures of a tool in one mode: bodies (n, 14), tips (n, 3) and frames (n, 3, 3), and the mode."""
+    mode = rng.integers(len(tool.mode))
+    low, high = tool.mode[mode, 2:4]
+    bodies, tips, frames = np.empty((n, hit.BODY)), np.empty((n, 3)), np.empty((n, 3, 3))
+    # A few postures serve many triangles.
+    for i in range(0, n, 50):
+        normal, direction = random_frame(rng)
+        tilt = float(rng.choice([rng.uniform(low, high), low, high], p=[0.8, 0.1, 0.1]))
+        contact, some = rng.normal(0, 5, 3), slice(i, i + 50)
+        body, left = np.empty(hit.BODY), np.cross(normal, direction)
+        # At an end of the range another mode touches the same place.
+        hit.stand(body, Frame(contact, normal, direction, left), math.cos(tilt), math.sin(tilt), *tool.mode[mode, :2])
+        body[hit.P : hit.P + 3] = contact + tool.mode[mode, 1] * normal
+        bodies[some] = body
+        tips[some], frames[some] = reference.frame(contact, normal, direction, tilt, 0.5 * (low + high))
+    return bodies, tips, frames, mode
+
+
+def triangles(rng, reference, over, n):
+    """Triangles (n, 3, 3) as seen from the tip, x_T, y_T, axis: of all sizes, needles, points, across the axis, in seam planes;
+    most with a point next to where points begin to count.
+    """
+    wide, high = reference.wide, reference.end
+    place = rng.uniform([-1.3 * wide, -1.3 * wide, -0.15 * high], [1.3 * wide, 1.3 * wide, 1.15 * high], (n, 3))
+    # Go along a line from a point inside to one outside until what counts ends.
+    inner = np.stack([np.zeros(n), np.zeros(n), rng.uniform(0.02, 0.98, n) * high], 1)
+    inner[:, :2] += 0.3 * rng.normal(0, 1, (n, 2))
+    a, b = np.zeros(n), np.ones(n)
+    for _ in range(50):
+        middle = 0.5 * (a + b)
+        p = inner + middle[:, None] * (place - inner)
+        counts = over(np.hypot(p[:, 0], p[:, 1]), p[:, 2]) > 0
+        a, b = np.where(counts, middle, a), np.where(counts, b, middle)
+    off = 10.0 ** rng.uniform(-10, -1, n) * rng.choice([-1, 1], n)
+    share = np.where(rng.random(n) < 0.8, a + off, rng.random(n))
+    place = inner + share[:, None] * (place - inner)
+    size = 10.0 ** rng.uniform(-3, 1.7, n)
+    sides = size[:, None, None] * rng.standard_normal((n, 2, 3))
+    shape = rng.integers(0, 6, n)
+    sides[shape == 1, 1] = sides[shape == 1, 0] * (1 + 1e-9)
+    sides[shape == 2] = 0.0
+    # Tangent: across the way in.
+    way = place - inner
+    way /= np.linalg.norm(way, axis=1)[:, None]
+    flat = shape == 3
+    sides[flat] -= np.einsum("nij,nj->ni", sides[flat], way[flat])[..., None] * way[flat][:, None, :]
+    seam = shape == 4
+    sides[seam, :, 2] = 0.0
+    planes = np.array([0.0, reference.top, reference.end, *(e[2] for e in reference.whole.elements if e[0] == "line")])
+    place[seam, 2] = rng.choice(planes, int(seam.sum()))
+    corner = np.stack([place, place + sides[:, 0], place + sides[:, 1]], 1)
+    # Some corner, side or inner point is where the place was.
+    inside = shape == 5
+    corner[inside] -= (0.3 * sides[inside, 0] + 0.3 * sides[inside, 1])[:, None]
+    return np.ascontiguousarray(corner)
+
+
+def deepest(corner, over):
+    """The largest of what points of triangles count by: over a grid, then about the best of it ever closer."""
+    n, shares = len(corner), np.broadcast_to(GRID, (len(corner), *GRID.shape))
+    best = np.full(n, -np.inf)
+    for turn in range(5):
+        points = np.einsum("nkc,ncd->nkd", shares, corner)
+        value = over(np.hypot(points[..., 0], points[..., 1]), points[..., 2])
+        at = value.argmax(1)
+        best = np.maximum(best, value[np.arange(n), at])
+        if turn < 4:
+            centre = shares[np.arange(n), at][:, None]
+            shares = centre + (GRID - 1 / 3) * 0.3 ** (turn + 1)
+            shares = np.clip(shares, 0, 1)
+            shares = shares / shares.sum(2, keepdims=True)
+    return best
+
+
+def check(rng, kind, sort, cutters, n):
+    """Random cutters of a kind, their pieces against the reference; how many triangles hit and missed."""
+    scratch, hits, misses = hit.scratch(), 0, 0
+    for _ in range(cutters):
+        error, asked = float(10.0 ** rng.uniform(-3, -1.5)), rng.random() < 0.7
+        # As a plan asks for them; and as deep everywhere, as witnesses do.
+        flutes, rest = (4 * error, -error if sort == "cover" else error) if asked else (0.2, 0.2)
+        cutter = random_cutter(rng, kind, loose=asked)
+        reference = Reference(cutter)
+        made = assembly(cutter, flutes, rest, kind=sort)
+        inset, above = flutes - (cutter.allowance or 0.0), rest - (cutter.clearance or 0.0)
+        if not made.piece.shape[1]:
+            continue
+
+        def over(q, w, reference=reference, inset=inset, above=above):
+            return reference.over(q, w, inset, above)
+
+        tool = tool_of(made)
+        bodies, tips, frames, mode = stood(rng, tool, reference, n)
+        local = triangles(rng, reference, over, n)
+        vertex = np.ascontiguousarray(np.einsum("ncd,nde->nce", local, frames) + tips[:, None])
+        which, met = np.empty(n, np.int64), np.empty((n, 3))
+        piece = tool.piece[mode]
+        _hits(vertex, bodies, piece, (1 << len(piece)) - 1, scratch, which, met)
+        slack = EXACT + 1e-12 * np.abs(vertex).max()
+        if sort == "cover":
+            missed = (deepest(local, over) > slack) & (which < 0)
+            assert not missed.any(), (cutter, flutes, rest, local[missed][0])
+        some = which >= 0
+        w = met[some, 0] + made.mode[mode, 4]
+        q = np.hypot(met[some, 1], met[some, 2])
+        out = over(q, w) < -made.slack - slack
+        assert not out.any(), (cutter, flutes, rest, q[out][0], w[out][0], over(q, w)[out].min())
+        # The point it names is one of the triangle.
+        named = np.stack([met[some, 1], met[some, 2], w], 1)
+        assert off_triangle(local[some], named).max(initial=0.0) < 1e-7 * (1 + np.abs(local[some]).max(initial=0.0))
+        hits, misses = hits + int(some.sum()), misses + int((~some).sum())
+    return hits, misses
+
+
+def off_triangle(corner, point):
+    """How far points are from triangles at most: from their planes and beyond their sides."""
+    a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
+    to = point - corner[:, 0]
+    aa, ab, bb = ((x * y).sum(1) for x, y in ((a, a), (a, b), (b, b)))
+    at, bt = (to * a).sum(1), (to * b).sum(1)
+    area = aa * bb - ab * ab
+    thin = area <= 1e-5 * (aa + bb) ** 2
+    with np.errstate(all="ignore"):
+        u, v = (bb * at - ab * bt) / area, (aa * bt - ab * at) / area
+    u, v = np.where(thin, 0.0, u), np.where(thin, 0.0, v)
+    plane = np.linalg.norm(to - u[:, None] * a - v[:, None] * b, axis=1)
+    beyond = np.maximum(0.0, np.maximum.reduce([-u, -v, u + v - 1])) * np.sqrt(aa + bb)
+    return np.where(thin, 0.0, plane + beyond)
+
+
+@pytest.mark.parametrize(
+    ("cutter", "corner"),
+    [
+        (Cutter.form([(0, 0), (3, 0), (3, 20), (6, 20), (6, 40)], length=40.0), (3.0, 20.0)),
+        (Cutter.form([(0, 0), (6, 0), (6, 20), (3, 20), (3, 40)], length=40.0), (3.0, 20.0)),
+        (Cutter.flat(radius=3, length=40, flutes=20, shank_radius=6), (3.0, 20.0)),
+        (Cutter.bull(radius=6, corner_radius=2, length=40, flutes=20, shank_radius=3), (3.0, 20.0)),
+        (Cutter.flat(radius=3, length=20, holder="R9L10+R14L10"), (9.0, 30.0)),
+        (Cutter.lollipop(radius=4, neck_radius=2, length=40), (2.0, 4 + math.sqrt(12))),
+    ],
+    ids=["neck under shank", "wide under narrow", "shank", "thin shank", "holder", "lollipop"],
+)
+def test_nothing_hides_in_a_re_entrant_corner(cutter, corner):
+    """What lies over the corner is deeper than either side, moved in by as much, says: moved in alone, both would miss it."""
+    depth, reference = 0.2, Reference(cutter)
+    turn = np.linspace(0, 2 * math.pi, 2000)[:, None]
+    away = depth * np.linspace(1 + 1e-9, 1.5, 60)
+    q, w = (corner[0] + away * np.cos(turn)).ravel(), (corner[1] + away * np.sin(turn)).ravel()
+    deep = reference.whole.depth(q, w) > depth
+    rows = assembly(cutter, depth, depth).piece[0].copy()
+    height = assembly(cutter, depth, depth).mode[0, 4]
+    rows[:, [domain.LOW, domain.HIGH]] += height
+    rows[rows[:, domain.KIND] == domain.ARC, domain.SLOPE] += height
+    held = np.max([in_row(row, q, w) for row in rows], axis=0) > 0
+    assert held[deep].all()
+    # The trap is there: pieces moved in one by one leave some of these points out.
+    apart = assembly(cutter, depth, depth, kind="certain")
+    rows = apart.piece[0].copy()
+    rows[:, [domain.LOW, domain.HIGH]] += height
+    rows[rows[:, domain.KIND] == domain.ARC, domain.SLOPE] += height
+    assert not (np.max([in_row(row, q, w) for row in rows], axis=0) > 0)[deep].all()
+
+
+@pytest.mark.parametrize("sort", ["cover", "certain"])
+@pytest.mark.parametrize("kind", KINDS)
+def test_pieces_hold_what_counts_and_no_more(kind, sort):
+    rng = np.random.default_rng([KINDS.index(kind), sort == "cover"])
+    hits, misses = check(rng, kind, sort, 12, 400)
+    assert min(hits, misses) > 400
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_million_triangles_of_each_kind(kind):
+    rng = np.random.default_rng([KINDS.index(kind), 7])
+    hits, misses = check(rng, kind, "cover", 500, 2000)
+    assert hits + misses > 900_000
+    check(rng, kind, "certain", 100, 2000)
+
+
+def test_a_triangle_without_area_hits_where_its_longest_side_does():
+    """Its normal is nothing but rounding: no plane across it may part it from a piece."""
+    from plan_cutters.domain.pieces import ARC, FLUTES, row_of
+    from plan_cutters.kernels.pieces import polygon_hit
+
+    rng, met = np.random.default_rng(0), 0
+    for radius, around in ((0.0, 3.0), (2.0, 1.5), (12.0, 1.5), (-20.0, 26.0)):
+        piece = np.array([row_of(ARC, -math.inf, math.inf, radius, 0.5, around, FLUTES)])
+        for _ in range(400):
+            through = rng.normal(0.0, 0.5 * (abs(radius) + around), 3)
+            along = rng.standard_normal(3) * 40.0
+            corner = np.stack([through - 0.3 * along, through + 0.7 * along, through + 0.7 * along * (1 + 1e-9)])
+            points = corner[0] + np.linspace(0.0, 1.0, 20_001)[:, None] * (corner[1] - corner[0])
+            q = np.hypot(points[:, 1], points[:, 2])
+            deep = (around - np.hypot(np.maximum(0.0, q - radius), points[:, 0] - 0.5)).max()
+            if abs(deep) > 1e-3:
+                assert polygon_hit(corner.copy(), 3, piece, 0, 0.0)[0] == (deep > 0.0)
+                met += deep > 0.0
+    assert met > 200

@@ -1,0 +1,128 @@
+"""What the page says in words: sentences, holders by name, what is not sure told as not sure; tables that are whole."""
+
+import re
+from html.parser import HTMLParser
+
+import pytest
+
+from plan_cutters import plan
+from plan_cutters.document.answers import ChangeEntry
+from plan_cutters.document.frozen import Posture
+from plan_cutters.document.model import WitnessEntry
+from plan_cutters.library import read_library
+from plan_cutters.report.page import words, write
+from tests.support.places import ROOT
+
+
+class Rows(HTMLParser):
+    """Rows of tables: the columns that each one spans."""
+
+    def __init__(self):
+        super().__init__()
+        self.tables, self.open = [], []
+
+    def handle_starttag(self, tag, attrs):
+        if tag == "table":
+            self.tables.append([])
+        elif tag == "tr":
+            self.tables[-1].append(0)
+        elif tag in ("td", "th"):
+            self.tables[-1][-1] += int(dict(attrs).get("colspan", 1))
+
+
+@pytest.fixture(scope="module")
+def planned():
+    """A closed block with a sculptured top, the cutters of a library in their chuck, and a vise jaw in their way."""
+    return plan(
+        ROOT / "samples" / "pocket_top.step", cutters=read_library(ROOT / "samples" / "shop.toml"), grid=7, faces="all",
+        area_budget=0, machine="tilt:40", fixtures=["box:15,60,40@62,-10,-10"], answers="stick-out,mend",
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def text(planned):
+    return write.page(planned, triangles=2000).decode()
+
+
+def test_every_row_of_a_table_is_as_wide_as_its_head(text):
+    found = Rows()
+    found.feed(re.sub(r"(?s)<script.*?</script>", "", text))
+    assert len(found.tables) >= 4
+    for table in found.tables:
+        assert set(table) == {table[0]}, table
+
+
+def test_the_first_lines_name_the_holder_and_how_short_it_may_be(planned, text):
+    head = text[text.index("<header") : text.index("</header>")]
+    entry = next(c for c in planned.plan.cutters if c.id == planned.shown)
+    assert entry.holder == "ER32 chuck"
+    assert f"It stands {entry.length:g} mm out of ER32 chuck" in head
+    assert f"It can be held shorter: {words.up(entry.least_stick_out.least_mm)} are enough for what it reaches." in head
+
+
+def test_what_would_help_is_told_once_and_in_sentences(planned, text):
+    assert "does not help: does not help" not in text.lower()
+    assert "Does not help:" not in text
+    told = [words.change(each) for c in planned.plan.cutters if c.mend for each in c.mend.changes]
+    for subject, rest in told:
+        assert subject[0].isupper()
+        assert rest.startswith(("helps: ", "may help: ", "does not help: ", "is not decided: "))
+        assert rest.endswith(".")
+
+
+@pytest.mark.parametrize(
+    ("helps", "asked", "why", "said"),
+    [
+        (True, 4.0, "a radius of 4 mm instead of 6 mm", "helps: a radius of 4 mm instead of 6 mm."),
+        (None, 4.0, "a radius of 4 mm instead of 6 mm, unless", "may help: a radius of 4 mm instead of 6 mm, unless."),
+        (
+            None,
+            4.0,
+            "is not decided: with 4 mm, 2 samples are undecided",
+            "is not decided: with 4 mm, 2 samples are undecided.",
+        ),
+        (False, None, "does not help: there is no thinner cutter", "does not help: there is no thinner cutter."),
+    ],
+)
+def test_each_change_is_a_sentence(helps, asked, why, said):
+    entry = ChangeEntry(
+        thing="radius",
+        helps=helps,
+        now=6.0,
+        asked=asked,
+        beyond=None,
+        left=0,
+        looked=1,
+        verified=1,
+        cutter=None,
+        why=why,
+    )
+    assert words.change(entry) == ("A smaller radius", said)
+
+
+def witness(**more):
+    best = Posture(tilt=71.0, rotation=300.0, axis=(0.0, 0.0, 1.0))
+    return WitnessEntry(**({"point": (0, 0, 0), "face": "F1", "reason": "rear_gouge", "obstacle_face": "fixture:table",
+                            "obstacle_point": (0, 0, 0), "best_posture": best, "depth_mm": 2.9} | more))  # fmt: skip
+
+
+def test_what_is_undecided_is_not_told_as_blocked():
+    sure, unsure = words.spot(witness(verdict="inaccessible")), words.spot(witness(verdict="undecided"))
+    assert "is still 2.9 mm too deep in fixture table" in sure
+    assert "Rear gouge, undecided." in unsure
+    assert "may reach 2.9 mm into the tool" in unsure
+    assert "too deep" not in unsure
+    nothing = {"best_posture": None, "depth_mm": None}
+    assert words.spot(witness(**nothing)) == "Rear gouge. Fixture table is in the way."
+    assert words.spot(witness(verdict="undecided", **nothing)).endswith("may be in the way.")
+
+
+def test_witnesses_have_the_verdicts_of_their_samples(planned):
+    from plan_cutters.domain.verdicts import INACCESSIBLE, UNDECIDED
+    from plan_cutters.report.page.facts import spots_of
+
+    words_of = {INACCESSIBLE: "inaccessible", UNDECIDED: "undecided"}
+    spots, _ = spots_of(planned)
+    assert spots
+    for spot in spots:
+        assert spot.witness.verdict == words_of[planned.reaches[spot.cutter].verdict[spot.sample]]

@@ -1,0 +1,75 @@
+"""Random contacts in cells that are called served, and points of the exact surface around them."""
+
+import math
+
+import numpy as np
+
+from cad_io.face.evaluate import evaluate
+from cad_io.part.orient import orient
+from cad_io.sample import sample
+from cad_io.tessellate import tessellate
+from plan_cutters import Machine, plan
+from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.obstacles import Obstacles
+from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.stages.between import between
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def served(part, cutter, *, budget, tolerance=0.01, chord=None, machine="unlimited", jobs=2, **how):
+    """What `between` finds after a plan, and the geometry that it is asked of."""
+    machine = Machine.parse(machine)
+    result = plan(part, cutters=[cutter], tolerance=tolerance, area_budget=0, machine=machine, **how)
+    whole, samples = result.part, result.samples
+    side = orient(whole, towards=UP, flip=False)
+
+    def geometry(face, uv):
+        point, shape = evaluate(whole, side, face, uv)
+        return point, shape.normal, shape.direction_max, shape.curvature
+
+    around = Surroundings.sheet(Obstacles(tessellate(whole, chord or 0.2 * tolerance)))
+    conditions = Conditions(machine, UP, result.postures, around, tolerance, jobs)
+    found = between(samples, result.reaches[cutter.id], cutter, whole, side, conditions, budget=budget)
+    return found, geometry, whole
+
+
+def dense(whole, spacing):
+    """Points all over the part's exact surface."""
+    return sample(whole, orient(whole, towards=UP, flip=False), spacing=spacing,
+                  faces=[f.number for f in whole.faces]).point  # fmt: skip
+
+
+def wandering(found, geometry, whole, cloud, count, rng):
+    """Random contacts in served cells: each with its normal, axis and x_T, and points of the surface all over and very near it,
+    where the clearance is smallest."""
+    cells = found.cells
+    for row in rng.choice(len(cells.face), count):
+        face = int(cells.face[row])
+        u0, u1, v0, v1 = whole.trim(face).box
+        within = ([u0, v0], [u1, v1])  # beyond, the surface goes on, but not the face
+        uv = cells.uv[row] + rng.uniform(-0.5, 0.5, 2) * cells.span[row]
+        if not whole.trim(face).inside(uv[:1], uv[1:])[0]:
+            continue
+        contact, normal = (x[0] for x in geometry(face, uv[None])[:2])
+        axis = cells.axis[row]
+        across = normal - (normal @ axis) * axis
+        if np.linalg.norm(across) < 1e-9:  # the axis is the normal: any side will do
+            across = rng.standard_normal(3)
+            across -= (across @ axis) * axis
+        x_t = -across / np.linalg.norm(across)
+        offsets = np.concatenate([rng.standard_normal((400, 2)) * size for size in (0.5, 2.0, 8.0)])
+        near = geometry(face, np.clip(uv + offsets * cells.span[row], *within))[0]
+        yield contact, normal, axis, x_t, np.concatenate([cloud, near])
+
+
+def deepest(found, geometry, whole, cutter, cloud, count, rng):
+    """Largest depth of the surface in the cutter over random contacts in served cells, mm."""
+    worst = -math.inf
+    for contact, _, axis, x_t, points in wandering(found, geometry, whole, cloud, count, rng):
+        centre = contact - cutter.radius * x_t
+        height = (points - centre) @ axis
+        radial = np.linalg.norm(points - centre - height[:, None] * axis, axis=1)
+        depth = np.minimum(np.minimum(height, cutter.length - height), cutter.radius - radial)
+        worst = max(worst, float(depth.max()))
+    return worst

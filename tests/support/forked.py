@@ -1,0 +1,176 @@
+"""Commands in a fork of the tests' own process: a process of their own, without the seconds that an interpreter takes to start.
+
+A copy of this process, which has imported the CAD kernel and the compiler, runs the command's `main` with streams, folder,
+environment and signals of its own; the worker that the command starts is a fork, too. Tests that are about the start of a
+process, about signals to it or about what it imports start a real one.
+"""
+
+import faulthandler
+import functools
+import importlib
+import os
+import select
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import traceback
+import warnings
+from types import SimpleNamespace
+
+from plan_cutters.command.entry import MODULES
+from tests.support.places import ROOT
+
+ENV = {**os.environ, "PYTHONPATH": f"{ROOT / 'plugin'}{os.pathsep}{ROOT}"}
+
+
+def run(*words, cwd=None, command="plan-cutters", environment=None, bare=False, timeout=240):
+    """Run a command with its words: the `subprocess.CompletedProcess` that a process of its own would give.
+
+    `bare`: what imports the CAD kernel or the compiler, or starts a process, fails.
+    """
+    if not bare:
+        _warm(command)
+    words = [str(word) for word in words]
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+        pid = os.fork()
+        if pid == 0:
+            _live(lambda: _command(command, words, cwd, ENV if environment is None else environment, (out, err), bare))
+        copy = _Copy(pid)
+        try:
+            code = copy.wait(timeout)
+        finally:
+            if copy.poll() is None:
+                os.kill(pid, signal.SIGKILL)
+        said = []
+        for stream in (out, err):
+            stream.seek(0)
+            said.append(stream.read().decode(errors="backslashreplace").replace("\r\n", "\n"))
+    return subprocess.CompletedProcess([command, *words], code, *said)
+
+
+@functools.cache
+def _warm(command):
+    """Import what the command imports, and load its machine code, once for all copies."""
+    importlib.import_module(f"plan_cutters.command.{MODULES[command]}")
+    if command in ("plan-cutters", "plan-cutters-map"):
+        from plan_cutters import plan
+
+        with tempfile.TemporaryDirectory() as folder:
+            found = plan(ROOT / "samples/v_groove.step", cutters=["R6L80"], grid=5, posture_maps=True)
+            found.write(folder)
+
+
+def _live(work):
+    """Work in a copy of this process and end it, whatever happens: no test may go on in the copy."""
+    code = 99
+    try:
+        work()
+        code = 0
+    except SystemExit as ended:
+        code = ended.code if isinstance(ended.code, int) else int(ended.code is not None)
+    except KeyboardInterrupt:
+        code = 130
+    except BaseException:
+        os.write(2, traceback.format_exc().encode())
+    finally:
+        try:
+            for stream in (sys.stdout, sys.stderr):
+                if stream is not None:
+                    stream.flush()
+        finally:
+            os._exit(code)
+
+
+def _command(command, words, cwd, environment, streams, bare):
+    for number, stream in enumerate((os.open(os.devnull, os.O_RDONLY), *(each.fileno() for each in streams))):
+        os.dup2(stream, number)
+    sys.stdin, sys.stdout = os.fdopen(0), os.fdopen(1, "w", encoding="utf-8")
+    sys.stderr = os.fdopen(2, "w", encoding="utf-8", errors="backslashreplace")
+    os.environ.clear()
+    os.environ.update(environment)
+    os.chdir(cwd or os.getcwd())
+    faulthandler.disable()
+    warnings.resetwarnings()
+    for each in (DeprecationWarning, PendingDeprecationWarning, ImportWarning, ResourceWarning):
+        warnings.simplefilter("ignore", each)
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    sys.argv = [command, *words]
+    if bare:
+        for name in [n for n in sys.modules if n.partition(".")[0] in ("plan_cutters", "cad_io", "OCP", "numba")]:
+            del sys.modules[name]
+        sys.modules["OCP"] = sys.modules["numba"] = subprocess.Popen = None
+    worker = importlib.import_module("plan_cutters.command.worker")
+    if not bare:
+        worker.subprocess = SimpleNamespace(**{**vars(subprocess), "Popen": _worker})
+    if bare:
+        # No worker begins early.
+        return importlib.import_module(f"plan_cutters.command.{MODULES[command]}").main()
+    entry = importlib.import_module("plan_cutters.command.entry")
+    vars(entry)[next(name for name, each in _ENTRIES.items() if each == command)]()
+
+
+_ENTRIES = {
+    "plan_cutters": "plan-cutters",
+    "tools": "plan-cutters-tools",
+    "machines": "plan-cutters-machines",
+    "point_map": "plan-cutters-map",
+}
+
+
+def _worker(words, *, env, start_new_session, pass_fds):
+    """Start the command's worker: a copy of this process in place of a new interpreter that calls the same entry."""
+    python, option, run, *words = words
+    name = run.partition(" import ")[2].partition(";")[0]
+    assert (python, option) == (sys.executable, "-c"), "the worker is started in another way: copy that"
+    assert run == f"from plan_cutters.command.entry import {name}; {name}()"
+
+    def work():
+        if start_new_session:
+            os.setsid()
+        # Who waits for the end of a pipe must not wait for this copy.
+        first = 3
+        for number in sorted(pass_fds):
+            os.closerange(first, number)
+            first = number + 1
+        os.closerange(first, 1 << 12)
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            signal.signal(number, signal.SIG_DFL)
+        os.environ.clear()
+        os.environ.update(env)
+        sys.argv = [_ENTRIES[name], *words]
+        vars(importlib.import_module("plan_cutters.command.entry"))[name]()
+
+    pid = os.fork()
+    if pid == 0:
+        _live(work)
+    return _Copy(pid)
+
+
+class _Copy:
+    """A copy of this process, with what of `subprocess.Popen` is used here and in `supervise`."""
+
+    def __init__(self, pid):
+        self.pid, self.returncode = pid, None
+
+    def poll(self):
+        if self.returncode is None:
+            pid, status = os.waitpid(self.pid, os.WNOHANG)
+            if pid:
+                self.returncode = os.waitstatus_to_exitcode(status)
+        return self.returncode
+
+    def wait(self, timeout=None):
+        ends = time.monotonic() + (timeout if timeout is not None else 1e9)
+        while self.poll() is None:
+            if time.monotonic() > ends:
+                raise subprocess.TimeoutExpired("a copy of the tests' process", timeout)
+            select.select([], [], [], 0.005)
+        return self.returncode
+
+    def send_signal(self, number):
+        if self.poll() is None:
+            os.kill(self.pid, number)
