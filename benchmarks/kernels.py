@@ -40,7 +40,7 @@ COUNTED = 10_000
 
 # Small kernels are called from compiled loops: a call from Python costs more than they do.
 @kernel
-def many_point_arcs(n, at):  # type: ignore[no-untyped-def]
+def many_point_arcs(n, at):
     total = 0.0
     for i in range(n):
         q = at[i % len(at)]
@@ -49,7 +49,7 @@ def many_point_arcs(n, at):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def many_local_gouges(n, at):  # type: ignore[no-untyped-def]
+def many_local_gouges(n, at):
     total = 0.0
     for i in range(n):
         q = at[i % len(at)]
@@ -58,7 +58,7 @@ def many_local_gouges(n, at):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def many_axis_arcs(n, at, out):  # type: ignore[no-untyped-def]
+def many_axis_arcs(n, at, out):
     total = 0
     for i in range(n):
         q = at[i % len(at)]
@@ -67,7 +67,7 @@ def many_axis_arcs(n, at, out):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def many_removals(n, at, intervals):  # type: ignore[no-untyped-def]
+def many_removals(n, at, intervals):
     count = 1
     for i in range(n):
         if i % 8 == 0:
@@ -78,7 +78,7 @@ def many_removals(n, at, intervals):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def many_boxes(n, box, bodies, piece):  # type: ignore[no-untyped-def]
+def many_boxes(n, box, bodies, piece):
     total = 0
     for i in range(n):
         total += hit.alive(box, i % len(box), bodies[i % len(bodies)], piece, 1, 0.0)
@@ -86,7 +86,7 @@ def many_boxes(n, box, bodies, piece):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def many_triangles(n, vertex, which, bodies, piece, scratch):  # type: ignore[no-untyped-def]
+def many_triangles(n, vertex, which, bodies, piece, scratch):
     total = 0
     for i in range(n):
         total += hit.triangle_hit(vertex, which[i % len(which)], bodies[i % len(bodies)], piece, 1, 0.0, scratch)[0]
@@ -94,7 +94,7 @@ def many_triangles(n, vertex, which, bodies, piece, scratch):  # type: ignore[no
 
 
 @kernel
-def many_walks(n, built, bodies, piece, scratch):  # type: ignore[no-untyped-def]
+def many_walks(n, built, bodies, piece, scratch):
     total = 0
     for i in range(n):
         body = bodies[i % len(bodies)]
@@ -103,7 +103,7 @@ def many_walks(n, built, bodies, piece, scratch):  # type: ignore[no-untyped-def
 
 
 @kernel
-def many_blocks(n, view, gap, tool, margin):  # type: ignore[no-untyped-def]
+def many_blocks(n, view, gap, tool, margin):
     total = 0.0
     for i in range(n):
         lanes._boxes_pass(view, i % len(view), 0.8, 0.6, gap, 1, tool, margin)
@@ -112,7 +112,7 @@ def many_blocks(n, view, gap, tool, margin):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def many_leaves(n, leaves, gap, tool, margin):  # type: ignore[no-untyped-def]
+def many_leaves(n, leaves, gap, tool, margin):
     total = 0.0
     for i in range(n):
         seen = leaves[i % len(leaves)]

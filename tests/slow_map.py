@@ -16,7 +16,7 @@ _PARTS = 400
 
 
 @numba.njit(error_model="numpy")
-def _enter(first, last, count, part):  # type: ignore[no-untyped-def]
+def _enter(first, last, count, part):
     """Enter a free interval among those (room, 2), ascending, joined with what it touches; (how many, what found no room)."""
     for i in range(count):
         if part[i, 1] == first:
@@ -32,7 +32,7 @@ def _enter(first, last, count, part):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(error_model="numpy")
-def _ordered(count, part):  # type: ignore[no-untyped-def]
+def _ordered(count, part):
     """Put free intervals in ascending order and join those that touch; how many are left."""
     for i in range(1, count):
         first, last, at = part[i, 0], part[i, 1], i
@@ -51,7 +51,7 @@ def _ordered(count, part):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(error_model="numpy")
-def tool_map(rows, contacts, ranges, tool, narrowest, tree, part, count_out, undecided):  # type: ignore[no-untyped-def]
+def tool_map(rows, contacts, ranges, tool, narrowest, tree, part, count_out, undecided):
     """Free tilts of samples at all rotations; parameters as for `free_map.free_map`.
 
     Parameters

@@ -30,7 +30,7 @@ def test_domain_and_kernels_speak_of_the_same_columns():
 
 
 @kernel
-def _hits(vertex, bodies, piece, mask, scratch, which, met):  # type: ignore[no-untyped-def]
+def _hits(vertex, bodies, piece, mask, scratch, which, met):
     for i in range(len(vertex)):
         which[i], met[i, 0], met[i, 1], met[i, 2] = hit.triangle_hit(vertex, i, bodies[i], piece, mask, 0.0, scratch)
 

@@ -16,7 +16,7 @@ ON_LIMIT = 5e-13
 
 
 @kernel
-def point_arc(height, px, py, tilt, radius_offset, radius, low, high):  # type: ignore[no-untyped-def]
+def point_arc(height, px, py, tilt, radius_offset, radius, low, high):
     """Tilts at which an obstacle point lies in the cylinder, the rotation held.
 
     Turning the tool about the line through P along y_T keeps the point's distance d from P across that line and
@@ -60,7 +60,7 @@ def point_arc(height, px, py, tilt, radius_offset, radius, low, high):  # type: 
 
 
 @kernel
-def local_gouge(kappa_max, kappa_min, cosine, sine, offset, radius):  # type: ignore[no-untyped-def]
+def local_gouge(kappa_max, kappa_min, cosine, sine, offset, radius):
     """Tilts without local gouging at a rotation, from and to, rad; nan if there are none.
 
     A tool that touches with a centre of curvature `offset` from its axis and a radius of curvature there, mm, curves by 1 /
@@ -96,7 +96,7 @@ def local_gouge(kappa_max, kappa_min, cosine, sine, offset, radius):  # type: ig
 
 
 @kernel
-def axis_arcs(along_n, along_f, limit_cos, low, high, out):  # type: ignore[no-untyped-def]
+def axis_arcs(along_n, along_f, limit_cos, low, high, out):
     """Tilts within [low, high] whose axis stays within a cone about the setup axis m.
 
     Parameters

@@ -48,7 +48,7 @@ class Turning(NamedTuple):
 
 
 @kernel
-def _span(p, q, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
+def _span(p, q, ca, sa, cb, sb):
     """Least and most of p cos T + q sin T over a gap shorter than 180 deg."""
     u, v, du, dv = p * ca + q * sa, p * cb + q * sb, q * ca - p * sa, q * cb - p * sb
     size = np.sqrt(p * p + q * q)
@@ -57,21 +57,21 @@ def _span(p, q, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def most(p, q, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
+def most(p, q, ca, sa, cb, sb):
     """The most of p cos T + q sin T over a gap shorter than 180 deg."""
     within = (q * ca - p * sa > 0.0) & (q * cb - p * sb < 0.0)
     return np.sqrt(p * p + q * q) if within else max(p * ca + q * sa, p * cb + q * sb)
 
 
 @kernel
-def edge_of(bound, j):  # type: ignore[no-untyped-def]
+def edge_of(bound, j):
     """A bound as numbers: what lanes have in common must not be read again in each."""
     loose = 1.0 if bound[j, Q0] < 0.0 else 0.0
     return bound[j, Q0], bound[j, F0], bound[j, Q1], bound[j, F1], bound[j, GROWN], bound[j, SIDE], loose
 
 
 @kernel
-def rim_line(edge, gx, gy, gz, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
+def rim_line(edge, gx, gy, gz, ca, sa, cb, sb):
     """A line (slope, value at 0) that bounds how far a rim of radius 1 goes along a direction of the part over a gap.
 
     It goes hypot(x, g_y), x what the direction has along x_T: convex in x, so below its chord. Where the radius is negative the
@@ -87,7 +87,7 @@ def rim_line(edge, gx, gy, gz, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def swept(edge, offset, line, gx, gz, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
+def swept(edge, offset, line, gx, gz, ca, sa, cb, sb):
     """How far a bound goes at most, at any tilt of a gap, along a direction of the part of length 1, from the centre; `line` as
     `_line` gives it.
     """
@@ -100,13 +100,13 @@ def swept(edge, offset, line, gx, gz, ca, sa, cb, sb):  # type: ignore[no-untype
 
 
 @kernel
-def _put_bound(bound, j, q0, f0, q1, f1, grown, slope):  # type: ignore[no-untyped-def]
+def _put_bound(bound, j, q0, f0, q1, f1, grown, slope):
     bound[j, Q0], bound[j, F0], bound[j, Q1], bound[j, F1] = q0, f0, q1, f1
     bound[j, GROWN], bound[j, SIDE], bound[j, THERE] = grown, slope, 1.0
 
 
 @kernel
-def _bounds_of(piece, k, bound):  # type: ignore[no-untyped-def]
+def _bounds_of(piece, k, bound):
     """Write the bounds of piece k."""
     radius, slope, wide = piece[k, RADIUS], piece[k, SLOPE], piece[k, WIDE]
     if piece[k, KIND] != ARC:
@@ -119,7 +119,7 @@ def _bounds_of(piece, k, bound):  # type: ignore[no-untyped-def]
 
 
 @entry
-def turning_of(piece, offset, low, high):  # type: ignore[no-untyped-def]
+def turning_of(piece, offset, low, high):
     """What posture maps need to know of a tool in one mode.
 
     Parameters

@@ -84,7 +84,7 @@ class _Room(NamedTuple):
 
 
 @kernel
-def _grown(piece, out, radial, axial):  # type: ignore[no-untyped-def]
+def _grown(piece, out, radial, axial):
     """Write pieces that hold these, moved by no more than `radial` across the axis and `axial` along it."""
     for k in range(len(piece)):
         for c in range(COLUMNS):
@@ -105,7 +105,7 @@ def _grown(piece, out, radial, axial):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _bodies(body, piece, frame, h, pose, slides, grow, room, finest):  # type: ignore[no-untyped-def]
+def _bodies(body, piece, frame, h, pose, slides, grow, room, finest):
     """Write the bodies of a contact that wanders by no more than h: the whole, then in 2, 6 and 18 parts along the lean.
 
     Each holds those that it is cut into. `pose` is (sine, cosine) of the tilt. `slides`: what a step along the lean moves the
@@ -132,7 +132,7 @@ def _bodies(body, piece, frame, h, pose, slides, grow, room, finest):  # type: i
 
 
 @kernel
-def _reaches(vertex, i, mask, room):  # type: ignore[no-untyped-def]
+def _reaches(vertex, i, mask, room):
     """Whether triangle i, which reaches into the whole, reaches into one of its finest parts."""
     bodies, pieces, scratch = room.bodies, room.pieces, room.scratch
     for half in range(2):
@@ -151,7 +151,7 @@ def _reaches(vertex, i, mask, room):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _blocks(i, mask, nose, whole, frame, face, tree, triangle_face, room):  # type: ignore[no-untyped-def]
+def _blocks(i, mask, nose, whole, frame, face, tree, triangle_face, room):
     """Whether triangle i reaches into a piece of the moved cutter; into its nose only if it is not near."""
     vertex = tree.vertex
     room.scratch.looked[0] += _TRIANGLE
@@ -162,7 +162,7 @@ def _blocks(i, mask, nose, whole, frame, face, tree, triangle_face, room):  # ty
 
 
 @kernel
-def _first(hint, nose, whole, frame, face, tree, triangle_face, room):  # type: ignore[no-untyped-def]
+def _first(hint, nose, whole, frame, face, tree, triangle_face, room):
     """First triangle found that is in the way of the moved cutter, `hint` (-1: none) before others."""
     vertex, box, depth = tree.vertex, tree.box, tree.depth
     stack, masks, count, first, top = room.scratch.stack, room.scratch.masks, len(vertex), (1 << depth) - 1, 1
@@ -190,7 +190,7 @@ def _first(hint, nose, whole, frame, face, tree, triangle_face, room):  # type: 
 
 
 @kernel
-def _motion(row, patches, nodes, frame, sine, h, turn, offset, rise):  # type: ignore[no-untyped-def]
+def _motion(row, patches, nodes, frame, sine, h, turn, offset, rise):
     """How a contact's cutter moves and turns about its axis as the contact wanders.
 
     Returns the surface's curvature along the lean, across it and mixed; the turn within the patch about the axis, in all (psi)
@@ -212,13 +212,13 @@ def _motion(row, patches, nodes, frame, sine, h, turn, offset, rise):  # type: i
 
 
 @kernel
-def _spared(distance, safe, chord):  # type: ignore[no-untyped-def]
+def _spared(distance, safe, chord):
     """By how much a paraboloid may curve more than the nose within a distance and gouge no deeper than is allowed, 1/mm."""
     return 2.0 * max(0.0, safe - chord) / max(distance * distance, 1e-12)
 
 
 @kernel
-def _extent(most, last, full, h, pose, flat, psi, turn, nose, safe, chord, near):  # type: ignore[no-untyped-def]
+def _extent(most, last, full, h, pose, flat, psi, turn, nose, safe, chord, near):
     """The largest of the distances up to row `last` within which curvature alone keeps the surface from going too deep.
 
     Returns its row, -1 if there is none. Writes what `near_by` takes.
@@ -261,7 +261,7 @@ def _extent(most, last, full, h, pose, flat, psi, turn, nose, safe, chord, near)
 
 
 @kernel
-def _halvings(most, h, pose, flat, nose, safe, chord, near):  # type: ignore[no-untyped-def]
+def _halvings(most, h, pose, flat, nose, safe, chord, near):
     """How often a patch must be halved until curvature holds right at its contact, as far as the nodes about it now tell."""
     halved = h
     for count in range(1, MOST_HALVINGS):
@@ -275,7 +275,7 @@ def _halvings(most, h, pose, flat, nose, safe, chord, near):  # type: ignore[no-
 
 
 @kernel
-def _too_steep(pose, turn, flat, nose):  # type: ignore[no-untyped-def]
+def _too_steep(pose, turn, flat, nose):
     """Whether the normal turns too much within a patch for the tilt: the cutter must lean, and touch with the same mode, all over
     it.
     """
@@ -289,7 +289,7 @@ def _too_steep(pose, turn, flat, nose):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, room):  # type: ignore[no-untyped-def]
+def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, room):
     """What `cover` writes for a contact, and the triangle in the way, -1 if there is none; `blocker` is looked at first."""
     tool, safe, chord = sweeping.tool, sweeping.safe, sweeping.chord
     f, t, near = room.f, room.t, room.near
@@ -366,7 +366,7 @@ def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, 
 
 
 @entry
-def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, outlook):  # type: ignore[no-untyped-def]
+def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, outlook):
     """Decide for contacts on one face whether their axis serves every contact within a patch about them.
 
     Parameters

@@ -45,7 +45,7 @@ class Room(NamedTuple):
 
 
 @entry
-def room_to_cut():  # type: ignore[no-untyped-def]
+def room_to_cut():
     """Room to cut gaps in."""
     return Room(
         np.empty((3, 3)), np.empty((8, 3)), np.empty((8, 3)), np.empty(BODY), np.empty((64, 2)), np.empty((ARCS, 2)),
@@ -55,14 +55,14 @@ def room_to_cut():  # type: ignore[no-untyped-def]
 
 
 @kernel
-def flutes(turning, k):  # type: ignore[no-untyped-def]
+def flutes(turning, k):
     """Piece k as the eight sides take it."""
     piece = turning.piece
     return Cylinder(turning.offset, piece[k, RADIUS], piece[k, LOW], piece[k, HIGH], piece)
 
 
 @kernel
-def _meets(gap, count, first, last):  # type: ignore[no-untyped-def]
+def _meets(gap, count, first, last):
     """Whether an arc has tilts of any gap."""
     meets = False
     for g in range(count):
@@ -71,7 +71,7 @@ def _meets(gap, count, first, last):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def take_point(x, y, z, gap, count, turning, k, arcs):  # type: ignore[no-untyped-def]
+def take_point(x, y, z, gap, count, turning, k, arcs):
     """Take the tilts at which a point, along f, t and n from the centre, is in piece k out of the gaps, or some of them.
 
     (The count of gaps, whether any was cut.)
@@ -110,7 +110,7 @@ def take_point(x, y, z, gap, count, turning, k, arcs):  # type: ignore[no-untype
 
 
 @kernel
-def _fill(seen, corner):  # type: ignore[no-untyped-def]
+def _fill(seen, corner):
     """Write a triangle of rows (x, z, y) into all lanes."""
     for k in range(3):
         for lane in range(LANES):
@@ -119,7 +119,7 @@ def _fill(seen, corner):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _out(corner, ca, sa, cb, sb, turning, k, room):  # type: ignore[no-untyped-def]
+def _out(corner, ca, sa, cb, sb, turning, k, room):
     """Whether a triangle, rows (x, z, y) from the centre, is shown to stay out of piece k at all tilts of a gap."""
     room.spent[0] += 1
     if (turning.eight >> k) & 1:
@@ -130,7 +130,7 @@ def _out(corner, ca, sa, cb, sb, turning, k, room):  # type: ignore[no-untyped-d
 
 
 @kernel
-def _quarters(part, seen):  # type: ignore[no-untyped-def]
+def _quarters(part, seen):
     """Write the four quarters of a triangle (3, 3), rows (x, z, y), into lanes, the rest again."""
     for lane in range(LANES):
         for k in range(3):
@@ -144,7 +144,7 @@ def _quarters(part, seen):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _out_in_parts(corner, ca, sa, cb, sb, turning, k, room):  # type: ignore[no-untyped-def]
+def _out_in_parts(corner, ca, sa, cb, sb, turning, k, room):
     """`_out` for a triangle that is cut into four again and again."""
     parts, times, seen, piece, offset = room.parts, room.times, room.seen, turning.piece, turning.offset
     for column in range(3):
@@ -180,7 +180,7 @@ def _out_in_parts(corner, ca, sa, cb, sb, turning, k, room):  # type: ignore[no-
 
 
 @kernel
-def _in_the_way(vertex, i, frame, tilt, turning, k, room):  # type: ignore[no-untyped-def]
+def _in_the_way(vertex, i, frame, tilt, turning, k, room):
     """Whether a triangle reaches into piece k at a tilt."""
     room.spent[0] += 1
     stand(room.body, frame, np.cos(tilt), np.sin(tilt), turning.offset, 0.0)
@@ -188,7 +188,7 @@ def _in_the_way(vertex, i, frame, tilt, turning, k, room):  # type: ignore[no-un
 
 
 @kernel
-def _first_in_the_way(vertex, i, frame, a, b, sign, narrowest, turning, k, room):  # type: ignore[no-untyped-def]
+def _first_in_the_way(vertex, i, frame, a, b, sign, narrowest, turning, k, room):
     """The first tilt, from a up or from b down (`sign`), at which a triangle is not shown to be clear of piece k; nan if none.
 
     A range is clear if planes part the triangle from the piece, or if it misses the piece widened by what tilting within the
@@ -222,7 +222,7 @@ def _first_in_the_way(vertex, i, frame, a, b, sign, narrowest, turning, k, room)
 
 
 @kernel
-def _shrink_in_lanes(corner, gap, g, sign, narrowest, turning, k, room):  # type: ignore[no-untyped-def]
+def _shrink_in_lanes(corner, gap, g, sign, narrowest, turning, k, room):
     """`_shrink`, eight ends at a time: first farther and farther, then evenly between the last that failed and the first that
     passed.
     """
@@ -257,7 +257,7 @@ def _shrink_in_lanes(corner, gap, g, sign, narrowest, turning, k, room):  # type
 
 
 @kernel
-def _shrink(corner, gap, g, sign, narrowest, turning, k, room):  # type: ignore[no-untyped-def]
+def _shrink(corner, gap, g, sign, narrowest, turning, k, room):
     """By how much a gap must shrink from its first tilt up (`sign` 1) or its last down for a triangle to pass.
 
     To `narrowest`; (by how much, a little less by which it did not pass); infinity if nothing wider is left.
@@ -290,7 +290,7 @@ def _shrink(corner, gap, g, sign, narrowest, turning, k, room):  # type: ignore[
 
 
 @kernel
-def cut_gaps(vertex, i, frame, gap, count, narrowest, turning, k, room):  # type: ignore[no-untyped-def]
+def cut_gaps(vertex, i, frame, gap, count, narrowest, turning, k, room):
     """Take the tilts at which a triangle is in the way of piece k out of the gaps; (count of gaps, whether any was cut).
 
     The triangle is in `room.corner` too, as rows (x, z, y) from the centre.

@@ -12,14 +12,14 @@ from plan_cutters.kernels.pieces import BOTTOM, CYLINDER, HIGH, KIND, LOW, RADIU
 
 
 @kernel
-def _to_segment(px, py, half):  # type: ignore[no-untyped-def]
+def _to_segment(px, py, half):
     """Squared distance of a point from the segment (0, -half) (0, half)."""
     py -= min(half, max(-half, py))
     return px * px + py * py
 
 
 @kernel
-def _shadow_distance(polygon, count, half):  # type: ignore[no-untyped-def]
+def _shadow_distance(polygon, count, half):
     """Squared distance between the shadow of a convex polygon and the segment (0, -half) (0, half)."""
     area = 0.0
     for i in range(count):
@@ -49,7 +49,7 @@ def _shadow_distance(polygon, count, half):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def drawn_hit(vertex, i, body, piece, mask, room):  # type: ignore[no-untyped-def]
+def drawn_hit(vertex, i, body, piece, mask, room):
     """Those of the pieces of a mask, drawn out as the body says, into which triangle i reaches.
 
     Parameters
@@ -76,7 +76,7 @@ def drawn_hit(vertex, i, body, piece, mask, room):  # type: ignore[no-untyped-de
 
 
 @kernel
-def _drawn(corner, least, most, half, piece, k, room):  # type: ignore[no-untyped-def]
+def _drawn(corner, least, most, half, piece, k, room):
     """Whether a triangle of rows (height, x, y) reaches into a piece that is drawn out."""
     # What holds the piece: as wide as it ever is.
     where, count = clipped(corner, 3, least, most, piece[k, BOTTOM], piece[k, TOP], room.polygon, room.spare)
@@ -106,7 +106,7 @@ def _drawn(corner, least, most, half, piece, k, room):  # type: ignore[no-untype
 
 
 @kernel
-def _through(corner, half, height):  # type: ignore[no-untyped-def]
+def _through(corner, half, height):
     """Whether a point of the axis lies in a drawn triangle: the line through it along y_T crosses the triangle nearby."""
     # In the shadow along y_T: rows (height, x).
     area = 0.0

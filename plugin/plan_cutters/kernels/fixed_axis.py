@@ -15,7 +15,7 @@ _UPRIGHT = 1e-12
 
 
 @entry
-def served(rows, axis, contacts, low, high, tool, solids, free):  # type: ignore[no-untyped-def]
+def served(rows, axis, contacts, low, high, tool, solids, free):
     """Test one axis at contacts, as a search tests the postures that it finds.
 
     Parameters

@@ -32,7 +32,7 @@ _UNSEEN, _NONE = -1, -2
 
 
 @kernel
-def _forget(below, home, block, lane):  # type: ignore[no-untyped-def]
+def _forget(below, home, block, lane):
     """Leave a box out for this contact, and those above it in which nothing else is left."""
     while block < _SEEN:
         below[block, lane] = _NONE
@@ -45,7 +45,7 @@ def _forget(below, home, block, lane):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _rising(view, below, block, lanes, low):  # type: ignore[no-untyped-def]
+def _rising(view, below, block, lanes, low):
     """Mark the boxes of a block just seen that rise above the tangent plane; whether there are any."""
     some = False
     for lane in range(LANES):
@@ -56,7 +56,7 @@ def _rising(view, below, block, lanes, low):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _leaf(leaf, which, vertex, frame, turn, gap, count, turning, mask, narrowest, margin, room):  # type: ignore[no-untyped-def]
+def _leaf(leaf, which, vertex, frame, turn, gap, count, turning, mask, narrowest, margin, room):
     """Take what the triangles of a leaf forbid to the pieces of a mask out of the gaps; (gaps, the lane that cut last or -1)."""
     cosine, sine = turn
     last = -1
@@ -85,7 +85,7 @@ def _leaf(leaf, which, vertex, frame, turn, gap, count, turning, mask, narrowest
 
 
 @kernel
-def _reaching(view, block, cosine, sine, gap, count, turning, mask, margin, left, room):  # type: ignore[no-untyped-def]
+def _reaching(view, block, cosine, sine, gap, count, turning, mask, margin, left, room):
     """Write for each box of a block the pieces of a mask that it may reach into in some gap."""
     for lane in range(LANES):
         left[lane] = 0
@@ -134,7 +134,7 @@ class _View(NamedTuple):
 
 
 @kernel
-def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, narrowest, wide, seen, room):  # type: ignore[no-untyped-def]
+def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, narrowest, wide, seen, room):
     """Take the gaps of one rotation, its cosine and sine `turn`, through the tree, level by level; how many are left.
 
     `whole` is the mask of the pieces that anything can reach from this contact, `low` what is out of reach of them all.
@@ -234,7 +234,7 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, na
 
 
 @kernel
-def _write(gap, count, written, room, part):  # type: ignore[no-untyped-def]
+def _write(gap, count, written, room, part):
     """Write the gaps as intervals among others, ascending; (how many, how much is undecided at their ends and beyond `room`)."""
     unsure = gap[GAPS, UF] + gap[GAPS, UL]
     for g in range(count):
@@ -254,7 +254,7 @@ def _write(gap, count, written, room, part):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _joined(part, count):  # type: ignore[no-untyped-def]
+def _joined(part, count):
     """Join intervals, ascending, that touch; how many are left."""
     kept = min(count, 1)
     for i in range(1, count):
@@ -267,7 +267,7 @@ def _joined(part, count):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _ball(turning):  # type: ignore[no-untyped-def]
+def _ball(turning):
     """The piece that is the same body at all tilts, -1 if there is none: a ball about the centre."""
     piece = turning.piece
     for k in range(len(piece)):
@@ -277,7 +277,7 @@ def _ball(turning):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _reachable(view, lanes, turning):  # type: ignore[no-untyped-def]
+def _reachable(view, lanes, turning):
     """The mask of the pieces that boxes of the first block may reach into at any posture.
 
     They rise as high, and stand neither nearer nor farther than the piece.
@@ -296,9 +296,7 @@ def _reachable(view, lanes, turning):  # type: ignore[no-untyped-def]
 
 
 @entry
-def free_map(  # type: ignore[no-untyped-def]
-    rows, contacts, ranges, tool, narrowest, tree, wide, room, part, count_out, undecided
-):
+def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, room, part, count_out, undecided):
     """Free tilts of samples at all rotations, in one walk of the tree each, with certified ends.
 
     Parameters

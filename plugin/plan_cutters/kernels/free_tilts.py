@@ -30,13 +30,13 @@ class Parts(NamedTuple):
 
 
 @entry
-def room_for_parts(room):  # type: ignore[no-untyped-def]
+def room_for_parts(room):
     """Room for so many parts."""
     return Parts(np.empty((room + 4, 3)), np.empty((room + 4, 2)), np.empty((ARCS, 2)), np.empty(BODY), scratch())
 
 
 @kernel
-def divide(frame, low, high, tool, mode, narrowest, tree, work):  # type: ignore[no-untyped-def]
+def divide(frame, low, high, tool, mode, narrowest, tree, work):
     """`free_tilts` of a frame, its parts written into `work`; how many."""
     parts, pending, body, walk, piece = work.parts, work.pending, work.body, work.scratch, tool.piece[mode]
     pending[0, 0], pending[0, 1] = low, high
@@ -76,7 +76,7 @@ def divide(frame, low, high, tool, mode, narrowest, tree, work):  # type: ignore
 
 
 @entry
-def free_tilts(p, n, f, low, high, tool, mode, narrowest, tree, room):  # type: ignore[no-untyped-def]
+def free_tilts(p, n, f, low, high, tool, mode, narrowest, tree, room):
     """Split a range of tilts into free, forbidden and undecided parts.
 
     Parameters

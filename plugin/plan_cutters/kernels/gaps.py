@@ -17,7 +17,7 @@ _HAIR = 1e-9
 
 
 @kernel
-def _cuts(x, y, z, gap, count, tool):  # type: ignore[no-untyped-def]
+def _cuts(x, y, z, gap, count, tool):
     """Whether a point is in the body at some tilt of some gap."""
     radius, shrunk, low, high, _ = tool
     square = shrunk * shrunk - y * y
@@ -41,17 +41,17 @@ def _cuts(x, y, z, gap, count, tool):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _begin(gap, g, tilt, unsure):  # type: ignore[no-untyped-def]
+def _begin(gap, g, tilt, unsure):
     gap[g, FIRST], gap[g, CF], gap[g, SF], gap[g, UF] = tilt, np.cos(tilt), np.sin(tilt), unsure
 
 
 @kernel
-def _end(gap, g, tilt, unsure):  # type: ignore[no-untyped-def]
+def _end(gap, g, tilt, unsure):
     gap[g, LAST], gap[g, CL], gap[g, SL], gap[g, UL] = tilt, np.cos(tilt), np.sin(tilt), unsure
 
 
 @kernel
-def _drop(gap, g, count):  # type: ignore[no-untyped-def]
+def _drop(gap, g, count):
     """Take a gap out, its bands with it; the new count."""
     for k in range(COLUMNS):
         gap[g, k] = gap[count - 1, k]
@@ -59,7 +59,7 @@ def _drop(gap, g, count):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _part(gap, g, count, left, right, unsure):  # type: ignore[no-untyped-def]
+def _part(gap, g, count, left, right, unsure):
     """Take the tilts between `left` and `right`, within a gap, out of it; the new count.
 
     Its new ends get the band `unsure`. Bands that are cut off stay undecided, as does the narrower part if there is no room
@@ -92,7 +92,7 @@ def _part(gap, g, count, left, right, unsure):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _take(gap, count, left, right):  # type: ignore[no-untyped-def]
+def _take(gap, count, left, right):
     """Take an arc that a point forbids out of the gaps; the new count."""
     left, right = left - _HAIR, right + _HAIR
     if right - left <= 2.0 * _HAIR:

@@ -39,7 +39,7 @@ P, A, X, Y, OFFSET, HALF, BODY = 0, 3, 6, 9, 12, 13, 14
 
 
 @entry
-def scratch():  # type: ignore[no-untyped-def]
+def scratch():
     """Room for walks of a tree."""
     return Scratch(
         np.empty(64, np.int64), np.empty(64, np.int64), np.empty((3, 3)), np.empty((4, 3)), np.empty((8, 3)), np.empty((8, 3)),
@@ -48,7 +48,7 @@ def scratch():  # type: ignore[no-untyped-def]
 
 
 @kernel
-def stand(body, frame, tilt_cos, tilt_sin, offset, rise):  # type: ignore[no-untyped-def]
+def stand(body, frame, tilt_cos, tilt_sin, offset, rise):
     """Write the body whose axis leans from the normal of a frame towards its lean direction by a tilt.
 
     Its centre stands `rise` over the contact, `offset` from the axis.
@@ -63,7 +63,7 @@ def stand(body, frame, tilt_cos, tilt_sin, offset, rise):  # type: ignore[no-unt
 
 
 @kernel
-def half_width(box, i, x, y, z):  # type: ignore[no-untyped-def]
+def half_width(box, i, x, y, z):
     """Half the extent of box i along a unit direction."""
     return (
         box[i, 12] * abs(x * box[i, 3] + y * box[i, 4] + z * box[i, 5])
@@ -73,7 +73,7 @@ def half_width(box, i, x, y, z):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _thin_apart(box, i, body, piece, k, grow, dx, dy, dz):  # type: ignore[no-untyped-def]
+def _thin_apart(box, i, body, piece, k, grow, dx, dy, dz):
     """Whether a plane across the box's third side, the thin one, parts it from piece k."""
     mx, my, mz = box[i, 9], box[i, 10], box[i, 11]
     along = mx * body[3] + my * body[4] + mz * body[5]
@@ -94,7 +94,7 @@ def _thin_apart(box, i, body, piece, k, grow, dx, dy, dz):  # type: ignore[no-un
 
 
 @kernel
-def _stays(body, piece, k):  # type: ignore[no-untyped-def]
+def _stays(body, piece, k):
     """Whether turning leaves piece k where it is: a whole ball about the line of turning."""
     return (
         piece[k, KIND] == ARC
@@ -107,7 +107,7 @@ def _stays(body, piece, k):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def alive(box, i, body, piece, mask, rate):  # type: ignore[no-untyped-def]
+def alive(box, i, body, piece, mask, rate):
     """Those of the pieces of a mask into which a point of box i may reach: the others are parted from it by a slab or a plane."""
     dx, dy, dz = box[i, 0] - body[0], box[i, 1] - body[1], box[i, 2] - body[2]
     diagonal = box[i, 15]
@@ -159,7 +159,7 @@ def alive(box, i, body, piece, mask, rate):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _beyond(box, i, body, piece, k, grow, height, across, aside, square):  # type: ignore[no-untyped-def]
+def _beyond(box, i, body, piece, k, grow, height, across, aside, square):
     """Whether box i lies beyond a cone or an arc: a convex function is no less than its tangent at the box's centre."""
     q = np.sqrt(square)
     if piece[k, KIND] == ARC:
@@ -190,7 +190,7 @@ def _beyond(box, i, body, piece, k, grow, height, across, aside, square):  # typ
 
 
 @kernel
-def into_frame(vertex, i, body, rate, corner):  # type: ignore[no-untyped-def]
+def into_frame(vertex, i, body, rate, corner):
     """Write triangle i as rows (height, x, y) in the tool's frame, from its axis; (how much `rate` widens it at most, least and
     most height, a sum that is no number if any of it is none).
     """
@@ -212,7 +212,7 @@ def into_frame(vertex, i, body, rate, corner):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def triangle_hit(vertex, i, body, piece, mask, rate, scratch):  # type: ignore[no-untyped-def]
+def triangle_hit(vertex, i, body, piece, mask, rate, scratch):
     """Whether triangle i reaches into a piece of a mask, and a point of it that does. A number that is none counts as a hit.
 
     Parameters
@@ -254,7 +254,7 @@ def triangle_hit(vertex, i, body, piece, mask, rate, scratch):  # type: ignore[n
 
 
 @kernel
-def _swept_hit(vertex, i, body, piece, mask, rate, scratch):  # type: ignore[no-untyped-def]
+def _swept_hit(vertex, i, body, piece, mask, rate, scratch):
     """`triangle_hit` with a rate, for triangles that reach from near the line of turning to far from it.
 
     The widening is that of the farthest corner; where this hits, the longest side is halved until the widening is
@@ -299,13 +299,13 @@ def _swept_hit(vertex, i, body, piece, mask, rate, scratch):  # type: ignore[no-
 
 
 @kernel
-def everything(piece):  # type: ignore[no-untyped-def]
+def everything(piece):
     """The mask of all pieces."""
     return (1 << len(piece)) - 1
 
 
 @kernel
-def tree_hit(tree, body, piece, rate, hint, scratch):  # type: ignore[no-untyped-def]
+def tree_hit(tree, body, piece, rate, hint, scratch):
     """First triangle found that reaches into the tool, the piece, and with `rate` 0 its point.
 
     Parameters
@@ -355,7 +355,7 @@ def tree_hit(tree, body, piece, rate, hint, scratch):  # type: ignore[no-untyped
 
 
 @kernel
-def _depth_of(box, i, body, piece, mask):  # type: ignore[no-untyped-def]
+def _depth_of(box, i, body, piece, mask):
     """How deep at least the centre of box i lies in the pieces of a mask; negative outside."""
     dx, dy, dz = box[i, 0] - body[0], box[i, 1] - body[1], box[i, 2] - body[2]
     height = dx * body[3] + dy * body[4] + dz * body[5]
@@ -369,7 +369,7 @@ def _depth_of(box, i, body, piece, mask):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def deep_hit(tree, body, piece, scratch):  # type: ignore[no-untyped-def]
+def deep_hit(tree, body, piece, scratch):
     """`tree_hit` with `rate` 0, of two boxes the one that lies deeper first: where something is in the way, sooner there."""
     vertex, box, depth = tree.vertex, tree.box, tree.depth
     stack, masks, n, first, top = scratch.stack, scratch.masks, len(vertex), (1 << depth) - 1, 1

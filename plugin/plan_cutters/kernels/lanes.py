@@ -25,7 +25,7 @@ class WideTree(NamedTuple):
 
 
 @entry
-def wide_tree(tree):  # type: ignore[no-untyped-def]
+def wide_tree(tree):
     """Arrange every third level of a tree for looking at eight boxes at a time.
 
     Parameters
@@ -67,7 +67,7 @@ def wide_tree(tree):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _see(view, slot, blocks, block, p, e1, e2, n, reach):  # type: ignore[no-untyped-def]
+def _see(view, slot, blocks, block, p, e1, e2, n, reach):
     """Write a block of boxes into a slot of the view, as seen from the contact.
 
     Rows: centre along e1, e2, n; half sides along e1, along e2, along n; how far up the box goes, if any of it is within reach
@@ -100,7 +100,7 @@ def _see(view, slot, blocks, block, p, e1, e2, n, reach):  # type: ignore[no-unt
 
 
 @kernel
-def _boxes_pass(view, block, cosine, sine, gap, count, tool, margin):  # type: ignore[no-untyped-def]
+def _boxes_pass(view, block, cosine, sine, gap, count, tool, margin):
     """Write a margin for each box of a block: 0 or more only if none of its points enters the body in any gap.
 
     What parts a box from the body is, as for a point: beside the cylinder; below its bottom where the gap begins; in front
@@ -160,7 +160,7 @@ def _boxes_pass(view, block, cosine, sine, gap, count, tool, margin):  # type: i
 
 
 @kernel
-def _see_triangle(seen, lane, vertex, i, p, e1, e2, n):  # type: ignore[no-untyped-def]
+def _see_triangle(seen, lane, vertex, i, p, e1, e2, n):
     """Write a triangle into a lane of a leaf, as seen from the contact; how far up it goes."""
     top = -np.inf
     for k in range(3):
@@ -174,7 +174,7 @@ def _see_triangle(seen, lane, vertex, i, p, e1, e2, n):  # type: ignore[no-untyp
 
 
 @kernel
-def _see_leaf(seen, vertex, begin, end, p, e1, e2, n):  # type: ignore[no-untyped-def]
+def _see_leaf(seen, vertex, begin, end, p, e1, e2, n):
     """Write triangles into a leaf; how far up they go. A lane without one holds a point far below."""
     top = -np.inf
     for lane in range(LANES):
@@ -187,7 +187,7 @@ def _see_leaf(seen, vertex, begin, end, p, e1, e2, n):  # type: ignore[no-untype
 
 
 @kernel
-def _triangles_pass(seen, cosine, sine, gap, count, tool, margin):  # type: ignore[no-untyped-def]
+def _triangles_pass(seen, cosine, sine, gap, count, tool, margin):
     """`_boxes_pass` for the triangles of a leaf."""
     radius, shrunk, low, high, _ = tool
     for lane in range(len(margin)):
@@ -238,7 +238,7 @@ def _triangles_pass(seen, cosine, sine, gap, count, tool, margin):  # type: igno
 
 
 @kernel
-def _turn(seen, lane, cosine, sine, corner):  # type: ignore[no-untyped-def]
+def _turn(seen, lane, cosine, sine, corner):
     """Write a triangle of a leaf as rows (x, z, y) at a rotation."""
     for k in range(3):
         x, y = seen[3 * k, lane], seen[3 * k + 1, lane]

@@ -9,7 +9,7 @@ from plan_cutters.kernels.vectors import cross, lean_frame
 
 
 @entry
-def mask(rows, normal, direction_max, ranges, turns, offset, free, undecided, found):  # type: ignore[no-untyped-def]
+def mask(rows, normal, direction_max, ranges, turns, offset, free, undecided, found):
     """Decide samples by their free tilts: the first rotation with any that the machine holds serves.
 
     Parameters
@@ -61,7 +61,7 @@ def mask(rows, normal, direction_max, ranges, turns, offset, free, undecided, fo
 
 
 @entry
-def held_free(rows, normal, direction_max, ranges, offset, free, place, kept):  # type: ignore[no-untyped-def]
+def held_free(rows, normal, direction_max, ranges, offset, free, place, kept):
     """What the machine holds of free tilts, at every rotation of the maps: how many intervals or, with room, these.
 
     Parameters

@@ -12,7 +12,7 @@ _SLABS = 8
 
 
 @kernel
-def _clip(source, count, target, a, b, level):  # type: ignore[no-untyped-def]
+def _clip(source, count, target, a, b, level):
     """Keep the part of a polygon of rows (x, z, y) with `a x + b z >= level`."""
     kept = 0
     for i in range(count):
@@ -32,7 +32,7 @@ def _clip(source, count, target, a, b, level):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _side(polygon, count, cosine, sine, radius, shrunk, turned):  # type: ignore[no-untyped-def]
+def _side(polygon, count, cosine, sine, radius, shrunk, turned):
     """On which side of the cylinder at a tilt the shadow of a polygon of rows (x, z, y) lies: 1 front, -1 back, 0 neither.
 
     The front is where the contact is. 2: beside it, out of reach at every tilt. `turned` is scratch.
@@ -51,7 +51,7 @@ def _side(polygon, count, cosine, sine, radius, shrunk, turned):  # type: ignore
 
 
 @kernel
-def _rim(y, radius, shrunk):  # type: ignore[no-untyped-def]
+def _rim(y, radius, shrunk):
     """Tangent at y to the rim's distance from the line of turning, as (slope, value at 0): elsewhere the rim is farther."""
     y = max(-0.98 * shrunk, min(0.98 * shrunk, y))
     q = np.sqrt(shrunk * shrunk - y * y)
@@ -60,7 +60,7 @@ def _rim(y, radius, shrunk):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _facing(nx, nz, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
+def _facing(nx, nz, ca, sa, cb, sb):
     """A direction (x, z), up or down as it may be, turned to where the body is at all tilts of a gap.
 
     It then leans from the axis to the front or to the back by no more than 90 deg at any of them.
@@ -75,14 +75,14 @@ def _facing(nx, nz, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _from_plane(nx, nz, c, s, tool):  # type: ignore[no-untyped-def]
+def _from_plane(nx, nz, c, s, tool):
     """How far along a direction (x, z) the body begins at a tilt: (distance, and to be added for each mm of room at the rim)."""
     up, out = nx * s + nz * c, nz * s - nx * c
     return tool.low * up + 2.0 * tool.radius * min(0.0, out), abs(out)
 
 
 @kernel
-def _plane_passes(corner, ca, sa, cb, sb, tool):  # type: ignore[no-untyped-def]
+def _plane_passes(corner, ca, sa, cb, sb, tool):
     """Whether a plane, nearly that of the triangle, has it on one side and the body on the other at all tilts of a gap."""
     x0, z0, y0 = corner[0, 0], corner[0, 1], corner[0, 2]
     x1, z1, y1 = corner[1, 0], corner[1, 1], corner[1, 2]
@@ -100,7 +100,7 @@ def _plane_passes(corner, ca, sa, cb, sb, tool):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _never(polygon, count, radius, shrunk):  # type: ignore[no-untyped-def]
+def _never(polygon, count, radius, shrunk):
     """Whether a polygon of rows (x, z, y) is out of reach at every tilt.
 
     So near the line of turning that the disk, which touches that line at the contact, has curved away. The room grows with
@@ -139,7 +139,7 @@ def _never(polygon, count, radius, shrunk):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _parts_pass(polygon, count, ca, sa, cb, sb, tool):  # type: ignore[no-untyped-def]
+def _parts_pass(polygon, count, ca, sa, cb, sb, tool):
     """`_boxes_pass` for a polygon, in two parts where need be: what the bottom sweeps over, and what it stays below."""
     radius, shrunk, low, high, _ = tool
     middle = 0.0
@@ -180,7 +180,7 @@ def _parts_pass(polygon, count, ca, sa, cb, sb, tool):  # type: ignore[no-untype
 
 
 @kernel
-def _passes(corner, cf, sf, cl, sl, tool, first, second):  # type: ignore[no-untyped-def]
+def _passes(corner, cf, sf, cl, sl, tool, first, second):
     """Whether a triangle, rows (x, z, y) from the contact, stays out of the body at all tilts of a gap.
 
     With growing tilt a point of the part turns about the contact down and back in the tool's frame. So one that is

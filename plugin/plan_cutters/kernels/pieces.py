@@ -21,7 +21,7 @@ _HALVINGS = 6
 
 
 @kernel
-def inset(piece, k, height, square):  # type: ignore[no-untyped-def]
+def inset(piece, k, height, square):
     """How deep at least a point at a height, the square of its distance from the axis given, lies in piece k; negative
     outside.
     """
@@ -38,7 +38,7 @@ def inset(piece, k, height, square):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def support(piece, k, along, across):  # type: ignore[no-untyped-def]
+def support(piece, k, along, across):
     """How far a piece goes, from height 0 on the axis, in a unit direction with these parts along the axis and across it.
 
     Never less than that; exact for cylinders, cones and whole arcs about no farther side.
@@ -58,7 +58,7 @@ def support(piece, k, along, across):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def cut(source, count, target, level, keep):  # type: ignore[no-untyped-def]
+def cut(source, count, target, level, keep):
     """Keep the part of a polygon with `keep * (height - level) >= 0` (Sutherland and Hodgman, one side)."""
     kept = 0
     for i in range(count):
@@ -78,7 +78,7 @@ def cut(source, count, target, level, keep):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def clipped(corner, count, least, most, low, high, polygon, spare):  # type: ignore[no-untyped-def]
+def clipped(corner, count, least, most, low, high, polygon, spare):
     """Cut a polygon, whose heights lie between `least` and `most`, off at two heights: (where the rest is: 0 unchanged, 1 in
     `polygon`, 2 in `spare`; its corners).
     """
@@ -91,7 +91,7 @@ def clipped(corner, count, least, most, low, high, polygon, spare):  # type: ign
 
 
 @kernel
-def nearest(polygon, count):  # type: ignore[no-untyped-def]
+def nearest(polygon, count):
     """Point of a convex polygon whose shadow is nearest to the axis: (height, x, y, squared distance)."""
     area = 0.0
     for i in range(count):
@@ -124,7 +124,7 @@ def nearest(polygon, count):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _on_axis(polygon, count, area):  # type: ignore[no-untyped-def]
+def _on_axis(polygon, count, area):
     """Whether the axis goes through a polygon whose shadow has an area of this sign, and at which height."""
     for i in range(1, count - 1):
         a = polygon[i, 1] * polygon[i + 1, 2] - polygon[i + 1, 1] * polygon[i, 2]
@@ -136,7 +136,7 @@ def _on_axis(polygon, count, area):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _in_cone(polygon, count, piece, k, grow):  # type: ignore[no-untyped-def]
+def _in_cone(polygon, count, piece, k, grow):
     """Whether a polygon within the heights of a cone, widened by `grow`, reaches into it, and a point that does.
 
     Over a plane, q - slope w has its least where the axis crosses it or on the polygon's sides; along a side it is least where
@@ -177,7 +177,7 @@ def _in_cone(polygon, count, piece, k, grow):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _side_in_arc(aw, ax, ay, ew, ex, ey, radius, square):  # type: ignore[no-untyped-def]
+def _side_in_arc(aw, ax, ay, ew, ex, ey, radius, square):
     """The share along a side, from the centre's height, at which it reaches into an arc; -1 if nowhere. Its ends do not.
 
     The squared distance is convex along the side: two tangents meet below it, which ends most cases; then false position on
@@ -241,7 +241,7 @@ def _side_in_arc(aw, ax, ay, ew, ex, ey, radius, square):  # type: ignore[no-unt
 
 
 @kernel
-def _holds(polygon, count, w, x, y, nw, nx, ny):  # type: ignore[no-untyped-def]
+def _holds(polygon, count, w, x, y, nw, nx, ny):
     """Whether a point of the plane of a polygon, of normal (nw, nx, ny), lies in it."""
     for i in range(count):
         j = i + 1 if i + 1 < count else 0
@@ -253,7 +253,7 @@ def _holds(polygon, count, w, x, y, nw, nx, ny):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _in_arc(polygon, count, piece, k, grow):  # type: ignore[no-untyped-def]
+def _in_arc(polygon, count, piece, k, grow):
     """Whether a polygon reaches into an arc widened by `grow`, between whose heights it lies, and a point that does.
 
     Its corners, the least point over its plane, its sides: over a plane a convex function has its least at one point, and if that
@@ -327,7 +327,7 @@ def _in_arc(polygon, count, piece, k, grow):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _well_inside(polygon, count, piece, k, w, x, y):  # type: ignore[no-untyped-def]
+def _well_inside(polygon, count, piece, k, w, x, y):
     """From a point of a polygon in a piece, one that says more than one on the rim: towards the polygon's centre."""
     mw, mx, my = 0.0, 0.0, 0.0
     for i in range(count):
@@ -344,7 +344,7 @@ def _well_inside(polygon, count, piece, k, w, x, y):  # type: ignore[no-untyped-
 
 
 @kernel
-def polygon_hit(polygon, count, piece, k, grow):  # type: ignore[no-untyped-def]
+def polygon_hit(polygon, count, piece, k, grow):
     """Whether a convex polygon of rows (height, x, y), cut off at a piece's heights, reaches into it, and a point that does.
 
     With the piece widened by `grow`; the point then need not lie in the piece itself.

@@ -36,7 +36,7 @@ _STEEP = 0.98
 
 
 @kernel
-def _towards(edge, x, y, height):  # type: ignore[no-untyped-def]
+def _towards(edge, x, y, height):
     """The direction (x, y, w), of length 1 or 0, in which a point lies farthest beyond a bound; its part across the axis; about
     how far.
     """
@@ -57,14 +57,14 @@ def _towards(edge, x, y, height):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _support(edge, offset, mx, mw, across):  # type: ignore[no-untyped-def]
+def _support(edge, offset, mx, mw, across):
     """How far a bound goes along a unit direction of the tool, from the centre."""
     q0, f0, q1, f1, grown, _, _ = edge
     return max(q0 * across + f0 * mw, q1 * across + f1 * mw) + grown - offset * mx
 
 
 @kernel
-def _between(least, reach, my, y_most, nearest, farthest, cosine):  # type: ignore[no-untyped-def]
+def _between(least, reach, my, y_most, nearest, farthest, cosine):
     """Whether what lies beyond a plane by `least` at both ends of a gap does so in between: (the three reasons of the lemma).
 
     y_most is the largest of `my y`; `cosine` that of half the gap.
@@ -78,7 +78,7 @@ def _between(least, reach, my, y_most, nearest, farthest, cosine):  # type: igno
 
 
 @kernel
-def _lean(edge, y, wide, sine):  # type: ignore[no-untyped-def]
+def _lean(edge, y, wide, sine):
     """The direction (y, z), of length 1, of a plane under a rim where something stands beside the contact."""
     radius = max(edge[0], HAIR)
     y = y - max(-0.5 * wide, min(0.5 * wide, y))
@@ -89,7 +89,7 @@ def _lean(edge, y, wide, sine):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _away(edge, offset, gx, gy, gz, x, y, z, cm, sm):  # type: ignore[no-untyped-def]
+def _away(edge, offset, gx, gy, gz, x, y, z, cm, sm):
     """1 or -1: which way along a direction of the part something lies from a bound at the middle of a gap."""
     q0, f0, q1, f1, _, _, _ = edge
     up = 0.5 * (f0 + min(f1, f0 + 20.0 * max(q0, q1)))
@@ -97,7 +97,7 @@ def _away(edge, offset, gx, gy, gz, x, y, z, cm, sm):  # type: ignore[no-untyped
 
 
 @kernel
-def _boxes_apart(box, end, bound, j, offset, which, clear):  # type: ignore[no-untyped-def]
+def _boxes_apart(box, end, bound, j, offset, which, clear):
     """Mark boxes that a plane, as it stands at one end of their gap (row `which` of `end` and the next), parts from a bound.
 
     All over the gap, turning with the tool or not.
@@ -131,7 +131,7 @@ def _boxes_apart(box, end, bound, j, offset, which, clear):  # type: ignore[no-u
 
 
 @kernel
-def _boxes_under(box, end, bound, j, offset, tilted, clear):  # type: ignore[no-untyped-def]
+def _boxes_under(box, end, bound, j, offset, tilted, clear):
     """Mark boxes that lie under a bound all over their gap, as seen along the normal, straight (`tilted` 0) or leaning along the
     rim (1).
     """
@@ -148,7 +148,7 @@ def _boxes_under(box, end, bound, j, offset, tilted, clear):  # type: ignore[no-
 
 
 @kernel
-def _boxes_across(box, end, bound, j, offset, clear):  # type: ignore[no-untyped-def]
+def _boxes_across(box, end, bound, j, offset, clear):
     """Mark boxes that a plane across their thin side parts from a bound all over their gap."""
     edge = edge_of(bound, j)
     for lane in range(len(clear)):
@@ -168,7 +168,7 @@ def _boxes_across(box, end, bound, j, offset, clear):  # type: ignore[no-untyped
 
 
 @kernel
-def _all(clear):  # type: ignore[no-untyped-def]
+def _all(clear):
     """Whether all lanes are marked."""
     least = 1.0
     for lane in range(LANES):
@@ -177,7 +177,7 @@ def _all(clear):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def boxes_clear(box, end, turning, k, clear):  # type: ignore[no-untyped-def]
+def boxes_clear(box, end, turning, k, clear):
     """Mark the boxes, as `turn_boxes` gives them, no point of which is in piece k at any tilt of their gap; whether all are."""
     known, bound, offset = turning.known, turning.bound, turning.offset
     beside, base, slope, near, far = known[k, BESIDE], known[k, AXIS], known[k, WIDENS], known[k, NEAR], known[k, FAR]
@@ -198,7 +198,7 @@ def boxes_clear(box, end, turning, k, clear):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def turn_boxes(view, block, cosine, sine, box):  # type: ignore[no-untyped-def]
+def turn_boxes(view, block, cosine, sine, box):
     """Turn a block of boxes, as `lanes._see` gives them, into the frame of a rotation."""
     for lane in range(LANES):
         x, y, square = view[block, 0, lane], view[block, 1, lane], 0.0
@@ -214,7 +214,7 @@ def turn_boxes(view, block, cosine, sine, box):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _triangles_apart(seen, end, bound, j, offset, which, clear):  # type: ignore[no-untyped-def]
+def _triangles_apart(seen, end, bound, j, offset, which, clear):
     """`_boxes_apart` for triangles, whose corners go along a plane's direction as sums of sine and cosine."""
     edge = edge_of(bound, j)
     for lane in range(len(clear)):
@@ -247,7 +247,7 @@ def _triangles_apart(seen, end, bound, j, offset, which, clear):  # type: ignore
 
 
 @kernel
-def _triangles_under(seen, end, bound, j, offset, tilted, clear):  # type: ignore[no-untyped-def]
+def _triangles_under(seen, end, bound, j, offset, tilted, clear):
     """`_boxes_under` for triangles."""
     edge = edge_of(bound, j)
     for lane in range(len(clear)):
@@ -268,7 +268,7 @@ def _triangles_under(seen, end, bound, j, offset, tilted, clear):  # type: ignor
 
 
 @kernel
-def _triangles_across(seen, end, bound, j, offset, clear):  # type: ignore[no-untyped-def]
+def _triangles_across(seen, end, bound, j, offset, clear):
     """Mark triangles whose own plane parts them from a bound all over their gap."""
     edge = edge_of(bound, j)
     for lane in range(len(clear)):
@@ -288,7 +288,7 @@ def _triangles_across(seen, end, bound, j, offset, clear):  # type: ignore[no-un
 
 
 @kernel
-def triangles_clear(seen, end, turning, k, clear):  # type: ignore[no-untyped-def]
+def triangles_clear(seen, end, turning, k, clear):
     """`boxes_clear` for triangles as `turn_triangles` gives them."""
     known, bound, offset = turning.known, turning.bound, turning.offset
     beside, base, slope, near, far = known[k, BESIDE], known[k, AXIS], known[k, WIDENS], known[k, NEAR], known[k, FAR]
@@ -310,7 +310,7 @@ def triangles_clear(seen, end, turning, k, clear):  # type: ignore[no-untyped-de
 
 
 @kernel
-def distances(seen):  # type: ignore[no-untyped-def]
+def distances(seen):
     """Write the least and the largest distance of triangles from the line of turning, or bounds, into rows 9 and 10."""
     for lane in range(LANES):
         x0, z0, x1, z1 = seen[0, lane], seen[2, lane], seen[3, lane], seen[5, lane]
@@ -323,7 +323,7 @@ def distances(seen):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def turn_triangles(leaf, cosine, sine, seen):  # type: ignore[no-untyped-def]
+def turn_triangles(leaf, cosine, sine, seen):
     """Turn the triangles of a leaf, as `lanes._see_leaf` gives them, into the frame of a rotation."""
     for k in range(0, 9, 3):
         for lane in range(LANES):
@@ -334,7 +334,7 @@ def turn_triangles(leaf, cosine, sine, seen):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def put_ends(end, lane, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
+def put_ends(end, lane, ca, sa, cb, sb):
     """Write a gap shorter than 180 deg into a lane."""
     half = np.sqrt(max(0.0, 0.5 + 0.5 * (ca * cb + sa * sb)))
     share = 0.5 / max(half, 1e-9)
@@ -343,7 +343,7 @@ def put_ends(end, lane, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def all_ends(end, ca, sa, cb, sb):  # type: ignore[no-untyped-def]
+def all_ends(end, ca, sa, cb, sb):
     """Write a gap into all lanes."""
     put_ends(end, 0, ca, sa, cb, sb)
     for k in range(ENDS):

@@ -30,7 +30,7 @@ _TURN = 0.2
 
 
 @kernel
-def remove(intervals, count, first, last, narrowest):  # type: ignore[no-untyped-def]
+def remove(intervals, count, first, last, narrowest):
     """Take [first, last] out of sorted intervals in place, drop what is narrower than `narrowest`; the new count."""
     kept = 0
     for row in range(count):
@@ -61,7 +61,7 @@ def remove(intervals, count, first, last, narrowest):  # type: ignore[no-untyped
 
 
 @kernel
-def forbid(intervals, count, first, last, narrowest, attribute, tally):  # type: ignore[no-untyped-def]
+def forbid(intervals, count, first, last, narrowest, attribute, tally):
     """Take an arc out and book what it takes on an attribute; the new count."""
     before = 0.0
     for i in range(count):
@@ -74,7 +74,7 @@ def forbid(intervals, count, first, last, narrowest, attribute, tally):  # type:
 
 
 @kernel
-def _attribute(x, y, z, tool, mode, k):  # type: ignore[no-untyped-def]
+def _attribute(x, y, z, tool, mode, k):
     """What an obstacle point that far from the contact, which is in piece k, is in the way of."""
     part = int(tool.piece[mode, k, PART])
     if part != FLUTES:
@@ -83,7 +83,7 @@ def _attribute(x, y, z, tool, mode, k):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def inside(body, tool, mode, solids, stack):  # type: ignore[no-untyped-def]
+def inside(body, tool, mode, solids, stack):
     """Winding number of the bodies about a point of the tool's axis that is as deep in it as any.
 
     The end of the axis is asked first: where that is surely outside, all of it is, for the tool touches no skin.
@@ -110,13 +110,13 @@ def inside(body, tool, mode, solids, stack):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def put(body, frame, tilt, tool, mode):  # type: ignore[no-untyped-def]
+def put(body, frame, tilt, tool, mode):
     """Stand a tool at a tilt, touching in a mode."""
     stand(body, frame, np.cos(tilt), np.sin(tilt), tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
 
 
 @kernel
-def turned(frame, tilt, tool, mode, tree, body, scratch):  # type: ignore[no-untyped-def]
+def turned(frame, tilt, tool, mode, tree, body, scratch):
     """How far a posture that touches nothing can be tilted either way and still surely touch nothing, rad."""
     half = _TURN
     while half > 0.5 * NARROWEST:
@@ -144,7 +144,7 @@ class Room(NamedTuple):
 
 
 @entry
-def room_to_search():  # type: ignore[no-untyped-def]
+def room_to_search():
     """Room for searches."""
     return Room(
         np.empty((_ROOM, 2)), np.empty((ARCS, 2)), np.empty(3), np.empty(3), np.empty(3), np.empty(BODY), np.empty(ATTRIBUTES),
@@ -153,7 +153,7 @@ def room_to_search():  # type: ignore[no-untyped-def]
 
 
 @kernel
-def permitted(contacts, row, ranges, tool, mode, f, intervals):  # type: ignore[no-untyped-def]
+def permitted(contacts, row, ranges, tool, mode, f, intervals):
     """Write the tilts of a lean direction f that the axis limit, the range asked for and the tool's own leave; their width, and
     how many intervals they are.
     """
@@ -168,7 +168,7 @@ def permitted(contacts, row, ranges, tool, mode, f, intervals):  # type: ignore[
 
 
 @kernel
-def straight(contacts, row, cosine, sine, tool, mode):  # type: ignore[no-untyped-def]
+def straight(contacts, row, cosine, sine, tool, mode):
     """Tilts from and to, at a rotation's cosine and sine, at which curvature keeps surface and tool apart next to the contact;
     nan if there are none.
     """
@@ -178,7 +178,7 @@ def straight(contacts, row, cosine, sine, tool, mode):  # type: ignore[no-untype
 
 
 @kernel
-def kept_straight(least, most, intervals, count):  # type: ignore[no-untyped-def]
+def kept_straight(least, most, intervals, count):
     """Leave of intervals what `straight` gives; the new count."""
     if np.isnan(least):
         return 0
@@ -188,7 +188,7 @@ def kept_straight(least, most, intervals, count):  # type: ignore[no-untyped-def
 
 
 @kernel
-def allowed(contacts, row, ranges, rotation, tool, mode, bent, room):  # type: ignore[no-untyped-def]
+def allowed(contacts, row, ranges, rotation, tool, mode, bent, room):
     """Write the tilts of a rotation that the axis limit leaves and curvature allows, or, if `bent`, forbids, and its frame; how
     many intervals they are.
 
@@ -215,13 +215,13 @@ def allowed(contacts, row, ranges, rotation, tool, mode, bent, room):  # type: i
 
 
 @kernel
-def booked(tally):  # type: ignore[no-untyped-def]
+def booked(tally):
     """Tilts that obstacles have taken."""
     return tally[REAR_GOUGE] + tally[COLLISION] + tally[NECK] + tally[SHANK] + tally[HOLDER]
 
 
 @kernel
-def forbid_point(x, y, z, tool, mode, narrowest, intervals, count, room):  # type: ignore[no-untyped-def]
+def forbid_point(x, y, z, tool, mode, narrowest, intervals, count, room):
     """Take out the tilts at which an obstacle point, along f, t and n from the contact, is in the tool; the new count."""
     offset, height = tool.mode[mode, OFFSET_OF], z - tool.mode[mode, RISE]
     piece = tool.piece[mode]
@@ -241,7 +241,7 @@ def forbid_point(x, y, z, tool, mode, narrowest, intervals, count, room):  # typ
 
 
 @kernel
-def arc_of(k, height, px, py, tilt, offset, piece, half, arcs):  # type: ignore[no-untyped-def]
+def arc_of(k, height, px, py, tilt, offset, piece, half, arcs):
     """First and last of the tilts about one, `half` to either side at least, at which a point is in piece k; `arcs` is
     scratch.
     """
@@ -256,7 +256,7 @@ def arc_of(k, height, px, py, tilt, offset, piece, half, arcs):  # type: ignore[
 
 
 @kernel
-def forbid_probed(k, height, px, py, tilt, tool, mode, narrowest, intervals, count, room):  # type: ignore[no-untyped-def]
+def forbid_probed(k, height, px, py, tilt, tool, mode, narrowest, intervals, count, room):
     """The same of a point that a probe at a tilt has met in piece k, in the tool's frame; (the new count, the point along f, t,
     n).
     """
@@ -270,7 +270,7 @@ def forbid_probed(k, height, px, py, tilt, tool, mode, narrowest, intervals, cou
 
 
 @kernel
-def next_tilt(intervals, count, wish):  # type: ignore[no-untyped-def]
+def next_tilt(intervals, count, wish):
     """The tilt to probe next: the one wished for where it is left, or the middle of the widest interval."""
     widest, tilt = -1.0, 0.0
     for i in range(count):

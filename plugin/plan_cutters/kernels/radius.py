@@ -40,7 +40,7 @@ class _Side(NamedTuple):
 
 
 @kernel
-def _look(contacts, row, ranges, side, level, starts, turns, rooms):  # type: ignore[no-untyped-def]
+def _look(contacts, row, ranges, side, level, starts, turns, rooms):
     """`sweep_both` with one tool of a row."""
     tools, piece, mode = side.tools, side.piece, side.mode
     for m in range(len(mode)):
@@ -56,7 +56,7 @@ def _look(contacts, row, ranges, side, level, starts, turns, rooms):  # type: ig
 
 
 @kernel
-def _largest(contacts, row, ranges, light, heavy, guess, last, freed, rooms, found):  # type: ignore[no-untyped-def]
+def _largest(contacts, row, ranges, light, heavy, guess, last, freed, rooms, found):
     """The number of the largest tool that finds a posture, -1 for none, and the verdict on the next; then where the searches
     of both sides ended.
     """
@@ -93,7 +93,7 @@ def _largest(contacts, row, ranges, light, heavy, guess, last, freed, rooms, fou
 
 
 @entry
-def largest(rows, contacts, ranges, light, heavy, may_be, surely, found, level, beyond):  # type: ignore[no-untyped-def]
+def largest(rows, contacts, ranges, light, heavy, may_be, surely, found, level, beyond):
     """Find the largest tool that reaches each sample.
 
     Parameters

@@ -6,7 +6,7 @@ from plan_cutters.kernels.jit import entry
 
 
 @entry
-def draw(corner, light, owner, depth, seen, shade):  # type: ignore[no-untyped-def]
+def draw(corner, light, owner, depth, seen, shade):
     """Draw triangles over what an image has; where two are equally near, the first one stays.
 
     Parameters

@@ -53,7 +53,7 @@ _ROUNDING = 1e-9
 
 
 @kernel
-def _reason(tally, bent):  # type: ignore[no-untyped-def]
+def _reason(tally, bent):
     """What leaves no posture, by what tilts are booked on that curvature allows, and that it forbids (`bent`).
 
     The attribute that leaves none alone, or the one that most tilts are booked on. Where curvature forbids all tilts, what is in
@@ -72,7 +72,7 @@ def _reason(tally, bent):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _write(found, row, contacts, ranges, rotation, tilt):  # type: ignore[no-untyped-def]
+def _write(found, row, contacts, ranges, rotation, tilt):
     """Write a posture."""
     n, e1 = contacts.normal[row], contacts.direction_max[row]
     turn_cos, turn_sin = turn_of(n, e1, ranges, rotation)
@@ -85,7 +85,7 @@ def _write(found, row, contacts, ranges, rotation, tilt):  # type: ignore[no-unt
 
 
 @entry
-def search(rows, contacts, ranges, light, heavy, may_be, surely, found):  # type: ignore[no-untyped-def]
+def search(rows, contacts, ranges, light, heavy, may_be, surely, found):
     """Decide the samples `rows`, one after the other, each starting from the posture of the one before.
 
     Parameters
@@ -139,7 +139,7 @@ def search(rows, contacts, ranges, light, heavy, may_be, surely, found):  # type
 
 
 @entry
-def until_lost(rows, at, contacts, ranges, tool, solids, patient, found):  # type: ignore[no-untyped-def]
+def until_lost(rows, at, contacts, ranges, tool, solids, patient, found):
     """Look for postures of the samples `rows` from the `at`-th on, at which a tool is in nothing's way; where it ended.
 
     Unless it is `patient`, behind the first sample that has none; such samples are written as UNDECIDED, for nothing was asked
@@ -165,7 +165,7 @@ def until_lost(rows, at, contacts, ranges, tool, solids, patient, found):  # typ
 
 
 @entry
-def posture(contacts, ranges, tool, narrowest, start, turns, solids, found):  # type: ignore[no-untyped-def]
+def posture(contacts, ranges, tool, narrowest, start, turns, solids, found):
     """Look for a posture of the first contact at which a tool is in nothing's way; whether there is one.
 
     Parameters
@@ -194,7 +194,7 @@ def posture(contacts, ranges, tool, narrowest, start, turns, solids, found):  # 
 
 
 @entry
-def first_reason(rows, contacts, ranges, heavy, surely, reason):  # type: ignore[no-untyped-def]
+def first_reason(rows, contacts, ranges, heavy, surely, reason):
     """Write the reason (n,) of samples that no posture of a tool serves, where axis limit or curvature alone leave none.
 
     `heavy` and `surely` as for `search`; other reasons stay as they are.
@@ -229,7 +229,7 @@ def first_reason(rows, contacts, ranges, heavy, surely, reason):  # type: ignore
 
 
 @entry
-def dummy_clear(rows, contacts, dummy, tool, solids, clear):  # type: ignore[no-untyped-def]
+def dummy_clear(rows, contacts, dummy, tool, solids, clear):
     """Test the dummy tool, which holds the tool at tilt 0 in every rotation, its axis along the normal.
 
     Parameters
@@ -265,7 +265,7 @@ def dummy_clear(rows, contacts, dummy, tool, solids, clear):  # type: ignore[no-
 
 
 @kernel
-def mode_at(tool, tilt):  # type: ignore[no-untyped-def]
+def mode_at(tool, tilt):
     """The mode in which a tool touches at a tilt, -1 for none."""
     for mode in range(len(tool.mode)):
         if tool.mode[mode, TILT_FROM] - _ROUNDING <= tilt <= tool.mode[mode, TILT_TO] + _ROUNDING:
@@ -274,7 +274,7 @@ def mode_at(tool, tilt):  # type: ignore[no-untyped-def]
 
 
 @entry
-def probe(rows, point, normal, axis, lean, tool, tree, triangle, which):  # type: ignore[no-untyped-def]
+def probe(rows, point, normal, axis, lean, tool, tree, triangle, which):
     """Test given postures: the triangle that reaches into the tool at posture i and the piece that it reaches into, or -1.
 
     Parameters

@@ -19,7 +19,7 @@ V0, V1, Q0, Q1 = 0, 1, 2, 3
 
 
 @kernel
-def _level(tri, radius):  # type: ignore[no-untyped-def]
+def _level(tri, radius):
     """Largest height over a triangle of rows (height, x, y) nearer to the axis than a radius; -inf if none.
 
     It is at a corner, at an end of what a side has within the circle, or where the plane is highest on the circle.
@@ -42,7 +42,7 @@ def _level(tri, radius):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _on_circle(tri, radius):  # type: ignore[no-untyped-def]
+def _on_circle(tri, radius):
     """Height of a triangle's plane where it is highest on a circle about the axis, -inf if that is not in the triangle."""
     ax, ay, aw = tri[1, 1] - tri[0, 1], tri[1, 2] - tri[0, 2], tri[1, 0] - tri[0, 0]
     bx, by, bw = tri[2, 1] - tri[0, 1], tri[2, 2] - tri[0, 2], tri[2, 0] - tri[0, 0]
@@ -61,7 +61,7 @@ def _on_circle(tri, radius):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _sloped(tri, row):  # type: ignore[no-untyped-def]
+def _sloped(tri, row):
     """Largest w - v(q) over a triangle nearer to the axis than q1, for v that rises from v0 at q0 (and is v0 within) to v1 at q1.
 
     That function is concave: its largest value is at a corner, on a side where it is stationary or meets q0 or q1, or on the face
@@ -96,7 +96,7 @@ def _sloped(tri, row):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def needed(tri, outline):  # type: ignore[no-untyped-def]
+def needed(tri, outline):
     """Least height of the nose that clears a triangle of rows (height, x, y); -inf where any does."""
     best = -np.inf
     for k in range(len(outline)):
@@ -108,7 +108,7 @@ def needed(tri, outline):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _at_most(box, i, body, outline):  # type: ignore[no-untyped-def]
+def _at_most(box, i, body, outline):
     """No less than what is needed for anything within box i; -inf where it is beside the holder."""
     dx, dy, dz = box[i, 0] - body[P], box[i, 1] - body[P + 1], box[i, 2] - body[P + 2]
     height = dx * body[A] + dy * body[A + 1] + dz * body[A + 2]
@@ -135,7 +135,7 @@ def _at_most(box, i, body, outline):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _cleared(tree, body, outline, floor, stack, bound, corner):  # type: ignore[no-untyped-def]
+def _cleared(tree, body, outline, floor, stack, bound, corner):
     """Least height of the nose, from the centre, no less than `floor`, that clears all triangles; the one that asks for it, or
     -1."""
     vertex, box, depth = tree.vertex, tree.box, tree.depth
@@ -170,7 +170,7 @@ def _cleared(tree, body, outline, floor, stack, bound, corner):  # type: ignore[
 
 
 @entry
-def least_stick_outs(rows, point, normal, lean, tilt, tool, outline, floor, tree, stick_out, triangle):  # type: ignore[no-untyped-def]
+def least_stick_outs(rows, point, normal, lean, tilt, tool, outline, floor, tree, stick_out, triangle):
     """Least stick-out at given postures, no less than `floor`, and the triangle that asks for it.
 
     Parameters

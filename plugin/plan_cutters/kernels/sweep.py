@@ -57,7 +57,7 @@ class Memory(NamedTuple):
 
 
 @entry
-def memory(rotations, modes, bent):  # type: ignore[no-untyped-def]
+def memory(rotations, modes, bent):
     """Nothing remembered yet."""
     return Memory(
         np.empty((rotations * modes, _KEPT, 3)), np.zeros(rotations * modes, np.int64), np.full((3, _POOL), np.inf),
@@ -66,7 +66,7 @@ def memory(rotations, modes, bent):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _see(past, slot, p, e1, e2, n):  # type: ignore[no-untyped-def]
+def _see(past, slot, p, e1, e2, n):
     """Write a point of the pool as seen from the contact."""
     x, y, z = past.pool[0, slot] - p[0], past.pool[1, slot] - p[1], past.pool[2, slot] - p[2]
     past.seen[0, slot] = x * e1[0] + y * e1[1] + z * e1[2]
@@ -75,7 +75,7 @@ def _see(past, slot, p, e1, e2, n):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _deepest(past, count, turn, tilt, tool, mode):  # type: ignore[no-untyped-def]
+def _deepest(past, count, turn, tilt, tool, mode):
     """The piece and the point of the pool that is deepest in the tool at a posture, in the tool's frame; -1 if none is in it.
 
     Piece by piece and without a branch among points, so that the compiler uses the lanes of the processor.
@@ -118,9 +118,7 @@ def _deepest(past, count, turn, tilt, tool, mode):  # type: ignore[no-untyped-de
 
 
 @kernel
-def _rotation(  # type: ignore[no-untyped-def]
-    contacts, row, ranges, rotation, tool, mode, solids, within, narrowest, wish, frame, past, pooled, room
-):
+def _rotation(contacts, row, ranges, rotation, tool, mode, solids, within, narrowest, wish, frame, past, pooled, room):
     """`sweep` at one rotation and mode: (a tilt, -1 for none; how many points of the pool are seen from this contact)."""
     p, n, e1, e2, f, t = frame.p, frame.n, contacts.direction_max[row], room.e2, room.f, room.t
     intervals, body, tally = room.intervals, room.body, room.tally
@@ -180,7 +178,7 @@ def _rotation(  # type: ignore[no-untyped-def]
 
 
 @kernel
-def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, past, room):  # type: ignore[no-untyped-def]
+def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, past, room):
     """Look for a posture of one sample at all rotations, those next to the first looked at first, among the tilts that `past` is
     about.
 
@@ -246,13 +244,13 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, 
 
 
 @entry
-def both(rotations, modes):  # type: ignore[no-untyped-def]
+def both(rotations, modes):
     """Nothing remembered yet of either kind of sweep, and room for each."""
     return (memory(rotations, modes, False), memory(rotations, modes, True)), (room_to_search(), room_to_search())
 
 
 @kernel
-def sweep_both(contacts, row, ranges, tool, solids, within, narrowest, starts, turns, pasts, rooms):  # type: ignore[no-untyped-def]
+def sweep_both(contacts, row, ranges, tool, solids, within, narrowest, starts, turns, pasts, rooms):
     """`sweep` among the tilts that curvature allows at the contact, and, where these hold no posture, among the others.
 
     The parameters are those of `sweep`, one of each kind; the two remember nothing of each other, so that a sample that needs the

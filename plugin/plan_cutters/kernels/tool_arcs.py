@@ -32,7 +32,7 @@ _STEPS, _LEAST = 24, 1e-6
 
 
 @kernel
-def _put(out, count, first, last):  # type: ignore[no-untyped-def]
+def _put(out, count, first, last):
     """Enter tilts, and those a turn away, as far as a tilt can be asked for."""
     for turn in range(-1, 2):
         low, high = first + 2.0 * np.pi * turn, last + 2.0 * np.pi * turn
@@ -43,7 +43,7 @@ def _put(out, count, first, last):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _half(out, count, zero, low, high, d, floor, ceiling, up):  # type: ignore[no-untyped-def]
+def _half(out, count, zero, low, high, d, floor, ceiling, up):
     """Enter the tilts of cosines of alpha between two bounds and heights between two, on one half turn; `zero` the tilt of alpha
     0.
     """
@@ -68,7 +68,7 @@ def _half(out, count, zero, low, high, d, floor, ceiling, up):  # type: ignore[n
 
 
 @kernel
-def _cylinder(out, count, zero, d, y, offset, radius, floor, ceiling):  # type: ignore[no-untyped-def]
+def _cylinder(out, count, zero, d, y, offset, radius, floor, ceiling):
     """What a cylinder about the axis forbids, of any radius, between any heights."""
     square = radius * radius - y * y
     if square <= 0.0 or radius <= 0.0 or floor >= ceiling:
@@ -80,7 +80,7 @@ def _cylinder(out, count, zero, d, y, offset, radius, floor, ceiling):  # type: 
 
 
 @kernel
-def _own_arc(out, count, zero, d, y, radius, around, floor, ceiling):  # type: ignore[no-untyped-def]
+def _own_arc(out, count, zero, d, y, radius, around, floor, ceiling):
     """What the arc forbids whose circle of centres goes through the centre of turning; `radius` may have any sign."""
     for up in (1.0, -1.0):
         if radius == 0.0:
@@ -110,7 +110,7 @@ def _own_arc(out, count, zero, d, y, radius, around, floor, ceiling):  # type: i
 
 
 @kernel
-def forbidden(height, px, py, tilt, offset, piece, k, out):  # type: ignore[no-untyped-def]
+def forbidden(height, px, py, tilt, offset, piece, k, out):
     """Write tilts at which a point is in piece k, the rotation held; how many arcs.
 
     Parameters
@@ -151,7 +151,7 @@ def forbidden(height, px, py, tilt, offset, piece, k, out):  # type: ignore[no-u
 
 
 @kernel
-def arc_about(height, px, py, tilt, offset, piece, k):  # type: ignore[no-untyped-def]
+def arc_about(height, px, py, tilt, offset, piece, k):
     """First and last of the tilts about one at which a point is in piece k, by steps no longer than its depth allows."""
     back = offset - px
     d = np.sqrt(back * back + height * height)
@@ -173,7 +173,7 @@ def arc_about(height, px, py, tilt, offset, piece, k):  # type: ignore[no-untype
 
 
 @kernel
-def closed(offset, piece, k):  # type: ignore[no-untyped-def]
+def closed(offset, piece, k):
     """Whether `forbidden` has the exact arcs of a piece."""
     kind = piece[k, KIND]
     return kind == CYLINDER or (kind == ARC and piece[k, SLOPE] == 0.0 and piece[k, RADIUS] == offset)

@@ -23,14 +23,14 @@ _LANES = 8
 
 
 @kernel
-def _swap(order, centre, i, j):  # type: ignore[no-untyped-def]
+def _swap(order, centre, i, j):
     order[i], order[j] = order[j], order[i]
     for k in range(3):
         centre[k, i], centre[k, j] = centre[k, j], centre[k, i]
 
 
 @kernel
-def _select(order, centre, axis, lo, hi, nth):  # type: ignore[no-untyped-def]
+def _select(order, centre, axis, lo, hi, nth):
     """Partially sort `order[lo:hi]`, and their centres with it, so that the nth is in place (Hoare's selection)."""
     hi -= 1
     while lo < hi:
@@ -54,7 +54,7 @@ def _select(order, centre, axis, lo, hi, nth):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _extent(row, lo, hi, lows, highs):  # type: ignore[no-untyped-def]
+def _extent(row, lo, hi, lows, highs):
     """Least and largest of `row[lo:hi]`, several at a time; scratch: lows, highs (_LANES,)."""
     low, high = row[lo], row[lo]
     whole = lo + (hi - lo) // _LANES * _LANES
@@ -72,7 +72,7 @@ def _extent(row, lo, hi, lows, highs):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _normals(corner, normal):  # type: ignore[no-untyped-def]
+def _normals(corner, normal):
     """Write the normals (3, n) of triangles, as long as twice their area."""
     for i in range(corner.shape[1]):
         ax, ay, az = corner[3, i] - corner[0, i], corner[4, i] - corner[1, i], corner[5, i] - corner[2, i]
@@ -81,7 +81,7 @@ def _normals(corner, normal):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _mean_normal(corner, normal, lo, hi):  # type: ignore[no-untyped-def]
+def _mean_normal(corner, normal, lo, hi):
     """Unit mean normal of triangles `lo` to `hi`, area counted; along z if they have none."""
     x, y, z = 0.0, 0.0, 0.0
     fx, fy, fz = normal[0, lo], normal[1, lo], normal[2, lo]
@@ -107,7 +107,7 @@ def _mean_normal(corner, normal, lo, hi):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _reach(corner, lo, hi, middle, axes, room):  # type: ignore[no-untyped-def]
+def _reach(corner, lo, hi, middle, axes, room):
     """Write into `room.least` and `room.most` (3,) how far triangles `lo` to `hi` reach along axes (3, 3) from a point."""
     lows, highs, least, most = room.lows, room.highs, room.least, room.most
     mx, my, mz = middle[0], middle[1], middle[2]
@@ -152,7 +152,7 @@ class _Room(NamedTuple):
 
 
 @kernel
-def _bound(corner, normal, lo, hi, low, high, box, node, room):  # type: ignore[no-untyped-def]
+def _bound(corner, normal, lo, hi, low, high, box, node, room):
     """Bound triangles `lo` to `hi`, which lie between low and high (3,), by a box whose third side is along the mean normal."""
     middle, axes = room.middle, room.axes
     mean = _mean_normal(corner, normal, lo, hi)
@@ -190,7 +190,7 @@ def _bound(corner, normal, lo, hi, low, high, box, node, room):  # type: ignore[
 
 
 @kernel
-def _sort(order, centre, depth, lows, highs):  # type: ignore[no-untyped-def]
+def _sort(order, centre, depth, lows, highs):
     """Bring triangles into the order of the tree's leaves, each node with all below it before the next."""
     n, level, j = len(order), 0, 0
     while depth > 0:
@@ -213,7 +213,7 @@ def _sort(order, centre, depth, lows, highs):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _bounds(corner, normal, depth, box, room):  # type: ignore[no-untyped-def]
+def _bounds(corner, normal, depth, box, room):
     """Bound every node, after the two below it."""
     n = corner.shape[1]
     for leaf in range(1 << depth):
@@ -238,7 +238,7 @@ def _bounds(corner, normal, depth, box, room):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _middles(vertex, centre):  # type: ignore[no-untyped-def]
+def _middles(vertex, centre):
     """Write the middles (3, n) of the boxes around triangles."""
     for i in range(len(vertex)):
         for k in range(3):
@@ -248,7 +248,7 @@ def _middles(vertex, centre):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _corners(vertex, order, corner):  # type: ignore[no-untyped-def]
+def _corners(vertex, order, corner):
     """Write the corners' coordinates (9, n) in order."""
     for i in range(len(order)):
         for c in range(3):
@@ -257,7 +257,7 @@ def _corners(vertex, order, corner):  # type: ignore[no-untyped-def]
 
 
 @entry
-def build_apart(vertex, own, away):  # type: ignore[no-untyped-def]
+def build_apart(vertex, own, away):
     """As `build`, but triangles from the row `own` on are kept apart from those before it as far as halving lets: they are put in
     order as if they stood `away`, mm, farther along x."""
     n = len(vertex)
@@ -286,7 +286,7 @@ def build_apart(vertex, own, away):  # type: ignore[no-untyped-def]
 
 
 @entry
-def build(vertex):  # type: ignore[no-untyped-def]
+def build(vertex):
     """Order triangles and bound them.
 
     Parameters

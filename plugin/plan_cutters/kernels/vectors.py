@@ -6,18 +6,18 @@ from plan_cutters.kernels.jit import kernel
 
 
 @kernel
-def dot(a, b):  # type: ignore[no-untyped-def]
+def dot(a, b):
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @kernel
-def cross(a, b, out):  # type: ignore[no-untyped-def]
+def cross(a, b, out):
     """Write a x b."""
     out[0], out[1], out[2] = a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 @kernel
-def perpendicular(n, out):  # type: ignore[no-untyped-def]
+def perpendicular(n, out):
     """Write any unit direction across a unit direction."""
     k = 0 if abs(n[0]) < 0.6 else 1
     for i in range(3):
@@ -29,7 +29,7 @@ def perpendicular(n, out):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def lean_frame(e1, e2, cosine, sine, f, t):  # type: ignore[no-untyped-def]
+def lean_frame(e1, e2, cosine, sine, f, t):
     """Write the lean direction f at a rotation, and t = n x f."""
     for k in range(3):
         f[k] = cosine * e1[k] + sine * e2[k]

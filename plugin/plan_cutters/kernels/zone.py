@@ -40,7 +40,7 @@ class Nodes(NamedTuple):
 
 
 @kernel
-def near_by(vertex, triangle_face, i, frame, face, near):  # type: ignore[no-untyped-def]
+def near_by(vertex, triangle_face, i, frame, face, near):
     """Whether triangle i is part of the surface that the contact lies on, and bent no more than was believed.
 
     `near` holds the distance up to which, the largest height over the tangent plane, the bounds of curvature along f,
@@ -66,7 +66,7 @@ def near_by(vertex, triangle_face, i, frame, face, near):  # type: ignore[no-unt
 
 
 @kernel
-def held_below(pose, turn, k_ff, k_ft, k_tt, extent, nose):  # type: ignore[no-untyped-def]
+def held_below(pose, turn, k_ff, k_ft, k_tt, extent, nose):
     """Whether the paraboloid with these curvatures stays below the nose of a cutter within `extent` of the contact.
 
     At every tilt within `turn` of that of `pose`, its sine and cosine. The surface offset by the nose's radius stays below the
@@ -121,7 +121,7 @@ class Seen(NamedTuple):
 
 
 @entry
-def seen():  # type: ignore[no-untyped-def]
+def seen():
     """Room for it."""
     return Seen(
         np.empty((EXTENTS, 7)), np.empty(4, np.int64), np.empty(4), np.empty(4, np.bool_), np.zeros(1, np.int64)
@@ -129,13 +129,13 @@ def seen():  # type: ignore[no-untyped-def]
 
 
 @kernel
-def distance_of(k):  # type: ignore[no-untyped-def]
+def distance_of(k):
     """Distance of row k, in patch radii."""
     return 2.0 + (FARTHEST - 2.0) * (k / (EXTENTS - 1)) ** 2
 
 
 @kernel
-def _line(frame, h, nodes, axis, line, first, last, most):  # type: ignore[no-untyped-def]
+def _line(frame, h, nodes, axis, line, first, last, most):
     """Enter the nodes of a piece of a grid line into their rows.
 
     Returns how far the nearest of them, the first and the last are from the patch, inf where there is no node, and whether one
@@ -205,7 +205,7 @@ def _line(frame, h, nodes, axis, line, first, last, most):  # type: ignore[no-un
 
 
 @kernel
-def begin(frame, h, home, nodes, out):  # type: ignore[no-untyped-def]
+def begin(frame, h, home, nodes, out):
     """Look at the home node alone; False if it has no curvature."""
     for k in range(EXTENTS):
         out.most[k, 0], out.most[k, 1] = -np.inf, -np.inf
@@ -218,7 +218,7 @@ def begin(frame, h, home, nodes, out):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _outer(frame, h, home, nodes, out, side):  # type: ignore[no-untyped-def]
+def _outer(frame, h, home, nodes, out, side):
     """Look at one more line on a side; False if a node in row 0 has no curvature."""
     lines, axis, other = out.lines, side // 2, 1 - side // 2
     length, closed = nodes.index.shape[axis], nodes.closed[axis]
@@ -244,7 +244,7 @@ def _outer(frame, h, home, nodes, out, side):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def look_round(frame, h, home, nodes, out, upto):  # type: ignore[no-untyped-def]
+def look_round(frame, h, home, nodes, out, upto):
     """Look at the nodes around a contact until all within a distance of its patch are seen.
 
     The rectangle of grid lines about the home node grows on each side until all of that side is farther away, so that what lies
