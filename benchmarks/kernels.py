@@ -23,7 +23,12 @@ import waves
 
 from plan_cutters import Cutter
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.kernels import arcs, cover, free_map, free_tilts, hit, lanes, material, probing, search, tree
+from plan_cutters.kernels import material
+from plan_cutters.kernels.area import cover
+from plan_cutters.kernels.linear import lanes, tree
+from plan_cutters.kernels.maps import free_map, free_tilts
+from plan_cutters.kernels.search import place, search
+from plan_cutters.kernels.tool import arcs, hit
 from plan_cutters.kernels.jit import kernel
 from plan_cutters.kernels.rows import Contacts, Found, Frame
 
@@ -73,7 +78,7 @@ def many_removals(n, at, intervals):
         if i % 8 == 0:
             intervals[0, 0], intervals[0, 1], count = 0.0, 1.5, 1
         q = at[i % len(at)]
-        count = probing.remove(intervals, count, q[3], q[3] + 0.05, 1e-4)
+        count = place.remove(intervals, count, q[3], q[3] + 0.05, 1e-4)
     return count
 
 

@@ -68,7 +68,7 @@ def test_machine_code_is_found_where_the_compiler_keeps_it(tmp_path):
     look = (
         "from plan_cutters.kernels.jit import at_hand; print(at_hand('rows.none'), at_hand('probing.room_to_search'))"
     )
-    make = "from plan_cutters.kernels.probing import room_to_search; room_to_search()"
+    make = "from plan_cutters.kernels.search.place import room_to_search; room_to_search()"
     environment = {**ENV, "NUMBA_CACHE_DIR": str(tmp_path)}
 
     def run(text):

@@ -12,26 +12,15 @@ import pytest
 import waves
 
 from plan_cutters.domain.verdicts import blank
-from plan_cutters.kernels import (
-    arcs,
-    cuts,
-    free_map,
-    gaps,
-    hit,
-    lanes,
-    material,
-    passes,
-    pieces,
-    probing,
-    search,
-    sweep,
-    tool_arcs,
-    vectors,
-)
+from plan_cutters.kernels import material
+from plan_cutters.kernels.linear import lanes, vectors
+from plan_cutters.kernels.maps import cuts, free_map, gaps, passes
+from plan_cutters.kernels.search import place, search, sweep
+from plan_cutters.kernels.tool import arcs, hit, pieces, tool_arcs
 from plan_cutters.scene.conditions import found_of
 
 MODULES = (
-    arcs, cuts, free_map, gaps, hit, lanes, material, passes, pieces, probing, search, sweep, tool_arcs, vectors,
+    arcs, cuts, free_map, gaps, hit, lanes, material, passes, pieces, place, search, sweep, tool_arcs, vectors,
 )  # fmt: skip
 
 #: Samples without a posture among the tilts that curvature allows are searched among the others, too (decision 19).

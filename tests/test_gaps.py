@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 import waves
 
-from plan_cutters.kernels import gaps, lanes, passes
+from plan_cutters.kernels.linear import lanes
+from plan_cutters.kernels.maps import gaps, passes
 
 TILTS = 181
 

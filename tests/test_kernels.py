@@ -12,10 +12,13 @@ from reference import depth_in_cutter, posture, random_frame, triangle_points
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import blank
-from plan_cutters.kernels import free_tilts, hit, probing, search, tree
-from plan_cutters.kernels.arcs import point_arc
+from plan_cutters.kernels.linear import tree
+from plan_cutters.kernels.maps import free_tilts
+from plan_cutters.kernels.search import place, search
+from plan_cutters.kernels.tool import hit
+from plan_cutters.kernels.tool.arcs import point_arc
 from plan_cutters.kernels.material import sheet
-from plan_cutters.kernels.points import axis_intervals, local_gouge_range
+from plan_cutters.kernels.maps.points import axis_intervals, local_gouge_range
 from plan_cutters.kernels.rows import Contacts, Frame, Tree
 from plan_cutters.scene.conditions import found_of, ranges_of
 
@@ -192,7 +195,7 @@ def test_remove_keeps_the_complement(cuts):
     left = np.ones(len(points), bool)
     for a, b in cuts:
         first, last = min(a, b), max(a, b)
-        count = probing.remove(intervals, count, first, last, 0.0)
+        count = place.remove(intervals, count, first, last, 0.0)
         left &= ~((points > first) & (points < last))
     rows = intervals[:count]
     assert (rows[:, 0] <= rows[:, 1]).all()

@@ -8,9 +8,9 @@ from reference import random_frame
 from tool_reference import KINDS, Reference, in_row, random_cutter
 
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.kernels import tool_arcs
-from plan_cutters.kernels.arcs import local_gouge
-from plan_cutters.kernels.pieces import inset
+from plan_cutters.kernels.tool import tool_arcs
+from plan_cutters.kernels.tool.arcs import local_gouge
+from plan_cutters.kernels.tool.pieces import inset
 
 #: mm.
 EXACT = 1e-9

@@ -10,7 +10,7 @@ from tool_reference import KINDS, Reference, in_row, random_cutter
 from plan_cutters import Cutter
 from plan_cutters.domain import pieces as domain
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.kernels import hit, pieces
+from plan_cutters.kernels.tool import hit, pieces
 from plan_cutters.kernels.jit import kernel
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.scene.conditions import tool_of
@@ -219,7 +219,7 @@ def test_a_million_triangles_of_each_kind(kind):
 def test_a_triangle_without_area_hits_where_its_longest_side_does():
     """Its normal is nothing but rounding: no plane across it may part it from a piece."""
     from plan_cutters.domain.pieces import ARC, FLUTES, row_of
-    from plan_cutters.kernels.pieces import polygon_hit
+    from plan_cutters.kernels.tool.pieces import polygon_hit
 
     rng, met = np.random.default_rng(0), 0
     for radius, around in ((0.0, 3.0), (2.0, 1.5), (12.0, 1.5), (-20.0, 26.0)):

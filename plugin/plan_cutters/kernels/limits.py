@@ -7,9 +7,9 @@ angles at the middle tell.
 
 import numpy as np
 
-from plan_cutters.kernels.arcs import axis_arcs
+from plan_cutters.kernels.tool.arcs import axis_arcs
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.vectors import cross, dot, lean_frame
+from plan_cutters.kernels.linear.vectors import cross, dot, lean_frame
 
 # As in `plan_cutters.domain.kinematics`, which must not load the compiler; a test holds them together.
 PARALLEL, ON_LIMIT = 1e-6, 1e-9

@@ -59,7 +59,7 @@ def clearances(samples: SurfaceSamples, cutter: Cutter, reach: Reach, conditions
         Unknown at all samples where an obstacle is missing or only guessed, for nothing could be proved, and of a bare cutter
         that is no longer than it is wide.
     """
-    from plan_cutters.kernels.search import probe
+    from plan_cutters.kernels.search.search import probe
 
     n, obstacles, steps = len(samples), conditions.obstacles, rungs(cutter)
     found = Clearances(np.full(n, np.nan), np.full(n, -1, np.int8), np.zeros(n, np.int32))

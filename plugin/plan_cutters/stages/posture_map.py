@@ -115,8 +115,8 @@ def posture_map_of(
     ask: Ask, around: Surroundings, tools: tuple[Assembly, Assembly], narrowest: float, tolerance: float
 ) -> PostureMap:  # fmt: skip
     """The map; `tools` as `Conditions.light` and `Conditions.heavy` make them."""
-    from plan_cutters.kernels.free_tilts import FORBIDDEN, OPEN, UNSURE
-    from plan_cutters.kernels.points import axis_intervals
+    from plan_cutters.kernels.maps.free_tilts import FORBIDDEN, OPEN, UNSURE
+    from plan_cutters.kernels.maps.points import axis_intervals
 
     contact, cutter, (low, high) = ask.contact, ask.cutter, ask.tilt
     p, n, e1 = contact.point[0], contact.normal[0], contact.direction_max[0]
@@ -179,7 +179,7 @@ def posture_map_of(
 
 def _gouge_bounds(curvature: Floats, rotation: float, tool: Assembly) -> Floats:
     """Tilts (k, 2) at which a tool touches and local gouging allows it."""
-    from plan_cutters.kernels.points import local_gouge_range
+    from plan_cutters.kernels.maps.points import local_gouge_range
 
     found = []
     for offset, radius, low, high, _ in tool.mode.tolist():
@@ -200,7 +200,7 @@ def _parts(
     narrowest: float,
 ) -> Floats:
     """Free, forbidden and undecided parts (k, 3) of a range of tilts, as `free_tilts` gives them."""
-    from plan_cutters.kernels.free_tilts import OPEN, free_tilts
+    from plan_cutters.kernels.maps.free_tilts import OPEN, free_tilts
 
     if obstacles is None or not tool.piece.shape[1]:
         return np.array([[first, last, OPEN]])

@@ -32,7 +32,7 @@ _CONTACT, _ROUND = 110, 11_000
 #: The gain is judged over at least so many of the last contacts.
 _JUDGED = 4000
 
-#: As `kernels.cover` writes them, but without its import: how often a cell must be halved, never, 0: it is served.
+#: As `kernels.area.cover` writes them, but without its import: how often a cell must be halved, never, 0: it is served.
 Outlook = NDArray[np.uint8]
 _NEVER = 255
 #: Of a contact at which no posture is known.
@@ -229,8 +229,8 @@ def _cover(
     contacts: CellContacts, tensor: Floats, axes: Floats, flats: NDArray[np.bool_], site: Site, rows: NDArray[np.int64]
 ) -> Outlook:
     """Outlook (m,) of rows of contacts with tensors and axes."""
-    from plan_cutters.kernels.cover import Patches, Sweeping, cover
-    from plan_cutters.kernels.zone import Nodes
+    from plan_cutters.kernels.area.cover import Patches, Sweeping, cover
+    from plan_cutters.kernels.area.zone import Nodes
 
     field, cutter, conditions = site.field, site.cutter, site.conditions
     obstacles, light = conditions.obstacles, conditions.light(cutter)

@@ -10,7 +10,7 @@ Loops run over `len(clear)`: where they are known to be short, the compiler does
 
 import numpy as np
 
-from plan_cutters.kernels.bounds import (
+from plan_cutters.kernels.maps.bounds import (
     AXIS,
     BESIDE,
     FAR,
@@ -24,7 +24,7 @@ from plan_cutters.kernels.bounds import (
     swept,
 )  # fmt: skip
 from plan_cutters.kernels.jit import kernel
-from plan_cutters.kernels.lanes import LANES
+from plan_cutters.kernels.linear.lanes import LANES
 
 #: Rows of ends: cosine and sine of the first tilt, of the last, of the middle, cosine of half the gap.
 CA, SA, CB, SB, CM, SM, CH, ENDS = 0, 1, 2, 3, 4, 5, 6, 7

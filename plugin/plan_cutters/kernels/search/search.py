@@ -12,11 +12,11 @@ no point of the surface is too deep.
 
 import numpy as np
 
-from plan_cutters.kernels.hit import BODY, scratch, stand, tree_hit
+from plan_cutters.kernels.tool.hit import BODY, scratch, stand, tree_hit
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.limits import turn_of
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
-from plan_cutters.kernels.probing import (
+from plan_cutters.kernels.search.place import (
     AXIS_LIMIT,
     BURIED,
     COLLISION,
@@ -36,8 +36,8 @@ from plan_cutters.kernels.probing import (
     straight,
 )
 from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.sweep import both, memory, sweep, sweep_both
-from plan_cutters.kernels.vectors import cross, dot, lean_frame, perpendicular
+from plan_cutters.kernels.search.sweep import both, memory, sweep, sweep_both
+from plan_cutters.kernels.linear.vectors import cross, dot, lean_frame, perpendicular
 
 # As in `plan_cutters.domain.verdicts`, which must not load the compiler; a test holds them together.
 INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255

@@ -11,15 +11,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels import hit
-from plan_cutters.kernels.drawn import drawn_hit
-from plan_cutters.kernels.hit import BODY, HALF, OFFSET, A, P, X, Y
+from plan_cutters.kernels.tool import hit
+from plan_cutters.kernels.tool.drawn import drawn_hit
+from plan_cutters.kernels.tool.hit import BODY, HALF, OFFSET, A, P, X, Y
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.pieces import ARC, BOTTOM, COLUMNS, HIGH, KIND, LOW, RADIUS, ROUND, SLOPE, TOP, WIDE
+from plan_cutters.kernels.tool.pieces import ARC, BOTTOM, COLUMNS, HIGH, KIND, LOW, RADIUS, ROUND, SLOPE, TOP, WIDE
 from plan_cutters.kernels.rows import Frame, Scratch
-from plan_cutters.kernels.search import mode_at
-from plan_cutters.kernels.vectors import cross, dot, perpendicular
-from plan_cutters.kernels.zone import EXTENTS, Nose, begin, distance_of, held_below, look_round, near_by, seen
+from plan_cutters.kernels.search.search import mode_at
+from plan_cutters.kernels.linear.vectors import cross, dot, perpendicular
+from plan_cutters.kernels.area.zone import EXTENTS, Nose, begin, distance_of, held_below, look_round, near_by, seen
 
 #: Largest angle (rad) between normals within `extent`: up to it, the surface is a graph over its tangent planes.
 _MOST_TURN = 0.5

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.pieces import (
+from plan_cutters.kernels.tool.pieces import (
     ARC,
     BOTTOM,
     CONE,

@@ -4,15 +4,15 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.arcs import local_gouge
-from plan_cutters.kernels.hit import BODY, OFFSET, A, P, X, scratch, stand, tree_hit
+from plan_cutters.kernels.tool.arcs import local_gouge
+from plan_cutters.kernels.tool.hit import BODY, OFFSET, A, P, X, scratch, stand, tree_hit
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.limits import held_tilts, turn_of
 from plan_cutters.kernels.material import outside, winding
-from plan_cutters.kernels.pieces import FLUTES, PART
+from plan_cutters.kernels.tool.pieces import FLUTES, PART
 from plan_cutters.kernels.rows import Scratch
-from plan_cutters.kernels.tool_arcs import ARCS, arc_about, closed, forbidden
-from plan_cutters.kernels.vectors import lean_frame
+from plan_cutters.kernels.tool.tool_arcs import ARCS, arc_about, closed, forbidden
+from plan_cutters.kernels.linear.vectors import lean_frame
 
 # As in `plan_cutters.domain.verdicts`, which must not load the compiler; a test holds them together.
 AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, COLLISION, BURIED, NECK, SHANK, HOLDER, ATTRIBUTES = 0, 1, 2, 3, 4, 6, 7, 8, 9

@@ -3,7 +3,7 @@
 import numpy as np
 
 from plan_cutters.kernels.jit import kernel
-from plan_cutters.kernels.pieces import nearest
+from plan_cutters.kernels.tool.pieces import nearest
 
 #: Triangles that reach no farther along the line of turning, in radii, see the rim as one line.
 _FLAT = 0.03

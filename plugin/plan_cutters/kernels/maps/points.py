@@ -3,7 +3,7 @@
 import numpy as np
 
 from cad_io.arrays import Floats
-from plan_cutters.kernels.arcs import local_gouge
+from plan_cutters.kernels.tool.arcs import local_gouge
 from plan_cutters.kernels.limits import held_tilts
 from plan_cutters.kernels.rows import Ranges
 

@@ -9,19 +9,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.bounds import FAR, FLOOR, NEAR, Turning, turning_of
-from plan_cutters.kernels.cuts import cut_gaps, flutes, room_to_cut, take_point
-from plan_cutters.kernels.gaps import CF, CL, COLUMNS, FIRST, GAPS, LAST, SF, SL, UF, UL, _begin, _end
-from plan_cutters.kernels.hit import stand, tree_hit
+from plan_cutters.kernels.maps.bounds import FAR, FLOOR, NEAR, Turning, turning_of
+from plan_cutters.kernels.maps.cuts import cut_gaps, flutes, room_to_cut, take_point
+from plan_cutters.kernels.maps.gaps import CF, CL, COLUMNS, FIRST, GAPS, LAST, SF, SL, UF, UL, _begin, _end
+from plan_cutters.kernels.tool.hit import stand, tree_hit
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.lanes import LANES, _boxes_pass, _see, _see_leaf, _see_triangle, _triangles_pass, _turn
+from plan_cutters.kernels.linear.lanes import LANES, _boxes_pass, _see, _see_leaf, _see_triangle, _triangles_pass, _turn
 from plan_cutters.kernels.limits import turn_of
-from plan_cutters.kernels.pieces import ARC, BOTTOM, HIGH, KIND, LOW, RADIUS, ROUND, SLOPE, TOP
-from plan_cutters.kernels.pieces import COLUMNS as PIECE
-from plan_cutters.kernels.planes import all_ends, boxes_clear, triangles_clear, turn_boxes, turn_triangles
-from plan_cutters.kernels.probing import OFFSET_OF, RISE, TILT_FROM, TILT_TO, permitted
+from plan_cutters.kernels.tool.pieces import ARC, BOTTOM, HIGH, KIND, LOW, RADIUS, ROUND, SLOPE, TOP
+from plan_cutters.kernels.tool.pieces import COLUMNS as PIECE
+from plan_cutters.kernels.maps.planes import all_ends, boxes_clear, triangles_clear, turn_boxes, turn_triangles
+from plan_cutters.kernels.search.place import OFFSET_OF, RISE, TILT_FROM, TILT_TO, permitted
 from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.vectors import cross, lean_frame
+from plan_cutters.kernels.linear.vectors import cross, lean_frame
 
 #: Blocks of boxes kept as seen from one contact, and blocks that may wait to be looked at.
 _SEEN, _QUEUE = 1 << 11, 1 << 13

@@ -7,9 +7,9 @@ axis along x_T and at the height `d sin(alpha)`. Arcs may be too short, never to
 
 import numpy as np
 
-from plan_cutters.kernels.arcs import point_arc
+from plan_cutters.kernels.tool.arcs import point_arc
 from plan_cutters.kernels.jit import kernel
-from plan_cutters.kernels.pieces import (
+from plan_cutters.kernels.tool.pieces import (
     ARC,
     BOTTOM,
     CONE,

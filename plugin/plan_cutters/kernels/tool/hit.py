@@ -16,7 +16,7 @@ turns the tool about that line, and turning by at most `rate` moves Q by no more
 import numpy as np
 
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.pieces import (
+from plan_cutters.kernels.tool.pieces import (
     ARC,
     BOTTOM,
     CYLINDER,

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.gaps import CF, CL, SF, SL
+from plan_cutters.kernels.maps.gaps import CF, CL, SF, SL
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.passes import _facing, _from_plane, _rim
+from plan_cutters.kernels.maps.passes import _facing, _from_plane, _rim
 
 #: Boxes and triangles looked at together.
 LANES = 8

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, Solids
 from plan_cutters.kernels.rows import Tool
-from plan_cutters.kernels.search import _FINEST, _NO_GAP, INACCESSIBLE, START, UNDECIDED, _reason, _write
-from plan_cutters.kernels.sweep import both, sweep_both
+from plan_cutters.kernels.search.search import _FINEST, _NO_GAP, INACCESSIBLE, START, UNDECIDED, _reason, _write
+from plan_cutters.kernels.search.sweep import both, sweep_both
 
 
 class Ladder(NamedTuple):

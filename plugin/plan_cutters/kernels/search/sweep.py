@@ -11,11 +11,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.hit import deep_hit
+from plan_cutters.kernels.tool.hit import deep_hit
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.limits import turn_of
-from plan_cutters.kernels.pieces import ARC, HIGH, KIND, LOW, RADIUS, ROUND, SCALE, SLOPE
-from plan_cutters.kernels.probing import (
+from plan_cutters.kernels.tool.pieces import ARC, HIGH, KIND, LOW, RADIUS, ROUND, SCALE, SLOPE
+from plan_cutters.kernels.search.place import (
     BURIED,
     OFFSET_OF,
     RISE,
@@ -31,7 +31,7 @@ from plan_cutters.kernels.probing import (
     turned,
 )
 from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.vectors import cross
+from plan_cutters.kernels.linear.vectors import cross
 
 #: Points remembered for each rotation, and of those that the tree gave last.
 _KEPT, _POOL = 64, 128
