@@ -25,12 +25,12 @@ from plan_cutters import Cutter
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.kernels import material
 from plan_cutters.kernels.area import cover
+from plan_cutters.kernels.jit import kernel
 from plan_cutters.kernels.linear import lanes, tree
-from plan_cutters.kernels.maps import free_map, free_tilts
+from plan_cutters.kernels.maps import free_map, free_tilts, passes
+from plan_cutters.kernels.rows import Contacts, Found, Frame
 from plan_cutters.kernels.search import place, search
 from plan_cutters.kernels.tool import arcs, hit
-from plan_cutters.kernels.jit import kernel
-from plan_cutters.kernels.rows import Contacts, Found, Frame
 
 RADIUS, LENGTH, SAFE, BLOCKED, TURNS = 6.0, 40.0, 0.04, 0.06, 24
 TOOL = waves.flat(RADIUS, LENGTH, SAFE)
@@ -111,7 +111,7 @@ def many_walks(n, built, bodies, piece, scratch):
 def many_blocks(n, view, gap, tool, margin):
     total = 0.0
     for i in range(n):
-        lanes._boxes_pass(view, i % len(view), 0.8, 0.6, gap, 1, tool, margin)
+        passes._boxes_pass(view, i % len(view), 0.8, 0.6, gap, 1, tool, margin)
         total += margin[0]
     return total
 
@@ -121,7 +121,7 @@ def many_leaves(n, leaves, gap, tool, margin):
     total = 0.0
     for i in range(n):
         seen = leaves[i % len(leaves)]
-        lanes._triangles_pass(seen, 0.8, 0.6, gap, 1, tool, margin)
+        passes._triangles_pass(seen, 0.8, 0.6, gap, 1, tool, margin)
         total += margin[0]
     return total
 

@@ -24,7 +24,7 @@ ENTRIES = {
     "tree.build": "from plan_cutters.kernels.linear.tree import build; build(one)",
     "search, probe, dummy_clear": (
         f"{FLAT}"
-        "from plan_cutters.kernels import search as s; from plan_cutters.kernels.linear.tree import build\n"
+        "from plan_cutters.kernels.search import search as s; from plan_cutters.kernels.linear.tree import build\n"
         "from plan_cutters.kernels.rows import Contacts, Found, Ranges, Tree\n"
         "_, box, depth = build(one); p, c, n = np.zeros((1, 3)), np.zeros((1, 2)), np.zeros(1)\n"
         "i, b = np.zeros(1, np.int32), np.zeros(1, np.uint8)\n"

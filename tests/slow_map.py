@@ -6,10 +6,10 @@ Each range is tested as a whole: nothing is handed on from one to the next, and 
 import numba
 import numpy as np
 
-from plan_cutters.kernels.maps.free_tilts import OPEN, UNSURE, divide, room_for_parts
-from plan_cutters.kernels.search.place import permitted
-from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.linear.vectors import cross, lean_frame
+from plan_cutters.kernels.maps.free_tilts import OPEN, UNSURE, divide, room_for_parts
+from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.search.place import permitted
 
 #: Parts that the tilts of one rotation may fall into.
 _PARTS = 400

@@ -15,7 +15,7 @@ from cad_io.sample import sample
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Machine, plan
 from plan_cutters.domain.posture import PostureRange
-from plan_cutters.kernels.area.cover import NEVER
+from plan_cutters.kernels.codes import NEVER
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings

@@ -14,12 +14,12 @@ from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.kernels.linear import tree
 from plan_cutters.kernels.maps import free_tilts
+from plan_cutters.kernels.maps.points import axis_intervals, local_gouge_range
+from plan_cutters.kernels.material import sheet
+from plan_cutters.kernels.rows import Contacts, Frame, Tree
 from plan_cutters.kernels.search import place, search
 from plan_cutters.kernels.tool import hit
 from plan_cutters.kernels.tool.arcs import point_arc
-from plan_cutters.kernels.material import sheet
-from plan_cutters.kernels.maps.points import axis_intervals, local_gouge_range
-from plan_cutters.kernels.rows import Contacts, Frame, Tree
 from plan_cutters.scene.conditions import found_of, ranges_of
 
 SCRATCH = hit.scratch()
@@ -157,19 +157,6 @@ def test_axis_arcs_are_where_the_axis_is_within_the_cone(n, f, limit, setup):
         within |= (tilts >= first) & (tilts <= last)
     sure = np.abs(angle) > 1e-9
     assert (within == (angle >= 0))[sure].all()
-
-
-def test_kernels_and_reach_speak_of_the_same_verdicts():
-    from plan_cutters.domain import verdicts as reach
-
-    for name in ("INACCESSIBLE", "ACCESSIBLE", "INTERFERENCE_FREE", "UNDECIDED", "UNJUDGED"):
-        assert getattr(search, name) == getattr(reach, name)
-    words = ("axis_limit", "local_gouge", "rear_gouge", "collision", "buried", "neck", "shank", "holder")
-    assert [reach.REASONS[getattr(search, word.upper())] for word in words] == list(words)
-    # Told afterwards, by a search without fixtures: kernels do not write it.
-    own = ("axis_limit", "local_gouge", "buried", "tolerance", "fixture")
-    assert [reach.REASONS[getattr(reach, word.upper())] for word in own] == list(own)
-    assert all(not hasattr(search, word) for word in ("TOLERANCE", "FIXTURE"))
 
 
 def test_local_gouge_bound():

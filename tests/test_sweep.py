@@ -11,8 +11,8 @@ from plan_cutters import Cutter, Machine
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, UNDECIDED, blank
 from plan_cutters.kernels import material
-from plan_cutters.kernels.search import place, search, sweep
 from plan_cutters.kernels.rows import Contacts
+from plan_cutters.kernels.search import place, search, sweep
 from plan_cutters.scene.conditions import Conditions, found_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings

@@ -10,23 +10,15 @@ from tool_reference import KINDS, Reference, in_row, random_cutter
 from plan_cutters import Cutter
 from plan_cutters.domain import pieces as domain
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.kernels.tool import hit, pieces
 from plan_cutters.kernels.jit import kernel
 from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.tool import hit
 from plan_cutters.scene.conditions import tool_of
 
 #: mm to which exact pieces agree.
 EXACT = 1e-9
 #: Shares of the corners of points in which a triangle is looked at first.
 GRID = np.array([(i, j, 7 - i - j) for i in range(8) for j in range(8 - i)]) / 7.0
-
-
-def test_domain_and_kernels_speak_of_the_same_columns():
-    names = (
-        "CYLINDER CONE ARC KIND LOW HIGH RADIUS SLOPE ROUND SCALE BOTTOM TOP WIDE PART COLUMNS FLUTES NECK SHANK HOLDER"
-    )
-    for name in names.split():
-        assert getattr(domain, name) == getattr(pieces, name), name
 
 
 @kernel
@@ -218,7 +210,8 @@ def test_a_million_triangles_of_each_kind(kind):
 
 def test_a_triangle_without_area_hits_where_its_longest_side_does():
     """Its normal is nothing but rounding: no plane across it may part it from a piece."""
-    from plan_cutters.domain.pieces import ARC, FLUTES, row_of
+    from plan_cutters.domain.pieces import row_of
+    from plan_cutters.kernels.codes import ARC, FLUTES
     from plan_cutters.kernels.tool.pieces import polygon_hit
 
     rng, met = np.random.default_rng(0), 0

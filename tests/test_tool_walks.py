@@ -11,8 +11,8 @@ from plan_cutters import Cutter, CutterError
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.holder import Stage
 from plan_cutters.domain.nesting import inside
-from plan_cutters.kernels.tool import drawn, hit
 from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.tool import drawn, hit
 from plan_cutters.scene.conditions import tool_of
 
 UP, ALONG, LEFT = np.eye(3)[2], np.eye(3)[0], np.eye(3)[1]

@@ -36,9 +36,9 @@ from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import ACCESSIBLE, blank
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.kernels.maps import free_tilts
-from plan_cutters.kernels.search import search
 from plan_cutters.kernels.material import sheet
 from plan_cutters.kernels.rows import Contacts, Tree
+from plan_cutters.kernels.search import search
 from plan_cutters.scene.conditions import Conditions, found_of, search_postures, tool_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings, surroundings

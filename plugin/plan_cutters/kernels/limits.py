@@ -7,12 +7,11 @@ angles at the middle tell.
 
 import numpy as np
 
-from plan_cutters.kernels.tool.arcs import axis_arcs
+from plan_cutters.kernels.codes import ON_LIMIT, PARALLEL
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.linear.vectors import cross, dot, lean_frame
+from plan_cutters.kernels.tool.arcs import axis_arcs
 
-# As in `plan_cutters.domain.kinematics`, which must not load the compiler; a test holds them together.
-PARALLEL, ON_LIMIT = 1e-6, 1e-9
 #: Crossings that are kept, at the end of the room for intervals: two for each of at most six circles, and the ends.
 CROSSINGS = 16
 _TURN = 2.0 * np.pi

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints, Record, SurfaceSamples
 from plan_cutters.domain.clearance import grown, rungs
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.pieces import PART
 from plan_cutters.domain.verdicts import Reach
+from plan_cutters.kernels.codes import PART
 from plan_cutters.scene.conditions import Conditions, tool_of
 from plan_cutters.scene.threads import in_chunks
 

@@ -11,20 +11,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from plan_cutters.kernels.area.near import LIFT, MOST_TURN, STRETCH, extent, halvings, spared, too_steep
+from plan_cutters.kernels.area.zone import EXTENTS, Nose, begin, distance_of, held_below, look_round, near_by, seen
+from plan_cutters.kernels.codes import ARC, BOTTOM, COLUMNS, HIGH, KIND, LOW, NEVER, RADIUS, ROUND, SLOPE, TOP, WIDE
+from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.linear.vectors import cross, dot, perpendicular
+from plan_cutters.kernels.rows import Frame, Scratch
+from plan_cutters.kernels.search.place import mode_at
 from plan_cutters.kernels.tool import hit
 from plan_cutters.kernels.tool.drawn import drawn_hit
 from plan_cutters.kernels.tool.hit import BODY, HALF, OFFSET, A, P, X, Y
-from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.tool.pieces import ARC, BOTTOM, COLUMNS, HIGH, KIND, LOW, RADIUS, ROUND, SLOPE, TOP, WIDE
-from plan_cutters.kernels.rows import Frame, Scratch
-from plan_cutters.kernels.search.search import mode_at
-from plan_cutters.kernels.linear.vectors import cross, dot, perpendicular
-from plan_cutters.kernels.area.zone import EXTENTS, Nose, begin, distance_of, held_below, look_round, near_by, seen
 
-#: Largest angle (rad) between normals within `extent`: up to it, the surface is a graph over its tangent planes.
-_MOST_TURN = 0.5
-#: Outlooks of a contact that is not known to serve its patch: most halvings that are told apart; none will do.
-MOST_HALVINGS, NEVER = 3, 255
 #: The smallest patch that is thought of, as a share of the one at hand.
 _SMALLEST = 1.0 / 4.0
 #: Row of a distance within which a sixth of the nodes lie.
@@ -212,83 +209,6 @@ def _motion(row, patches, nodes, frame, sine, h, turn, offset, rise):
 
 
 @kernel
-def _spared(distance, safe, chord):
-    """By how much a paraboloid may curve more than the nose within a distance and gouge no deeper than is allowed, 1/mm."""
-    return 2.0 * max(0.0, safe - chord) / max(distance * distance, 1e-12)
-
-
-@kernel
-def _extent(most, last, full, h, pose, flat, psi, turn, nose, safe, chord, near):
-    """The largest of the distances up to row `last` within which curvature alone keeps the surface from going too deep.
-
-    Returns its row, -1 if there is none. Writes what `near_by` takes.
-    """
-    ff, tt, ft, whole, spread, angle, cell = -np.inf, -np.inf, 0.0, 0.0, 0.0, 0.0, 0.0
-    held = -1
-    for row in range(last + 1):
-        distance = h * distance_of(row)
-        ff, tt, ft = max(ff, most[row, 0]), max(tt, most[row, 1]), max(ft, most[row, 2])
-        whole, spread, angle = max(whole, most[row, 3]), max(spread, most[row, 4]), max(angle, most[row, 5])
-        cell = max(cell, most[row, 6])
-        if distance > full:
-            break
-        # Between nodes and between contacts normals turn some more than from node to node.
-        more = 1.05 * whole * (h + cell)
-        steep = 1.05 * np.sqrt(angle) + more
-        if not steep <= _MOST_TURN:
-            break
-        tangent = np.tan(steep)
-        extra = 1.3 * whole * more * (3.5 * tangent + 2.0 * more)
-        spared = _spared(distance, safe, chord)
-        if flat or not nose.offset > 0.0:
-            # In whatever direction it leans.
-            top = 0.5 * (ff + tt) + 0.5 * spread + extra
-            if flat:
-                if not 0.5 * max(0.0, top) * distance * distance <= safe:
-                    break
-            elif not held_below(pose, turn, top - spared, 0.0, top - spared, distance, nose):
-                break
-            near[2], near[3], near[4] = top, top, 0.0
-        else:
-            extra += 1.05 * spread * (psi + turn * turn)
-            if not held_below(pose, turn, ff + extra - spared, ft, tt + extra - spared, distance, nose):
-                break
-            near[2], near[3], near[4] = ff + extra, tt + extra, ft
-        near[0], near[1] = distance - h - chord, 0.6 * whole * distance * distance + chord
-        held = row
-    near[5] = chord + 1e-9
-    return held
-
-
-@kernel
-def _halvings(most, h, pose, flat, nose, safe, chord, near):
-    """How often a patch must be halved until curvature holds right at its contact, as far as the nodes about it now tell."""
-    halved = h
-    for count in range(1, MOST_HALVINGS):
-        halved *= 0.5
-        turn = 1.05 * most[0, 3] * halved
-        if turn <= 0.2 and not _too_steep(pose, turn, flat, nose):
-            psi = 0.0 if flat or nose.offset == 0.0 else turn / (pose[0] - turn)
-            if _extent(most, 0, np.inf, halved, pose, flat, psi, turn, nose, safe, chord, near) == 0:
-                return count
-    return MOST_HALVINGS
-
-
-@kernel
-def _too_steep(pose, turn, flat, nose):
-    """Whether the normal turns too much within a patch for the tilt: the cutter must lean, and touch with the same mode, all over
-    it.
-    """
-    if flat:
-        return False
-    sine, cosine = pose
-    if (nose.offset != 0.0 and sine <= 2.0 * turn) or (nose.offset >= 0.0 and cosine <= 2.0 * turn):
-        return True
-    tilt = np.arctan2(sine, cosine)
-    return (nose.low > 0.0 and tilt - turn < nose.low) or tilt + turn > nose.high
-
-
-@kernel
 def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, room):
     """What `cover` writes for a contact, and the triangle in the way, -1 if there is none; `blocker` is looked at first."""
     tool, safe, chord = sweeping.tool, sweeping.safe, sweeping.chord
@@ -319,7 +239,7 @@ def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, 
     if not begin(frame, h, home, nodes, room.seen):
         return NEVER, -1
     # In the smallest patch there remain the home node's own curvature and what it may differ in its cell.
-    least = _spared(chord + distance_of(0) * _SMALLEST * h, safe, chord)
+    least = spared(chord + distance_of(0) * _SMALLEST * h, safe, chord)
     if not flat and not held_below(pose, 0.0, most[0, 0] - least, most[0, 2], most[0, 1] - least, 0.0, nose):
         return NEVER, -1
     full, turn, lift, k_ff, k_tt, k_ft, psi, beside, rest = np.inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -330,14 +250,14 @@ def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, 
         if full < 0.0:
             return 1, -1
         # How far the normal turns within the patch, and how far the surface leaves the tangent plane.
-        turn, lift = 1.05 * most[0, 3] * h, 0.55 * most[0, 3] * h * h
-        if not turn <= 0.2 or _too_steep(pose, turn, flat, nose):
-            return _halvings(most, h, pose, flat, nose, safe, chord, near), -1
+        turn, lift = STRETCH * most[0, 3] * h, LIFT * most[0, 3] * h * h
+        if not turn <= MOST_TURN or too_steep(pose, turn, flat, nose):
+            return halvings(most, h, pose, flat, nose, safe, chord, near), -1
         if not flat:
             k_ff, k_tt, k_ft, psi, beside, rest = _motion(row, patches, nodes, frame, sine, h, turn, offset, rise)
-        held = _extent(most, last, full, h, pose, flat, psi, turn, nose, safe, chord, near)
+        held = extent(most, last, full, h, pose, flat, psi, turn, nose, safe, chord, near)
         if held < 0:
-            return _halvings(most, h, pose, flat, nose, safe, chord, near), -1
+            return halvings(most, h, pose, flat, nose, safe, chord, near), -1
         if held < last:
             break
     if not near[0] > 0.0:

@@ -4,21 +4,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from plan_cutters.kernels.codes import ARC, BOTTOM, CONE, CYLINDER, HIGH, KIND, LOW, RADIUS, ROUND, SLOPE, TOP, WIDE
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.tool.pieces import (
-    ARC,
-    BOTTOM,
-    CONE,
-    CYLINDER,
-    HIGH,
-    KIND,
-    LOW,
-    RADIUS,
-    ROUND,
-    SLOPE,
-    TOP,
-    WIDE,
-)  # fmt: skip
 
 #: A bound of a piece: two rims, each a radius and a height, and by how much what lies between them is grown all round; the slope
 #: of its side; whether there is such a bound.

@@ -4,16 +4,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.tool.arcs import point_arc
-from plan_cutters.kernels.maps.bounds import BESIDE, FAR, FLOOR, NEAR
-from plan_cutters.kernels.maps.gaps import CF, CL, FIRST, GAPS, LAST, SF, SL, UF, UL, _begin, _cuts, _end, _part, _take
-from plan_cutters.kernels.tool.hit import BODY, _swept_hit, scratch, stand, triangle_hit
+from plan_cutters.kernels.codes import HIGH, LOW, RADIUS
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.linear.lanes import LANES
+from plan_cutters.kernels.maps.bounds import BESIDE, FAR, FLOOR, NEAR
+from plan_cutters.kernels.maps.gaps import CF, CL, FIRST, GAPS, LAST, SF, SL, UF, UL, _begin, _cuts, _end, _part, _take
 from plan_cutters.kernels.maps.passes import _passes
-from plan_cutters.kernels.tool.pieces import HIGH, LOW, RADIUS, inset
 from plan_cutters.kernels.maps.planes import BOXES, ENDS, all_ends, distances, put_ends, triangles_clear
 from plan_cutters.kernels.rows import Cylinder, Scratch
+from plan_cutters.kernels.tool.arcs import point_arc
+from plan_cutters.kernels.tool.hit import BODY, _swept_hit, scratch, stand, triangle_hit
+from plan_cutters.kernels.tool.pieces import inset
 from plan_cutters.kernels.tool.tool_arcs import ARCS, arc_about, closed, forbidden
 
 #: How often a triangle is cut into four to be shown clear.

@@ -9,19 +9,35 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from plan_cutters.kernels.codes import (
+    ARC,
+    BOTTOM,
+    HIGH,
+    KIND,
+    LOW,
+    OFFSET_OF,
+    RADIUS,
+    RISE,
+    ROUND,
+    SLOPE,
+    TILT_FROM,
+    TILT_TO,
+    TOP,
+)
+from plan_cutters.kernels.codes import COLUMNS as PIECE
+from plan_cutters.kernels.intervals import insert, join
+from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.limits import turn_of
+from plan_cutters.kernels.linear.lanes import LANES, _see, _see_leaf, _see_triangle, _turn
+from plan_cutters.kernels.linear.vectors import cross, lean_frame
 from plan_cutters.kernels.maps.bounds import FAR, FLOOR, NEAR, Turning, turning_of
 from plan_cutters.kernels.maps.cuts import cut_gaps, flutes, room_to_cut, take_point
 from plan_cutters.kernels.maps.gaps import CF, CL, COLUMNS, FIRST, GAPS, LAST, SF, SL, UF, UL, _begin, _end
-from plan_cutters.kernels.tool.hit import stand, tree_hit
-from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.linear.lanes import LANES, _boxes_pass, _see, _see_leaf, _see_triangle, _triangles_pass, _turn
-from plan_cutters.kernels.limits import turn_of
-from plan_cutters.kernels.tool.pieces import ARC, BOTTOM, HIGH, KIND, LOW, RADIUS, ROUND, SLOPE, TOP
-from plan_cutters.kernels.tool.pieces import COLUMNS as PIECE
+from plan_cutters.kernels.maps.passes import _boxes_pass, _triangles_pass
 from plan_cutters.kernels.maps.planes import all_ends, boxes_clear, triangles_clear, turn_boxes, turn_triangles
-from plan_cutters.kernels.search.place import OFFSET_OF, RISE, TILT_FROM, TILT_TO, permitted
 from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.linear.vectors import cross, lean_frame
+from plan_cutters.kernels.search.place import permitted
+from plan_cutters.kernels.tool.hit import stand, tree_hit
 
 #: Blocks of boxes kept as seen from one contact, and blocks that may wait to be looked at.
 _SEEN, _QUEUE = 1 << 11, 1 << 13
@@ -244,26 +260,8 @@ def _write(gap, count, written, room, part):
         if written == room:
             unsure += gap[g, LAST] - gap[g, FIRST]
             continue
-        at = written
-        while at > 0 and part[at - 1, 0] > gap[g, FIRST]:
-            part[at, 0], part[at, 1] = part[at - 1, 0], part[at - 1, 1]
-            at -= 1
-        part[at, 0], part[at, 1] = gap[g, FIRST], gap[g, LAST]
-        written += 1
+        written = insert(part, written, gap[g, FIRST], gap[g, LAST])
     return written, unsure
-
-
-@kernel
-def _joined(part, count):
-    """Join intervals, ascending, that touch; how many are left."""
-    kept = min(count, 1)
-    for i in range(1, count):
-        if part[i, 0] <= part[kept - 1, 1]:
-            part[kept - 1, 1] = max(part[kept - 1, 1], part[i, 1])
-        else:
-            part[kept, 0], part[kept, 1] = part[i, 0], part[i, 1]
-            kept += 1
-    return kept
 
 
 @kernel
@@ -392,7 +390,7 @@ def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, room, part, co
                         work,
                     )  # fmt: skip
                 count, unsure = _write(gap, count, count_out[place, rotation], room, part[place, rotation])
-                count_out[place, rotation] = _joined(part[place, rotation], count)
+                count_out[place, rotation] = join(part[place, rotation], count)
                 undecided[place, rotation] += unsure
         looked += view.tally[3]
     return looked + work.spent[0]

@@ -9,12 +9,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.tool.hit import BODY, scratch, tree_hit
+from plan_cutters.kernels.codes import OFFSET_OF
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.search.place import OFFSET_OF, arc_of, put
-from plan_cutters.kernels.rows import Frame, Scratch
-from plan_cutters.kernels.tool.tool_arcs import ARCS
 from plan_cutters.kernels.linear.vectors import cross
+from plan_cutters.kernels.rows import Frame, Scratch
+from plan_cutters.kernels.search.place import arc_of, put
+from plan_cutters.kernels.tool.hit import BODY, scratch, tree_hit
+from plan_cutters.kernels.tool.tool_arcs import ARCS
 
 OPEN, FORBIDDEN, UNSURE = 0, 1, 2
 

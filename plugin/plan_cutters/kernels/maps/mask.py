@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from plan_cutters.kernels.codes import ACCESSIBLE, INACCESSIBLE, UNDECIDED
 from plan_cutters.kernels.jit import entry
 from plan_cutters.kernels.limits import held_tilts
-from plan_cutters.kernels.search.search import ACCESSIBLE, INACCESSIBLE, UNDECIDED
 from plan_cutters.kernels.linear.vectors import cross, lean_frame
 
 

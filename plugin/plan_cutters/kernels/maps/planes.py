@@ -10,6 +10,8 @@ Loops run over `len(clear)`: where they are known to be short, the compiler does
 
 import numpy as np
 
+from plan_cutters.kernels.jit import kernel
+from plan_cutters.kernels.linear.lanes import LANES
 from plan_cutters.kernels.maps.bounds import (
     AXIS,
     BESIDE,
@@ -23,8 +25,6 @@ from plan_cutters.kernels.maps.bounds import (
     rim_line,
     swept,
 )  # fmt: skip
-from plan_cutters.kernels.jit import kernel
-from plan_cutters.kernels.linear.lanes import LANES
 
 #: Rows of ends: cosine and sine of the first tilt, of the last, of the middle, cosine of half the gap.
 CA, SA, CB, SB, CM, SM, CH, ENDS = 0, 1, 2, 3, 4, 5, 6, 7

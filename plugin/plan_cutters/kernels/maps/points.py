@@ -3,9 +3,9 @@
 import numpy as np
 
 from cad_io.arrays import Floats
-from plan_cutters.kernels.tool.arcs import local_gouge
 from plan_cutters.kernels.limits import held_tilts
 from plan_cutters.kernels.rows import Ranges
+from plan_cutters.kernels.tool.arcs import local_gouge
 
 
 def local_gouge_range(

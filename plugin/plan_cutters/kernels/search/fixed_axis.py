@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from plan_cutters.kernels.tool.hit import BODY, scratch, stand, tree_hit
+from plan_cutters.kernels.codes import OFFSET_OF, RISE
 from plan_cutters.kernels.jit import entry
-from plan_cutters.kernels.material import MAYBE_INSIDE
-from plan_cutters.kernels.search.place import OFFSET_OF, RISE, inside
-from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.search.search import mode_at
 from plan_cutters.kernels.linear.vectors import cross, dot
+from plan_cutters.kernels.material import MAYBE_INSIDE
+from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.search.place import inside, mode_at
+from plan_cutters.kernels.tool.hit import BODY, scratch, stand, tree_hit
 
 #: Sines of a tilt below which the axis is the normal, and leans nowhere.
 _UPRIGHT = 1e-12

@@ -1,23 +1,36 @@
-"""What searches of all kinds share: intervals of tilt that are left, what is taken out of them, what a body is stopped by."""
+"""Where a tool is placed at a contact, which tilts are left there, and what stops it: what searches of all kinds share."""
 
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.tool.arcs import local_gouge
-from plan_cutters.kernels.tool.hit import BODY, OFFSET, A, P, X, scratch, stand, tree_hit
+from plan_cutters.kernels.codes import (
+    AXIS_LIMIT,
+    BY_HOLDER,
+    BY_NECK,
+    BY_SHANK,
+    COLLISION,
+    FIXTURE,
+    FLUTES,
+    LOCAL_GOUGE,
+    NECK,
+    OFFSET_OF,
+    OVER_TIP,
+    PART,
+    REAR_GOUGE,
+    RISE,
+    TILT_FROM,
+    TILT_TO,
+)
+from plan_cutters.kernels.intervals import remove
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.limits import held_tilts, turn_of
-from plan_cutters.kernels.material import outside, winding
-from plan_cutters.kernels.tool.pieces import FLUTES, PART
-from plan_cutters.kernels.rows import Scratch
-from plan_cutters.kernels.tool.tool_arcs import ARCS, arc_about, closed, forbidden
 from plan_cutters.kernels.linear.vectors import lean_frame
-
-# As in `plan_cutters.domain.verdicts`, which must not load the compiler; a test holds them together.
-AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, COLLISION, BURIED, NECK, SHANK, HOLDER, ATTRIBUTES = 0, 1, 2, 3, 4, 6, 7, 8, 9
-#: Columns of a tool's modes: as in `domain.assembly.Assembly`.
-OFFSET_OF, RISE, TILT_FROM, TILT_TO, OVER_TIP = 0, 1, 2, 3, 4
+from plan_cutters.kernels.material import outside, winding
+from plan_cutters.kernels.rows import Scratch
+from plan_cutters.kernels.tool.arcs import local_gouge
+from plan_cutters.kernels.tool.hit import BODY, OFFSET, A, P, X, scratch, stand, tree_hit
+from plan_cutters.kernels.tool.tool_arcs import ARCS, arc_about, closed, forbidden
 
 #: A posture stands for the tilts that are so near, rad: no machine holds a tilt to 0.01 deg.
 NARROWEST = 1.7e-4
@@ -27,37 +40,8 @@ _ROOM = 256
 _LOW = 8.0
 #: By how much a posture within a body is turned to find the others there, at first, rad.
 _TURN = 0.2
-
-
-@kernel
-def remove(intervals, count, first, last, narrowest):
-    """Take [first, last] out of sorted intervals in place, drop what is narrower than `narrowest`; the new count."""
-    kept = 0
-    for row in range(count):
-        low, high = intervals[row, 0], intervals[row, 1]
-        if last <= low or first >= high:
-            intervals[kept, 0], intervals[kept, 1] = low, high
-            kept += 1
-            continue
-        below, above = first - low >= narrowest, high - last >= narrowest
-        if below and above and kept == row:
-            # One interval becomes two: those after it, all above `last`, move up.
-            if count == len(intervals):
-                below = first - low > high - last
-                above = not below
-            else:
-                for k in range(count, row, -1):
-                    intervals[k, 0], intervals[k, 1] = intervals[k - 1, 0], intervals[k - 1, 1]
-                intervals[row, 1] = first
-                intervals[row + 1, 0] = last
-                return count + 1
-        if below:
-            intervals[kept, 0], intervals[kept, 1] = low, first
-            kept += 1
-        if above:
-            intervals[kept, 0], intervals[kept, 1] = last, high
-            kept += 1
-    return kept
+#: Tilts this close to the end of a tool's range are in it, rad.
+_ROUNDING = 1e-9
 
 
 @kernel
@@ -78,7 +62,7 @@ def _attribute(x, y, z, tool, mode, k):
     """What an obstacle point that far from the contact, which is in piece k, is in the way of."""
     part = int(tool.piece[mode, k, PART])
     if part != FLUTES:
-        return NECK + part - 1
+        return BY_NECK + part - NECK
     return REAR_GOUGE if x * x + y * y + z * z <= tool.reach * tool.reach else COLLISION
 
 
@@ -107,6 +91,15 @@ def inside(body, tool, mode, solids, stack):
     y = body[P + 1] + height * body[A + 1] - body[OFFSET] * body[X + 1]
     z = body[P + 2] + height * body[A + 2] - body[OFFSET] * body[X + 2]
     return winding(x, y, z, solids, stack)
+
+
+@kernel
+def mode_at(tool, tilt):
+    """The mode in which a tool touches at a tilt, -1 for none."""
+    for mode in range(len(tool.mode)):
+        if tool.mode[mode, TILT_FROM] - _ROUNDING <= tilt <= tool.mode[mode, TILT_TO] + _ROUNDING:
+            return mode
+    return -1
 
 
 @kernel
@@ -147,7 +140,7 @@ class Room(NamedTuple):
 def room_to_search():
     """Room for searches."""
     return Room(
-        np.empty((_ROOM, 2)), np.empty((ARCS, 2)), np.empty(3), np.empty(3), np.empty(3), np.empty(BODY), np.empty(ATTRIBUTES),
+        np.empty((_ROOM, 2)), np.empty((ARCS, 2)), np.empty(3), np.empty(3), np.empty(3), np.empty(BODY), np.empty(FIXTURE),
         scratch(),
     )  # fmt: skip
 
@@ -217,7 +210,7 @@ def allowed(contacts, row, ranges, rotation, tool, mode, bent, room):
 @kernel
 def booked(tally):
     """Tilts that obstacles have taken."""
-    return tally[REAR_GOUGE] + tally[COLLISION] + tally[NECK] + tally[SHANK] + tally[HOLDER]
+    return tally[REAR_GOUGE] + tally[COLLISION] + tally[BY_NECK] + tally[BY_SHANK] + tally[BY_HOLDER]
 
 
 @kernel

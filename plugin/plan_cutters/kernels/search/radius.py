@@ -8,10 +8,11 @@ search without success, not two.
 
 from typing import Any, NamedTuple
 
+from plan_cutters.kernels.codes import INACCESSIBLE, UNDECIDED
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, Solids
 from plan_cutters.kernels.rows import Tool
-from plan_cutters.kernels.search.search import _FINEST, _NO_GAP, INACCESSIBLE, START, UNDECIDED, _reason, _write
+from plan_cutters.kernels.search.search import _FINEST, _NO_GAP, START, _reason, _write
 from plan_cutters.kernels.search.sweep import both, sweep_both
 
 

@@ -12,35 +12,29 @@ no point of the surface is too deep.
 
 import numpy as np
 
-from plan_cutters.kernels.tool.hit import BODY, scratch, stand, tree_hit
-from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.limits import turn_of
-from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
-from plan_cutters.kernels.search.place import (
+from plan_cutters.kernels.codes import (
+    ACCESSIBLE,
     AXIS_LIMIT,
     BURIED,
+    BY_HOLDER,
+    BY_NECK,
+    BY_SHANK,
     COLLISION,
-    HOLDER,
+    INACCESSIBLE,
     LOCAL_GOUGE,
-    NECK,
     OFFSET_OF,
     REAR_GOUGE,
     RISE,
-    SHANK,
-    TILT_FROM,
-    TILT_TO,
-    inside,
-    kept_straight,
-    permitted,
-    room_to_search,
-    straight,
+    UNDECIDED,
 )
-from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.search.sweep import both, memory, sweep, sweep_both
+from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.limits import turn_of
 from plan_cutters.kernels.linear.vectors import cross, dot, lean_frame, perpendicular
-
-# As in `plan_cutters.domain.verdicts`, which must not load the compiler; a test holds them together.
-INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
+from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
+from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.search.place import inside, kept_straight, mode_at, permitted, room_to_search, straight
+from plan_cutters.kernels.search.sweep import both, memory, sweep, sweep_both
+from plan_cutters.kernels.tool.hit import BODY, scratch, stand, tree_hit
 
 #: Between arcs of what is certainly in the way, gaps narrower than this are none: no machine holds a tilt to 0.01 deg. rad.
 _NO_GAP = 1.7e-4
@@ -48,8 +42,6 @@ _NO_GAP = 1.7e-4
 _FINEST = 1e-5
 #: Where searches begin, among the tilts that curvature allows and among the others: rotation, and the tilt tried first.
 START = ((0, -1.0), (0, -1.0))
-#: Tilts this close to the end of a tool's range are in it, rad.
-_ROUNDING = 1e-9
 
 
 @kernel
@@ -65,7 +57,7 @@ def _reason(tally, bent):
     if tally[LOCAL_GOUGE] == 0.0:
         reason, most = LOCAL_GOUGE, bent
     least = most[REAR_GOUGE]
-    for attribute in (COLLISION, BURIED, NECK, SHANK, HOLDER):
+    for attribute in (COLLISION, BURIED, BY_NECK, BY_SHANK, BY_HOLDER):
         if most[attribute] > least:
             reason, least = attribute, most[attribute]
     return reason
@@ -262,15 +254,6 @@ def dummy_clear(rows, contacts, dummy, tool, solids, clear):
         if triangle >= 0:
             hint = triangle
     return room.looked[0]
-
-
-@kernel
-def mode_at(tool, tilt):
-    """The mode in which a tool touches at a tilt, -1 for none."""
-    for mode in range(len(tool.mode)):
-        if tool.mode[mode, TILT_FROM] - _ROUNDING <= tilt <= tool.mode[mode, TILT_TO] + _ROUNDING:
-            return mode
-    return -1
 
 
 @entry

@@ -8,12 +8,12 @@ at height w and distance q is cleared if the nose is no lower than w - v(q).
 
 import numpy as np
 
-from plan_cutters.kernels.tool.hit import BODY, OFFSET, A, P, X, Y, half_width, into_frame, scratch, stand
+from plan_cutters.kernels.codes import OFFSET_OF, OVER_TIP, RISE
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.search.place import OFFSET_OF, OVER_TIP, RISE
-from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.search.search import mode_at
 from plan_cutters.kernels.linear.vectors import cross
+from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.search.place import mode_at
+from plan_cutters.kernels.tool.hit import BODY, OFFSET, A, P, X, Y, half_width, into_frame, scratch, stand
 
 V0, V1, Q0, Q1 = 0, 1, 2, 3
 

@@ -11,14 +11,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.tool.hit import deep_hit
+from plan_cutters.kernels.codes import ARC, BURIED, HIGH, KIND, LOW, OFFSET_OF, RADIUS, RISE, ROUND, SCALE, SLOPE
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.limits import turn_of
-from plan_cutters.kernels.tool.pieces import ARC, HIGH, KIND, LOW, RADIUS, ROUND, SCALE, SLOPE
+from plan_cutters.kernels.linear.vectors import cross
+from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import (
-    BURIED,
-    OFFSET_OF,
-    RISE,
     allowed,
     booked,
     forbid,
@@ -30,8 +28,7 @@ from plan_cutters.kernels.search.place import (
     room_to_search,
     turned,
 )
-from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.linear.vectors import cross
+from plan_cutters.kernels.tool.hit import deep_hit
 
 #: Points remembered for each rotation, and of those that the tree gave last.
 _KEPT, _POOL = 64, 128

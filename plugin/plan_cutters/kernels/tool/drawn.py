@@ -6,9 +6,10 @@ whose faces are polygons.
 
 import numpy as np
 
-from plan_cutters.kernels.tool.hit import HALF, into_frame
+from plan_cutters.kernels.codes import BOTTOM, CYLINDER, HIGH, KIND, LOW, RADIUS, TOP, WIDE
 from plan_cutters.kernels.jit import kernel
-from plan_cutters.kernels.tool.pieces import BOTTOM, CYLINDER, HIGH, KIND, LOW, RADIUS, TOP, WIDE, clipped, polygon_hit
+from plan_cutters.kernels.tool.hit import HALF, into_frame
+from plan_cutters.kernels.tool.pieces import clipped, polygon_hit
 
 
 @kernel

@@ -15,25 +15,10 @@ turns the tool about that line, and turning by at most `rate` moves Q by no more
 
 import numpy as np
 
+from plan_cutters.kernels.codes import ARC, BOTTOM, CYLINDER, HIGH, KIND, LOW, RADIUS, ROUND, SCALE, SLOPE, TOP
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.tool.pieces import (
-    ARC,
-    BOTTOM,
-    CYLINDER,
-    HIGH,
-    KIND,
-    LOW,
-    RADIUS,
-    ROUND,
-    SCALE,
-    SLOPE,
-    TOP,
-    clipped,
-    inset,
-    polygon_hit,
-    support,
-)
 from plan_cutters.kernels.rows import Scratch
+from plan_cutters.kernels.tool.pieces import clipped, inset, polygon_hit, support
 
 P, A, X, Y, OFFSET, HALF, BODY = 0, 3, 6, 9, 12, 13, 14
 

@@ -1,18 +1,28 @@
 """One convex piece of a tool: what is deep in it, what its support is, and whether a polygon reaches into it.
 
-A piece is a row of `COLUMNS` numbers, as in `plan_cutters.domain.assembly`, its heights counted from the centre about which
+A piece is a row of `COLUMNS` numbers, as in `codes`, its heights counted from the centre about which
 the tool tilts. All kinds are convex functions of (distance from the axis q, height w) below a bound, between two heights: so a
 polygon, cut off at the heights, reaches in exactly if the least value over it is below the bound.
 """
 
 import numpy as np
 
+from plan_cutters.kernels.codes import (
+    ARC,
+    BOTTOM,
+    CONE,
+    CYLINDER,
+    HIGH,
+    KIND,
+    LOW,
+    RADIUS,
+    ROUND,
+    SCALE,
+    SLOPE,
+    TOP,
+    WIDE,
+)
 from plan_cutters.kernels.jit import kernel
-
-# As in `plan_cutters.domain.assembly`, which must not load the compiler; a test holds them together.
-CYLINDER, CONE, ARC = 0.0, 1.0, 2.0
-KIND, LOW, HIGH, RADIUS, SLOPE, ROUND, SCALE, BOTTOM, TOP, WIDE, PART, COLUMNS = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11
-FLUTES, NECK, SHANK, HOLDER = 0, 1, 2, 3
 
 #: Polygons thinner than this share of their length have no normal.
 _NEEDLE = 1e-10

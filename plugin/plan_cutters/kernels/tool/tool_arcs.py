@@ -7,23 +7,10 @@ axis along x_T and at the height `d sin(alpha)`. Arcs may be too short, never to
 
 import numpy as np
 
-from plan_cutters.kernels.tool.arcs import point_arc
+from plan_cutters.kernels.codes import ARC, BOTTOM, CONE, CYLINDER, HIGH, KIND, LOW, RADIUS, ROUND, SLOPE, TOP, WIDE
 from plan_cutters.kernels.jit import kernel
-from plan_cutters.kernels.tool.pieces import (
-    ARC,
-    BOTTOM,
-    CONE,
-    CYLINDER,
-    HIGH,
-    KIND,
-    LOW,
-    RADIUS,
-    ROUND,
-    SLOPE,
-    TOP,
-    WIDE,
-    inset,
-)
+from plan_cutters.kernels.tool.arcs import point_arc
+from plan_cutters.kernels.tool.pieces import inset
 
 #: Most arcs of one piece.
 ARCS = 16
