@@ -36,7 +36,7 @@ NEAR, FINE = 6, 20_000
 
 
 @numba.njit(cache=False, fastmath=False)
-def _square(p, a, b, c):  # type: ignore[no-untyped-def]
+def _square(p, a, b, c):
     """Squared distance of a point from a triangle."""
     ab, ac, ap = b - a, c - a, p - a
     best = np.inf
@@ -58,7 +58,7 @@ def _square(p, a, b, c):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(cache=False, nogil=True)
-def _farther(points, triangles, middle, radius, near, promise):  # type: ignore[no-untyped-def]
+def _farther(points, triangles, middle, radius, near, promise):
     """Distance of each point from a soup; not looked at further once it is within the promise."""
     found = np.empty(len(points))
     for i in range(len(points)):

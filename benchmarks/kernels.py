@@ -20,9 +20,14 @@ import numpy as np
 
 from plan_cutters import Cutter
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.kernels import arcs, cover, free_map, free_tilts, hit, lanes, material, probing, search, tree
+from plan_cutters.kernels import material
+from plan_cutters.kernels.area import cover
 from plan_cutters.kernels.jit import kernel
+from plan_cutters.kernels.linear import lanes, tree
+from plan_cutters.kernels.maps import free_map, free_tilts, passes
 from plan_cutters.kernels.rows import Contacts, Found, Frame
+from plan_cutters.kernels.search import place, search
+from plan_cutters.kernels.tool import arcs, hit
 
 sys.path.append(str(Path(__file__).parent.parent))
 from tests.support import waves
@@ -40,7 +45,7 @@ COUNTED = 10_000
 
 # Small kernels are called from compiled loops: a call from Python costs more than they do.
 @kernel
-def many_point_arcs(n, at):  # type: ignore[no-untyped-def]
+def many_point_arcs(n, at):
     total = 0.0
     for i in range(n):
         q = at[i % len(at)]
@@ -49,7 +54,7 @@ def many_point_arcs(n, at):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def many_local_gouges(n, at):  # type: ignore[no-untyped-def]
+def many_local_gouges(n, at):
     total = 0.0
     for i in range(n):
         q = at[i % len(at)]
@@ -58,7 +63,7 @@ def many_local_gouges(n, at):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def many_axis_arcs(n, at, out):  # type: ignore[no-untyped-def]
+def many_axis_arcs(n, at, out):
     total = 0
     for i in range(n):
         q = at[i % len(at)]
@@ -67,18 +72,18 @@ def many_axis_arcs(n, at, out):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def many_removals(n, at, intervals):  # type: ignore[no-untyped-def]
+def many_removals(n, at, intervals):
     count = 1
     for i in range(n):
         if i % 8 == 0:
             intervals[0, 0], intervals[0, 1], count = 0.0, 1.5, 1
         q = at[i % len(at)]
-        count = probing.remove(intervals, count, q[3], q[3] + 0.05, 1e-4)
+        count = place.remove(intervals, count, q[3], q[3] + 0.05, 1e-4)
     return count
 
 
 @kernel
-def many_boxes(n, box, bodies, piece):  # type: ignore[no-untyped-def]
+def many_boxes(n, box, bodies, piece):
     total = 0
     for i in range(n):
         total += hit.alive(box, i % len(box), bodies[i % len(bodies)], piece, 1, 0.0)
@@ -86,7 +91,7 @@ def many_boxes(n, box, bodies, piece):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def many_triangles(n, vertex, which, bodies, piece, scratch):  # type: ignore[no-untyped-def]
+def many_triangles(n, vertex, which, bodies, piece, scratch):
     total = 0
     for i in range(n):
         total += hit.triangle_hit(vertex, which[i % len(which)], bodies[i % len(bodies)], piece, 1, 0.0, scratch)[0]
@@ -94,7 +99,7 @@ def many_triangles(n, vertex, which, bodies, piece, scratch):  # type: ignore[no
 
 
 @kernel
-def many_walks(n, built, bodies, piece, scratch):  # type: ignore[no-untyped-def]
+def many_walks(n, built, bodies, piece, scratch):
     total = 0
     for i in range(n):
         body = bodies[i % len(bodies)]
@@ -103,20 +108,20 @@ def many_walks(n, built, bodies, piece, scratch):  # type: ignore[no-untyped-def
 
 
 @kernel
-def many_blocks(n, view, gap, tool, margin):  # type: ignore[no-untyped-def]
+def many_blocks(n, view, gap, tool, margin):
     total = 0.0
     for i in range(n):
-        lanes._boxes_pass(view, i % len(view), 0.8, 0.6, gap, 1, tool, margin)
+        passes._boxes_pass(view, i % len(view), 0.8, 0.6, gap, 1, tool, margin)
         total += margin[0]
     return total
 
 
 @kernel
-def many_leaves(n, leaves, gap, tool, margin):  # type: ignore[no-untyped-def]
+def many_leaves(n, leaves, gap, tool, margin):
     total = 0.0
     for i in range(n):
         seen = leaves[i % len(leaves)]
-        lanes._triangles_pass(seen, 0.8, 0.6, gap, 1, tool, margin)
+        passes._triangles_pass(seen, 0.8, 0.6, gap, 1, tool, margin)
         total += margin[0]
     return total
 

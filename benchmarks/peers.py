@@ -42,10 +42,10 @@ from plan_cutters import Cutter
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange
-from plan_cutters.kernels.free_map import free_map
-from plan_cutters.kernels.points import local_gouge_range
+from plan_cutters.kernels.maps.free_map import free_map
+from plan_cutters.kernels.maps.points import local_gouge_range
 from plan_cutters.kernels.rows import Ranges
-from plan_cutters.kernels.search import probe
+from plan_cutters.kernels.search.search import probe
 from plan_cutters.scene.conditions import Conditions, contacts_of, rotary_of, tool_of
 from plan_cutters.scene.faces import select_faces
 from plan_cutters.scene.obstacles import Obstacles

@@ -21,10 +21,10 @@ FLAT = (
 #: What each process does; it prints its own seconds.
 ENTRIES = {
     "import of the compiler": "import numba",
-    "tree.build": "from plan_cutters.kernels.tree import build; build(one)",
+    "tree.build": "from plan_cutters.kernels.linear.tree import build; build(one)",
     "search, probe, dummy_clear": (
         f"{FLAT}"
-        "from plan_cutters.kernels import search as s; from plan_cutters.kernels.tree import build\n"
+        "from plan_cutters.kernels.search import search as s; from plan_cutters.kernels.linear.tree import build\n"
         "from plan_cutters.kernels.rows import Contacts, Found, Ranges, Tree\n"
         "_, box, depth = build(one); p, c, n = np.zeros((1, 3)), np.zeros((1, 2)), np.zeros(1)\n"
         "i, b = np.zeros(1, np.int32), np.zeros(1, np.uint8)\n"
@@ -37,7 +37,7 @@ ENTRIES = {
     ),
     "free_tilts": (
         f"{FLAT}"
-        "from plan_cutters.kernels.free_tilts import free_tilts; from plan_cutters.kernels.tree import build\n"
+        "from plan_cutters.kernels.maps.free_tilts import free_tilts; from plan_cutters.kernels.linear.tree import build\n"
         "from plan_cutters.kernels.rows import Tree; _, box, depth = build(one); z = np.zeros(3)\n"
         "free_tilts(z, z, z, 0.0, 1.5, tool, 0, 0.1, Tree(one, box, depth), 9)"
     ),

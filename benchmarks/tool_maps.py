@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from plan_cutters import Cutter
-from plan_cutters.kernels.free_map import free_map
+from plan_cutters.kernels.maps.free_map import free_map
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.conditions import contacts_of, tool_of

@@ -1,9 +1,9 @@
 """Two decorators, one cache folder for each folder of sources: everything that is known of the compiler.
 
-The compiler's own cache looks at one file at a time and misses edits in a module that a kernel calls, so the cache
-folder's name carries a hash of every source beside the one that is compiled. The compiler asks for the folder when a function
-is decorated: it is set for that moment alone, so that neither the host's own compiled functions nor the environment of its
-processes change, whoever imports the compiler first.
+The compiler's own cache looks at one file at a time and misses edits in a module that a kernel calls, so the cache folder's
+name carries a hash of every source in the folder that makes the decorators, and in the folders below it. The compiler asks for
+the cache folder when a function is decorated: it is set for that moment alone, so that neither the host's own compiled
+functions nor the environment of its processes change, whoever imports the compiler first.
 """
 
 import functools
@@ -40,9 +40,10 @@ def _user() -> str:
 
 @functools.cache
 def cache_folder(sources: Path) -> str:
-    """Folder of the machine code of just the sources in a folder; made if need be."""
+    """Folder of the machine code of just the sources in a folder and those below it; made if need be."""
     digest = hashlib.sha256()
-    for source in sorted(sources.glob("*.py")):
+    for source in sorted(sources.rglob("*.py")):
+        digest.update(source.relative_to(sources).as_posix().encode())
         digest.update(source.read_bytes())
     name = f"kernels-{digest.hexdigest()[:16]}"
     asked, home = os.environ.get("NUMBA_CACHE_DIR"), Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
@@ -128,7 +129,7 @@ def _also_from_python(kernel: Any, sources: Path) -> Any:
 
 
 def decorators(file: str) -> tuple[Decorator, Decorator]:
-    """`entry` and `kernel` for the sources in the folder of a file.
+    """`entry` and `kernel` for the sources in the folder of a file, and in the rooms below it.
 
     An entry is compiled on first call, its result kept on disk, and it releases the GIL: what Python calls, and what makes
     arrays. A kernel is what entries call, and makes no array itself: it goes without the counting of references, two atomic

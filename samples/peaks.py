@@ -104,9 +104,10 @@ def figures(shape: Shape, n: int = 81, mesh: int = 141) -> dict:
     if cost > 400:
         return {**result, "cost": cost + 1000}
     from plan_cutters.domain.verdicts import blank
-    from plan_cutters.kernels import search, tree
+    from plan_cutters.kernels.linear import tree
     from plan_cutters.kernels.material import sheet
     from plan_cutters.kernels.rows import Contacts, Ranges, Tree
+    from plan_cutters.kernels.search import search
     from plan_cutters.scene.conditions import found_of
 
     fine, _ = grid(shape, mesh)

@@ -17,7 +17,7 @@ DEGREE = 25
 
 
 @kernel
-def span(knot, degree, t):  # type: ignore[no-untyped-def]
+def span(knot, degree, t):
     """The last interval of positive length that begins at or before t, within the range; the end belongs to the last one."""
     low, high = degree, len(knot) - degree - 1
     while high - low > 1:
@@ -33,7 +33,7 @@ def span(knot, degree, t):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def basis(knot, degree, span, t, order, left, right, table, out):  # type: ignore[no-untyped-def]
+def basis(knot, degree, span, t, order, left, right, table, out):
     """Write the basis functions that are not zero in a span (degree + 1,), and derivatives up to `order` (2 at most), as rows."""
     table[0, 0] = 1.0
     for j in range(1, degree + 1):
@@ -77,7 +77,7 @@ def basis(knot, degree, span, t, order, left, right, table, out):  # type: ignor
 
 
 @kernel
-def wrapped(t, first, period):  # type: ignore[no-untyped-def]
+def wrapped(t, first, period):
     """A parameter of a periodic surface within its first period, both ends included; of others (period 0) as it is."""
     if period > 0.0 and (t < first or t > first + period):
         t -= period * np.floor((t - first) / period)
@@ -112,7 +112,7 @@ class _Room(NamedTuple):
 
 
 @kernel
-def _summed(net, row, column, order, room):  # type: ignore[no-untyped-def]
+def _summed(net, row, column, order, room):
     """Sum a patch's poles: S, Su, Sv, Suu, Svv, Suv and their weights into `room.found`, from the patch's first pole.
 
     What is far from the origin would lose digits of its derivatives.
@@ -143,7 +143,7 @@ def _summed(net, row, column, order, room):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _divided(found, origin, order, out):  # type: ignore[no-untyped-def]
+def _divided(found, origin, order, out):
     """Write the quotients of a rational surface by its weight, and their derivatives."""
     w = found[0, 3]
     for c in range(3):
@@ -159,7 +159,7 @@ def _divided(found, origin, order, out):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _point(u, v, net, order, room, out):  # type: ignore[no-untyped-def]
+def _point(u, v, net, order, room, out):
     """Write value and derivatives at one pair of parameters."""
     s = wrapped(u, net.knot_u[net.degree_u], net.period_u)
     t = wrapped(v, net.knot_v[net.degree_v], net.period_v)
@@ -179,7 +179,7 @@ def _point(u, v, net, order, room, out):  # type: ignore[no-untyped-def]
 
 
 @entry
-def evaluate(u, v, net, out):  # type: ignore[no-untyped-def]
+def evaluate(u, v, net, out):
     """Write values and derivatives of a surface.
 
     Parameters

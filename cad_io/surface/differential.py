@@ -8,7 +8,7 @@ entry, kernel = decorators(__file__)
 
 
 @kernel
-def _frame(d, sign, parallel, normal, a, b):  # type: ignore[no-untyped-def]
+def _frame(d, sign, parallel, normal, a, b):
     """Write the normal and the tangent frame (a along Su, b) of derivatives (6, 3); (|Su|, whether there is a frame)."""
     x = d[1, 1] * d[2, 2] - d[1, 2] * d[2, 1]
     y = d[1, 2] * d[2, 0] - d[1, 0] * d[2, 2]
@@ -27,12 +27,12 @@ def _frame(d, sign, parallel, normal, a, b):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _dot(d, k, v):  # type: ignore[no-untyped-def]
+def _dot(d, k, v):
     return d[k, 0] * v[0] + d[k, 1] * v[1] + d[k, 2] * v[2]
 
 
 @kernel
-def _one(d, sign, size, parallel, umbilic, a, b, normal, curvature, direction):  # type: ignore[no-untyped-def]
+def _one(d, sign, size, parallel, umbilic, a, b, normal, curvature, direction):
     """Write what is known at one point, a and b being scratch; whether that is something."""
     total = d[0, 0] + d[0, 1] + d[0, 2]
     length, good = _frame(d, sign, parallel, normal, a, b)
@@ -68,7 +68,7 @@ def _one(d, sign, size, parallel, umbilic, a, b, normal, curvature, direction): 
 
 
 @kernel
-def _all(derivatives, sign, size, parallel, umbilic, a, b, normal, curvature, direction, bad):  # type: ignore[no-untyped-def]
+def _all(derivatives, sign, size, parallel, umbilic, a, b, normal, curvature, direction, bad):
     for i in range(len(derivatives)):
         good = _one(
             derivatives[i], sign, size, parallel, umbilic, a, b, normal[i], curvature[i], direction[i]
@@ -79,7 +79,7 @@ def _all(derivatives, sign, size, parallel, umbilic, a, b, normal, curvature, di
 
 
 @entry
-def differential(derivatives, sign, size, parallel, umbilic, normal, curvature, direction, bad):  # type: ignore[no-untyped-def]
+def differential(derivatives, sign, size, parallel, umbilic, normal, curvature, direction, bad):
     """Write normals (n, 3), curvatures (n, 2), directions (n, 3) and `bad` (n,) for derivatives (n, 6, 3).
 
     The other parameters are those of `face.curvature.curvature` and its constants.

@@ -18,7 +18,7 @@ entry, kernel = decorators(__file__)
 
 
 @kernel
-def _bezier(knot, degree, low, a, b, work, out):  # type: ignore[no-untyped-def]
+def _bezier(knot, degree, low, a, b, work, out):
     """Write the shares (degree + 1, degree + 1) that the poles of a span have in its control points over [a, b]."""
     for j in range(degree + 1):
         for i in range(degree + 1):
@@ -36,7 +36,7 @@ def _bezier(knot, degree, low, a, b, work, out):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _interval(knot, degree, period, a, b):  # type: ignore[no-untyped-def]
+def _interval(knot, degree, period, a, b):
     """The span that a cell lies in, and the cell's ends, moved there by whole periods."""
     middle = 0.5 * (a + b)
     moved = wrapped(middle, knot[degree], period) - middle
@@ -44,7 +44,7 @@ def _interval(knot, degree, period, a, b):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _ball(cell, p, q, times_u, times_v, wide_u, wide_v, work, out):  # type: ignore[no-untyped-def]
+def _ball(cell, p, q, times_u, times_v, wide_u, wide_v, work, out):
     """Write middle (4,) and radii (of the point, of the weight) of a derivative of a Bezier patch into `out` (6,)."""
     for i in range(p + 1):
         for j in range(q + 1):
@@ -79,12 +79,12 @@ def _ball(cell, p, q, times_u, times_v, wide_u, wide_v, work, out):  # type: ign
 
 
 @kernel
-def _length(a):  # type: ignore[no-untyped-def]
+def _length(a):
     return np.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
 @kernel
-def _less(ball, weight, other):  # type: ignore[no-untyped-def]
+def _less(ball, weight, other):
     """Subtract the product of a scalar, middle and radius in `weight` 3 and 5, and a ball, `other`, from a ball."""
     w, spread = weight[3], weight[5]
     size = _length(other)
@@ -94,7 +94,7 @@ def _less(ball, weight, other):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _over(ball, low, high):  # type: ignore[no-untyped-def]
+def _over(ball, low, high):
     """Divide a ball by a weight between two positive ends."""
     middle, half = 0.5 * (1.0 / low + 1.0 / high), 0.5 * (1.0 / low - 1.0 / high)
     ball[4] = middle * ball[4] + half * (_length(ball) + ball[4])
@@ -103,7 +103,7 @@ def _over(ball, low, high):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _less_affine(cell, p, q, slope, raised):  # type: ignore[no-untyped-def]
+def _less_affine(cell, p, q, slope, raised):
     """Leave in `raised`, one degree higher each way, a rational patch less its weight times an affine map, S about.
 
     What is left is as small as the patch is flat, so that little is lost when its quotients are bounded term by term. `slope`
@@ -144,7 +144,7 @@ def _less_affine(cell, p, q, slope, raised):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _of_cell(cell, p, q, wide_u, wide_v, rational, room):  # type: ignore[no-untyped-def]
+def _of_cell(cell, p, q, wide_u, wide_v, rational, room):
     """Leave the balls of S, Su, Sv, Suu, Svv, Suv over a patch in `room.ball` (6, 6)."""
     ball, low, high = room.ball, 1.0, 1.0
     if rational:
@@ -175,7 +175,7 @@ def _of_cell(cell, p, q, wide_u, wide_v, rational, room):  # type: ignore[no-unt
 
 
 @kernel
-def _row(net, low, share, rows):  # type: ignore[no-untyped-def]
+def _row(net, low, share, rows):
     """Sum the poles of a span along u into rows of control points."""
     p = net.degree_u
     for a in range(p + 1):
@@ -188,7 +188,7 @@ def _row(net, low, share, rows):  # type: ignore[no-untyped-def]
 
 
 @entry
-def of_net(net, u, v, bends):  # type: ignore[no-untyped-def]
+def of_net(net, u, v, bends):
     """Write the bends of a B-spline surface over cells between lines, among which all its inner knots must be.
 
     Parameters
@@ -225,7 +225,7 @@ class _Room(NamedTuple):
 
 
 @kernel
-def _fill(net, u, v, bends, room):  # type: ignore[no-untyped-def]
+def _fill(net, u, v, bends, room):
     p, q, cell, ball = net.degree_u, net.degree_v, room.cell, room.ball
     for j in range(len(v) - 1):
         room.left[j], a, b = _interval(net.knot_v, q, net.period_v, v[j], v[j + 1])

@@ -212,7 +212,7 @@ def _windows(cells: int) -> NDArray[np.int64]:
 
 
 @kernel
-def _join(one, other, ratio, out):  # type: ignore[no-untyped-def]
+def _join(one, other, ratio, out):
     """Write the bends of two windows together."""
     uu, vv, uv = 0.0, 0.0, 0.0
     for c in range(3):
@@ -229,7 +229,7 @@ def _join(one, other, ratio, out):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _fill(table, ratio):  # type: ignore[no-untyped-def]
+def _fill(table, ratio):
     node, start, along_u, along_v = table.node, table.start, table.along_u, table.along_v
     for k in range(1, len(along_u)):
         step = 1 if k == 1 else 2
@@ -250,13 +250,13 @@ def _fill(table, ratio):  # type: ignore[no-untyped-def]
 
 
 @entry
-def _gather(table, ratio):  # type: ignore[no-untyped-def]
+def _gather(table, ratio):
     """Fill the windows of all levels from the single cells."""
     _fill(table, ratio)
 
 
 @kernel
-def _cell(lines, t, low):  # type: ignore[no-untyped-def]
+def _cell(lines, t, low):
     """The cell between lines in which a parameter lies; on a line the one above (`low`) or below."""
     first, last = 0, len(lines) - 1
     while last - first > 1:
@@ -269,7 +269,7 @@ def _cell(lines, t, low):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _window(lines, low, high):  # type: ignore[no-untyped-def]
+def _window(lines, low, high):
     """Level and number of the smallest window that holds a range."""
     a, b = _cell(lines, low, True), _cell(lines, high, False)
     if b <= a:
@@ -281,7 +281,7 @@ def _window(lines, low, high):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def window(table, low_u, high_u, low_v, high_v):  # type: ignore[no-untyped-def]
+def window(table, low_u, high_u, low_v, high_v):
     """Row of `table.node` that bounds a rectangle."""
     k, i = _window(table.u, low_u, high_u)
     m, j = _window(table.v, low_v, high_v)
@@ -289,7 +289,7 @@ def window(table, low_u, high_u, low_v, high_v):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def bend(row, du, dv):  # type: ignore[no-untyped-def]
+def bend(row, du, dv):
     """Largest q of a step in the parameter plane: `1/8 q` bounds how far an edge is from its course."""
     uu, vv, uv = du * du, dv * dv, 2.0 * du * dv
     total = 0.0
@@ -299,7 +299,7 @@ def bend(row, du, dv):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def most_inside(a, b, c):  # type: ignore[no-untyped-def]
+def most_inside(a, b, c):
     """Half the largest sum of `l_i l_j q_ij` over a triangle whose edges have q of a, b and c."""
     edge = 0.25 * max(a, max(b, c))
     across = 2.0 * (a * b + b * c + c * a) - a * a - b * b - c * c

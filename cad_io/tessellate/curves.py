@@ -182,14 +182,14 @@ def _bends(net: Net, ends: tuple[float, float]) -> tuple[Floats, Floats]:
 
 
 @entry
-def room():  # type: ignore[no-untyped-def]
+def room():
     """Room for the kernels."""
     wide = DEGREE + 1
     return Room(np.empty(wide), np.empty(wide), np.empty((wide, wide)), np.empty((3, wide)), np.empty(4))
 
 
 @kernel
-def point(curves, i, t, room):  # type: ignore[no-untyped-def]
+def point(curves, i, t, room):
     """Parameters (u, v) of the surface on a curve."""
     number, real = curves.number[i], curves.real[i]
     if number[0] == _CONIC:
@@ -210,7 +210,7 @@ def point(curves, i, t, room):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def strays(curves, i, a, b):  # type: ignore[no-untyped-def]
+def strays(curves, i, a, b):
     """How far a curve may be along u and along v, between two parameters, from the chord traversed evenly."""
     first, count = curves.number[i, 4], curves.number[i, 5]
     low, high = min(a, b), max(a, b)
@@ -241,7 +241,7 @@ def strays(curves, i, a, b):  # type: ignore[no-untyped-def]
 
 
 @entry
-def farthest(curves, curve, ends, most):  # type: ignore[no-untyped-def]
+def farthest(curves, curve, ends, most):
     """Write how far each curve (m, 2) may be along u and along v from its chords: of curve (k,), -1 for none, `ends` (k, 2)."""
     most[:] = 0.0
     for k in range(len(curve)):

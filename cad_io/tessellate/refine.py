@@ -57,7 +57,7 @@ class _Look(NamedTuple):
 
 
 @kernel
-def _jumps(lines, low, high):  # type: ignore[no-untyped-def]
+def _jumps(lines, low, high):
     """How far jumps of the first derivative may take the surface from a triangle between two values of a parameter, mm, and
     the number of the line that does so most, -1 for none."""
     first, last = 0, len(lines)
@@ -79,7 +79,7 @@ def _jumps(lines, low, high):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _crossing(stack, k, line, axis):  # type: ignore[no-untyped-def]
+def _crossing(stack, k, line, axis):
     """An edge that a line crosses, one within the face if there is one."""
     edge = -1
     for c in range(3):
@@ -90,7 +90,7 @@ def _crossing(stack, k, line, axis):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _border(stack, k, table, curves, box):  # type: ignore[no-untyped-def]
+def _border(stack, k, table, curves, box):
     """How far the border curves of a triangle may be from its edges, mm, and at which edge most."""
     worst, edge = 0.0, -1
     for c in range(3):
@@ -108,7 +108,7 @@ def _border(stack, k, table, curves, box):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _look(stack, k, table, curves, chord):  # type: ignore[no-untyped-def]
+def _look(stack, k, table, curves, chord):
     uv = stack.uv[k]
     box = (
         min(uv[0, 0], min(uv[1, 0], uv[2, 0])), max(uv[0, 0], max(uv[1, 0], uv[2, 0])),
@@ -139,7 +139,7 @@ def _look(stack, k, table, curves, chord):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _cut(stack, k, look, curves, number, spare):  # type: ignore[no-untyped-def]
+def _cut(stack, k, look, curves, number, spare):
     """Cut a triangle in two, from a point of an edge, node `number`, to the corner across: in its own place and the next."""
     edge, next_ = look.edge, (look.edge + 1) % 3
     i = stack.curve[k, edge]
@@ -179,14 +179,14 @@ def _cut(stack, k, look, curves, number, spare):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _twice_area(stack, k):  # type: ignore[no-untyped-def]
+def _twice_area(stack, k):
     """Of a triangle in the parameter plane; negative if it runs clockwise."""
     uv = stack.uv[k]
     return (uv[1, 0] - uv[0, 0]) * (uv[2, 1] - uv[0, 1]) - (uv[1, 1] - uv[0, 1]) * (uv[2, 0] - uv[0, 0])
 
 
 @kernel
-def _refined(start, table, curves, chord, most, stack, spare, found):  # type: ignore[no-untyped-def]
+def _refined(start, table, curves, chord, most, stack, spare, found):
     nodes, leaves, worst, strayed, area = np.int64(len(start.uv)), np.int64(0), 0.0, 0.0, 0.0
     room_uv, room_corner = len(found.uv), len(found.corner)
     for node in range(min(nodes, room_uv)):
@@ -229,7 +229,7 @@ def _refined(start, table, curves, chord, most, stack, spare, found):  # type: i
 
 
 @entry
-def refined(start, table, curves, chord, most, found):  # type: ignore[no-untyped-def]
+def refined(start, table, curves, chord, most, found):
     """Cut triangles until each is within a distance of the surface.
 
     Parameters

@@ -378,7 +378,7 @@ def _setups(ready: Prepared, within: Sequence[NDArray[np.bool_]], over: OverSetu
 
 def warm(contacts: Contacts, cutter: Cutter, conditions: Conditions) -> None:
     """Load or compile every kernel, so that stage times are those of the work."""
-    from plan_cutters.kernels import search
+    from plan_cutters.kernels.search import search
 
     none, found = np.zeros(0, np.int64), found_of(blank(0))
     light, heavy = conditions.light(cutter), conditions.heavy(cutter)

@@ -12,6 +12,7 @@ from cad_io.sample import locate
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.checks import number, numbers, radians
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.intervals import complement
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange
@@ -19,7 +20,7 @@ from plan_cutters.errors import OptionError
 from plan_cutters.options import machine_given
 from plan_cutters.scene.conditions import tools
 from plan_cutters.scene.scene import Scene
-from plan_cutters.stages.posture_map import SETTLED, Ask, PostureMap, complement, moved, posture_map_of
+from plan_cutters.stages.posture_map import SETTLED, Ask, PostureMap, moved, posture_map_of
 
 #: Width (rad) below which a range of tilts stays undecided: with a tolerance, and for the nominal answer.
 _NARROWEST, _NARROWEST_NOMINAL = 1e-4, 1e-5

@@ -65,10 +65,8 @@ def test_one_that_does_not_end_is_not_waited_for_for_ever(monkeypatch):
 
 def test_machine_code_is_found_where_the_compiler_keeps_it(tmp_path):
     """In a process of its own: where the folder is, is asked once."""
-    look = (
-        "from plan_cutters.kernels.jit import at_hand; print(at_hand('rows.none'), at_hand('probing.room_to_search'))"
-    )
-    make = "from plan_cutters.kernels.probing import room_to_search; room_to_search()"
+    look = "from plan_cutters.kernels.jit import at_hand; print(at_hand('rows.none'), at_hand('place.room_to_search'))"
+    make = "from plan_cutters.kernels.search.place import room_to_search; room_to_search()"
     environment = {**ENV, "NUMBA_CACHE_DIR": str(tmp_path)}
 
     def run(text):
@@ -98,8 +96,9 @@ from plan_cutters.command.ahead import compile_all
 
 def told():
     found = []
-    for source in Path(room.__file__).parent.glob("*.py"):
-        module = sys.modules.get(f"{room.__name__}.{source.stem}")
+    home = Path(room.__file__).parent
+    for source in home.rglob("*.py"):
+        module = sys.modules.get(".".join([room.__name__, *source.relative_to(home).with_suffix("").parts]))
         for entry in re.findall(r"^@entry\\ndef (\\w+)", source.read_text(), re.M) if module else ():
             if getattr(module, entry).overloads:
                 found.append(f"{source.stem}.{entry}")

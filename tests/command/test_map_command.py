@@ -18,7 +18,8 @@ from cad_io.sample import nearest
 from plan_cutters import posture_map
 from plan_cutters.command import cli
 from plan_cutters.command import map as of_a_point
-from plan_cutters.report.map_picture import CAUSES, forbidden, without
+from plan_cutters.domain.intervals import without
+from plan_cutters.report.map_picture import CAUSES, forbidden
 from plan_cutters.report.sheet import DPI, figure, fitting, write
 from tests.support.forked import run as run_copied
 

@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.domain import kinematics as words
 from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.machine import Machine, builtin_machines
@@ -51,10 +50,6 @@ def by_matrices(found, angle):
         cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
         vector = (np.eye(3) + math.sin(angle[k]) * cross + (1 - math.cos(angle[k])) * cross @ cross) @ vector
     return vector
-
-
-def test_kernels_count_as_the_domain_does():
-    assert (limits.PARALLEL, limits.ON_LIMIT) == (words.PARALLEL, words.ON_LIMIT)
 
 
 @pytest.mark.parametrize("name", [*FIVE, *range(10)])

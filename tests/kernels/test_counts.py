@@ -7,10 +7,8 @@ import numpy as np
 import pytest
 
 from plan_cutters.domain.verdicts import blank
-from plan_cutters.kernels import (
-    material,
-    search,
-)
+from plan_cutters.kernels import material
+from plan_cutters.kernels.search import search
 from plan_cutters.scene.conditions import found_of
 from tests.support import waves
 from tests.support.counted import counted

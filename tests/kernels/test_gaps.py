@@ -6,7 +6,8 @@ The reference is containment of points, tilt by tilt, in the frame of the tool; 
 import numpy as np
 import pytest
 
-from plan_cutters.kernels import gaps, lanes, passes
+from plan_cutters.kernels.linear import lanes
+from plan_cutters.kernels.maps import gaps, passes
 from tests.support import waves
 
 TILTS = 181
@@ -60,7 +61,7 @@ def test_boxes_that_pass_never_enter():
         for k in range(3):
             view[0, 3 + k], view[0, 6 + k], view[0, 9 + k] = axes[0, k], axes[1, k], axes[2, k]
         view[0, 12] = place[2] + np.abs(sides[2]).sum()
-        lanes._boxes_pass(
+        passes._boxes_pass(
             view, 0, cosine, sine, gap_of(first, last), 1, waves.cylinder(radius, high + low, low), margin
         )
         assert (margin == margin[0]).all()
@@ -78,7 +79,7 @@ def test_triangles_that_pass_never_enter():
     for rng, radius, low, high, first, last, place, size in cases(2, 8000):
         triangle = place + size * rng.standard_normal((3, 3)) * 10 ** rng.uniform(-1.5, 0, 3)
         seen = np.repeat(triangle.reshape(9, 1), lanes.LANES, 1)
-        lanes._triangles_pass(seen, 1.0, 0.0, gap_of(first, last), 1, waves.cylinder(radius, high + low, low), margin)
+        passes._triangles_pass(seen, 1.0, 0.0, gap_of(first, last), 1, waves.cylinder(radius, high + low, low), margin)
         assert (margin == margin[0]).all()
         corner = np.ascontiguousarray(triangle[:, [0, 2, 1]])
         ends = np.cos(first), np.sin(first), np.cos(last), np.sin(last)

@@ -8,6 +8,8 @@ import pytest
 
 from tests.support.forked import ENV
 
+from cad_io.jit import cache_folder
+
 SOURCE = """
 import sys
 import numpy as np
@@ -86,3 +88,18 @@ def test_a_kernel_that_is_kept_is_linked_into_the_next_entry(run):
 def test_python_calls_a_kernel(run):
     for _ in range(2):
         assert run("k.middle(x, 1), k.deepest(4.0), k.deepest(9), k.first(x)")[0] == [8.0, 3.0, 4.0, 6.0]
+
+
+def test_sources_in_rooms_below_count(tmp_path, monkeypatch):
+    """A kernel in one room calls those in others: what changes in any of them must not be answered by old machine code."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    room = tmp_path / "sources" / "room"
+    room.mkdir(parents=True)
+    (tmp_path / "sources" / "jit.py").write_text("")
+    folders = []
+    for name, text in (("a.py", "x = 1"), ("a.py", "x = 2"), ("b.py", "x = 2")):
+        for old in room.iterdir():
+            old.unlink()
+        (room / name).write_text(text)
+        folders.append(cache_folder.__wrapped__(tmp_path / "sources"))
+    assert len(set(folders)) == 3

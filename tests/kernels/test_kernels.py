@@ -10,11 +10,14 @@ from hypothesis import strategies as st
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import blank
-from plan_cutters.kernels import free_tilts, hit, probing, search, tree
-from plan_cutters.kernels.arcs import point_arc
+from plan_cutters.kernels.linear import tree
+from plan_cutters.kernels.maps import free_tilts
+from plan_cutters.kernels.maps.points import axis_intervals, local_gouge_range
 from plan_cutters.kernels.material import sheet
-from plan_cutters.kernels.points import axis_intervals, local_gouge_range
 from plan_cutters.kernels.rows import Contacts, Frame, Tree
+from plan_cutters.kernels.search import place, search
+from plan_cutters.kernels.tool import hit
+from plan_cutters.kernels.tool.arcs import point_arc
 from plan_cutters.scene.conditions import found_of, ranges_of
 from tests.support import waves
 from tests.support.reference import depth_in_cutter, posture, random_frame, triangle_points
@@ -156,19 +159,6 @@ def test_axis_arcs_are_where_the_axis_is_within_the_cone(n, f, limit, setup):
     assert (within == (angle >= 0))[sure].all()
 
 
-def test_kernels_and_reach_speak_of_the_same_verdicts():
-    from plan_cutters.domain import verdicts as reach
-
-    for name in ("INACCESSIBLE", "ACCESSIBLE", "INTERFERENCE_FREE", "UNDECIDED", "UNJUDGED"):
-        assert getattr(search, name) == getattr(reach, name)
-    words = ("axis_limit", "local_gouge", "rear_gouge", "collision", "buried", "neck", "shank", "holder")
-    assert [reach.REASONS[getattr(search, word.upper())] for word in words] == list(words)
-    # Told afterwards, by a search without fixtures: kernels do not write it.
-    own = ("axis_limit", "local_gouge", "buried", "tolerance", "fixture")
-    assert [reach.REASONS[getattr(reach, word.upper())] for word in own] == list(own)
-    assert all(not hasattr(search, word) for word in ("TOLERANCE", "FIXTURE"))
-
-
 def test_local_gouge_bound():
     def bound(high, low, rotation):
         least, most = local_gouge_range(high, low, rotation, 8.0, 0.0)
@@ -192,7 +182,7 @@ def test_remove_keeps_the_complement(cuts):
     left = np.ones(len(points), bool)
     for a, b in cuts:
         first, last = min(a, b), max(a, b)
-        count = probing.remove(intervals, count, first, last, 0.0)
+        count = place.remove(intervals, count, first, last, 0.0)
         left &= ~((points > first) & (points < last))
     rows = intervals[:count]
     assert (rows[:, 0] <= rows[:, 1]).all()

@@ -17,10 +17,11 @@ from plan_cutters import Cutter, Machine, plan
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import INACCESSIBLE
-from plan_cutters.kernels import hit, search
-from plan_cutters.kernels.arcs import point_arc
-from plan_cutters.kernels.points import axis_intervals, local_gouge_range
+from plan_cutters.kernels.maps.points import axis_intervals, local_gouge_range
 from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.search import search
+from plan_cutters.kernels.tool import hit
+from plan_cutters.kernels.tool.arcs import point_arc
 from plan_cutters.scene.conditions import ranges_of
 from plan_cutters.scene.obstacles import Obstacles
 from tests.support import shapes, waves

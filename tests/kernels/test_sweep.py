@@ -9,8 +9,9 @@ from cad_io.arrays import Triangles
 from plan_cutters import Cutter, Machine
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, UNDECIDED, blank
-from plan_cutters.kernels import material, probing, search, sweep
+from plan_cutters.kernels import material
 from plan_cutters.kernels.rows import Contacts
+from plan_cutters.kernels.search import place, search, sweep
 from plan_cutters.scene.conditions import Conditions, found_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
@@ -150,7 +151,7 @@ def test_what_is_remembered_is_seen_from_the_contact_at_hand(given):
 
     def swept(past):
         return sweep.sweep(contact, 0, RANGES, tool, solids, 0.25, 1e-5, (0, -1.0), TURNS, past,
-                           probing.room_to_search())  # fmt: skip
+                           place.room_to_search())  # fmt: skip
 
     full = sweep.memory(TURNS, 1, False)
     full.given[0], full.pool[:] = given, 1e4

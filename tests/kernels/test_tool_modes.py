@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.kernels import tool_arcs
-from plan_cutters.kernels.arcs import local_gouge
-from plan_cutters.kernels.pieces import inset
+from plan_cutters.kernels.tool import tool_arcs
+from plan_cutters.kernels.tool.arcs import local_gouge
+from plan_cutters.kernels.tool.pieces import inset
 from tests.support.reference import random_frame
 from tests.support.tool_reference import KINDS, Reference, in_row, random_cutter
 

@@ -8,9 +8,9 @@ import pytest
 from plan_cutters import Cutter
 from plan_cutters.domain import pieces as domain
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.kernels import hit, pieces
 from plan_cutters.kernels.jit import kernel
 from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.tool import hit
 from plan_cutters.scene.conditions import tool_of
 from tests.support.reference import random_frame
 from tests.support.tool_reference import KINDS, Reference, in_row, random_cutter
@@ -21,16 +21,8 @@ EXACT = 1e-9
 GRID = np.array([(i, j, 7 - i - j) for i in range(8) for j in range(8 - i)]) / 7.0
 
 
-def test_domain_and_kernels_speak_of_the_same_columns():
-    names = (
-        "CYLINDER CONE ARC KIND LOW HIGH RADIUS SLOPE ROUND SCALE BOTTOM TOP WIDE PART COLUMNS FLUTES NECK SHANK HOLDER"
-    )
-    for name in names.split():
-        assert getattr(domain, name) == getattr(pieces, name), name
-
-
 @kernel
-def _hits(vertex, bodies, piece, mask, scratch, which, met):  # type: ignore[no-untyped-def]
+def _hits(vertex, bodies, piece, mask, scratch, which, met):
     for i in range(len(vertex)):
         which[i], met[i, 0], met[i, 1], met[i, 2] = hit.triangle_hit(vertex, i, bodies[i], piece, mask, 0.0, scratch)
 
@@ -218,8 +210,9 @@ def test_a_million_triangles_of_each_kind(kind):
 
 def test_a_triangle_without_area_hits_where_its_longest_side_does():
     """Its normal is nothing but rounding: no plane across it may part it from a piece."""
-    from plan_cutters.domain.pieces import ARC, FLUTES, row_of
-    from plan_cutters.kernels.pieces import polygon_hit
+    from plan_cutters.domain.pieces import row_of
+    from plan_cutters.kernels.codes import ARC, FLUTES
+    from plan_cutters.kernels.tool.pieces import polygon_hit
 
     rng, met = np.random.default_rng(0), 0
     for radius, around in ((0.0, 3.0), (2.0, 1.5), (12.0, 1.5), (-20.0, 26.0)):

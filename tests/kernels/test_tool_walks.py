@@ -9,8 +9,8 @@ from plan_cutters import Cutter, CutterError
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.holder import Stage
 from plan_cutters.domain.nesting import inside
-from plan_cutters.kernels import drawn, hit
 from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.tool import drawn, hit
 from plan_cutters.scene.conditions import tool_of
 from tests.support import waves
 from tests.support.tool_reference import KINDS, Reference, in_row, random_cutter

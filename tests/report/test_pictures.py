@@ -6,7 +6,7 @@ from PIL import Image
 
 from plan_cutters import plan
 from plan_cutters.document.palette import rgb
-from plan_cutters.kernels.raster import draw
+from plan_cutters.kernels.linear.raster import draw
 from plan_cutters.report.views import FINER, Body, borders, fitted, frame_towards, view
 from tests.support.cad_parts import CAD
 

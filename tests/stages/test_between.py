@@ -11,7 +11,7 @@ from cad_io.part.orient import orient
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Machine
 from plan_cutters.domain.posture import PostureRange
-from plan_cutters.kernels.cover import NEVER
+from plan_cutters.kernels.codes import NEVER
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings

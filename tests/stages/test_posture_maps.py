@@ -9,7 +9,7 @@ from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Options, plan, posture_map
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, UNDECIDED
 from plan_cutters.errors import OptionError
-from plan_cutters.kernels.search import probe
+from plan_cutters.kernels.search.search import probe
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.stages.judge import judge

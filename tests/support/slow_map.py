@@ -6,17 +6,17 @@ Each range is tested as a whole: nothing is handed on from one to the next, and 
 import numba
 import numpy as np
 
-from plan_cutters.kernels.free_tilts import OPEN, UNSURE, divide, room_for_parts
-from plan_cutters.kernels.probing import permitted
+from plan_cutters.kernels.linear.vectors import cross, lean_frame
+from plan_cutters.kernels.maps.free_tilts import OPEN, UNSURE, divide, room_for_parts
 from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.vectors import cross, lean_frame
+from plan_cutters.kernels.search.place import permitted
 
 #: Parts that the tilts of one rotation may fall into.
 _PARTS = 400
 
 
 @numba.njit(error_model="numpy")
-def _enter(first, last, count, part):  # type: ignore[no-untyped-def]
+def _enter(first, last, count, part):
     """Enter a free interval among those (room, 2), ascending, joined with what it touches; (how many, what found no room)."""
     for i in range(count):
         if part[i, 1] == first:
@@ -32,7 +32,7 @@ def _enter(first, last, count, part):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(error_model="numpy")
-def _ordered(count, part):  # type: ignore[no-untyped-def]
+def _ordered(count, part):
     """Put free intervals in ascending order and join those that touch; how many are left."""
     for i in range(1, count):
         first, last, at = part[i, 0], part[i, 1], i
@@ -51,7 +51,7 @@ def _ordered(count, part):  # type: ignore[no-untyped-def]
 
 
 @numba.njit(error_model="numpy")
-def tool_map(rows, contacts, ranges, tool, narrowest, tree, part, count_out, undecided):  # type: ignore[no-untyped-def]
+def tool_map(rows, contacts, ranges, tool, narrowest, tree, part, count_out, undecided):
     """Free tilts of samples at all rotations; parameters as for `free_map.free_map`.
 
     Parameters

@@ -4,7 +4,8 @@ import numpy as np
 
 from plan_cutters import Cutter
 from plan_cutters.domain.assembly import assembly
-from plan_cutters.kernels import free_map, lanes, tree
+from plan_cutters.kernels.linear import lanes, tree
+from plan_cutters.kernels.maps import free_map
 from plan_cutters.kernels.rows import Contacts, Cylinder, Ranges, Tree
 from plan_cutters.scene.conditions import rotary_of, tool_of
 

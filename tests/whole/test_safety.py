@@ -16,7 +16,7 @@ from cad_io import read_part
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, plan
 from plan_cutters.domain.verdicts import ACCESSIBLE, INTERFERENCE_FREE
-from plan_cutters.kernels import search
+from plan_cutters.kernels.search import search
 from plan_cutters.scene.obstacles import Obstacles
 from tests.support import shapes, waves
 from tests.support.places import SAMPLES

@@ -28,9 +28,10 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import ACCESSIBLE, blank
 from plan_cutters.errors import UnjudgeableError
-from plan_cutters.kernels import free_tilts, search
+from plan_cutters.kernels.maps import free_tilts
 from plan_cutters.kernels.material import sheet
 from plan_cutters.kernels.rows import Contacts, Tree
+from plan_cutters.kernels.search import search
 from plan_cutters.scene.conditions import Conditions, found_of, search_postures, tool_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings, surroundings
@@ -250,7 +251,8 @@ environment = dict(os.environ)
 {first}
 {second}
 import numba
-from plan_cutters.kernels import arcs, jit
+from plan_cutters.kernels import jit
+from plan_cutters.kernels.tool import arcs
 mine = numba.njit(cache=True)(len)
 assert dict(os.environ) == environment, "the environment was changed"
 folders = {{f._cache._impl.locator.get_cache_path() for f in (arcs.point_arc, arcs.local_gouge)}}
@@ -260,11 +262,11 @@ print(numba.config.CACHE_DIR)
 """
 
 
-@pytest.mark.parametrize("first", ["import numba", "import plan_cutters.kernels.arcs"])
+@pytest.mark.parametrize("first", ["import numba", "import plan_cutters.kernels.tool.arcs"])
 def test_machine_code_of_other_sources_is_never_run(first, tmp_path):
     """Whoever imports the compiler first, ours lies in the folder of just these sources, and the host's elsewhere."""
     text = _WHERE.replace("mine = numba.njit(cache=True)(len)\n", "").format(
-        first=first, second="import plan_cutters.kernels.arcs"
+        first=first, second="import plan_cutters.kernels.tool.arcs"
     )
     environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"}
     environment |= {"XDG_CACHE_HOME": str(tmp_path), "PYTHONPATH": os.pathsep.join(sys.path)}

@@ -17,7 +17,7 @@ from plan_cutters.scene.prepared import Prepared
 from plan_cutters.scene.threads import Progress, in_chunks
 
 if TYPE_CHECKING:
-    from plan_cutters.kernels.radius import Ladder
+    from plan_cutters.kernels.search.radius import Ladder
 
 #: Smallest radius that is looked at unless one is asked for, mm; of small parts this share of the largest.
 _LEAST, _SHARE = 0.1, 0.01
@@ -55,7 +55,7 @@ def largest_radius(
     OptionError
         An argument has no meaning, or the tolerance is too coarse for every radius asked for.
     """
-    from plan_cutters.kernels.radius import largest
+    from plan_cutters.kernels.search.radius import largest
 
     cutters = _cutters(ready, shape, ratio, step, least, most)
     radii = np.array([cutter.radius for cutter in cutters])
@@ -114,7 +114,7 @@ def _cutters(
 
 def _ladder(made: list[Assembly]) -> "Ladder":
     """Tools as the search takes them. They have as many pieces each: a tool with fewer has one of them twice."""
-    from plan_cutters.kernels.radius import Ladder
+    from plan_cutters.kernels.search.radius import Ladder
 
     count = max(each.piece.shape[1] for each in made)
     piece = [each.piece[:, [min(k, each.piece.shape[1] - 1) for k in range(count)]] for each in made]

@@ -111,7 +111,7 @@ class _Search:
 
     def needed(self, rows: NDArray[np.int64], posture: Reach) -> tuple[Floats, NDArray[np.int32]]:
         """The stick-outs (n,) that known postures of some samples ask for, and the triangles that are in the way."""
-        from plan_cutters.kernels.stick_out import least_stick_outs
+        from plan_cutters.kernels.search.stick_out import least_stick_outs
 
         stick_out = np.full(len(posture.tilt), np.nan)
         triangle = np.full(len(posture.tilt), -1, np.int32)
@@ -145,7 +145,7 @@ class _Search:
         self, pieces: list[NDArray[np.int64]], at: NDArray[np.int64], left: NDArray[np.int64], stick_out: float
     ) -> list[int]:
         """Search each piece that is left up to the first sample that is lost; move `at` on, and return those samples."""
-        from plan_cutters.kernels.search import until_lost
+        from plan_cutters.kernels.search.search import until_lost
 
         tool, ranges, solids = self.tool(stick_out), self.conditions.ranges, self.conditions.obstacles.solids
         found = blank(len(self.ready.samples))
@@ -202,7 +202,7 @@ class _Search:
 
     def _posture(self, row: int, stick_out: float) -> bool:
         """Whether a sample has a posture with a stick-out; it is kept."""
-        from plan_cutters.kernels.search import posture
+        from plan_cutters.kernels.search.search import posture
 
         one, samples, ranges = slice(row, row + 1), self.ready.samples, self.conditions.ranges
         contact = Contacts(samples.point[one], samples.normal[one], samples.direction_max[one], samples.curvature[one])
@@ -221,7 +221,7 @@ class _Search:
 
     def each(self, rows: NDArray[np.int64], step: float) -> Floats:
         """The least stick-out (n,) of each of some samples to a step, nan for the others."""
-        from plan_cutters.kernels.search import until_lost
+        from plan_cutters.kernels.search.search import until_lost
 
         ranges, solids = self.conditions.ranges, self.conditions.obstacles.solids
         best = np.full(len(self.ready.samples), np.nan)

@@ -57,7 +57,7 @@ class Case:
     def look(self, rows: Rows) -> Reach:
         """What the cutter reaches of some judged samples: verdicts as `judge` finds them, but for the grain of a search
         that starts elsewhere."""
-        from plan_cutters.kernels.search import dummy_clear
+        from plan_cutters.kernels.search.search import dummy_clear
 
         ready, conditions, found = self.ready, self.ready.conditions, blank(len(rows))
         if not conditions.judges(self.cutter):

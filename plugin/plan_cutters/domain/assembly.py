@@ -14,23 +14,8 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Record
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.pieces import (
-    ARC,
-    BOTTOM,
-    COLUMNS,
-    CYLINDER,
-    FLUTES,
     HAIR,
-    HIGH,
-    KIND,
-    LOW,
-    PART,
     PARTS,
-    RADIUS,
-    ROUND,
-    SCALE,
-    SLOPE,
-    TOP,
-    WIDE,
     Band,
     Kind,
     alone,
@@ -45,6 +30,23 @@ from plan_cutters.domain.pieces import (
 )
 from plan_cutters.domain.shapes import MOST_PIECES, Mode, flute_length, modes, stages, top_lean, top_radius
 from plan_cutters.errors import CutterError
+from plan_cutters.kernels.codes import (
+    ARC,
+    BOTTOM,
+    COLUMNS,
+    CYLINDER,
+    FLUTES,
+    HIGH,
+    KIND,
+    LOW,
+    PART,
+    RADIUS,
+    ROUND,
+    SCALE,
+    SLOPE,
+    TOP,
+    WIDE,
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

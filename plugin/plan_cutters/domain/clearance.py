@@ -8,26 +8,9 @@ import numpy as np
 from cad_io.arrays import Floats
 from plan_cutters.domain.assembly import Assembly, assembly, placed
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.pieces import (
-    ARC,
-    COLUMNS,
-    FLUTES,
-    HIGH,
-    KIND,
-    LOW,
-    PART,
-    PARTS,
-    RADIUS,
-    ROUND,
-    SLOPE,
-    Band,
-    alone,
-    band_row,
-    flute_rows,
-    row_of,
-    solid,
-)
+from plan_cutters.domain.pieces import PARTS, Band, alone, band_row, flute_rows, row_of, solid
 from plan_cutters.domain.shapes import flute_length, stages
+from plan_cutters.kernels.codes import ARC, COLUMNS, FLUTES, HIGH, KIND, LOW, PART, RADIUS, ROUND, SLOPE
 
 #: Clearances are looked for up to this, mm, and told to this share of them, or to `FINEST`, whichever is more.
 MOST, SHARE, FINEST = 100.0, 0.02, 0.005

@@ -14,11 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Record
+from plan_cutters.kernels.codes import ON_LIMIT, PARALLEL
 
-#: Directions this close to each other, rad, are one; axes that are as near to being parallel turn a tool like one alone.
-PARALLEL = 1e-6
-#: Angles this close to a limit are on it, rad.
-ON_LIMIT = 1e-9
 #: Tool axes this near to the direction of the axis next to the part, rad, are held only with fast turns of it: singular.
 SINGULAR = math.radians(2.0)
 #: Angles of a single rotary axis that are searched are so far apart, rad.

@@ -10,15 +10,27 @@ from typing import Literal
 from plan_cutters.domain.dimensions import Dimensions
 from plan_cutters.domain.holder import Stage
 from plan_cutters.domain.shapes import flank, lens_height, tip_angle
+from plan_cutters.kernels.codes import (
+    ARC,
+    BOTTOM,
+    CONE,
+    CYLINDER,
+    FLUTES,
+    HIGH,
+    HOLDER,
+    KIND,
+    LOW,
+    NECK,
+    PART,
+    RADIUS,
+    ROUND,
+    SHANK,
+    SLOPE,
+    TOP,
+    WIDE,
+)
 
-#: Kinds of a piece: below `radius + slope (w - low)` for the first two; the third has a cross section of an arc: what is
-#: nearer than `round` to the disk of radius `radius` (negative: to all of the circle on its far side) at the height `centre`.
-CYLINDER, CONE, ARC = 0.0, 1.0, 2.0
-#: Columns of a piece: its kind, its heights, and for an arc, in place of slope: the height of its centre. Then what is made of
-#: these: 1 / sqrt(1 + slope^2); its lowest and highest point; its radius at the upper height (arcs: the largest); its part.
-KIND, LOW, HIGH, RADIUS, SLOPE, ROUND, SCALE, BOTTOM, TOP, WIDE, PART, COLUMNS = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11
-#: Parts of an assembly.
-FLUTES, NECK, SHANK, HOLDER = 0, 1, 2, 3
+#: Parts other than the flutes, by name.
 PARTS = {"neck": NECK, "shank": SHANK, "holder": HOLDER}
 
 #: By which pieces overlap where they meet, mm: what lies in the plane between two of them is in one.

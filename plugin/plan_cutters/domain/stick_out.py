@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Record
 from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.pieces import ARC, HIGH, HOLDER, KIND, LOW, PART, RADIUS, ROUND, SLOPE
 from plan_cutters.domain.shapes import SAME, flute_length
 from plan_cutters.errors import CutterError
+from plan_cutters.kernels.codes import ARC, HIGH, HOLDER, KIND, LOW, PART, RADIUS, ROUND, SLOPE
 
 #: Into how many cones a round edge of a grown holder is cut; they lie outside of it by 0.5 % of its radius.
 _CHORDS = 8

@@ -6,21 +6,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints, Record
+from plan_cutters.kernels.codes import (
+    ACCESSIBLE,
+    AXIS_LIMIT,
+    BURIED,
+    FIXTURE,
+    INACCESSIBLE,
+    INTERFERENCE_FREE,
+    LOCAL_GOUGE,
+    NO_REASON,
+    REASONS,
+    TOLERANCE,
+    UNDECIDED,
+    UNJUDGED,
+)
 
-INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
-#: Their words, from best to worst.
+# The codes of verdicts and reasons are this module's as well.
+__all__ = [
+    "ACCESSIBLE", "AXIS_LIMIT", "BURIED", "CONCAVE", "CONVEX", "FIXTURE", "INACCESSIBLE", "INTERFERENCE_FREE", "LOCAL_GOUGE",
+    "NO_REASON", "REASONS", "SADDLE", "TOLERANCE", "UNDECIDED", "UNJUDGED", "WORDS", "Bytes", "Reach", "Witness", "blank",
+]  # fmt: skip
+
+#: Words of verdicts, from best to worst.
 WORDS = {INTERFERENCE_FREE: "interference_free", ACCESSIBLE: "accessible", UNDECIDED: "undecided",
          INACCESSIBLE: "inaccessible", UNJUDGED: "unjudged"}  # fmt: skip
 #: Classes of a surface at a sample; there is UNJUDGED, too.
 CONVEX, CONCAVE, SADDLE = 0, 1, 2
-
-#: Why no posture is left, in the order in which the attributes are applied; `Reach.reason` is an index into it.
-#: `buried`: under or within a body; `tolerance`: that is too coarse for the cutter, which is undecided everywhere then;
-#: `fixture`: without the fixtures the sample would be reached.
-REASONS = (
-    "axis_limit", "local_gouge", "rear_gouge", "collision", "buried", "tolerance", "neck", "shank", "holder", "fixture",
-)  # fmt: skip
-AXIS_LIMIT, LOCAL_GOUGE, BURIED, TOLERANCE, FIXTURE, NO_REASON = 0, 1, 4, 5, 9, 255
 
 Bytes = NDArray[np.uint8]
 

@@ -7,19 +7,18 @@ angles at the middle tell.
 
 import numpy as np
 
-from plan_cutters.kernels.arcs import axis_arcs
+from plan_cutters.kernels.codes import ON_LIMIT, PARALLEL
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.vectors import cross, dot, lean_frame
+from plan_cutters.kernels.linear.vectors import cross, dot, lean_frame
+from plan_cutters.kernels.tool.arcs import axis_arcs
 
-# As in `plan_cutters.domain.kinematics`, which must not load the compiler; a test holds them together.
-PARALLEL, ON_LIMIT = 1e-6, 1e-9
 #: Crossings that are kept, at the end of the room for intervals: two for each of at most six circles, and the ends.
 CROSSINGS = 16
 _TURN = 2.0 * np.pi
 
 
 @kernel
-def turn_of(n, e1, ranges, rotation):  # type: ignore[no-untyped-def]
+def turn_of(n, e1, ranges, rotation):
     """Cosine and sine of a rotation, counted from direction_max e1 about the normal n."""
     aim = ranges.rotary.aim
     if len(aim) == 0:
@@ -37,13 +36,13 @@ def turn_of(n, e1, ranges, rotation):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def limited(rotary):  # type: ignore[no-untyped-def]
+def limited(rotary):
     """Whether there is a machine with rotary axes, or with none that could turn the tool."""
     return rotary.tool[0] != 0.0 or rotary.tool[1] != 0.0 or rotary.tool[2] != 0.0
 
 
 @kernel
-def _turns_within(angle, low, high):  # type: ignore[no-untyped-def]
+def _turns_within(angle, low, high):
     """Whether an angle lies between two limits, by whole turns."""
     if high - low >= _TURN:
         return True
@@ -52,7 +51,7 @@ def _turns_within(angle, low, high):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _about(d, sx, sy, sz, x, y, z):  # type: ignore[no-untyped-def]
+def _about(d, sx, sy, sz, x, y, z):
     """Angle by which a vector s turns about a unit direction into another; and the squared length of what turns."""
     cx, cy, cz = sy * z - sz * y, sz * x - sx * z, sx * y - sy * x
     along, other = d[0] * sx + d[1] * sy + d[2] * sz, d[0] * x + d[1] * y + d[2] * z
@@ -61,7 +60,7 @@ def _about(d, sx, sy, sz, x, y, z):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def holds(x, y, z, rotary):  # type: ignore[no-untyped-def]
+def holds(x, y, z, rotary):
     """Whether the machine holds a unit tool axis."""
     t, direction = rotary.tool, rotary.direction
     axes = len(direction)
@@ -97,13 +96,13 @@ def holds(x, y, z, rotary):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _held_at(n, f, tilt, rotary):  # type: ignore[no-untyped-def]
+def _held_at(n, f, tilt, rotary):
     c, s = np.cos(tilt), np.sin(tilt)
     return holds(c * n[0] + s * f[0], c * n[1] + s * f[1], c * n[2] + s * f[2], rotary)
 
 
 @kernel
-def _crossings(n, f, low, high, rotary, intervals):  # type: ignore[no-untyped-def]
+def _crossings(n, f, low, high, rotary, intervals):
     """Write the tilts between `low` and `high` at which what the machine holds may change, ascending; how many."""
     base, count = len(intervals) - CROSSINGS, 0
     for i in range(len(rotary.circle)):
@@ -128,7 +127,7 @@ def _crossings(n, f, low, high, rotary, intervals):  # type: ignore[no-untyped-d
 
 
 @kernel
-def hold(n, f, rotary, intervals, count):  # type: ignore[no-untyped-def]
+def hold(n, f, rotary, intervals, count):
     """Leave of sorted intervals of tilt what the machine holds; the new count.
 
     Parameters
@@ -173,7 +172,7 @@ def hold(n, f, rotary, intervals, count):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def held_tilts(n, f, ranges, low, high, intervals):  # type: ignore[no-untyped-def]
+def held_tilts(n, f, ranges, low, high, intervals):
     """Write the tilts between two, rad, at which the machine holds the axis, by its plain limit and its rotary axes; how many
     intervals.
 
@@ -184,7 +183,7 @@ def held_tilts(n, f, ranges, low, high, intervals):  # type: ignore[no-untyped-d
 
 
 @entry
-def any_axis(rows, normal, direction_max, ranges, low, high, held):  # type: ignore[no-untyped-def]
+def any_axis(rows, normal, direction_max, ranges, low, high, held):
     """Write whether the axis limits leave any tilt between two, rad, at any rotation: held (n,) of the samples `rows`."""
     intervals, e2, f, t = np.empty((64, 2)), np.empty(3), np.empty(3), np.empty(3)
     for row in rows:

@@ -59,7 +59,7 @@ def sheet(tree: Tree) -> Solids:
 
 
 @entry
-def moments(vertex, weight, depth):  # type: ignore[no-untyped-def]
+def moments(vertex, weight, depth):
     """Moments (nodes, 8) of weighted triangles in tree order: what a far point sees of them."""
     n, first = len(vertex), (1 << depth) - 1
     out = np.zeros(((2 << depth) - 1, MOMENTS))
@@ -111,7 +111,7 @@ def moments(vertex, weight, depth):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _solid_angle(v, x, y, z):  # type: ignore[no-untyped-def]
+def _solid_angle(v, x, y, z):
     """Solid angle of a triangle seen from a point, positive from behind (van Oosterom and Strackee)."""
     ax, ay, az = v[0, 0] - x, v[0, 1] - y, v[0, 2] - z
     bx, by, bz = v[1, 0] - x, v[1, 1] - y, v[1, 2] - z
@@ -128,7 +128,7 @@ def _solid_angle(v, x, y, z):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def outside(x, y, z, solids):  # type: ignore[no-untyped-def]
+def outside(x, y, z, solids):
     """Whether a point is surely in no body; one that is none is not."""
     nx, ny, nz = solids.cell.shape
     if nx == 0:
@@ -146,7 +146,7 @@ def outside(x, y, z, solids):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def winding(x, y, z, solids, stack):  # type: ignore[no-untyped-def]
+def winding(x, y, z, solids, stack):
     """How many bodies a point lies in; 0 as soon as that is sure, nan for a point that is none."""
     if outside(x, y, z, solids):
         return 0.0
@@ -178,7 +178,7 @@ def winding(x, y, z, solids, stack):  # type: ignore[no-untyped-def]
 
 
 @entry
-def windings(points, solids, out):  # type: ignore[no-untyped-def]
+def windings(points, solids, out):
     """Write the winding numbers (n,) of points (n, 3), 0 where they are surely outside."""
     stack = np.empty(64, np.int64)
     for i in range(len(points)):
@@ -186,7 +186,7 @@ def windings(points, solids, out):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _square_to_triangle(v, x, y, z):  # type: ignore[no-untyped-def]
+def _square_to_triangle(v, x, y, z):
     """Squared distance of a point from a triangle, one without area included."""
     best = np.inf
     ax, ay, az = v[1, 0] - v[0, 0], v[1, 1] - v[0, 1], v[1, 2] - v[0, 2]
@@ -213,7 +213,7 @@ def _square_to_triangle(v, x, y, z):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _touches(x, y, z, clear, solids, stack):  # type: ignore[no-untyped-def]
+def _touches(x, y, z, clear, solids, stack):
     """Whether a skin that encloses something comes within `clear` of a point; so does what is no number."""
     vertex, box, depth = solids.tree
     weight, moment = solids.weight, solids.moment
@@ -245,7 +245,7 @@ def _touches(x, y, z, clear, solids, stack):  # type: ignore[no-untyped-def]
 
 
 @entry
-def near_skin(points, clear, solids, near):  # type: ignore[no-untyped-def]
+def near_skin(points, clear, solids, near):
     """Write for points (n, 3) whether a skin that encloses something comes within `clear`, mm."""
     stack = np.empty(64, np.int64)
     for row in range(len(points)):
@@ -253,7 +253,7 @@ def near_skin(points, clear, solids, near):  # type: ignore[no-untyped-def]
 
 
 @entry
-def far_inside(points, clear, solids, inside):  # type: ignore[no-untyped-def]
+def far_inside(points, clear, solids, inside):
     """Write for points (n, 3) whether a ball of radius `clear`, mm, about each lies wholly inside bodies.
 
     Only skins that enclose something count: the ball may reach through other surfaces.
@@ -267,7 +267,7 @@ def far_inside(points, clear, solids, inside):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _apart(v, cx, cy, cz, half):  # type: ignore[no-untyped-def]
+def _apart(v, cx, cy, cz, half):
     """True only if a triangle misses the cube of half side `half` (separating axes: the plane, the cube's, the edges')."""
     ax, ay, az = v[0, 0] - cx, v[0, 1] - cy, v[0, 2] - cz
     bx, by, bz = v[1, 0] - cx, v[1, 1] - cy, v[1, 2] - cz
@@ -286,7 +286,7 @@ def _apart(v, cx, cy, cz, half):  # type: ignore[no-untyped-def]
 
 
 @entry
-def mark_skin(vertex, grow, origin, size, cell):  # type: ignore[no-untyped-def]
+def mark_skin(vertex, grow, origin, size, cell):
     """Set the cells (i, j, k) to 1 that triangles, made thicker by `grow`, may pass through."""
     low, high = np.empty(3, np.int64), np.empty(3, np.int64)
     for t in range(len(vertex)):

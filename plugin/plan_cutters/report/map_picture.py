@@ -10,6 +10,7 @@ import numpy as np
 from cad_io.arrays import Floats
 from plan_cutters.document.palette import CAUSES as COLOURS
 from plan_cutters.document.palette import PALETTE
+from plan_cutters.domain.intervals import complement, without
 from plan_cutters.report.sheet import figure, fitting, save, write
 
 #: Inches: the sheet's width, the room left at its sides, and the plot, from its left and with its size.
@@ -74,26 +75,7 @@ def _gouged(found: Any, i: int, low: float, high: float) -> Floats:
     least, most = found.local_gouge[i], found.local_gouge_most[i]
     if np.isnan(least):
         return np.array([[low, high]])
-    return np.array([[a, b] for a, b in ((low, least), (most, high)) if b > a]).reshape(-1, 2)
-
-
-def without(intervals: Floats, others: Floats) -> Floats:
-    """What of intervals (k, 2) none of the others covers, (m, 2), ascending; both sorted.
-
-    >>> without(np.array([[0.0, 4.0]]), np.array([[1.0, 2.0], [3.0, 9.0]])).tolist()
-    [[0.0, 1.0], [2.0, 3.0]]
-    """
-    kept = []
-    for low, high in intervals.tolist():
-        for first, last in others.tolist():
-            if last <= low or first >= high:
-                continue
-            if first > low:
-                kept.append((low, first))
-            low = max(low, last)
-        if high > low:
-            kept.append((low, high))
-    return np.array(kept).reshape(-1, 2)
+    return complement(np.array([[least, most]]), low, high)
 
 
 def draw_map(found: Any, tilt: tuple[float, float], title: str, notes: Sequence[str], paths: Sequence[Path]) -> None:

@@ -1,6 +1,6 @@
 """The part with the verdicts of the cutter shown, four views on one sheet: `review.png`.
 
-Drawn without a screen and without OpenGL: triangles with a depth at each pixel (`kernels.raster`), words by matplotlib.
+Drawn without a screen and without OpenGL: triangles with a depth at each pixel (`kernels.linear.raster`), words by matplotlib.
 """
 
 from dataclasses import dataclass

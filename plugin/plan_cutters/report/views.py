@@ -85,7 +85,7 @@ def view(
     width, height : int
         Of the finished image, pixels.
     """
-    from plan_cutters.kernels.raster import draw
+    from plan_cutters.kernels.linear.raster import draw
 
     wide, high, fine = width * finer, height * finer, scale * finer
     light = _LIGHT / np.linalg.norm(_LIGHT)

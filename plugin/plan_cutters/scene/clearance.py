@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints, Record, SurfaceSamples
 from plan_cutters.domain.clearance import grown, rungs
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.pieces import PART
 from plan_cutters.domain.verdicts import Reach
+from plan_cutters.kernels.codes import PART
 from plan_cutters.scene.conditions import Conditions, tool_of
 from plan_cutters.scene.threads import in_chunks
 
@@ -59,7 +59,7 @@ def clearances(samples: SurfaceSamples, cutter: Cutter, reach: Reach, conditions
         Unknown at all samples where an obstacle is missing or only guessed, for nothing could be proved, and of a bare cutter
         that is no longer than it is wide.
     """
-    from plan_cutters.kernels.search import probe
+    from plan_cutters.kernels.search.search import probe
 
     n, obstacles, steps = len(samples), conditions.obstacles, rungs(cutter)
     found = Clearances(np.full(n, np.nan), np.full(n, -1, np.int8), np.zeros(n, np.int32))

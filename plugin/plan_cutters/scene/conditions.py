@@ -182,7 +182,7 @@ def search_postures(
     ValueError
         A contact is not a point with a normal and a curvature: nothing can be said of it.
     """
-    from plan_cutters.kernels.search import search
+    from plan_cutters.kernels.search.search import search
 
     require_finite(contacts, rows)
     ranges, around = conditions.ranges._replace(strict=strict), conditions.around

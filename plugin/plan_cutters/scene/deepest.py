@@ -90,7 +90,7 @@ def deepest(
     guess : float
         A depth, mm, that something surely has, or nearly.
     """
-    from plan_cutters.kernels.search import probe
+    from plan_cutters.kernels.search.search import probe
 
     most = deepest_of(cutter)
 

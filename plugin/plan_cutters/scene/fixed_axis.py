@@ -26,7 +26,7 @@ def serves(
     rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, cutter: Cutter, conditions: Conditions
 ) -> NDArray[np.bool_]:
     """At which of some samples (m,) a cutter stands free with one axis (3,)."""
-    from plan_cutters.kernels.fixed_axis import served
+    from plan_cutters.kernels.search.fixed_axis import served
 
     low, high = conditions.postures.tilt
     free = np.zeros(len(samples), bool)

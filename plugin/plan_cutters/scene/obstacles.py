@@ -16,7 +16,7 @@ from plan_cutters.errors import UnjudgeableError
 from plan_cutters.kernels.rows import Tree
 
 if TYPE_CHECKING:
-    from plan_cutters.kernels.lanes import WideTree
+    from plan_cutters.kernels.linear.lanes import WideTree
     from plan_cutters.kernels.material import Solids
 
 #: Cells along the longest side of the grid that tells what is surely outside.
@@ -75,7 +75,7 @@ class Obstacles(Record):
 
     @cached_property
     def _built(self) -> tuple[Ints, Floats, int]:
-        from plan_cutters.kernels.tree import build, build_apart
+        from plan_cutters.kernels.linear.tree import build, build_apart
 
         vertex = np.ascontiguousarray(self.triangles.vertex)
         if self.near is None:
@@ -179,7 +179,7 @@ class Obstacles(Record):
     @cached_property
     def wide_tree(self) -> "WideTree":
         """The tree as posture maps take it, eight boxes at a time."""
-        from plan_cutters.kernels.lanes import WideTree, wide_tree
+        from plan_cutters.kernels.linear.lanes import WideTree, wide_tree
 
         return WideTree(*wide_tree(self.tree))
 

@@ -109,7 +109,7 @@ def _first_reasons(
     contacts: Contacts, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, reason: NDArray[np.uint8]
 ) -> None:
     """Where the axis limit, or curvature at the contact, leaves this cutter nothing, the reason is its own."""
-    from plan_cutters.kernels.search import first_reason
+    from plan_cutters.kernels.search.search import first_reason
 
     ranges, tool, surely = conditions.ranges, tool_of(conditions.heavy(cutter)), conditions.around.surely.solids
     in_chunks(lambda piece: first_reason(piece, contacts, ranges, tool, surely, reason), rows, conditions.jobs)

@@ -35,7 +35,7 @@ def decompose(
     (n,) bool
         Convex samples at which the dummy cutter, the axis limit and the posture range leave tilt 0 in every rotation.
     """
-    from plan_cutters.kernels.search import dummy_clear
+    from plan_cutters.kernels.search.search import dummy_clear
 
     interference_free = np.zeros(len(samples), bool)
     allowed = convex & conditions.upright(samples.normal)

@@ -12,9 +12,10 @@ from cad_io import SurfaceSamples, Triangles
 from cad_io.arrays import Floats, Record
 from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.intervals import common, complement, join, without
 from plan_cutters.domain.machine import Machine
-from plan_cutters.domain.pieces import FLUTES, HOLDER, NECK, SHANK
 from plan_cutters.domain.posture import PostureRange, lean
+from plan_cutters.kernels.codes import FLUTES, HOLDER, NECK, SHANK, TILT_FROM, TILT_TO
 from plan_cutters.scene.conditions import ranges_of, tool_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
@@ -115,8 +116,8 @@ def posture_map_of(
     ask: Ask, around: Surroundings, tools: tuple[Assembly, Assembly], narrowest: float, tolerance: float
 ) -> PostureMap:  # fmt: skip
     """The map; `tools` as `Conditions.light` and `Conditions.heavy` make them."""
-    from plan_cutters.kernels.free_tilts import FORBIDDEN, OPEN, UNSURE
-    from plan_cutters.kernels.points import axis_intervals
+    from plan_cutters.kernels.maps.free_tilts import FORBIDDEN, OPEN, UNSURE
+    from plan_cutters.kernels.maps.points import axis_intervals
 
     contact, cutter, (low, high) = ask.contact, ask.cutter, ask.tilt
     p, n, e1 = contact.point[0], contact.normal[0], contact.direction_max[0]
@@ -129,7 +130,7 @@ def posture_map_of(
     free, undecided, axis, buried, no_contact = [], [], [], [], []
     apart: dict[str, list[Floats]] = {word: [] for word in alone}
     gouge = np.empty((len(ask.rotations), 2))
-    touching = _within(light.mode[:, 2:4], low, high)
+    touching = join(common(light.mode[:, [TILT_FROM, TILT_TO]], np.array([[low, high]])))
     for i, rotation in enumerate(ask.rotations):
         f = lean(n, e1, float(rotation))
         bounds = _gouge_bounds(contact.curvature[0], float(rotation), light)
@@ -140,10 +141,10 @@ def posture_map_of(
         for word, (obstacles, tool) in alone.items():
             parts = [np.zeros((0, 3))]
             parts += [_parts(obstacles, tool, p, n, f, first, last, narrowest) for first, last in touching.tolist()]
-            apart[word].append(_minus(complement(_merged(np.concatenate(parts), OPEN), low, high), no_contact[-1]))
+            apart[word].append(without(complement(_merged(np.concatenate(parts), OPEN), low, high), no_contact[-1]))
         pieces, sure = [np.zeros((0, 3))], [np.zeros((0, 3))]
         # With a tolerance the triangles decide what curvature forbids, too.
-        for first, last in _both(allowed, touching if tolerance > 0 else bounds):
+        for first, last in common(allowed, touching if tolerance > 0 else bounds).tolist():
             pieces.append(_parts(whole, light, p, n, f, first, last, narrowest))
             if around.surely is not whole:
                 sure.append(_parts(around.surely, heavy, p, n, f, first, last, narrowest))
@@ -153,7 +154,7 @@ def posture_map_of(
             # What is not free for all that may be there, but is not surely blocked either.
             blocked = _merged(np.concatenate(sure), FORBIDDEN)
             rest = found[found[:, 2] != OPEN].copy()
-            unsure = _minus(_merged(np.column_stack([rest[:, :2], np.full(len(rest), UNSURE)]), UNSURE), blocked)
+            unsure = without(_merged(np.column_stack([rest[:, :2], np.full(len(rest), UNSURE)]), UNSURE), blocked)
         within, sunk = np.zeros((2, len(open_tilts)), bool)
         if len(open_tilts):
             every = np.ones((len(open_tilts), 1))
@@ -164,7 +165,7 @@ def posture_map_of(
         buried.append(open_tilts[sunk])
         # Within what is only perhaps a body.
         perhaps = open_tilts[within & ~sunk]
-        undecided.append(unsure if not len(perhaps) else _joined(np.concatenate([unsure, perhaps])))
+        undecided.append(unsure if not len(perhaps) else join(np.concatenate([unsure, perhaps])))
         assert set(found[:, 2]) <= {OPEN, FORBIDDEN, UNSURE}
     return PostureMap(
         rotations=ask.rotations, free=tuple(free), undecided=tuple(undecided), local_gouge=gouge[:, 0],
@@ -179,14 +180,14 @@ def posture_map_of(
 
 def _gouge_bounds(curvature: Floats, rotation: float, tool: Assembly) -> Floats:
     """Tilts (k, 2) at which a tool touches and local gouging allows it."""
-    from plan_cutters.kernels.points import local_gouge_range
+    from plan_cutters.kernels.maps.points import local_gouge_range
 
     found = []
     for offset, radius, low, high, _ in tool.mode.tolist():
         least, most = local_gouge_range(float(curvature[0]), float(curvature[1]), rotation, offset, radius)
         if max(least, low) <= min(most, high):
             found.append((max(least, low), min(most, high)))
-    return _joined(np.array(found).reshape(-1, 2))
+    return join(np.array(found).reshape(-1, 2))
 
 
 def _parts(
@@ -200,7 +201,7 @@ def _parts(
     narrowest: float,
 ) -> Floats:
     """Free, forbidden and undecided parts (k, 3) of a range of tilts, as `free_tilts` gives them."""
-    from plan_cutters.kernels.free_tilts import OPEN, free_tilts
+    from plan_cutters.kernels.maps.free_tilts import OPEN, free_tilts
 
     if obstacles is None or not tool.piece.shape[1]:
         return np.array([[first, last, OPEN]])
@@ -215,17 +216,6 @@ def _parts(
     return np.concatenate(found)
 
 
-def _within(intervals: Floats, low: float, high: float) -> Floats:
-    """What of intervals (k, 2) lies in a range, joined where they touch."""
-    return _joined(np.array(_both(intervals, np.array([[low, high]]))).reshape(-1, 2))
-
-
-def _both(a: Floats, b: Floats) -> list[tuple[float, float]]:
-    """What two lists of intervals (k, 2) have in common."""
-    pairs = [(max(x, u), min(y, v)) for x, y in a.tolist() for u, v in b.tolist()]
-    return [(low, high) for low, high in pairs if low <= high]
-
-
 def _named(around: Surroundings) -> tuple[str, ...]:
     fixtures = (f"{each.name} {face}: {why}" for each in around.fixtures for face, why, _ in each.missing)
     return (
@@ -237,33 +227,7 @@ def _named(around: Surroundings) -> tuple[str, ...]:
 
 def _merged(parts: Floats, kind: int) -> Floats:
     """Intervals of one kind, those that touch joined, ascending."""
-    return _joined(parts[parts[:, 2] == kind][:, :2])
-
-
-def _joined(chosen: Floats) -> Floats:
-    chosen = chosen[np.argsort(chosen[:, 0], kind="stable")]
-    joined: list[list[float]] = []
-    for first, last in chosen.tolist():
-        if joined and first <= joined[-1][1]:
-            joined[-1][1] = max(joined[-1][1], last)
-        else:
-            joined.append([first, last])
-    return np.array(joined).reshape(-1, 2)
-
-
-def complement(intervals: Floats, low: float, high: float) -> Floats:
-    edges = np.concatenate([[low], intervals.ravel(), [high]]).reshape(-1, 2)
-    return edges[edges[:, 1] > edges[:, 0]]
-
-
-def _minus(intervals: Floats, others: Floats) -> Floats:
-    """Intervals (k, 2) without what sorted others cover."""
-    left = [np.zeros((0, 2))]
-    for first, last in intervals:
-        left.append(
-            complement(np.clip(others[(others[:, 1] > first) & (others[:, 0] < last)], first, last), first, last)
-        )
-    return np.concatenate(left)
+    return join(parts[parts[:, 2] == kind][:, :2])
 
 
 def moved(a: PostureMap, b: PostureMap) -> float:

@@ -216,7 +216,7 @@ class PostureMaps(Record):
     ) -> Reach:
         """What is reached with a machine at some of the rotations, by their numbers, and tilts."""
         from plan_cutters.kernels.limits import any_axis
-        from plan_cutters.kernels.mask import mask
+        from plan_cutters.kernels.maps.mask import mask
 
         if machine.turns and len(machine.rotary) < 2:
             raise OptionError(f"posture maps say nothing of {machine.name}: with fewer than two rotary axes each sample needs "
@@ -252,7 +252,7 @@ class PostureMaps(Record):
 
     def held(self, conditions: Conditions) -> "PostureMaps":
         """The maps of one machine and setup: of the free tilts those that it holds. The verdicts stay what they are."""
-        from plan_cutters.kernels.mask import held_free
+        from plan_cutters.kernels.maps.mask import held_free
 
         machine = conditions.machine
         if not machine.limited:
@@ -318,7 +318,7 @@ def posture_maps(
     progress : callable, optional
         Told how many pieces of the work are done, of how many.
     """
-    from plan_cutters.kernels.free_map import free_map
+    from plan_cutters.kernels.maps.free_map import free_map
 
     conditions = conditions.machineless
     rotations, ranges, light = conditions.postures.rotations, conditions.ranges, conditions.light(cutter)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import blank
+from plan_cutters.kernels.codes import NEVER
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Conditions, search_postures, tool_of
 from plan_cutters.scene.threads import CHUNK, in_chunks
@@ -32,9 +33,8 @@ _CONTACT, _ROUND = 110, 11_000
 #: The gain is judged over at least so many of the last contacts.
 _JUDGED = 4000
 
-#: As `kernels.cover` writes them, but without its import: how often a cell must be halved, never, 0: it is served.
+#: As `kernels.area.cover` writes them: how often a cell must be halved, `NEVER`, 0: it is served.
 Outlook = NDArray[np.uint8]
-_NEVER = 255
 #: Of a contact at which no posture is known.
 _UNTOLD = 2
 
@@ -131,7 +131,7 @@ class Site:
         contacts, outlook = self.pools[level]
         # Cutting once takes 4 contacts, twice 4 + 16, and so on.
         spent = (4.0 ** (np.minimum(outlook, LEVELS).astype(float) + 1.0) - 4.0) / 3.0
-        return np.where(outlook == _NEVER, 0.0, contacts.area / np.maximum(spent, 4.0))
+        return np.where(outlook == NEVER, 0.0, contacts.area / np.maximum(spent, 4.0))
 
     def worthy(self, least: float) -> int:
         """Open cells at which more than a least area may be gained for each contact."""
@@ -229,8 +229,8 @@ def _cover(
     contacts: CellContacts, tensor: Floats, axes: Floats, flats: NDArray[np.bool_], site: Site, rows: NDArray[np.int64]
 ) -> Outlook:
     """Outlook (m,) of rows of contacts with tensors and axes."""
-    from plan_cutters.kernels.cover import Patches, Sweeping, cover
-    from plan_cutters.kernels.zone import Nodes
+    from plan_cutters.kernels.area.cover import Patches, Sweeping, cover
+    from plan_cutters.kernels.area.zone import Nodes
 
     field, cutter, conditions = site.field, site.cutter, site.conditions
     obstacles, light = conditions.obstacles, conditions.light(cutter)
@@ -256,7 +256,7 @@ def _cover(
     flat = flats[mine] | (sine < _UPRIGHT)
     lean = np.where(flat[:, None], contacts.direction_max[mine], across / np.where(flat, 1.0, sine)[:, None])
     tilt = np.where(flat, 0.0, np.arctan2(sine, upright))
-    outlook[mine[conditions.obstacles.holds(light, contacts.point[mine], normal, lean, tilt)]] = _NEVER
+    outlook[mine[conditions.obstacles.holds(light, contacts.point[mine], normal, lean, tilt)]] = NEVER
     return outlook[rows]
 
 

@@ -167,7 +167,7 @@ def _least_depth(
     samples: SurfaceSamples, row: int, cutter: Cutter, conditions: Conditions
 ) -> tuple[Reach, float, float] | None:
     """The posture of least depth, and depths, mm, between which that lies; None if no posture is left at any."""
-    from plan_cutters.kernels.search import posture
+    from plan_cutters.kernels.search.search import posture
 
     one = slice(row, row + 1)
     # Depth alone counts: curvature has no say.

@@ -1,0 +1,320 @@
+"""Does the posture of a sample, its axis kept, also serve the surface around it? The argument is in `docs/between_samples.md`.
+
+Obstacles are shared out by distance from the contact. Within `extent` of it the surface that the contact lies on is
+held below a paraboloid by its curvature and a bound on the change of curvature, and the cutter above one that is lower by no
+more than is allowed: nothing to test. Everything else is tested against the cutter moved along with the contact: each of its
+pieces larger, and drawn out across the axis, for the directions in which the contact wanders and the cutter turns about its
+axis.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from plan_cutters.kernels.area.near import LIFT, MOST_TURN, STRETCH, extent, halvings, spared, too_steep
+from plan_cutters.kernels.area.zone import EXTENTS, Nose, begin, distance_of, held_below, look_round, near_by, seen
+from plan_cutters.kernels.codes import ARC, BOTTOM, COLUMNS, HIGH, KIND, LOW, NEVER, RADIUS, ROUND, SLOPE, TOP, WIDE
+from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.linear.vectors import cross, dot, perpendicular
+from plan_cutters.kernels.rows import Frame, Scratch
+from plan_cutters.kernels.search.place import mode_at
+from plan_cutters.kernels.tool import hit
+from plan_cutters.kernels.tool.drawn import drawn_hit
+from plan_cutters.kernels.tool.hit import BODY, HALF, OFFSET, A, P, X, Y
+
+#: The smallest patch that is thought of, as a share of the one at hand.
+_SMALLEST = 1.0 / 4.0
+#: Row of a distance within which a sixth of the nodes lie.
+_HALF_WAY = 8
+#: Bodies of a patch: the whole, and pieces of it along the lean, 2, 6 and 18.
+_BODIES = 27
+#: Boxes in whose time a triangle is looked at, and nodes looked at in that of a box, about.
+_TRIANGLE, _NODES = 2, 6
+
+
+class Patches(NamedTuple):
+    """Contacts on one face, each with the patch about it that its axis may serve.
+
+    point, normal, axis (n, 3). tensor (n, 3, 3): second fundamental form in part coordinates, 1/mm, concave positive.
+    flat (n,) bool: interference-free, the axis is the normal and any lean counts. patch (n,): its radius, mm; nan: not decided.
+    home (n, 2) int32: the grid node in whose cell the contact lies.
+    """
+
+    point: Any
+    normal: Any
+    tensor: Any
+    axis: Any
+    flat: Any
+    patch: Any
+    home: Any
+
+
+class Sweeping(NamedTuple):
+    """A tool as this asks for it.
+
+    tool : Tool, without what does not matter; dummy (k, COLUMNS), as `search.dummy_clear` takes it; nose (m,) int64: of each
+    mode a mask of the pieces that lie in what its nose sweeps when it goes on along the axis, widening by `lean` (m,), rad;
+    flutes, a mask of the pieces that cut; safe, chord: the depth up to which a triangle does not matter, and the chord error,
+    mm.
+    """
+
+    tool: Any
+    dummy: Any
+    nose: Any
+    lean: Any
+    flutes: int
+    safe: float
+    chord: float
+
+
+class _Room(NamedTuple):
+    """Where a contact is worked out: directions along and across the lean, bodies and their pieces, bounds of curvature, what
+    counts as near."""
+
+    f: Any
+    t: Any
+    bodies: Any
+    pieces: Any
+    near: Any
+    seen: Any
+    scratch: Scratch
+
+
+@kernel
+def _grown(piece, out, radial, axial):
+    """Write pieces that hold these, moved by no more than `radial` across the axis and `axial` along it."""
+    for k in range(len(piece)):
+        for c in range(COLUMNS):
+            out[k, c] = piece[k, c]
+        out[k, LOW] -= axial
+        out[k, HIGH] += axial
+        if piece[k, KIND] == ARC:
+            both = np.sqrt(radial * radial + axial * axial)
+            out[k, ROUND] += both
+            out[k, BOTTOM] = max(out[k, LOW], piece[k, SLOPE] - out[k, ROUND])
+            out[k, TOP] = min(out[k, HIGH], piece[k, SLOPE] + out[k, ROUND])
+            out[k, WIDE] += both
+        else:
+            slope = piece[k, SLOPE]
+            out[k, RADIUS] += radial + (abs(slope) - slope) * axial
+            out[k, WIDE] += radial + (abs(slope) + slope) * axial
+            out[k, BOTTOM], out[k, TOP] = out[k, LOW], out[k, HIGH]
+
+
+@kernel
+def _bodies(body, piece, frame, h, pose, slides, grow, room, finest):
+    """Write the bodies of a contact that wanders by no more than h: the whole, then in 2, 6 and 18 parts along the lean.
+
+    Each holds those that it is cut into. `pose` is (sine, cosine) of the tilt. `slides`: what a step along the lean moves the
+    tool along it and aside, what a step across it does, and what else may move it aside; `grow`: what else may move it at all.
+    `body` is that of no wandering.
+    """
+    sine, cosine = pose
+    forth, back, slide, across, beside = slides
+    at = 0
+    for count in (1, 2, 6, 18):
+        if count > finest:
+            return
+        wide = h / count
+        for step in range(count):
+            shift = (2 * step + 1 - count) * wide
+            for k in range(BODY):
+                room.bodies[at, k] = body[k]
+            for k in range(3):
+                room.bodies[at, P + k] += shift * (forth * frame.f[k] - slide * frame.t[k])
+            room.bodies[at, HALF] = h * across + wide * abs(slide) + beside
+            along = wide * abs(forth) + h * back
+            _grown(piece, room.pieces[at], along * abs(cosine) + grow, along * sine + grow)
+            at += 1
+
+
+@kernel
+def _reaches(vertex, i, mask, room):
+    """Whether triangle i, which reaches into the whole, reaches into one of its finest parts."""
+    bodies, pieces, scratch = room.bodies, room.pieces, room.scratch
+    for half in range(2):
+        scratch.looked[0] += _TRIANGLE
+        if not drawn_hit(vertex, i, bodies[1 + half], pieces[1 + half], mask, scratch):
+            continue
+        for sixth in range(3 * half, 3 * half + 3):
+            scratch.looked[0] += _TRIANGLE
+            if not drawn_hit(vertex, i, bodies[3 + sixth], pieces[3 + sixth], mask, scratch):
+                continue
+            for last in range(3 * sixth, 3 * sixth + 3):
+                scratch.looked[0] += _TRIANGLE
+                if drawn_hit(vertex, i, bodies[9 + last], pieces[9 + last], mask, scratch):
+                    return True
+    return False
+
+
+@kernel
+def _blocks(i, mask, nose, whole, frame, face, tree, triangle_face, room):
+    """Whether triangle i reaches into a piece of the moved cutter; into its nose only if it is not near."""
+    vertex = tree.vertex
+    room.scratch.looked[0] += _TRIANGLE
+    hit = drawn_hit(vertex, i, room.bodies[0], room.pieces[0], mask, room.scratch)
+    if hit & nose and near_by(vertex, triangle_face, i, frame, face, room.near):
+        hit &= ~nose
+    return hit != 0 and (whole or _reaches(vertex, i, hit, room))
+
+
+@kernel
+def _first(hint, nose, whole, frame, face, tree, triangle_face, room):
+    """First triangle found that is in the way of the moved cutter, `hint` (-1: none) before others."""
+    vertex, box, depth = tree.vertex, tree.box, tree.depth
+    stack, masks, count, first, top = room.scratch.stack, room.scratch.masks, len(vertex), (1 << depth) - 1, 1
+    every = hit.everything(room.pieces[0])
+    if hint >= 0 and _blocks(hint, every, nose, whole, frame, face, tree, triangle_face, room):
+        return hint
+    stack[0], masks[0] = 0, every
+    while top > 0:
+        top -= 1
+        node = stack[top]
+        room.scratch.looked[0] += 1
+        mask = hit.alive(box, node, room.bodies[0], room.pieces[0], masks[top], 0.0)
+        if mask == 0:
+            continue
+        if node < first:
+            stack[top], masks[top] = 2 * node + 2, mask
+            stack[top + 1], masks[top + 1] = 2 * node + 1, mask
+            top += 2
+            continue
+        leaf = node - first
+        for i in range((count * leaf) >> depth, (count * (leaf + 1)) >> depth):
+            if _blocks(i, mask, nose, whole, frame, face, tree, triangle_face, room):
+                return i
+    return -1
+
+
+@kernel
+def _motion(row, patches, nodes, frame, sine, h, turn, offset, rise):
+    """How a contact's cutter moves and turns about its axis as the contact wanders.
+
+    Returns the surface's curvature along the lean, across it and mixed; the turn within the patch about the axis, in all (psi)
+    and beside what follows from the curvature at the contact; what the normal may differ beside that.
+    """
+    k_ff, k_tt, k_ft, home = 0.0, 0.0, 0.0, patches.home[row]
+    for k in range(3):
+        for m in range(3):
+            k_ff += patches.tensor[row, k, m] * frame.f[k] * frame.f[m]
+            k_ft += patches.tensor[row, k, m] * frame.f[k] * frame.t[m]
+            k_tt += patches.tensor[row, k, m] * frame.t[k] * frame.t[m]
+    wobble = nodes.about[nodes.index[home[0], home[1]], 12]
+    rest = 2.0 * wobble * h + turn * turn
+    if offset == 0.0:
+        return k_ff, k_tt, k_ft, 0.0, 0.0, rest
+    beside = (2.0 * wobble * h + 0.5 * turn * turn + turn * turn / (sine - turn)) / (sine - turn)
+    psi = min(turn / (sine - turn), (abs(k_tt) + abs(k_ft)) * h / sine + beside)
+    return k_ff, k_tt, k_ft, psi, beside, rest
+
+
+@kernel
+def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, room):
+    """What `cover` writes for a contact, and the triangle in the way, -1 if there is none; `blocker` is looked at first."""
+    tool, safe, chord = sweeping.tool, sweeping.safe, sweeping.chord
+    f, t, near = room.f, room.t, room.near
+    p, n, a = patches.point[row], patches.normal[row], patches.axis[row]
+    h, flat, home = patches.patch[row], patches.flat[row], patches.home[row]
+    if not h > 0.0:
+        return 1, -1
+    cosine = dot(a, n)
+    for k in range(3):
+        f[k] = a[k] - cosine * n[k]
+    sine = np.sqrt(dot(f, f))
+    if flat or sine < 1e-6:
+        sine, cosine = 0.0, 1.0
+        perpendicular(n, f)
+    else:
+        for k in range(3):
+            f[k] /= sine
+    cross(n, f, t)
+    mode = 0 if flat else mode_at(tool, np.arctan2(sine, cosine))
+    if mode < 0:
+        return NEVER, -1
+    offset, rise, low, high, _ = tool.mode[mode]
+    nose = Nose(offset, rise, np.cos(sweeping.lean[mode]), np.sin(sweeping.lean[mode]), low, high)
+    if flat and len(tool.mode) > 1 and high < 0.25:
+        return NEVER, -1
+    frame, pose, most = Frame(p, n, f, t), (sine, cosine), room.seen.most
+    if not begin(frame, h, home, nodes, room.seen):
+        return NEVER, -1
+    # In the smallest patch there remain the home node's own curvature and what it may differ in its cell.
+    least = spared(chord + distance_of(0) * _SMALLEST * h, safe, chord)
+    if not flat and not held_below(pose, 0.0, most[0, 0] - least, most[0, 2], most[0, 1] - least, 0.0, nose):
+        return NEVER, -1
+    full, turn, lift, k_ff, k_tt, k_ft, psi, beside, rest = np.inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    # Bounds do not get smaller with distance: what does not hold nearby needs no look farther out.
+    for last in (0, _HALF_WAY, EXTENTS - 1):
+        if full == np.inf:
+            full = look_round(frame, h, home, nodes, room.seen, h * distance_of(last))
+        if full < 0.0:
+            return 1, -1
+        # How far the normal turns within the patch, and how far the surface leaves the tangent plane.
+        turn, lift = STRETCH * most[0, 3] * h, LIFT * most[0, 3] * h * h
+        if not turn <= MOST_TURN or too_steep(pose, turn, flat, nose):
+            return halvings(most, h, pose, flat, nose, safe, chord, near), -1
+        if not flat:
+            k_ff, k_tt, k_ft, psi, beside, rest = _motion(row, patches, nodes, frame, sine, h, turn, offset, rise)
+        held = extent(most, last, full, h, pose, flat, psi, turn, nose, safe, chord, near)
+        if held < 0:
+            return halvings(most, h, pose, flat, nose, safe, chord, near), -1
+        if held < last:
+            break
+    if not near[0] > 0.0:
+        return NEVER, -1
+    for k in range(3):
+        body[P + k] = p[k] + rise * n[k]
+        body[A + k] = a[k]
+        body[X + k] = cosine * f[k] - sine * n[k]
+        body[Y + k] = t[k]
+    body[HALF] = 0.0
+    if flat:
+        body[OFFSET] = 0.0
+        for k in range(BODY):
+            room.bodies[0, k] = body[k]
+        _grown(sweeping.dummy, room.pieces[0], h + rise * turn, lift + rise * turn * turn)
+    else:
+        body[OFFSET] = offset
+        grow = 0.5 * abs(offset) * psi * psi + lift + rise * rest
+        # The centre of curvature wanders less than the contact on a concave surface, and turns with the normal.
+        lever = rise + (offset / sine if sine > 0.0 else 0.0)
+        slides = (1.0 - rise * k_ff, rise * abs(k_ft), lever * k_ft, abs(1.0 - lever * k_tt), abs(offset) * beside)
+        _bodies(body, tool.piece[mode], frame, h, pose, slides, grow, room, 18)
+    exempt = sweeping.flutes if flat else sweeping.nose[mode]
+    found = _first(blocker, exempt, flat, frame, face, tree, triangle_face, room)
+    return 0 if found < 0 else 1, found
+
+
+@entry
+def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, outlook):
+    """Decide for contacts on one face whether their axis serves every contact within a patch about them.
+
+    Parameters
+    ----------
+    rows : (m,) int64
+    patches : Patches
+    nodes : Nodes
+    face : int
+        Number of the face.
+    sweeping : Sweeping
+    tree : Tree
+    triangle_face : (t,) int32
+        Face numbers of its triangles.
+    outlook : (n,) uint8, written
+        0: it does. 1 to MOST_HALVINGS: not known; how often the patch must be halved until it may, a guess that tells what to
+        try first. NEVER: it serves no smaller patch, either, down to a quarter of its size, as far as the nodes tell.
+
+    Returns
+    -------
+    int
+        How many boxes were looked at, and what else takes as long: triangles and nodes.
+    """
+    count = sweeping.tool.piece.shape[1]
+    room = _Room(np.empty(3), np.empty(3), np.empty((_BODIES, BODY)), np.empty((_BODIES, count, COLUMNS)), np.empty(6), seen(),
+                 hit.scratch())  # fmt: skip
+    body, blocker = np.empty(BODY), -1
+    for row in rows:
+        outlook[row], found = _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, room)
+        # What was in the way of one contact is likely in the way of the next.
+        blocker = found if found >= 0 else blocker
+    return room.scratch.looked[0] + room.seen.looked[0] // _NODES

@@ -1,0 +1,361 @@
+"""What a point or a triangle takes out of the gaps of a rotation, piece by piece."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from plan_cutters.kernels.codes import HIGH, LOW, RADIUS
+from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.linear.lanes import LANES
+from plan_cutters.kernels.maps.bounds import BESIDE, FAR, FLOOR, NEAR
+from plan_cutters.kernels.maps.gaps import CF, CL, FIRST, GAPS, LAST, SF, SL, UF, UL, _begin, _cuts, _end, _part, _take
+from plan_cutters.kernels.maps.passes import _passes
+from plan_cutters.kernels.maps.planes import BOXES, ENDS, all_ends, distances, put_ends, triangles_clear
+from plan_cutters.kernels.rows import Cylinder, Scratch
+from plan_cutters.kernels.tool.arcs import point_arc
+from plan_cutters.kernels.tool.hit import BODY, _swept_hit, scratch, stand, triangle_hit
+from plan_cutters.kernels.tool.pieces import inset
+from plan_cutters.kernels.tool.tool_arcs import ARCS, arc_about, closed, forbidden
+
+#: How often a triangle is cut into four to be shown clear.
+_QUARTERED = 4
+
+
+class Room(NamedTuple):
+    """Room to work in: corner (3, 3), first and second (8, 3) polygons, a body, ranges (64, 2) of tilts, arcs (ARCS, 2).
+
+    In lanes, as in `planes`: a triangle, boxes or triangles turned, ends, what is clear, by how much ends move. Parts (64, 3, 3)
+    of a triangle, and how often each was cut. `spent` (1,) counts how often a triangle was looked at: the work that it took.
+    """
+
+    corner: Any
+    first: Any
+    second: Any
+    body: Any
+    ranges: Any
+    arcs: Any
+    seen: Any
+    turned: Any
+    end: Any
+    clear: Any
+    moves: Any
+    parts: Any
+    times: Any
+    spent: Any
+    scratch: Scratch
+
+
+@entry
+def room_to_cut():
+    """Room to cut gaps in."""
+    return Room(
+        np.empty((3, 3)), np.empty((8, 3)), np.empty((8, 3)), np.empty(BODY), np.empty((64, 2)), np.empty((ARCS, 2)),
+        np.empty((11, LANES)), np.empty((BOXES, LANES)), np.empty((ENDS, LANES)), np.empty(LANES), np.empty(LANES),
+        np.empty((64, 3, 3)), np.empty(64, np.int64), np.zeros(1, np.int64), scratch(),
+    )  # fmt: skip
+
+
+@kernel
+def flutes(turning, k):
+    """Piece k as the eight sides take it."""
+    piece = turning.piece
+    return Cylinder(turning.offset, piece[k, RADIUS], piece[k, LOW], piece[k, HIGH], piece)
+
+
+@kernel
+def _meets(gap, count, first, last):
+    """Whether an arc has tilts of any gap."""
+    meets = False
+    for g in range(count):
+        meets = meets or (first < gap[g, LAST] and last > gap[g, FIRST])
+    return meets
+
+
+@kernel
+def take_point(x, y, z, gap, count, turning, k, arcs):
+    """Take the tilts at which a point, along f, t and n from the centre, is in piece k out of the gaps, or some of them.
+
+    (The count of gaps, whether any was cut.)
+    """
+    offset, piece, known = turning.offset, turning.piece, turning.known
+    if (turning.eight >> k) & 1:
+        if not _cuts(x, y, z, gap, count, flutes(turning, k)):
+            return count, False
+        left, right = point_arc(
+            z, x + offset, y, 0.0, offset, piece[k, RADIUS], piece[k, LOW], piece[k, HIGH]
+        )  # fmt: skip
+        return _take(gap, count, left, right), True
+    away = x * x + z * z
+    if abs(y) >= known[k, BESIDE] or z <= known[k, FLOOR] or away >= known[k, FAR] ** 2 or away <= known[k, NEAR] ** 2:
+        return count, False
+    cut = False
+    for i in range(forbidden(z, x + offset, y, 0.0, offset, piece, k, arcs)):
+        if _meets(gap, count, arcs[i, 0], arcs[i, 1]):
+            count, cut = _take(gap, count, arcs[i, 0], arcs[i, 1]), True
+    if closed(offset, piece, k):
+        return count, cut
+    g = 0
+    while g < count:
+        a, b, before = gap[g, FIRST], gap[g, LAST], count
+        for tilt in (a, b, 0.5 * (a + b)):
+            c, s = np.cos(tilt), np.sin(tilt)
+            height, px = s * x + c * z, offset + c * x - s * z
+            if inset(piece, k, height, px * px + y * y) > 0.0:
+                left, right = arc_about(height, px, y, tilt, offset, piece, k)
+                if right > left and _meets(gap, count, left, right):
+                    count, cut = _take(gap, count, left, right), True
+                    break
+        if count >= before:
+            g += 1
+    return count, cut
+
+
+@kernel
+def _fill(seen, corner):
+    """Write a triangle of rows (x, z, y) into all lanes."""
+    for k in range(3):
+        for lane in range(LANES):
+            seen[3 * k, lane], seen[3 * k + 1, lane], seen[3 * k + 2, lane] = corner[k, 0], corner[k, 2], corner[k, 1]
+    distances(seen)
+
+
+@kernel
+def _out(corner, ca, sa, cb, sb, turning, k, room):
+    """Whether a triangle, rows (x, z, y) from the centre, is shown to stay out of piece k at all tilts of a gap."""
+    room.spent[0] += 1
+    if (turning.eight >> k) & 1:
+        return _passes(corner, ca, sa, cb, sb, flutes(turning, k), room.first, room.second)
+    _fill(room.seen, corner)
+    all_ends(room.end, ca, sa, cb, sb)
+    return triangles_clear(room.seen, room.end, turning, k, room.clear)
+
+
+@kernel
+def _quarters(part, seen):
+    """Write the four quarters of a triangle (3, 3), rows (x, z, y), into lanes, the rest again."""
+    for lane in range(LANES):
+        for k in range(3):
+            other = (k + 1) % 3
+            for column, row in ((0, 0), (2, 1), (1, 2)):
+                here = part[k, column]
+                # The middle one has the middles of the sides, the others a corner each and the middles next to it.
+                to = other if lane % 4 == 3 else lane % 4
+                seen[3 * k + row, lane] = 0.5 * (here + part[to, column])
+    distances(seen)
+
+
+@kernel
+def _out_in_parts(corner, ca, sa, cb, sb, turning, k, room):
+    """`_out` for a triangle that is cut into four again and again."""
+    parts, times, seen, piece, offset = room.parts, room.times, room.seen, turning.piece, turning.offset
+    for column in range(3):
+        for row in range(3):
+            parts[0, row, column] = corner[row, column]
+    times[0], top = 0, 1
+    all_ends(room.end, ca, sa, cb, sb)
+    while top > 0:
+        top -= 1
+        room.spent[0] += 1
+        cut = times[top] + 1
+        _quarters(parts[top], seen)
+        if triangles_clear(seen, room.end, turning, k, room.clear):
+            continue
+        for lane in range(4):
+            if room.clear[lane] > 0.0:
+                continue
+            x, y, z = seen[0, lane] + seen[3, lane] + seen[6, lane], seen[1, lane] + seen[4, lane] + seen[7, lane], 0.0
+            x, y, z = x / 3.0, y / 3.0, (seen[2, lane] + seen[5, lane] + seen[8, lane]) / 3.0
+            for c, s in ((ca, sa), (cb, sb)):
+                across = offset + c * x - s * z
+                if inset(piece, k, s * x + c * z, across * across + y * y) > 0.0:
+                    return False
+            if cut == _QUARTERED or top == len(parts):
+                return False
+            for corner_of in range(3):
+                parts[top, corner_of, 0] = seen[3 * corner_of, lane]
+                parts[top, corner_of, 2] = seen[3 * corner_of + 1, lane]
+                parts[top, corner_of, 1] = seen[3 * corner_of + 2, lane]
+            times[top] = cut
+            top += 1
+    return True
+
+
+@kernel
+def _in_the_way(vertex, i, frame, tilt, turning, k, room):
+    """Whether a triangle reaches into piece k at a tilt."""
+    room.spent[0] += 1
+    stand(room.body, frame, np.cos(tilt), np.sin(tilt), turning.offset, 0.0)
+    return triangle_hit(vertex, i, room.body, turning.piece, 1 << k, 0.0, room.scratch)[0] >= 0
+
+
+@kernel
+def _first_in_the_way(vertex, i, frame, a, b, sign, narrowest, turning, k, room):
+    """The first tilt, from a up or from b down (`sign`), at which a triangle is not shown to be clear of piece k; nan if none.
+
+    A range is clear if planes part the triangle from the piece, or if it misses the piece widened by what tilting within the
+    range can do. Others are halved.
+    """
+    body, ranges, scratch, eight = room.body, room.ranges, room.scratch, (turning.eight >> k) & 1
+    ranges[0, 0], ranges[0, 1] = a, b
+    top = 1
+    while top > 0:
+        top -= 1
+        room.spent[0] += 1
+        first, last = ranges[top, 0], ranges[top, 1]
+        if not eight and _in_the_way(vertex, i, frame, first if sign > 0.0 else last, turning, k, room):
+            return first if sign > 0.0 else last
+        middle, half = 0.5 * (first + last), 0.5 * (last - first)
+        stand(body, frame, np.cos(middle), np.sin(middle), turning.offset, 0.0)
+        which, _, _, _ = triangle_hit(vertex, i, body, turning.piece, 1 << k, half + 1e-12, scratch)
+        if which < 0 or not _swept_hit(vertex, i, body, turning.piece, 1 << k, half + 1e-12, scratch):
+            continue
+        if not eight and _out_in_parts(
+            room.corner, np.cos(first), np.sin(first), np.cos(last), np.sin(last), turning, k, room
+        ):
+            continue
+        if last - first <= narrowest or top + 2 > len(ranges):
+            return first if sign > 0.0 else last
+        near, far = (top + 1, top) if sign > 0.0 else (top, top + 1)
+        ranges[near, 0], ranges[near, 1] = first, middle
+        ranges[far, 0], ranges[far, 1] = middle, last
+        top += 2
+    return np.nan
+
+
+@kernel
+def _shrink_in_lanes(corner, gap, g, sign, narrowest, turning, k, room):
+    """`_shrink`, eight ends at a time: first farther and farther, then evenly between the last that failed and the first that
+    passed.
+    """
+    ca, sa, cb, sb = gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL]
+    width, passed, failed, step = gap[g, LAST] - gap[g, FIRST], np.inf, 0.0, narrowest
+    _fill(room.seen, corner)
+    while passed - failed > narrowest:
+        if passed == np.inf and failed >= width - narrowest:
+            return np.inf, width
+        room.spent[0] += 1
+        low, high = failed, passed
+        for lane in range(LANES):
+            if passed < np.inf:
+                move = low + (high - low) * (lane + 1) / (LANES + 1)
+            else:
+                move = min(failed + step * 2.0**lane, width - narrowest)
+            room.moves[lane] = move
+            c, s = np.cos(gap[g, FIRST] + move), np.sin(gap[g, FIRST] + move)
+            if sign < 0.0:
+                c, s = np.cos(gap[g, LAST] - move), np.sin(gap[g, LAST] - move)
+                put_ends(room.end, lane, ca, sa, c, s)
+            else:
+                put_ends(room.end, lane, c, s, cb, sb)
+        triangles_clear(room.seen, room.end, turning, k, room.clear)
+        for lane in range(LANES):
+            if room.clear[lane] > 0.0 and room.moves[lane] > 0.0:
+                passed = room.moves[lane]
+                break
+            failed = room.moves[lane]
+        step *= 2.0**LANES
+    return passed, failed
+
+
+@kernel
+def _shrink(corner, gap, g, sign, narrowest, turning, k, room):
+    """By how much a gap must shrink from its first tilt up (`sign` 1) or its last down for a triangle to pass.
+
+    To `narrowest`; (by how much, a little less by which it did not pass); infinity if nothing wider is left.
+    """
+    if not (turning.eight >> k) & 1:
+        return _shrink_in_lanes(corner, gap, g, sign, narrowest, turning, k, room)
+    tool, first, second = flutes(turning, k), room.first, room.second
+    ca, sa, cb, sb = gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL]
+    width = gap[g, LAST] - gap[g, FIRST]
+    passed, failed, move = np.inf, 0.0, narrowest
+    while passed - failed > narrowest:
+        if passed < np.inf:
+            move = 0.5 * (passed + failed)
+        elif failed > 0.0:
+            move = min(2.0 * failed, width - narrowest)
+        if move <= failed or move >= width:
+            return np.inf, width
+        room.spent[0] += 1
+        end = gap[g, FIRST] + move if sign > 0.0 else gap[g, LAST] - move
+        c, s = np.cos(end), np.sin(end)
+        if sign > 0.0:
+            good = _passes(corner, c, s, cb, sb, tool, first, second)
+        else:
+            good = _passes(corner, ca, sa, c, s, tool, first, second)
+        if good:
+            passed = move
+        else:
+            failed = move
+    return passed, failed
+
+
+@kernel
+def cut_gaps(vertex, i, frame, gap, count, narrowest, turning, k, room):
+    """Take the tilts at which a triangle is in the way of piece k out of the gaps; (count of gaps, whether any was cut).
+
+    The triangle is in `room.corner` too, as rows (x, z, y) from the centre.
+    """
+    corner, cut = room.corner, False
+    # What its corners alone forbid is known in closed form, and mostly all that it does.
+    for j in range(3):
+        count, took = take_point(corner[j, 0], corner[j, 2], corner[j, 1], gap, count, turning, k, room.arcs)
+        cut = cut or took
+    g = 0
+    while g < count:
+        a, b, ca, sa, cb, sb = gap[g, FIRST], gap[g, LAST], gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL]
+        if _out(corner, ca, sa, cb, sb, turning, k, room):
+            g += 1
+            continue
+        # A side or the middle of the triangle sticks out further than its corners: mostly by a little, at one end.
+        at_first, at_last = (
+            _in_the_way(vertex, i, frame, a, turning, k, room),
+            _in_the_way(vertex, i, frame, b, turning, k, room),
+        )
+        # What was undecided at its ends no longer is where this triangle is in the way.
+        if at_first and gap[g, UF] > 0.0 and _in_the_way(vertex, i, frame, a - gap[g, UF], turning, k, room):
+            gap[g, UF] = 0.0
+        if at_last and gap[g, UL] > 0.0 and _in_the_way(vertex, i, frame, b + gap[g, UL], turning, k, room):
+            gap[g, UL] = 0.0
+        # From an end at which it is not in the way nothing is gained if it is at the other.
+        up, up_failed, down, down_failed = np.inf, b - a, np.inf, b - a
+        if not at_last:
+            up, up_failed = _shrink(corner, gap, g, 1.0, narrowest, turning, k, room)
+        if up <= 2.0 * narrowest and gap[g, UF] + up <= 3.0 * narrowest:
+            _begin(gap, g, a + up, gap[g, UF] + up)
+            cut = True
+            continue
+        if not at_first:
+            down, down_failed = _shrink(corner, gap, g, -1.0, narrowest, turning, k, room)
+        if down <= 2.0 * narrowest and gap[g, UL] + down <= 3.0 * narrowest:
+            _end(gap, g, b - down, gap[g, UL] + down)
+            cut = True
+            continue
+        left, right, unsure = max(a, b - down), min(b, a + up), narrowest
+        if left > right or not (
+            _in_the_way(vertex, i, frame, max(a, b - down_failed), turning, k, room)
+            and _in_the_way(vertex, i, frame, min(b, a + up_failed), turning, k, room)
+        ):
+            # Not known to be in the way right up to there: looked at closely.
+            start, end = (left, right) if left <= right else (a, b)
+            unsure = 2.0 * narrowest
+            left = _first_in_the_way(vertex, i, frame, start, end, 1.0, narrowest, turning, k, room)
+            if np.isnan(left):
+                g += 1
+                continue
+            right = _first_in_the_way(vertex, i, frame, left, end, -1.0, narrowest, turning, k, room)
+            right = left if np.isnan(right) else right
+            middle = 0.5 * (left + right)
+            if not (turning.eight >> k) & 1 and not (
+                _in_the_way(vertex, i, frame, min(left + unsure, middle), turning, k, room)
+                and _in_the_way(vertex, i, frame, middle, turning, k, room)
+                and _in_the_way(vertex, i, frame, max(right - unsure, middle), turning, k, room)
+            ):
+                # Where nothing shows the triangle clear it need not be in the way.
+                gap[GAPS, UF] += right - left
+        cut = True
+        before = count
+        count = _part(gap, g, count, left, right, unsure)
+        if count >= before:
+            g += 1
+    return count, cut

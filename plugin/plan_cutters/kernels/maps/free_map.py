@@ -1,0 +1,396 @@
+"""Free tilts of samples at all rotations, with certified ends, in one walk of the tree a rotation.
+
+A gap of tilts is taken through the tree and only shrinks. Boxes are kept as seen from the contact: what rises nowhere above
+the tangent plane is out of reach at every posture and left out for all rotations. A box in the way is first asked for one
+of its points, whose arc is known in closed form: so gaps are nearly what they will be before any triangle is looked at.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from plan_cutters.kernels.codes import (
+    ARC,
+    BOTTOM,
+    HIGH,
+    KIND,
+    LOW,
+    OFFSET_OF,
+    RADIUS,
+    RISE,
+    ROUND,
+    SLOPE,
+    TILT_FROM,
+    TILT_TO,
+    TOP,
+)
+from plan_cutters.kernels.codes import COLUMNS as PIECE
+from plan_cutters.kernels.intervals import insert, join
+from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.limits import turn_of
+from plan_cutters.kernels.linear.lanes import LANES, _see, _see_leaf, _see_triangle, _turn
+from plan_cutters.kernels.linear.vectors import cross, lean_frame
+from plan_cutters.kernels.maps.bounds import FAR, FLOOR, NEAR, Turning, turning_of
+from plan_cutters.kernels.maps.cuts import cut_gaps, flutes, room_to_cut, take_point
+from plan_cutters.kernels.maps.gaps import CF, CL, COLUMNS, FIRST, GAPS, LAST, SF, SL, UF, UL, _begin, _end
+from plan_cutters.kernels.maps.passes import _boxes_pass, _triangles_pass
+from plan_cutters.kernels.maps.planes import all_ends, boxes_clear, triangles_clear, turn_boxes, turn_triangles
+from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.search.place import permitted
+from plan_cutters.kernels.tool.hit import stand, tree_hit
+
+#: Blocks of boxes kept as seen from one contact, and blocks that may wait to be looked at.
+_SEEN, _QUEUE = 1 << 11, 1 << 13
+#: Leaves of triangles kept so; one more for others, two for the triangles that are tried first.
+_LEAVES = 1 << 11
+#: What is known of the boxes in a block below another: not looked at yet, none rises above the tangent plane.
+_UNSEEN, _NONE = -1, -2
+
+
+@kernel
+def _forget(below, home, block, lane):
+    """Leave a box out for this contact, and those above it in which nothing else is left."""
+    while block < _SEEN:
+        below[block, lane] = _NONE
+        for other in range(LANES):
+            if below[block, other] != _NONE:
+                return
+        if home[block, 0] < 0:
+            return
+        block, lane = home[block, 0], home[block, 1]
+
+
+@kernel
+def _rising(view, below, block, lanes, low):
+    """Mark the boxes of a block just seen that rise above the tangent plane; whether there are any."""
+    some = False
+    for lane in range(LANES):
+        rises = lane < lanes and view[block, 12, lane] > low
+        below[block, lane] = _UNSEEN if rises else _NONE
+        some = some or rises
+    return some
+
+
+@kernel
+def _leaf(leaf, which, vertex, frame, turn, gap, count, turning, mask, narrowest, margin, room):
+    """Take what the triangles of a leaf forbid to the pieces of a mask out of the gaps; (gaps, the lane that cut last or -1)."""
+    cosine, sine = turn
+    last = -1
+    for k in range(len(turning.piece)):
+        if not (mask >> k) & 1 or count == 0:
+            continue
+        if (turning.eight >> k) & 1:
+            _triangles_pass(leaf, cosine, sine, gap, count, flutes(turning, k), margin)
+        else:
+            turn_triangles(leaf, cosine, sine, room.turned)
+            for lane in range(LANES):
+                margin[lane] = 1.0
+            for g in range(count):
+                all_ends(room.end, gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL])
+                triangles_clear(room.turned, room.end, turning, k, room.clear)
+                for lane in range(LANES):
+                    margin[lane] = min(margin[lane], room.clear[lane] - 0.5)
+        for lane in range(LANES):
+            if margin[lane] >= 0.0 or count == 0:
+                continue
+            _turn(leaf, lane, cosine, sine, room.corner)
+            count, cut = cut_gaps(vertex, which[lane], frame, gap, count, narrowest, turning, k, room)
+            if cut:
+                last = lane
+    return count, last
+
+
+@kernel
+def _reaching(view, block, cosine, sine, gap, count, turning, mask, margin, left, room):
+    """Write for each box of a block the pieces of a mask that it may reach into in some gap."""
+    for lane in range(LANES):
+        left[lane] = 0
+    turned = False
+    for k in range(len(turning.piece)):
+        if not (mask >> k) & 1:
+            continue
+        if (turning.eight >> k) & 1:
+            _boxes_pass(view, block, cosine, sine, gap, count, flutes(turning, k), margin)
+            for lane in range(LANES):
+                left[lane] |= 0 if margin[lane] >= 0.0 else 1 << k
+            continue
+        if not turned:
+            turn_boxes(view, block, cosine, sine, room.turned)
+            turned = True
+        for g in range(count):
+            all_ends(room.end, gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL])
+            if not boxes_clear(room.turned, room.end, turning, k, room.clear):
+                for lane in range(LANES):
+                    left[lane] |= 0 if room.clear[lane] > 0.0 else 1 << k
+
+
+class _View(NamedTuple):
+    """What is kept of the tree as seen from one contact, for all rotations: boxes and leaves, what lies below each box, which
+    box each block hangs below, and tallies: blocks and leaves kept, place of the next triangle that is tried first, blocks
+    looked at in all.
+
+    known (rotations + 1, LANES): triangles that cut gaps of each rotation last, of this sample or the one before, the last row
+    those of any; place (rotations,) of the next of a rotation. What is `reach` away from the contact is out of reach.
+    """
+
+    boxes: Any
+    leaves: Any
+    below: Any
+    home: Any
+    tally: Any
+    known: Any
+    place: Any
+    queue: Any
+    ahead: Any
+    margin: Any
+    inside: Any
+    which: Any
+    left: Any
+    reach: float
+
+
+@kernel
+def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, narrowest, wide, seen, room):
+    """Take the gaps of one rotation, its cosine and sine `turn`, through the tree, level by level; how many are left.
+
+    `whole` is the mask of the pieces that anything can reach from this contact, `low` what is out of reach of them all.
+    """
+    p, n = frame.p, frame.n
+    cosine, sine = turn
+    vertex, blocks, offset, bottom = wide
+    view, leaves, below, home, tally = seen.boxes, seen.leaves, seen.below, seen.home, seen.tally
+    known, queue, ahead = seen.known, seen.queue, seen.ahead
+    place = seen.place
+    margin, inside, which, left = seen.margin, seen.inside, seen.which, seen.left
+    triangles, levels = len(vertex), len(offset) - 1
+    for k in range(LANES):
+        _see_triangle(leaves[_LEAVES + 2], k, vertex, known[rotation, k], p, e1, e2, n)
+    count, _ = _leaf(
+        leaves[_LEAVES + 2], known[rotation], vertex, frame, turn, gap, count, turning, whole, narrowest, inside, room
+    )
+    count, _ = _leaf(
+        leaves[_LEAVES + 1], known[-1], vertex, frame, turn, gap, count, turning, whole, narrowest, inside, room
+    )
+    queue[0, 0], queue[0, 1], queue[0, 2] = 0, 0, whole
+    waiting = 1
+    for level in range(levels):
+        coming = 0
+        for w in range(waiting):
+            if count == 0:
+                return 0
+            slot, block, mask = queue[w, 0], queue[w, 1], queue[w, 2]
+            tally[3] += 1
+            if slot < 0:
+                slot = _SEEN
+                _see(view, slot, blocks, offset[level] + block, p, e1, e2, n, seen.reach)
+                _rising(view, below, slot, LANES, low)
+            _reaching(view, slot, cosine, sine, gap, count, turning, mask, margin, left, room)
+            for lane in range(LANES):
+                inner = below[slot, lane]
+                if left[lane] == 0 or inner == _NONE or count == 0:
+                    continue
+                box = 8 * block + lane
+                if level == levels - 1:
+                    begin, end = (triangles * box) >> bottom, (triangles * (box + 1)) >> bottom
+                    if inner == _UNSEEN:
+                        inner = min(tally[1], _LEAVES)
+                        if _see_leaf(leaves[inner], vertex, begin, end, p, e1, e2, n) <= low:
+                            _forget(below, home, slot, lane)
+                            continue
+                        if inner < _LEAVES:
+                            tally[1] += 1
+                            below[slot, lane] = inner
+                    for k in range(LANES):
+                        which[k] = begin + k
+                    count, cut = _leaf(
+                        leaves[inner],
+                        which,
+                        vertex,
+                        frame,
+                        turn,
+                        gap,
+                        count,
+                        turning,
+                        left[lane],
+                        narrowest,
+                        inside,
+                        room,
+                    )
+                    if cut >= 0:
+                        known[-1, tally[2]] = begin + cut
+                        for k in range(9):
+                            leaves[_LEAVES + 1, k, tally[2]] = leaves[inner, k, cut]
+                        tally[2] = (tally[2] + 1) % LANES
+                        known[rotation, place[rotation]] = begin + cut
+                        place[rotation] = (place[rotation] + 1) % LANES
+                    continue
+                x, y, z = view[slot, 13, lane], view[slot, 14, lane], view[slot, 15, lane]
+                x, y = cosine * x + sine * y, cosine * y - sine * x
+                for k in range(len(turning.piece)):
+                    if (left[lane] >> k) & 1:
+                        count, _ = take_point(x, y, z, gap, count, turning, k, room.arcs)
+                if inner == _UNSEEN and tally[0] < _SEEN:
+                    inner = tally[0]
+                    _see(view, inner, blocks, offset[level + 1] + box, p, e1, e2, n, seen.reach)
+                    if not _rising(view, below, inner, LANES, low):
+                        _forget(below, home, slot, lane)
+                        continue
+                    below[slot, lane], home[inner, 0], home[inner, 1] = inner, slot, lane
+                    tally[0] += 1
+                if coming == _QUEUE:
+                    # Too much in the way to be told apart: nothing here is called free.
+                    for g in range(count):
+                        gap[GAPS, UF] += gap[g, LAST] - gap[g, FIRST] + gap[g, UF] + gap[g, UL]
+                    return 0
+                ahead[coming, 0], ahead[coming, 1], ahead[coming, 2] = inner, box, left[lane]
+                coming += 1
+        queue, ahead = ahead, queue
+        waiting = coming
+    return count
+
+
+@kernel
+def _write(gap, count, written, room, part):
+    """Write the gaps as intervals among others, ascending; (how many, how much is undecided at their ends and beyond `room`)."""
+    unsure = gap[GAPS, UF] + gap[GAPS, UL]
+    for g in range(count):
+        unsure += gap[g, UF] + gap[g, UL]
+        if gap[g, LAST] <= gap[g, FIRST]:
+            continue
+        if written == room:
+            unsure += gap[g, LAST] - gap[g, FIRST]
+            continue
+        written = insert(part, written, gap[g, FIRST], gap[g, LAST])
+    return written, unsure
+
+
+@kernel
+def _ball(turning):
+    """The piece that is the same body at all tilts, -1 if there is none: a ball about the centre."""
+    piece = turning.piece
+    for k in range(len(piece)):
+        if piece[k, KIND] == ARC and piece[k, RADIUS] == 0.0 and piece[k, SLOPE] == 0.0 and turning.offset == 0.0:
+            return k
+    return -1
+
+
+@kernel
+def _reachable(view, lanes, turning):
+    """The mask of the pieces that boxes of the first block may reach into at any posture.
+
+    They rise as high, and stand neither nearer nor farther than the piece.
+    """
+    mask, known = 0, turning.known
+    for k in range(len(turning.piece)):
+        for lane in range(lanes):
+            square, half = 0.0, 0.0
+            for i in range(3):
+                square += view[0, i, lane] ** 2
+                half += np.sqrt(view[0, 3 + i, lane] ** 2 + view[0, 6 + i, lane] ** 2 + view[0, 9 + i, lane] ** 2)
+            away = np.sqrt(square)
+            if view[0, 12, lane] > known[k, FLOOR] and away - half < known[k, FAR] and away + half > known[k, NEAR]:
+                mask |= 1 << k
+    return mask
+
+
+@entry
+def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, room, part, count_out, undecided):
+    """Free tilts of samples at all rotations, in one walk of the tree each, with certified ends.
+
+    Parameters
+    ----------
+    rows : (m,) int64
+    contacts : Contacts
+    ranges : Ranges
+    tool : Tool
+        Without what does not matter.
+    narrowest : float
+        Ends are found to this, rad; a passing tilt is kept.
+    tree : Tree
+    wide : WideTree
+        The same.
+    room : int
+        Most intervals of one rotation.
+    part : (m, k, room, 2) float64, written
+        Free intervals, ascending, by place in `rows`.
+    count_out : (m, k) int32, written
+    undecided : (m, k) float64, written
+        Width of the bands at the ends that are neither free nor known to be forbidden, rad in all.
+
+    Returns
+    -------
+    int
+        Blocks of the tree and triangles that were looked at: the same for the same rows, whatever the machine's speed.
+    """
+    turns, looked = len(ranges.rotation_cos), 0
+    c, t, f, e2 = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
+    gap, arcs, alone = np.empty((GAPS + 1, COLUMNS)), np.empty((8, 2)), np.empty((1, PIECE))
+    work = room_to_cut()
+    count_out[:, :], undecided[:, :] = 0, 0.0
+    for mode in range(len(tool.mode)):
+        offset, rise, piece = tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE], tool.piece[mode]
+        low, high = max(ranges.tilt_low, tool.mode[mode, TILT_FROM]), min(ranges.tilt_high, tool.mode[mode, TILT_TO])
+        if low > high:
+            continue
+        bound, facts, eight = turning_of(piece, offset, low, high)
+        turning = Turning(offset, piece, bound, facts, eight)
+        view = _View(
+            np.empty((_SEEN + 1, 16, LANES)), np.empty((_LEAVES + 3, 9, LANES)), np.empty((_SEEN + 1, LANES), np.int64),
+            np.empty((_SEEN, 2), np.int64), np.zeros(4, np.int64), np.zeros((turns + 1, LANES), np.int64),
+            np.zeros(turns, np.int64), np.empty((_QUEUE, 3), np.int64), np.empty((_QUEUE, 3), np.int64), np.empty(LANES),
+            np.empty(LANES), np.empty(LANES, np.int64), np.empty(LANES, np.int64), facts[:, FAR].max(),
+        )  # fmt: skip
+        ball = _ball(turning)
+        if ball >= 0:
+            for i in range(PIECE):
+                alone[0, i] = piece[ball, i]
+            alone[0, LOW], alone[0, HIGH], alone[0, BOTTOM], alone[0, TOP] = (
+                -np.inf,
+                np.inf,
+                -alone[0, ROUND],
+                alone[0, ROUND],
+            )
+        for place in range(len(rows)):
+            row = rows[place]
+            p, n, e1 = contacts.point[row], contacts.normal[row], contacts.direction_max[row]
+            cross(n, e1, e2)
+            for i in range(3):
+                c[i] = p[i] + rise * n[i]
+            frame = Frame(c, n, f, t)
+            view.home[0, 0], view.tally[0], view.tally[1] = -1, 1, 0
+            _see(view.boxes, 0, wide.blocks, 0, c, e1, e2, n, view.reach)
+            whole = _reachable(view.boxes, 1 << (wide.bottom % 3), turning)
+            if ball >= 0 and (whole >> ball) & 1:
+                stand(work.body, Frame(c, n, e1, e2), 1.0, 0.0, 0.0, 0.0)
+                if tree_hit(tree, work.body, alone, 0.0, -1, work.scratch)[0] < 0:
+                    whole ^= 1 << ball
+                elif piece[ball, BOTTOM] == alone[0, BOTTOM] and piece[ball, TOP] == alone[0, TOP]:
+                    # In the way at every posture.
+                    continue
+            floor = np.inf
+            for k in range(len(piece)):
+                if (whole >> k) & 1:
+                    floor = min(floor, facts[k, FLOOR])
+            some = _rising(view.boxes, view.below, 0, 1 << (wide.bottom % 3), floor)
+            for lane in range(LANES):
+                _see_triangle(view.leaves[_LEAVES + 1], lane, wide.vertex, view.known[-1, lane], c, e1, e2, n)
+            for rotation in range(turns):
+                cosine, sine = turn_of(n, e1, ranges, rotation)
+                lean_frame(e1, e2, cosine, sine, f, t)
+                _, count = permitted(contacts, row, ranges, tool, mode, f, arcs)
+                if count == 0:
+                    continue
+                gap[GAPS, UF], gap[GAPS, UL] = 0.0, 0.0
+                for g in range(count):
+                    _begin(gap, g, arcs[g, 0], 0.0)
+                    _end(gap, g, arcs[g, 1], 0.0)
+                if some:
+                    count = _rotation(
+                        frame, e1, e2, (cosine, sine), rotation, gap, count, turning, whole, floor, narrowest, wide, view,
+                        work,
+                    )  # fmt: skip
+                count, unsure = _write(gap, count, count_out[place, rotation], room, part[place, rotation])
+                count_out[place, rotation] = join(part[place, rotation], count)
+                undecided[place, rotation] += unsure
+        looked += view.tally[3]
+    return looked + work.spent[0]

@@ -1,0 +1,107 @@
+"""All free tilts at one point and rotation, with certified ends; `free_map` finds those of many samples.
+
+A range of tilts is free if the body, widened by half the range times the distance from the contact, is missed at the
+middle. Where the middle itself is blocked, the point in the way forbids an arc; where only the widened body is, the
+range is halved. Ranges narrower than `narrowest` stay undecided.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from plan_cutters.kernels.codes import OFFSET_OF
+from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.linear.vectors import cross
+from plan_cutters.kernels.rows import Frame, Scratch
+from plan_cutters.kernels.search.place import arc_of, put
+from plan_cutters.kernels.tool.hit import BODY, scratch, tree_hit
+from plan_cutters.kernels.tool.tool_arcs import ARCS
+
+OPEN, FORBIDDEN, UNSURE = 0, 1, 2
+
+
+class Parts(NamedTuple):
+    """Room to work in: parts (k, 3) as `free_tilts` gives them, pending (k, 2), arcs (ARCS, 2), a body, lists to walk with."""
+
+    parts: Any
+    pending: Any
+    arcs: Any
+    body: Any
+    scratch: Scratch
+
+
+@entry
+def room_for_parts(room):
+    """Room for so many parts."""
+    return Parts(np.empty((room + 4, 3)), np.empty((room + 4, 2)), np.empty((ARCS, 2)), np.empty(BODY), scratch())
+
+
+@kernel
+def divide(frame, low, high, tool, mode, narrowest, tree, work):
+    """`free_tilts` of a frame, its parts written into `work`; how many."""
+    parts, pending, body, walk, piece = work.parts, work.pending, work.body, work.scratch, tool.piece[mode]
+    pending[0, 0], pending[0, 1] = low, high
+    top, done, hint, room = 1, 0, -1, len(parts) - 4
+    while top > 0:
+        top -= 1
+        first, last = pending[top, 0], pending[top, 1]
+        tilt, half = 0.5 * (first + last), 0.5 * (last - first)
+        put(body, frame, tilt, tool, mode)
+        # A hair more than half, so that a free range holds at its very ends.
+        triangle, which, height, px, py = tree_hit(tree, body, piece, half + 1e-12, hint, walk)
+        kind, cut_first, cut_last = OPEN, first, last
+        if triangle >= 0:
+            hint = triangle
+            kind, cut_first, cut_last = UNSURE, tilt, tilt
+            triangle, which, height, px, py = tree_hit(tree, body, piece, 0.0, hint, walk)
+            if triangle >= 0:
+                hint = triangle
+                arc_first, arc_last = arc_of(
+                    which, height, px, py, tilt, tool.mode[mode, OFFSET_OF], piece, 0.0, work.arcs
+                )
+                kind = FORBIDDEN
+                cut_first, cut_last = max(first, min(arc_first, tilt)), min(last, max(arc_last, tilt))
+            if last - first <= narrowest or top + done + 3 > room:
+                kind, cut_first, cut_last = UNSURE, first, last
+        # What is cut out is settled; the rest, at most half on either side or narrower, is not.
+        parts[done, 0], parts[done, 1], parts[done, 2] = cut_first, cut_last, kind
+        if cut_last > cut_first:
+            done += 1
+        if cut_last < last:
+            pending[top, 0], pending[top, 1] = cut_last, last
+            top += 1
+        if cut_first > first:
+            pending[top, 0], pending[top, 1] = first, cut_first
+            top += 1
+    return done
+
+
+@entry
+def free_tilts(p, n, f, low, high, tool, mode, narrowest, tree, room):
+    """Split a range of tilts into free, forbidden and undecided parts.
+
+    Parameters
+    ----------
+    p, n, f : (3,) float64
+        Contact, normal, lean direction.
+    low, high : float
+        rad.
+    tool : Tool
+        Without what does not matter.
+    mode : int
+        In which it touches.
+    narrowest : float
+        rad.
+    tree : Tree
+    room : int
+        Most parts that can be told apart.
+
+    Returns
+    -------
+    parts : (k, 3) float64
+        first, last, kind (OPEN, FORBIDDEN, UNSURE); together the range asked for, in no order.
+    """
+    t, work = np.empty(3), room_for_parts(room)
+    cross(n, f, t)
+    count = divide(Frame(p, n, f, t), low, high, tool, mode, narrowest, tree, work)
+    return work.parts[:count]

@@ -1,0 +1,1 @@
+"""Is there a posture? Searches for one, and what they share. May use: tool, linear, material, limits, intervals."""

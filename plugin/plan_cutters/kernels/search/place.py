@@ -1,0 +1,275 @@
+"""Where a tool is placed at a contact, which tilts are left there, and what stops it: what searches of all kinds share."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from plan_cutters.kernels.codes import (
+    AXIS_LIMIT,
+    BY_HOLDER,
+    BY_NECK,
+    BY_SHANK,
+    COLLISION,
+    FIXTURE,
+    FLUTES,
+    LOCAL_GOUGE,
+    NECK,
+    OFFSET_OF,
+    OVER_TIP,
+    PART,
+    REAR_GOUGE,
+    RISE,
+    TILT_FROM,
+    TILT_TO,
+)
+from plan_cutters.kernels.intervals import remove
+from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.limits import held_tilts, turn_of
+from plan_cutters.kernels.linear.vectors import lean_frame
+from plan_cutters.kernels.material import outside, winding
+from plan_cutters.kernels.rows import Scratch
+from plan_cutters.kernels.tool.arcs import local_gouge
+from plan_cutters.kernels.tool.hit import BODY, OFFSET, A, P, X, scratch, stand, tree_hit
+from plan_cutters.kernels.tool.tool_arcs import ARCS, arc_about, closed, forbidden
+
+#: A posture stands for the tilts that are so near, rad: no machine holds a tilt to 0.01 deg.
+NARROWEST = 1.7e-4
+#: Intervals that one rotation may fall into; widest first, a search has not been seen to need ten.
+_ROOM = 256
+#: A point of a tool's axis is surely among the cells, and mostly past those of the skin at its tip, so many of them up.
+_LOW = 8.0
+#: By how much a posture within a body is turned to find the others there, at first, rad.
+_TURN = 0.2
+#: Tilts this close to the end of a tool's range are in it, rad.
+_ROUNDING = 1e-9
+
+
+@kernel
+def forbid(intervals, count, first, last, narrowest, attribute, tally):
+    """Take an arc out and book what it takes on an attribute; the new count."""
+    before = 0.0
+    for i in range(count):
+        before += intervals[i, 1] - intervals[i, 0]
+    count = remove(intervals, count, first, last, narrowest)
+    for i in range(count):
+        before -= intervals[i, 1] - intervals[i, 0]
+    tally[attribute] += before
+    return count
+
+
+@kernel
+def _attribute(x, y, z, tool, mode, k):
+    """What an obstacle point that far from the contact, which is in piece k, is in the way of."""
+    part = int(tool.piece[mode, k, PART])
+    if part != FLUTES:
+        return BY_NECK + part - NECK
+    return REAR_GOUGE if x * x + y * y + z * z <= tool.reach * tool.reach else COLLISION
+
+
+@kernel
+def inside(body, tool, mode, solids, stack):
+    """Winding number of the bodies about a point of the tool's axis that is as deep in it as any.
+
+    The end of the axis is asked first: where that is surely outside, all of it is, for the tool touches no skin.
+    """
+    high = tool.end - tool.mode[mode, OVER_TIP]
+    x = body[P] + high * body[A] - body[OFFSET] * body[X]
+    y = body[P + 1] + high * body[A + 1] - body[OFFSET] * body[X + 1]
+    z = body[P + 2] + high * body[A + 2] - body[OFFSET] * body[X + 2]
+    if outside(x, y, z, solids):
+        return 0.0
+    if not solids.whole:
+        # Above the cells: a point that is low enough to be among them.
+        height = min(tool.inner, _LOW * solids.size) - tool.mode[mode, OVER_TIP]
+        x = body[P] + height * body[A] - body[OFFSET] * body[X]
+        y = body[P + 1] + height * body[A + 1] - body[OFFSET] * body[X + 1]
+        z = body[P + 2] + height * body[A + 2] - body[OFFSET] * body[X + 2]
+        if outside(x, y, z, solids):
+            return 0.0
+    height = tool.inner - tool.mode[mode, OVER_TIP]
+    x = body[P] + height * body[A] - body[OFFSET] * body[X]
+    y = body[P + 1] + height * body[A + 1] - body[OFFSET] * body[X + 1]
+    z = body[P + 2] + height * body[A + 2] - body[OFFSET] * body[X + 2]
+    return winding(x, y, z, solids, stack)
+
+
+@kernel
+def mode_at(tool, tilt):
+    """The mode in which a tool touches at a tilt, -1 for none."""
+    for mode in range(len(tool.mode)):
+        if tool.mode[mode, TILT_FROM] - _ROUNDING <= tilt <= tool.mode[mode, TILT_TO] + _ROUNDING:
+            return mode
+    return -1
+
+
+@kernel
+def put(body, frame, tilt, tool, mode):
+    """Stand a tool at a tilt, touching in a mode."""
+    stand(body, frame, np.cos(tilt), np.sin(tilt), tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
+
+
+@kernel
+def turned(frame, tilt, tool, mode, tree, body, scratch):
+    """How far a posture that touches nothing can be tilted either way and still surely touch nothing, rad."""
+    half = _TURN
+    while half > 0.5 * NARROWEST:
+        put(body, frame, tilt, tool, mode)
+        hit, _, _, _, _ = tree_hit(tree, body, tool.piece[mode], half, -1, scratch)
+        if hit < 0:
+            return half
+        half *= 0.5
+    # No narrower: what is left is the probe's own neighbourhood, as for every other obstacle.
+    return 0.5 * NARROWEST
+
+
+class Room(NamedTuple):
+    """Room to work in: intervals (k, 2), arcs (ARCS, 2), lean direction f and t = n x f, e2 = n x direction_max, a body, a
+    tally by attribute."""
+
+    intervals: Any
+    arcs: Any
+    f: Any
+    t: Any
+    e2: Any
+    body: Any
+    tally: Any
+    scratch: Scratch
+
+
+@entry
+def room_to_search():
+    """Room for searches."""
+    return Room(
+        np.empty((_ROOM, 2)), np.empty((ARCS, 2)), np.empty(3), np.empty(3), np.empty(3), np.empty(BODY), np.empty(FIXTURE),
+        scratch(),
+    )  # fmt: skip
+
+
+@kernel
+def permitted(contacts, row, ranges, tool, mode, f, intervals):
+    """Write the tilts of a lean direction f that the axis limit, the range asked for and the tool's own leave; their width, and
+    how many intervals they are.
+    """
+    low, high = max(ranges.tilt_low, tool.mode[mode, TILT_FROM]), min(ranges.tilt_high, tool.mode[mode, TILT_TO])
+    if low > high:
+        return 0.0, 0
+    count = held_tilts(contacts.normal[row], f, ranges, low, high, intervals)
+    width = 0.0
+    for i in range(count):
+        width += intervals[i, 1] - intervals[i, 0]
+    return width, count
+
+
+@kernel
+def straight(contacts, row, cosine, sine, tool, mode):
+    """Tilts from and to, at a rotation's cosine and sine, at which curvature keeps surface and tool apart next to the contact;
+    nan if there are none.
+    """
+    return local_gouge(
+        contacts.curvature[row, 0], contacts.curvature[row, 1], cosine, sine, tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE],
+    )  # fmt: skip
+
+
+@kernel
+def kept_straight(least, most, intervals, count):
+    """Leave of intervals what `straight` gives; the new count."""
+    if np.isnan(least):
+        return 0
+    if least > 0.0:
+        count = remove(intervals, count, -1.0, least, 0.0)
+    return remove(intervals, count, most, 4.0, 0.0)
+
+
+@kernel
+def allowed(contacts, row, ranges, rotation, tool, mode, bent, room):
+    """Write the tilts of a rotation that the axis limit leaves and curvature allows, or, if `bent`, forbids, and its frame; how
+    many intervals they are.
+
+    Those that it forbids gouge, but maybe no deeper than is allowed: the triangles tell (`docs/verdicts.md`). What each of the
+    two leaves is booked on it.
+    """
+    intervals, tally = room.intervals, room.tally
+    cosine, sine = turn_of(contacts.normal[row], contacts.direction_max[row], ranges, rotation)
+    least, most = straight(contacts, row, cosine, sine, tool, mode)
+    if bent and least <= 0.0 and most >= np.pi:
+        return 0
+    lean_frame(contacts.direction_max[row], room.e2, cosine, sine, room.f, room.t)
+    width, before = permitted(contacts, row, ranges, tool, mode, room.f, intervals)
+    tally[AXIS_LIMIT] += width + before * NARROWEST
+    if not bent:
+        count = kept_straight(least, most, intervals, before)
+    elif np.isnan(least):
+        count = before
+    else:
+        count = remove(intervals, before, least if least > 0.0 else -1.0, most, NARROWEST)
+    for i in range(count):
+        tally[LOCAL_GOUGE] += intervals[i, 1] - intervals[i, 0] + NARROWEST
+    return count
+
+
+@kernel
+def booked(tally):
+    """Tilts that obstacles have taken."""
+    return tally[REAR_GOUGE] + tally[COLLISION] + tally[BY_NECK] + tally[BY_SHANK] + tally[BY_HOLDER]
+
+
+@kernel
+def forbid_point(x, y, z, tool, mode, narrowest, intervals, count, room):
+    """Take out the tilts at which an obstacle point, along f, t and n from the contact, is in the tool; the new count."""
+    offset, height = tool.mode[mode, OFFSET_OF], z - tool.mode[mode, RISE]
+    piece = tool.piece[mode]
+    for k in range(len(piece)):
+        found = forbidden(height, x + offset, y, 0.0, offset, piece, k, room.arcs)
+        for i in range(found):
+            count = forbid(
+                intervals,
+                count,
+                room.arcs[i, 0],
+                room.arcs[i, 1],
+                narrowest,
+                _attribute(x, y, z, tool, mode, k),
+                room.tally,
+            )
+    return count
+
+
+@kernel
+def arc_of(k, height, px, py, tilt, offset, piece, half, arcs):
+    """First and last of the tilts about one, `half` to either side at least, at which a point is in piece k; `arcs` is
+    scratch.
+    """
+    first, last = tilt - half, tilt + half
+    if closed(offset, piece, k):
+        for i in range(forbidden(height, px, py, tilt, offset, piece, k, arcs)):
+            if arcs[i, 0] <= last and arcs[i, 1] >= first:
+                first, last = min(first, arcs[i, 0]), max(last, arcs[i, 1])
+        return first, last
+    low, high = arc_about(height, px, py, tilt, offset, piece, k)
+    return min(first, low), max(last, high)
+
+
+@kernel
+def forbid_probed(k, height, px, py, tilt, tool, mode, narrowest, intervals, count, room):
+    """The same of a point that a probe at a tilt has met in piece k, in the tool's frame; (the new count, the point along f, t,
+    n).
+    """
+    offset, piece = tool.mode[mode, OFFSET_OF], tool.piece[mode]
+    back, cosine, sine = px - offset, np.cos(tilt), np.sin(tilt)
+    x, z = cosine * back + sine * height, cosine * height - sine * back + tool.mode[mode, RISE]
+    attribute = _attribute(x, py, z, tool, mode, k)
+    # At the edge of the tool the arc may be no wider than rounding: take the probe's own neighbourhood too.
+    first, last = arc_of(k, height, px, py, tilt, offset, piece, 0.5 * narrowest, room.arcs)
+    return forbid(intervals, count, first, last, narrowest, attribute, room.tally), x, py, z
+
+
+@kernel
+def next_tilt(intervals, count, wish):
+    """The tilt to probe next: the one wished for where it is left, or the middle of the widest interval."""
+    widest, tilt = -1.0, 0.0
+    for i in range(count):
+        if intervals[i, 0] <= wish <= intervals[i, 1]:
+            widest, tilt = 10.0, wish
+        elif intervals[i, 1] - intervals[i, 0] > widest:
+            widest = intervals[i, 1] - intervals[i, 0]
+            tilt = 0.5 * (intervals[i, 0] + intervals[i, 1])
+    return tilt

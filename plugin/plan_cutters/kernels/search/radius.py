@@ -1,0 +1,127 @@
+"""Which is the largest of a row of tools, each within the next, that finds a posture at a sample?
+
+The search starts from the answer at the sample before, goes up or down by 1, 2, 4 ... tools until the answer lies between two of
+them, and halves what is between. A tool is asked for a posture at the rotation found last; where that has none, what is
+surely in the way is asked next, for it answers for all rotations and mostly ends the search: an inaccessible tool costs one
+search without success, not two.
+"""
+
+from typing import Any, NamedTuple
+
+from plan_cutters.kernels.codes import INACCESSIBLE, UNDECIDED
+from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, Solids
+from plan_cutters.kernels.rows import Tool
+from plan_cutters.kernels.search.search import _FINEST, _NO_GAP, START, _reason, _write
+from plan_cutters.kernels.search.sweep import both, sweep_both
+
+
+class Ladder(NamedTuple):
+    """Tools from the smallest up: piece (tools, m, k, COLUMNS), mode (tools, m, 5), reach, inner and end (tools,), each as in
+    `Tool`."""
+
+    piece: Any
+    mode: Any
+    reach: Any
+    inner: Any
+    end: Any
+
+
+class _Side(NamedTuple):
+    """What a search takes of the tools without what does not matter, or of what of them is surely in the way: the tools, room
+    for one, what is in the way, what was met before, and narrower intervals of tilt than which are none, rad."""
+
+    tools: Ladder
+    piece: Any
+    mode: Any
+    solids: Solids
+    within: float
+    narrowest: float
+    pasts: Any
+
+
+@kernel
+def _look(contacts, row, ranges, side, level, starts, turns, rooms):
+    """`sweep_both` with one tool of a row."""
+    tools, piece, mode = side.tools, side.piece, side.mode
+    for m in range(len(mode)):
+        for column in range(mode.shape[1]):
+            mode[m, column] = tools.mode[level, m, column]
+        for k in range(piece.shape[1]):
+            for column in range(piece.shape[2]):
+                piece[m, k, column] = tools.piece[level, m, k, column]
+    tool = Tool(piece, mode, tools.reach[level], tools.inner[level], tools.end[level])
+    return sweep_both(
+        contacts, row, ranges, tool, side.solids, side.within, side.narrowest, starts, turns, side.pasts, rooms
+    )
+
+
+@kernel
+def _largest(contacts, row, ranges, light, heavy, guess, last, freed, rooms, found):
+    """The number of the largest tool that finds a posture, -1 for none, and the verdict on the next; then where the searches
+    of both sides ended.
+    """
+    count, turns = len(light.tools.reach), len(ranges.rotation_cos)
+    # Reached, not reached; at most so far not surely blocked, surely blocked.
+    low, high, free, blocked = -1, count, -1, count
+    level, stride = guess, 1
+    while high - low > 1:
+        rotation, tilt, last = _look(contacts, row, ranges, light, level, last, 1, rooms)
+        if rotation < 0 and level > free:
+            turn, _, freed = _look(contacts, row, ranges, heavy, level, freed, turns, rooms)
+            if turn < 0:
+                blocked = level
+                found.reason[row] = _reason(rooms[0].tally, rooms[1].tally)
+            else:
+                free = level
+        if rotation < 0 and level < blocked:
+            rotation, tilt, last = _look(contacts, row, ranges, light, level, last, turns, rooms)
+            if rotation < 0:
+                found.reason[row] = _reason(rooms[0].tally, rooms[1].tally)
+        if rotation < 0:
+            high = level
+        else:
+            low = level
+            _write(found, row, contacts, ranges, rotation, tilt)
+        if low < 0:
+            level = max(high - stride, 0)
+        elif high == count:
+            level = min(low + stride, count - 1)
+        else:
+            level = (low + high) // 2
+        stride *= 2
+    return low, INACCESSIBLE if blocked == high else UNDECIDED, last, freed
+
+
+@entry
+def largest(rows, contacts, ranges, light, heavy, may_be, surely, found, level, beyond):
+    """Find the largest tool that reaches each sample.
+
+    Parameters
+    ----------
+    rows : (m,) int64
+        Samples, neighbours in sequence.
+    contacts : Contacts
+    ranges : Ranges
+    light, heavy : Ladder
+        Tools without what does not matter, and what of each is certainly in the way; each within the next.
+    may_be, surely : Solids
+        As `search.search` takes them.
+    found : Found, written
+        The posture of the largest tool that has one, and why the next one has none.
+    level : (n,) int64, written
+        The number of the largest tool that has a posture, -1 where none has.
+    beyond : (n,) uint8, written
+        INACCESSIBLE or UNDECIDED for the tool after it; as it was where there is none.
+    """
+    rotations = len(ranges.rotation_cos)
+    pasts, rooms = both(rotations, light.mode.shape[1])
+    met, _ = both(rotations, heavy.mode.shape[1])
+    safe = _Side(light, light.piece[0].copy(), light.mode[0].copy(), may_be, MAYBE_INSIDE, _FINEST, pasts)
+    sure = _Side(heavy, heavy.piece[0].copy(), heavy.mode[0].copy(), surely, SURELY_INSIDE, _NO_GAP, met)
+    guess, last, freed = len(light.reach) // 2, START, START
+    for row in rows:
+        low, verdict, last, freed = _largest(contacts, row, ranges, safe, sure, guess, last, freed, rooms, found)
+        level[row], guess = low, max(low, 0)
+        if low + 1 < len(light.reach):
+            beyond[row] = verdict

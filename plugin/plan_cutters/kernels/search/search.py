@@ -1,0 +1,289 @@
+"""Is there a posture? Probe a tilt; whatever is in the way forbids a whole arc; probe what is left.
+
+A found posture is safe: no triangle reaches deeper into the cutter than `safe`. Where none is found, the same search
+at the depth `blocked` decides whether the sample is inaccessible (everything is forbidden by what certainly lies too
+deep) or undecided. What is forbidden at `blocked` is so at `safe`: after a sample without a posture that is asked first,
+and one answer is all that an inaccessible sample takes. A cutter that touches nothing may still lie within a body: then
+so does every posture that it can be turned to without touching a skin.
+
+Curvature at the contact only tells where to look first: a posture that it forbids is one as well if the triangles prove that
+no point of the surface is too deep.
+"""
+
+import numpy as np
+
+from plan_cutters.kernels.codes import (
+    ACCESSIBLE,
+    AXIS_LIMIT,
+    BURIED,
+    BY_HOLDER,
+    BY_NECK,
+    BY_SHANK,
+    COLLISION,
+    INACCESSIBLE,
+    LOCAL_GOUGE,
+    OFFSET_OF,
+    REAR_GOUGE,
+    RISE,
+    UNDECIDED,
+)
+from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.limits import turn_of
+from plan_cutters.kernels.linear.vectors import cross, dot, lean_frame, perpendicular
+from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
+from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.search.place import inside, kept_straight, mode_at, permitted, room_to_search, straight
+from plan_cutters.kernels.search.sweep import both, memory, sweep, sweep_both
+from plan_cutters.kernels.tool.hit import BODY, scratch, stand, tree_hit
+
+#: Between arcs of what is certainly in the way, gaps narrower than this are none: no machine holds a tilt to 0.01 deg. rad.
+_NO_GAP = 1.7e-4
+#: A posture is searched in gaps down to this, rad: it may stand where arcs leave more than they seem to.
+_FINEST = 1e-5
+#: Where searches begin, among the tilts that curvature allows and among the others: rotation, and the tilt tried first.
+START = ((0, -1.0), (0, -1.0))
+
+
+@kernel
+def _reason(tally, bent):
+    """What leaves no posture, by what tilts are booked on that curvature allows, and that it forbids (`bent`).
+
+    The attribute that leaves none alone, or the one that most tilts are booked on. Where curvature forbids all tilts, what is in
+    the way near the contact is what it tells of.
+    """
+    if tally[AXIS_LIMIT] == 0.0:
+        return AXIS_LIMIT
+    reason, most = REAR_GOUGE, tally
+    if tally[LOCAL_GOUGE] == 0.0:
+        reason, most = LOCAL_GOUGE, bent
+    least = most[REAR_GOUGE]
+    for attribute in (COLLISION, BURIED, BY_NECK, BY_SHANK, BY_HOLDER):
+        if most[attribute] > least:
+            reason, least = attribute, most[attribute]
+    return reason
+
+
+@kernel
+def _write(found, row, contacts, ranges, rotation, tilt):
+    """Write a posture."""
+    n, e1 = contacts.normal[row], contacts.direction_max[row]
+    turn_cos, turn_sin = turn_of(n, e1, ranges, rotation)
+    cosine, sine = np.cos(tilt), np.sin(tilt)
+    found.tilt[row], found.rotation[row] = tilt, rotation
+    for k in range(3):
+        i, j = (k + 1) % 3, (k + 2) % 3
+        found.lean[row, k] = turn_cos * e1[k] + turn_sin * (n[i] * e1[j] - n[j] * e1[i])
+        found.axis[row, k] = cosine * n[k] + sine * found.lean[row, k]
+
+
+@entry
+def search(rows, contacts, ranges, light, heavy, may_be, surely, found):
+    """Decide the samples `rows`, one after the other, each starting from the posture of the one before.
+
+    Parameters
+    ----------
+    rows : (m,) int64
+        Samples to decide, neighbours in sequence.
+    contacts : Contacts
+    ranges : Ranges
+    light, heavy : Tool
+        The tool without what does not matter, and what of it is certainly in the way.
+    may_be, surely : Solids
+        All that may be in the way, for calling a posture safe; what certainly is, for calling it blocked.
+    found : Found, written
+
+    Returns
+    -------
+    int
+        How many boxes were looked at, and what else takes as long (`sweep.ROTATION`).
+    """
+    rotations = len(ranges.rotation_cos)
+    # What is only perhaps in the way must not count as surely in it: the two are remembered apart.
+    light_pasts, rooms = both(rotations, len(light.mode))
+    heavy_pasts, _ = both(rotations, len(heavy.mode))
+    last, freed, lost = START, START, False
+    for row in rows:
+        asked, sure = lost, False
+        if asked:
+            turn, _, freed = sweep_both(
+                contacts, row, ranges, heavy, surely, SURELY_INSIDE, _NO_GAP, freed, rotations, heavy_pasts, rooms
+            )
+            sure = turn < 0
+        if not sure:
+            rotation, tilt, last = sweep_both(
+                contacts, row, ranges, light, may_be, MAYBE_INSIDE, _FINEST, last, rotations, light_pasts, rooms
+            )
+            lost = rotation < 0
+            if not lost:
+                found.verdict[row] = ACCESSIBLE
+                _write(found, row, contacts, ranges, rotation, tilt)
+                continue
+        found.reason[row] = _reason(rooms[0].tally, rooms[1].tally)
+        if not asked:
+            turn, _, freed = sweep_both(
+                contacts, row, ranges, heavy, surely, SURELY_INSIDE, _NO_GAP, freed, rotations, heavy_pasts, rooms
+            )
+            sure = turn < 0
+            if sure:
+                found.reason[row] = _reason(rooms[0].tally, rooms[1].tally)
+        found.verdict[row] = INACCESSIBLE if sure else UNDECIDED
+    return rooms[0].scratch.looked[0] + rooms[1].scratch.looked[0]
+
+
+@entry
+def until_lost(rows, at, contacts, ranges, tool, solids, patient, found):
+    """Look for postures of the samples `rows` from the `at`-th on, at which a tool is in nothing's way; where it ended.
+
+    Unless it is `patient`, behind the first sample that has none; such samples are written as UNDECIDED, for nothing was asked
+    about why. Intervals that `search` takes for none are passed over, so that it finds a posture where this does. The other
+    parameters are those of `posture`.
+    """
+    rotations = len(ranges.rotation_cos)
+    (pasts, rooms), last = both(rotations, len(tool.mode)), START
+    while at < len(rows):
+        row = rows[at]
+        at += 1
+        rotation, tilt, last = sweep_both(
+            contacts, row, ranges, tool, solids, MAYBE_INSIDE, _NO_GAP, last, rotations, pasts, rooms
+        )
+        if rotation >= 0:
+            found.verdict[row] = ACCESSIBLE
+            _write(found, row, contacts, ranges, rotation, tilt)
+        else:
+            found.verdict[row] = UNDECIDED
+            if not patient:
+                return at
+    return at
+
+
+@entry
+def posture(contacts, ranges, tool, narrowest, start, turns, solids, found):
+    """Look for a posture of the first contact at which a tool is in nothing's way; whether there is one.
+
+    Parameters
+    ----------
+    contacts : Contacts
+    ranges : Ranges
+    tool : Tool
+    narrowest : float
+        Intervals of tilt narrower than this are passed over, rad.
+    start : (int, float)
+        Rotation to begin with, and the tilt that is tried first at each.
+    turns : int
+        How many rotations to look at.
+    solids : Solids
+        All that may be in the way.
+    found : Found, written
+        The posture.
+    """
+    pasts, rooms = both(len(ranges.rotation_cos), len(tool.mode))
+    rotation, tilt, _ = sweep_both(
+        contacts, 0, ranges, tool, solids, MAYBE_INSIDE, narrowest, (start, start), turns, pasts, rooms
+    )
+    if rotation >= 0:
+        _write(found, 0, contacts, ranges, rotation, tilt)
+    return rotation >= 0
+
+
+@entry
+def first_reason(rows, contacts, ranges, heavy, surely, reason):
+    """Write the reason (n,) of samples that no posture of a tool serves, where axis limit or curvature alone leave none.
+
+    `heavy` and `surely` as for `search`; other reasons stay as they are.
+    """
+    rotations, modes = len(ranges.rotation_cos), len(heavy.mode)
+    intervals = np.empty((64, 2))
+    f, t, e2 = np.empty(3), np.empty(3), np.empty(3)
+    past, (room, other) = memory(rotations, modes, True), (room_to_search(), room_to_search())
+    for row in rows:
+        n, e1 = contacts.normal[row], contacts.direction_max[row]
+        cross(n, e1, e2)
+        axis_left, curvature_left = False, False
+        for rotation in range(rotations):
+            cosine, sine = turn_of(n, e1, ranges, rotation)
+            lean_frame(e1, e2, cosine, sine, f, t)
+            for mode in range(modes):
+                _, count = permitted(contacts, row, ranges, heavy, mode, f, intervals)
+                axis_left = axis_left or count > 0
+                least, most = straight(contacts, row, cosine, sine, heavy, mode)
+                count = kept_straight(least, most, intervals, count)
+                curvature_left = curvature_left or count > 0
+            if curvature_left:
+                break
+        if not axis_left:
+            reason[row] = AXIS_LIMIT
+        elif not curvature_left:
+            # As `search` would have told it.
+            sweep(contacts, row, ranges, heavy, surely, SURELY_INSIDE, _NO_GAP, (0, -1.0), rotations, past, room)
+            other.tally[:] = 0.0
+            other.tally[AXIS_LIMIT] = 1.0
+            reason[row] = _reason(other.tally, room.tally)
+
+
+@entry
+def dummy_clear(rows, contacts, dummy, tool, solids, clear):
+    """Test the dummy tool, which holds the tool at tilt 0 in every rotation, its axis along the normal.
+
+    Parameters
+    ----------
+    rows : (m,) int64
+    contacts : Contacts
+    dummy : (k, COLUMNS) float64
+        `Assembly.dummy`, without what does not matter.
+    tool : Tool
+    solids : Solids
+        All that may be in the way.
+    clear : (n,) bool, written
+        True where nothing reaches into the dummy, and the dummy lies in no body.
+
+    Returns
+    -------
+    int
+        How many boxes were looked at.
+    """
+    body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
+    room = scratch()
+    hint = -1
+    for row in rows:
+        n = contacts.normal[row]
+        perpendicular(n, f)
+        cross(n, f, t)
+        stand(body, Frame(contacts.point[row], n, f, t), 1.0, 0.0, 0.0, tool.mode[0, RISE])
+        triangle, _, _, _, _ = tree_hit(solids.tree, body, dummy, 0.0, hint, room)
+        clear[row] = triangle < 0 and inside(body, tool, 0, solids, room.stack) < MAYBE_INSIDE
+        if triangle >= 0:
+            hint = triangle
+    return room.looked[0]
+
+
+@entry
+def probe(rows, point, normal, axis, lean, tool, tree, triangle, which):
+    """Test given postures: the triangle that reaches into the tool at posture i and the piece that it reaches into, or -1.
+
+    Parameters
+    ----------
+    rows : (m,) int64
+        Rows to test.
+    point, normal, axis, lean : (n, 3) float64
+        Contact, unit normal, unit tool axis, unit lean direction.
+    tool : Tool
+        Without what does not matter.
+    tree : Tree
+    triangle, which : (n,) int32, written
+        At a tilt at which the tool does not touch: -2.
+    """
+    body, t = np.empty(BODY), np.empty(3)
+    room = scratch()
+    hint = -1
+    for row in rows:
+        n, f = normal[row], lean[row]
+        cross(n, f, t)
+        cosine, sine = dot(axis[row], n), dot(axis[row], f)
+        mode = mode_at(tool, np.arctan2(sine, cosine))
+        if mode < 0:
+            triangle[row], which[row] = -2, -2
+            continue
+        stand(body, Frame(point[row], n, f, t), cosine, sine, tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
+        triangle[row], which[row], _, _, _ = tree_hit(tree, body, tool.piece[mode], 0.0, hint, room)
+        if triangle[row] >= 0:
+            hint = triangle[row]

@@ -1,0 +1,265 @@
+"""All rotations of one sample in turn: a posture, or that there is none.
+
+First among the tilts that curvature allows at the contact, then among the others: there the triangles alone decide.
+
+At each rotation the points that forbade tilts there at the sample before are asked first: a neighbour's obstacles stand
+nearly where its own do, and an arc costs a hundredth of a walk of the tree. A tilt that they leave is shown to the points
+last met at any rotation, and only then to the tree. What nothing forbids is a posture.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from plan_cutters.kernels.codes import ARC, BURIED, HIGH, KIND, LOW, OFFSET_OF, RADIUS, RISE, ROUND, SCALE, SLOPE
+from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.limits import turn_of
+from plan_cutters.kernels.linear.vectors import cross
+from plan_cutters.kernels.rows import Frame
+from plan_cutters.kernels.search.place import (
+    allowed,
+    booked,
+    forbid,
+    forbid_point,
+    forbid_probed,
+    inside,
+    next_tilt,
+    put,
+    room_to_search,
+    turned,
+)
+from plan_cutters.kernels.tool.hit import deep_hit
+
+#: Points remembered for each rotation, and of those that the tree gave last.
+_KEPT, _POOL = 64, 128
+#: Boxes in whose time a rotation is gone through, of a tool that touches in one way, about.
+ROTATION = 16
+
+
+class Memory(NamedTuple):
+    """What the sweeps before have met: points (rotations x modes, k, 3) that forbade tilts of each, and how many of each; the
+    last points (3, m) that the tree gave, and the same as seen from the contact, along direction_max, e2 and the normal;
+    how deep each is in the tool (m,), and in which piece; how many the tree gave in all (1,). bent: of sweeps among the tilts
+    that curvature forbids.
+    """
+
+    point: Any
+    count: Any
+    pool: Any
+    seen: Any
+    depth: Any
+    which: Any
+    given: Any
+    bent: bool
+
+
+@entry
+def memory(rotations, modes, bent):
+    """Nothing remembered yet."""
+    return Memory(
+        np.empty((rotations * modes, _KEPT, 3)), np.zeros(rotations * modes, np.int64), np.full((3, _POOL), np.inf),
+        np.empty((3, _POOL)), np.empty(_POOL), np.empty(_POOL, np.int64), np.zeros(1, np.int64), bent,
+    )  # fmt: skip
+
+
+@kernel
+def _see(past, slot, p, e1, e2, n):
+    """Write a point of the pool as seen from the contact."""
+    x, y, z = past.pool[0, slot] - p[0], past.pool[1, slot] - p[1], past.pool[2, slot] - p[2]
+    past.seen[0, slot] = x * e1[0] + y * e1[1] + z * e1[2]
+    past.seen[1, slot] = x * e2[0] + y * e2[1] + z * e2[2]
+    past.seen[2, slot] = x * n[0] + y * n[1] + z * n[2]
+
+
+@kernel
+def _deepest(past, count, turn, tilt, tool, mode):
+    """The piece and the point of the pool that is deepest in the tool at a posture, in the tool's frame; -1 if none is in it.
+
+    Piece by piece and without a branch among points, so that the compiler uses the lanes of the processor.
+    """
+    seen, depth, which, (cosine, sine) = past.seen, past.depth, past.which, turn
+    up, out, offset, rise = np.cos(tilt), np.sin(tilt), tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE]
+    for i in range(count):
+        depth[i] = 0.0
+    for k in range(tool.piece.shape[1]):
+        low, high, radius = tool.piece[mode, k, LOW], tool.piece[mode, k, HIGH], tool.piece[mode, k, RADIUS]
+        slope, around, scale = tool.piece[mode, k, SLOPE], tool.piece[mode, k, ROUND], tool.piece[mode, k, SCALE]
+        if tool.piece[mode, k, KIND] == ARC:
+            for i in range(count):
+                x, z = cosine * seen[0, i] + sine * seen[1, i], seen[2, i] - rise
+                y = cosine * seen[1, i] - sine * seen[0, i]
+                height, px = up * z + out * x, offset + up * x - out * z
+                r = max(0.0, np.sqrt(px * px + y * y) - radius)
+                deep = around - np.sqrt(r * r + (height - slope) * (height - slope))
+                deep = min(min(height - low, high - height), deep)
+                which[i] = k if deep > depth[i] else which[i]
+                depth[i] = max(depth[i], deep)
+        else:
+            for i in range(count):
+                x, z = cosine * seen[0, i] + sine * seen[1, i], seen[2, i] - rise
+                y = cosine * seen[1, i] - sine * seen[0, i]
+                height, px = up * z + out * x, offset + up * x - out * z
+                deep = (radius + slope * (height - low) - np.sqrt(px * px + y * y)) * scale
+                deep = min(min(height - low, high - height), deep)
+                which[i] = k if deep > depth[i] else which[i]
+                depth[i] = max(depth[i], deep)
+    best, found = 0.0, -1
+    for i in range(count):
+        if depth[i] > best:
+            best, found = depth[i], i
+    if found < 0:
+        return -1, 0.0, 0.0, 0.0
+    x, z = cosine * seen[0, found] + sine * seen[1, found], seen[2, found] - rise
+    y = cosine * seen[1, found] - sine * seen[0, found]
+    return which[found], up * z + out * x, offset + up * x - out * z, y
+
+
+@kernel
+def _rotation(contacts, row, ranges, rotation, tool, mode, solids, within, narrowest, wish, frame, past, pooled, room):
+    """`sweep` at one rotation and mode: (a tilt, -1 for none; how many points of the pool are seen from this contact)."""
+    p, n, e1, e2, f, t = frame.p, frame.n, contacts.direction_max[row], room.e2, room.f, room.t
+    intervals, body, tally = room.intervals, room.body, room.tally
+    turn, place = turn_of(n, e1, ranges, rotation), rotation * len(tool.mode) + mode
+    count = allowed(contacts, row, ranges, rotation, tool, mode, past.bent, room)
+    known, kept = past.count[place], 0
+    for i in range(known):
+        if count == 0:
+            break
+        x, y, z = 0.0, 0.0, 0.0
+        for k in range(3):
+            offset = past.point[place, i, k] - p[k]
+            x += offset * f[k]
+            y += offset * t[k]
+            z += offset * n[k]
+        before = booked(tally)
+        count = forbid_point(x, y, z, tool, mode, narrowest, intervals, count, room)
+        if booked(tally) > before:
+            for k in range(3):
+                past.point[place, kept, k] = past.point[place, i, k]
+            kept += 1
+    while count > 0:
+        tilt, wish = next_tilt(intervals, count, wish), -1.0
+        # Mostly the first posture of all is free, as it was at the sample before: then the pool is not looked at.
+        which = -1
+        if pooled >= 0:
+            which, height, px, py = _deepest(past, pooled, turn, tilt, tool, mode)
+        new = which < 0
+        if new:
+            put(body, frame, tilt, tool, mode)
+            triangle, which, height, px, py = deep_hit(solids.tree, body, tool.piece[mode], room.scratch)
+            if triangle < 0:
+                if inside(body, tool, mode, solids, room.scratch.stack) < within:
+                    past.count[place] = kept
+                    return tilt, pooled
+                half = max(turned(frame, tilt, tool, mode, solids.tree, body, room.scratch), 0.5 * narrowest)
+                count = forbid(intervals, count, tilt - half, tilt + half, narrowest, BURIED, tally)
+                continue
+        count, x, y, z = forbid_probed(which, height, px, py, tilt, tool, mode, narrowest, intervals, count, room)
+        if kept < _KEPT:
+            for k in range(3):
+                past.point[place, kept, k] = p[k] + x * f[k] + y * t[k] + z * n[k]
+            kept += 1
+        if new:
+            slot = past.given[0] % _POOL
+            for k in range(3):
+                past.pool[k, slot] = p[k] + x * f[k] + y * t[k] + z * n[k]
+            past.given[0] += 1
+            if pooled < 0:
+                for i in range(min(past.given[0], _POOL)):
+                    _see(past, i, p, e1, e2, n)
+            else:
+                _see(past, slot, p, e1, e2, n)
+            pooled = min(past.given[0], _POOL)
+    past.count[place] = kept
+    return -1.0, pooled
+
+
+@kernel
+def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, past, room):
+    """Look for a posture of one sample at all rotations, those next to the first looked at first, among the tilts that `past` is
+    about.
+
+    Parameters
+    ----------
+    contacts : Contacts
+    row : int
+        The sample.
+    ranges : Ranges
+    tool : Tool
+        The cutter, smaller by the depth that does not matter.
+    solids : Solids
+        What is in the way.
+    within : float
+        Winding number from which a posture lies within a body.
+    narrowest : float
+        Intervals of tilt narrower than this are passed over, rad.
+    start : (int, float)
+        Rotation to begin with, and the tilt that is tried first at each.
+    turns : int
+        How many rotations to look at.
+    past : Memory, read and written
+    room : Room
+        Tilts are booked on what forbids them.
+
+    Returns
+    -------
+    rotation : int
+        -1 if there is no posture.
+    tilt : float
+        rad.
+    """
+    p, n, e1, e2 = contacts.point[row], contacts.normal[row], contacts.direction_max[row], room.e2
+    f, t, tally = room.f, room.t, room.tally
+    cross(n, e1, e2)
+    frame, rotations, modes = Frame(p, n, f, t), len(ranges.rotation_cos), len(tool.mode)
+    tally[:] = 0.0
+    pooled = -1
+    for step in range(turns):
+        side = (step + 1) // 2 if step % 2 else -(step // 2)
+        rotation = (start[0] + side) % rotations
+        room.scratch.looked[0] += ROTATION * modes
+        for mode in range(modes):
+            tilt, pooled = _rotation(
+                contacts,
+                row,
+                ranges,
+                rotation,
+                tool,
+                mode,
+                solids,
+                within,
+                narrowest,
+                start[1],
+                frame,
+                past,
+                pooled,
+                room,
+            )
+            if tilt >= 0.0:
+                return rotation, tilt
+    return -1, 0.0
+
+
+@entry
+def both(rotations, modes):
+    """Nothing remembered yet of either kind of sweep, and room for each."""
+    return (memory(rotations, modes, False), memory(rotations, modes, True)), (room_to_search(), room_to_search())
+
+
+@kernel
+def sweep_both(contacts, row, ranges, tool, solids, within, narrowest, starts, turns, pasts, rooms):
+    """`sweep` among the tilts that curvature allows at the contact, and, where these hold no posture, among the others.
+
+    The parameters are those of `sweep`, one of each kind; the two remember nothing of each other, so that a sample that needs the
+    others moves no posture of the samples after it. Returns rotation and tilt, and the starts for the next sample.
+    """
+    rotation, tilt = sweep(contacts, row, ranges, tool, solids, within, narrowest, starts[0], turns, pasts[0], rooms[0])
+    if rotation >= 0:
+        return rotation, tilt, ((rotation, tilt), starts[1])
+    if ranges.strict:
+        rooms[1].tally[:] = 0.0
+        return -1, 0.0, starts
+    rotation, tilt = sweep(contacts, row, ranges, tool, solids, within, narrowest, starts[1], turns, pasts[1], rooms[1])
+    if rotation >= 0:
+        return rotation, tilt, (starts[0], (rotation, tilt))
+    return -1, 0.0, starts

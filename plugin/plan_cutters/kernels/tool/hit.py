@@ -1,0 +1,381 @@
+"""Does a triangle, or any triangle of a tree, reach into a tool?
+
+A tool stands where a body puts it, a row of 14 numbers: the centre about which it tilts (3), its axis a (3), x_T (3), y_T (3),
+the distance of that centre from the axis along x_T, and by how much all is drawn out along y_T to either side (0 for a tool).
+Its pieces are those of `pieces`, heights measured from that centre along a. For a flat end the centre is the contact.
+
+The clever part: a triangle cut off at the two heights of a piece is a convex polygon, and it meets a cylinder exactly when
+its shadow along the axis comes nearer to the axis than the radius. No subdivision, no trigonometry, no tolerance. One walk of
+the tree serves all pieces: a piece that is apart from a box is not asked for again below it.
+
+`rate` widens all pieces, at a point Q, by `rate` times the distance of Q from the line through the centre along y_T. Tilting
+turns the tool about that line, and turning by at most `rate` moves Q by no more than that in the tool's frame: a miss with
+`rate` is a miss at every tilt within that turn.
+"""
+
+import numpy as np
+
+from plan_cutters.kernels.codes import ARC, BOTTOM, CYLINDER, HIGH, KIND, LOW, RADIUS, ROUND, SCALE, SLOPE, TOP
+from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.rows import Scratch
+from plan_cutters.kernels.tool.pieces import clipped, inset, polygon_hit, support
+
+P, A, X, Y, OFFSET, HALF, BODY = 0, 3, 6, 9, 12, 13, 14
+
+
+@entry
+def scratch():
+    """Room for walks of a tree."""
+    return Scratch(
+        np.empty(64, np.int64), np.empty(64, np.int64), np.empty((3, 3)), np.empty((4, 3)), np.empty((8, 3)), np.empty((8, 3)),
+        np.empty((64, 3, 3)), np.zeros(1, np.int64),
+    )  # fmt: skip
+
+
+@kernel
+def stand(body, frame, tilt_cos, tilt_sin, offset, rise):
+    """Write the body whose axis leans from the normal of a frame towards its lean direction by a tilt.
+
+    Its centre stands `rise` over the contact, `offset` from the axis.
+    """
+    p, n, f, t = frame.p, frame.n, frame.f, frame.t
+    for k in range(3):
+        body[P + k] = p[k] + rise * n[k]
+        body[A + k] = tilt_cos * n[k] + tilt_sin * f[k]
+        body[X + k] = tilt_cos * f[k] - tilt_sin * n[k]
+        body[Y + k] = t[k]
+    body[OFFSET], body[HALF] = offset, 0.0
+
+
+@kernel
+def half_width(box, i, x, y, z):
+    """Half the extent of box i along a unit direction."""
+    return (
+        box[i, 12] * abs(x * box[i, 3] + y * box[i, 4] + z * box[i, 5])
+        + box[i, 13] * abs(x * box[i, 6] + y * box[i, 7] + z * box[i, 8])
+        + box[i, 14] * abs(x * box[i, 9] + y * box[i, 10] + z * box[i, 11])
+    )
+
+
+@kernel
+def _thin_apart(box, i, body, piece, k, grow, dx, dy, dz):
+    """Whether a plane across the box's third side, the thin one, parts it from piece k."""
+    mx, my, mz = box[i, 9], box[i, 10], box[i, 11]
+    along = mx * body[3] + my * body[4] + mz * body[5]
+    side = mx * body[6] + my * body[7] + mz * body[8]
+    aside = mx * body[9] + my * body[10] + mz * body[11]
+    apart = mx * dx + my * dy + mz * dz + body[OFFSET] * side
+    across = np.sqrt(max(0.0, 1.0 - along * along))
+    if piece[k, KIND] == CYLINDER:
+        low, high = piece[k, LOW] - grow, piece[k, HIGH] + grow
+        apart = abs(apart - 0.5 * (low + high) * along)
+        extent = 0.5 * (high - low) * abs(along) + (piece[k, RADIUS] + grow) * across + body[HALF] * abs(aside)
+        return apart > extent + box[i, 14] + 1e-9
+    if apart < 0.5 * (piece[k, BOTTOM] + piece[k, TOP]) * along:
+        apart, along = -apart, -along
+    # Widened, a piece with square edges goes as far as in any direction along the axis and across it together.
+    extent = support(piece, k, along, across) + grow * (abs(along) + across) + body[HALF] * abs(aside)
+    return apart > extent + box[i, 14] + 1e-9
+
+
+@kernel
+def _stays(body, piece, k):
+    """Whether turning leaves piece k where it is: a whole ball about the line of turning."""
+    return (
+        piece[k, KIND] == ARC
+        and piece[k, RADIUS] == 0.0
+        and body[OFFSET] == 0.0
+        and piece[k, SLOPE] == 0.0
+        and piece[k, BOTTOM] == -piece[k, ROUND]
+        and piece[k, TOP] == piece[k, ROUND]
+    )
+
+
+@kernel
+def alive(box, i, body, piece, mask, rate):
+    """Those of the pieces of a mask into which a point of box i may reach: the others are parted from it by a slab or a plane."""
+    dx, dy, dz = box[i, 0] - body[0], box[i, 1] - body[1], box[i, 2] - body[2]
+    diagonal = box[i, 15]
+    widening = 0.0
+    height = dx * body[3] + dy * body[4] + dz * body[5]
+    across = dx * body[6] + dy * body[7] + dz * body[8]
+    if rate > 0.0:
+        widening = rate * (np.sqrt(height * height + across * across) + diagonal)
+    across += body[OFFSET]
+    aside = dx * body[9] + dy * body[10] + dz * body[11]
+    aside -= min(body[HALF], max(-body[HALF], aside))
+    square = across * across + aside * aside
+    extent = -1.0
+    for k in range(len(piece)):
+        if not (mask >> k) & 1:
+            continue
+        gone = 1 << k
+        grow = 0.0 if widening > 0.0 and _stays(body, piece, k) else widening
+        low, high = piece[k, BOTTOM] - grow, piece[k, TOP] + grow
+        if height + diagonal < low or height - diagonal > high:
+            mask ^= gone
+            continue
+        if height < low or height > high:
+            if extent < 0.0:
+                extent = half_width(box, i, body[3], body[4], body[5])
+            if height + extent < low or height - extent > high:
+                mask ^= gone
+                continue
+        if piece[k, KIND] == CYLINDER:
+            radius = piece[k, RADIUS] + grow
+            if square > radius * radius:
+                if square > (radius + diagonal) * (radius + diagonal):
+                    mask ^= gone
+                    continue
+                distance = np.sqrt(square)
+                ux, uy = across / distance, aside / distance
+                wide = half_width(
+                    box, i, ux * body[6] + uy * body[9], ux * body[7] + uy * body[10], ux * body[8] + uy * body[11]
+                )  # fmt: skip
+                if distance - wide > radius:
+                    mask ^= gone
+                    continue
+        elif _beyond(box, i, body, piece, k, grow, height, across, aside, square):
+            mask ^= gone
+            continue
+        if _thin_apart(box, i, body, piece, k, grow, dx, dy, dz):
+            mask ^= gone
+    return mask
+
+
+@kernel
+def _beyond(box, i, body, piece, k, grow, height, across, aside, square):
+    """Whether box i lies beyond a cone or an arc: a convex function is no less than its tangent at the box's centre."""
+    q = np.sqrt(square)
+    if piece[k, KIND] == ARC:
+        r, away = max(0.0, q - piece[k, RADIUS]), height - piece[k, SLOPE]
+        value = np.sqrt(r * r + away * away)
+        over = value - piece[k, ROUND] - grow
+        if over <= 0.0:
+            return False
+        out, up = r / value, away / value
+    else:
+        over = (q - piece[k, RADIUS] - piece[k, SLOPE] * (height - piece[k, LOW])) * piece[k, SCALE] - grow
+        if over <= 0.0:
+            return False
+        out, up = piece[k, SCALE], -piece[k, SLOPE] * piece[k, SCALE]
+    if over > box[i, 15]:
+        return True
+    ux, uy = 1.0, 0.0
+    if q > 0.0:
+        ux, uy = out * across / q, out * aside / q
+    elif out > 0.0:
+        # On the axis a cone has no tangent but its own height's.
+        return False
+    wide = half_width(
+        box, i, up * body[3] + ux * body[6] + uy * body[9], up * body[4] + ux * body[7] + uy * body[10],
+        up * body[5] + ux * body[8] + uy * body[11],
+    )  # fmt: skip
+    return over > wide
+
+
+@kernel
+def into_frame(vertex, i, body, rate, corner):
+    """Write triangle i as rows (height, x, y) in the tool's frame, from its axis; (how much `rate` widens it at most, least and
+    most height, a sum that is no number if any of it is none).
+    """
+    widening, least, most, total = 0.0, np.inf, -np.inf, 0.0
+    for c in range(3):
+        dx = vertex[i, c, 0] - body[0]
+        dy = vertex[i, c, 1] - body[1]
+        dz = vertex[i, c, 2] - body[2]
+        height = dx * body[3] + dy * body[4] + dz * body[5]
+        across = dx * body[6] + dy * body[7] + dz * body[8]
+        corner[c, 0] = height
+        corner[c, 1] = across + body[OFFSET]
+        corner[c, 2] = dx * body[9] + dy * body[10] + dz * body[11]
+        if rate > 0.0:
+            widening = max(widening, rate * np.sqrt(height * height + across * across))
+        least, most = min(least, height), max(most, height)
+        total += height + corner[c, 1] + corner[c, 2]
+    return widening, least, most, total
+
+
+@kernel
+def triangle_hit(vertex, i, body, piece, mask, rate, scratch):
+    """Whether triangle i reaches into a piece of a mask, and a point of it that does. A number that is none counts as a hit.
+
+    Parameters
+    ----------
+    vertex : (n, 3, 3) float64
+    body : (14,) float64
+    piece : (k, COLUMNS) float64
+    mask : int
+        A bit for each piece that is asked for.
+    rate : float
+    scratch : Scratch
+
+    Returns
+    -------
+    which : int
+        The piece, -1 for none.
+    height, px, py : float
+        With `rate` 0, a point of the triangle in the piece, in the tool's frame from its axis.
+    """
+    corner = scratch.corner
+    widening, least, most, total = into_frame(vertex, i, body, rate, corner)
+    # What is no number is in the way: comparisons below would let it pass.
+    total += widening
+    if total - total != 0.0:
+        return 0, 0.0, 0.0, 0.0
+    for k in range(len(piece)):
+        grow = 0.0 if widening > 0.0 and _stays(body, piece, k) else widening
+        if not (mask >> k) & 1 or most <= piece[k, BOTTOM] - grow or least >= piece[k, TOP] + grow:
+            continue
+        low, high = piece[k, LOW] - grow, piece[k, HIGH] + grow
+        where, count = clipped(corner, 3, least, most, low, high, scratch.polygon, scratch.spare)
+        if count == 0:
+            continue
+        source = corner if where == 0 else scratch.polygon if where == 1 else scratch.spare
+        hit, height, px, py = polygon_hit(source, count, piece, k, grow)
+        if hit:
+            return k, height, px, py
+    return -1, 0.0, 0.0, 0.0
+
+
+@kernel
+def _swept_hit(vertex, i, body, piece, mask, rate, scratch):
+    """`triangle_hit` with a rate, for triangles that reach from near the line of turning to far from it.
+
+    The widening is that of the farthest corner; where this hits, the longest side is halved until the widening is
+    about the same all over the piece.
+    """
+    spare, pieces = scratch.spare, scratch.pieces
+    for corner in range(3):
+        for k in range(3):
+            pieces[0, corner, k] = vertex[i, corner, k]
+    top = 1
+    while top > 0:
+        top -= 1
+        which, _, _, _ = triangle_hit(pieces, top, body, piece, mask, rate, scratch)
+        if which < 0:
+            continue
+        # Distances from the line of turning: only they make the widening differ over the piece.
+        farthest, longest, side = 0.0, -1.0, 0
+        for corner in range(3):
+            height, across = 0.0, 0.0
+            for k in range(3):
+                height += (pieces[top, corner, k] - body[k]) * body[3 + k]
+                across += (pieces[top, corner, k] - body[k]) * body[6 + k]
+            spare[corner, 0], spare[corner, 1] = height, across
+            farthest = max(farthest, height * height + across * across)
+        for corner in range(3):
+            other = corner + 1 if corner < 2 else 0
+            length = (spare[corner, 0] - spare[other, 0]) ** 2 + (spare[corner, 1] - spare[other, 1]) ** 2
+            if length > longest:
+                longest, side = length, corner
+        if longest <= 0.04 * farthest or rate * np.sqrt(farthest) < 1e-9 or top + 2 > len(pieces):
+            return True
+        other = side + 1 if side < 2 else 0
+        for corner in range(3):
+            for k in range(3):
+                pieces[top + 1, corner, k] = pieces[top, corner, k]
+        for k in range(3):
+            middle = 0.5 * (pieces[top, side, k] + pieces[top, other, k])
+            pieces[top, side, k] = middle
+            pieces[top + 1, other, k] = middle
+        top += 2
+    return False
+
+
+@kernel
+def everything(piece):
+    """The mask of all pieces."""
+    return (1 << len(piece)) - 1
+
+
+@kernel
+def tree_hit(tree, body, piece, rate, hint, scratch):
+    """First triangle found that reaches into the tool, the piece, and with `rate` 0 its point.
+
+    Parameters
+    ----------
+    tree : Tree
+    body : (14,) float64
+    piece : (k, COLUMNS) float64
+    rate : float
+    hint : int
+        Triangle to try first (the last one that was in the way), or -1.
+    scratch : Scratch
+        64 pieces let a triangle be halved often enough where `rate` > 0.
+
+    Returns
+    -------
+    triangle, which : int
+        -1 if none.
+    height, px, py : float
+        Its point, as `triangle_hit` gives it.
+    """
+    vertex, box, depth = tree.vertex, tree.box, tree.depth
+    stack, masks, whole = scratch.stack, scratch.masks, everything(piece)
+    if hint >= 0:
+        which, height, px, py = triangle_hit(vertex, hint, body, piece, whole, rate, scratch)
+        if which >= 0 and (rate == 0.0 or _swept_hit(vertex, hint, body, piece, whole, rate, scratch)):
+            return hint, which, height, px, py
+    n, first, top = len(vertex), (1 << depth) - 1, 1
+    stack[0], masks[0] = 0, whole
+    while top > 0:
+        top -= 1
+        node = stack[top]
+        scratch.looked[0] += 1
+        mask = alive(box, node, body, piece, masks[top], rate)
+        if mask == 0:
+            continue
+        if node < first:
+            stack[top], masks[top] = 2 * node + 2, mask
+            stack[top + 1], masks[top + 1] = 2 * node + 1, mask
+            top += 2
+            continue
+        leaf = node - first
+        for i in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
+            which, height, px, py = triangle_hit(vertex, i, body, piece, mask, rate, scratch)
+            if which >= 0 and (rate == 0.0 or _swept_hit(vertex, i, body, piece, mask, rate, scratch)):
+                return i, which, height, px, py
+    return -1, -1, 0.0, 0.0, 0.0
+
+
+@kernel
+def _depth_of(box, i, body, piece, mask):
+    """How deep at least the centre of box i lies in the pieces of a mask; negative outside."""
+    dx, dy, dz = box[i, 0] - body[0], box[i, 1] - body[1], box[i, 2] - body[2]
+    height = dx * body[3] + dy * body[4] + dz * body[5]
+    across = dx * body[6] + dy * body[7] + dz * body[8] + body[OFFSET]
+    aside = dx * body[9] + dy * body[10] + dz * body[11]
+    square, best = across * across + aside * aside, -np.inf
+    for k in range(len(piece)):
+        if (mask >> k) & 1:
+            best = max(best, inset(piece, k, height, square))
+    return best
+
+
+@kernel
+def deep_hit(tree, body, piece, scratch):
+    """`tree_hit` with `rate` 0, of two boxes the one that lies deeper first: where something is in the way, sooner there."""
+    vertex, box, depth = tree.vertex, tree.box, tree.depth
+    stack, masks, n, first, top = scratch.stack, scratch.masks, len(vertex), (1 << depth) - 1, 1
+    stack[0], masks[0] = 0, everything(piece)
+    while top > 0:
+        top -= 1
+        node = stack[top]
+        scratch.looked[0] += 1
+        mask = alive(box, node, body, piece, masks[top], 0.0)
+        if mask == 0:
+            continue
+        if node < first:
+            deeper = _depth_of(box, 2 * node + 1, body, piece, mask) >= _depth_of(box, 2 * node + 2, body, piece, mask)
+            left = 1 if deeper else 0
+            stack[top], masks[top] = 2 * node + 1 + left, mask
+            stack[top + 1], masks[top + 1] = 2 * node + 2 - left, mask
+            top += 2
+            continue
+        leaf = node - first
+        for i in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
+            which, height, px, py = triangle_hit(vertex, i, body, piece, mask, 0.0, scratch)
+            if which >= 0:
+                return i, which, height, px, py
+    return -1, -1, 0.0, 0.0, 0.0
