@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 _NOT_BUILT = {
     "cluster": "clusters are not used yet; --jobs gives threads on this machine",
 }
+#: Parameters of the commands that `Options` names otherwise.
+NAMED = {"cutter": "cutters", "cutters": "libraries", "fixture": "fixtures"}
 #: Bytes of memory below which nothing can be planned.
 LEAST_MEMORY = 2e9
 
@@ -149,51 +151,44 @@ def _fixture(file: str) -> None:
 
 def options_of(given: dict[str, Any]) -> "Options":
     """The options of a plan, from the words of the command line; a PlanError for what has no meaning."""
-    from plan_cutters.domain.cutter import Cutter
-    from plan_cutters.domain.holder import Holder
-    from plan_cutters.domain.posture import PostureRange
-    from plan_cutters.errors import OptionError
-    from plan_cutters.library.records import Library
     from plan_cutters.options import Options
 
+    return Options(**words_of(given))
+
+
+def words_of(given: dict[str, Any]) -> dict[str, Any]:
+    """What is given on a command line, by the names that `Options` has for it; what `Options` does not have is left out."""
+    from dataclasses import fields
+
+    from plan_cutters.domain.posture import PostureRange
+    from plan_cutters.options import Options
+
+    known = {each.name for each in fields(Options)}
+    words = {NAMED.get(name, name): value for name, value in given.items() if NAMED.get(name, name) in known}
     postures = PostureRange.degrees(given["tilt"], given["rotation"], given["rotation_step"])
-    more = {} if given["jobs"] is None else {"jobs": given["jobs"]}
+    words |= {"tilt": postures.tilt, "rotation": postures.rotation, "rotation_step": postures.step}
+    words |= {"setup": given["setup"][0], "other_setups": given["setup"][1:]}
+    return words | _tools(given)
+
+
+def _tools(given: dict[str, Any]) -> dict[str, Any]:
+    """Cutters, libraries and the holder."""
+    from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.domain.holder import Holder
+    from plan_cutters.errors import OptionError
+    from plan_cutters.library.records import Library
+
     holder: Holder | str | None = None
     libraries: list[Library] = []
+    words = {"assume_stickout": given.get("assume_stickout"), "skip_bad": given.get("skip_bad", False)}
     if given["holder"] is not None or given["cutters"]:
         # Who names neither need not load the readers.
         from plan_cutters.library.read import holder_of, read_library
 
         holder = None if given["holder"] is None else holder_of(given["holder"])
-        words = {"assume_stickout": given["assume_stickout"], "holder": holder, "skip_bad": given["skip_bad"]}
-        libraries = [read_library(file, **words) for file in given["cutters"]]
-    if not given["cutters"] and (given["assume_stickout"] is not None or given["skip_bad"]):
-        word = "--skip-bad" if given["skip_bad"] else "--assume-stickout"
+        libraries = [read_library(file, holder=holder, **words) for file in given["cutters"]]
+    if not given["cutters"] and (words["assume_stickout"] is not None or words["skip_bad"]):
+        word = "--skip-bad" if words["skip_bad"] else "--assume-stickout"
         raise OptionError(f"{word} is about the tools of a library: give it with --cutters")
-    return Options(
-        cutters=tuple(Cutter.parse(spec) for spec in given["cutter"]),
-        libraries=tuple(libraries),
-        holder=None if isinstance(holder, str) else holder,
-        allowance=given["allowance"],
-        holder_clearance=given["holder_clearance"],
-        machine=given["machine"],
-        setup=given["setup"][0],
-        other_setups=given["setup"][1:],
-        faces=given["faces"],
-        ignore=given["ignore"],
-        grid=given["grid"],
-        spacing=given["spacing"],
-        tilt=postures.tilt,
-        rotation=postures.rotation,
-        rotation_step=postures.step,
-        tolerance=given["tolerance"],
-        flip=given["flip"],
-        area_budget=given["area_budget"],
-        posture_maps=given["posture_maps"],
-        map_budget=given["map_budget"],
-        answers=given["answers"],
-        length_over_radius=given["length_over_radius"],
-        unit=given["unit"],
-        fixtures=given["fixture"],
-        **more,
-    )
+    return {"cutters": tuple(Cutter.parse(spec) for spec in given["cutter"]), "libraries": tuple(libraries),
+            "holder": None if isinstance(holder, str) else holder}  # fmt: skip
