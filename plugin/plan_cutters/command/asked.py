@@ -7,10 +7,12 @@ import math
 import os
 import sys
 from collections.abc import Sequence
+from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cad_io.errors import CadIoError, ReadError
+from plan_cutters.command.entry import SUBCOMMANDS
 
 if TYPE_CHECKING:
     from plan_cutters.options import Options
@@ -43,10 +45,7 @@ def check(parts: Sequence[str], given: dict[str, Any]) -> "tuple[Options, list[C
         for out in folders(parts, given):
             _writable(out)
     options = options_of(given)
-    _selections(options)
-    for fixture in options.fixtures:
-        if isinstance(fixture.source, str) and not fixture.kind:
-            _fixture(fixture.source)
+    look_at(options)
     return options, faults
 
 
@@ -107,7 +106,8 @@ def _faults(parts: Sequence[str]) -> list[CadIoError]:
         try:
             kind(part)
         except CadIoError as error:
-            found.append(error)
+            near = [] if os.path.exists(part) else get_close_matches(part, SUBCOMMANDS, 1)
+            found.append(ReadError(f"no such file; the command {near[0]}?", file=part) if near else error)
     return found
 
 
@@ -125,13 +125,17 @@ def _writable(out: Path) -> None:
             raise PlanError(f"cannot write there ({why}); give another folder with -o", file=str(out))
 
 
-def _selections(options: "Options") -> None:
+def look_at(options: "Options") -> None:
+    """An error for words for faces that say nothing, and for fixtures whose file cannot be read."""
     from plan_cutters.scene.faces import grammar
 
     given = options.ignore if isinstance(options.ignore, list | tuple) else (options.ignore,)
     for option, text in (("--faces", options.faces), *(("--ignore", each) for each in given)):
         if isinstance(text, str):
             grammar(text, option)
+    for fixture in options.fixtures:
+        if isinstance(fixture.source, str) and not fixture.kind:
+            _fixture(fixture.source)
 
 
 def _fixture(file: str) -> None:

@@ -10,7 +10,6 @@ from importlib import import_module
 from typing import Any, NoReturn
 
 import click
-from click.core import ParameterSource
 
 from plan_cutters.command import grouped, terminal
 from plan_cutters.command.codes import ended, guarded, invoked
@@ -52,7 +51,7 @@ def command(parts: tuple[str, ...], **given: Any) -> int:
     if given["postures"] is not None:
         from plan_cutters.command.stored import stored
 
-        return stored(parts[0], given["postures"], asked, given, named())
+        return stored(parts[0], given["postures"], asked, given, grouped.named())
     codes = []
     outs = folders(parts, given)
     since: float | None = began()
@@ -75,12 +74,6 @@ def command(parts: tuple[str, ...], **given: Any) -> int:
         if code == INTERRUPTED:
             break
     return max(codes)
-
-
-def named() -> set[str]:
-    """The parameters that stand on the command line: the others have their defaults."""
-    context = click.get_current_context()
-    return {name for name in context.params if context.get_parameter_source(name) is not ParameterSource.DEFAULT}
 
 
 def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:

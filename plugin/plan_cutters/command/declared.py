@@ -90,8 +90,8 @@ _OPTIONS = (
         "--holder",
         type=Words("SPEC|FILE", values.holder_words, files=True),
         help="Holder of the cutters that have none: a collet chuck as er32, hsk63a-er32 or bt40-er16x100 (the command `tools` "
-        "lists them with --list-holders); D30L30 or R15L30 (diameter or radius, length); stages from the nose up joined by +, cones as "
-        "D24:30L20; a file with a holder (FILE#NAME if it has several); or `none`.",
+        "lists them with --list-holders); D30L30 or R15L30 (diameter or radius, length); stages from the nose up joined by +, "
+        "cones as D24:30L20; a file with a holder (FILE#NAME if it has several); or `none`.",
     ),
     _cutters("--assume-stickout", type=float, metavar="MM", help="Stick-out of the libraries' tools that state none."),
     _cutters("--skip-bad", is_flag=True, help="If some tools of a library are broken, use the others."),
@@ -199,8 +199,7 @@ _OPTIONS = (
     _postures(
         "--postures",
         type=File("FILE"),
-        help="Answer for this machine, setup, tilts and rotations from the part's postures.npz alone, without a new search. "
-        "What is not given means what the maps were made with; what they cannot answer is refused.",
+        help="Answer from the part's postures.npz alone, as the command `stored` does.",
     ),
     _output("-o", "--out", type=Folder("DIR"), help="Folder for the files.  [default: <part>-plan]"),
     _output(
@@ -253,10 +252,13 @@ _OPTIONS = (
 )
 
 
-def options(*names: str, **changes: dict[str, Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+def options(
+    *names: str, defaults: bool = True, **changes: dict[str, Any]
+) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Declare these options, all of them where none is named, in the order above; `changes`: what is otherwise, by name.
 
-    A name is that of the option on the command line, without the dashes and with `_` for `-`.
+    A name is that of the option on the command line, without the dashes and with `_` for `-`. `defaults`: whether help says
+    them.
     """
 
     def declare(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -264,6 +266,8 @@ def options(*names: str, **changes: dict[str, Any]) -> Callable[[Callable[..., A
             name = next(word for word in option.words if word.startswith("--"))[2:].replace("-", "_")
             if not names or name in names or name in changes:
                 more = {**option.more, **changes.get(name, {})}
+                if not defaults:
+                    more["help"] = more["help"].partition("  [default:")[0]
                 function = heading(option.group)(*option.words, **more)(function)
         return function
 

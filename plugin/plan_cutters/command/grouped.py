@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from plan_cutters import __version__
 
@@ -82,6 +83,12 @@ class Command(click.Command):
         if self.codes:
             with formatter.section(_bold("Exit codes")):
                 formatter.write_dl(self.codes)
+
+
+def named() -> set[str]:
+    """The parameters that stand on the command line: the others have their defaults."""
+    context = click.get_current_context()
+    return {name for name in context.params if context.get_parameter_source(name) is not ParameterSource.DEFAULT}
 
 
 def colour() -> bool | None:

@@ -106,9 +106,10 @@ def command(part: str, **given: Any) -> int:
     from plan_cutters.point import posture_map
     from plan_cutters.scene.scene import Scene
 
+    tolerance = {"tolerance": given["tolerance"]} if given["tolerance"] > 0 else {}
     scene = Scene.of(
         read_part(part, unit=options.unit, guarded=hasattr(os, "fork")), setup=options.setup, flip=options.flip,
-        ignore=options.ignore, fixtures=options.fixtures, tolerance=options.tolerance,
+        ignore=options.ignore, fixtures=options.fixtures, **tolerance,
     )  # fmt: skip
     foot, off = nearest(scene.part, place, ignore=scene.ignored)
     if off > given["within"]:
@@ -147,10 +148,10 @@ def _point_of(text: str) -> tuple[float, float, float]:
 
 
 def _options(given: dict[str, Any]) -> "Options":
-    """The options of a plan of one cutter: inline, or of a library. A tolerance of 0 is left to whoever makes the map."""
+    """The options of a plan of one cutter, which is inline or of a library."""
     from plan_cutters.command.asked import words_of
     from plan_cutters.errors import OptionError
-    from plan_cutters.options import Options
+    from plan_cutters.options import LEAST_TOLERANCE, Options
 
     library = given["cutters"]
     one = {"cutter": () if library else (given["cutter"],), "cutters": (library,) if library else (), "skip_bad": bool(library),
@@ -163,8 +164,8 @@ def _options(given: dict[str, Any]) -> "Options":
             many = "several tools are" if mine else "no tool is"
             raise OptionError(f"{many} called {given['cutter']!r}: plan-cutters tools lists them", file=library)
         words["cutters"] = mine
-    if given["tolerance"] == 0:
-        del words["tolerance"]
+    # A map may be asked for with a smaller one, and with none.
+    words["tolerance"] = max(given["tolerance"], LEAST_TOLERANCE)
     return Options(**words)
 
 
