@@ -37,7 +37,7 @@ _point = heading("Point")
     cls=Command,
     examples=(
         (f"{_SELF} samples/v_groove.step --at 0,0,0 --cutter R8L90 --tilt 0:60", "A cutter at the bottom of a groove:"),
-        (f"{_SELF} blade.step --at 12,3,40 --cutter R6L80 --machine trunnion-ac", "What a machine can hold there:"),
+        (f"{_SELF} blade.step --at 12,3,4 --cutter R6L80 --machine trunnion-ac", "What a machine can hold there:"),
     ),
     codes=(
         ("0", "some tilt is free"),

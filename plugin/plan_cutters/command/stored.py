@@ -31,8 +31,8 @@ _LISTED = 3
     examples=(
         (f"{_SELF} blade-plan/postures.npz --machine trunnion-ac", "On another machine:"),
         (
-            f"{_SELF} blade-plan/postures.npz blade.step --setup +x --tilt 0:60",
-            "In another setup, if the part is still that:",
+            f"{_SELF} blade-plan/postures.npz blade.step --setup +x",
+            "In another setup, if blade.step is still that part:",
         ),
     ),
     codes=(
