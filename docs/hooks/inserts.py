@@ -4,18 +4,17 @@
 """
 
 import re
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from click import Command
 from click.testing import CliRunner
 
-from plan_cutters.command.entry import MODULES
+from plan_cutters.command.entry import module_of
 
 
 def on_page_markdown(markdown: str, **_: Any) -> str:
-    markdown = re.sub(r"<!-- help: (\S+) -->", lambda found: f"```text\n{_help(found[1])}```", markdown)
+    markdown = re.sub(r"<!-- help: (.+?) -->", lambda found: f"```text\n{_help(found[1])}```", markdown)
     docs = Path(__file__).parent.parent
     return re.sub(
         r"<!-- file: (\S+) -->", lambda found: f"```text\n{(docs / found[1]).read_text('utf-8')}```", markdown
@@ -23,7 +22,7 @@ def on_page_markdown(markdown: str, **_: Any) -> str:
 
 
 def _help(name: str) -> str:
-    command: Command = import_module(f"plan_cutters.command.{MODULES[name]}").command
+    command: Command = module_of(name).command
     result = CliRunner(env={"COLUMNS": "100", "NO_COLOR": "1", "TERM": "dumb"}).invoke(
         command, ["--help"], prog_name=name
     )

@@ -2,11 +2,12 @@
 
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from difflib import get_close_matches
-from typing import Any
+from typing import Any, TypedDict
 
+from cad_io.arrays import Floats
 from cad_io.units import UNITS
 from plan_cutters.domain.answers import answers_of
 from plan_cutters.domain.checks import choice, flag, items, number, shown, whole
@@ -62,6 +63,52 @@ def cores() -> int:
 
 #: Contacts between the samples unless a number is asked for: so many for each sample, and at most.
 _BETWEEN, _MOST_BETWEEN = 24, 100_000
+
+
+Direction = str | os.PathLike[str] | Placement | Sequence[float] | Floats
+Range = Sequence[float] | Floats
+
+
+class PointOptions(TypedDict, total=False):
+    """Options of one point, of a scene and of a plan, as a caller may give them: `Options` says what each means."""
+
+    setup: Direction
+    flip: bool
+    ignore: Any
+    fixtures: Any
+
+
+class SceneOptions(PointOptions, total=False):
+    """Options of a scene and of a plan."""
+
+    tolerance: float
+
+
+class PlanOptions(SceneOptions, total=False):
+    """Options of a plan: the names are those of `Options`, the types those that it takes, not those that it keeps."""
+
+    cutters: Cutter | str | Library | Sequence[Cutter | str] | None
+    libraries: Library | Sequence[Library] | None
+    holder: Holder | str | None
+    allowance: float
+    holder_clearance: float
+    machine: Machine | str | os.PathLike[str] | None
+    other_setups: Sequence[Direction]
+    faces: Any
+    grid: int | None
+    spacing: float | None
+    tilt: Range
+    rotation: Range
+    rotation_step: float
+    jobs: int | None
+    area_budget: int | None
+    posture_maps: bool
+    map_budget: int | None
+    answers: str | Sequence[str]
+    length_over_radius: float
+    unit: str | None
+    placement: Placement | None
+    other_placements: Sequence[Placement | None]
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Any, Unpack, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +32,7 @@ from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.verdicts import CONVEX, UNJUDGED, Reach, blank
 from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.kernels.rows import Contacts
-from plan_cutters.options import Options
+from plan_cutters.options import Options, PlanOptions
 from plan_cutters.result import Result
 from plan_cutters.scene.buried import buried
 from plan_cutters.scene.conditions import Conditions, contacts_of, found_of, tool_of
@@ -60,7 +60,7 @@ _WORK_SHARE, _WORK_LEAST = 0.5, 2e7
 _MANY_FACES, _SAMPLING = 12, 60.0
 
 
-def plan(part: Any, *, progress: Progress | None = None, **options: Any) -> Result:
+def plan(part: Any, *, progress: Progress | None = None, **options: Unpack[PlanOptions]) -> Result:
     """Judge each cutter on the target faces of a part.
 
     Parameters
@@ -97,15 +97,20 @@ def plan(part: Any, *, progress: Progress | None = None, **options: Any) -> Resu
     """
     if progress is not None and not callable(progress):
         raise OptionError(f"progress must be a function of (stage, done, total), not {shown(progress)}")
-    given = part.options | options if isinstance(part, Scene) else options
+    given = {**part.options, **options} if isinstance(part, Scene) else options
     return run(part, Options.of(given), Clock(progress))
 
 
-_OPTIONS = [each.replace(kind=each.KEYWORD_ONLY) for each in inspect.signature(Options).parameters.values()]
-#: What `help` and editors show: an option is declared once, in `Options`.
-vars(plan)["__signature__"] = inspect.Signature(
-    [*list(inspect.signature(plan).parameters.values())[:2], *_OPTIONS], return_annotation=Result
-)
+def _signature() -> inspect.Signature:
+    """The signature of `plan` for people: `help` would show `**options: Unpack[PlanOptions]`, without a name or a default."""
+    types, defaults = get_type_hints(PlanOptions), inspect.signature(Options).parameters.values()
+    options = [each.replace(kind=each.KEYWORD_ONLY, annotation=types[each.name]) for each in defaults]
+    return inspect.Signature(
+        [*list(inspect.signature(plan).parameters.values())[:2], *options], return_annotation=Result
+    )
+
+
+vars(plan)["__signature__"] = _signature()
 
 
 def run(

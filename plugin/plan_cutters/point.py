@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from numbers import Real
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import OptionError
-from plan_cutters.options import machine_given
+from plan_cutters.options import PointOptions, machine_given
 from plan_cutters.scene.conditions import tools
 from plan_cutters.scene.scene import Scene
 from plan_cutters.stages.posture_map import SETTLED, Ask, PostureMap, moved, posture_map_of
@@ -40,7 +40,7 @@ def posture_map(
     machine: Machine | str | None = None,
     tolerance: float | None = None,
     x: Sequence[float] | None = None,
-    **scene: Any,
+    **scene: Unpack[PointOptions],
 ) -> PostureMap:
     """Find the free tilt intervals of a cutter at a point of a part.
 

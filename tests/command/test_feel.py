@@ -15,6 +15,7 @@ from types import SimpleNamespace
 import pytest
 
 from plan_cutters import plan
+from plan_cutters.command import entry
 from plan_cutters.command import summary as summaries
 from plan_cutters.command.progress import Display
 from plan_cutters.command.rows import _distinct
@@ -114,16 +115,16 @@ def test_of_several_parts_those_that_cannot_be_read_are_named_at_once(tmp_path):
 def test_help_is_in_groups_with_examples_and_fits(tmp_path):
     said = run("--help", cwd=tmp_path).stdout
     heads = re.findall(r"^(\w.*):$", said, re.MULTILINE)
-    assert heads == ["Cutters", "Machine and setup", "Faces", "Sampling and tolerances", "Postures", "Output", "Answers", "Run",
-                     "Examples", "Exit codes"]  # fmt: skip
+    assert heads == ["Commands", "Cutters", "Machine and setup", "Faces", "Sampling and tolerances", "Postures", "Output",
+                     "Answers", "Run", "Examples", "Exit codes"]  # fmt: skip
     assert max(map(len, said.splitlines())) <= 80
     assert "\x1b" not in said
     examples = [line.split() for line in said.splitlines() if line.strip().startswith("plan-cutters ")]
     assert len(examples) >= 5
-    from plan_cutters.command.cli import command
-
     for _, *words in examples:
-        assert command.make_context("plan-cutters", words).params["parts"]
+        name = f"plan-cutters {words.pop(0)}" if words[0] in entry.SUBCOMMANDS else "plan-cutters"
+        params = entry.module_of(name).command.make_context(name, words).params
+        assert params.get("parts") or params["part"]
 
 
 def completed(words, cwd):

@@ -16,7 +16,6 @@ from cad_io import read_part
 from cad_io.errors import SampleError
 from cad_io.sample import nearest
 from plan_cutters import posture_map
-from plan_cutters.command import cli
 from plan_cutters.command import map as of_a_point
 from plan_cutters.domain.intervals import without
 from plan_cutters.report.map_picture import CAUSES, forbidden
@@ -26,9 +25,9 @@ from tests.support.forked import run as run_copied
 GROOVE = "samples/v_groove.step"
 
 
-def run(capsys, *words, main=of_a_point.main):
+def run(capsys, *words):
     with pytest.raises(SystemExit) as ended:
-        main(list(words))
+        of_a_point.main(list(words))
     out, err = capsys.readouterr()
     return ended.value.code, out, err
 
@@ -139,7 +138,7 @@ def test_what_is_left_of_intervals():
         ([GROOVE, "--at", "0,0,0", "--cutter", "R8L90", "--machine", "mill"], 2, "mill"),
         ([GROOVE, "--at", "0,0,0", "--cutter", "R8L90", "--tilt", "50:10"], 2, "must run upwards"),
         ([GROOVE, "--at", "0,0,0", "--cutter", "R8L90", "--within", "-1"], 2, "--within"),
-        ([GROOVE, "--at", "0,0,0", "--cutter", "R8L90", "--allowance", "nan"], 2, "--allowance"),
+        ([GROOVE, "--at", "0,0,0", "--cutter", "R8L90", "--allowance", "nan"], 2, "allowance must be a number"),
         ([GROOVE, "--at", "0,0,0", "--cutter", "R8L90", "--setup", "nix.toml"], 2, "nix.toml: cannot be read"),
         ([GROOVE, "--at", "0,0,0", "--cutter", "R8L90", "--machine", "3-axis"], 2, "fewer than two rotary axes"),
         ([GROOVE, "--at", "0,0,0", "--cutter", "X", "--cutters", "samples/shop.toml"], 2, "no tool is called 'X'"),
@@ -148,7 +147,7 @@ def test_what_is_left_of_intervals():
 def test_mistakes_are_one_line(capsys, words, code, says):
     found, out, err = run(capsys, *words)
     assert (found, out) == (code, "")
-    assert err.startswith("plan-cutters-map: ")
+    assert err.startswith("plan-cutters map: ")
     assert err.count("\n") == 1
     assert says in err
 
@@ -232,15 +231,6 @@ def test_a_reader_that_goes_is_no_verdict():
         shell=True, executable="/bin/bash", capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert (done.stdout.strip(), done.stderr) == ("141", "")
-
-
-def test_the_word_map_unless_a_file_has_that_name(capsys, tmp_path, monkeypatch):
-    part = os.path.abspath(GROOVE)
-    monkeypatch.chdir(tmp_path)
-    assert "--at" in run(capsys, "map", part, main=cli.main)[2]
-    (tmp_path / "map").write_text("no part")
-    monkeypatch.setattr(of_a_point, "main", lambda words: pytest.fail("the file was meant"))
-    assert run(capsys, "map", "--grid", "x", main=cli.main)[0] == 2
 
 
 def test_as_a_program(tmp_path):

@@ -82,7 +82,7 @@ def test_it_begins_early_where_there_is_a_part(monkeypatch, words, begun):
     class Made:
         drop = None
 
-    monkeypatch.setattr(worker, "Worker", lambda words, entry, *, waits: made.append((words, waits)) or Made)
+    monkeypatch.setattr(worker, "Worker", lambda words, name, *, waits: made.append((words, waits)) or Made)
     worker.begin_early(words)
     assert made == ([(words, True)] if begun else [])
     assert len(worker._early) == len(made)

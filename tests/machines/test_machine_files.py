@@ -531,7 +531,7 @@ def test_bad_machine_files_are_one_line(name, content, why, tmp_path, capsys):
     assert ended.value.code == 2
     told = capsys.readouterr()
     assert told.err.count("\n") == 1
-    assert told.err.startswith("plan-cutters-machines: ")
+    assert told.err.startswith("plan-cutters machines: ")
 
 
 def test_what_is_no_file_is_one_line(tmp_path):

@@ -4,10 +4,12 @@ import json
 import math
 from dataclasses import fields, replace
 
+import click
 import numpy as np
 import pytest
 
 from plan_cutters import Cutter, Options, PostureMaps, plan
+from plan_cutters.command import stored
 from plan_cutters.command.cli import command
 from plan_cutters.command.codes import guarded, invoked
 from plan_cutters.domain.placement import Placement
@@ -74,9 +76,12 @@ def library(tmp_path_factory):
     return path
 
 
-def test_every_option_is_answered_compared_refused_or_of_no_matter():
-    kinds = question.ANSWERED, question.COMPARED, question.BEYOND, question.IRRELEVANT
-    assert sorted(word for kind in kinds for word in kind) == sorted(each.name for each in fields(Options))
+def test_every_option_is_answered_compared_or_of_no_matter_and_the_others_are_refused():
+    kinds = question.ANSWERED, question.COMPARED, question.IRRELEVANT
+    known = [word for kind in kinds for word in kind]
+    assert len(known) == len(set(known))
+    beyond = {each.name for each in fields(Options)} - set(known)
+    assert all(refused for word in beyond for _, refused in CASES[word])
     assert set(CASES) == {each.name for each in fields(Options)}
 
 
@@ -151,6 +156,42 @@ def test_the_command_answers_what_it_can(file, found, capsys):
         assert line == ""
         assert code == (1 if answer["samples"]["inaccessible"] else 4 if answer["samples"]["undecided"] else 0)
         assert sum(answer["samples"].values()) == len(found.samples)
+
+
+def test_the_subcommand_answers_as_the_option_does(file, tmp_path, capsys):
+    """With and without the part; it knows no options about files, and says no defaults that it does not have."""
+
+    def subcommand(*words):
+        line = guarded(
+            lambda: (invoked(stored.command, "plan-cutters stored", [str(word) for word in words]), ""), False
+        )
+        return *line, "".join(capsys.readouterr())
+
+    for words in (
+        [],
+        ["--machine", "tilt:25"],
+        ["--setup", "1,0.3,0.2", "--jobs", "1"],
+        ["--faces", "F2"],
+        ["--tilt", "0:120"],
+    ):
+        code, line = told(PART, "--postures", file, *words)
+        said = "".join(capsys.readouterr())
+        assert subcommand(file, PART, *words) == (code, line, said)
+        assert (said == "") == (code == 2)
+        alone = said.replace("pocket_top.step:", "postures.npz:", 1)
+        alone = [str(each).split() for each in (code, line, alone)]
+        assert [str(each).split() for each in subcommand(file, *words)] == alone
+    other = tmp_path / "other.step"
+    other.write_bytes(Path(PART).read_bytes() + b" ")
+    assert subcommand(file, other)[:2] == (
+        2,
+        "plan-cutters: postures.npz: these maps are of another part than other.step: plan again",
+    )
+    assert subcommand(tmp_path / "none.npz")[0] == 2
+    assert subcommand(file, tmp_path / "none.step")[0] == 3
+    assert "No such option" in subcommand(file, "-o", "out")[1]
+    assert subcommand("--help")[0] == 0
+    assert not any("default" in (each.help or "") for each in stored.command.params if isinstance(each, click.Option))
 
 
 def kept(file, folder, maps, **more):

@@ -19,7 +19,7 @@ import traceback
 import warnings
 from types import SimpleNamespace
 
-from plan_cutters.command.entry import MODULES
+from plan_cutters.command import entry
 from tests.support.places import ROOT
 
 ENV = {**os.environ, "PYTHONPATH": f"{ROOT / 'plugin'}{os.pathsep}{ROOT}"}
@@ -53,7 +53,7 @@ def run(*words, cwd=None, command="plan-cutters", environment=None, bare=False, 
 @functools.cache
 def _warm(command):
     """Import what the command imports, and load its machine code, once for all copies."""
-    importlib.import_module(f"plan_cutters.command.{MODULES[command]}")
+    entry.module_of(command)
     if command in ("plan-cutters", "plan-cutters-map"):
         from plan_cutters import plan
 
@@ -104,29 +104,27 @@ def _command(command, words, cwd, environment, streams, bare):
             del sys.modules[name]
         sys.modules["OCP"] = sys.modules["numba"] = subprocess.Popen = None
     worker = importlib.import_module("plan_cutters.command.worker")
-    if not bare:
-        worker.subprocess = SimpleNamespace(**{**vars(subprocess), "Popen": _worker})
     if bare:
-        # No worker begins early.
-        return importlib.import_module(f"plan_cutters.command.{MODULES[command]}").main()
-    entry = importlib.import_module("plan_cutters.command.entry")
-    vars(entry)[next(name for name, each in _ENTRIES.items() if each == command)]()
+        worker.begin_early = lambda words: None
+    else:
+        worker.subprocess = SimpleNamespace(**{**vars(subprocess), "Popen": _worker})
+    vars(importlib.import_module("plan_cutters.command.entry"))[_ENTRIES[command]]()
 
 
 _ENTRIES = {
-    "plan_cutters": "plan-cutters",
-    "tools": "plan-cutters-tools",
-    "machines": "plan-cutters-machines",
-    "point_map": "plan-cutters-map",
+    "plan-cutters": "plan_cutters",
+    "plan-cutters-tools": "tools",
+    "plan-cutters-machines": "machines",
+    "plan-cutters-map": "point_map",
 }
 
 
 def _worker(words, *, env, start_new_session, pass_fds):
     """Start the command's worker: a copy of this process in place of a new interpreter that calls the same entry."""
     python, option, run, *words = words
-    name = run.partition(" import ")[2].partition(";")[0]
+    name = run.partition("'")[2].rpartition("'")[0]
     assert (python, option) == (sys.executable, "-c"), "the worker is started in another way: copy that"
-    assert run == f"from plan_cutters.command.entry import {name}; {name}()"
+    assert run == f"from plan_cutters.command.entry import begin; begin({name!r})"
 
     def work():
         if start_new_session:
@@ -141,8 +139,8 @@ def _worker(words, *, env, start_new_session, pass_fds):
             signal.signal(number, signal.SIG_DFL)
         os.environ.clear()
         os.environ.update(env)
-        sys.argv = [_ENTRIES[name], *words]
-        vars(importlib.import_module("plan_cutters.command.entry"))[name]()
+        sys.argv = [name, *words]
+        entry.begin(name)
 
     pid = os.fork()
     if pid == 0:

@@ -7,10 +7,12 @@ import math
 import os
 import sys
 from collections.abc import Sequence
+from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cad_io.errors import CadIoError, ReadError
+from plan_cutters.command.entry import SUBCOMMANDS
 
 if TYPE_CHECKING:
     from plan_cutters.options import Options
@@ -19,6 +21,8 @@ if TYPE_CHECKING:
 _NOT_BUILT = {
     "cluster": "clusters are not used yet; --jobs gives threads on this machine",
 }
+#: Parameters of the commands that `Options` names otherwise.
+NAMED = {"cutter": "cutters", "cutters": "libraries", "fixture": "fixtures"}
 #: Bytes of memory below which nothing can be planned.
 LEAST_MEMORY = 2e9
 
@@ -41,10 +45,7 @@ def check(parts: Sequence[str], given: dict[str, Any]) -> "tuple[Options, list[C
         for out in folders(parts, given):
             _writable(out)
     options = options_of(given)
-    _selections(options)
-    for fixture in options.fixtures:
-        if isinstance(fixture.source, str) and not fixture.kind:
-            _fixture(fixture.source)
+    look_at(options)
     return options, faults
 
 
@@ -105,7 +106,8 @@ def _faults(parts: Sequence[str]) -> list[CadIoError]:
         try:
             kind(part)
         except CadIoError as error:
-            found.append(error)
+            near = [] if os.path.exists(part) else get_close_matches(part, SUBCOMMANDS, 1)
+            found.append(ReadError(f"no such file; the command {near[0]}?", file=part) if near else error)
     return found
 
 
@@ -123,13 +125,17 @@ def _writable(out: Path) -> None:
             raise PlanError(f"cannot write there ({why}); give another folder with -o", file=str(out))
 
 
-def _selections(options: "Options") -> None:
+def look_at(options: "Options") -> None:
+    """An error for words for faces that say nothing, and for fixtures whose file cannot be read."""
     from plan_cutters.scene.faces import grammar
 
     given = options.ignore if isinstance(options.ignore, list | tuple) else (options.ignore,)
     for option, text in (("--faces", options.faces), *(("--ignore", each) for each in given)):
         if isinstance(text, str):
             grammar(text, option)
+    for fixture in options.fixtures:
+        if isinstance(fixture.source, str) and not fixture.kind:
+            _fixture(fixture.source)
 
 
 def _fixture(file: str) -> None:
@@ -149,51 +155,44 @@ def _fixture(file: str) -> None:
 
 def options_of(given: dict[str, Any]) -> "Options":
     """The options of a plan, from the words of the command line; a PlanError for what has no meaning."""
-    from plan_cutters.domain.cutter import Cutter
-    from plan_cutters.domain.holder import Holder
-    from plan_cutters.domain.posture import PostureRange
-    from plan_cutters.errors import OptionError
-    from plan_cutters.library.records import Library
     from plan_cutters.options import Options
 
+    return Options(**words_of(given))
+
+
+def words_of(given: dict[str, Any]) -> dict[str, Any]:
+    """What is given on a command line, by the names that `Options` has for it; what `Options` does not have is left out."""
+    from dataclasses import fields
+
+    from plan_cutters.domain.posture import PostureRange
+    from plan_cutters.options import Options
+
+    known = {each.name for each in fields(Options)}
+    words = {NAMED.get(name, name): value for name, value in given.items() if NAMED.get(name, name) in known}
     postures = PostureRange.degrees(given["tilt"], given["rotation"], given["rotation_step"])
-    more = {} if given["jobs"] is None else {"jobs": given["jobs"]}
+    words |= {"tilt": postures.tilt, "rotation": postures.rotation, "rotation_step": postures.step}
+    words |= {"setup": given["setup"][0], "other_setups": given["setup"][1:]}
+    return words | _tools(given)
+
+
+def _tools(given: dict[str, Any]) -> dict[str, Any]:
+    """Cutters, libraries and the holder."""
+    from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.domain.holder import Holder
+    from plan_cutters.errors import OptionError
+    from plan_cutters.library.records import Library
+
     holder: Holder | str | None = None
     libraries: list[Library] = []
+    words = {"assume_stickout": given.get("assume_stickout"), "skip_bad": given.get("skip_bad", False)}
     if given["holder"] is not None or given["cutters"]:
         # Who names neither need not load the readers.
         from plan_cutters.library.read import holder_of, read_library
 
         holder = None if given["holder"] is None else holder_of(given["holder"])
-        words = {"assume_stickout": given["assume_stickout"], "holder": holder, "skip_bad": given["skip_bad"]}
-        libraries = [read_library(file, **words) for file in given["cutters"]]
-    if not given["cutters"] and (given["assume_stickout"] is not None or given["skip_bad"]):
-        word = "--skip-bad" if given["skip_bad"] else "--assume-stickout"
+        libraries = [read_library(file, holder=holder, **words) for file in given["cutters"]]
+    if not given["cutters"] and (words["assume_stickout"] is not None or words["skip_bad"]):
+        word = "--skip-bad" if words["skip_bad"] else "--assume-stickout"
         raise OptionError(f"{word} is about the tools of a library: give it with --cutters")
-    return Options(
-        cutters=tuple(Cutter.parse(spec) for spec in given["cutter"]),
-        libraries=tuple(libraries),
-        holder=None if isinstance(holder, str) else holder,
-        allowance=given["allowance"],
-        holder_clearance=given["holder_clearance"],
-        machine=given["machine"],
-        setup=given["setup"][0],
-        other_setups=given["setup"][1:],
-        faces=given["faces"],
-        ignore=given["ignore"],
-        grid=given["grid"],
-        spacing=given["spacing"],
-        tilt=postures.tilt,
-        rotation=postures.rotation,
-        rotation_step=postures.step,
-        tolerance=given["tolerance"],
-        flip=given["flip"],
-        area_budget=given["area_budget"],
-        posture_maps=given["posture_maps"],
-        map_budget=given["map_budget"],
-        answers=given["answers"],
-        length_over_radius=given["length_over_radius"],
-        unit=given["unit"],
-        fixtures=given["fixture"],
-        **more,
-    )
+    return {"cutters": tuple(Cutter.parse(spec) for spec in given["cutter"]), "libraries": tuple(libraries),
+            "holder": None if isinstance(holder, str) else holder}  # fmt: skip

@@ -10,11 +10,11 @@ from importlib import import_module
 from typing import Any, NoReturn
 
 import click
-from click.core import ParameterSource
 
 from plan_cutters.command import grouped, terminal
 from plan_cutters.command.codes import ended, guarded, invoked
 from plan_cutters.command.declared import CODES, EXAMPLES, options
+from plan_cutters.command.entry import SUBCOMMANDS
 from plan_cutters.command.stopped import Unfinished
 from plan_cutters.command.supervise import (
     default_memory,
@@ -29,9 +29,14 @@ from plan_cutters.command.worker import GO, INTERRUPTED, began, can_supervise, f
 _SELF = "plan-cutters"
 
 
-@click.command(cls=grouped.Command, examples=EXAMPLES, codes=CODES)
+@click.command(
+    cls=grouped.Command,
+    subcommands=[(name, what) for name, (_, what) in SUBCOMMANDS.items()],
+    examples=EXAMPLES,
+    codes=CODES,
+)
 @click.argument("parts", nargs=-1, required=True, metavar="PART...", type=File("PART"))
-@options
+@options()
 def command(parts: tuple[str, ...], **given: Any) -> int:
     """Which cutters can finish the sculptured faces of PART (STEP, IGES, BREP) without gouging or collision?
 
@@ -46,7 +51,7 @@ def command(parts: tuple[str, ...], **given: Any) -> int:
     if given["postures"] is not None:
         from plan_cutters.command.stored import stored
 
-        return stored(parts[0], given["postures"], asked, given, named())
+        return stored(parts[0], given["postures"], asked, given, grouped.named())
     codes = []
     outs = folders(parts, given)
     since: float | None = began()
@@ -71,21 +76,11 @@ def command(parts: tuple[str, ...], **given: Any) -> int:
     return max(codes)
 
 
-def named() -> set[str]:
-    """The parameters that stand on the command line: the others have their defaults."""
-    context = click.get_current_context()
-    return {name for name in context.params if context.get_parameter_source(name) is not ParameterSource.DEFAULT}
-
-
-def main(args: Sequence[str] | None = None) -> NoReturn:
-    """Entry point of the command: what has a part to read runs in a child process."""
+def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
+    """Run the command: what has a part to read runs in a child process."""
     words = list(sys.argv[1:] if args is None else args)
-    if words[:1] == ["map"] and not os.path.exists("map"):
-        from plan_cutters.command.map import main as map_of_a_point
-
-        map_of_a_point(words[1:], apart=args is None)
     if not is_child():
-        ended(_SELF, words, lambda: _watched(words))
+        ended(_SELF, words, lambda: _watched(words, name))
     follow_parent()
     # Whoever started the command may ignore interrupts, as a shell does for what runs in the background: the parent does not.
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -116,17 +111,15 @@ def load() -> None:
     import_module("plan_cutters.pipeline")
 
 
-def _watched(words: list[str]) -> int:
+def _watched(words: list[str], name: str) -> int:
     """Look at the words here, so that help and mistakes cost nothing; leave the work to a child."""
     from plan_cutters.command.again import supervised
     from plan_cutters.command.asked import check
     from plan_cutters.command.progress import Display
     from plan_cutters.document.names import called
 
-    if "_PLAN_CUTTERS_COMPLETE" in os.environ:
-        return invoked(command, _SELF, words)
     try:
-        with command.make_context(_SELF, list(words)) as context:
+        with command.make_context(name, list(words)) as context:
             given = dict(context.params)
     except click.exceptions.Exit as done:
         return done.exit_code

@@ -71,12 +71,7 @@ def guarded(work: Any, debug: bool) -> tuple[int, str]:
 
 
 def invoked(command: click.Command, name: str, words: Sequence[str]) -> int:
-    """Parse and run a command, or answer a shell that asks what may come next; its exit code."""
-    variable = f"_{name.replace('-', '_').upper()}_COMPLETE"
-    if variable in os.environ:
-        from click.shell_completion import shell_complete
-
-        return shell_complete(command, {}, name, variable, os.environ[variable])
+    """Parse and run a command; its exit code."""
     try:
         with command.make_context(name, list(words)) as context:
             return int(command.invoke(context) or 0)
@@ -95,8 +90,9 @@ def ended(name: str, words: Sequence[str], work: Callable[[], int]) -> NoReturn:
             if sys.stdout is not None:
                 sys.stdout.flush()
             return code, ""
-        except click.NoSuchOption as error:
-            files = [word for word in words if word.startswith("-") and os.path.exists(word)]
+        except click.UsageError as error:
+            meant = [word for word in words if word.startswith("-")] if isinstance(error, click.NoSuchOption) else []
+            files = [word for word in (*name.split()[1:], *meant) if os.path.exists(word)]
             hint = f"; for the file, write ./{files[0]}" if files else ""
             raise click.UsageError(f"{error.format_message().rstrip('.')}{hint}") from None
 

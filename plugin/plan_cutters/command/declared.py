@@ -1,12 +1,11 @@
-"""The options of `plan-cutters`, in the groups that help shows."""
+"""The options of the commands, each declared once, in the groups that help shows."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import click
 
 from cad_io.units import UNITS
-from plan_cutters import __version__
 from plan_cutters.command import values
 from plan_cutters.command.grouped import heading
 from plan_cutters.command.values import File, Folder, Range, Setup, Words
@@ -23,9 +22,10 @@ EXAMPLES = (
         "plan-cutters blade.step --cutter R6L80 --answers stick-out,mend",
         "How short it can be held, and what would help:",
     ),
-    ("plan-cutters-map blade.step --at 12,3,40 --cutter R6L80", "All postures of a cutter at one point, drawn:"),
+    ("plan-cutters map blade.step --at 12,3,40 --cutter R6L80", "All postures of a cutter at one point, drawn:"),
     ("plan-cutters blade.step --cutter R6L80 --json - --quiet", "For a script, the plan on standard output:"),
 )
+ENDED = ("130", "interrupted; nothing is half-written")
 CODES = (
     ("0", "a cutter finishes every judged sample"),
     ("1", "none does; the plan says where and why"),
@@ -36,7 +36,7 @@ CODES = (
         "a cutter would finish all that could be judged, but something could not, obstacles are missing, or samples are farther "
         "apart than its radius and nobody asked for that",
     ),
-    ("130", "interrupted; nothing is half-written"),
+    ENDED,
 )
 
 
@@ -54,9 +54,21 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, asked: bool) -> No
     ctx.exit()
 
 
-_cutters, _machine, _faces = heading("Cutters"), heading("Machine and setup"), heading("Faces")
-_samples, _postures = heading("Sampling and tolerances"), heading("Postures")
-_output, _answers, _run = heading("Output"), heading("Answers"), heading("Run")
+class _Declared(NamedTuple):
+    """An option as it is declared: its group, the words that it is called by, and what click is told of it."""
+
+    group: str
+    words: tuple[str, ...]
+    more: dict[str, Any]
+
+
+def _group(title: str) -> Callable[..., _Declared]:
+    return lambda *words, **more: _Declared(title, words, more)
+
+
+_cutters, _machine, _faces = _group("Cutters"), _group("Machine and setup"), _group("Faces")
+_samples, _postures = _group("Sampling and tolerances"), _group("Postures")
+_output, _answers, _run = _group("Output"), _group("Answers"), _group("Run")
 
 _OPTIONS = (
     _cutters(
@@ -72,14 +84,14 @@ _OPTIONS = (
         type=File("FILE"),
         multiple=True,
         help="Tool library: Fusion .json, .tools or CSV, HSMWorks .hsmlib, FreeCAD .fctl or .fctb, or TOML; "
-        "plan-cutters-tools shows what is understood of it. Repeatable.",
+        "the command `tools` shows what is understood of it. Repeatable.",
     ),
     _cutters(
         "--holder",
         type=Words("SPEC|FILE", values.holder_words, files=True),
-        help="Holder of the cutters that have none: a collet chuck as er32, hsk63a-er32 or bt40-er16x100 (plan-cutters-tools "
-        "--list-holders); D30L30 or R15L30 (diameter or radius, length); stages from the nose up joined by +, cones as "
-        "D24:30L20; a file with a holder (FILE#NAME if it has several); or `none`.",
+        help="Holder of the cutters that have none: a collet chuck as er32, hsk63a-er32 or bt40-er16x100 (the command `tools` "
+        "lists them with --list-holders); D30L30 or R15L30 (diameter or radius, length); stages from the nose up joined by +, "
+        "cones as D24:30L20; a file with a holder (FILE#NAME if it has several); or `none`.",
     ),
     _cutters("--assume-stickout", type=float, metavar="MM", help="Stick-out of the libraries' tools that state none."),
     _cutters("--skip-bad", is_flag=True, help="If some tools of a library are broken, use the others."),
@@ -96,7 +108,7 @@ _OPTIONS = (
         default="unlimited",
         type=Words("NAME|FILE", values.machine_names, files=True),
         help="`unlimited`; `tilt:DEG`, a limit of the tool axis from the setup axis; a built-in machine "
-        "(plan-cutters-machines lists them); or a machine file: TOML, JSON, FreeCAD .fcm, LinuxCNC .ini, Fusion .mch, "
+        "(the command `machines` lists them); or a machine file: TOML, JSON, FreeCAD .fcm, LinuxCNC .ini, Fusion .mch, "
         "MTConnect.  [default: unlimited]",
     ),
     _machine(
@@ -187,8 +199,7 @@ _OPTIONS = (
     _postures(
         "--postures",
         type=File("FILE"),
-        help="Answer for this machine, setup, tilts and rotations from the part's postures.npz alone, without a new search. "
-        "What is not given means what the maps were made with; what they cannot answer is refused.",
+        help="Answer from the part's postures.npz alone, as the command `stored` does.",
     ),
     _output("-o", "--out", type=Folder("DIR"), help="Folder for the files.  [default: <part>-plan]"),
     _output(
@@ -228,7 +239,7 @@ _OPTIONS = (
         help="Length of the ends of --answers radius, in radii.  [default: 10]",
     ),
     _run("--jobs", type=int, metavar="N", help="Threads.  [default: all cores]"),
-    click.option("--cluster", metavar="ADDRESS", hidden=True),
+    _run("--cluster", metavar="ADDRESS", hidden=True),
     _run(
         "--read-timeout",
         type=float,
@@ -238,12 +249,26 @@ _OPTIONS = (
     ),
     _run("--memory", type=float, metavar="GB", help="Most memory to use.  [default: 3/4 of the machine's]"),
     _run("--debug", is_flag=True, help="Show tracebacks."),
-    click.version_option(__version__, prog_name="plan-cutters"),
 )
 
 
-def options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Declare all of them."""
-    for option in reversed(_OPTIONS):
-        function = option(function)
-    return function
+def options(
+    *names: str, defaults: bool = True, **changes: dict[str, Any]
+) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Declare these options, all of them where none is named, in the order above; `changes`: what is otherwise, by name.
+
+    A name is that of the option on the command line, without the dashes and with `_` for `-`. `defaults`: whether help says
+    them.
+    """
+
+    def declare(function: Callable[..., Any]) -> Callable[..., Any]:
+        for option in reversed(_OPTIONS):
+            name = next(word for word in option.words if word.startswith("--"))[2:].replace("-", "_")
+            if not names or name in names or name in changes:
+                more = {**option.more, **changes.get(name, {})}
+                if not defaults:
+                    more["help"] = more["help"].partition("  [default:")[0]
+                function = heading(option.group)(*option.words, **more)(function)
+        return function
+
+    return declare

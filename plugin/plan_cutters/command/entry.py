@@ -2,40 +2,69 @@
 
 import os
 import sys
+from collections.abc import Sequence
 from importlib import import_module
 
-#: The commands, and the modules that they are in.
-MODULES = {
-    "plan-cutters": "cli",
-    "plan-cutters-tools": "tools",
-    "plan-cutters-machines": "machines",
-    "plan-cutters-map": "map",
+TYPE_CHECKING = False  # `typing` itself takes time
+if TYPE_CHECKING:
+    from typing import Any
+
+_SELF = "plan-cutters"
+#: The subcommands: the module of each, and what it answers. The first is meant where none is named.
+SUBCOMMANDS = {
+    "plan": ("cli", "Which cutters finish a part: below, and meant where no command is named."),
+    "map": ("map", "All postures of one cutter at one point, drawn."),
+    "stored": ("stored", "Another machine or setup, from the posture maps of a plan."),
+    "tools": ("tools", "What is understood of a tool library."),
+    "machines": ("machines", "The built-in machines, and what is understood of a machine file."),
 }
 
 
 def plan_cutters() -> None:
-    _begin("plan-cutters")
+    """Begin the subcommand that the first word names; a first word that names none is a part to plan."""
+    name, words = _SELF, sys.argv[1:]
+    if words and words[0] in SUBCOMMANDS:
+        name, words = f"{_SELF} {words[0]}", words[1:]
+    begin(name, words)
 
 
 def tools() -> None:
-    _begin("plan-cutters-tools")
+    begin("plan-cutters-tools")
 
 
 def machines() -> None:
-    _begin("plan-cutters-machines")
+    begin("plan-cutters-machines")
 
 
 def point_map() -> None:
-    _begin("plan-cutters-map")
+    begin("plan-cutters-map")
 
 
-def _begin(name: str) -> None:
+def subcommand(name: str) -> str:
+    """The subcommand of a name, in either form.
+
+    >>> subcommand("plan-cutters map"), subcommand("plan-cutters-map"), subcommand("plan-cutters")
+    ('map', 'map', 'plan')
+    """
+    return name[len(_SELF) + 1 :] or next(iter(SUBCOMMANDS))
+
+
+def module_of(name: str) -> "Any":
+    """The module of a command by its name; it has the `command` of click and `main`."""
+    return import_module(f"plan_cutters.command.{SUBCOMMANDS[subcommand(name)][0]}")
+
+
+def begin(name: str, words: Sequence[str] | None = None) -> None:
+    """Run a subcommand under the name that it was called by, `plan-cutters map` or `plan-cutters-map`."""
+    words = sys.argv[1:] if words is None else words
     try:
-        if name == "plan-cutters":
+        if f"_{name.replace('-', '_').upper()}_COMPLETE" in os.environ:
+            import_module("plan_cutters.command.completion").main(name)
+        if subcommand(name) == "plan":
             from plan_cutters.command.worker import begin_early
 
-            begin_early(sys.argv[1:])
-        import_module(f"plan_cutters.command.{MODULES[name]}").main()
+            begin_early(words)
+        module_of(name).main(words, name)
     except KeyboardInterrupt:
         os.write(2, f"{name}: interrupted; no file is half-written\n".encode())
         os._exit(130)

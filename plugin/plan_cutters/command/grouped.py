@@ -6,6 +6,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import click
+from click.core import ParameterSource
+
+from plan_cutters import __version__
 
 #: Width of the column of names; what is longer has a line of its own.
 _NAMES = 22
@@ -35,6 +38,8 @@ class Command(click.Command):
 
     Parameters
     ----------
+    subcommands : sequence of (str, str)
+        What help lists first: other commands, and what they answer.
     examples : sequence of (str, str)
         A command line, and what it does.
     codes : sequence of (str, str)
@@ -42,11 +47,13 @@ class Command(click.Command):
     """
 
     def __init__(
-        self, *words: Any, examples: Sequence[tuple[str, str]] = (), codes: Sequence[tuple[str, str]] = (), **more: Any
-    ) -> None:
+        self, *words: Any, subcommands: Sequence[tuple[str, str]] = (), examples: Sequence[tuple[str, str]] = (),
+        codes: Sequence[tuple[str, str]] = (), **more: Any,
+    ) -> None:  # fmt: skip
         more["context_settings"] = {"help_option_names": ["-h", "--help"]}
         super().__init__(*words, **more)
-        self.examples, self.codes = examples, codes
+        click.version_option(__version__, prog_name="plan-cutters")(self)
+        self.subcommands, self.examples, self.codes = subcommands, examples, codes
 
     def make_context(self, *words: Any, **more: Any) -> click.Context:
         # 80 columns where the output is no terminal.
@@ -54,7 +61,9 @@ class Command(click.Command):
         return super().make_context(*words, **{**settings, **more})
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        groups: dict[str, list[tuple[str, str]]] = {}
+        groups = (
+            {"Commands": [(name.ljust(_NAMES), what) for name, what in self.subcommands]} if self.subcommands else {}
+        )
         title = "Options"
         for param in self.get_params(ctx):
             record, title = param.get_help_record(ctx), getattr(param, "group", title)
@@ -74,6 +83,12 @@ class Command(click.Command):
         if self.codes:
             with formatter.section(_bold("Exit codes")):
                 formatter.write_dl(self.codes)
+
+
+def named() -> set[str]:
+    """The parameters that stand on the command line: the others have their defaults."""
+    context = click.get_current_context()
+    return {name for name in context.params if context.get_parameter_source(name) is not ParameterSource.DEFAULT}
 
 
 def colour() -> bool | None:

@@ -1,4 +1,4 @@
-"""`plan-cutters-machines`: the machines that are built in, and what is understood of a machine file."""
+"""`plan-cutters machines`: the machines that are built in, and what is understood of a machine file."""
 
 import contextlib
 import json
@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from plan_cutters import __version__
 from plan_cutters.command.codes import USAGE, ended, guarded, invoked
+from plan_cutters.command.declared import ENDED, options
 from plan_cutters.command.grouped import Command, heading
 from plan_cutters.command.terminal import clean, error, hand_out, paper
 from plan_cutters.command.values import File, Words, machine_names
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 
     from plan_cutters.domain.machine import Machine
 
-_SELF = "plan-cutters-machines"
+_SELF = "plan-cutters machines"
 
 
-_questions, _output, _run = heading("Questions"), heading("Output"), heading("Run")
+_questions, _output = heading("Questions"), heading("Output")
 
 
 @click.command(
@@ -35,7 +35,7 @@ _questions, _output, _run = heading("Questions"), heading("Output"), heading("Ru
         (f"{_SELF} trunnion-ac --angles 0.3,0,1", "The angles that hold a tool axis:"),
         (f"{_SELF} shop.fcm --to-toml shop.toml", "What is understood of a machine file, and the same as TOML:"),
     ),
-    codes=(("0", "each machine is understood"), ("2", "one is not, or the command line is wrong")),
+    codes=(("0", "each machine is understood"), ("2", "one is not, or the command line is wrong"), ENDED),
 )
 @click.argument("machines", nargs=-1, metavar="[NAME|FILE]...", type=Words("NAME|FILE", machine_names, files=True))
 @_questions(
@@ -44,8 +44,7 @@ _questions, _output, _run = heading("Questions"), heading("Output"), heading("Ru
 @_questions("--axis", metavar="A=DEG,C=DEG", help="The tool axis at these angles; those not named are 0.")
 @_output("--json", "as_json", is_flag=True, help="All that was understood, as JSON on standard output.")
 @_output("--to-toml", type=File("FILE"), help="Write the machine in our own format.")
-@_run("--debug", is_flag=True, help="Show tracebacks.")
-@click.version_option(__version__, prog_name=_SELF)
+@options("debug")
 def command(machines: tuple[str, ...], **given: Any) -> int:
     """What is understood of each machine: a built-in one by its name, or a file.
 
@@ -76,7 +75,7 @@ def command(machines: tuple[str, ...], **given: Any) -> int:
 
         code, line = guarded(one, given["debug"])
         if code:
-            lines.append(line.replace("plan-cutters:", f"{_SELF}:", 1))
+            lines.append(line.replace("plan-cutters:", f"{click.get_current_context().info_name}:", 1))
     if read and not lines and given["to_toml"] is not None:
         _write(read[0], Path(given["to_toml"]))
     if given["as_json"]:
@@ -243,7 +242,7 @@ def _write(machine: "Machine", path: Path) -> None:
         raise PlanError(f"cannot be written: {error.strerror}", file=str(path)) from None
 
 
-def main(args: Sequence[str] | None = None) -> NoReturn:
-    """Entry point of the command."""
+def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
+    """Run the command."""
     words = list(sys.argv[1:] if args is None else args)
-    ended(_SELF, words, lambda: invoked(command, _SELF, words))
+    ended(name, words, lambda: invoked(command, name, words))

@@ -1,46 +1,43 @@
-"""`plan-cutters-map`: every free tilt of one cutter at one point of a part, as a table and as a picture."""
+"""`plan-cutters map`: every free tilt of one cutter at one point of a part, as a table and as a picture."""
 
 import json
 import math
 import os
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from cad_io.units import UNITS
-from plan_cutters import __version__
 from plan_cutters.command.codes import ended, invoked
+from plan_cutters.command.declared import ENDED, options
 from plan_cutters.command.grouped import Command, heading
 from plan_cutters.command.progress import Display
 from plan_cutters.command.supervise import report, supervise
 from plan_cutters.command.terminal import clean, hand_out, paper
-from plan_cutters.command.values import File, Words, cutter_ids, holder_words, machine_names
+from plan_cutters.command.values import File, Setup, Words, cutter_ids
 from plan_cutters.command.worker import began, can_supervise, follow_parent, is_child
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from plan_cutters.domain.cutter import Cutter
-    from plan_cutters.domain.placement import Placement
+    from plan_cutters.options import Options
     from plan_cutters.stages.posture_map import PostureMap
 
-_SELF = "plan-cutters-map"
+_SELF = "plan-cutters map"
 #: Some tilt is free; none is; none is, but some are undecided, or obstacles are missing.
 _FREE, _NONE, _UNDECIDED = 0, 1, 4
 
 
-_what, _way, _search = heading("What"), heading("In the way"), heading("Search")
-_output, _run = heading("Output"), heading("Run")
+_point = heading("Point")
 
 
 @click.command(
     cls=Command,
     examples=(
         (f"{_SELF} samples/v_groove.step --at 0,0,0 --cutter R8L90 --tilt 0:60", "A cutter at the bottom of a groove:"),
-        (f"{_SELF} blade.step --at 12,3,40 --cutter R6L80 --machine trunnion-ac", "What a machine can hold there:"),
+        (f"{_SELF} blade.step --at 12,3,4 --cutter R6L80 --machine trunnion-ac", "What a machine can hold there:"),
     ),
     codes=(
         ("0", "some tilt is free"),
@@ -48,80 +45,32 @@ _output, _run = heading("Output"), heading("Run")
         ("2", "wrong command line"),
         ("3", "the part cannot be read, or the point is on none of its faces"),
         ("4", "no tilt is surely free, but some are undecided"),
-        ("130", "interrupted"),
+        ENDED,
     ),
 )
 @click.argument("part", metavar="PART", type=File("PART"))
-@_what("--at", required=True, metavar="X,Y,Z", help="The point, part coordinates, mm.")
-@_what(
+@_point("--at", required=True, metavar="X,Y,Z", help="The point, part coordinates, mm.")
+@_point(
     "--within",
     type=float,
     default=1.0,
     metavar="MM",
     help="How far the point may be from the part: the nearest point of a face is taken, and said.  [default: 1]",
 )
-@_what(
-    "--cutter",
-    required=True,
-    type=Words("SPEC|NAME", cutter_ids),
-    help="D12L80, R6L80 and so on, as for plan-cutters; with --cutters the id or the name of a tool there.",
-)
-@_what("--cutters", type=File("FILE"), help="Tool library that the cutter is taken from.")
-@_what(
-    "--holder",
-    type=Words("SPEC|FILE", holder_words, files=True),
-    help="Holder of a cutter that has none, as for plan-cutters.",
-)
-@_what("--flip", is_flag=True, help="Take the other side of open shells and loose faces.")
-@_what("--unit", type=click.Choice(list(UNITS)), help="What lengths in the part's file are in.")
-@_way(
-    "--machine",
-    default="unlimited",
-    type=Words("NAME|FILE", machine_names, files=True),
-    help="As for plan-cutters.  [default: unlimited]",
-)
-@_way(
-    "--setup",
-    default="0,0,1",
-    type=File("AXIS|FILE"),
-    help="Direction of the part along the spindle, +z or x,y,z, or a setup file, as for plan-cutters.  [default: 0,0,1]",
-)
-@_way("--fixture", multiple=True, type=File("FILE[@X,Y,Z[,RX,RY,RZ]][:UNIT]"), help="As for plan-cutters. Repeatable.")
-@_way("--ignore", multiple=True, metavar="SELECT", help="Faces that are no obstacles. Repeatable.")
-@_search("--tilt", default="0:90", metavar="MIN:MAX", help="Tilts from the normal, degrees.  [default: 0:90]")
-@_search(
-    "--rotation",
-    default="0:360",
-    metavar="MIN:MAX",
-    help="Rotations from the direction of the largest curvature, degrees.  [default: 0:360]",
-)
-@_search("--rotation-step", type=float, default=5.0, metavar="DEG", help="Step between rotations.  [default: 5]")
-@_search(
-    "--tolerance",
-    type=float,
-    default=0.01,
-    metavar="MM",
-    help="Gouge tolerance; 0: the nominal answer, which proves nothing.  [default: 0.01]",
-)
-@_search("--allowance", type=float, default=0.0, metavar="MM", help="Stock left on the surface.  [default: 0]")
-@_search(
-    "--holder-clearance",
-    type=float,
-    default=0.0,
-    metavar="MM",
-    help="Room asked of neck, shank and holder.  [default: 0]",
-)
-@_output(
-    "-o",
-    "--out",
-    multiple=True,
-    type=File("FILE"),
-    help=".png or .svg. Repeatable.  [default: <part>-map.png and .svg]",
-)
-@_output("--json", "json_out", type=Words("-", lambda: ("-",)), help="The map on standard output, and no table.")
-@_output("--quiet", is_flag=True, help="No table.")
-@_run("--debug", is_flag=True, help="Show tracebacks.")
-@click.version_option(__version__, prog_name=_SELF)
+@options(
+    "holder", "machine", "fixture", "ignore", "flip", "unit", "allowance", "holder_clearance", "tilt", "rotation",
+    "debug",
+    cutter={"multiple": False, "required": True, "type": Words("SPEC|NAME", cutter_ids),
+            "help": "D12L80, R6L80 and so on; with --cutters the id or the name of a tool there."},
+    cutters={"multiple": False, "default": None, "help": "Tool library that the cutter is taken from."},
+    setup={"multiple": False, "default": "0,0,1", "type": File("AXIS|FILE"),
+           "help": "Direction of the part along the machine's spindle, +z, -y or x,y,z, or a setup file.  [default: 0,0,1]"},
+    rotation_step={"default": 5.0, "help": "Step between rotations.  [default: 5]"},
+    tolerance={"help": "Gouge tolerance; 0: the nominal answer, which proves nothing.  [default: 0.01]"},
+    out={"multiple": True, "type": File("FILE"), "help": ".png or .svg. Repeatable.  [default: <part>-map.png and .svg]"},
+    json={"help": "The map on standard output, and no table."},
+    quiet={"help": "No table."},
+)  # fmt: skip
 def command(part: str, **given: Any) -> int:
     """Which tilts of one cutter are free at one point of PART, rotation by rotation, and what forbids the others?
 
@@ -129,14 +78,11 @@ def command(part: str, **given: Any) -> int:
     apart.
     """
     from cad_io.read.sniff import kind
-    from plan_cutters.domain.posture import PostureRange
     from plan_cutters.errors import OptionError
 
     given["part"] = part
     report("part", part)
-    place, setup = _numbers(given["at"], "--at", 3), _setup(given["setup"])
-    tilt, rotation = (_numbers(given[word], f"--{word}", 2, ":") for word in ("tilt", "rotation"))
-    postures = PostureRange.degrees((tilt[0], tilt[1]), (rotation[0], rotation[1]), given["rotation_step"])
+    place = _point_of(given["at"])
     if not given["within"] >= 0:
         raise OptionError("--within must be a distance in mm that is not negative")
     if given["json_out"] not in (None, "-"):
@@ -148,10 +94,8 @@ def command(part: str, **given: Any) -> int:
         if not out.absolute().parent.is_dir():
             raise OptionError("cannot be written: there is no such folder", file=str(out))
     kind(part)
-    cutter = _cutter(given)
-    from plan_cutters.options import machine_given
-
-    machine = machine_given(given["machine"])
+    options = _options(given)
+    (cutter,), machine, placement = options.judged, options.machine, options.placement
     if machine.turns and len(machine.rotary) < 2:
         raise OptionError(
             f"machine {machine.name} has fewer than two rotary axes: it holds no tilt at most rotations, and the map would be "
@@ -164,8 +108,8 @@ def command(part: str, **given: Any) -> int:
 
     tolerance = {"tolerance": given["tolerance"]} if given["tolerance"] > 0 else {}
     scene = Scene.of(
-        read_part(part, unit=given["unit"], guarded=hasattr(os, "fork")), setup=setup.z, flip=given["flip"],
-        ignore=given["ignore"], fixtures=[*given["fixture"], *setup.fixtures], **tolerance,
+        read_part(part, unit=options.unit, guarded=hasattr(os, "fork")), setup=options.setup, flip=options.flip,
+        ignore=options.ignore, fixtures=options.fixtures, **tolerance,
     )  # fmt: skip
     foot, off = nearest(scene.part, place, ignore=scene.ignored)
     if off > given["within"]:
@@ -175,12 +119,12 @@ def command(part: str, **given: Any) -> int:
             file=part,
         )
     found = posture_map(
-        scene, point=foot.tolist(), cutter=cutter, rotations=postures.rotations, tilt=postures.tilt,
-        machine=machine, tolerance=given["tolerance"], x=setup.x,
+        scene, point=foot.tolist(), cutter=cutter, rotations=options.postures.rotations, tilt=options.tilt, machine=machine,
+        tolerance=given["tolerance"], x=None if placement is None else placement.x,
     )  # fmt: skip
     face = int(locate(scene.part, scene.orientation, foot.tolist(), ignore=scene.ignored).face[0])
     about = _about(found, f"F{face}", off, cutter, given)
-    _draw(found, postures.tilt, about, outs)
+    _draw(found, options.tilt, about, outs)
     if given["json_out"] == "-":
         hand_out(json.dumps(_facts(found, f"F{face}", off, cutter, given), indent=2) + "\n")
     elif not given["quiet"]:
@@ -191,53 +135,38 @@ def command(part: str, **given: Any) -> int:
     return _UNDECIDED if found.missing or any(len(each) for each in found.undecided) else _NONE
 
 
-def _setup(text: str) -> "Placement":
-    """A setup axis, or what a setup file says."""
-    from plan_cutters.domain.placement import Placement
-    from plan_cutters.domain.posture import along
-    from plan_cutters.machines.setups import read_setup
-
-    if (named := along(text)) is not None:
-        return Placement(named)
-    if text.lower().endswith(".toml") or os.path.isfile(text):
-        return read_setup(text)
-    x, y, z = _numbers(text, "--setup", 3)
-    return Placement((x, y, z))
-
-
-def _numbers(text: str, what: str, count: int, between: str = ",") -> tuple[float, ...]:
+def _point_of(text: str) -> tuple[float, float, float]:
     from plan_cutters.errors import OptionError
 
     try:
-        found = tuple(float(word) for word in text.split(between))
+        x, y, z = (float(word) for word in text.split(","))
     except ValueError:
-        found = ()
-    if len(found) != count or not all(map(math.isfinite, found)):
-        raise OptionError(f"{what} {text!r} is not {count} numbers, as {between.join(['0', '0', '1'][-count:])}")
-    return found
+        x = y = z = math.nan
+    if not all(map(math.isfinite, (x, y, z))):
+        raise OptionError(f"--at {text!r} is not 3 numbers, as 0,0,1")
+    return x, y, z
 
 
-def _cutter(given: dict[str, Any]) -> "Cutter":
-    """The cutter asked for: inline, or of a library."""
-    from plan_cutters.domain.cutter import Cutter
+def _options(given: dict[str, Any]) -> "Options":
+    """The options of a plan of one cutter, which is inline or of a library."""
+    from plan_cutters.command.asked import words_of
     from plan_cutters.errors import OptionError
-    from plan_cutters.library.read import holder_of, read_library
+    from plan_cutters.options import LEAST_TOLERANCE, Options
 
-    holder = None if given["holder"] is None else holder_of(given["holder"])
-    if given["cutters"] is None:
-        cutter = Cutter.parse(given["cutter"])
-    else:
-        library = read_library(given["cutters"], holder=holder, skip_bad=True)
-        mine = [each for each in library if given["cutter"] in (each.id, each.name)]
+    library = given["cutters"]
+    one = {"cutter": () if library else (given["cutter"],), "cutters": (library,) if library else (), "skip_bad": bool(library),
+           "setup": (Setup().convert(given["setup"], None, None),)}  # fmt: skip
+    words = words_of({**given, **one})
+    if library:
+        ((tools,), words["libraries"]) = words["libraries"], ()
+        mine = [each for each in tools if given["cutter"] in (each.id, each.name)]
         if len(mine) != 1:
             many = "several tools are" if mine else "no tool is"
-            raise OptionError(
-                f"{many} called {given['cutter']!r}: plan-cutters-tools lists them", file=given["cutters"]
-            )
-        cutter = mine[0]
-    if not (0 <= given["allowance"] < math.inf and 0 <= given["holder_clearance"] < math.inf):
-        raise OptionError("--allowance and --holder-clearance must be numbers of mm that are not negative")
-    return cutter.asked(given["allowance"], given["holder_clearance"], None if isinstance(holder, str) else holder)
+            raise OptionError(f"{many} called {given['cutter']!r}: plan-cutters tools lists them", file=library)
+        words["cutters"] = mine
+    # A map may be asked for with a smaller one, and with none.
+    words["tolerance"] = max(given["tolerance"], LEAST_TOLERANCE)
+    return Options(**words)
 
 
 def _text(values: Any) -> str:
@@ -364,26 +293,22 @@ def _spans(intervals: Any, inward: bool = True) -> str:
     return ", ".join(found)
 
 
-def main(args: Sequence[str] | None = None, *, apart: bool | None = None) -> NoReturn:
-    """Entry point of the command.
+def main(words: Sequence[str], name: str | None = None) -> NoReturn:
+    """Run the command.
 
-    The work is done in a child process, which can be ended while the CAD kernel is busy; not where Python gives the words,
-    unless it is to be `apart`.
+    The work is done in a child process, which can be ended while the CAD kernel is busy; not where Python calls, which gives no
+    name.
     """
-    words = list(sys.argv[1:] if args is None else args)
-    apart = args is None if apart is None else apart
-    if apart and can_supervise() and not is_child():
-        ended(_SELF, words, lambda: _watched(words))
+    if name and can_supervise() and not is_child():
+        ended(name, words, lambda: _watched(words, name))
     follow_parent()
-    ended(_SELF, words, lambda: invoked(command, _SELF, words))
+    ended(name or _SELF, words, lambda: invoked(command, name or _SELF, words))
 
 
-def _watched(words: list[str]) -> int:
+def _watched(words: Sequence[str], name: str) -> int:
     """Look at the words here, so that help and mistakes cost nothing; leave the work to a child."""
-    if "_PLAN_CUTTERS_MAP_COMPLETE" in os.environ:
-        return invoked(command, _SELF, words)
     try:
-        command.make_context(_SELF, list(words)).close()
+        command.make_context(name, list(words)).close()
     except click.exceptions.Exit as done:
         return done.exit_code
-    return supervise(words, display=Display(True, 1, began()), entry="point_map")
+    return supervise(words, display=Display(True, 1, began()), name=name)

@@ -1,31 +1,92 @@
-"""Another machine or setup on posture maps that are stored: no part is read, nothing is searched."""
+"""`plan-cutters stored`: another machine or setup on posture maps that are stored; nothing is read but them, or searched."""
 
 import json
-from collections.abc import Collection
+import os
+import sys
+from collections.abc import Collection, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
 
 from plan_cutters.command import terminal
-from plan_cutters.command.codes import FEASIBLE, NONE_FEASIBLE, NOT_ALL_JUDGED
+from plan_cutters.command.asked import NAMED
+from plan_cutters.command.codes import FEASIBLE, NONE_FEASIBLE, NOT_ALL_JUDGED, ended, invoked
+from plan_cutters.command.declared import ENDED, options
+from plan_cutters.command.grouped import Command, named
+from plan_cutters.command.values import File
 
 if TYPE_CHECKING:
     from plan_cutters.options import Options
 
-#: Parameters of the command that name an option otherwise than `Options` does.
-_OPTIONS = {"cutter": "cutters", "fixture": "fixtures"}
+_SELF = "plan-cutters stored"
 #: Parameters that are about files, which are not written here.
 _FILES = {"out": "-o", "formats": "--formats", "step_schema": "--step-schema"}
 #: Obstacles that are listed.
 _LISTED = 3
 
 
-def stored(part: str, postures: str, options: "Options", given: dict[str, Any], named: Collection[str]) -> int:
+@click.command(
+    cls=Command,
+    examples=(
+        (f"{_SELF} blade-plan/postures.npz --machine trunnion-ac", "On another machine:"),
+        (
+            f"{_SELF} blade-plan/postures.npz blade.step --setup +x",
+            "In another setup, if blade.step is still that part:",
+        ),
+    ),
+    codes=(
+        ("0", "the cutter reaches every sample"),
+        ("1", "it does not"),
+        ("2", "the command line is wrong, or the maps cannot answer it"),
+        ("3", "the part cannot be read"),
+        ("4", "it reaches all that is known, but something is undecided or was not judged, or obstacles are missing"),
+        ENDED,
+    ),
+)
+@click.argument("file", metavar="FILE", type=File("FILE"))
+@click.argument("part", metavar="[PART]", required=False, type=File("PART"))
+@options(
+    "cutter", "cutters", "holder", "assume_stickout", "skip_bad", "machine", "setup", "fixture", "faces", "ignore", "flip",
+    "unit", "spacing", "grid", "tolerance", "allowance", "holder_clearance", "tilt", "rotation", "rotation_step", "quiet", "jobs",
+    "debug", json={"help": "The answer on standard output."}, defaults=False,
+)  # fmt: skip
+def command(file: str, part: str | None, **given: Any) -> int:
+    """What the cutter of FILE reaches on this machine, in this setup, within these tilts and rotations.
+
+    FILE is the postures.npz that a plan writes with --posture-maps; with PART, it must be of this part. What is not given means
+    what the maps were made with; what they cannot answer is refused.
+    """
+    from cad_io.read.sniff import kind
+    from plan_cutters.command.asked import look_at, options_of
+    from plan_cutters.errors import OptionError
+
+    if given["json_out"] not in (None, "-"):
+        raise OptionError("--json takes -, for standard output")
+    if not os.path.isfile(file):
+        raise OptionError("no such file, or it is no file", file=file)
+    if part is not None:
+        kind(part)
+    asked = options_of(given)
+    look_at(asked)
+    return stored(part, file, asked, given, named())
+
+
+def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
+    """Run the command."""
+    words = list(sys.argv[1:] if args is None else args)
+    ended(name, words, lambda: invoked(command, name, words))
+
+
+def stored(part: str | None, postures: str, options: "Options", given: dict[str, Any], named: Collection[str]) -> int:
     """Say what a cutter reaches on the machine that is asked for, by its posture maps of the part; the exit code.
 
     Parameters
     ----------
-    part, postures : str
-        Their files.
+    part : str, optional
+        Its file; not looked at where there is none.
+    postures : str
+        The file of the maps.
     options : Options
     given : dict
         The parameters of the command.
@@ -61,14 +122,16 @@ def stored(part: str, postures: str, options: "Options", given: dict[str, Any], 
     counts = {word: int((verdict == code).sum()) for code, word in WORDS.items()}
     inside = int(np.count_nonzero(maps.inside))
     if given["json_out"] == "-":
-        answer = {"format": "plan-cutters-stored", "part": Path(part).name, "cutter": maps.cutter,
+        answer = {"format": "plan-cutters-stored", "part": part and Path(part).name, "cutter": maps.cutter,
                   "machine": options.machine.name, "setup": setup, "samples": counts, "inside_bodies": inside,
                   "missing": list(missing), "unjudged_faces": list(unjudged), "asked": dict(maps.about)}  # fmt: skip
         terminal.hand_out(json.dumps(answer, indent=2) + "\n")
     if not given["quiet"]:
         axis = ",".join(f"{x:.4g}" for x in setup)
         said = ", ".join(f"{count} {word.replace('_', ' ')}" for word, count in counts.items() if count)
-        lines = [f"{Path(part).name}: {maps.cutter} on {options.machine.name}, setup {axis}, by {name}: {said}"]
+        lines = [
+            f"{Path(part).name if part else name}: {maps.cutter} on {options.machine.name}, setup {axis}, by {name}: {said}"
+        ]
         if inside:
             lines.append(f"{inside} more samples lie inside another body of the part: they are no surface of it.")
         if counts["undecided"]:
@@ -92,9 +155,7 @@ def _asked(options: "Options", given: dict[str, Any], named: Collection[str]) ->
     from dataclasses import fields
 
     known = {each.name for each in fields(options)}
-    words = {_OPTIONS.get(name, name) for name in named} & known
-    if "cutters" in named:  # files of tools; what the command calls `cutter` are cutters
-        words = words - {"cutters"} | {"libraries"} | ({"cutters"} if "cutter" in named else set())
+    words = {NAMED.get(name, name) for name in named} & known
     if "setup" in named:
         words |= {"placement"} | ({"other_setups"} if len(given["setup"]) > 1 else set())
     if options.fixtures:  # a setup file brings some, too

@@ -126,7 +126,7 @@ class Display(Protocol):
 
 def supervise(
     words: Sequence[str], *, read_timeout: float = math.inf, memory: int | None = None, display: Display | None = None,
-    entry: str = "plan_cutters", more: Mapping[str, str] | None = None,
+    name: str = "plan-cutters", more: Mapping[str, str] | None = None,
 ) -> int:  # fmt: skip
     """Run a command in a child.
 
@@ -142,8 +142,8 @@ def supervise(
         Bytes of address space that the child may use.
     display : Display, optional
         Told what the child tells.
-    entry : str
-        The command's function in `entry`.
+    name : str
+        The command's, as `entry.begin` takes it.
     more : mapping, optional
         More environment variables of the child.
 
@@ -174,7 +174,7 @@ def supervise(
     previous = {number: signal.signal(number, stop) for number in _stopping()}
     previous[signal.SIGALRM] = signal.signal(signal.SIGALRM, lambda *_: None if child is None else child.kill())
     try:
-        child = (None if more else early(words)) or Worker(words, entry, memory, more=more)
+        child = (None if more else early(words)) or Worker(words, name, memory, more=more)
         watch.pipe, watch.child = child.here, child.process.pid
         if asked:  # before there was anyone to tell
             raise KeyboardInterrupt

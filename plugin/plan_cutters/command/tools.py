@@ -1,4 +1,4 @@
-"""`plan-cutters-tools`: what was understood of tool libraries, as a table, as JSON, as drawings and in our own format."""
+"""`plan-cutters tools`: what was understood of tool libraries, as a table, as JSON, as drawings and in our own format."""
 
 import contextlib
 import json
@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from plan_cutters import __version__
 from plan_cutters.command.codes import USAGE, ended, guarded, invoked
+from plan_cutters.command.declared import ENDED, options
 from plan_cutters.command.grouped import Command, heading
 from plan_cutters.command.terminal import clean, error, hand_out, paper
-from plan_cutters.command.values import File, Folder, Words, cutter_ids, holder_words
+from plan_cutters.command.values import File, Folder
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -24,58 +24,46 @@ if TYPE_CHECKING:
     from plan_cutters.domain.cutter import Cutter
     from plan_cutters.library.records import Entry, Library
 
-
+_SELF = "plan-cutters tools"
 _COLUMNS = ("", "No.", "Name", "Type", "Unit", "DC", "RE", "LCF", "Stick-out", "Shank", "Holder", "Id, or why not used")
 #: Columns of a terminal in which the table would fall into pieces.
 _NARROW = 130
 
 
-_tools, _output, _run = heading("Tools"), heading("Output"), heading("Run")
+_cutters, _output = heading("Cutters"), heading("Output")
 
 
 @click.command(
     cls=Command,
     examples=(
-        ("plan-cutters-tools shop.tools", "What of a library can be judged, and why the rest cannot:"),
-        ("plan-cutters-tools shop.tools --assume-stickout 35 --holder R15L40", "With what the library leaves out:"),
+        (f"{_SELF} shop.tools", "What of a library can be judged, and why the rest cannot:"),
+        (f"{_SELF} shop.tools --assume-stickout 35 --holder R15L40", "With what the library leaves out:"),
         (
-            "plan-cutters-tools --cutter D12L80 --holder hsk63a-er32 --draw drawings",
+            f"{_SELF} --cutter D12L80 --holder hsk63a-er32 --draw drawings",
             "An assembly given by words, drawn:",
         ),
-        ("plan-cutters-tools --list-holders", "The built-in holders:"),
+        (f"{_SELF} --list-holders", "The built-in holders:"),
         (
-            "plan-cutters-tools shop.tools --draw drawings --to-toml shop.toml",
+            f"{_SELF} shop.tools --draw drawings --to-toml shop.toml",
             "Drawings to scale, and the tools as TOML:",
         ),
     ),
     codes=(
         ("0", "each file holds a tool that can be judged, or a holder"),
         ("2", "one does not, or the command line is wrong"),
+        ENDED,
     ),
 )
 @click.argument("files", nargs=-1, metavar="[FILE]...", type=File("FILE"))
-@_tools(
-    "--cutter",
-    multiple=True,
-    type=Words("SPEC", cutter_ids),
-    help="A cutter by words, D12L80 and so on as for plan-cutters, to be shown and drawn in its holder. Repeatable.",
-)
-@_tools("--assume-stickout", type=float, metavar="MM", help="Stick-out of tools that state none.")
-@_tools(
-    "--holder",
-    type=Words("SPEC|FILE", holder_words, files=True),
-    help="Holder of tools that have none: a collet chuck as er32 or hsk63a-er32; D30L30 or R15L30 (diameter or radius, length), "
-    "stages from the nose up joined by +; a file with a holder (FILE#NAME if it has several); or `none`.",
-)
-@_tools(
+@options("holder", "assume_stickout", "skip_bad",
+         cutter={"help": "A cutter by words, D12L80 and so on, to be shown and drawn in its holder. Repeatable."})  # fmt: skip
+@_cutters(
     "--list-holders", is_flag=True, help="List the built-in holders; with --draw, draw each with its largest shank."
 )
-@_tools("--skip-bad", is_flag=True, help="Use the other tools of a library that has broken ones.")
 @_output("--json", "as_json", is_flag=True, help="All that was understood, as JSON on standard output.")
 @_output("--to-toml", type=File("FILE"), help="Write the tools that can be judged in our own format.")
 @_output("--draw", type=Folder("DIR"), help="Draw each assembly to scale (SVG) into a folder.")
-@_run("--debug", is_flag=True, help="Show tracebacks.")
-@click.version_option(__version__, prog_name="plan-cutters-tools")
+@options("debug")
 def command(files: tuple[str, ...], **given: Any) -> int:
     """What is understood of the tools in FILE, and why some cannot be judged.
 
@@ -104,7 +92,7 @@ def command(files: tuple[str, ...], **given: Any) -> int:
 
         code, line = guarded(one, given["debug"])
         if code:
-            lines.append(line.replace("plan-cutters:", "plan-cutters-tools:", 1))
+            lines.append(line.replace("plan-cutters:", f"{click.get_current_context().info_name}:", 1))
     if not lines:
         # Nothing is written if anything was wrong.
         if given["to_toml"] is not None:
@@ -294,7 +282,7 @@ def _draw(found: "Sequence[Library]", folder: Path) -> None:
             aside.write_text(text, encoding="utf-8")
 
 
-def main(args: Sequence[str] | None = None) -> NoReturn:
-    """Entry point of the command."""
+def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
+    """Run the command."""
     words = list(sys.argv[1:] if args is None else args)
-    ended("plan-cutters-tools", words, lambda: invoked(command, "plan-cutters-tools", words))
+    ended(name, words, lambda: invoked(command, name, words))

@@ -8,7 +8,7 @@ import click
 from click.shell_completion import CompletionItem
 
 #: The same as a type of click: completed by the shell itself, which knows about `~` and blanks.
-_FILE, _FOLDER = CompletionItem("", type="file"), CompletionItem("", type="dir")
+FILE, _FOLDER = CompletionItem("", type="file"), CompletionItem("", type="dir")
 
 
 class Words(click.ParamType):
@@ -39,7 +39,7 @@ class Words(click.ParamType):
         given = before.split(",")
         found = [CompletionItem(f"{before}{comma}{word}") for word in self.offered()
                  if word.startswith(last) and word not in given]  # fmt: skip
-        return found or ([_FILE] if self.files else [])
+        return found or ([FILE] if self.files else [])
 
 
 class File(Words):
@@ -89,7 +89,7 @@ class Setup(click.ParamType):
 
     def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
         found = [CompletionItem(f"{sign}{axis}") for axis in "xyz" for sign in "+-"]
-        return [each for each in found if each.value.startswith(incomplete)] or [_FILE]
+        return [each for each in found if each.value.startswith(incomplete)] or [FILE]
 
 
 def machine_names() -> Sequence[str]:

@@ -56,7 +56,7 @@ class Worker:
     """A child process: a session of its own, that an interrupt from the terminal reaches through us alone."""
 
     def __init__(
-        self, words: Sequence[str], entry: str, memory: int | None = None, *, waits: bool = False,
+        self, words: Sequence[str], name: str, memory: int | None = None, *, waits: bool = False,
         more: Mapping[str, str] | None = None,
     ) -> None:  # fmt: skip
         self.words, self.waits = list(words), waits
@@ -66,7 +66,7 @@ class Worker:
         environment |= {GO: str(told)} if waits else {}
         environment |= {} if memory is None else {MEMORY: str(memory)}
         environment |= more or {}
-        run = f"from plan_cutters.command.entry import {entry}; {entry}()"
+        run = f"from plan_cutters.command.entry import begin; begin({name!r})"
         self.process = subprocess.Popen([sys.executable, "-c", run, *words], env=environment, start_new_session=True,
                                         pass_fds=(there, told) if waits else (there,))  # fmt: skip
         os.close(there)
@@ -106,20 +106,15 @@ def begin_early(words: Sequence[str]) -> None:
 
     It is killed where the words are wrong after all, and where `supervise` is never called.
     """
-    if is_child() or _asked_otherwise(words) or not can_supervise() or not any(map(os.path.isfile, words)):
+    helped = not {"--help", "-h", "--version"}.isdisjoint(words)
+    if is_child() or helped or not can_supervise() or not any(map(os.path.isfile, words)):
         return
     with contextlib.suppress(OSError, ValueError):
         for number in range(3):
             os.fstat(number)  # one that is closed is to be opened first
-        worker = Worker(words, "plan_cutters", waits=True)
+        worker = Worker(words, "plan-cutters", waits=True)
         _early.append(worker)
         atexit.register(worker.drop)
-
-
-def _asked_otherwise(words: Sequence[str]) -> bool:
-    """Whether help, the version or a completion is asked for, or `map`, a command with a child of its own."""
-    helped = not {"--help", "-h", "--version"}.isdisjoint(words) or "_PLAN_CUTTERS_COMPLETE" in os.environ
-    return helped or list(words[:1]) == ["map"]
 
 
 def wait_to_begin() -> None:

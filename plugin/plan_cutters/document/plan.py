@@ -20,6 +20,7 @@ from plan_cutters.document.build import (
     sampling_notes,
     versions,
 )
+from plan_cutters.document.effective import effective
 from plan_cutters.document.fixtures import fixture_entry
 from plan_cutters.document.frozen import Vector, vector
 from plan_cutters.document.inside import inside_entry
@@ -27,7 +28,6 @@ from plan_cutters.document.judged import scope_of
 from plan_cutters.document.libraries import library_entry, source_entry
 from plan_cutters.document.model import (
     CutterEntry,
-    Effective,
     MachineEntry,
     Plan,
     RotaryEntry,
@@ -38,14 +38,13 @@ from plan_cutters.document.model import (
 from plan_cutters.document.palette import MEANING, PALETTE
 from plan_cutters.document.setups import SetupEntry, SetupReach
 from plan_cutters.document.shares import counts
-from plan_cutters.document.travel import placement_entry, travel_entry, travel_notes
+from plan_cutters.document.travel import travel_entry, travel_notes
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.over_setups import positions
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE, Reach
-from plan_cutters.options import Options
 from plan_cutters.scene.prepared import Prepared
 
 RULE = "largest radius, then smaller corner radius, then shorter length, then library order, among the feasible"
@@ -62,39 +61,7 @@ def plan_of(
     absent = {*(() if around.fixtures else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
     return Plan(
         part=part_info(scene),
-        effective=Effective(
-            cutters=[c.id for c in ready.cutters],
-            cutter_source=" and ".join(_sources(options)) or "built-in",
-            holder=None if options.holder is None else options.holder.id,
-            allowance_mm=options.allowance,
-            holder_clearance_mm=options.holder_clearance,
-            unit=options.unit,
-            fixtures=[each.text for each in scene.fixtures],
-            machine=options.machine.name,
-            setup=scene.setup,
-            placement=placement_entry(options.placement),
-            other_setups=list(options.other_setups),
-            other_placements=[placement_entry(each) for each in options.other_placements],
-            faces=choice.asked,
-            ignore=list(choice.ignore),
-            target_faces=[f"F{n}" for n in choice.targets],
-            grid=options.grid,
-            spacing_mm=max(ready.spacing.values()) if isinstance(ready.spacing, dict) else ready.spacing,
-            sampled_by="grid" if options.grid is not None else "default" if options.spacing is None else "spacing",
-            tilt_deg=degrees(options.postures.tilt),
-            rotation_deg=degrees(options.postures.rotation),
-            rotation_step_deg=float(np.degrees(options.postures.step)),
-            tolerance_mm=scene.tolerance,
-            chord_error_mm=around.surely.triangles.chord_error,
-            chord_measured_share=around.surely.triangles.measured_share,
-            obstacle_triangles=len(around.may_be.triangles),
-            flip=options.flip,
-            area_budget=options.contacts_between(len(samples)),
-            posture_maps=options.posture_maps,
-            map_budget=options.map_budget,
-            answers=list(options.answers),
-            length_over_radius=options.length_over_radius,
-        ),
+        effective=effective(ready),
         versions=versions(),
         samples=SampleCounts(
             count=len(samples),
@@ -134,11 +101,6 @@ def plan_of(
         legend_words={word: MEANING[word] for word in PALETTE if word not in absent},
         run=Run(time=started.isoformat(timespec="seconds"), seconds={}),
     )
-
-
-def _sources(options: Options) -> list[str]:
-    """Where the cutters are from; nothing for the built-in ones."""
-    return [*(["given"] if options.cutters else []), *(library.file for library in options.libraries)]
 
 
 def machine_entry(machine: Machine, kinematics: Kinematics | None) -> MachineEntry:

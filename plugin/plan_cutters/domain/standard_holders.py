@@ -148,5 +148,5 @@ def _near(plain: str) -> str:
     by = {word.replace("-", ""): word for word in known}
     near = [by[each] for each in get_close_matches(plain.partition("x")[0], by, 3, 0.5)]
     if near:
-        return f"{' or '.join(near)}? plan-cutters-tools --list-holders lists all"
+        return f"{' or '.join(near)}? plan-cutters tools --list-holders lists all"
     return f"known are {', '.join(NOSES)}, alone or on {', '.join(TAPERS)}, as hsk63a-er32"

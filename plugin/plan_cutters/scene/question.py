@@ -28,12 +28,11 @@ from plan_cutters.scene.scene import Scene
 #: Of the method: raised by one whenever the same question may get another verdict.
 METHOD = 2
 
-#: Options that maps answer, whatever they were made with; of the last three, what lies within theirs.
+#: Options that maps answer, whatever they were made with; of the last three, what lies within theirs. An option that stands in
+#: none of these sets asks for what maps do not hold: it is refused.
 ANSWERED = frozenset({"machine", "setup", "placement", "tilt", "rotation", "rotation_step"})
 #: Options that change nothing that maps say.
 IRRELEVANT = frozenset({"jobs", "area_budget", "length_over_radius"})
-#: Options that ask for what maps do not hold.
-BEYOND = frozenset({"other_setups", "other_placements", "answers", "posture_maps", "map_budget"})
 
 _WORDS = {"libraries": "--cutters", "cutters": "--cutter", "fixtures": "--fixture", "other_setups": "a second --setup"}
 _TOLERATED = 1e-9

@@ -1,7 +1,7 @@
 """A part as it stands to be judged: its faces' sides, what is in the way, and the tolerance that can be kept."""
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Unpack, get_type_hints
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from plan_cutters.domain.checks import flag, number
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.posture import unit
 from plan_cutters.errors import OptionError
-from plan_cutters.options import MOST_TOLERANCE, Options
+from plan_cutters.options import MOST_TOLERANCE, Options, SceneOptions
 from plan_cutters.scene.faces import ignored_faces, ignored_words
 from plan_cutters.scene.fixtures import Kept, joined, packable, read
 from plan_cutters.scene.obstacles import CHORD_ASKED, kept_tolerance
@@ -21,7 +21,7 @@ from plan_cutters.scene.overlap import refuse_overlaps
 from plan_cutters.scene.surroundings import Surroundings, surroundings
 
 #: The options of a plan that are a scene's.
-_DEFAULTS = {word: getattr(Options(), word) for word in ("setup", "flip", "ignore", "tolerance", "fixtures")}
+_DEFAULTS = {word: getattr(Options(), word) for word in get_type_hints(SceneOptions)}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -57,7 +57,7 @@ class Scene(Record):
     fixtures: tuple[Fixture, ...] = ()
 
     @classmethod
-    def of(cls, part: Any, **options: Any) -> "Scene":
+    def of(cls, part: Any, **options: Unpack[SceneOptions]) -> "Scene":
         """The scene of a part; of a scene, itself.
 
         Parameters
@@ -85,7 +85,7 @@ class Scene(Record):
         """
         if unknown := sorted(set(options) - set(_DEFAULTS)):
             raise OptionError(f"a scene has no option {unknown[0]}; it has {', '.join(_DEFAULTS)}")
-        given = _DEFAULTS | options
+        given: dict[str, Any] = {**_DEFAULTS, **options}
         tolerance, flip = number(given["tolerance"], "tolerance"), flag(given["flip"], "flip")
         if not 0 < tolerance <= MOST_TOLERANCE:
             raise OptionError(f"tolerance {tolerance:g} must lie between 0 and {MOST_TOLERANCE:g} mm")

@@ -4,7 +4,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from plan_cutters.domain.posture import lean
 from plan_cutters.domain.verdicts import INACCESSIBLE, INTERFERENCE_FREE, REASONS, UNDECIDED, UNJUDGED, Reach, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.kernels.rows import Ranges
-from plan_cutters.options import Options, machine_given
+from plan_cutters.options import Options, PlanOptions, machine_given
 from plan_cutters.scene.conditions import (
     Conditions,
     contacts_of,
@@ -159,7 +159,7 @@ class PostureMaps(Record):
             raise OptionError("the posture maps have none of the rotations asked for")
         return self._laid(machine_given(machine), Placement(setup, x), turns, (low, high), jobs)
 
-    def asked(self, part: str | os.PathLike[str] | Part | None = None, **options: Any) -> Reach:
+    def asked(self, part: str | os.PathLike[str] | Part | None = None, **options: Unpack[PlanOptions]) -> Reach:
         """What a plan with these options would find, as far as the maps tell.
 
         Parameters

@@ -1,0 +1,45 @@
+"""What type checkers see of the names that `__init__.py` hands on lazily."""
+
+from plan_cutters.document.model import Plan
+from plan_cutters.domain.axis import Axis
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.holder import Holder, Stage
+from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.placement import Placement
+from plan_cutters.domain.posture import PostureRange
+from plan_cutters.errors import CutterError, FixtureError, LibraryError, MachineError, OptionError, PlanError
+from plan_cutters.options import Options
+from plan_cutters.pipeline import plan
+from plan_cutters.point import posture_map
+from plan_cutters.result import Result
+from plan_cutters.scene.scene import Scene
+from plan_cutters.stages.posture_map import PostureMap
+from plan_cutters.stages.posture_maps import PostureMaps
+
+__version__: str
+__all__ = [
+    "Axis",
+    "Cutter",
+    "CutterError",
+    "Fixture",
+    "FixtureError",
+    "Holder",
+    "LibraryError",
+    "Machine",
+    "MachineError",
+    "OptionError",
+    "Options",
+    "Placement",
+    "Plan",
+    "PlanError",
+    "PostureMap",
+    "PostureMaps",
+    "PostureRange",
+    "Result",
+    "Scene",
+    "Stage",
+    "__version__",
+    "plan",
+    "posture_map",
+]

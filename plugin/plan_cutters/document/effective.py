@@ -1,0 +1,50 @@
+"""What was asked for, after defaults, as the plan file has it."""
+
+from typing import Any
+
+import numpy as np
+
+from plan_cutters.document.build import degrees
+from plan_cutters.document.model import Effective
+from plan_cutters.document.travel import placement_entry
+from plan_cutters.options import Options
+from plan_cutters.scene.prepared import Prepared
+
+
+def effective(ready: Prepared) -> Effective:
+    """Every option after defaults: as `Options` keeps it where nothing more is said here, angles in degrees."""
+    scene, options, choice, around = ready.scene, ready.options, ready.chosen, ready.scene.around
+    made: dict[str, Any] = {
+        "cutters": [c.id for c in ready.cutters],
+        "cutter_source": " and ".join(_sources(options)) or "built-in",
+        "holder": None if options.holder is None else options.holder.id,
+        "fixtures": [each.text for each in scene.fixtures],
+        "machine": options.machine.name,
+        "setup": scene.setup,
+        "placement": placement_entry(options.placement),
+        "other_placements": [placement_entry(each) for each in options.other_placements],
+        "faces": choice.asked,
+        "ignore": list(choice.ignore),
+        "target_faces": [f"F{n}" for n in choice.targets],
+        "spacing_mm": max(ready.spacing.values()) if isinstance(ready.spacing, dict) else ready.spacing,
+        "sampled_by": "grid" if options.grid is not None else "default" if options.spacing is None else "spacing",
+        "tolerance_mm": scene.tolerance,
+        "chord_error_mm": around.surely.triangles.chord_error,
+        "chord_measured_share": around.surely.triangles.measured_share,
+        "obstacle_triangles": len(around.may_be.triangles),
+        "area_budget": options.contacts_between(len(ready.samples)),
+    }
+    return Effective(**{name: _as_asked(options, name) for name in Effective.model_fields if name not in made}, **made)
+
+
+def _as_asked(options: Options, name: str) -> Any:
+    """The option of an entry's name."""
+    value = getattr(options, name.removesuffix("_mm").removesuffix("_deg"))
+    if not name.endswith("_deg"):
+        return value
+    return degrees(value) if isinstance(value, tuple) else float(np.degrees(value))
+
+
+def _sources(options: Options) -> list[str]:
+    """Where the cutters are from; nothing for the built-in ones."""
+    return [*(["given"] if options.cutters else []), *(library.file for library in options.libraries)]

@@ -1,0 +1,89 @@
+"""An option is said in few places, and each says all of them: `Options`, the types that callers see, the commands, the plan."""
+
+import ast
+import inspect
+import math
+import re
+from dataclasses import fields
+from pathlib import Path
+from typing import Unpack, get_type_hints
+
+import pytest
+
+import plan_cutters
+from plan_cutters import Options, PostureMaps, Scene, plan, posture_map
+from plan_cutters.command import cli, entry, stored
+from plan_cutters.command import map as of_a_point
+from plan_cutters.command.asked import NAMED, words_of
+from plan_cutters.document.model import Effective
+from plan_cutters.options import PlanOptions, PointOptions, SceneOptions
+
+ROOT = Path(__file__).parent.parent
+WORDS = {each.name for each in fields(Options)}
+
+
+def test_type_checkers_see_the_options():
+    assert set(get_type_hints(PlanOptions)) == WORDS
+    for function, words in ((plan, PlanOptions), (PostureMaps.asked, PlanOptions), (Scene.of, SceneOptions),
+                            (posture_map, PointOptions)):  # fmt: skip
+        assert Unpack[words] in get_type_hints(function).values()
+    # Whatever mypy is to check of each option is in this file.
+    said = ast.parse((ROOT / "tests/typed_calls.py").read_text())
+    kept = next(each for each in said.body if isinstance(each, ast.FunctionDef) and each.name == "kept")
+    assert {each.arg for each in ast.walk(kept) if isinstance(each, ast.keyword)} == WORDS
+
+
+def test_people_see_each_option_with_its_default():
+    shown = inspect.signature(plan).parameters
+    assert list(shown) == ["part", "progress", *(each.name for each in fields(Options))]
+    for name, each in inspect.signature(Options).parameters.items():
+        assert shown[name].kind is inspect.Parameter.KEYWORD_ONLY
+        assert shown[name].default is each.default
+        assert shown[name].annotation == get_type_hints(PlanOptions)[name]
+
+
+def test_the_stub_has_the_names_that_are_handed_on():
+    package = Path(plan_cutters.__file__)
+    assert (package.parent / "py.typed").is_file()
+    stub = ast.parse(package.with_suffix(".pyi").read_text())
+    found = {name.name: each.module for each in stub.body if isinstance(each, ast.ImportFrom) for name in each.names}
+    assert found == {name: f"plan_cutters.{home}" for name, home in plan_cutters._HOME.items()}
+    (names,) = [ast.literal_eval(each.value) for each in stub.body if isinstance(each, ast.Assign)]
+    assert sorted(names) == sorted(plan_cutters.__all__)
+
+
+def test_every_option_can_be_given_on_the_command_line():
+    given = cli.command.make_context("plan-cutters", ["part.step", "--setup", "+z", "--setup", "-y"]).params
+    # The last two come with setup files.
+    assert set(words_of(given)) == WORDS - {"placement", "other_placements"}
+    assert set(NAMED) <= set(given)
+
+
+def test_the_commands_declare_an_option_alike():
+    """What several commands have is the same option, but for what is said of it and how often it may be given."""
+    commands = {name: entry.module_of(f"plan-cutters {name}").command for name in entry.SUBCOMMANDS}
+    plans = {each.name: each for each in cli.command.params}
+    for command in (of_a_point.command, stored.command):
+        shared = [
+            each for each in command.params if each.name in plans and each.name not in ("part", "out", "json_out")
+        ]
+        assert len(shared) >= 17
+        for each in shared:
+            assert each.opts == plans[each.name].opts
+            assert getattr(each, "group", "") == getattr(plans[each.name], "group", "")
+    for name, command in commands.items():
+        assert {"debug"} <= {each.name for each in command.params}, name
+        assert {"0", "2", "130"} <= {code for code, _ in command.codes}, name
+
+
+def test_every_option_is_in_the_plan():
+    """As it is, by its name and unit, or as what was made of it."""
+    entries = {re.sub("_(mm|deg)$", "", name) for name in Effective.model_fields}
+    # Libraries are an entry of their own; the number of threads changes nothing.
+    assert WORDS - entries == {"libraries", "jobs"}
+    found = plan(
+        ROOT / "samples/v_groove.step", cutters="R6L80", grid=5, area_budget=0, allowance=0.1, tilt=(0.1, 1.0)
+    ).plan
+    asked = found.effective
+    assert (asked.allowance_mm, asked.grid, asked.rotation_step_deg, asked.flip) == (0.1, 5, pytest.approx(10.0), False)
+    assert asked.tilt_deg == pytest.approx((math.degrees(0.1), math.degrees(1.0)))
