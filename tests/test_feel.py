@@ -22,7 +22,7 @@ from plan_cutters.command.rows import _distinct
 from plan_cutters.command.supervise import _Watch
 from plan_cutters.command.terminal import clean, say
 from plan_cutters.document.model import Plan
-from plan_cutters.document.told import percent
+from plan_cutters.report.story.numbers import percent
 
 GROOVE = SAMPLES / "v_groove.step"
 QUICK = ("--cutter", "R6L80", "--grid", "5", "--area-budget", "0")

@@ -16,9 +16,9 @@ from cad_io import read_part
 from cad_io.kernel import shape_map
 from plan_cutters import Cutter, plan
 from plan_cutters.command.codes import FEASIBLE, NOT_ALL_JUDGED, code_of
-from plan_cutters.document.judged import judged, not_judged, not_seen
-from plan_cutters.document.names import short_names
 from plan_cutters.report.page import words
+from plan_cutters.report.story.names import short_names
+from plan_cutters.report.story.scope import judged, not_judged, not_seen
 
 
 def edges(shape):

@@ -121,7 +121,7 @@ def _watched(words: list[str]) -> int:
     from plan_cutters.command.again import supervised
     from plan_cutters.command.asked import check
     from plan_cutters.command.progress import Display
-    from plan_cutters.document.names import called
+    from plan_cutters.report.story.names import called
 
     if "_PLAN_CUTTERS_COMPLETE" in os.environ:
         return invoked(command, _SELF, words)

@@ -84,6 +84,9 @@ class ChangeEntry(Frozen):
     option: str | None = Field(
         default=None, description="what to say on the command line; null where nothing is asked, or no option says it"
     )
+    doubted: bool = Field(
+        default=False, description="it would help, unless a face that is missing from the obstacles is in the way"
+    )
 
 
 class MoveEntry(Frozen):
@@ -300,6 +303,7 @@ def _change_entry(found: Change) -> ChangeEntry:
         lost_before=found.before,
         lost_after=found.after,
         option=found.option,
+        doubted=found.doubted,
     )
 
 

@@ -15,6 +15,7 @@ from plan_cutters.document.scope import Scope
 from plan_cutters.document.setups import SetupEntry, SetupReach
 from plan_cutters.document.shares import AreaShare, FaceVerdicts, Verdicts
 from plan_cutters.document.travel import PlacementEntry, TravelEntry
+from plan_cutters.domain.notes import NoteCode
 
 FORMAT_VERSION = 1
 
@@ -127,6 +128,7 @@ class MissingEntry(Frozen):
 class WitnessEntry(Frozen):
     """A sample that is not reached and the posture that comes nearest to reaching it."""
 
+    sample: int | None = Field(default=None, description="its row in samples.npz; null in older files")
     point: Vector
     face: str
     verdict: Literal["inaccessible", "undecided"] = "inaccessible"
@@ -391,6 +393,9 @@ class Plan(Frozen):
         description="ids of cutters that fail and were left out of `mend`, as others come nearer: mend-all has them",
     )
     notes: list[str] = Field(description="what these verdicts do not say")
+    note_codes: list[NoteCode] = Field(
+        default=[], description="what each note is about, in their order; empty in older files"
+    )
     legend: dict[str, str] = Field(description="colour of each verdict in the STEP and GLB files, sRGB")
     legend_words: dict[str, str] = Field(default={}, description="what those colours mean, in words for people")
     split: dict[str, SplitEntry] = Field(default={}, description="faces of mixed verdicts: how the models show them")
