@@ -93,12 +93,11 @@ def test_a_code_decides_which_notes_are_shown(whole, capsys):
     assert "Verdicts are about samples" in told(capsys, document.model_copy(update={"note_codes": []}))
 
 
-def test_a_code_decides_whether_travel_is_news():
+def test_what_is_as_it_should_be_is_no_news(whole):
     entry = SimpleNamespace(outside=0, judged=3, unknown=0, worst=[])
-    document = SimpleNamespace(cutters=[], libraries=[])
-    (line,) = notes.travel(document, SimpleNamespace(id="Z9", travel=entry))
+    (line,) = notes.travel(whole.plan, SimpleNamespace(id="Z9", travel=entry))
     assert line.minor
-    (line,) = notes.travel(document, SimpleNamespace(id="Z9", travel=SimpleNamespace(outside=0, judged=0, unknown=2)))
+    (line,) = notes.travel(whole.plan, SimpleNamespace(id="Z9", travel=SimpleNamespace(outside=0, judged=0, unknown=2)))
     assert not line.minor
 
 

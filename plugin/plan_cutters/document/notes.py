@@ -58,11 +58,8 @@ def _of_sides(scene: Scene, options: Options) -> Iterator[Note]:
                 "be machined on the other side.",
             )
     if scene.tolerance > 1.001 * scene.asked:
-        yield Note(
-            "tolerance_raised",
-            f"The tolerance was raised from {scene.asked:g} to {scene.tolerance:.3g} mm: the obstacle "
-            "triangles could not be made to follow the surface more closely.",
-        )
+        yield Note("tolerance_raised", f"The tolerance was raised from {scene.asked:g} to {scene.tolerance:.3g} mm: the obstacle "
+                   "triangles could not be made to follow the surface more closely.")  # fmt: skip
 
 
 def _of_spacing(ready: Prepared) -> Iterator[Note]:
@@ -170,12 +167,11 @@ def _of_travel(options: Options) -> Iterator[Note]:
     why = unjudged(options.machine, options.placement)
     if why:
         yield Note("travel_not_judged", f"Linear travel is not judged: {why}.")
-    if why is None:
-        yield Note(
-            "travel_of_holder",
-            "Linear travel is that of the holder's nose at the postures found; it changes no verdict.",
-        )
-    if why is None and options.other_setups:
+    if why is not None:
+        return
+    said = "Linear travel is that of the holder's nose at the postures found; it changes no verdict."
+    yield Note("travel_of_holder", said)
+    if options.other_setups:
         yield Note("travel_first_setup", "Linear travel is judged in the first setup alone.")
 
 

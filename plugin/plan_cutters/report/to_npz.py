@@ -67,8 +67,6 @@ def write_postures(result: Judged, _split: object, path: Path) -> None:
     Whatever the machine: `PostureMaps.load` reads it, and `within` answers for another machine or setup.
     """
     maps = result.maps
-    if maps is None:
-        raise ValueError("posture maps were not asked for")
     name = maps.cutter
     about = {"format": "plan-cutters-postures", "version": 2, "cutter": name, "part": maps.part, "tilt": maps.tilt,
              "tolerance": maps.tolerance, "question": dict(maps.about)}  # fmt: skip

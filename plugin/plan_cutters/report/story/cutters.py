@@ -9,7 +9,7 @@ from plan_cutters.document.model import CutterEntry, FaceEntry, Plan, WitnessEnt
 from plan_cutters.document.shares import AreaShare
 from plan_cutters.domain.reasons import REASONS
 from plan_cutters.report.story.headline import area, between
-from plan_cutters.report.story.names import kind, named
+from plan_cutters.report.story.names import described, named
 from plan_cutters.report.story.next_steps import cures, first_step, step_told
 from plan_cutters.report.story.numbers import VERDICTS, angle, figure, lost, mm, part_of, percent, place, reached
 
@@ -20,20 +20,8 @@ FEASIBLE = {True: "yes", False: "no", None: "undecided"}
 
 @dataclass(frozen=True, slots=True)
 class WorstFace:
-    """A face on which a cutter loses samples.
-
-    Attributes
-    ----------
-    id, name : str
-    area : str
-        That is lost, mm2.
-    share : str
-        Of the face, in percent.
-    reason : str
-        By which most of it is lost, with a word where more of it is undecided than inaccessible.
-    depth, obstacle : str
-        How much too deep the deepest witness there is, mm, and what is in its way; may be empty.
-    """
+    """A face on which a cutter loses samples: how much of it (mm2, percent), by which reason mostly, and how much too deep (mm)
+    the deepest witness there is in what; both may be empty."""
 
     id: str
     name: str
@@ -46,29 +34,20 @@ class WorstFace:
 
 @dataclass(frozen=True, slots=True)
 class CutterStory:
-    """What is told of a cutter.
+    """What is told of a cutter, in words; empty where there is nothing to tell.
 
     Attributes
     ----------
-    id, name, tool : str
-        `name`: as it is called everywhere; `tool`: its end, its lengths, its holder.
-    feasible : bool, optional
-    reached : str
-        Of the area, in percent.
-    shares : dict
-        Verdict -> share of the area, in percent.
-    reason, hint : str
-        By which most is lost, and what is tried first against it; empty where nothing is lost.
-    besides : str
-        What else is in the way within the axis limit.
-    next : str
-        What to do next, or what would help; empty where that is not known.
-    left : str
-        What it leaves, why and where, in sentences; empty where that is nothing.
-    between : str
-        What is known between its samples; empty where that was not asked for.
-    faces : tuple of WorstFace
-        The worst, and in `failing` how many there are in all.
+    name, tool : str
+        How it is called everywhere; what it is, and how far it stands out of what.
+    reached, shares : str, dict
+        Of the area, in percent: in all, and by verdict.
+    reason, hint, besides : str
+        By which most is lost, what is tried first against it, and what else is in the way within the axis limit.
+    next, left, between : str
+        Sentences: what to do next, or what would help; what it leaves, why and where; what is known between its samples.
+    faces, failing : tuple of WorstFace, int
+        The worst faces, and how many there are in all.
     """
 
     id: str
@@ -94,7 +73,7 @@ def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
     return CutterStory(
         id=c.id,
         name=name,
-        tool=tool(c),
+        tool=described(c, name),
         feasible=c.feasible,
         reached=reached(c, c.area_share),
         shares={word: part_of(c, c.area_share, [word]) for word in VERDICTS},
@@ -107,26 +86,6 @@ def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
         faces=tuple(faces),
         failing=failing,
     )
-
-
-def tool(c: CutterEntry) -> str:
-    """A cutter in words: its end, its lengths, its holder."""
-    what = kind(c)
-    corner = f" with corner radius {c.corner_radius:g} mm" if what == "bull nose" else ""
-    said = [f"{what}{corner}, diameter {2.0 * c.radius:g} mm"]
-    if c.taper_deg:
-        said.append(f"taper {c.taper_deg:g}°")
-    if c.flutes_mm is not None and c.flutes_mm < c.length:
-        said.append(f"flutes {c.flutes_mm:g} mm")
-    holder = [stage for stage in c.stages if stage.part == "holder"]
-    if holder:
-        widest = 2.0 * max(max(stage.radius_mm, stage.upper_radius_mm) for stage in holder)
-        said.append(
-            f"stick-out {c.length:g} mm, holder{f' {c.holder}' if c.holder else ''} of up to {widest:g} mm diameter"
-        )
-    else:
-        said.append(f"judged up to {c.length:g} mm over the tip, without a holder")
-    return ", ".join(said)
 
 
 def main_reason(share: AreaShare) -> str:

@@ -62,7 +62,7 @@ def effect(step: StepEntry) -> str:
     before = percent(step.lost_before, some=True, whole=False).removesuffix(" %")
     after = percent(step.lost_after, some=bool(step.left), whole=False)
     many = f"{step.gained:,} more sample{'' if step.gained == 1 else 's'}"
-    end = "; then all of it is reached" if not step.left else ""
+    end = "; then nothing is lost" if not step.left else ""
     return f"lost {before} to {after} of the area ({many}){end}"
 
 

@@ -23,24 +23,14 @@ class Story:
     ----------
     names : dict
         Id of a cutter -> how it is called.
-    taken : str, optional
-        Id of the cutter that the headline says to take.
-    shown : str
-        Id of the cutter that the models show.
-    inside : tuple of str
-        What is no surface of the finished part: before anybody relies on the rest.
-    headline : Headline
-    scope : tuple of str
-        What was not judged or not seen, and what cutters reach together.
-    between : tuple of str
-        What is known between the samples.
-    cutters : tuple of CutterStory
-    setups : tuple of Line
-        What setups and the machine's travel leave, for the cutter shown.
-    answers : tuple of Line
+    taken, shown : str
+        Ids of the cutter that the headline says to take, if any, and of the one that the models show.
+    inside, scope, between : tuple of str
+        What is no surface of the finished part, which comes first; what was not judged or not seen, and what cutters reach
+        together; what is known between the samples.
+    setups, answers, notes : tuple of Line
     doubts : dict
         What makes verdicts unsure, by its kind in the plural.
-    notes : tuple of Line
     """
 
     names: Mapping[str, str]
