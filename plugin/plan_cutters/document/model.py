@@ -15,7 +15,6 @@ from plan_cutters.document.scope import Scope
 from plan_cutters.document.setups import SetupEntry, SetupReach
 from plan_cutters.document.shares import AreaShare, FaceVerdicts, Verdicts
 from plan_cutters.document.travel import PlacementEntry, TravelEntry
-from plan_cutters.domain.notes import NoteCode
 
 FORMAT_VERSION = 1
 
@@ -261,8 +260,7 @@ class CutterEntry(Verdicts):
         description="how far from what counts a point may be and still count, where a shape is held in a larger one",
     )
     feasible: bool | None = Field(
-        description="null: only undecided samples stand in the way, or it reaches all that could be judged but obstacles are "
-        "missing"
+        description="null: only undecided samples are in the way, or all that could be judged is reached but a body is missing"
     )
     seen: bool = Field(
         default=True,
@@ -393,9 +391,7 @@ class Plan(Frozen):
         description="ids of cutters that fail and were left out of `mend`, as others come nearer: mend-all has them",
     )
     notes: list[str] = Field(description="what these verdicts do not say")
-    note_codes: list[NoteCode] = Field(
-        default=[], description="what each note is about, in their order; empty in older files"
-    )
+    note_codes: list[str] = Field(default=[], description="what each note is about; empty in older files")
     legend: dict[str, str] = Field(description="colour of each verdict in the STEP and GLB files, sRGB")
     legend_words: dict[str, str] = Field(default={}, description="what those colours mean, in words for people")
     split: dict[str, SplitEntry] = Field(default={}, description="faces of mixed verdicts: how the models show them")

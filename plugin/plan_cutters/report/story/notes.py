@@ -10,7 +10,7 @@ from plan_cutters.report.story.names import named
 from plan_cutters.report.story.numbers import axis, count, percent, place
 
 #: Notes that say what the first lines say in other words; those of the area between samples, where it was looked at.
-_SAID_ABOVE: frozenset[NoteCode] = frozenset({"samples_apart", "area_proved", "area_left"})
+_SAID_ABOVE: frozenset[NoteCode | None] = frozenset({"samples_apart", "area_proved", "area_left"})
 #: What stands for an obstacle that is not known.
 _STAND_IN = {
     "none": "nothing stands for it",
