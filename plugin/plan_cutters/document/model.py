@@ -260,7 +260,7 @@ class CutterEntry(Verdicts):
         description="how far from what counts a point may be and still count, where a shape is held in a larger one",
     )
     feasible: bool | None = Field(
-        description="null: only undecided samples are in the way, or all that could be judged is reached but a body is missing"
+        description="null: undecided samples alone are left, or it reaches all that could be judged but obstacles are missing"
     )
     seen: bool = Field(
         default=True,
