@@ -1,11 +1,10 @@
 // What the surface is coloured by: a colour and a pattern for each sample, and the legend that says so.
 
 import type { Arrays } from "./decode.ts";
-import type { Meta, Scalar } from "./meta.ts";
+import type { Meta, Pattern, Scalar } from "./meta.ts";
 import { NO_REASON, UNJUDGED } from "./meta.ts";
 import type { Samples } from "./samples.ts";
 
-export type Pattern = "plain" | "hatch" | "dots" | "cross" | "bars" | "lines" | "back";
 export const PATTERNS: Pattern[] = ["plain", "hatch", "dots", "cross", "bars", "lines", "back"];
 
 export interface Entry {
@@ -41,54 +40,17 @@ export interface Mode {
 const capital = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
 
 const UNKNOWN = "#9a9a9a";
-const FALLBACK: Record<string, string> = {
-  interference_free: "#009E73",
-  accessible: "#56B4E9",
-  undecided: "#F0E442",
-  inaccessible: "#D55E00",
-  unjudged: "#CC79A7",
-  inside_bodies: "#595959",
-  check: "#BFBFBF",
-  fixture: "#0072B2",
-};
-const WORDS: Record<string, string> = {
-  interference_free: "interference-free",
-  accessible: "accessible",
-  undecided: "undecided",
-  inaccessible: "inaccessible",
-  unjudged: "could not be judged",
-  inside_bodies: "inside another body",
-  local_gouge: "local gouge",
-  rear_gouge: "rear gouge",
-  check: "not judged (obstacle only)",
-  fixture: "fixture",
-};
 
 /** A word of the plan as it is shown. */
-export const spoken = (word: string): string => WORDS[word] ?? word.replaceAll("_", " ");
-
-/** Patterns of what forbids a posture, on the map and on the surface. */
-const CAUSE_PATTERNS: Record<string, Pattern> = {
-  axis_limit: "lines",
-  local_gouge: "hatch",
-  rear_gouge: "back",
-  collision: "cross",
-  neck: "bars",
-  shank: "bars",
-  holder: "hatch",
-  fixture: "lines",
-  buried: "cross",
-  undecided: "dots",
-  tolerance: "dots",
-};
+export const spoken = (meta: Meta, word: string): string => (meta.words[word] ?? meta.causes[word])?.name ?? word;
 
 /** Where the drawn triangles meet nothing, which is no proof: paler than what is certified to be free. */
 export const OPEN: [string, Pattern] = ["#9ddcc6", "plain"];
 
 /** Colour and pattern of what forbids a posture, or of what is free of it. */
 export function causeOf(meta: Meta, cause: string): [string, Pattern] {
-  const word = cause === "free" ? "interference_free" : cause;
-  return [meta.cause_colours[word] ?? colourOf(meta, word), CAUSE_PATTERNS[word] ?? "plain"];
+  const found = meta.causes[cause];
+  return found ? [found.colour, found.pattern] : [colourOf(meta, cause === "free" ? "interference_free" : cause), patternOf(cause)];
 }
 
 const CLASSES: [string, string, Pattern][] = [
@@ -117,7 +79,7 @@ export function lookOf(meta: Meta, arrays: Arrays, samples: Samples, mode: strin
   return verdictLook(meta, samples, cutter);
 }
 
-export const colourOf = (meta: Meta, word: string): string => meta.colours[word] ?? FALLBACK[word] ?? UNKNOWN;
+export const colourOf = (meta: Meta, word: string): string => meta.words[word]?.colour ?? UNKNOWN;
 
 export function patternOf(verdict: string): Pattern {
   return verdict === "inaccessible" ? "hatch" : verdict === "undecided" ? "dots" : "plain";
@@ -125,24 +87,24 @@ export function patternOf(verdict: string): Pattern {
 
 function verdictLook(meta: Meta, samples: Samples, cutter: string): Look {
   const order = ["interference_free", "accessible", "undecided", "inaccessible", "unjudged", "inside_bodies"];
-  const entries = order.map((word) => ({ colour: colourOf(meta, word), pattern: patternOf(word), label: spoken(word) }));
-  return painted("Verdict", entries, samples, (i) => order.indexOf(samples.verdict(cutter, i)));
+  const entries = order.map((word) => ({ colour: colourOf(meta, word), pattern: patternOf(word), label: spoken(meta, word) }));
+  return painted(meta, "Verdict", entries, samples, (i) => order.indexOf(samples.verdict(cutter, i)));
 }
 
 function reasonLook(meta: Meta, samples: Samples, cutter: string): Look {
   const verdict = samples.verdicts(cutter).values;
   const reason = samples.reasons(cutter).values;
   const entries: Entry[] = meta.reasons.map((word) => {
-    return { colour: causeOf(meta, word)[0], pattern: "hatch", label: spoken(word) };
+    return { colour: causeOf(meta, word)[0], pattern: "hatch", label: spoken(meta, word) };
   });
   const undecided = entries.map((each) => ({ ...each, pattern: "dots" as Pattern, label: `${each.label}, undecided` }));
   const rest: Entry[] = [
     { colour: "#d9e4dd", pattern: "plain", label: "reached" },
-    { colour: colourOf(meta, "unjudged"), pattern: "plain", label: spoken("unjudged") },
-    { colour: colourOf(meta, "inside_bodies"), pattern: "plain", label: spoken("inside_bodies") },
+    { colour: colourOf(meta, "unjudged"), pattern: "plain", label: spoken(meta, "unjudged") },
+    { colour: colourOf(meta, "inside_bodies"), pattern: "plain", label: spoken(meta, "inside_bodies") },
   ];
   const count = entries.length;
-  return painted("Reason", [...entries, ...undecided, ...rest], samples, (i) => {
+  return painted(meta, "Reason", [...entries, ...undecided, ...rest], samples, (i) => {
     if (samples.inside(i)) return 2 * count + 2;
     if (verdict[i] === UNJUDGED) return 2 * count + 1;
     if (reason[i] === NO_REASON) return 2 * count;
@@ -159,10 +121,10 @@ function setupLook(meta: Meta, samples: Samples, cutter: string): Look {
   });
   entries.push(
     { colour: colourOf(meta, "inaccessible"), pattern: "hatch", label: "no setup" },
-    { colour: colourOf(meta, "unjudged"), pattern: "plain", label: spoken("unjudged") },
-    { colour: colourOf(meta, "inside_bodies"), pattern: "plain", label: spoken("inside_bodies") },
+    { colour: colourOf(meta, "unjudged"), pattern: "plain", label: spoken(meta, "unjudged") },
+    { colour: colourOf(meta, "inside_bodies"), pattern: "plain", label: spoken(meta, "inside_bodies") },
   );
-  return painted("Setup that serves", entries, samples, (i) => {
+  return painted(meta, "Setup that serves", entries, samples, (i) => {
     const verdict = samples.verdict(cutter, i);
     if (verdict === "inside_bodies") return count + 2;
     if (verdict === "unjudged") return count + 1;
@@ -173,11 +135,11 @@ function setupLook(meta: Meta, samples: Samples, cutter: string): Look {
 function classLook(meta: Meta, samples: Samples): Look {
   const kind = samples.surfaceClass.values;
   const entries: Entry[] = CLASSES.map(([label, colour, pattern]) => ({ label, colour, pattern }));
-  entries.push({ colour: colourOf(meta, "unjudged"), pattern: "plain", label: spoken("unjudged") });
-  return painted("Surface class", entries, samples, (i) => Math.min(kind[i], 3));
+  entries.push({ colour: colourOf(meta, "unjudged"), pattern: "plain", label: spoken(meta, "unjudged") });
+  return painted(meta, "Surface class", entries, samples, (i) => Math.min(kind[i], 3));
 }
 
-function painted(title: string, entries: Entry[], samples: Samples, which: (i: number) => number): Look {
+function painted(meta: Meta, title: string, entries: Entry[], samples: Samples, which: (i: number) => number): Look {
   const { count } = samples;
   const bytes = new Uint8Array(4 * count);
   const table = entries.map((each) => [...rgb(each.colour), PATTERNS.indexOf(each.pattern)]);
@@ -191,7 +153,7 @@ function painted(title: string, entries: Entry[], samples: Samples, which: (i: n
   }
   const whole = area.reduce((sum, each) => sum + each, 0);
   // What is no surface of the finished part is a share of all; the others are shares of what is left.
-  const inside = entries.findIndex((each) => each.label === spoken("inside_bodies"));
+  const inside = entries.findIndex((each) => each.label === spoken(meta, "inside_bodies"));
   const left = whole - (area[inside] ?? 0);
   const shown = entries.map((each, k) => ({ ...each, share: area[k] / ((k === inside ? whole : left) || 1) }));
   return { title, entries: shown.filter((_, k) => seen[k]), ramp: null, bytes };

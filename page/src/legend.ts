@@ -17,13 +17,13 @@ export function legendOf({ look, meta }: App): HTMLElement[] {
   const rows = look.entries.map((entry) =>
     el("li", {}, swatch(entry.colour, entry.pattern), entry.label, el("span", { class: "share" }, percent(entry.share ?? 0))),
   );
-  const also = (word: string): void => void rows.push(el("li", {}, swatch(colourOf(meta, word), "plain"), spoken(word)));
+  const also = (word: string): void => void rows.push(el("li", {}, swatch(colourOf(meta, word), "plain"), spoken(meta, word)));
   if (meta.faces.some((face) => !face.target)) also("check");
   if (meta.fixtures.length) also("fixture");
   const found: HTMLElement[] = [el("h2", {}, look.title)];
   if (look.ramp) found.push(scale(look.ramp));
   found.push(el("ul", { class: "legend" }, ...rows));
-  const inside = look.entries.some((entry) => entry.label === spoken("inside_bodies"));
+  const inside = look.entries.some((entry) => entry.label === spoken(meta, "inside_bodies"));
   const hint = `share of the sampled area${inside ? " that lies inside no other body" : ""}`;
   if (look.entries.length) found.push(el("p", { class: "hint" }, hint));
   return found;

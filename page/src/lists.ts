@@ -119,7 +119,7 @@ export class SpotList {
     this.app.note = "";
     this.app.clip?.release();
     flyTo(this.app, spot.point, this.app.samples.normal(spot.sample));
-    this.app.say(`Spot ${this.at + 1} of ${this.mine.length}: ${spot.face}, ${spoken(spot.reason)}. ${this.app.note}`);
+    this.app.say(`Spot ${this.at + 1} of ${this.mine.length}: ${spot.face}, ${spoken(this.app.meta, spot.reason)}. ${this.app.note}`);
   }
 }
 

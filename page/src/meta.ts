@@ -1,6 +1,7 @@
 // The form of the data in the page, as plan_cutters.report.page writes it. Lengths mm, angles degrees, part frame.
 
 export type Vec = [number, number, number];
+export type Pattern = "plain" | "hatch" | "dots" | "cross" | "bars" | "lines" | "back";
 export type PartName = "flutes" | "neck" | "shank" | "holder";
 
 export interface Face {
@@ -103,8 +104,10 @@ export interface Meta {
   selected: string | null;
   reasons: string[];
   verdicts: Record<string, string>;
-  colours: Record<string, string>;
-  cause_colours: Record<string, string>;
+  /** Verdicts and what is no target, as they are called, and their colours. */
+  words: Record<string, { name: string; colour: string }>;
+  /** Reasons, and why a posture map has nothing at a tilt: the table of the plan's story. */
+  causes: Record<string, { name: string; sentence: string; colour: string; pattern: Pattern }>;
   rotation_deg: number[];
   tilt_deg: [number, number];
   tilt_limit_deg: number | null;

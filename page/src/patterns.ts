@@ -1,6 +1,6 @@
 // The patterns of the legend and of the posture map: the second channel beside colour.
 
-import type { Pattern } from "./colours.ts";
+import type { Pattern } from "./meta.ts";
 import { rgb } from "./colours.ts";
 import { svg } from "./dom.ts";
 

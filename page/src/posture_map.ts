@@ -91,7 +91,7 @@ export class PosturePanel {
       el("strong", {}, `${face?.id ?? "?"}, sample ${sample.row}`),
       ` at ${samples.told(sample.row).map((x) => figure(x, 4)).join(", ")} mm. `,
       el("strong", {}, cutter.name || cutter.id),
-      `: ${spoken(verdict)}${reason ? ` (${spoken(reason)})` : ""}${setup}. Curvature ${sample.curvature.map(bend).join(" and ")}.`,
+      `: ${spoken(this.app.meta, verdict)}${reason ? ` (${spoken(this.app.meta, reason)})` : ""}${setup}. Curvature ${sample.curvature.map(bend).join(" and ")}.`,
     );
     this.kind.textContent = this.map.certified
       ? "What is free is certified. What forbids the others comes from the drawn triangles."
@@ -161,9 +161,9 @@ export class PosturePanel {
     const best = "(the best posture found)";
     if (this.app.samples.verdict(this.app.cutter.id, this.app.sample!.row) === "undecided") {
       const may = depth_mm === null ? "" : `, ${met} may reach ${figure(depth_mm)} mm into the tool`;
-      return `undecided (${spoken(reason)})${may} ${best}`;
+      return `undecided (${spoken(this.app.meta, reason)})${may} ${best}`;
     }
-    return `${spoken(reason)}${depth_mm === null ? "" : `; it is ${figure(depth_mm)} mm too deep in ${met}`} ${best}`;
+    return `${spoken(this.app.meta, reason)}${depth_mm === null ? "" : `; it is ${figure(depth_mm)} mm too deep in ${met}`} ${best}`;
   }
 
   // Places in the drawing.
@@ -228,7 +228,7 @@ export class PosturePanel {
       this.legend.replaceChildren(
         ...shown.map((state) => {
           const open = state === "free" && !map.certified;
-          const word = open ? "nothing met (not certified)" : state === "tolerance" ? "within tolerance" : spoken(state);
+          const word = open ? "nothing met (not certified)" : state === "tolerance" ? "within tolerance" : spoken(this.app.meta, state);
           return el("li", {}, swatch(...(open ? OPEN : causeOf(this.app.meta, state))), word);
         }),
       );
@@ -329,7 +329,7 @@ export class PosturePanel {
     this.rows.replaceChildren(
       ...map.grid.rotations.map((rotation, column) => {
         const free = map.free(column).map(([low, high]) => `${degrees(low)} to ${degrees(high)}`);
-        const causes = [...map.causes(column)].sort((a, b) => b[1] - a[1]).map(([state]) => spoken(state));
+        const causes = [...map.causes(column)].sort((a, b) => b[1] - a[1]).map(([state]) => spoken(this.app.meta, state));
         return el(
           "tr",
           { "data-rotation": rotation, "data-certified": String(map.certified !== null) },

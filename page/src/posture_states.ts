@@ -143,29 +143,10 @@ export const apart = (a: number, b: number): number => Math.abs(((a - b + 540) %
 
 /** What is said of a posture: `free`, or what is in the way. */
 export function wording(app: App, { state, certified }: Judged, met: Met | null): string {
-  const name = met && met.owner !== null ? app.drawn.called(met.owner) : "";
-  switch (state) {
-    case "free":
-      return certified ? "free" : "nothing is met in the drawing, which is not certified";
-    case "axis_limit":
-      return "beyond the limit of the tool axis";
-    case "no_contact":
-      return "the cutter does not touch at this tilt";
-    case "local_gouge":
-      return "local gouge: the surface curves more than the cutter";
-    case "rear_gouge":
-      return `rear gouge: the bottom of the cutter meets ${name}`;
-    case "collision":
-      return `collision: the side of the cutter meets ${name}`;
-    case "fixture":
-      return `${met?.part ?? "cutter"} meets ${name}`;
-    case "undecided":
-      return "undecided: neither called free nor known to be forbidden";
-    case "tolerance":
-      return "not free within the tolerance";
-    case "buried":
-      return "the sample lies under or within a body";
-    default:
-      return `${spoken(state)} meets ${name}`;
-  }
+  if (state === "free") return certified ? "free" : "nothing is met in the drawing, which is not certified";
+  if (state === "undecided") return "undecided: neither called free nor known to be forbidden";
+  const word = spoken(app.meta, state);
+  const owner = met && met.owner !== null ? app.drawn.called(met.owner) : "";
+  if (state === "fixture") return `${met?.part ?? "cutter"} meets ${owner}`;
+  return owner ? `${word} with ${owner}` : `${word}: ${app.meta.causes[state].sentence}`;
 }

@@ -161,7 +161,9 @@ def run(
         said = (f"Postures of {maps.unmapped} of {int((maps.verdict != UNJUDGED).sum())} samples were not mapped, for it would "
                 "take too long: there every tilt is undecided in postures.npz; sample more coarsely (--spacing), or give "
                 "--map-budget.")  # fmt: skip
-        document = document.model_copy(update={"notes": [*document.notes, said]})
+        document = document.model_copy(
+            update={"notes": [*document.notes, said], "note_codes": [*document.note_codes, "maps_partial"]}
+        )
     return replace(result, plan=clock.stamp(document), maps=maps)
 
 

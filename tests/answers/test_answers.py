@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from plan_cutters import Cutter, Options, plan
-from plan_cutters.command.answered import radius, up
 from plan_cutters.domain.answers import ANSWERS, answers_of
 from plan_cutters.errors import LibraryError, OptionError
 from plan_cutters.library import read_library
+from plan_cutters.report.story.numbers import down, up
 from plan_cutters.report.to_json import schema
 from tests.support.tool_files import fusion, write_json
 
@@ -88,14 +88,14 @@ def test_words_of_answers():
 
 
 def test_what_is_said_is_never_rounded_the_wrong_way():
-    assert [radius(r) for r in (1.94996, 4.9458, 119.91, 0.0123456, 2.0)] == [
-        "R1.94",
-        "R4.94",
-        "R119",
-        "R0.0123",
-        "R2",
+    assert [down(r) for r in (1.94996, 4.9458, 119.91, 0.0123456, 2.0)] == [
+        "1.94 mm",
+        "4.94 mm",
+        "119 mm",
+        "0.0123 mm",
+        "2 mm",
     ]
-    assert [up(h) for h in (7.8926, 7.89, 12.0, 0.001)] == ["7.90", "7.89", "12.00", "0.01"]
+    assert [up(h) for h in (7.8926, 7.89, 12.0, 0.001)] == ["7.90 mm", "7.89 mm", "12.00 mm", "0.01 mm"]
 
 
 def test_where_a_cutter_is_listed(tmp_path):

@@ -14,14 +14,14 @@ from cad_io import read_part
 from plan_cutters import Cutter, Options, plan
 from plan_cutters.answers.areas import Finished, patches
 from plan_cutters.answers.least_set import cover
-from plan_cutters.command.answered import answered
 from plan_cutters.command.asked import options_of
 from plan_cutters.command.cli import command
 from plan_cutters.document.clock import Clock
-from plan_cutters.document.next_steps import is_left_out, step_told, together
 from plan_cutters.domain.area import Patch
 from plan_cutters.domain.change import MEANS
 from plan_cutters.pipeline import prepare, run
+from plan_cutters.report.story.answers import answers
+from plan_cutters.report.story.next_steps import is_left_out, step_told, together
 from tests.support import shapes
 from tests.support.cad_parts import box, cut, real
 from tests.support.places import SAMPLES
@@ -45,6 +45,10 @@ def followed(part, step, *words):
     given_now = [words[k : k + 2] for k in range(0, len(words), 2)]
     kept = [word for pair in given_now if pair[0] == "--cutter" or pair[0] not in typed for word in pair]
     return run(part, options(*kept, *typed, "--area-budget", "0"), Clock())
+
+
+def answered(plan):
+    return [line.text + line.typed for line in answers(plan)]
 
 
 def left(result, step):

@@ -22,7 +22,7 @@ from plan_cutters.command.rows import _distinct
 from plan_cutters.command.supervise import _Watch
 from plan_cutters.command.terminal import clean, say
 from plan_cutters.document.model import Plan
-from plan_cutters.document.told import percent
+from plan_cutters.report.story.numbers import percent
 from tests.support.commands import assert_one_line, in_lines, leftovers, said_until
 from tests.support.forked import ENV, run
 from tests.support.places import SAMPLES

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 from plan_cutters import plan, posture_map
 from plan_cutters.command.rows import _NAME, _distinct
-from plan_cutters.document.names import called, described, kind, short_names
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.drawer import builtin
 from plan_cutters.domain.fixture import Fixture
@@ -24,6 +23,7 @@ from plan_cutters.library.read import holder_of
 from plan_cutters.library.records import Entry, Library
 from plan_cutters.machines.setups import read_setup
 from plan_cutters.options import Options
+from plan_cutters.report.story.names import called, described, kind, short_names
 from plan_cutters.scene.scene import Scene
 from tests.support import shapes
 from tests.support.cad_parts import box

@@ -14,9 +14,9 @@ from cad_io import read_part
 from cad_io.kernel import shape_map
 from plan_cutters import Cutter, plan
 from plan_cutters.command.codes import FEASIBLE, NOT_ALL_JUDGED, code_of
-from plan_cutters.document.judged import judged, not_judged, not_seen
-from plan_cutters.document.names import short_names
-from plan_cutters.report.page import words
+from plan_cutters.report.story.names import short_names
+from plan_cutters.report.story.scope import judged, not_judged, not_seen
+from plan_cutters.report.story.story import story_of
 from tests.support.cad_parts import as_nurbs, box, compound, cone, cut, loose, moved, patch, pocketed, real, ring, rod
 from tests.support.commands import in_lines
 from tests.support.forked import run
@@ -153,10 +153,9 @@ def test_sculptured_faces_and_blends_are_judged_by_default(mixed):
 def test_the_first_words_say_what_was_judged(mixed):
     assert judged(mixed).startswith("the free-form face and 2 fillets of the part (")
     assert not_judged(mixed) == ["6 plane faces were not judged, only obstacles: --faces all."]
-    names = short_names(mixed)
-    page = " ".join(words.headline(mixed, names, mixed.cutters[0]))
-    assert "the free-form face and 2 fillets" in page
-    assert "6 plane faces were not judged" in page
+    story = story_of(mixed)
+    assert "the free-form face and 2 fillets" in story.headline.title + story.headline.about
+    assert story.scope[0].startswith("6 plane faces were not judged")
     assert mixed.legend_words["check"] == "not judged (obstacle only)"
 
 
@@ -189,7 +188,7 @@ def test_what_lies_between_samples_that_are_far_apart_is_said_not_to_be_seen(mon
     assert entry.feasible
     assert not entry.seen
     assert "was not seen" in " ".join(not_seen(found, short_names(found)))
-    assert "was not seen" in " ".join(words.headline(found, short_names(found), entry))
+    assert "was not seen" in " ".join(story_of(found).scope)
     assert code_of(found) == NOT_ALL_JUDGED
     assert any("times as far apart as curvature and the smallest cutter ask" in note for note in found.notes)
     # Who asks for it is told, too, but has what was asked for.

@@ -10,13 +10,13 @@ from cad_io import read_part
 from plan_cutters import Cutter, Holder, Machine, plan
 from plan_cutters.command.codes import code_of
 from plan_cutters.command.summary import summary
-from plan_cutters.document.names import short_names
 from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import AXIS_LIMIT, REASONS, UNDECIDED
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
-from plan_cutters.report.page.words import headline
+from plan_cutters.report.story.headline import headline
+from plan_cutters.report.story.names import short_names
 from plan_cutters.stages import reasons as finding
 from plan_cutters.stages.judge import judge
 from tests.support.cad_parts import box, cut, rod
@@ -202,5 +202,5 @@ def test_the_headline_is_that_of_the_union(capsys):
         "Take flat end D6 x 30 for the face asked for of the part (31.2 % of the area), in setup 0,0,-1:"
     )
     names = short_names(both.plan)
-    assert headline(both.plan, names, both.cutters[0])[0] == "Take flat end D6 x 30, in several setups."
-    assert headline(below.plan, names, below.cutters[0])[0] == "Take flat end D6 x 30, in setup 0, 0, -1."
+    assert headline(both.plan, names).about.startswith(" for the part, in 2 setups: ")
+    assert headline(below.plan, names).why == "It reaches every sample there, and needs no other setup."

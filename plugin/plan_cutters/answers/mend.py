@@ -115,6 +115,5 @@ def _doubted(change: Change) -> Change:
     """Where faces are missing from what is in the way, nothing is sure to help."""
     if not change.helps:
         return change
-    return replace(
-        change, helps=None, why=f"{change.why}, unless a face is in the way that is missing from the obstacles"
-    )
+    why = f"{change.why}, unless a face is in the way that is missing from the obstacles"
+    return replace(change, helps=None, doubted=True, why=why)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.reasons import REASONS as WORDS
 from plan_cutters.domain.verdicts import (
     ACCESSIBLE,
     BURIED,
@@ -40,11 +41,6 @@ _COMPARED = 32
 _LOOKED_AT = 1024
 #: How often a value that serves all samples tried, but not all, is taken further.
 _ROUNDS = 8
-
-#: What stands in the way, in words that follow "lost to".
-_WORDS = {"axis_limit": "the limits of axis and tilt", "local_gouge": "local gouge", "rear_gouge": "rear gouge",
-          "collision": "collision", "buried": "a body around them", "tolerance": "the tolerance", "neck": "the neck",
-          "shank": "the shank", "holder": "the holder", "fixture": "the fixtures"}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -195,8 +191,8 @@ def reasons(codes: NDArray[np.uint8], of: int | None = None) -> str:
     found = [(int((codes == code).sum()), REASONS[code]) for code in np.unique(codes).tolist()]
     ranked = sorted(found, key=lambda each: (-each[0], each[1]))
     if len(ranked) == 1:
-        return f"{samples(len(codes), of)} lost to {_WORDS[ranked[0][1]]}"
-    whole = ", ".join(f"{count:,} to {_WORDS[reason]}" for count, reason in ranked)
+        return f"{samples(len(codes), of)} lost to {WORDS[ranked[0][1]].noun}"
+    whole = ", ".join(f"{count:,} to {WORDS[reason].noun}" for count, reason in ranked)
     return f"{samples(len(codes), of)} lost ({whole})"
 
 

@@ -116,7 +116,7 @@ def _watched(words: list[str], name: str) -> int:
     from plan_cutters.command.again import supervised
     from plan_cutters.command.asked import check
     from plan_cutters.command.progress import Display
-    from plan_cutters.document.names import called
+    from plan_cutters.report.story.names import called
 
     try:
         with command.make_context(name, list(words)) as context:

@@ -175,8 +175,8 @@ def _text(values: Any) -> str:
 
 def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: dict[str, Any]) -> list[str]:
     """What the map is of, line by line; the first is its title."""
-    from plan_cutters.document.names import called
     from plan_cutters.report.sheet import printable
+    from plan_cutters.report.story.names import called
 
     curvature = ", ".join(f"{x + 0.0:.4g}" for x in found.curvature)
     apart = "one rotation: nothing is said of others"

@@ -1,6 +1,6 @@
 """Tables of the summary: a row for each cutter, and the worst faces of one; lists where a terminal is too narrow for them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from io import StringIO
 from typing import TYPE_CHECKING, Any
 
@@ -9,13 +9,12 @@ from rich.table import Table
 from rich.text import Text
 
 from plan_cutters.command.terminal import clean, console
-from plan_cutters.document.told import figure, part_of
-from plan_cutters.document.told import worst_faces as most_lost
+from plan_cutters.report.story.cutters import FEASIBLE
 
 if TYPE_CHECKING:
-    from plan_cutters.document.model import CutterEntry, Plan
-    from plan_cutters.document.shares import AreaShare, Verdicts
-    from plan_cutters.document.told import WorstFace
+    from plan_cutters.document.model import Plan
+    from plan_cutters.report.story.cutters import CutterStory, WorstFace
+    from plan_cutters.report.story.story import Story
 
 #: Verdicts, what a column calls them.
 WORDS = {
@@ -24,11 +23,10 @@ WORDS = {
     "undecided": "undecided",
     "inaccessible": "inaccessible",
 }
-#: Rows that are shown unless all are asked for, and faces.
-MOST_ROWS, WORST = 40, 5
+#: Rows that are shown unless all are asked for.
+MOST_ROWS = 40
 #: Widest that the name of a cutter is shown beside its numbers.
 _NAME = 22
-_WORDS = {True: "yes", False: "no", None: "undecided"}
 _COLOURS = {True: "green", False: "red", None: "yellow"}
 
 
@@ -37,65 +35,49 @@ def cell(text: str, style: str = "") -> Text:
     return Text(clean(text), style)
 
 
-def percents(counts: "Verdicts", share: "AreaShare") -> dict[str, str]:
-    """Each verdict's share of the area, as it is shown."""
-    return {word: part_of(counts, share, [word]) for word in WORDS}
-
-
-def shown(plan: "Plan") -> "CutterEntry":
-    """The cutter that the models show: the selected, else the one that reaches the most samples."""
-    best = max(plan.cutters, key=lambda c: c.interference_free + c.accessible)
-    return next((c for c in plan.cutters if c.id == plan.selected), best)
-
-
-def cutter_rows(plan: "Plan", names: Mapping[str, str], *, verbose: bool) -> list[Any]:
+def cutter_rows(plan: "Plan", story: "Story", *, verbose: bool) -> list[Any]:
     """A row for each cutter, of many the best alone, and how many more there are."""
-    taken, rows = take(plan), list(plan.cutters)
+    rows = list(story.cutters)
     if not verbose and len(rows) > MOST_ROWS:
-        rank = sorted(rows, key=lambda c: (c.id != taken, c.area_share.inaccessible + c.area_share.undecided))
-        kept = {c.id for c in rank[:MOST_ROWS]}
-        rows = [c for c in rows if c.id in kept]
+        lost = {c.id: c.area_share.inaccessible + c.area_share.undecided for c in plan.cutters}
+        kept = sorted(rows, key=lambda c: (c.id != story.taken, lost[c.id]))[:MOST_ROWS]
+        rows = [c for c in rows if c in kept]
     here = f", over {1 + len(plan.effective.other_setups)} setups" if plan.effective.other_setups else ""
     found: list[Any] = [f"Share of the area to machine, by the verdict of its samples{here}:"]
-    short = _distinct([clean(names[c.id]) for c in rows], _NAME)
+    short = _distinct([clean(c.name) for c in rows], _NAME)
     table = _table(("  cutter", "feasible"), tuple(WORDS.values()))
     for c, name in zip(rows, short, strict=True):
-        mine = percents(c, c.area_share)
-        table.add_row(Text(f"{'>' if c.id == taken else ' '} {name}", "bold" if c.id == taken else ""),
-                      Text(_WORDS[c.feasible], _COLOURS[c.feasible]), *(mine[word] for word in WORDS))  # fmt: skip
-    found += [table] if _fits(table) else [_listed(c, names[c.id], c.id == taken) for c in rows]
+        taken = c.id == story.taken
+        table.add_row(Text(f"{'>' if taken else ' '} {name}", "bold" if taken else ""),
+                      Text(FEASIBLE[c.feasible], _COLOURS[c.feasible]), *(c.shares[word] for word in WORDS))  # fmt: skip
+    found += [table] if _fits(table) else [_listed(c, c.id == story.taken) for c in rows]
     if len(rows) < len(plan.cutters):
         found.append(f"  and {len(plan.cutters) - len(rows)} more cutters that reach less: -v or plan.json.")
     return found
 
 
-def take(plan: "Plan") -> str | None:
-    """Id of the cutter that the first line says to take."""
-    return plan.selected or plan.selected_over_setups or plan.selected_for_setup
+def _listed(c: "CutterStory", taken: bool) -> Text:
+    said = ", ".join(f"{word} {c.shares[key]}" for key, word in WORDS.items() if c.shares[key] != "0 %")
+    return Text.assemble(cell(f"{'>' if taken else ' '} {c.name}: ", "bold" if taken else ""),
+                         (FEASIBLE[c.feasible], _COLOURS[c.feasible]), f"; {said}")  # fmt: skip
 
 
-def _listed(c: "CutterEntry", name: str, taken: bool) -> Text:
-    mine = percents(c, c.area_share)
-    said = ", ".join(f"{word} {mine[key]}" for key, word in WORDS.items() if mine[key] != "0 %")
-    return Text.assemble(cell(f"{'>' if taken else ' '} {name}: ", "bold" if taken else ""),
-                         (_WORDS[c.feasible], _COLOURS[c.feasible]), f"; {said}")  # fmt: skip
-
-
-def worst_faces(plan: "Plan", name: str) -> list[Any]:
+def worst_faces(story: "Story") -> list[Any]:
     """Where the cutter shown fails: the faces on which it leaves the most area."""
-    c = shown(plan)
-    worst, count = most_lost(plan, c, WORST)
-    if not worst:
+    c = story.cutter(story.shown)
+    if not c.faces:
         return []
+    few = c.failing > len(c.faces)
     which = (
-        f"the {len(worst)} worst of {count} faces" if count > len(worst) else f"{count} face{'s' if count > 1 else ''}"
+        f"the {len(c.faces)} worst of {c.failing} faces" if few else f"{c.failing} face{'s' if c.failing > 1 else ''}"
     )
-    lines: list[Any] = [cell(f"Where {name} {'fails' if c.blocked else 'is not sure'}, {which}:")]
-    rows = [_row(figure(each.area), each) for each in worst]
+    lines: list[Any] = [cell(f"Where {c.name} {'fails' if c.feasible is False else 'is not sure'}, {which}:")]
     table = _table(("  face", "mainly", "in the way"), ("mm2 lost", "of the face", "mm too deep"))
-    for face, area, share, reason, depth, obstacle in rows:
-        table.add_row(f"  {face}", reason, cell(_distinct([obstacle], _NAME)[0]), area, share, depth)
-    return [*lines, table] if _fits(table) else [*lines, *(cell(_said(*row)) for row in rows)]
+    for f in c.faces:
+        table.add_row(
+            f"  {f.id}", f.reason, cell(_distinct([f.obstacle or "-"], _NAME)[0]), f.area, f.share, f.depth or "-"
+        )
+    return [*lines, table] if _fits(table) else [*lines, *(cell(_said(f)) for f in c.faces)]
 
 
 def _table(words: Sequence[str], numbers: Sequence[str]) -> Table:
@@ -112,20 +94,11 @@ def _fits(table: Table) -> bool:
     return Measurement.get(page, page.options.update_width(1000), table).maximum <= page.width
 
 
-def _said(face: str, area: str, share: str, reason: str, depth: str, obstacle: str) -> str:
+def _said(f: "WorstFace") -> str:
     """A face in a line."""
-    deep = f", {depth} mm too deep" if depth != "-" else ""
-    way = f", {obstacle} in the way" if obstacle != "-" else ""
-    return f"  {face}: {area} mm2 lost, {share} of the face, mainly {reason}{deep}{way}"
-
-
-def _row(area: str, found: "WorstFace") -> tuple[str, str, str, str, str, str]:
-    """Face, area that is lost, its share of the face, main reason, depth, what is in the way."""
-    deepest = found.witness
-    depth = "-" if deepest is None or deepest.depth_mm is None else f"{deepest.depth_mm:.3g}"
-    way = "-" if deepest is None or deepest.obstacle_face is None else deepest.obstacle_face
-    reason = found.reason.replace("_", " ") or "?"
-    return found.face.id, area, found.share, f"undecided: {reason}" if found.undecided else reason, depth, way
+    deep = f", {f.depth} mm too deep" if f.depth else ""
+    way = f", {f.obstacle} in the way" if f.obstacle else ""
+    return f"  {f.id}: {f.area} mm2 lost, {f.share} of the face, mainly {f.reason}{deep}{way}"
 
 
 def _distinct(names: Sequence[str], most: int) -> list[str]:

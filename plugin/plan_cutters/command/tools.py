@@ -257,9 +257,9 @@ def _to_toml(found: "Sequence[Library]", path: Path) -> None:
 
 
 def _draw(found: "Sequence[Library]", folder: Path) -> None:
-    from plan_cutters.document.names import called
     from plan_cutters.domain.spec import is_spec
     from plan_cutters.errors import PlanError
+    from plan_cutters.report.story.names import called
 
     draw = import_module("plan_cutters.library.drawing").draw
     drawn: dict[str, str] = {}

@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field
 
 from cad_io.arrays import SurfaceSamples
-from plan_cutters.document.frozen import Frozen, Posture, Vector, posture, vector
+from plan_cutters.document.frozen import Frozen, Posture, Vector, filled, posture, vector
 from plan_cutters.domain.area import Patch
 from plan_cutters.domain.change import MEANS, Change, Mend, Step, Value
 from plan_cutters.domain.least_set import LeastSet
@@ -83,6 +83,9 @@ class ChangeEntry(Frozen):
     lost_after: float | None = Field(default=None, description="and with `asked`; null where nothing is asked or known")
     option: str | None = Field(
         default=None, description="what to say on the command line; null where nothing is asked, or no option says it"
+    )
+    doubted: bool = Field(
+        default=False, description="it would help, unless a face that is missing from the obstacles is in the way"
     )
 
 
@@ -213,54 +216,24 @@ def radius_entry(found: RadiusMap, samples: SurfaceSamples, *, doubtful: bool = 
 
 def mend_entry(found: Mend) -> MendEntry:
     """What would make a cutter feasible."""
-    return MendEntry(
-        lost=found.lost,
-        buried=found.buried,
-        why=found.why,
-        changes=[_change_entry(each) for each in found.changes],
-        lost_share=found.share,
-        steps=[_step_entry(each) for each in found.steps],
-        lost_areas=[_area_entry(each) for each in found.areas],
+    return filled(
+        MendEntry, found, changes=[_change_entry(each) for each in found.changes], lost_share=found.share,
+        steps=[_step_entry(each) for each in found.steps], lost_areas=[_area_entry(each) for each in found.areas],
         more_lost_areas=found.more_areas,
-        unsure=found.unsure,
-    )
+    )  # fmt: skip
 
 
 def least_set_entry(found: LeastSet, *, doubtful: bool = False) -> LeastSetEntry:
     """The fewest runs."""
     runs = [
-        RunEntry(
-            cutter=each.cutter.id,
-            setup=each.setup,
-            samples=each.samples,
-            area_mm2=each.area,
-            share=each.share,
-            faces=list(each.faces),
-            alone=each.alone,
-        )
-        for each in found.runs
+        filled(RunEntry, each, cutter=each.cutter.id, area_mm2=each.area, faces=list(each.faces)) for each in found.runs
     ]
-    return LeastSetEntry(
-        runs=runs,
-        reached=found.reached,
-        left=found.left,
-        share=found.share,
-        left_share=found.left_share,
-        proven=found.proven,
-        doubtful=doubtful,
-    )
+    return filled(LeastSetEntry, found, runs=runs, doubtful=doubtful)
 
 
 def _area_entry(found: Patch) -> LostAreaEntry:
-    return LostAreaEntry(
-        area_mm2=found.area,
-        share=found.share,
-        samples=found.samples,
-        faces=list(found.faces),
-        point=found.place,
-        across_mm=found.across,
-        why=found.words,
-    )
+    return filled(LostAreaEntry, found, area_mm2=found.area, faces=list(found.faces), point=found.place, across_mm=found.across,
+                  why=found.words)  # fmt: skip
 
 
 def _joined(words: list[str]) -> str:
@@ -271,36 +244,20 @@ def _joined(words: list[str]) -> str:
 
 
 def _step_entry(found: Step) -> StepEntry:
-    return StepEntry(
+    return filled(
+        StepEntry, found,
         changes=[MoveEntry(thing=each.means, now=each.now, asked=each.asked, why=each.words) for each in found.moves],
-        lost_before=found.before,
-        lost_after=found.after,
-        gained=found.gained,
-        left=found.left,
-        cutters=[each.id for each in found.cutters],
-        setups=[vector(each) for each in found.setups],
-        option=found.option,
-        why=_joined([each.words for each in found.moves]),
+        lost_before=found.before, lost_after=found.after, cutters=[each.id for each in found.cutters],
+        setups=[vector(each) for each in found.setups], why=_joined([each.words for each in found.moves]),
         remains=[_area_entry(each) for each in found.remains],
-    )
+    )  # fmt: skip
 
 
 def _change_entry(found: Change) -> ChangeEntry:
-    return ChangeEntry(
-        thing=found.thing,
-        helps=found.helps,
-        now=_plain(found.now),
-        asked=_plain(found.asked),
-        beyond=_plain(found.beyond),
-        left=found.left,
-        looked=found.looked,
-        verified=found.verified,
-        cutter=None if found.cutter is None else found.cutter.id,
-        why=found.why,
-        lost_before=found.before,
-        lost_after=found.after,
-        option=found.option,
-    )
+    return filled(
+        ChangeEntry, found, now=_plain(found.now), asked=_plain(found.asked), beyond=_plain(found.beyond),
+        cutter=None if found.cutter is None else found.cutter.id, lost_before=found.before, lost_after=found.after,
+    )  # fmt: skip
 
 
 def _plain(value: Value) -> Value:

@@ -1,7 +1,8 @@
 """How results become the plan file: each entry of the model from the arrays behind it."""
 
+import math
 import platform
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +11,8 @@ from numpy.typing import NDArray
 from cad_io import Part, SurfaceSamples
 from cad_io.kernel.assembly import component_of
 from plan_cutters import __version__
-from plan_cutters.document.fixtures import fixture_notes
 from plan_cutters.document.frozen import posture, vector
+from plan_cutters.document.listed import listed
 from plan_cutters.document.model import (
     CutterEntry,
     FaceEntry,
@@ -20,6 +21,7 @@ from plan_cutters.document.model import (
     WitnessEntry,
 )
 from plan_cutters.document.part_info import OrientationInfo, PartInfo, SewingInfo
+from plan_cutters.document.scope import Scope
 from plan_cutters.document.shares import counts, face_verdicts, whole_share
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.shapes import flute_length, modes
@@ -30,11 +32,8 @@ from plan_cutters.domain.verdicts import (
     Reach,
     Witness,
 )
-from plan_cutters.options import Options
 from plan_cutters.scene.faces import Chosen
-from plan_cutters.scene.prepared import Prepared
 from plan_cutters.scene.scene import Scene
-from plan_cutters.scene.spacing import BUDGET
 from plan_cutters.scene.surroundings import Surroundings
 
 
@@ -123,6 +122,7 @@ def _witness_entry(
     if witness.tilt is not None and witness.rotation is not None and witness.axis is not None:
         best = posture(witness.tilt, witness.rotation, witness.axis)
     return WitnessEntry(
+        sample=witness.sample,
         point=vector(samples.point[witness.sample]),
         face=f"F{samples.face[witness.sample]}",
         verdict="undecided" if reach.verdict[witness.sample] == UNDECIDED else "inaccessible",
@@ -201,116 +201,6 @@ def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen) -> list[Fa
     return result
 
 
-def notes(scene: Scene, options: Options, samples: SurfaceSamples, cutters: Sequence[Cutter]) -> list[str]:
-    """What the verdicts do not say."""
-    notes = [
-        *_tool_notes(options, cutters),
-        f"Verdicts are about samples; grid neighbours, and points of a face from its nearest sample, are at most "
-        f"{samples.max_gap:.3g} mm apart.",
-    ]
-    if samples.empty:
-        names = ", ".join(f"F{number}" for number, _ in samples.empty)
-        notes.append(f"No verdict is about {names}: no sample could be taken there.")
-    if not options.machine.limited:
-        notes.append("No machine was given: any tool axis counts as possible.")
-    if not scene.orientation.confident:
-        notes.append("Which side is material is a guess; --flip machines the other side.")
-        if other := scene.turned:
-            notes.append(
-                f"The setup axis decides the side of open faces: with 0,0,1 as setup {listed(other)} would be machined on the "
-                "other side."
-            )
-    if scene.tolerance > 1.001 * scene.asked:
-        notes.append(
-            f"The tolerance was raised from {scene.asked:g} to {scene.tolerance:.3g} mm: "
-            "the obstacle triangles could not be made to follow the surface more closely."
-        )
-    notes += _around_notes(scene.part, scene.around)
-    notes += fixture_notes(scene.around.fixtures, several=bool(options.other_setups))
-    return notes
-
-
-def sampling_notes(ready: Prepared) -> Iterator[str]:
-    """Where samples are farther apart than was asked, or than they should be."""
-    spacing = ready.spacing
-    if ready.coarser > 1.0:
-        yield (f"Samples are {ready.coarser:.3g} times as far apart as curvature and the smallest cutter ask, for a default plan "
-               f"takes about {BUDGET:,}: --spacing asks for more, --faces for less.")  # fmt: skip
-    if spacing is None:
-        return
-    step = spacing if isinstance(spacing, dict) else dict.fromkeys(ready.chosen.targets, spacing)
-    wide = [f"F{number}" for number, gap in ready.samples.face_gaps if gap > step[number] * (1 + 1e-6)]
-    if wide:
-        yield (f"Samples are farther apart than asked on {listed(wide)}, whose borders no grid follows: `gap_mm` of each face in "
-               "plan.json says how far.")  # fmt: skip
-
-
-def _tool_notes(options: Options, cutters: Sequence[Cutter]) -> Iterator[str]:
-    """How the cutters are judged."""
-    if not options.cutters and not options.libraries:
-        yield ("The cutters are the built-in drawer, of usual metric sizes in plain holders: give your own with --cutter or "
-               "--cutters.")  # fmt: skip
-    bare = [c.id for c in cutters if c.holder is None]
-    if bare:
-        yield f"{listed(bare)} {'is' if len(bare) == 1 else 'are'} judged up to the stated length, without a holder."
-    beyond = [
-        c.id for c in cutters if max(mode.high for mode in modes(c)) > options.postures.tilt[1] + 1e-6 > 0.5 * np.pi
-    ]
-    if beyond:
-        yield (f"{listed(beyond)} can touch at larger tilts than the {np.degrees(options.postures.tilt[1]):g} deg searched: "
-               "--tilt asks for more.")  # fmt: skip
-    held = [c.id for c in cutters if c.holder is None and not c.stages]
-    if held and len(held) == len(cutters):
-        yield "All of a cutter's length cuts, unless it says where its flutes end."
-
-
-def _around_notes(part: Part, around: Surroundings) -> Iterator[str]:
-    """What stands in the way otherwise than the file has it."""
-    skins = {number for body in around.bodies if body.closed for number in body.faces}
-    present = set(np.unique((around.alone or around).may_be.triangles.face).tolist())
-    sheets = [f.id for f in part.faces if f.number in present - skins]
-    if sheets and skins:
-        yield (f"{listed(sheets)} enclose{'s' if len(sheets) == 1 else ''} no material: only the surface is in the way, "
-               "not what may lie behind it.")  # fmt: skip
-    elif sheets:
-        yield "No face encloses material: only the surfaces are in the way, not what may lie behind them."
-
-
-def listed(names: Sequence[str], most: int = 8) -> str:
-    """Names in a line, the first ones where there are many."""
-    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
-
-
-def area_notes(entries: Sequence[CutterEntry], *, doubtful: bool) -> Iterator[str]:
-    """How far the area between the samples is served, in words; `doubtful`: obstacles are missing."""
-    known = "as far as curvature between grid nodes" + (" and the obstacles are" if doubtful else " is") + " known"
-    for entry in entries:
-        area = entry.area
-        if area is None:
-            continue
-        if area.share == 1:
-            what = "all of the target surface whose area is known" if area.left_out else "all of the target surface"
-            yield f"{entry.id} serves {what}, {known}."
-        else:
-            lost = area.left - area.short - area.dropped
-            why = (
-                [f"no posture was found that serves the cells about {lost} contacts, or finer ones"] if lost > 0 else []
-            )
-            if area.dropped:
-                why.append(f"{area.dropped} cells were not cut up, for too little of the surface was to be gained")
-            if area.short:
-                why.append(
-                    f"the budget was spent with {area.short} cells open, so a larger --area-budget may serve more"
-                )
-            causes = "; ".join(why) or "some of it has no samples or no closed border"
-            yield (
-                f"{entry.id} reaches every judged sample, but not all of the target surface was shown to be served: "
-                f"{causes}. Finer samples may help, too."
-            )
-        if area.left_out:
-            yield f"The area of {', '.join(area.left_out)} is not known: it is not in the share that is served."
-
-
 def versions() -> dict[str, str]:
     """Versions of what the plan was made with."""
     from importlib.metadata import version
@@ -318,3 +208,28 @@ def versions() -> dict[str, str]:
     names = {"cadquery-ocp": "occt", "numba": "numba", "numpy": "numpy", "scipy": "scipy", "trimesh": "trimesh"}
     found = {label: version(name) for name, label in names.items()}
     return {"plan_cutters": __version__, **found, "python": platform.python_version()}
+
+
+def scope_of(faces: Sequence[FaceEntry]) -> Scope:
+    """What was judged of all faces."""
+    targets = [f for f in faces if f.target]
+    others = [f for f in faces if not f.target and not f.ignored]
+    return Scope(
+        judged=len(targets),
+        judged_mm2=_area(targets),
+        not_judged=len(others),
+        not_judged_mm2=_area(others),
+        judged_by_kind=_kinds(targets),
+        not_judged_by_kind=_kinds(others),
+    )
+
+
+def _area(faces: Sequence[FaceEntry]) -> float:
+    return math.fsum(f.area_mm2 for f in faces if math.isfinite(f.area_mm2))
+
+
+def _kinds(faces: Sequence[FaceEntry]) -> dict[str, int]:
+    found: dict[str, int] = {}
+    for face in faces:
+        found[face.kind] = found.get(face.kind, 0) + 1
+    return dict(sorted(found.items()))

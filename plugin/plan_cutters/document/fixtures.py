@@ -1,9 +1,7 @@
 """Fixtures, as the plan file has them."""
 
-from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from cad_io import Part
 from cad_io.read.mesh import Mesh
 from plan_cutters.document.model import FixtureEntry
 from plan_cutters.scene.surroundings import Standing
@@ -25,17 +23,3 @@ def fixture_entry(standing: Standing) -> FixtureEntry:
         watertight=standing.body is not None,
         notes=list(standing.notes),
     )
-
-
-def fixture_notes(fixtures: Sequence[Standing], *, several: bool = False) -> Iterator[str]:
-    """What the plan must say of fixtures; `several`: there is more than one setup."""
-    for each in fixtures:
-        for note in each.notes:
-            yield f"{each.name}: {note}."
-    if several:
-        for each in fixtures:
-            if each.fixture.follows_setup:
-                yield f"{each.name}: it lies across the axis of the first setup, and stays there in the others."
-    drawn = [each.name for each in fixtures if not isinstance(each.source, Part)]
-    if drawn:
-        yield f"Only the GLB model, the review page and pictures show what is no CAD body: {', '.join(drawn)}."

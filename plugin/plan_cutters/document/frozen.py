@@ -1,6 +1,7 @@
 """What all entries of the plan are made of."""
 
 from collections.abc import Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,14 @@ class Frozen(BaseModel):
     """An entry of the plan: its fields and no others."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+_Entry = TypeVar("_Entry", bound=Frozen)
+
+
+def filled(kind: type[_Entry], record: object, **other: Any) -> _Entry:
+    """Make an entry of a record: each field is the record's attribute of its name, unless it is one of `other`."""
+    return kind(**{name: other[name] if name in other else getattr(record, name) for name in kind.model_fields})
 
 
 class Posture(Frozen):

@@ -127,6 +127,7 @@ class MissingEntry(Frozen):
 class WitnessEntry(Frozen):
     """A sample that is not reached and the posture that comes nearest to reaching it."""
 
+    sample: int | None = Field(default=None, description="its row in samples.npz; null in older files")
     point: Vector
     face: str
     verdict: Literal["inaccessible", "undecided"] = "inaccessible"
@@ -259,8 +260,7 @@ class CutterEntry(Verdicts):
         description="how far from what counts a point may be and still count, where a shape is held in a larger one",
     )
     feasible: bool | None = Field(
-        description="null: only undecided samples stand in the way, or it reaches all that could be judged but obstacles are "
-        "missing"
+        description="null: undecided samples alone are left, or it reaches all that could be judged but obstacles are missing"
     )
     seen: bool = Field(
         default=True,
@@ -391,6 +391,7 @@ class Plan(Frozen):
         description="ids of cutters that fail and were left out of `mend`, as others come nearer: mend-all has them",
     )
     notes: list[str] = Field(description="what these verdicts do not say")
+    note_codes: list[str] = Field(default=[], description="what each note is about; empty in older files")
     legend: dict[str, str] = Field(description="colour of each verdict in the STEP and GLB files, sRGB")
     legend_words: dict[str, str] = Field(default={}, description="what those colours mean, in words for people")
     split: dict[str, SplitEntry] = Field(default={}, description="faces of mixed verdicts: how the models show them")

@@ -27,20 +27,15 @@ MEANING = {
     "mixed": "mixed: could not be split",
     "fixture": "fixture",
 }
-#: What forbids a tilt in a posture map -> sRGB hex; hatches tell them apart as well.
-CAUSES = {
-    "no_contact": "#E5E5E5",
-    "axis_limit": "#9A9A9A",
-    "local_gouge": "#E69F00",
-    "rear_gouge": "#D55E00",
-    "collision": "#CC79A7",
-    "neck": "#882255",
-    "shank": "#0072B2",
-    "holder": "#332288",
-    "fixture": "#117733",
-    "buried": "#5C3A21",
-    "tolerance": "#B8A94A",
-}
+
+
+def label(word: str) -> str:
+    """A verdict in a legend: its meaning without what explains it.
+
+    >>> label("inside_bodies"), label("mixed")
+    ('inside another body', 'mixed')
+    """
+    return MEANING[word].partition(":")[0]
 
 
 def rgb(verdict: str) -> tuple[float, float, float]:

@@ -11,20 +11,17 @@ from numpy.typing import NDArray
 from cad_io.arrays import Ints
 from plan_cutters.document.answers import least_set_entry, mend_entry, radius_entry, stick_out_entry
 from plan_cutters.document.build import (
-    area_notes,
     degrees,
     face_entries,
     missing_entries,
-    notes,
     part_info,
-    sampling_notes,
+    scope_of,
     versions,
 )
 from plan_cutters.document.effective import effective
 from plan_cutters.document.fixtures import fixture_entry
 from plan_cutters.document.frozen import Vector, vector
 from plan_cutters.document.inside import inside_entry
-from plan_cutters.document.judged import scope_of
 from plan_cutters.document.libraries import library_entry, source_entry
 from plan_cutters.document.model import (
     CutterEntry,
@@ -35,10 +32,11 @@ from plan_cutters.document.model import (
     SampleCounts,
     Selection,
 )
+from plan_cutters.document.notes import notes_of
 from plan_cutters.document.palette import MEANING, PALETTE
 from plan_cutters.document.setups import SetupEntry, SetupReach
 from plan_cutters.document.shares import counts
-from plan_cutters.document.travel import travel_entry, travel_notes
+from plan_cutters.document.travel import placement_entry, travel_entry
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.machine import Machine
@@ -57,7 +55,7 @@ def plan_of(
     """The plan of a part from the entries of its cutters, and what was answered after them."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
     part, around = scene.part, scene.around
-    faces = face_entries(part, samples, choice)
+    faces, remarks = face_entries(part, samples, choice), notes_of(ready, entries)
     absent = {*(() if around.fixtures else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
     return Plan(
         part=part_info(scene),
@@ -90,13 +88,8 @@ def plan_of(
         least_set=None if answers.least_set is None else least_set_entry(answers.least_set, doubtful=around.doubtful),
         not_mended=list(answers.not_mended),
         largest_radius=[radius_entry(found, samples, doubtful=around.doubtful) for found in answers.radius_maps],
-        notes=[
-            *notes(scene, options, samples, ready.cutters),
-            *choice.notes,
-            *sampling_notes(ready),
-            *travel_notes(options),
-            *area_notes(entries, doubtful=around.doubtful),
-        ],
+        notes=[each.text for each in remarks],
+        note_codes=[each.code for each in remarks],
         legend={word: colour for word, colour in PALETTE.items() if word not in absent},
         legend_words={word: MEANING[word] for word in PALETTE if word not in absent},
         run=Run(time=started.isoformat(timespec="seconds"), seconds={}),

@@ -1,6 +1,6 @@
 """Where the part stands, and the linear travel that a cutter needs there, as the plan file has them."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 from pydantic import Field
@@ -100,33 +100,3 @@ def travel_entry(machine: Machine, found: Travel, reach: Reach, samples: Surface
         axes=axes,
         worst=sorted(worst, key=lambda each: -each.beyond_mm),
     )
-
-
-def travel_notes(options: Options) -> Iterator[str]:
-    """Why linear travel is not judged, or what it is judged of."""
-    why = unjudged(options.machine, options.placement)
-    if why:
-        yield f"Linear travel is not judged: {why}."
-    if why is None:
-        yield "Linear travel is that of the holder's nose at the postures found; it changes no verdict."
-    if why is None and options.other_setups:
-        yield "Linear travel is judged in the first setup alone."
-
-
-def travel_lines(entry: TravelEntry | None, name: str) -> Sequence[str]:
-    """What people are told of the cutter that is shown."""
-    if entry is None:
-        return []
-    lines = []
-    if entry.outside:
-        each = "; ".join(
-            f"{w.axis} by up to {w.beyond_mm:.4g} mm, at ({', '.join(f'{x:.4g}' for x in w.point)}) on {w.face}"
-            for w in entry.worst
-        )
-        lines.append(f"Beyond the travel: at {entry.outside} of {entry.judged} samples reached by {name} the posture found needs "
-                     f"more than the machine's: {each}.")  # fmt: skip
-    elif entry.judged:
-        lines.append(f"Within the travel: all {entry.judged} postures found for {name} whose positions are known.")
-    if entry.unknown:
-        lines.append(f"Travel of {name} is not known at {entry.unknown} samples: linear axes are in one plane there.")
-    return lines

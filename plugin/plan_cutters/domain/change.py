@@ -52,6 +52,8 @@ class Change:
         Share of the finished area that is lost now, and with `asked`; `after` is None where nothing is asked or known.
     option : str, optional
         What to say on the command line; None where nothing is asked, or where no option says it.
+    doubted : bool
+        It would help, but a face that is missing from the obstacles may be in the way.
     """
 
     thing: Thing
@@ -68,6 +70,7 @@ class Change:
     before: float | None = None
     after: float | None = None
     option: str | None = None
+    doubted: bool = False
 
 
 #: What a step may change: any of THINGS, a slimmer holder, a second setup beside the present one, another cutter for the

@@ -18,6 +18,7 @@ from plan_cutters.domain.travel import tips
 from plan_cutters.domain.verdicts import UNDECIDED, Reach, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.report.models import product, split_result, styles, verdict_of
+from plan_cutters.report.witness import row_of
 from plan_cutters.result import Result
 
 Colour = tuple[float, float, float]
@@ -104,7 +105,10 @@ def _posture(result: Result, cutter: Cutter, at: int | WitnessEntry) -> tuple[Fl
     if isinstance(at, WitnessEntry):
         if at.best_posture is None:
             raise OptionError(f"no posture is within the axis limits at {at.face}: there is none to show")
-        row = int(np.linalg.norm(samples.point - np.array(at.point), axis=1).argmin())
+        try:
+            row = row_of(samples, at)
+        except ValueError as error:
+            raise OptionError(str(error)) from None
         axis, tilt = np.array(at.best_posture.axis), np.radians(at.best_posture.tilt)
     else:
         row = _row(at, len(samples))

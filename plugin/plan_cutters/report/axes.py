@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from plan_cutters.domain.clearance import part_words
 from plan_cutters.domain.travel import tips
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, NO_REASON, REASONS, SADDLE, UNJUDGED, WORDS
+from plan_cutters.report.judged import Judged
 from plan_cutters.scene.conditions import rotations_of
 
 CLASSES = {CONVEX: "convex", CONCAVE: "concave", SADDLE: "saddle", UNJUDGED: "unjudged"}
@@ -45,7 +46,7 @@ class Column:
         return [f"{stem}_{axis}{dash}{unit}" for axis in "xyz"]
 
 
-def columns(result: Any) -> list[Column]:
+def columns(result: Judged) -> list[Column]:
     """The columns, in their order, a row for each sample in the order of `samples.npz`."""
     samples, name = result.samples, result.shown
     reach, cutter = result.reaches[name], result.judged(name)
@@ -79,7 +80,7 @@ def columns(result: Any) -> list[Column]:
     return found + _machine(result)
 
 
-def _machine(result: Any) -> list[Column]:
+def _machine(result: Judged) -> list[Column]:
     """Positions of the machine's axes: those to take, then the rotary ones of the other solution; linear ones where judged."""
     name, machine = result.shown, result.conditions.machine
     if result.kinematics is None:

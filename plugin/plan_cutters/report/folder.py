@@ -6,11 +6,12 @@ import shutil
 from collections.abc import Callable, Collection, Sequence
 from contextlib import closing, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from cad_io.errors import CadIoError
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files.lock import Lock
+from plan_cutters.report.judged import Judged
 from plan_cutters.report.making import LATER, WRITERS, sha256
 
 if TYPE_CHECKING:
@@ -103,7 +104,7 @@ class Onlooker(Protocol):
 
 
 def write_all(
-    result: Any,
+    result: Judged,
     out: Path,
     formats: Sequence[str],
     staging: Staging | None = None,

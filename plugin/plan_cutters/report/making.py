@@ -8,6 +8,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from plan_cutters.report.judged import Judged
+
 if TYPE_CHECKING:
     # What formats there are is asked before anything heavy is loaded.
     from cad_io.kernel.meanwhile import Meanwhile
@@ -54,7 +56,9 @@ class Making:
         The part with its faces split, once that is done.
     """
 
-    def __init__(self, result: Any, folder: Path, schema: str, clock: "Clock", begins: Callable[[str], None]) -> None:
+    def __init__(
+        self, result: Judged, folder: Path, schema: str, clock: "Clock", begins: Callable[[str], None]
+    ) -> None:
         self.split: Any = None
         self._result, self._folder, self._schema, self._clock, self._begins = result, folder, schema, clock, begins
         self._error: Exception | None = None

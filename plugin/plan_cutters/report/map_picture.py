@@ -1,16 +1,15 @@
 """The posture map of one point as a picture: tilt against rotation, as the seed's Fig. 7, in colours and hatches."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from cad_io.arrays import Floats
-from plan_cutters.document.palette import CAUSES as COLOURS
 from plan_cutters.document.palette import PALETTE
 from plan_cutters.domain.intervals import complement, without
+from plan_cutters.domain.reasons import NO_CONTACT, REASONS
 from plan_cutters.report.sheet import figure, fitting, save, write
 
 #: Inches: the sheet's width, the room left at its sides, and the plot, from its left and with its size.
@@ -19,9 +18,8 @@ _WIDTH, _SIDE, _PLOT = 9.0, 0.3, (0.675, 6.3, 3.45)
 _TITLE, _NOTE, _TITLE_LINE, _NOTE_LINE = 11, 8, 0.23, 0.168
 
 
-@dataclass(frozen=True, slots=True)
-class Cause:
-    """What may forbid a tilt: its name in a map, its words, its colour and its hatch."""
+class Cause(NamedTuple):
+    """What is drawn of a map: its name in it, its words, its colour and its hatch."""
 
     name: str
     words: str
@@ -29,18 +27,18 @@ class Cause:
     hatch: str
 
 
+def _cause(code: str) -> Cause:
+    found = REASONS.get(code, NO_CONTACT)
+    return Cause(code, found.name, found.colour, found.hatch)
+
+
 #: In this order each counts for what is forbidden: the first one that does is drawn.
-CAUSES = (
-    Cause("no_contact", "no contact", COLOURS["no_contact"], "."),
-    Cause("axis_limit", "axis limit", COLOURS["axis_limit"], "--"),
-    Cause("local_gouge", "local gouge", COLOURS["local_gouge"], "//"),
-    Cause("rear_gouge", "rear gouge", COLOURS["rear_gouge"], "\\\\"),
-    Cause("collision", "collision (flutes)", COLOURS["collision"], "xx"),
-    Cause("neck", "neck", COLOURS["neck"], "||"),
-    Cause("shank", "shank", COLOURS["shank"], "++"),
-    Cause("holder", "holder", COLOURS["holder"], "oo"),
-    Cause("buried", "within a body", COLOURS["buried"], "**"),
-)
+CAUSES = tuple(
+    _cause(code)
+    for code in (
+        "no_contact", "axis_limit", "local_gouge", "rear_gouge", "collision", "neck", "shank", "holder", "buried",
+    )
+)  # fmt: skip
 FREE = Cause("free", "free", PALETTE["interference_free"], "")
 UNDECIDED = Cause("undecided", "undecided", PALETTE["undecided"], "..")
 #: What is neither free nor undecided, and nothing alone forbids: within the bounds of the search.

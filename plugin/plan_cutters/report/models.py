@@ -21,6 +21,7 @@ from cad_io.write.step import write_step as write_cad
 from plan_cutters.document.model import SplitEntry
 from plan_cutters.document.palette import LABELS, MEANING, rgb
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED
+from plan_cutters.report.judged import Judged
 
 _LABEL = {
     INTERFERENCE_FREE: LABELS.index("interference_free"),
@@ -45,12 +46,12 @@ def _grid_labels(grid: FaceGrid, label: NDArray[np.int32]) -> FaceLabels:
     return FaceLabels(grid.face, u, v, on)
 
 
-def split_result(result: Any, cutter: str | None = None) -> Any:
+def split_result(result: Judged, cutter: str | None = None) -> Any:
     """Split the part's target faces along the verdicts of a cutter, by its id; default the one shown."""
     samples = result.samples
     code = np.full(256, -1, np.int32)
-    for verdict, label in _LABEL.items():
-        code[verdict] = label
+    for verdict, word in _LABEL.items():
+        code[verdict] = word
     label = code[result.reaches[cutter or result.shown].verdict]
     covered = LABELS.index("inside_bodies")
     label[result.inside_bodies] = covered
@@ -96,7 +97,7 @@ def rungs(split: Any) -> dict[str, SplitEntry]:
     return {f"F{number}": shown[number] for number in sorted(shown)}
 
 
-def styles(result: Any) -> Callable[[Any], Style]:
+def styles(result: Judged) -> Callable[[Any], Style]:
     """Name and colour of a piece: a target face has the colour of its verdict, others keep their own."""
     faces = result.part.faces
 
@@ -108,7 +109,7 @@ def styles(result: Any) -> Callable[[Any], Style]:
     return style
 
 
-def write_step(result: Any, split: Any, path: Path, *, schema: str = "ap242") -> None:
+def write_step(result: Judged, split: Any, path: Path, *, schema: str = "ap242") -> None:
     """Write `annotated.step`: the input's products and layers, each piece a face named `F<number>_<verdict>`."""
     part = result.part
     others = [
@@ -122,7 +123,7 @@ def write_step(result: Any, split: Any, path: Path, *, schema: str = "ap242") ->
               schema=SCHEMAS[schema], others=others)  # fmt: skip
 
 
-def write_glb(result: Any, split: Any, path: Path, *, merged: bool = False) -> None:
+def write_glb(result: Judged, split: Any, path: Path, *, merged: bool = False) -> None:
     """Write `annotated.glb`: face numbers, verdicts and reasons in `extras`."""
     shown = next(c for c in result.plan.cutters if c.id == result.shown)
     entries = {int(f.id[1:]): f for f in result.plan.faces}
@@ -166,11 +167,11 @@ def write_glb(result: Any, split: Any, path: Path, *, merged: bool = False) -> N
     )
 
 
-def write_merged(result: Any, split: Any, path: Path) -> None:
+def write_merged(result: Judged, split: Any, path: Path) -> None:
     """Write `merged.glb`: one mesh for parts of so many faces that viewers are slow with a node each."""
     write_glb(result, split, path, merged=True)
 
 
-def product(result: Any) -> str:
+def product(result: Judged) -> str:
     """What the part is called."""
     return Path(result.part.file).stem if result.part.file else "part"

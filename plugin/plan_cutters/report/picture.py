@@ -15,10 +15,12 @@ from cad_io.arrays import Floats, Ints
 from cad_io.errors import WriteError
 from cad_io.kernel import translated
 from cad_io.write import meshes_of
-from plan_cutters.document.names import short_names
-from plan_cutters.document.palette import LABELS, MEANING, rgb
+from plan_cutters.document.palette import LABELS, label, rgb
 from plan_cutters.domain.posture import unit
+from plan_cutters.report.judged import Judged
 from plan_cutters.report.sheet import DPI, figure, fitting, printable, save, write
+from plan_cutters.report.story.names import short_names
+from plan_cutters.report.story.numbers import VERDICTS, part_of
 from plan_cutters.report.views import FINER, Body, View, averaged, borders, fitted, frame_towards, view
 
 #: Inches: the sheet, and each view.
@@ -32,23 +34,13 @@ _THROUGH = 0.86
 _BACKGROUND, _LINE = 1.0, 0.15
 #: Faces that are no targets are paler than in the models, and shaded less: who does not see green tells it from their grey.
 _BESIDE, _PALE, _SOFT = ("check", "ignored"), np.full(3, 0.87), 0.45
-#: The words of the legend, in its order.
-_WORDS = {
-    "interference_free": "interference-free",
-    "accessible": "accessible",
-    "undecided": "undecided",
-    "inaccessible": "inaccessible",
-    "unjudged": "unjudged",
-    "inside_bodies": "inside another body",
-    "mixed": "mixed: could not be split",
-    "check": MEANING["check"],
-    "fixture": "fixture",
-}
+#: The verdicts of the legend, in its order.
+_LEGEND = (*VERDICTS, "inside_bodies", "mixed", "check", "fixture")
 #: The second channel: what patterns stand for. As matplotlib writes hatches, for the legend.
 _HATCHES = {"inaccessible": "///", "undecided": "..", "unjudged": "--", "mixed": "xx", "fixture": "\\\\"}
 
 
-def write_png(result: Any, split: Any, path: Path) -> None:
+def write_png(result: Judged, split: Any, path: Path) -> None:
     """Write `review.png`: from above, from two corners, and from where most of what is not reached is seen.
 
     Colours are those of the models; what is not reached has a pattern besides. Fixtures are drawn so that what is behind them
@@ -104,7 +96,7 @@ def _colours(verdict: Ints, own: list[tuple[float, float, float] | None]) -> Flo
     return found
 
 
-def _fixtures(result: Any) -> list[Body]:
+def _fixtures(result: Judged) -> list[Body]:
     """All fixtures as one body with flat facets, or none."""
     shown = [each.shown for each in result.scene.around.fixtures if len(each.shown)]
     if not shown:
@@ -244,7 +236,7 @@ def _round_length(most: float) -> float:
     return float(next(k for k in (5, 2, 1) if k * power <= most * (1 + 1e-9)) * power)
 
 
-def _words(sheet: Any, result: Any, there: set[int], fixtures: bool) -> None:
+def _words(sheet: Any, result: Judged, there: set[int], fixtures: bool) -> None:
     """Title and legend."""
     from matplotlib.patches import Patch
 
@@ -270,13 +262,14 @@ def _words(sheet: Any, result: Any, there: set[int], fixtures: bool) -> None:
     )
     write(sheet, fitting(under, 8.5, room), (0.18, _SHEET[1] - 0.48), 8.5)
     handles = []
-    for word, text in _WORDS.items():
+    for word in _LEGEND:
         share = shares.get(word)
         if word == "fixture" and not fixtures:
             continue
         if LABELS.index(word) not in there and not share and word != "fixture":
             continue
-        label = text if share is None else f"{text}: {percent(share)} of the target area"
+        text = label(word)
+        legend = text if share is None else f"{text}: {part_of(entry, entry.area_share, [word])} of the target area"
         glass = word == "fixture"
         face = tuple(_glass(np.ones(3))) if glass else tuple(_PALE) if word in _BESIDE else rgb(word)
         handles.append(
@@ -285,21 +278,8 @@ def _words(sheet: Any, result: Any, there: set[int], fixtures: bool) -> None:
                 edgecolor=rgb(word) if glass else "#222222",
                 hatch=_HATCHES.get(word),
                 linewidth=0.5,
-                label=label,
+                label=legend,
             )
         )
     sheet.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.1 / _SHEET[0], 0.02), ncols=3, frameon=False, fontsize=9,
                  handlelength=2.6, handleheight=1.5, columnspacing=2.0)  # fmt: skip
-
-
-def percent(share: float) -> str:
-    """A share for people: never rounded to all or to none of it.
-
-    >>> percent(0.5), percent(0.9999), percent(0.0002), percent(1.0)
-    ('50.0 %', 'over 99.9 %', 'under 0.1 %', '100 %')
-    """
-    if share in (0.0, 1.0):
-        return f"{share:.0%}".replace("%", " %")
-    if share > 0.999:
-        return "over 99.9 %"
-    return "under 0.1 %" if share < 0.001 else f"{100 * share:.1f} %"

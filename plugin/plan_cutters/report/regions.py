@@ -21,6 +21,7 @@ from plan_cutters.document.axis_regions import (
     Span,
 )
 from plan_cutters.document.frozen import vector
+from plan_cutters.report.judged import Judged
 from plan_cutters.scene.clearance import clearances
 from plan_cutters.scene.fixed_axis import few_axes, held_at
 
@@ -28,7 +29,7 @@ from plan_cutters.scene.fixed_axis import few_axes, held_at
 _STEP = 1.0
 
 
-def write_regions(result: Any, _split: object, path: Path) -> None:
+def write_regions(result: Judged, _split: object, path: Path) -> None:
     """Write `axis_regions.json`: regions that one fixed axis serves, with the limits in which their axes lie.
 
     With posture maps also the tilts that are free all over a region, and that the machine holds.
@@ -36,7 +37,7 @@ def write_regions(result: Any, _split: object, path: Path) -> None:
     path.write_text(axis_regions(result).model_dump_json(indent=2) + "\n", encoding="utf-8")
 
 
-def axis_regions(result: Any) -> AxisRegions:
+def axis_regions(result: Judged) -> AxisRegions:
     """The regions of a result, for the cutter shown."""
     samples, name, plan = result.samples, result.shown, result.plan
     # Axes are held in the first setup.
@@ -127,7 +128,7 @@ def _found(rows: NDArray[np.int64], samples: Any, reach: Any) -> AxisFound:
     )
 
 
-def _rotary(result: Any, axes: Floats) -> list[dict[str, float] | None]:
+def _rotary(result: Judged, axes: Floats) -> list[dict[str, float] | None]:
     """A position of the rotary axes, deg, that holds each axis."""
     if result.kinematics is None or not len(axes):
         return [None] * len(axes)

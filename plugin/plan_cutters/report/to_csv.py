@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from plan_cutters.report.axes import Column, columns
+from plan_cutters.report.judged import Judged
 
 
-def write_csv(result: Any, _split: object, path: Path) -> None:
+def write_csv(result: Judged, _split: object, path: Path) -> None:
     """Write `axes.csv`: a header line, then a line for each sample, for the cutter shown; what is not known is empty.
 
     Lines end as RFC 4180 has it, numbers have a point, units stand at the end of the names. `docs/cam_outputs.md` has the

@@ -8,8 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from plan_cutters.report.judged import Judged
 
-def write_npz(result: Any, _split: object, path: Path) -> None:
+
+def write_npz(result: Judged, _split: object, path: Path) -> None:
     """Write `samples.npz`: the samples, and per cutter verdict, axis, lean and reason with its id as suffix.
 
     Over several setups what one or another reaches, with the posture of the first that does: `setup_ID` is its index into
@@ -51,15 +53,15 @@ def write_npz(result: Any, _split: object, path: Path) -> None:
     for name, found in result.answers.stick_outs.items():
         if found.each is not None:
             arrays[f"stick_out_{name}"] = found.each
-    for found in result.answers.radius_maps:
-        arrays[f"radius_{found.shape}"] = found.radius
-        arrays[f"radius_beyond_{found.shape}"] = found.beyond
-        arrays[f"radius_axis_{found.shape}"] = found.axis
-        arrays[f"radius_lean_{found.shape}"] = found.lean
+    for radii in result.answers.radius_maps:
+        arrays[f"radius_{radii.shape}"] = radii.radius
+        arrays[f"radius_beyond_{radii.shape}"] = radii.beyond
+        arrays[f"radius_axis_{radii.shape}"] = radii.axis
+        arrays[f"radius_lean_{radii.shape}"] = radii.lean
     _write(arrays, path)
 
 
-def write_postures(result: Any, _split: object, path: Path) -> None:
+def write_postures(result: Judged, _split: object, path: Path) -> None:
     """Write `postures.npz`: the free tilts of every sample at every rotation, as in PostureMaps, for the cutter shown.
 
     Whatever the machine: `PostureMaps.load` reads it, and `within` answers for another machine or setup.

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from plan_cutters.domain.clearance import part_words
 from plan_cutters.domain.verdicts import REASONS, WORDS
 from plan_cutters.report.axes import CLASSES, columns
+from plan_cutters.report.judged import Judged
 
 _TYPE = {
     "float64": "Float64",
@@ -30,7 +31,7 @@ _TYPE = {
 _BLOCK = 1 << 20
 
 
-def write_vtk(result: Any, _split: object, path: Path) -> None:
+def write_vtk(result: Judged, _split: object, path: Path) -> None:
     """Write `axes.vtp`: a vertex for each sample, with the columns of `axes.csv` as point data; codes stay numbers.
 
     What the codes mean stands in the field data, as texts: `verdicts`, `reasons`, `classes`, `parts`, `fixtures`,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from cad_io.arrays import FaceInfo
 from plan_cutters.domain.checks import choice
+from plan_cutters.domain.notes import Note
 from plan_cutters.domain.placement import Placement
 from plan_cutters.errors import OptionError
 
@@ -45,7 +46,7 @@ class Chosen:
         The words for `targets`.
     ignore : tuple of str
         The words for `ignored`.
-    notes : tuple of str
+    notes : tuple of Note
         What the plan must say of the choice.
     blends : frozenset of int
         Faces of the part that are fillets and rounds, whether chosen or not.
@@ -55,7 +56,7 @@ class Chosen:
     ignored: tuple[int, ...]
     asked: str
     ignore: tuple[str, ...]
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
     blends: frozenset[int] = frozenset()
 
 
@@ -85,14 +86,14 @@ def choose(
     targets = select_faces(part.faces, asked, tree=part.tree, ignored=ignored, blends=part.blends)
     notes = []
     if _finished(asked) and _none_sculptured(part.faces[n - 1] for n in targets):
-        notes.append(
+        said = (
             f"No face that can be judged is sculptured: all are targets ({len(targets)}); --faces chooses among them."
         )
+        notes.append(Note("faces_none_sculptured", said))
     if ignored:
-        notes.append(
-            f"{len(ignored)} {'face is' if len(ignored) == 1 else 'faces are'} ignored, neither targets nor obstacles "
-            f"(nothing is checked against them): {_some(f'F{n}' for n in sorted(ignored))}."
-        )
+        said = (f"{len(ignored)} {'face is' if len(ignored) == 1 else 'faces are'} ignored, neither targets nor obstacles "
+                f"(nothing is checked against them): {_some(f'F{n}' for n in sorted(ignored))}.")  # fmt: skip
+        notes.append(Note("faces_ignored", said))
     if placed is not None and placed.clamped:
         held = frozenset().union(
             *(_selected(part.faces, text, part.tree, placed.where, part.blends) for text in placed.clamped)
@@ -106,7 +107,7 @@ def choose(
                 if len(lost) == 1
                 else f"{len(lost)} faces are clamped and therefore no targets"
             )
-            notes.append(f"{what}: {_some(lost)}.")
+            notes.append(Note("faces_clamped", f"{what}: {_some(lost)}."))
         targets = left
     return Chosen(targets, tuple(sorted(ignored)), asked, ignore, tuple(notes), part.blends)
 

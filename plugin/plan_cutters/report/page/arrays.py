@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
+from plan_cutters.report.judged import Judged
 from plan_cutters.report.page.atlas import Atlas
 from plan_cutters.report.page.encode import COARSE, FINE, Stored, halves, octahedral, placed, turned, unfolded
 from plan_cutters.report.page.facts import tilt_and_lean
@@ -28,7 +29,7 @@ def drawn_arrays(surface: Surface, atlas: Atlas, low: Floats, high: Floats) -> A
     }
 
 
-def sample_arrays(result: Any, low: Floats, high: Floats) -> Arrays:
+def sample_arrays(result: Judged, low: Floats, high: Floats) -> Arrays:
     """The samples, and what each cutter reaches of them."""
     samples, normal = result.samples, octahedral(result.samples.normal, FINE)
     number = np.uint16 if samples.face.max(initial=0) < 1 << 16 else np.uint32
@@ -50,13 +51,13 @@ def sample_arrays(result: Any, low: Floats, high: Floats) -> Arrays:
     return {name: Stored.of(array) for name, array in found.items()}
 
 
-def posture_arrays(result: Any, name: str) -> Arrays:
+def posture_arrays(result: Judged, name: str) -> Arrays:
     """The postures found for a cutter."""
     tilt, lean = tilt_and_lean(result.samples, result.reaches[name])
     return {f"tilt.{name}": Stored.of(tilt), f"lean.{name}": Stored.of(lean)}
 
 
-def scalar_arrays(result: Any) -> tuple[Arrays, list[dict[str, Any]]]:
+def scalar_arrays(result: Judged) -> tuple[Arrays, list[dict[str, Any]]]:
     """Values at samples, and what the page is told of them."""
     curvature, found = result.samples.curvature, {}
     told = [

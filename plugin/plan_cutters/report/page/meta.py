@@ -8,19 +8,21 @@ import numpy as np
 from cad_io.arrays import Floats
 from plan_cutters.document.build import degrees
 from plan_cutters.document.model import CutterEntry
-from plan_cutters.document.names import short_names
-from plan_cutters.document.palette import CAUSES
+from plan_cutters.document.palette import MEANING, PALETTE, label
 from plan_cutters.document.shares import counts
-from plan_cutters.document.told import VERDICTS
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.outline import Outline, outline, points
+from plan_cutters.domain.reasons import NO_CONTACT, REASONS
 from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.verdicts import WORDS
+from plan_cutters.report.judged import Judged
 from plan_cutters.report.page.atlas import Atlas
 from plan_cutters.report.page.facts import Spot
 from plan_cutters.report.page.surface import Surface
-from plan_cutters.report.page.words import spot as sentence
+from plan_cutters.report.story.cutters import spot as sentence
+from plan_cutters.report.story.names import short_names
+from plan_cutters.report.story.numbers import VERDICTS
 
 FORMAT = 1
 #: Chord of the outlines of tools, mm.
@@ -28,7 +30,7 @@ _CHORD = 0.005
 
 
 def meta_of(
-    result: Any, surface: Surface, atlas: Atlas, box: tuple[Floats, Floats], spots: list[Spot]
+    result: Judged, surface: Surface, atlas: Atlas, box: tuple[Floats, Floats], spots: list[Spot]
 ) -> dict[str, Any]:
     """All of it but the arrays, and what was left out of them."""
     plan, effective, names = result.plan, result.plan.effective, short_names(result.plan)
@@ -49,8 +51,11 @@ def meta_of(
         "selected": plan.selected,
         "reasons": plan.reasons,
         "verdicts": {str(code): word for code, word in WORDS.items()},
-        "colours": plan.legend,
-        "cause_colours": CAUSES,
+        "words": {word: {"name": label(word), "colour": PALETTE[word]} for word in MEANING},
+        "causes": {
+            each.code: {"name": each.name, "sentence": each.sentence, "colour": each.colour, "pattern": each.pattern}
+            for each in (*REASONS.values(), NO_CONTACT)
+        },
         "rotation_deg": np.degrees(result.postures.rotations).round(6).tolist(),
         "tilt_deg": list(degrees(result.postures.tilt)),
         "tilt_limit_deg": plan.machine.tilt_limit_deg,

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from cad_io.write.drawn import Drawn, Mesh
+from plan_cutters.report.judged import Judged
 from plan_cutters.report.page.atlas import NOWHERE, Atlas, placed_in
 
 #: First triangle and number of triangles.
@@ -38,7 +39,7 @@ class Surface:
     fixtures: dict[int, Range]
 
 
-def surface_of(result: Any, drawn: Drawn, atlas: Atlas) -> Surface:
+def surface_of(result: Judged, drawn: Drawn, atlas: Atlas) -> Surface:
     """Put the meshes of faces and fixtures together."""
     start = 0
     meshes: list[Mesh] = []

@@ -3,13 +3,16 @@
 import math
 from typing import Any, NamedTuple
 
-from plan_cutters.document import told
 from plan_cutters.document.model import CutterEntry, FaceEntry, Plan
-from plan_cutters.document.names import named, short_names
-from plan_cutters.document.next_steps import cures, first_step, step_told
-from plan_cutters.document.told import VERDICTS, main_reason, part_of, reached, worst_faces
-from plan_cutters.report.page import words
+from plan_cutters.document.palette import label
+from plan_cutters.domain.reasons import REASONS
+from plan_cutters.report.judged import Judged
 from plan_cutters.report.page.facts import Spot
+from plan_cutters.report.story import answers, cutters, headline, numbers
+from plan_cutters.report.story.names import named
+from plan_cutters.report.story.next_steps import step_told
+from plan_cutters.report.story.numbers import VERDICTS, reached
+from plan_cutters.report.story.story import Story, story_of
 
 #: Faces that are listed, the worst first; cutters whose worst faces and spots are.
 _FACES, _CUTTERS = 1000, 40
@@ -22,65 +25,79 @@ class Drawing(NamedTuple):
     missing: tuple[int, ...]
 
 
-def of(result: Any, spots: list[Spot], more: dict[str, int], drawing: Drawing, left: list[str]) -> dict[str, Any]:
+#: What verdicts say of a sample.
+_VERDICTS = {
+    "interference_free": "The tool can stand along the surface normal, in every rotation.",
+    "accessible": "A posture (tilt and rotation) was found that neither gouges nor collides.",
+    "undecided": "Neither a safe posture was found nor a proof that there is none.",
+    "inaccessible": "None of the postures that were searched is safe.",
+    "unjudged": "The surface could not be sampled, or it has no normal there.",
+}
+
+
+def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing, left: list[str]) -> dict[str, Any]:
     """Everything that the template shows; `more`: spots by cutter that are not listed; `left`: what the data has not."""
-    plan: Plan = result.plan
-    names = short_names(plan)
-    shown = next(c for c in plan.cutters if c.id == result.shown)
-    title, why = words.headline(plan, names, shown)
-    first = sorted(plan.cutters, key=lambda c: c.id != shown.id)
+    plan, story = result.plan, story_of(result.plan)
+    shown = next(c for c in plan.cutters if c.id == story.shown)
+    first = sorted(story.cutters, key=lambda c: c.id != story.shown)
     faces = _faces(plan, shown)
+    lost_by = {word for c in plan.cutters for word in c.area_share.lost_by}
     return {
-        "w": words,
+        "w": numbers,
         "plan": plan,
-        "title": title,
-        "why": why,
-        "inside": [named(plan, line) for line in told.inside(plan)],
-        "names": names,
+        "story": story,
+        "why": _why(plan, story, shown),
+        "names": story.names,
         "named": lambda text: named(plan, text),
-        "shown": shown,
-        "cutters": [_cutter(plan, c) for c in plan.cutters],
-        "failing": [(c, *worst_faces(plan, c)) for c in first if c.lost][:_CUTTERS],
-        "reasons": [word for word in plan.reasons if any(word in c.area_share.lost_by for c in plan.cutters)],
+        "step_told": step_told,
+        "limit": answers.limit,
+        "narrowest": answers.narrowest,
+        "told": answers.change,
+        "feasible": cutters.FEASIBLE,
+        "cutters": [(c, entry, _bars(plan, entry)) for c, entry in zip(story.cutters, plan.cutters, strict=True)],
+        "label": label,
+        "failing": [c for c in first if c.failing][:_CUTTERS],
+        "verdicts": _VERDICTS,
+        "reasons": [REASONS[word] for word in plan.reasons if word in lost_by and word in REASONS],
         "spots": [
-            (c, found) for c in first if (found := [(k, s.witness) for k, s in enumerate(spots) if s.cutter == c.id])
+            (c, found)
+            for c in first
+            if (found := [(k, s.witness, cutters.spot(s.witness)) for k, s in enumerate(spots) if s.cutter == c.id])
         ],
         "more": more,
         "faces": faces[:_FACES],
         "unlisted": len(faces[_FACES:]),
-        "unjudged": [f for f in plan.faces if f.target and f.unjudged],
+        "doubts": [line for each in story.doubts.values() for line in each],
         "asked": bool(plan.largest_radius) or any(c.least_stick_out or c.mend for c in plan.cutters),
         "effective": _effective(plan),
         "drawing": drawing,
         "left": left,
+        "empty": headline.not_sampled(plan),
     }
 
 
-def _cutter(plan: Plan, entry: CutterEntry) -> dict[str, Any]:
-    """A row of the table of cutters: shares as text and as bars (word, from, width, colour) of 100 in all."""
+def _why(plan: Plan, story: Story, shown: CutterEntry) -> str:
+    """What stands below the title, in sentences."""
+    _, _, about, why = story.headline
+    taken = next((c for c in plan.cutters if c.id == story.taken), shown)
+    least = taken.least_stick_out.least_mm if taken.least_stick_out else None
+    held = ""
+    if least is not None:
+        short = taken.length - least < answers.SAME
+        held = "It cannot be held shorter." if short else f"It can be held as short as {numbers.up(least)}."
+    return " ".join(filter(None, (numbers.sentence(about.strip()) if about else "", why, *story.scope, held,
+                                  story.cutter(taken.id).next if taken.lost else "")))  # fmt: skip
+
+
+def _bars(plan: Plan, entry: CutterEntry) -> list[tuple[str, float, float, str]]:
+    """Shares as bars (word, from, width, colour) of 100 in all."""
     bars, at = [], 0.0
     for word in VERDICTS:
         wide = 100.0 * getattr(entry.area_share, word)
         if wide:
             bars.append((word, round(at, 2), round(wide, 2), plan.legend[word]))
         at += wide
-    each = [(words.VERDICTS[word][0], part_of(entry, entry.area_share, [word])) for word in VERDICTS]
-    return {
-        "entry": entry,
-        "reached": reached(entry, entry.area_share),
-        "bars": bars,
-        "shares": [(said, share) for said, share in each if share != "0 %"],
-        "reason": main_reason(entry.area_share),
-        "besides": _besides(entry),
-        "next": named(plan, step_told(step)) if (step := first_step(entry)) else "",
-        "helping": [named(plan, change.why) for change in cures(entry.mend) if change.helps] if entry.mend else [],
-    }
-
-
-def _besides(entry: CutterEntry) -> str:
-    """What takes part in the axis limit, by samples, the most of them first."""
-    ranked = sorted(entry.axis_limit_with.items(), key=lambda item: (-item[1], item[0]))
-    return ", ".join(f"{words.reason(word)} at {count:,}" for word, count in ranked)
+    return bars
 
 
 def _faces(plan: Plan, shown: CutterEntry) -> list[tuple[FaceEntry, str, str]]:
@@ -93,7 +110,7 @@ def _faces(plan: Plan, shown: CutterEntry) -> list[tuple[FaceEntry, str, str]]:
         return not face.target, -area * (share.inaccessible + share.undecided) if share else 0.0
 
     return [
-        (face, reached(shown.faces[face.id], shares[face.id]), main_reason(shares[face.id]))
+        (face, reached(shown.faces[face.id], shares[face.id]), cutters.reason(cutters.main_reason(shares[face.id])))
         if face.id in shares
         else (face, "", "")
         for face in sorted(plan.faces, key=rank)

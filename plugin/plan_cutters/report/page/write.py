@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from cad_io.write.drawn import drawn
 from plan_cutters.document.model import Plan
+from plan_cutters.report.judged import Judged
 from plan_cutters.report.page import arrays, tables
 from plan_cutters.report.page.arrays import Arrays
 from plan_cutters.report.page.atlas import atlas_of
@@ -49,7 +50,7 @@ _OTHERS = "Postures are stored for the cutter shown alone, to keep this page sma
 _NO_MAPS = "Certified posture maps are not stored" + _SMALLER + "; postures.npz has all."
 
 
-def write_html(result: Any, _split: object, path: Path) -> None:
+def write_html(result: Judged, _split: object, path: Path) -> None:
     """Write `review.html`.
 
     Raises
@@ -63,7 +64,7 @@ def write_html(result: Any, _split: object, path: Path) -> None:
 
 
 def page(
-    result: Any, *, maps: Any = None, rows: NDArray[np.int64] | None = None, largest: int | None = None,
+    result: Judged, *, maps: Any = None, rows: NDArray[np.int64] | None = None, largest: int | None = None,
     triangles: int = TRIANGLES,
 ) -> bytes:  # fmt: skip
     """The page of a plan.

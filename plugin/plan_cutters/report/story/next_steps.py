@@ -1,18 +1,11 @@
-"""What to do next, in words that the terminal and the page share."""
-
-from collections.abc import Sequence
+"""What to do next, in words."""
 
 from plan_cutters.document.answers import ChangeEntry, MendEntry, RunEntry, StepEntry
 from plan_cutters.document.model import CutterEntry, Plan
-from plan_cutters.document.told import percent
+from plan_cutters.report.story.numbers import axis, percent
 
 #: Runs that are named one by one.
 _RUNS = 6
-
-
-def axis(direction: Sequence[float]) -> str:
-    """A setup axis, as options have it."""
-    return ",".join(f"{each + 0.0:.4g}" for each in direction)
 
 
 def together(plan: Plan) -> str:
@@ -69,7 +62,7 @@ def effect(step: StepEntry) -> str:
     before = percent(step.lost_before, some=True, whole=False).removesuffix(" %")
     after = percent(step.lost_after, some=bool(step.left), whole=False)
     many = f"{step.gained:,} more sample{'' if step.gained == 1 else 's'}"
-    end = "; then all of it is reached" if not step.left else ""
+    end = "; then nothing is lost" if not step.left else ""
     return f"lost {before} to {after} of the area ({many}){end}"
 
 

@@ -1,28 +1,13 @@
-"""What was judged and what was not, as people are told: faces, and what lies between samples."""
+"""What was judged and what was not: faces, samples, and what lies between them."""
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
-from plan_cutters.document.model import CutterEntry, FaceEntry, Plan
+from plan_cutters.document.model import CutterEntry, Plan
 from plan_cutters.document.scope import Scope
-from plan_cutters.document.told import percent
+from plan_cutters.report.story.numbers import percent
 
 #: Choices that name kinds of faces, not faces.
 _BY_KIND = frozenset({"sculptured", "blends", "all"})
-
-
-def scope_of(faces: Sequence[FaceEntry]) -> Scope:
-    """What was judged of all faces."""
-    targets = [f for f in faces if f.target]
-    others = [f for f in faces if not f.target and not f.ignored]
-    return Scope(
-        judged=len(targets),
-        judged_mm2=_area(targets),
-        not_judged=len(others),
-        not_judged_mm2=_area(others),
-        judged_by_kind=_kinds(targets),
-        not_judged_by_kind=_kinds(others),
-    )
 
 
 def judged(plan: Plan) -> str:
@@ -76,21 +61,10 @@ def _share(scope: Scope) -> str:
     return percent(scope.judged_mm2 / whole if whole > 0.0 else 0.0, some=scope.judged > 0, whole=False)
 
 
-def _area(faces: Sequence[FaceEntry]) -> float:
-    return math.fsum(f.area_mm2 for f in faces if math.isfinite(f.area_mm2))
-
-
-def _kinds(faces: Sequence[FaceEntry]) -> dict[str, int]:
-    found: dict[str, int] = {}
-    for face in faces:
-        found[face.kind] = found.get(face.kind, 0) + 1
-    return dict(sorted(found.items()))
-
-
 def not_seen(plan: Plan, names: Mapping[str, str]) -> list[str]:
     """Whether more lies between the samples than the cutter to take, or the one that comes nearest, is wide; in a sentence."""
     taken = plan.selected or plan.selected_over_setups or plan.selected_for_setup
-    entry = next((c for c in plan.cutters if c.id == taken), None) or _nearest(plan)
+    entry = next((c for c in plan.cutters if c.id == taken), None) or nearest(plan)
     if entry.seen:
         return []
     widest = max(plan.faces, key=lambda f: f.gap_mm or 0.0)
@@ -101,5 +75,6 @@ def not_seen(plan: Plan, names: Mapping[str, str]) -> list[str]:
     ]
 
 
-def _nearest(plan: Plan) -> CutterEntry:
+def nearest(plan: Plan) -> CutterEntry:
+    """The cutter that leaves fewest samples."""
     return min(plan.cutters, key=lambda c: c.lost)

@@ -1,0 +1,68 @@
+"""The ten reasons for which a sample is not reached: the only table of their words, colours and patterns.
+
+It stands below all who tell of them: the answers in `plan.json`, the terminal, the review page (through its data) and pictures.
+To add a reason, add its row here, its place in `verdicts.REASONS`, and the kernel or stage that finds it.
+"""
+
+from typing import NamedTuple
+
+
+class Reason(NamedTuple):
+    """What is known of a reason but where it holds.
+
+    Attributes
+    ----------
+    code : str
+        As in `plan.json` and arrays.
+    name : str
+        A label: of a column, a legend.
+    noun : str
+        After "lost to".
+    sentence : str
+        What it is.
+    hint : str
+        What is tried first against it; nothing of that is computed.
+    colour : str
+        sRGB, of what it forbids in a posture map.
+    pattern, hatch : str
+        The second channel, on the page and on sheets as matplotlib writes hatches.
+    """
+
+    code: str
+    name: str
+    noun: str
+    sentence: str
+    hint: str
+    colour: str
+    pattern: str
+    hatch: str
+
+
+_ROWS = (
+    Reason("axis_limit", "axis limit", "the limits of axis and tilt",
+           "A posture would serve, but the machine cannot hold it as the part is set up.",
+           "another setup, or a machine that tilts further", "#9A9A9A", "lines", "--"),
+    Reason("local_gouge", "local gouge", "local gouge", "The surface curves more than the cutter, right at the contact.",
+           "a smaller radius or corner radius", "#E69F00", "hatch", "//"),
+    Reason("rear_gouge", "rear gouge", "rear gouge", "The flutes cut into the part within a cutter's diameter of the contact.",
+           "a smaller radius or corner radius", "#D55E00", "back", "\\\\"),
+    Reason("collision", "flute collision", "collision", "The flutes meet the part farther away.", "a thinner cutter",
+           "#CC79A7", "cross", "xx"),
+    Reason("buried", "inside material", "a body around them",
+           "The surface lies under or within a body, so nothing can be machined there.",
+           "--ignore, if that body is not there when the part is machined", "#5C3A21", "cross", "**"),
+    Reason("tolerance", "tolerance", "the tolerance", "The tolerance is no smaller than the cutter's own features.",
+           "a smaller --tolerance", "#B8A94A", "dots", ".."),
+    Reason("neck", "neck collision", "the neck", "The neck is in the way, the flutes are not.", "a thinner or longer neck",
+           "#882255", "bars", "||"),
+    Reason("shank", "shank collision", "the shank", "The shank is in the way, the flutes are not.",
+           "a thinner shank or a longer stick-out", "#0072B2", "bars", "++"),
+    Reason("holder", "holder collision", "the holder", "The holder is in the way, the flutes are not.",
+           "a longer stick-out or a slimmer holder", "#332288", "hatch", "oo"),
+    Reason("fixture", "fixture", "the fixtures", "Without the fixtures the sample would be reached.",
+           "another place for the fixture", "#117733", "lines", "--"),
+)  # fmt: skip
+REASONS = {each.code: each for each in _ROWS}
+#: Why a posture map has nothing at a tilt where nothing is in the way: no sample is lost to it.
+NO_CONTACT = Reason("no_contact", "no contact", "no contact", "The cutter does not touch at this tilt.", "another tilt",
+                    "#E5E5E5", "plain", ".")  # fmt: skip

@@ -1,0 +1,73 @@
+"""What writers take: a plan with the arrays behind it."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    # What formats there are is asked before anything heavy is loaded.
+    from cad_io import Part, SurfaceSamples
+    from cad_io.arrays import Floats, Ints
+    from plan_cutters.document.model import CutterEntry, Plan
+    from plan_cutters.domain.answers import Answers
+    from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.domain.kinematics import Kinematics
+    from plan_cutters.domain.posture import PostureRange
+    from plan_cutters.domain.travel import Travel
+    from plan_cutters.domain.verdicts import Reach
+    from plan_cutters.scene.clearance import Clearances
+    from plan_cutters.scene.conditions import Conditions
+    from plan_cutters.scene.prepared import Prepared
+    from plan_cutters.scene.scene import Scene
+
+
+class Judged(Protocol):
+    """A plan with the arrays behind it; `result.Result` says what each of them is."""
+
+    @property
+    def plan(self) -> "Plan": ...
+    @property
+    def part(self) -> "Part": ...
+    @property
+    def scene(self) -> "Scene": ...
+    @property
+    def samples(self) -> "SurfaceSamples": ...
+    @property
+    def surface_class(self) -> NDArray[np.uint8]: ...
+    @property
+    def reaches(self) -> "dict[str, Reach]": ...
+    @property
+    def postures(self) -> "PostureRange": ...
+    @property
+    def kinematics(self) -> "Kinematics | None": ...
+    @property
+    def elsewhere(self) -> "Sequence[tuple[tuple[float, float, float], dict[str, Reach]]]": ...
+    @property
+    def answers(self) -> "Answers": ...
+    @property
+    def maps(self) -> Any: ...  # PostureMaps: reports import no stage
+    @property
+    def travels(self) -> "dict[str, Travel]": ...
+    @property
+    def ready(self) -> "Prepared | None": ...
+    @property
+    def here(self) -> "dict[str, Reach]": ...
+    @property
+    def served_in(self) -> "dict[str, Ints]": ...
+    @property
+    def cutters(self) -> "list[CutterEntry]": ...
+    @property
+    def selected(self) -> str | None: ...
+    @property
+    def shown(self) -> str: ...
+    @property
+    def clearances(self) -> "Clearances": ...
+    @property
+    def inside_bodies(self) -> NDArray[np.bool_]: ...
+    @property
+    def conditions(self) -> "Conditions": ...
+
+    def rotary(self, cutter: str) -> "tuple[Floats, NDArray[np.int8]]": ...
+    def judged(self, cutter: str | None = None) -> "Cutter": ...

@@ -1,0 +1,1 @@
+"""What is told of a plan, once: the terminal, the review page and pictures lay it out. May use: the document and domain."""

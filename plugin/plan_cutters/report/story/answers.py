@@ -1,0 +1,136 @@
+"""What was asked for after the plan: least stick-outs, largest radii, what would help and what to do next."""
+
+from collections.abc import Iterator
+
+from plan_cutters.document.answers import ChangeEntry, MendEntry, RadiusEntry, StickOutEntry
+from plan_cutters.document.model import CutterEntry, Plan
+from plan_cutters.report.story.cutters import reason
+from plan_cutters.report.story.headline import every
+from plan_cutters.report.story.line import Line
+from plan_cutters.report.story.names import named
+from plan_cutters.report.story.next_steps import cures, is_left_out, remaining, step_told
+from plan_cutters.report.story.numbers import down, place, some, up
+
+#: Steps that are said of a cutter.
+_STEPS = 5
+#: Stick-outs that differ by less are the same, mm.
+SAME = 0.02
+#: What `mend` changes, as the subject of a sentence.
+_THINGS = {
+    "tolerance": "A finer tolerance",
+    "tilt_range": "A wider range of tilts",
+    "stick_out": "Another stick-out",
+    "setup": "Another setup axis",
+    "corner_radius": "Another corner radius",
+    "radius": "A smaller radius",
+    "tilt_limit": "A machine that tilts further",
+    "faces": "Leaving out faces",
+}
+
+
+def answers(plan: Plan) -> list[Line]:
+    """A line or two for each answer, cutters called as everywhere; what is to be typed is as it must be typed."""
+    found = (*_stick_outs(plan), *_radii(plan), *_mends(plan))
+    return [line._replace(text=named(plan, line.text)) for line in found]
+
+
+def limit(found: StickOutEntry) -> str:
+    """What limits a stick-out, in a sentence."""
+    if found.least_mm is None:
+        return f"It was not looked for: {found.limited_by}."
+    if found.limited_by == "floor" or found.face is None:
+        return "Its flutes and neck are that long."
+    met = found.obstacle_face or "the part"
+    return f"Held shorter, its holder meets {met} when the tool stands at ({place(found.point)}) on {found.face}."
+
+
+def _stick_outs(plan: Plan) -> Iterator[Line]:
+    short = []
+    for c in plan.cutters:
+        found = c.least_stick_out
+        if found is None:
+            continue
+        if found.least_mm is None:
+            yield Line(f"The least stick-out of {c.id} was not looked for: {found.limited_by}.")
+        elif found.limited_by == "floor":
+            short.append(f"{c.id} {up(found.least_mm)} (judged with {found.longest_mm:g} mm)")
+        elif found.longest_mm - found.least_mm < SAME:
+            yield Line(
+                f"{c.id} cannot be held shorter than the {found.longest_mm:g} mm that were judged. {limit(found)}"
+            )
+        else:
+            yield Line(f"{c.id} can be held shorter: {up(found.least_mm)} of its {found.longest_mm:g} mm stick-out are enough "
+                       f"for all that it reaches now. {limit(found)}")  # fmt: skip
+    if short:
+        yield Line("These can be held as short as their flutes and necks allow, and still reach all that they reach: "
+                   f"{', '.join(short)}.")  # fmt: skip
+
+
+def narrowest(found: RadiusEntry) -> str:
+    """Where the largest radius is the least, and why."""
+    if found.bottleneck_point is None:
+        return ""
+    why = f"({reason(found.reason)})" if found.reason else "(no larger end was tried)"
+    return f"({place(found.bottleneck_point)}) on {found.bottleneck_face} {why}"
+
+
+def _radii(plan: Plan) -> Iterator[Line]:
+    for each in plan.largest_radius:
+        if not each.percentiles_mm or each.bottleneck_mm is None:
+            continue
+        end, rest = f"{each.shape} end of radius", f"({each.length_over_radius:g} radii long) reaches {every(plan)}"
+        whole = f"A {end} {down(each.bottleneck_mm)} {rest}"
+        if not each.bottleneck_mm:
+            whole = f"Not even a {end} {each.least_mm:.3g} mm {rest}: it misses {each.below}"
+        middle = each.percentiles_mm["50"]
+        half = f"{down(middle)} or more" if middle else f"less than {each.least_mm:.3g} mm"
+        yield Line(f"{whole}; half of the area takes {half}. The narrowest place is {narrowest(each)}.")
+    if plan.missing and (plan.largest_radius or any(c.least_stick_out for c in plan.cutters)):
+        yield Line("Stick-outs and largest radii hold unless a face is in the way that is missing from the obstacles.")
+
+
+def change(found: ChangeEntry) -> tuple[str, str]:
+    """What is changed, and whether that helps: subject and rest of a sentence."""
+    subject = _THINGS.get(found.thing, found.thing.replace("_", " "))
+    return subject, f"{'helps: ' * bool(found.helps)}{'may help: ' * found.doubted}{found.why}."
+
+
+def _mends(plan: Plan) -> Iterator[Line]:
+    for c in sorted((c for c in plan.cutters if c.mend), key=lambda c: c.mend.lost_share if c.mend else 0.0):
+        if c.mend is None:
+            continue
+        yield from _next(c, c.mend)
+        helping = [each.why for each in cures(c.mend) if each.helps]
+        unsure = [each.why for each in cures(c.mend) if each.helps is None]
+        if helping:
+            yield Line(f"{c.id} would finish with {'; or with '.join(helping)}.")
+            continue
+        if not c.mend.steps:
+            why = c.mend.why or "no change of one thing was found to help"
+            yield Line(f"Nothing sure would make {c.id} finish: {why}.")
+        if unsure:
+            yield Line(f"  Not decided: {'; '.join(unsure)}.")
+    if left := len(plan.not_mended):
+        which = "cutter that leaves more was" if left == 1 else "cutters that leave more were"
+        yield Line(f"{left} more {which} not asked about: --answers mend-all.")
+
+
+def _next(c: CutterEntry, mend: MendEntry) -> Iterator[Line]:
+    """Steps for a cutter, the best first, with the option that each takes."""
+    if not mend.steps:
+        return
+    unsure = " (if nothing is in the way that is missing from the obstacles)" if mend.unsure else ""
+    yield Line(f"What next for {c.id}, which leaves {some(mend.lost_share)} of the area{unsure}:")
+    steps = [step for step in mend.steps if not is_left_out(step)]
+    for k, step in enumerate(steps[:_STEPS], 1):
+        typed = f" [{'add ' * step.option.startswith('--cutter')}{step.option}]" if step.option else ""
+        yield Line(f"  {k}. {step_told(step)}.", typed=typed)
+    if len(steps) > _STEPS:
+        yield Line(f"  and {len(steps) - _STEPS} more in plan.json.")
+    if not steps:
+        yield Line("  No step was found that frees any of it.")
+    if rest := remaining(mend):
+        yield Line(f"  After step 1 stays: {rest}.")
+    for step in mend.steps:
+        if is_left_out(step):
+            yield Line(f"  Else: {step.why}.")

@@ -1,0 +1,218 @@
+"""What is told of each cutter: what it is, what it reaches, where it fails, and why."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from plan_cutters.document.listed import listed
+from plan_cutters.document.model import CutterEntry, FaceEntry, Plan, WitnessEntry
+from plan_cutters.document.shares import AreaShare
+from plan_cutters.domain.reasons import REASONS
+from plan_cutters.report.story.headline import area, between
+from plan_cutters.report.story.names import described, named
+from plan_cutters.report.story.next_steps import cures, first_step, step_told
+from plan_cutters.report.story.numbers import VERDICTS, angle, figure, lost, mm, part_of, percent, place, reached
+
+#: Faces that are named on which a cutter leaves something.
+_FACES = 3
+FEASIBLE = {True: "yes", False: "no", None: "undecided"}
+
+
+@dataclass(frozen=True, slots=True)
+class WorstFace:
+    """A face on which a cutter loses samples: how much of it (mm2, percent), by which reason mostly, and how much too deep (mm)
+    the deepest witness there is in what; both may be empty."""
+
+    id: str
+    name: str
+    area: str
+    share: str
+    reason: str
+    depth: str
+    obstacle: str
+
+
+@dataclass(frozen=True, slots=True)
+class CutterStory:
+    """What is told of a cutter, in words; empty where there is nothing to tell.
+
+    Attributes
+    ----------
+    name, tool : str
+        How it is called everywhere; what it is, and how far it stands out of what.
+    reached, shares : str, dict
+        Of the area, in percent: in all, and by verdict.
+    reason, hint, besides : str
+        By which most is lost, what is tried first against it, and what else is in the way within the axis limit.
+    next, left, between : str
+        Sentences: what to do next, or what would help; what it leaves, why and where; what is known between its samples.
+    faces, failing : tuple of WorstFace, int
+        The worst faces, and how many there are in all.
+    """
+
+    id: str
+    name: str
+    tool: str
+    feasible: bool | None
+    reached: str
+    shares: dict[str, str]
+    reason: str
+    hint: str
+    besides: str
+    next: str
+    left: str
+    between: str
+    faces: tuple[WorstFace, ...]
+    failing: int
+
+
+def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
+    """All that is told of a cutter."""
+    main = REASONS.get(main_reason(c.area_share))
+    faces, failing = worst_faces(plan, c)
+    return CutterStory(
+        id=c.id,
+        name=name,
+        tool=described(c, name),
+        feasible=c.feasible,
+        reached=reached(c, c.area_share),
+        shares={word: part_of(c, c.area_share, [word]) for word in VERDICTS},
+        reason=main.name if main else "",
+        hint=main.hint if main else "",
+        besides=_besides(c),
+        next=_next(plan, c),
+        left=named(plan, left(plan, c)) if c.lost else "",
+        between=between(plan, c),
+        faces=tuple(faces),
+        failing=failing,
+    )
+
+
+def main_reason(share: AreaShare) -> str:
+    """By which reason the most is lost; empty where nothing is."""
+    return max(share.lost_by, key=lambda name: share.lost_by[name], default="")
+
+
+def reason(code: str) -> str:
+    """What a reason is called: nothing where there is none, its code where a newer plan has one."""
+    return REASONS[code].name if code in REASONS else code.replace("_", " ")
+
+
+def _besides(c: CutterEntry) -> str:
+    """What takes part in the axis limit, by samples, the most of them first."""
+    ranked = sorted(c.axis_limit_with.items(), key=lambda item: (-item[1], item[0]))
+    each = ", ".join(f"{reason(word)} at {count:,}" for word, count in ranked)
+    return f"{each} sample{'' if ranked[-1][1] == 1 else 's'}" if each else ""
+
+
+def _next(plan: Plan, c: CutterEntry) -> str:
+    """What to do next, or else what would help, in a sentence."""
+    if c.mend is None:
+        return ""
+    if (step := first_step(c)) is not None:
+        return f"Next: {named(plan, step_told(step))}."
+    helping = [named(plan, change.why) for change in cures(c.mend) if change.helps]
+    if helping:
+        return f"It would finish with {'; or with '.join(helping)}."
+    return "No change of one thing was found with which it would finish."
+
+
+def reasons(c: CutterEntry) -> list[str]:
+    """Why a cutter loses what it loses, with shares of the area: the reason with the largest one first."""
+    found = []
+    for code, share in sorted(c.area_share.lost_by.items(), key=lambda item: -item[1]):
+        besides = f" (with {_besides(c)})" if code == "axis_limit" and c.axis_limit_with else ""
+        found.append(f"{reason(code)} {percent(share, some=True, whole=False)}{besides}")
+    return found
+
+
+def left(plan: Plan, c: CutterEntry) -> str:
+    """What a cutter leaves: how much, why, on which faces, and the worst place."""
+    why = ", ".join(reasons(c))
+    if c.undecided:
+        why += f"; of it {percent(c.area_share.undecided, some=True, whole=False)} is undecided"
+    failing = [
+        name for _, name in sorted(((-v.lost, name) for name, v in c.faces.items() if v.lost), key=lambda each: each[0])
+    ]
+    deep = [w for w in c.witnesses if w.depth_mm is not None and not w.inside_bodies]
+    where = ""
+    if deep:
+        worst = max(deep, key=lambda w: w.depth_mm or 0.0)
+        sure = "may be" if worst.verdict == "undecided" else "is"
+        where = (
+            f"; the worst is on {worst.face} at ({place(worst.point)}), "
+            f"where the best posture {sure} {mm(worst.depth_mm)} too deep"
+        )
+    return (f"{c.id} does not reach {lost(c, c.area_share)} of {area(plan)} ({c.lost} of {plan.samples.finished} samples): "
+            f"{why or 'no reason'}. They lie on {listed(failing, _FACES)}{where}.")  # fmt: skip
+
+
+def called(obstacle: str | None) -> str:
+    """What is in the way, as it is told.
+
+    >>> called("fixture:table"), called("F12"), called(None)
+    ('fixture table', 'F12', '')
+    """
+    return (obstacle or "").replace("fixture:", "fixture ", 1)
+
+
+def spot(witness: WitnessEntry) -> str:
+    """A witness in a sentence."""
+    if witness.reason == "tolerance":
+        return "The tolerance is too coarse to say anything about this cutter."
+    said, best, obstacle = reason(witness.reason), witness.best_posture, called(witness.obstacle_face)
+    said = said[0].upper() + said[1:]
+    unsure = witness.verdict == "undecided"
+    said += ", undecided" * unsure
+    if witness.depth_mm is not None and best is not None:
+        there = f"tilt {angle(best.tilt)}, rotation {angle(best.rotation)}"
+        if unsure:
+            what = obstacle or "the part"
+            return f"{said}. At the best posture found ({there}) {what} may reach {mm(witness.depth_mm)} into the tool."
+        where = f" in {obstacle}" if obstacle else ""
+        return f"{said}. The best posture found ({there}) is still {mm(witness.depth_mm)} too deep{where}."
+    if obstacle:
+        return f"{said}. {obstacle[0].upper() + obstacle[1:]} {'may be' if unsure else 'is'} in the way."
+    return f"{said}. No posture is {'sure' if unsure else 'left'}."
+
+
+def ranked_spots(witnesses: Sequence[WitnessEntry]) -> list[WitnessEntry]:
+    """The deepest of each face and reason first, then the others; the deepest first in both."""
+    seen: set[tuple[str, str]] = set()
+    first: list[WitnessEntry] = []
+    rest: list[WitnessEntry] = []
+    for w in sorted((w for w in witnesses if not w.inside_bodies), key=lambda w: -(w.depth_mm or 0.0)):
+        (rest if (w.face, w.reason) in seen else first).append(w)
+        seen.add((w.face, w.reason))
+    return first + rest
+
+
+def worst_faces(plan: Plan, c: CutterEntry, most: int = 5) -> tuple[list[WorstFace], int]:
+    """The faces of which a cutter loses the largest area, and how many there are in all."""
+    faces, failing = {face.id: face for face in plan.faces}, [name for name, each in c.faces.items() if each.lost]
+
+    def share(name: str) -> float:
+        return c.faces[name].area_share.inaccessible + c.faces[name].area_share.undecided
+
+    def lot(name: str) -> float:
+        return share(name) * (1.0 - c.faces[name].inside_share) * faces[name].area_mm2
+
+    def known(name: str) -> float:
+        return lot(name) if math.isfinite(faces[name].area_mm2) else 0.0
+
+    ranked = sorted(failing, key=lambda name: (-known(name), -share(name), int(name[1:])))
+    return [_worst(faces[name], c, lot(name)) for name in ranked[:most]], len(ranked)
+
+
+def _worst(face: FaceEntry, c: CutterEntry, lot: float) -> WorstFace:
+    mine = [w for w in c.witnesses if w.face == face.id and not w.inside_bodies]
+    share = c.faces[face.id].area_share
+    main = reason(main_reason(share) or (mine[0].reason if mine else ""))
+    unsure = share.undecided > share.inaccessible
+    verdict = "undecided" if unsure else "inaccessible"
+    deepest = max(mine, key=lambda w: (w.verdict == verdict, w.depth_mm or 0.0), default=None)
+    depth = "" if deepest is None or deepest.depth_mm is None else f"{deepest.depth_mm:.3g}"
+    return WorstFace(
+        face.id, face.name, figure(lot), lost(c.faces[face.id], share), f"{'undecided: ' * unsure}{main or '?'}", depth,
+        "" if deepest is None else deepest.obstacle_face or "",
+    )  # fmt: skip

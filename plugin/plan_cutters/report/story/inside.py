@@ -1,0 +1,58 @@
+"""What lies inside other bodies of the part, in sentences."""
+
+from collections.abc import Sequence
+
+from plan_cutters.document.inside import CoveringBody
+from plan_cutters.document.listed import listed
+from plan_cutters.document.model import Plan
+from plan_cutters.report.story.numbers import figure, percent
+
+
+def inside(plan: Plan, most: int = 5) -> list[str]:
+    """What lies inside other bodies of the part, in sentences: how much, then the bodies that a planner must look at."""
+    found = plan.inside_other_bodies
+    if not found.samples:
+        return []
+    share = percent(found.share, some=True, whole=found.samples == plan.samples.count)
+    lines = [f"{share} of the target area ({found.samples:,} of {plan.samples.count:,} samples) lies inside other bodies of the "
+             "part: it is no surface of the finished part, and what follows is about the rest."]  # fmt: skip
+    standing = sorted((each for each in found.bodies if each.how != "overlaps"), key=lambda each: each.largest)
+    lines += [_standing(each) for each in standing[:most]]
+    lines += _more(standing[most:], "body covers", "bodies cover")
+    over = [each for each in found.bodies if each.how == "overlaps"]
+    if over:
+        each = "; ".join(
+            f"{_called(b)} covers {figure(b.area_mm2)} mm2 of {listed(b.faces, 4)}" for b in over[: most - 2]
+        )
+        rest = len(over) - (most - 2)
+        lines.append(f"Bodies overlap: {each}{f'; {rest} more in plan.json' if rest > 0 else ''}.")
+    if found.sheets is not None:
+        sheets, area = found.sheets, figure(found.sheets.area_mm2)
+        what = "is a construction sheet" if len(sheets.faces) == 1 else "are construction sheets"
+        lines.append(f"{listed(sheets.faces)} {what} on the skin of a body: {area} mm2 face into it. {sheets.option} leaves such "
+                     "sheets out.")  # fmt: skip
+    return lines
+
+
+def _standing(body: CoveringBody) -> str:
+    on, area = listed(body.faces, 4), figure(body.area_mm2)
+    verb = "stands on" if body.how == "stands_on" else "touches or overlaps"
+    if body.largest:
+        touch = "touches" if len(body.faces) == 1 else "touch"
+        return f"{_called(body, first=True)} covers {area} mm2 of {on}, which {touch} it."
+    return (f"{_called(body, first=True)} {verb} {on} and covers {area} mm2 there. It stays in the way, and what lies under "
+            f"it is not planned. To plan that, as for another clamping, leave the body out (nothing is then checked against it): "
+            f"{body.option}.")  # fmt: skip
+
+
+def _called(body: CoveringBody, *, first: bool = False) -> str:
+    """A body as it is told: its number, its name, its faces."""
+    name = f' "{body.name}"' if body.name else ""
+    return f"{'Body' if first else 'body'} {body.number}{name} ({listed(body.own_faces, 2)})"
+
+
+def _more(bodies: Sequence[CoveringBody], one: str, many: str) -> list[str]:
+    if not bodies:
+        return []
+    area = figure(sum(each.area_mm2 for each in bodies))
+    return [f"{len(bodies)} more {one if len(bodies) == 1 else many} {area} mm2: see plan.json."]

@@ -1,0 +1,128 @@
+"""How numbers are told, each form once: shares, lengths, angles, areas, places; what must not be less or more is rounded so."""
+
+import math
+from collections.abc import Iterable, Sequence
+
+from plan_cutters.document.shares import AreaShare, Verdicts
+from plan_cutters.domain.verdicts import WORDS
+
+#: Verdicts, from best to worst.
+VERDICTS = tuple(WORDS.values())
+_REACHED, _LOST = ("interference_free", "accessible"), ("inaccessible", "undecided")
+
+
+def percent(share: float, *, some: bool, whole: bool) -> str:
+    """A share in percent: 100 only where it is the whole, and 0 only where there is nothing of it.
+
+    Examples
+    --------
+    >>> percent(0.00001, some=True, whole=False), percent(0.99999, some=True, whole=False)
+    ('<0.1 %', '>99.9 %')
+    >>> percent(0.5, some=True, whole=False), percent(0.0, some=False, whole=False)
+    ('50 %', '0 %')
+    """
+    if whole:
+        return "100 %"
+    if not some and not share:
+        return "0 %"
+    text = f"{100.0 * share:.1f}"
+    return {"0.0": "<0.1 %", "100.0": ">99.9 %"}.get(text, f"{text.removesuffix('.0')} %")
+
+
+def figure(number: float) -> str:
+    """Three digits of a number, without an exponent where it is large.
+
+    Examples
+    --------
+    >>> figure(12345.6), figure(0.0456), figure(7.769e6)
+    ('12,300', '0.0456', '7,770,000')
+    """
+    return f"{float(f'{number:.3g}'):,.0f}" if abs(number) >= 100.0 else f"{number:.3g}"
+
+
+def part_of(counts: Verdicts, share: AreaShare, words: Iterable[str]) -> str:
+    """How much of an area has one of some verdicts, in percent."""
+    mine = set(words)
+    there = {word for word in VERDICTS if counts.of(word) or getattr(share, word) > 0.0}
+    return percent(
+        sum(getattr(share, word) for word in mine), some=bool(there & mine), whole=bool(there) and there <= mine
+    )
+
+
+def reached(counts: Verdicts, share: AreaShare) -> str:
+    """How much of an area is interference-free or accessible, in percent."""
+    return part_of(counts, share, _REACHED)
+
+
+def lost(counts: Verdicts, share: AreaShare) -> str:
+    """How much of an area is inaccessible or undecided, in percent."""
+    return part_of(counts, share, _LOST)
+
+
+def some(share: float) -> str:
+    """A share that is not all, in percent."""
+    return percent(share, some=share > 0.0, whole=False)
+
+
+def mm(length: float | None) -> str:
+    """A length, three digits of it."""
+    return "" if length is None else f"{length:.3g} mm"
+
+
+def angle(degrees: float) -> str:
+    """An angle, to a tenth of a degree."""
+    return f"{round(degrees, 1) + 0.0:g}°"
+
+
+def area(mm2: float) -> str:
+    """An area, three digits of it.
+
+    >>> area(12345.6), area(0.0456), area(float("nan"))
+    ('12,300 mm²', '0.0456 mm²', 'not known')
+    """
+    return f"{figure(mm2)} mm²" if math.isfinite(mm2) else "not known"
+
+
+def place(point: Sequence[float] | None) -> str:
+    """A point or direction."""
+    return "" if point is None else ", ".join(f"{x + 0.0:.4g}" for x in point)
+
+
+def axis(direction: Sequence[float]) -> str:
+    """A setup axis, as options have it."""
+    return place(direction).replace(" ", "")
+
+
+def up(length: float | None) -> str:
+    """A length that must not be less, rounded up."""
+    return "" if length is None else f"{math.ceil(100.0 * length - 1e-9) / 100.0:.2f} mm"
+
+
+def down(length: float | None) -> str:
+    """A length that must not be more, rounded down to three digits.
+
+    >>> down(6.2399), down(0.0)
+    ('6.23 mm', '0 mm')
+    """
+    if not length:
+        return "0 mm"
+    digit = 10.0 ** (math.floor(math.log10(length)) - 2)
+    return f"{math.floor(length / digit + 1e-9) * digit:.4g} mm"
+
+
+def count(number: int, word: str) -> str:
+    """So many things.
+
+    >>> count(1, "face"), count(1200, "sample")
+    ('1 face', '1,200 samples')
+    """
+    return f"{number:,} {word}{'' if number == 1 else 's'}"
+
+
+def sentence(text: str) -> str:
+    """A clause as a sentence of its own.
+
+    >>> sentence("nothing helps")
+    'Nothing helps.'
+    """
+    return f"{text[:1].upper()}{text[1:]}."

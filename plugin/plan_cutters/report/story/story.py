@@ -1,0 +1,83 @@
+"""A plan told once: the terminal and the review page lay it out."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from plan_cutters.document.model import CutterEntry, Plan
+from plan_cutters.report.story import notes
+from plan_cutters.report.story.answers import answers
+from plan_cutters.report.story.cutters import CutterStory, cutter_story
+from plan_cutters.report.story.headline import Headline, headline
+from plan_cutters.report.story.inside import inside
+from plan_cutters.report.story.line import Line
+from plan_cutters.report.story.names import named, short_names
+from plan_cutters.report.story.next_steps import together
+from plan_cutters.report.story.scope import not_judged, not_seen
+
+
+@dataclass(frozen=True, slots=True)
+class Story:
+    """What is told of a plan, in the order in which people read it.
+
+    Attributes
+    ----------
+    names : dict
+        Id of a cutter -> how it is called.
+    taken, shown : str
+        Ids of the cutter that the headline says to take, if any, and of the one that the models show.
+    inside, scope, between : tuple of str
+        What is no surface of the finished part, which comes first; what was not judged or not seen, and what cutters reach
+        together; what is known between the samples.
+    setups, answers, notes : tuple of Line
+    doubts : dict
+        What makes verdicts unsure, by its kind in the plural.
+    """
+
+    names: Mapping[str, str]
+    taken: str | None
+    shown: str
+    inside: tuple[str, ...]
+    headline: Headline
+    scope: tuple[str, ...]
+    between: tuple[str, ...]
+    cutters: tuple[CutterStory, ...]
+    setups: tuple[Line, ...]
+    answers: tuple[Line, ...]
+    doubts: Mapping[str, tuple[Line, ...]]
+    notes: tuple[Line, ...]
+
+    def cutter(self, name: str) -> CutterStory:
+        """The story of a cutter, by its id."""
+        return next(each for each in self.cutters if each.id == name)
+
+
+def story_of(plan: Plan) -> Story:
+    """Tell a plan."""
+    names, best = short_names(plan), shown(plan)
+    cutters = tuple(cutter_story(plan, c, names[c.id]) for c in plan.cutters)
+    finished = plan.selected or plan.selected_over_setups
+    pair = "" if finished else together(plan)
+    return Story(
+        names=names,
+        taken=finished or plan.selected_for_setup,
+        shown=best.id,
+        inside=tuple(named(plan, line) for line in inside(plan)),
+        headline=headline(plan, names),
+        scope=(*not_judged(plan), *not_seen(plan, names), *([f"{named(plan, pair)}."] if pair else [])),
+        between=tuple(each.between for each in cutters if each.between),
+        cutters=cutters,
+        setups=(*notes.setups(plan, best), *notes.travel(plan, best)),
+        answers=tuple(answers(plan)),
+        doubts={
+            "warnings": tuple(notes.warnings(plan)),
+            "faces that are not judged": tuple(notes.unjudged(plan)),
+            "missing obstacles": tuple(notes.missing(plan)),
+        },
+        notes=(notes.side(plan), *notes.libraries(plan), *notes.notes(plan)),
+    )
+
+
+def shown(plan: Plan) -> CutterEntry:
+    """The cutter that the models show: the selected, else the one that reaches the most samples."""
+    best = max(plan.cutters, key=lambda c: c.interference_free + c.accessible)
+    return next((c for c in plan.cutters if c.id == plan.selected), best)
