@@ -6,9 +6,8 @@ import sys
 
 import pytest
 
-from tests.support.forked import ENV
-
 from cad_io.jit import cache_folder
+from tests.support.forked import ENV
 
 SOURCE = """
 import sys

@@ -36,7 +36,7 @@ from plan_cutters.document.notes import notes_of
 from plan_cutters.document.palette import MEANING, PALETTE
 from plan_cutters.document.setups import SetupEntry, SetupReach
 from plan_cutters.document.shares import counts
-from plan_cutters.document.travel import placement_entry, travel_entry
+from plan_cutters.document.travel import travel_entry
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.machine import Machine

@@ -1,13 +1,11 @@
 """A plan is told once: nothing is promised that was not judged, codes decide and not words, each code has all its words."""
 
 import re
-from pathlib import Path
 from types import SimpleNamespace
 from typing import get_args
 
 import numpy as np
 import pytest
-from cad_parts import box, compound
 from OCP.BRep import BRep_Builder
 from OCP.TopoDS import TopoDS_Face
 
@@ -25,8 +23,8 @@ from plan_cutters.report.page.write import page
 from plan_cutters.report.story import notes
 from plan_cutters.report.story.story import story_of
 from plan_cutters.report.witness import row_of
-
-ROOT = Path(__file__).parent.parent
+from tests.support.cad_parts import box, compound
+from tests.support.places import ROOT
 
 
 @pytest.fixture(scope="module")

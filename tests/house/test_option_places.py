@@ -17,8 +17,8 @@ from plan_cutters.command import map as of_a_point
 from plan_cutters.command.asked import NAMED, words_of
 from plan_cutters.document.model import Effective
 from plan_cutters.options import PlanOptions, PointOptions, SceneOptions
+from tests.support.places import ROOT
 
-ROOT = Path(__file__).parent.parent
 WORDS = {each.name for each in fields(Options)}
 
 
@@ -28,7 +28,7 @@ def test_type_checkers_see_the_options():
                             (posture_map, PointOptions)):  # fmt: skip
         assert Unpack[words] in get_type_hints(function).values()
     # Whatever mypy is to check of each option is in this file.
-    said = ast.parse((ROOT / "tests/typed_calls.py").read_text())
+    said = ast.parse((ROOT / "tests/support/typed_calls.py").read_text())
     kept = next(each for each in said.body if isinstance(each, ast.FunctionDef) and each.name == "kept")
     assert {each.arg for each in ast.walk(kept) if isinstance(each, ast.keyword)} == WORDS
 

@@ -6,9 +6,10 @@ import sys
 
 import click
 import pytest
-from forked import ENV, ROOT, run
 
 from plan_cutters.command import entry, worker
+from tests.support.forked import ENV, run
+from tests.support.places import ROOT
 
 GROOVE = str(ROOT / "samples/v_groove.step")
 QUICK = ("--cutter", "R6L80", "--grid", "5", "--area-budget", "0", "--formats", "json")
