@@ -1,5 +1,6 @@
 """Stored answers are answers to the same question: for each option they equal a fresh plan, or they are refused by its name."""
 
+from pathlib import Path
 import json
 import math
 from dataclasses import fields, replace
@@ -182,7 +183,7 @@ def test_the_subcommand_answers_as_the_option_does(file, tmp_path, capsys):
         alone = [str(each).split() for each in (code, line, alone)]
         assert [str(each).split() for each in subcommand(file, *words)] == alone
     other = tmp_path / "other.step"
-    other.write_bytes(PART.read_bytes() + b" ")
+    other.write_bytes(Path(PART).read_bytes() + b" ")
     assert subcommand(file, other)[:2] == (
         2,
         "plan-cutters: postures.npz: these maps are of another part than other.step: plan again",

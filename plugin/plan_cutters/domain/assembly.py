@@ -39,11 +39,14 @@ from plan_cutters.kernels.codes import (
     HIGH,
     KIND,
     LOW,
+    OVER_TIP,
     PART,
     RADIUS,
     ROUND,
     SCALE,
     SLOPE,
+    TILT_FROM,
+    TILT_TO,
     TOP,
     WIDE,
 )
@@ -84,7 +87,7 @@ class Assembly(Record):
         """The mode (n,) in which it touches at each tilt, rad; the last one where it touches in none."""
         found = np.full(len(tilt), len(self.mode) - 1)
         for i in range(len(self.mode) - 1, -1, -1):
-            found[(tilt >= self.mode[i, 2] - HAIR) & (tilt <= self.mode[i, 3] + HAIR)] = i
+            found[(tilt >= self.mode[i, TILT_FROM] - HAIR) & (tilt <= self.mode[i, TILT_TO] + HAIR)] = i
         return found
 
     def on_axis(self, contact: Floats, normal: Floats, lean: Floats, tilt: Floats) -> Floats:
@@ -204,7 +207,7 @@ def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "cover"
 
 def placed(tool: Assembly, table: Floats) -> Assembly:
     """A tool that touches in the same way with other pieces, rows (k, COLUMNS) whose heights are over the tip."""
-    return replace(tool, piece=_placed(table, tool.mode[:, 4]))
+    return replace(tool, piece=_placed(table, tool.mode[:, OVER_TIP]))
 
 
 def _placed(table: Floats, height: Floats) -> Floats:

@@ -12,7 +12,7 @@ from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.shapes import SAME, flute_length
 from plan_cutters.errors import CutterError
-from plan_cutters.kernels.codes import ARC, HIGH, HOLDER, KIND, LOW, PART, RADIUS, ROUND, SLOPE
+from plan_cutters.kernels.codes import ARC, HIGH, HOLDER, KIND, LOW, OVER_TIP, PART, RADIUS, ROUND, SLOPE
 
 #: Into how many cones a round edge of a grown holder is cut; they lie outside of it by 0.5 % of its radius.
 _CHORDS = 8
@@ -126,7 +126,7 @@ def outline(made: Assembly, stick_out: float) -> Floats:
         q1. Nowhere above the holder's own.
     """
     rows = made.piece[0][made.piece[0, :, PART] == HOLDER]
-    height = made.mode[0, 4] - stick_out
+    height = made.mode[0, OVER_TIP] - stick_out
     corners = np.vstack([_lower_side(row, height) for row in rows])
     radii = np.unique(corners[:, [0, 2]])
     found, inner = [], 0.0

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import blank
-from plan_cutters.kernels.codes import NEVER
+from plan_cutters.kernels.codes import NEVER, OFFSET_OF
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Conditions, search_postures, tool_of
 from plan_cutters.scene.threads import CHUNK, in_chunks
@@ -203,7 +203,7 @@ def _served(contacts: CellContacts, site: Site, rooms: Sequence[float], upto: fl
     rows = np.flatnonzero(known)
     outlook[rows] = _cover(contacts, tensor, contacts.axis, contacts.flat, site, rows)
     light, bends = conditions.light(cutter), 1.0 / cutter.radius
-    if not (light.mode[:, 0] > 0.0).any():
+    if not (light.mode[:, OFFSET_OF] > 0.0).any():
         # A ball gouges at every tilt or at none.
         bends = 0.0
     for room in rooms:
