@@ -10,22 +10,8 @@ from typing import NamedTuple
 class Reason(NamedTuple):
     """What is known of a reason but where it holds.
 
-    Attributes
-    ----------
-    code : str
-        As in `plan.json` and arrays.
-    name : str
-        A label: of a column, a legend.
-    noun : str
-        After "lost to".
-    sentence : str
-        What it is.
-    hint : str
-        What is tried first against it; nothing of that is computed.
-    colour : str
-        sRGB, of what it forbids in a posture map.
-    pattern, hatch : str
-        The second channel, on the page and on sheets as matplotlib writes hatches.
+    `name` is a label, `noun` stands after "lost to", `hint` is tried first against it (nothing of that is computed). `colour` is
+    sRGB; `pattern`, on the page, and `hatch`, on sheets as matplotlib writes it, are the second channel.
     """
 
     code: str

@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
 if TYPE_CHECKING:
     # What formats there are is asked before anything heavy is loaded.
+    import numpy as np
+    from numpy.typing import NDArray
+
     from cad_io import Part, SurfaceSamples
     from cad_io.arrays import Floats, Ints
     from plan_cutters.document.model import CutterEntry, Plan
@@ -35,7 +35,7 @@ class Judged(Protocol):
     @property
     def samples(self) -> "SurfaceSamples": ...
     @property
-    def surface_class(self) -> NDArray[np.uint8]: ...
+    def surface_class(self) -> "NDArray[np.uint8]": ...
     @property
     def reaches(self) -> "dict[str, Reach]": ...
     @property
@@ -65,7 +65,7 @@ class Judged(Protocol):
     @property
     def clearances(self) -> "Clearances": ...
     @property
-    def inside_bodies(self) -> NDArray[np.bool_]: ...
+    def inside_bodies(self) -> "NDArray[np.bool_]": ...
     @property
     def conditions(self) -> "Conditions": ...
 

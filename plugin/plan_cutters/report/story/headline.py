@@ -11,18 +11,7 @@ from plan_cutters.report.story.scope import judged, nearest
 
 
 class Headline(NamedTuple):
-    """Which cutter to take, or that none does.
-
-    Attributes
-    ----------
-    title : str
-    good : bool, optional
-        None: not for sure, or not all.
-    about : str
-        Behind the title of a cutter to take: for what, and how it is held.
-    why : str
-        Sentences.
-    """
+    """Which cutter to take, or that none does (`good`; None: not for sure, or not all), for what and how it is held, and why."""
 
     title: str
     good: bool | None

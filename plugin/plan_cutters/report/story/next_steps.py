@@ -18,7 +18,7 @@ def together(plan: Plan) -> str:
         return ""
     if not found.runs:
         return "No cutter given reaches any of the area"
-    several = len({run.setup for run in plan_runs(plan)}) > 1
+    several = len({run.setup for run in found.runs}) > 1
     whole = percent(found.share, some=True, whole=not found.left)
     if len(found.runs) == 1:
         said = f"{_run(found.runs[0], several)} alone reaches all that any cutter given reaches, {whole} of the area"
@@ -41,11 +41,6 @@ def together(plan: Plan) -> str:
     if found.doubtful:
         said += ", unless something is in the way that is missing from the obstacles"
     return said
-
-
-def plan_runs(plan: Plan) -> list[RunEntry]:
-    """The runs of the least set."""
-    return plan.least_set.runs if plan.least_set else []
 
 
 def _run(run: RunEntry, several: bool) -> str:
