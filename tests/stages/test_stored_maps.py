@@ -1,9 +1,9 @@
 """Stored answers are answers to the same question: for each option they equal a fresh plan, or they are refused by its name."""
 
-from pathlib import Path
 import json
 import math
 from dataclasses import fields, replace
+from pathlib import Path
 
 import click
 import numpy as np
