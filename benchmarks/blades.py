@@ -67,7 +67,7 @@ def measured(prepared: Any, cutter: Any) -> dict[str, float]:
     judged = time.process_time() - began
     lost = (reach.verdict == INACCESSIBLE) & ((reach.reason != BURIED) | (prepared.buried < 0))
     contacts, seconds = contacts_of(samples), {}
-    tools = conditions.light(cutter), conditions.heavy(cutter)
+    tools = conditions.outer_tool(cutter), conditions.inner_tool(cutter)
     groups = {"no": lost, "yes": reach.reached & (reach.verdict != INTERFERENCE_FREE)}
     for name, rows in groups.items():
         again = blank(len(samples))

@@ -19,7 +19,7 @@ import trimesh
 from plan_cutters import Cutter, Fixture, Options, Scene
 from plan_cutters.domain.verdicts import UNJUDGED
 from plan_cutters.pipeline import prepare
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.preparation import Prepared
 from plan_cutters.stages.judge import judge
 
 ROOT = Path(__file__).parent.parent
@@ -64,9 +64,10 @@ def main() -> None:
     scene = Scene.of(PART)
     held = vise_of(WANTED)
     began = time.process_time()
-    _ = scene.around.may_be.solids
+    _ = scene.around.possible.solids
     print(
-        f"part alone: {len(scene.around.may_be.triangles)} triangles, {time.process_time() - began:.2f} s to tessellate and build"
+        f"part alone: {len(scene.around.possible.triangles)} triangles, "
+        f"{time.process_time() - began:.2f} s to tessellate and build"
     )
     cases: dict[str, list[Fixture | str]] = {
         "part alone": [], "vise": [held], "table": ["table:0"], "vise and table": [held, "table:-40"],

@@ -155,26 +155,35 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
     at = np.stack([*rng.normal(0, 6, (2, 997)), rng.uniform(0, 40, 997), rng.uniform(0, RIGHT, 997), np.cos(angle),
                    np.sin(angle)], 1)  # fmt: skip
     # Postures at random at every sample, and for each a triangle near its contact.
-    bodies, lean, axis = np.empty((n, hit.BODY)), np.empty((n, 3)), np.empty((n, 3))
+    bodies, tilt_direction, axis = np.empty((n, hit.BODY)), np.empty((n, 3)), np.empty((n, 3))
     centre, near = vertex.mean(1), np.empty(n, np.int64)
     for i in range(n):
         turn, tilt = rng.uniform(0, 2 * np.pi), rng.uniform(0, RIGHT)
-        lean[i] = np.cos(turn) * first[i] + np.sin(turn) * np.cross(normal[i], first[i])
-        axis[i] = np.cos(tilt) * normal[i] + np.sin(tilt) * lean[i]
-        left = np.cross(normal[i], lean[i])
-        hit.stand(bodies[i], Frame(point[i], normal[i], lean[i], left), np.cos(tilt), np.sin(tilt), RADIUS, 0.0)
+        tilt_direction[i] = np.cos(turn) * first[i] + np.sin(turn) * np.cross(normal[i], first[i])
+        axis[i] = np.cos(tilt) * normal[i] + np.sin(tilt) * tilt_direction[i]
+        left = np.cross(normal[i], tilt_direction[i])
+        hit.stand(
+            bodies[i], Frame(point[i], normal[i], tilt_direction[i], left), np.cos(tilt), np.sin(tilt), RADIUS, 0.0
+        )
         near[i] = rng.choice(np.argsort(np.linalg.norm(centre - point[i], axis=1))[:200])
     rotations = 2 * np.pi * np.arange(TURNS) / TURNS
     scratch, cc_points = hit.scratch(), Contacts(point, normal, first, curvature)
     out = Found(
-        np.empty(n, np.uint8), axis.copy(), lean.copy(), np.empty(n), np.empty(n, np.int32), np.empty(n, np.uint8)
+        np.empty(n, np.uint8),
+        axis.copy(),
+        tilt_direction.copy(),
+        np.empty(n),
+        np.empty(n, np.int32),
+        np.empty(n, np.uint8),
     )
     solids = material.sheet(built)
     free, triangle, which = np.empty(n, np.bool_), np.empty(n, np.int32), np.empty(n, np.int32)
 
     def maps_of(count: int) -> None:
         for i in range(count):
-            free_tilts.free_tilts(point[i % n], normal[i % n], lean[i % n], 0.0, RIGHT, TOOL, 0, NARROWEST, built, 2000)
+            free_tilts.free_tilts(
+                point[i % n], normal[i % n], tilt_direction[i % n], 0.0, RIGHT, TOOL, 0, NARROWEST, built, 2000
+            )
 
     wide = lanes.WideTree(*lanes.wide_tree(built))
     blocks = wide.blocks
@@ -204,7 +213,7 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
         "tree_hit": ("posture", 4_000, lambda k: many_walks(k, built, bodies, PIECE, scratch)),
         "build": ("triangle", 7_200, lambda k: k and tree.build(loose[:k])),
         "probe": ("posture", 400, lambda k: search.probe(
-            np.arange(k), point, normal, axis, lean, TOOL, built, triangle, which)),
+            np.arange(k), point, normal, axis, tilt_direction, TOOL, built, triangle, which)),
         "dummy_clear": ("sample", 400, lambda k: search.dummy_clear(
             np.arange(k), cc_points, DUMMY, TOOL, solids, free)),
         "search": ("sample", 400, lambda k: search.search(

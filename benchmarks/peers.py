@@ -72,18 +72,18 @@ class Postures:
     normal: Floats
     axis: Floats
     x_t: Floats
-    lean: Floats
+    tilt_direction: Floats
     local: Floats
 
     @classmethod
     def at(cls, samples: SurfaceSamples, row: int) -> "Postures":
         p, n, e1 = samples.point[row], samples.normal[row], samples.direction_max[row]
-        lean = np.cos(ROTATIONS)[:, None] * e1 + np.sin(ROTATIONS)[:, None] * np.cross(n, e1)
-        lean = np.broadcast_to(lean[:, None, :], (len(ROTATIONS), len(TILTS), 3))
+        tilt_direction = np.cos(ROTATIONS)[:, None] * e1 + np.sin(ROTATIONS)[:, None] * np.cross(n, e1)
+        tilt_direction = np.broadcast_to(tilt_direction[:, None, :], (len(ROTATIONS), len(TILTS), 3))
         c, s = np.cos(TILTS)[None, :, None], np.sin(TILTS)[None, :, None]
         big, small = samples.curvature[row]
         bound = np.array([local_gouge_range(big, small, float(r), CUTTER.radius, 0.0)[0] for r in ROTATIONS])
-        return cls(p, n, c * n + s * lean, c * lean - s * n, lean, bound)
+        return cls(p, n, c * n + s * tilt_direction, c * tilt_direction - s * n, tilt_direction, bound)
 
     @property
     def frame(self) -> Floats:
@@ -253,7 +253,7 @@ def maps(samples: SurfaceSamples, rows: NDArray[np.int64], obstacles: Obstacles,
 def probes(postures: Postures, obstacles: Obstacles) -> NDArray[np.bool_]:
     """Each posture by itself."""
     safe = TOLERANCE - obstacles.triangles.chord_error
-    axis, lean = postures.axis.reshape(-1, 3), np.ascontiguousarray(postures.lean.reshape(-1, 3))
+    axis, tilt_direction = postures.axis.reshape(-1, 3), np.ascontiguousarray(postures.tilt_direction.reshape(-1, 3))
     n = len(axis)
     triangle = np.full(n, -1, np.int32)
     point, normal = np.tile(postures.point, (n, 1)), np.tile(postures.normal, (n, 1))
@@ -262,7 +262,7 @@ def probes(postures: Postures, obstacles: Obstacles) -> NDArray[np.bool_]:
         point,
         normal,
         axis,
-        lean,
+        tilt_direction,
         tool_of(assembly(CUTTER, safe, safe)),
         obstacles.tree,
         triangle,

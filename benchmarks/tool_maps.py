@@ -46,7 +46,7 @@ def main() -> None:
     )
     print("| tool | us a rotation | free deg | undecided deg |\n| --- | --- | --- | --- |")
     for name, cutter in TOOLS.items():
-        tool, best = tool_of(ready.conditions.light(cutter)), np.inf
+        tool, best = tool_of(ready.conditions.outer_tool(cutter)), np.inf
         for _ in range(4):
             start = time.process_time()
             free_map(

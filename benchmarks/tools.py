@@ -67,7 +67,7 @@ def speed() -> None:
         if cutter.plain:
             flat[cutter.radius] = least
         ratio = f"{least / flat[cutter.radius]:.2f}" if cutter.radius in flat else ""
-        pieces = ready.conditions.light(cutter).piece.shape[1]
+        pieces = ready.conditions.outer_tool(cutter).piece.shape[1]
         print(f"| {cutter.id} | {pieces} | {least:.3f} | {ratio} | {int((~reach.reached).sum())} |", flush=True)
     ten = [each for each in TOOLS if not each.plain]
     result = run(PART, Options(cutters=tuple(ten), grid=201, area_budget=0), Clock(None))
@@ -93,12 +93,14 @@ def exact(path: Path, cutter: Cutter, count: int) -> str:
     )
     worst = -math.inf
     for row in rows:
-        lean = reach.lean[row]
+        tilt_direction = reach.tilt_direction[row]
         if reach.interference_free[row]:
             # Free in every rotation.
             turn = rng.uniform(0.0, 2.0 * math.pi)
-            lean = math.cos(turn) * lean + math.sin(turn) * np.cross(samples.normal[row], lean)
-        tip, frame = tool.frame(samples.point[row], samples.normal[row], lean, float(reach.tilt[row]))
+            tilt_direction = math.cos(turn) * tilt_direction + math.sin(turn) * np.cross(
+                samples.normal[row], tilt_direction
+            )
+        tip, frame = tool.frame(samples.point[row], samples.normal[row], tilt_direction, float(reach.tilt[row]))
         near = cloud[tree.query_ball_point(samples.point[row], 3.0 * cutter.radius)]
         x, y, w = ((np.concatenate([far, near]) - tip) @ frame.T).T
         q = np.hypot(x, y)

@@ -6,7 +6,7 @@ from typing import Any
 from OCP.TopoDS import TopoDS_Face
 
 from cad_io.arrays import LostFace
-from cad_io.read.altered import edge_count, misfit, open_border
+from cad_io.read.face_comparison import edge_count, misfit, open_border
 from cad_io.read.faults import Fault, Model
 from cad_io.read.iges_names import name_of
 

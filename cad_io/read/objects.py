@@ -13,7 +13,7 @@ from cad_io.kernel import explore, shape_map
 from cad_io.kernel.assembly import Node
 from cad_io.kernel.components import as_one, unwrapped
 from cad_io.part import Part
-from cad_io.read.hosted import Colour, Held, Item, Mark, each_of, gather, same_place, shapes_of
+from cad_io.read.host_objects import Colour, Held, Item, Mark, each_of, gather, same_place, shapes_of
 
 
 def from_object(source: Any) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from cad_io.kernel import faces, translated
 from cad_io.kernel.bodies import turned
 from cad_io.kernel.components import as_one
 from cad_io.part import Part
-from cad_io.read.hosted import each_of, shapes_of
+from cad_io.read.host_objects import each_of, shapes_of
 
 #: Angle, rad, and distance, mm, up to which a profile's plane holds the axis.
 _FLAT, _ON = 1e-6, 1e-4

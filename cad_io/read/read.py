@@ -23,8 +23,8 @@ from cad_io.kernel.components import unwrapped
 from cad_io.part import Part
 from cad_io.read import iges, step
 from cad_io.read.document import Read
-from cad_io.read.guarded import Crashed, Found
-from cad_io.read.guarded import guarded as in_copy
+from cad_io.read.isolation import Crashed, Found
+from cad_io.read.isolation import guarded as in_copy
 from cad_io.read.objects import from_object
 from cad_io.read.sniff import load
 from cad_io.units import in_mm

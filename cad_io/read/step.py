@@ -31,10 +31,10 @@ from cad_io.arrays import LostFace
 from cad_io.errors import ReadError
 from cad_io.kernel import explore, faces
 from cad_io.kernel.components import as_one, unwrapped
-from cad_io.read.altered import open_border
 from cad_io.read.document import Read, add_attributes, each, roots
+from cad_io.read.face_comparison import open_border
 from cad_io.read.faults import Model, type_of
-from cad_io.read.lost import Lost, is_face, is_whole, mend, name_of
+from cad_io.read.unread_faces import Lost, is_face, is_whole, mend, name_of
 from cad_io.units import in_mm
 
 #: Each a pattern that starts with plain text, which is searched for ten times as fast as alternatives.

@@ -98,7 +98,7 @@ class Net(NamedTuple):
     rational: bool
 
 
-class _Room(NamedTuple):
+class _Workspace(NamedTuple):
     """Room to work in: basis functions along u and v, what they are made from, rows summed along v, and what is found."""
 
     bu: Any
@@ -112,12 +112,19 @@ class _Room(NamedTuple):
 
 
 @kernel
-def _summed(net, row, column, order, room):
+def _summed(net, row, column, order, workspace):
     """Sum a patch's poles: S, Su, Sv, Suu, Svv, Suv and their weights into `room.found`, from the patch's first pole.
 
     What is far from the origin would lose digits of its derivatives.
     """
-    bu, bv, across, found, origin, pole = room.bu, room.bv, room.across, room.found, room.origin, net.pole
+    bu, bv, across, found, origin, pole = (
+        workspace.bu,
+        workspace.bv,
+        workspace.across,
+        workspace.found,
+        workspace.origin,
+        net.pole,
+    )
     top, left, wide = row - net.degree_u, column - net.degree_v, 4 if net.rational else 3
     for c in range(3):
         origin[c] = pole[top, left, c] / pole[top, left, 3]
@@ -159,7 +166,7 @@ def _divided(found, origin, order, out):
 
 
 @kernel
-def _point(u, v, net, order, room, out):
+def _point(u, v, net, order, workspace, out):
     """Write value and derivatives at one pair of parameters."""
     s = wrapped(u, net.knot_u[net.degree_u], net.period_u)
     t = wrapped(v, net.knot_v[net.degree_v], net.period_v)
@@ -167,15 +174,15 @@ def _point(u, v, net, order, room, out):
         out[:] = np.nan
         return
     row, column = span(net.knot_u, net.degree_u, s), span(net.knot_v, net.degree_v, t)
-    basis(net.knot_u, net.degree_u, row, s, order, room.left, room.right, room.table, room.bu)
-    basis(net.knot_v, net.degree_v, column, t, order, room.left, room.right, room.table, room.bv)
-    _summed(net, row, column, order, room)
+    basis(net.knot_u, net.degree_u, row, s, order, workspace.left, workspace.right, workspace.table, workspace.bu)
+    basis(net.knot_v, net.degree_v, column, t, order, workspace.left, workspace.right, workspace.table, workspace.bv)
+    _summed(net, row, column, order, workspace)
     if net.rational:
-        _divided(room.found, room.origin, order, out)
+        _divided(workspace.found, workspace.origin, order, out)
         return
     for k in range(len(out)):
         for c in range(3):
-            out[k, c] = room.found[k, c] + (room.origin[c] if k == 0 else 0.0)
+            out[k, c] = workspace.found[k, c] + (workspace.origin[c] if k == 0 else 0.0)
 
 
 @entry
@@ -191,9 +198,9 @@ def evaluate(u, v, net, out):
     """
     order = 0 if out.shape[1] == 1 else 1 if out.shape[1] == 3 else 2
     wide = DEGREE + 1
-    room = _Room(
+    workspace = _Workspace(
         np.empty((3, wide)), np.empty((3, wide)), np.empty(wide), np.empty(wide), np.empty((wide, wide)),
         np.empty((3, wide, 4)), np.empty((6, 4)), np.empty(3),
     )  # fmt: skip
     for i in range(len(u)):
-        _point(u[i], v[i], net, order, room, out[i])
+        _point(u[i], v[i], net, order, workspace, out[i])

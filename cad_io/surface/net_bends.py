@@ -144,19 +144,19 @@ def _less_affine(cell, p, q, slope, raised):
 
 
 @kernel
-def _of_cell(cell, p, q, wide_u, wide_v, rational, room):
+def _of_cell(cell, p, q, wide_u, wide_v, rational, workspace):
     """Leave the balls of S, Su, Sv, Suu, Svv, Suv over a patch in `room.ball` (6, 6)."""
-    ball, low, high = room.ball, 1.0, 1.0
+    ball, low, high = workspace.ball, 1.0, 1.0
     if rational:
-        low, high = _less_affine(cell, p, q, room.slope, room.raised)
+        low, high = _less_affine(cell, p, q, workspace.slope, workspace.raised)
         if not low > 0.0:
             ball[:] = np.inf
             return
-        cell, p, q = room.raised, p + 1, q + 1
+        cell, p, q = workspace.raised, p + 1, q + 1
     for k in range(0 if rational else 1, 6):
         du = 1 if k == 1 or k == 5 else 2 if k == 3 else 0
         dv = 1 if k == 2 or k == 5 else 2 if k == 4 else 0
-        _ball(cell, p, q, du, dv, wide_u, wide_v, room.work, ball[k])
+        _ball(cell, p, q, du, dv, wide_u, wide_v, workspace.work, ball[k])
     if not rational:
         return
     for k in range(6):
@@ -170,8 +170,8 @@ def _of_cell(cell, p, q, wide_u, wide_v, rational, room):
             _less(ball[k], ball[k], ball[0])
         _over(ball[k], low, high)
     for c in range(3):
-        ball[1, c] += room.slope[0, c] / wide_u
-        ball[2, c] += room.slope[1, c] / wide_v
+        ball[1, c] += workspace.slope[0, c] / wide_u
+        ball[2, c] += workspace.slope[1, c] / wide_v
 
 
 @kernel
@@ -201,15 +201,15 @@ def of_net(net, u, v, bends):
     """
     p, q = net.degree_u, net.degree_v
     wide = max(p, q) + 1
-    room = _Room(
+    workspace = _Workspace(
         np.empty((p + 1, net.pole.shape[1], 4)), np.empty((p + 1, q + 1, 4)), np.empty((p + 2, q + 2, 4)),
         np.empty((p + 2, q + 2, 4)), np.empty((wide, wide)), np.empty((wide, wide)), np.empty((6, 6)), np.empty((2, 3)),
         np.empty(len(v) - 1, np.int64), np.empty((len(v) - 1, q + 1, q + 1)),
     )  # fmt: skip
-    _fill(net, u, v, bends, room)
+    _fill(net, u, v, bends, workspace)
 
 
-class _Room(NamedTuple):
+class _Workspace(NamedTuple):
     """Room to work in."""
 
     rows: Any
@@ -225,25 +225,25 @@ class _Room(NamedTuple):
 
 
 @kernel
-def _fill(net, u, v, bends, room):
-    p, q, cell, ball = net.degree_u, net.degree_v, room.cell, room.ball
+def _fill(net, u, v, bends, workspace):
+    p, q, cell, ball = net.degree_u, net.degree_v, workspace.cell, workspace.ball
     for j in range(len(v) - 1):
-        room.left[j], a, b = _interval(net.knot_v, q, net.period_v, v[j], v[j + 1])
-        _bezier(net.knot_v, q, room.left[j], a, b, room.square, room.across[j])
+        workspace.left[j], a, b = _interval(net.knot_v, q, net.period_v, v[j], v[j + 1])
+        _bezier(net.knot_v, q, workspace.left[j], a, b, workspace.square, workspace.across[j])
     for i in range(len(u) - 1):
         top, a, b = _interval(net.knot_u, p, net.period_u, u[i], u[i + 1])
-        _bezier(net.knot_u, p, top, a, b, room.square, room.share)
-        _row(net, top, room.share, room.rows)
+        _bezier(net.knot_u, p, top, a, b, workspace.square, workspace.share)
+        _row(net, top, workspace.share, workspace.rows)
         for j in range(len(v) - 1):
-            left, share = room.left[j], room.across[j]
+            left, share = workspace.left[j], workspace.across[j]
             for k in range(p + 1):
                 for m in range(q + 1):
                     for c in range(4):
                         total = 0.0
                         for n in range(q + 1):
-                            total += share[m, n] * room.rows[k, left - q + n, c]
+                            total += share[m, n] * workspace.rows[k, left - q + n, c]
                         cell[k, m, c] = total
-            _of_cell(cell, p, q, u[i + 1] - u[i], v[j + 1] - v[j], net.rational, room)
+            _of_cell(cell, p, q, u[i + 1] - u[i], v[j + 1] - v[j], net.rational, workspace)
             for k in range(3):
                 for c in range(3):
                     bends.middle[i, j, k, c] = ball[3 + k, c]

@@ -49,7 +49,7 @@ class Curves(NamedTuple):
     bend: Any
 
 
-class Room(NamedTuple):
+class Workspace(NamedTuple):
     """Room to evaluate in."""
 
     left: Any
@@ -182,14 +182,14 @@ def _bends(net: Net, ends: tuple[float, float]) -> tuple[Floats, Floats]:
 
 
 @entry
-def room():
+def workspace():
     """Room for the kernels."""
     wide = DEGREE + 1
-    return Room(np.empty(wide), np.empty(wide), np.empty((wide, wide)), np.empty((3, wide)), np.empty(4))
+    return Workspace(np.empty(wide), np.empty(wide), np.empty((wide, wide)), np.empty((3, wide)), np.empty(4))
 
 
 @kernel
-def point(curves, i, t, room):
+def point(curves, i, t, workspace):
     """Parameters (u, v) of the surface on a curve."""
     number, real = curves.number[i], curves.real[i]
     if number[0] == _CONIC:
@@ -198,11 +198,11 @@ def point(curves, i, t, room):
     knot, degree = curves.knot[number[2] : curves.number[i + 1, 2]], number[1]
     t = wrapped(t, knot[degree], real[0])
     low = span(knot, degree, t)
-    basis(knot, degree, low, t, 0, room.left, room.right, room.table, room.basis)
+    basis(knot, degree, low, t, 0, workspace.left, workspace.right, workspace.table, workspace.basis)
     first = number[3] + low - degree
     u, v, w = 0.0, 0.0, 0.0
     for k in range(degree + 1):
-        share = room.basis[0, k]
+        share = workspace.basis[0, k]
         u += share * curves.pole[first + k, 0]
         v += share * curves.pole[first + k, 1]
         w += share * curves.pole[first + k, 3]

@@ -21,8 +21,8 @@ from OCP.TopoDS import TopoDS
 
 from cad_io.arrays import Floats, Ints
 from cad_io.kernel import edges_of
-from cad_io.kernel.limited import ChildDied, limited
 from cad_io.kernel.mesher import under_mesh, uv_triangles
+from cad_io.kernel.time_limit import ChildDied, limited
 from cad_io.part import Part
 from cad_io.surface import Surface
 

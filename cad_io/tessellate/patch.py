@@ -28,12 +28,12 @@ _FINER = ((400, MIDDLE), (8000, FINE))
 Indices = NDArray[np.int64]
 
 
-def room(triangles: int) -> Found:
+def workspace(triangles: int) -> Found:
     """Room for so many triangles of a face, and as many nodes."""
     return Found(np.empty((triangles, 2)), np.empty((triangles, 3), np.int64))
 
 
-NO_ROOM = room(0)
+NO_ROOM = workspace(0)
 
 
 class Laid(NamedTuple):
@@ -74,23 +74,25 @@ class Patch(NamedTuple):
         table, proved = table_of(ground)
         return Patch(number, surface, start, ground, table, curves, proved and exact)
 
-    def begun(self, chord: float, most: int, room: Found) -> tuple["Patch", "Tried"]:
+    def begun(self, chord: float, most: int, workspace: Found) -> tuple["Patch", "Tried"]:
         """The patch with a table as fine as is worth while for a chord error, and its triangles."""
         before = COARSE
         for many, cells in _FINER if self.ground.whole else ():
-            tried = self.tried(chord, many, room)
+            tried = self.tried(chord, many, workspace)
             if tried.triangles <= many:
                 return self, tried
             if self.ground.is_finer(cells, than=before):
                 self, before = self._replace(table=table_of(self.ground, cells)[0]), cells
-        return self, self.tried(chord, most, room)
+        return self, self.tried(chord, most, workspace)
 
-    def tried(self, chord: float, most: int, room: Found) -> "Tried":
+    def tried(self, chord: float, most: int, workspace: Found) -> "Tried":
         """Triangles for a chord error, counted, and kept if there is room for them."""
-        count, number, off, strayed, area = refined(self.start, self.table, self.curves, self._asked(chord), most, room)
+        count, number, off, strayed, area = refined(
+            self.start, self.table, self.curves, self._asked(chord), most, workspace
+        )
         own = None
-        if count <= min(most, len(room.corner)) and number <= len(room.uv):
-            own = Found(room.uv[:number].copy(), room.corner[:count].copy())
+        if count <= min(most, len(workspace.corner)) and number <= len(workspace.uv):
+            own = Found(workspace.uv[:number].copy(), workspace.corner[:count].copy())
         return Tried(chord, count, number, own, off, strayed, area)
 
     def _asked(self, chord: float) -> float:

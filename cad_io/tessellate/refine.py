@@ -10,7 +10,7 @@ import numpy as np
 
 from cad_io.jit import decorators
 from cad_io.tessellate.bounds import bend, most_inside, window
-from cad_io.tessellate.curves import point, room, strays
+from cad_io.tessellate.curves import point, strays, workspace
 
 entry, kernel = decorators(__file__)
 
@@ -255,4 +255,4 @@ def refined(start, table, curves, chord, most, found):
         np.empty((high, 3, 2)), np.empty((high, 3), np.int64), np.empty((high, 3), np.int64), np.empty((high, 3, 2)),
         np.empty(high, np.int64),
     )  # fmt: skip
-    return _refined(start, table, curves, chord, most, stack, room(), found)
+    return _refined(start, table, curves, chord, most, stack, workspace(), found)

@@ -12,7 +12,7 @@ import shapely
 from cad_io.arrays import Floats, Ints
 from cad_io.face.trim import Trim
 from cad_io.kernel import is_kernel_error
-from cad_io.kernel.limited import TimeLimit
+from cad_io.kernel.time_limit import TimeLimit
 from cad_io.part import Part
 from cad_io.surface import Surface
 from cad_io.tessellate.mesh import BorderCurve, UVMesh, bordered, kernel_start

@@ -17,7 +17,7 @@ from OCP.BRepTools import BRepTools
 from cad_io.arrays import Triangles
 from cad_io.kernel import translated
 from cad_io.part import Part
-from cad_io.tessellate.patch import NO_ROOM, Patch, Tried, room
+from cad_io.tessellate.patch import NO_ROOM, Patch, Tried, workspace
 from cad_io.tessellate.refine import Found
 from cad_io.tessellate.start import At, expected, starts
 
@@ -121,15 +121,15 @@ def _affordable(
     within the budget; `asked`: the chord error asked for, and the one at which to begin to look."""
     size, most = float(np.linalg.norm(part.size)), _TOO_MANY * budget
     # Room to work in: one for each thread.
-    rooms = [room(min(budget, _ROOM)) for _ in range(jobs)]
+    workspaces = [workspace(min(budget, _ROOM)) for _ in range(jobs)]
     least, chord = asked
 
     def begun(patch: Patch) -> tuple[Patch, Tried]:
-        with _lent(rooms) as mine:
+        with _lent(workspaces) as mine:
             return patch.begun(chord, most, mine if total <= budget else NO_ROOM)
 
     def again(patch: Patch) -> Tried:
-        with _lent(rooms) as mine:
+        with _lent(workspaces) as mine:
             return patch.tried(chord, most, mine if total <= budget else NO_ROOM)
 
     finer, tried, total = [], [], 0
@@ -161,12 +161,12 @@ def _affordable(
 
 
 @contextmanager
-def _lent(rooms: list[Found]) -> Iterator[Found]:
-    mine = rooms.pop()
+def _lent(workspaces: list[Found]) -> Iterator[Found]:
+    mine = workspaces.pop()
     try:
         yield mine
     finally:
-        rooms.append(mine)
+        workspaces.append(mine)
 
 
 def _each(work: Callable[[Item], Done], items: Iterable[Item], jobs: int) -> Iterator[Done]:

@@ -35,7 +35,7 @@ from cad_io.kernel import edges_of, explore, faces, shape_map, silence, translat
 from cad_io.kernel.assembly import Node
 from cad_io.kernel.bodies import placed
 from cad_io.kernel.components import compound, flat
-from cad_io.kernel.limited import ChildDied, TimeLimit, limited
+from cad_io.kernel.time_limit import ChildDied, TimeLimit, limited
 from cad_io.split.pieces import Piece, Split
 from cad_io.write.aside import aside
 from cad_io.write.canonical import canonical

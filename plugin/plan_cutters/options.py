@@ -12,7 +12,7 @@ from cad_io.units import UNITS
 from plan_cutters.domain.answers import answers_of
 from plan_cutters.domain.checks import choice, flag, items, number, shown, whole
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.drawer import builtin
+from plan_cutters.domain.default_tools import builtin
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.machine import Machine

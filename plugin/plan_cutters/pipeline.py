@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from cad_io import Part, read_part
 from cad_io.arrays import Ints
-from cad_io.kernel.meanwhile import Meanwhile
+from cad_io.kernel.side_process import Meanwhile
 from cad_io.read.read import TIMEOUT
 from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
@@ -29,15 +29,15 @@ from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.nesting import handed, order
 from plan_cutters.domain.over_setups import over_setups
-from plan_cutters.domain.verdicts import CONVEX, UNJUDGED, Reach, blank
+from plan_cutters.domain.verdicts import CONVEX, UNJUDGED, Verdicts, blank
 from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.options import Options, PlanOptions
 from plan_cutters.result import Result
-from plan_cutters.scene.buried import buried
 from plan_cutters.scene.conditions import Conditions, contacts_of, found_of, tool_of
 from plan_cutters.scene.faces import choose
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.inside_material import buried
+from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.question import question
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.spacing import affordable, sampled
@@ -46,8 +46,8 @@ from plan_cutters.scene.work import Work
 from plan_cutters.stages.between import between
 from plan_cutters.stages.classify import classify, regions
 from plan_cutters.stages.decompose import march_differs
-from plan_cutters.stages.elsewhere import in_setup
 from plan_cutters.stages.judge import judge
+from plan_cutters.stages.other_setups import in_setup
 from plan_cutters.stages.posture_maps import posture_maps
 from plan_cutters.stages.reasons import Reasons
 from plan_cutters.stages.select_cutters import ranked
@@ -125,7 +125,7 @@ def run(
     """
     started = datetime.datetime.now(datetime.UTC)
     ready = prepare(part, options, clock, read_timeout=read_timeout, at=at, ahead=ahead, aside=aside)
-    here: dict[Cutter, Reach] = {}
+    here: dict[Cutter, Verdicts] = {}
     seconds: dict[Cutter, float] = {}
     searched = Work()
     for cutter in order(ready.cutters):
@@ -149,11 +149,11 @@ def run(
     with clock.stage("maps") as tell:
         ahead("free_map.free_map")
         cutter = next(c for c in ready.cutters if c.id == result.shown)
-        reach = judged[cutter].here
+        verdicts = judged[cutter].here
         if ready.conditions.machine.limited:
-            reach = judge(replace(ready, conditions=ready.conditions.machineless), cutter)
+            verdicts = judge(replace(ready, conditions=ready.conditions.machineless), cutter)
         maps = posture_maps(
-            ready.samples, cutter, ready.conditions, reach, part=ready.scene.part.sha256 or "", progress=tell,
+            ready.samples, cutter, ready.conditions, verdicts, part=ready.scene.part.sha256 or "", progress=tell,
             inside=ready.inside_bodies, about=question(ready, cutter), most=options.map_budget,
         )  # fmt: skip
     document = result.plan
@@ -168,13 +168,13 @@ def run(
 
 
 def _elsewhere(
-    ready: Prepared, here: Mapping[Cutter, Reach], axis: Vector, x: Vector | None, clock: Clock
-) -> dict[str, Reach]:
+    ready: Prepared, here: Mapping[Cutter, Verdicts], axis: Vector, x: Vector | None, clock: Clock
+) -> dict[str, Verdicts]:
     """What each cutter reaches in another setup."""
     found = {}
-    for cutter, reach in here.items():
+    for cutter, verdicts in here.items():
         with clock.stage("setups") as tell:
-            found[cutter.id] = in_setup(ready, cutter, axis, reach, x=x, progress=tell)
+            found[cutter.id] = in_setup(ready, cutter, axis, verdicts, x=x, progress=tell)
     return found
 
 
@@ -234,7 +234,7 @@ def prepare(
         ahead("search.search")
         warm(contacts_of(samples), cutters[0], conditions)
     with clock.stage("bodies"):
-        within = buried(samples, scene.orientation, around.enclosing, around.surely, scene.tolerance, options.jobs)
+        within = buried(samples, scene.orientation, around.enclosing, around.certain, scene.tolerance, options.jobs)
     ready = Prepared(
         scene, options, chosen, spacing, samples, surface_class, region, within, conditions, cutters, coarser
     )
@@ -261,24 +261,25 @@ class Judged:
 
     Attributes
     ----------
-    reach : Reach
+    verdicts : Verdicts
         Over all setups, with the reasons that can be acted on.
     which : (n,) int32
         The setup that serves each sample, -1 for none.
-    here : Reach
+    here : Verdicts
         In the first setup alone; the same where there is no other one.
     entry : CutterEntry
         Its line in the plan.
     """
 
-    reach: Reach
+    verdicts: Verdicts
     which: Ints
-    here: Reach
+    here: Verdicts
     entry: CutterEntry
 
 
 def _judged(
-    ready: Prepared, here: Mapping[Cutter, Reach], elsewhere: Sequence[Elsewhere], seconds: Mapping[Cutter, float], clock: Clock
+    ready: Prepared, here: Mapping[Cutter, Verdicts], elsewhere: Sequence[Elsewhere], seconds: Mapping[Cutter, float],
+    clock: Clock,
 ) -> dict[Cutter, Judged]:  # fmt: skip
     """What each cutter reaches over all setups, why not the rest, and its line in the plan."""
     samples, convex, around = ready.samples, ready.surface_class == CONVEX, ready.conditions.around
@@ -292,14 +293,14 @@ def _judged(
     judged = {}
     for cutter, mine in here.items():
         explained, which = told[cutter]
-        reach = explained.reach
+        verdicts = explained.verdicts
         with clock.stage(cutter.id, shown=False):
-            slack, part = ready.conditions.light(cutter).slack, ready.scene.part
-            found = witnesses(samples, reach, cutter, ready.conditions, buried=ready.buried, part=part)
+            slack, part = ready.conditions.outer_tool(cutter).slack, ready.scene.part
+            found = witnesses(samples, verdicts, cutter, ready.conditions, buried=ready.buried, part=part)
             marched = march_differs(samples, convex, ready.region, mine.interference_free)
-            entry = cutter_entry(cutter, samples, reach, found, marched, seconds[cutter], part=part, around=around, slack=slack,
-                                 inside=inside, besides=explained.besides)  # fmt: skip
-            judged[cutter] = Judged(reach, which, mine if elsewhere else reach, entry)
+            entry = cutter_entry(cutter, samples, verdicts, found, marched, seconds[cutter], part=part, around=around,
+                                 slack=slack, inside=inside, besides=explained.besides)  # fmt: skip
+            judged[cutter] = Judged(verdicts, which, mine if elsewhere else verdicts, entry)
     return judged
 
 
@@ -314,7 +315,7 @@ def assemble(
     `searched`: the work of all searches, which bounds that between the samples unless a budget was asked for.
     """
     clock, answers = clock or Clock(), answers or Answers()
-    reaches = {cutter.id: each.reach for cutter, each in judged.items()}
+    reaches = {cutter.id: each.verdicts for cutter, each in judged.items()}
     here = {cutter.id: each.here for cutter, each in judged.items()}
     served_in = {cutter.id: each.which for cutter, each in judged.items()}
     within = [within_limits(ready.samples, ready.cutters, conditions) & ready.finished for conditions in ready.setups]
@@ -333,7 +334,7 @@ def assemble(
             most = np.inf
             if searched is not None and ready.options.area_budget is None:
                 most = _WORK_LEAST + _WORK_SHARE * searched.looked
-            served = between(ready.samples, judged[cutter].reach, cutter, ready.scene.part, ready.scene.orientation,
+            served = between(ready.samples, judged[cutter].verdicts, cutter, ready.scene.part, ready.scene.orientation,
                              ready.conditions, budget=budget, most=most, beside=ready.inside_bodies)  # fmt: skip
         area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
                          short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
@@ -373,7 +374,7 @@ def _setups(ready: Prepared, within: Sequence[NDArray[np.bool_]], over: OverSetu
 
     found: dict[Vector, SetupEntry] = {}
     for k, (axis, each) in enumerate(over.each()):
-        mine = asked & np.logical_or.reduce([reach.reached for reach in each.values()])
+        mine = asked & np.logical_or.reduce([verdicts.reached for verdicts in each.values()])
         found.setdefault(axis, SetupEntry(axis=axis, within=int(within[k].sum()), share=share(within[k]),
                                           reached=int(mine.sum()), reached_share=share(mine)))  # fmt: skip
     for axis in AXES:
@@ -388,7 +389,9 @@ def warm(contacts: Contacts, cutter: Cutter, conditions: Conditions) -> None:
     from plan_cutters.kernels.search import search
 
     none, found = np.zeros(0, np.int64), found_of(blank(0))
-    light, heavy = conditions.light(cutter), conditions.heavy(cutter)
-    search.dummy_clear(none, contacts, light.dummy, tool_of(light), conditions.obstacles.solids, np.zeros(0, bool))
-    search.search(none, contacts, conditions.ranges, tool_of(light), tool_of(heavy), conditions.obstacles.solids,
-                  conditions.around.surely.solids, found)  # fmt: skip
+    outer_tool, inner_tool = conditions.outer_tool(cutter), conditions.inner_tool(cutter)
+    search.dummy_clear(
+        none, contacts, outer_tool.dummy, tool_of(outer_tool), conditions.obstacles.solids, np.zeros(0, bool)
+    )
+    search.search(none, contacts, conditions.ranges, tool_of(outer_tool), tool_of(inner_tool), conditions.obstacles.solids,
+                  conditions.around.certain.solids, found)  # fmt: skip

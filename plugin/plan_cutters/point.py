@@ -99,7 +99,7 @@ def posture_map(
     ask = Ask(contact, cutter, np.array(turns), (low, high), machine, np.array(stage.setup), across)
     if wanted > 0:
         around, kept = stage.around, stage.tolerance
-        found = posture_map_of(ask, around, tools(cutter, kept, around.surely.triangles.chord_error), _NARROWEST, kept)
+        found = posture_map_of(ask, around, tools(cutter, kept, around.certain.triangles.chord_error), _NARROWEST, kept)
         if cutter.large_enough(kept):
             return found
         # So coarse a tolerance says nothing about so small a cutter.
@@ -110,7 +110,7 @@ def posture_map(
     before: PostureMap | None = None
     for _ in range(_ROUNDS):
         around = stage.surround_closer(chord)
-        triangles = around.surely.triangles
+        triangles = around.certain.triangles
         # Twice the chord error: next to the contact, where the true clearance is zero, triangles must not count,
         # local gouging does.
         nominal = 2 * triangles.chord_error + 1e-9

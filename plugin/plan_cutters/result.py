@@ -19,12 +19,12 @@ from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.over_setups import positions
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.travel import Travel
-from plan_cutters.domain.verdicts import UNJUDGED, Reach
+from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.errors import OptionError
 from plan_cutters.scene.clearance import Clearances, clearances
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.faces import face_numbers
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
 from plan_cutters.stages.posture_maps import PostureMaps
 
@@ -43,12 +43,12 @@ class Result:
         Of the target faces.
     surface_class : (n,) uint8
     reaches : dict
-        Cutter id -> Reach: over all setups, what one or another of them reaches, with the posture of the first that does.
+        Cutter id -> Verdicts: over all setups, what one or another of them reaches, with the posture of the first that does.
     postures : PostureRange
     kinematics : Kinematics, optional
         The machine's rotary axes in the part's frame; None where any tool axis within a plain limit is possible.
     elsewhere : tuple
-        Of each other setup its axis, and what each cutter reaches there: cutter id -> Reach.
+        Of each other setup its axis, and what each cutter reaches there: cutter id -> Verdicts.
     answers : Answers
         What was asked for after the plan: `stick_outs`, `radius_maps`, `mends`.
     maps : PostureMaps, optional
@@ -58,7 +58,7 @@ class Result:
     ready : Prepared, optional
         What the cutters were judged on: for further questions.
     here : dict
-        Cutter id -> Reach in the first setup alone: that of `reaches` where there is no other one.
+        Cutter id -> Verdicts in the first setup alone: that of `reaches` where there is no other one.
     served_in : dict
         Cutter id -> (n,) int32, the setup whose posture a sample has, counted from 0 as in `plan.cutters[].setups`, -1 for none;
         empty where one setup was asked for.
@@ -68,15 +68,15 @@ class Result:
     scene: Scene
     samples: SurfaceSamples
     surface_class: NDArray[np.uint8]
-    reaches: dict[str, Reach]
+    reaches: dict[str, Verdicts]
     postures: PostureRange
     kinematics: Kinematics | None = None
-    elsewhere: tuple[tuple[tuple[float, float, float], dict[str, Reach]], ...] = ()
+    elsewhere: tuple[tuple[tuple[float, float, float], dict[str, Verdicts]], ...] = ()
     answers: Answers = field(default_factory=Answers)
     maps: PostureMaps | None = None
     travels: dict[str, Travel] = field(default_factory=dict)
     ready: Prepared | None = None
-    here: dict[str, Reach] = field(default_factory=dict)
+    here: dict[str, Verdicts] = field(default_factory=dict)
     served_in: dict[str, Ints] = field(default_factory=dict)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -201,19 +201,25 @@ class Result:
     def _on_face(self, number: int, cutter: str | None, stick_out: bool) -> OnFace:
         tool = self.judged(cutter)
         entry = next(each for each in self.cutters if each.id == tool.id)
-        reach, known = self.reaches[tool.id], self.answers.stick_outs.get(tool.id)
+        verdicts, known = self.reaches[tool.id], self.answers.stick_outs.get(tool.id)
         if known is not None and known.each is None and known.why != "no holder":
             known = None  # it is about all faces together
         mine = self.samples.face == number
-        if known is None and stick_out and self.ready is not None and (reach.reached & mine).any():
+        if known is None and stick_out and self.ready is not None and (verdicts.reached & mine).any():
             from plan_cutters.answers.stick_out import least_stick_out
 
             known = least_stick_out(
-                self.ready, tool, replace(reach, verdict=np.where(mine, reach.verdict, UNJUDGED).astype(np.uint8))
+                self.ready, tool, replace(verdicts, verdict=np.where(mine, verdicts.verdict, UNJUDGED).astype(np.uint8))
             )
         doubtful = self.scene.around.doubtful
         return on_face(
-            self.plan.faces[number - 1], entry, self.samples, reach, known, doubtful=doubtful, inside=self.inside_bodies
+            self.plan.faces[number - 1],
+            entry,
+            self.samples,
+            verdicts,
+            known,
+            doubtful=doubtful,
+            inside=self.inside_bodies,
         )
 
     def to_json(self, path: str | Path) -> None:

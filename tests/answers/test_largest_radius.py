@@ -200,10 +200,10 @@ def test_the_postures_told_hold_the_tolerance(shape):
     points = np.concatenate([vertex.reshape(-1, 3), vertex.mean(axis=1)])
     samples, deepest = stands.samples, []
     for row in np.flatnonzero(found.radius > 0)[::3]:
-        r, n, axis, lean = found.radius[row], samples.normal[row], found.axis[row], found.lean[row]
+        r, n, axis, tilt_direction = found.radius[row], samples.normal[row], found.axis[row], found.tilt_direction[row]
         contact = samples.point[row]
         if shape == "flat":
-            depth = reference.depth_in_cutter(points, contact, n, axis, lean, r, 5.0 * r)
+            depth = reference.depth_in_cutter(points, contact, n, axis, tilt_direction, r, 5.0 * r)
         else:
             from_centre = points - (contact + r * n)
             height = from_centre @ axis
@@ -238,11 +238,13 @@ def test_no_smaller_radius_fails(shape):
 def test_a_cutter_shrunk_about_its_contact_stays_inside_itself(shape, ratio, share, depth, tilt, seed):
     """So does what is left of it deeper than any depth."""
     rng = np.random.default_rng(seed)
-    normal, lean, _ = np.linalg.qr(rng.standard_normal((3, 3)))[0]
-    axis = math.cos(tilt) * normal + math.sin(tilt) * lean
+    normal, tilt_direction, _ = np.linalg.qr(rng.standard_normal((3, 3)))[0]
+    axis = math.cos(tilt) * normal + math.sin(tilt) * tilt_direction
     points = rng.uniform(-2, 2, (4000, 3)) + ratio * rng.uniform(0, 1, (4000, 1)) * axis
     deep, small = (
-        assembly(ENDS[shape](radius=r, length=ratio * r), depth, depth).depth(points, np.zeros(3), normal, lean, tilt)
+        assembly(ENDS[shape](radius=r, length=ratio * r), depth, depth).depth(
+            points, np.zeros(3), normal, tilt_direction, tilt
+        )
         for r in (1.0, share)
     )
     assume((small > 0).sum() > 5)

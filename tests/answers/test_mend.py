@@ -78,8 +78,11 @@ def wall(x, height, way):
 
 def inclined(degrees):
     """A square, its normal leaning from z to x by an angle."""
-    lean = math.radians(degrees)
-    z, x = (math.sin(lean), 0, math.cos(lean)), (math.cos(lean), 0, -math.sin(lean))
+    tilt_direction = math.radians(degrees)
+    z, x = (
+        (math.sin(tilt_direction), 0, math.cos(tilt_direction)),
+        (math.cos(tilt_direction), 0, -math.sin(tilt_direction)),
+    )
     return shapes.shell(shapes.plane((-10, 10), (-10, 10), (0, 0, 0), z, x))
 
 
@@ -271,8 +274,8 @@ def beside_a_post(away):
 def test_a_finer_tolerance_decides_what_the_triangles_leave_open():
     cutter = Cutter.ball(radius=3, length=25, holder="R15L20")
     options = {"faces": "F1", "tolerance": 0.5, "grid": 2} | UPRIGHT
-    error = Scene.of(beside_a_post(5.0), tolerance=0.5).around.surely.triangles.chord_error
-    finer = Scene.of(beside_a_post(5.0), tolerance=0.25).around.surely.triangles.chord_error
+    error = Scene.of(beside_a_post(5.0), tolerance=0.5).around.certain.triangles.chord_error
+    finer = Scene.of(beside_a_post(5.0), tolerance=0.25).around.certain.triangles.chord_error
     assert finer < 0.7 * error
     found, by, planned = asked(beside_a_post(0.5 * (error + finer)), cutter, **options)
     change = by["tolerance"]

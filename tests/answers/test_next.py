@@ -14,8 +14,8 @@ from cad_io import read_part
 from plan_cutters import Cutter, Options, plan
 from plan_cutters.answers.areas import Finished, patches
 from plan_cutters.answers.least_set import cover
-from plan_cutters.command.asked import options_of
 from plan_cutters.command.cli import command
+from plan_cutters.command.validation import options_of
 from plan_cutters.document.clock import Clock
 from plan_cutters.domain.area import Patch
 from plan_cutters.domain.change import MEANS

@@ -169,9 +169,11 @@ def test_what_is_in_the_way_is_in_the_holder(clearance):
         "samples/v_groove.step", Options(cutters=(cutter,), machine="tilt:45", grid=13, area_budget=0, jobs=1)
     )
     found = least_stick_out(ready, cutter, judge(ready, cutter))
-    light, row = ready.conditions.light(held(cutter, found.beyond)), found.sample
+    outer_tool, row = ready.conditions.outer_tool(held(cutter, found.beyond)), found.sample
     samples = ready.samples
-    deep = light.depth(found.obstacle_point[None], samples.point[row], samples.normal[row], found.lean, found.tilt)
+    deep = outer_tool.depth(
+        found.obstacle_point[None], samples.point[row], samples.normal[row], found.tilt_direction, found.tilt
+    )
     assert 0.0 < deep[0] <= BEYOND + EXACT
 
 
@@ -197,8 +199,8 @@ def test_the_outline_lies_under_the_holder(stages, clearance, seed):
     stages = [(max(r, 2.0), length, max(u, 2.0)) for r, length, u in stages]
     spec = "+".join(f"R{r}:{u}L{length}" for r, length, u in stages)
     cutter = Cutter.flat(radius=2, length=50, flutes=10, holder=spec, clearance=clearance)
-    light = assembly(cutter, 0.008, -0.002)
-    rows = outline(light, 50.0)
+    outer_tool = assembly(cutter, 0.008, -0.002)
+    rows = outline(outer_tool, 50.0)
     assert (rows[:, 1] >= rows[:, 0]).all()
     assert (np.diff(rows[:, 0]) >= -1e-9).all()
     rng = np.random.default_rng(seed)
@@ -207,7 +209,7 @@ def test_the_outline_lies_under_the_holder(stages, clearance, seed):
     v0, v1, q0, q1 = rows[k].T
     v = v0 + np.where(v1 > v0, (q - q0) * (v1 - v0) / (q1 - q0), 0.0)
     points = np.stack([q, np.zeros(300), w], axis=1)
-    holder = light.only(3)
+    holder = outer_tool.only(3)
     deep = holder.depth(points, np.array([2.0, 0, 0]), np.array([0, 0, 1.0]), np.array([1.0, 0, 0]), 0.0)
     assert (w[deep > 1e-9] - 50.0 >= v[deep > 1e-9] - 1e-6).all()
 

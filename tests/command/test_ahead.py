@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from plan_cutters.command import ahead
+from plan_cutters.command import background_compile
 from plan_cutters.kernels import jit
 from tests.support.forked import ENV
 from tests.support.places import ROOT
@@ -16,7 +16,7 @@ def test_nothing_is_made_where_it_is_at_hand(monkeypatch):
     monkeypatch.setattr(subprocess, "Popen", lambda *words, **more: pytest.fail("a process was started"))
     for found in (True, None):
         monkeypatch.setattr(jit, "at_hand", lambda name, found=found: found)
-        assert ahead.begin(maps=False) is None
+        assert background_compile.begin(maps=False) is None
 
 
 @pytest.mark.parametrize("maps", [False, True])
@@ -25,16 +25,16 @@ def test_the_second_process_is_waited_for(monkeypatch, maps):
 
     def popen(words, **more):
         started.append(words)
-        assert ahead.REPORT not in more["env"]  # it must not speak for this one
+        assert background_compile.REPORT not in more["env"]  # it must not speak for this one
         return real([sys.executable, "-c", "import time; time.sleep(0.2)"], **more)
 
-    monkeypatch.setenv(ahead.REPORT, "1")
+    monkeypatch.setenv(background_compile.REPORT, "1")
     monkeypatch.setattr(jit, "at_hand", lambda name: False)
     monkeypatch.setattr(subprocess, "Popen", popen)
-    wait = ahead.begin(maps)
+    wait = background_compile.begin(maps)
     assert wait is not None
     wait("search.search")
-    assert started[0][2:] == ["plan_cutters.command.ahead", *(["maps"] if maps else [])]
+    assert started[0][2:] == ["plan_cutters.command.background_compile", *(["maps"] if maps else [])]
 
 
 def test_it_is_waited_for_until_an_entry_is_there(monkeypatch):
@@ -43,7 +43,7 @@ def test_it_is_waited_for_until_an_entry_is_there(monkeypatch):
     monkeypatch.setattr(jit, "at_hand", lambda name: name in there)
     monkeypatch.setattr(subprocess, "Popen", lambda words, **more: made.append(
         real([sys.executable, "-c", "import time; time.sleep(600)"], **more)) or made[0])  # fmt: skip
-    wait = ahead.begin(maps=False)
+    wait = background_compile.begin(maps=False)
     there.append("search.search")
     try:
         wait("search.search")
@@ -56,10 +56,10 @@ def test_it_is_waited_for_until_an_entry_is_there(monkeypatch):
 def test_one_that_does_not_end_is_not_waited_for_for_ever(monkeypatch):
     made, real = [], subprocess.Popen
     monkeypatch.setattr(jit, "at_hand", lambda name: False)
-    monkeypatch.setattr(ahead, "_PATIENCE", 0.2)
+    monkeypatch.setattr(background_compile, "_PATIENCE", 0.2)
     monkeypatch.setattr(subprocess, "Popen", lambda words, **more: made.append(
         real([sys.executable, "-c", "import time; time.sleep(600)"], **more)) or made[0])  # fmt: skip
-    ahead.begin(maps=False)("search.search")
+    background_compile.begin(maps=False)("search.search")
     assert made[0].returncode is not None
 
 
@@ -82,7 +82,10 @@ def test_machine_code_is_found_where_the_compiler_keeps_it(tmp_path):
 def test_what_is_made_ahead_is_a_plan():
     """What it compiles it runs: nothing of it fails, and the area between samples is among it."""
     subprocess.run(
-        [sys.executable, "-m", "plan_cutters.command.ahead"], env={**os.environ, **ENV}, check=True, timeout=300
+        [sys.executable, "-m", "plan_cutters.command.background_compile"],
+        env={**os.environ, **ENV},
+        check=True,
+        timeout=300,
     )
 
 
@@ -92,7 +95,7 @@ import re, sys
 from pathlib import Path
 import plan_cutters.kernels as room
 from plan_cutters import plan
-from plan_cutters.command.ahead import compile_all
+from plan_cutters.command.background_compile import compile_all
 
 def told():
     found = []

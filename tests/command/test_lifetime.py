@@ -29,7 +29,7 @@ def spin():
 
 def trap(name):
     if name == where and how == "copy":
-        from cad_io.kernel.limited import limited
+        from cad_io.kernel.time_limit import limited
         limited(lambda: spin() or b"", 600.0)
     elif name == where and how == "sleep":
         Path(os.environ["STUCK_SIGN"]).touch()
@@ -48,7 +48,8 @@ def patch(module):
 
 class Finder:
     after = {"plan_cutters.document.clock": patch, "plan_cutters.point": lambda _: trap("map"),
-             "plan_cutters.scene.conditions": lambda _: "plan_cutters.command.ahead" in sys.orig_argv and trap("ahead"),
+             "plan_cutters.scene.conditions":
+                 lambda _: "plan_cutters.command.background_compile" in sys.orig_argv and trap("ahead"),
              "plan_cutters.command.tools": lambda _: trap("tools"), "plan_cutters.command.machines": lambda _: trap("machines")}
 
     def find_spec(self, name, path=None, target=None):
@@ -215,7 +216,7 @@ import itertools, os, sys, threading
 from pathlib import Path
 import cad_io.lifetime as lifetime
 from cad_io.kernel.each import each
-from cad_io.kernel.limited import limited
+from cad_io.kernel.time_limit import limited
 if sys.argv[3] == "looked after":
     lifetime._killed_by_the_system = lambda: False
 def spin():

@@ -15,11 +15,11 @@ GROOVE = str(SAMPLES / "v_groove.step")
 
 ASK = """
 import sys
-from plan_cutters.command import again, cli
+from plan_cutters.command import cli, retry
 def instead(words, **more):
     print(*sys.modules)
     return 0
-again.supervised = instead
+retry.supervised = instead
 cli.main()
 """
 LOAD = "import sys\nfrom plan_cutters.command import cli\ncli.load()\nprint(*sys.modules)"
@@ -57,7 +57,7 @@ def test_what_works_loads_nothing_that_no_plan_needs(tmp_path):
 def test_what_says_why_models_are_missing_loads_nothing(tmp_path):
     """An interrupted command has half a second."""
     code = "import sys, pathlib\nfrom plan_cutters.report.folder import ended\n"
-    code += "from plan_cutters.command.unfinished import without_models\n"
+    code += "from plan_cutters.command.partial_plan import without_models\n"
     found = loaded(f"{code}ended(pathlib.Path('out'), 'interrupted')\nprint(*sys.modules)", cwd=tmp_path)
     assert not found & {"OCP", "numba", "scipy", "pydantic", "rich", "numpy"}
 

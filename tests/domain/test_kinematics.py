@@ -132,11 +132,13 @@ def test_allowed_tilts_against_a_dense_scan(name):
 
 @given(st.floats(-math.pi, math.pi), st.floats(0.0, 3.0), st.floats(0.0, 1.5))
 @settings(max_examples=60, deadline=None)
-def test_a_tilting_table_in_closed_form(turn, most, lean):
+def test_a_tilting_table_in_closed_form(turn, most, tilt_direction):
     """A trunnion of A -most to most and C without limits holds what is within `most` of the spindle: a cone."""
     limit = np.array([[-math.inf, math.inf], [-most, most]])
     found = Kinematics(np.array([[0, 0, 1.0], [1.0, 0, 0]]), limit, UP)
-    n = np.array([math.sin(lean) * math.cos(turn), math.sin(lean) * math.sin(turn), math.cos(lean)])
+    n = np.array(
+        [math.sin(tilt_direction) * math.cos(turn), math.sin(tilt_direction) * math.sin(turn), math.cos(tilt_direction)]
+    )
     f = np.cross(np.cross(n, [0.3, -0.5, 0.8]), n)
     f /= np.linalg.norm(f)
     tilt = np.linspace(0, math.pi / 2, 500)

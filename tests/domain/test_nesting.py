@@ -20,11 +20,11 @@ from tests.support.reference import depth_in_cutter, posture, random_frame
 def test_a_smaller_cutter_at_the_same_contact_lies_within_the_larger(seed, thinner, shorter):
     rng = np.random.default_rng(seed)
     normal, direction = random_frame(rng)
-    axis, lean = posture(normal, direction, rng.uniform(0, np.pi / 2), rng.uniform(0, 2 * np.pi))
+    axis, tilt_direction = posture(normal, direction, rng.uniform(0, np.pi / 2), rng.uniform(0, 2 * np.pi))
     contact = rng.uniform(-5, 5, 3)
     points = contact + rng.uniform(-12, 12, (500, 3))
-    large = depth_in_cutter(points, contact, normal, axis, lean, 6.0, 12.0)
-    small = depth_in_cutter(points, contact, normal, axis, lean, 6.0 * thinner, 12.0 * shorter)
+    large = depth_in_cutter(points, contact, normal, axis, tilt_direction, 6.0, 12.0)
+    small = depth_in_cutter(points, contact, normal, axis, tilt_direction, 6.0 * thinner, 12.0 * shorter)
     within = small > 0
     assert (small[within] <= large[within] + 1e-9).all()
 

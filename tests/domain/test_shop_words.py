@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from plan_cutters import plan, posture_map
 from plan_cutters.command.rows import _NAME, _distinct
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.drawer import builtin
+from plan_cutters.domain.default_tools import builtin
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder, Stage
 from plan_cutters.domain.placement import Placement
@@ -220,8 +220,8 @@ class TestSetups:
             read_setup(tmp_path / "s.toml")
 
     def test_on_the_command_line_a_word_with_a_sign_is_no_option(self):
-        from plan_cutters.command.asked import options_of
         from plan_cutters.command.cli import command
+        from plan_cutters.command.validation import options_of
 
         given = command.make_context("plan-cutters", ["p.step", "--setup", "-y", "--setup", "Z"]).params
         options = options_of(given)

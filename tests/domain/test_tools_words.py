@@ -6,7 +6,7 @@ import math
 import pytest
 
 from plan_cutters import Cutter, CutterError, Holder, OptionError, Options, Stage, plan
-from plan_cutters.domain.drawer import builtin
+from plan_cutters.domain.default_tools import builtin
 from plan_cutters.domain.shapes import flute_length, modes
 from plan_cutters.stages.select_cutters import ranked
 from tests.support.forked import run

@@ -12,9 +12,9 @@ import pytest
 
 import plan_cutters
 from plan_cutters import Options, PostureMaps, Scene, plan, posture_map
-from plan_cutters.command import cli, entry, stored
+from plan_cutters.command import cli, entry, stored_maps
 from plan_cutters.command import map as of_a_point
-from plan_cutters.command.asked import NAMED, words_of
+from plan_cutters.command.validation import NAMED, words_of
 from plan_cutters.document.model import Effective
 from plan_cutters.options import PlanOptions, PointOptions, SceneOptions
 from tests.support.places import ROOT
@@ -63,7 +63,7 @@ def test_the_commands_declare_an_option_alike():
     """What several commands have is the same option, but for what is said of it and how often it may be given."""
     commands = {name: entry.module_of(f"plan-cutters {name}").command for name in entry.SUBCOMMANDS}
     plans = {each.name: each for each in cli.command.params}
-    for command in (of_a_point.command, stored.command):
+    for command in (of_a_point.command, stored_maps.command):
         shared = [
             each for each in command.params if each.name in plans and each.name not in ("part", "out", "json_out")
         ]

@@ -26,11 +26,11 @@ SCRATCH = hit.scratch()
 
 
 def body_of(contact, normal, direction, tilt, rotation, radius, length, s):
-    axis, lean = posture(normal, direction, tilt, rotation)
+    axis, tilt_direction = posture(normal, direction, tilt, rotation)
     body = np.empty(hit.BODY)
-    frame = Frame(contact, normal, lean, np.cross(normal, lean))
+    frame = Frame(contact, normal, tilt_direction, np.cross(normal, tilt_direction))
     hit.stand(body, frame, math.cos(tilt), math.sin(tilt), radius, 0.0)
-    return body, waves.flat(radius, length, s).piece[0], axis, lean
+    return body, waves.flat(radius, length, s).piece[0], axis, tilt_direction
 
 
 def soup(rng, n, size=3.0, spread=20.0):
@@ -51,18 +51,20 @@ def test_triangle_hit_agrees_with_dense_points(seed):
         contact, tilt, rotation = rng.normal(0, 5, 3), rng.uniform(0, math.pi / 2), rng.uniform(0, 2 * math.pi)
         radius, length = rng.uniform(1, 8), rng.uniform(4, 40)
         s = rng.uniform(0, 0.4)
-        body, piece, axis, lean = body_of(contact, normal, direction, tilt, rotation, radius, length, s)
+        body, piece, axis, tilt_direction = body_of(contact, normal, direction, tilt, rotation, radius, length, s)
         triangle = contact + rng.normal(0, 8, 3) + rng.normal(0, rng.choice([0.01, 1, 20]), (3, 3))
         which, height, px, py = hit.triangle_hit(triangle[None].copy(), 0, body, piece, 1, 0.0, SCRATCH)
         found = which == 0
-        deepest = depth_in_cutter(triangle_points(triangle, 60), contact, normal, axis, lean, radius, length).max()
+        deepest = depth_in_cutter(
+            triangle_points(triangle, 60), contact, normal, axis, tilt_direction, radius, length
+        ).max()
         if deepest > s:
             assert found
         if found:
             # The point it names is a point of the triangle and lies in the body.
-            x_t = math.cos(tilt) * lean - math.sin(tilt) * normal
+            x_t = math.cos(tilt) * tilt_direction - math.sin(tilt) * normal
             point = contact + height * axis + (px - radius) * x_t + py * np.cross(axis, x_t)
-            assert depth_in_cutter(point[None], contact, normal, axis, lean, radius, length)[0] >= s - 1e-9
+            assert depth_in_cutter(point[None], contact, normal, axis, tilt_direction, radius, length)[0] >= s - 1e-9
             edges = np.stack([triangle[1] - triangle[0], triangle[2] - triangle[0]], 1)
             coordinates, *_ = np.linalg.lstsq(edges, point - triangle[0], rcond=None)
             assert np.linalg.norm(edges @ coordinates - (point - triangle[0])) < 1e-8
@@ -111,17 +113,17 @@ def test_every_box_holds_its_triangles():
 )  # fmt: skip
 @settings(max_examples=60, deadline=None)
 def test_point_arc_is_where_the_point_is_inside(x, y, z, radius, length, s):
-    contact, normal, lean = np.zeros(3), np.array([0.0, 0, 1]), np.array([1.0, 0, 0])
+    contact, normal, tilt_direction = np.zeros(3), np.array([0.0, 0, 1]), np.array([1.0, 0, 0])
     point = np.array([x, y, z])
     tilts = np.linspace(0, math.pi / 2, 361)
     inside = np.empty(len(tilts))
     for i, tilt in enumerate(tilts):
-        axis = math.cos(tilt) * normal + math.sin(tilt) * lean
-        inside[i] = depth_in_cutter(point[None], contact, normal, axis, lean, radius, length)[0] - s
+        axis = math.cos(tilt) * normal + math.sin(tilt) * tilt_direction
+        inside[i] = depth_in_cutter(point[None], contact, normal, axis, tilt_direction, radius, length)[0] - s
     for tilt in (0.0, 0.7, math.pi / 2):
-        axis = math.cos(tilt) * normal + math.sin(tilt) * lean
-        x_t = math.cos(tilt) * lean - math.sin(tilt) * normal
-        first, last = point_arc(point @ axis, point @ x_t + radius, point @ np.cross(normal, lean), tilt,
+        axis = math.cos(tilt) * normal + math.sin(tilt) * tilt_direction
+        x_t = math.cos(tilt) * tilt_direction - math.sin(tilt) * normal
+        first, last = point_arc(point @ axis, point @ x_t + radius, point @ np.cross(normal, tilt_direction), tilt,
                                 radius, radius - s, s, length - s)  # fmt: skip
         arc = (tilts > first) & (tilts < last)
         sure = np.abs(inside) > 1e-7
@@ -148,10 +150,10 @@ def test_axis_arcs_are_where_the_axis_is_within_the_cone(n, f, limit, setup):
     n, setup = n / np.linalg.norm(n), setup / np.linalg.norm(setup)
     e1 = np.cross(n, [1, 0, 0] if abs(n[0]) < 0.7 else [0, 1, 0])
     e1 /= np.linalg.norm(e1)
-    _, lean = posture(n, e1, 0.0, f)
-    intervals = axis_intervals(n, lean, ranges_of(Machine(tilt_limit=limit), setup, PostureRange()))
+    _, tilt_direction = posture(n, e1, 0.0, f)
+    intervals = axis_intervals(n, tilt_direction, ranges_of(Machine(tilt_limit=limit), setup, PostureRange()))
     tilts = np.linspace(0, math.pi / 2, 400)
-    angle = np.cos(tilts) * (n @ setup) + np.sin(tilts) * (lean @ setup) - math.cos(limit)
+    angle = np.cos(tilts) * (n @ setup) + np.sin(tilts) * (tilt_direction @ setup) - math.cos(limit)
     within = np.zeros(len(tilts), bool)
     for first, last in intervals:
         within |= (tilts >= first) & (tilts <= last)
@@ -207,8 +209,8 @@ def test_free_tilts_cover_the_range_and_hold(seed):
     tool = waves.flat(radius, length, s)
     dense = np.concatenate([triangle_points(t, 40) for t in triangles])
     for rotation in rng.uniform(0, 2 * math.pi, 6):
-        _, lean = posture(normal, direction, 0.0, rotation)
-        parts = free_tilts.free_tilts(contact, normal, lean, 0.0, math.pi / 2, tool, 0, 1e-4, built, 5000)
+        _, tilt_direction = posture(normal, direction, 0.0, rotation)
+        parts = free_tilts.free_tilts(contact, normal, tilt_direction, 0.0, math.pi / 2, tool, 0, 1e-4, built, 5000)
         parts = parts[np.argsort(parts[:, 0])]
         assert parts[0, 0] == 0.0
         assert parts[-1, 1] == math.pi / 2
@@ -217,7 +219,7 @@ def test_free_tilts_cover_the_range_and_hold(seed):
         for tilt in rng.uniform(0, math.pi / 2, 40):
             kind = parts[np.searchsorted(parts[:, 0], tilt) - 1, 2]
             axis, _ = posture(normal, direction, tilt, rotation)
-            deepest = depth_in_cutter(dense, contact, normal, axis, lean, radius, length).max()
+            deepest = depth_in_cutter(dense, contact, normal, axis, tilt_direction, radius, length).max()
             if kind == free_tilts.OPEN:
                 assert deepest <= s + 1e-9
             if deepest > s + 1e-9:
@@ -252,5 +254,8 @@ def test_search_agrees_with_a_posture_grid(seed):
         else:
             for rotation in rotations:
                 for tilt in np.linspace(0, math.pi / 2, 19):
-                    axis, lean = posture(normal[i], direction[i], tilt, rotation)
-                    assert depth_in_cutter(dense, point[i], normal[i], axis, lean, radius, length).max() > s - 0.5
+                    axis, tilt_direction = posture(normal[i], direction[i], tilt, rotation)
+                    assert (
+                        depth_in_cutter(dense, point[i], normal[i], axis, tilt_direction, radius, length).max()
+                        > s - 0.5
+                    )

@@ -137,14 +137,14 @@ def test_local_gouging_is_where_the_neighbourhood_is_inside(kappa, rotation, rad
 
     def deepest(tilt):
         # Depth over the square of the distance, about the contact and where a gouge begins: beside it, a hair back.
-        axis, lean = posture(normal, first, tilt, rotation)
-        h, aside = 1e-4 * radius, np.cross(normal, lean)[:2]
+        axis, tilt_direction = posture(normal, first, tilt, rotation)
+        h, aside = 1e-4 * radius, np.cross(normal, tilt_direction)[:2]
         back = np.linspace(-1, 1, 801) * h * h * (1 / radius + abs(high / 2) / math.tan(max(tilt, 0.01)))
-        side = [np.outer(back, lean[:2]) + turn * h * aside for turn in (-1, 1)]
+        side = [np.outer(back, tilt_direction[:2]) + turn * h * aside for turn in (-1, 1)]
         ring = h * np.stack([np.cos(turns), np.sin(turns)], -1)
         x, y = np.concatenate([ring, *side]).T
         points = np.stack([x, y, 0.5 * (high * x * x + low * y * y)], -1)
-        return depth_in_cutter(points, contact, normal, axis, lean, radius, 50.0).max() * radius / (h * h)
+        return depth_in_cutter(points, contact, normal, axis, tilt_direction, radius, 50.0).max() * radius / (h * h)
 
     across = radius * (high * math.sin(rotation) ** 2 + low * math.cos(rotation) ** 2)
     if math.isnan(bound):
@@ -175,12 +175,12 @@ def test_axis_arcs_by_the_angle_itself(n, f, m, limit):
     """Setup axis along the normal, along the lean, across both, opposite; a cone that just touches the great circle."""
     normal, first = np.array([math.cos(n), math.sin(n), 0.0]), np.array([-math.sin(n), math.cos(n), 0.0])
     setup = np.array([math.cos(m), math.sin(m), 0.0])
-    _, lean = posture(normal, first, 0.0, f)
+    _, tilt_direction = posture(normal, first, 0.0, f)
     bound = math.cos(limit)
-    intervals = axis_intervals(normal, lean, ranges_of(Machine(tilt_limit=limit), setup, PostureRange()))
+    intervals = axis_intervals(normal, tilt_direction, ranges_of(Machine(tilt_limit=limit), setup, PostureRange()))
     ends = intervals.ravel()[:, None] + np.array([-1e-6, -1e-9, 0.0, 1e-9, 1e-6])
     tilts = np.clip(np.concatenate([np.linspace(0, RIGHT, 181), ends.ravel()]), 0, RIGHT)
-    cosine = np.cos(tilts) * (normal @ setup) + np.sin(tilts) * (lean @ setup)
+    cosine = np.cos(tilts) * (normal @ setup) + np.sin(tilts) * (tilt_direction @ setup)
     within = np.zeros(len(tilts), bool)
     for first_tilt, last_tilt in intervals:
         within |= (tilts >= first_tilt) & (tilts <= last_tilt)
@@ -231,14 +231,14 @@ def stood(rng, tilt, radius, length, s):
     """A body in a frame at random, its pieces, and the frame: contact and the rows x_T, y_T, axis."""
     normal, direction = random_frame(rng)
     contact = rng.normal(0, 5, 3)
-    axis, lean = posture(normal, direction, tilt, 0.3)
-    body, left = np.empty(hit.BODY), np.cross(normal, lean)
-    hit.stand(body, Frame(contact, normal, lean, left), math.cos(tilt), math.sin(tilt), radius, 0.0)
+    axis, tilt_direction = posture(normal, direction, tilt, 0.3)
+    body, left = np.empty(hit.BODY), np.cross(normal, tilt_direction)
+    hit.stand(body, Frame(contact, normal, tilt_direction, left), math.cos(tilt), math.sin(tilt), radius, 0.0)
     return (
         body,
         waves.flat(radius, length, s).piece[0],
         contact,
-        np.stack([math.cos(tilt) * lean - math.sin(tilt) * normal, left, axis]),
+        np.stack([math.cos(tilt) * tilt_direction - math.sin(tilt) * normal, left, axis]),
     )
 
 
@@ -322,14 +322,14 @@ def test_contact_on_a_sharp_edge():
         faces = np.array([[*edge, [-50.0, 0, 0]], [*edge, far]])
         for rotation in (0.0, 0.5, RIGHT, 3.0, math.pi):
             for tilt in (0.0, 0.3, RIGHT):
-                axis, lean = posture(np.array([0.0, 0, 1]), np.array([1.0, 0, 0]), tilt, rotation)
+                axis, tilt_direction = posture(np.array([0.0, 0, 1]), np.array([1.0, 0, 0]), tilt, rotation)
                 body = np.empty(hit.BODY)
-                left = np.cross([0.0, 0, 1], lean)
-                hit.stand(body, Frame(np.zeros(3), np.array([0.0, 0, 1]), lean, left), math.cos(tilt), math.sin(tilt),
+                left = np.cross([0.0, 0, 1], tilt_direction)
+                hit.stand(body, Frame(np.zeros(3), np.array([0.0, 0, 1]), tilt_direction, left), math.cos(tilt), math.sin(tilt),
                           6.0, 0.0)  # fmt: skip
                 hits = [hit.triangle_hit(faces, i, body, piece, 1, 0.0, SCRATCH)[0] == 0 for i in range(2)]
                 assert not hits[0], "the face under the cutter"
-                frame = np.stack([math.cos(tilt) * lean - [0, 0, math.sin(tilt)], left, axis])
+                frame = np.stack([math.cos(tilt) * tilt_direction - [0, 0, math.sin(tilt)], left, axis])
                 depth = deepest_in_cylinder(faces[1] @ frame.T + [6.0, 0, 0], 6.0, 0.0, 30.0)
                 assert hits[1] == (depth > 1e-9) or abs(depth - 1e-9) < 1e-12
                 if free:
@@ -351,13 +351,15 @@ def found_postures(obstacles, radius, length, depth, n=150, seed=0):
     """Random contacts and postures, and whether each is free."""
     rng = np.random.default_rng(seed)
     point = obstacles.triangles.vertex.reshape(-1, 3)[rng.integers(0, 3 * len(obstacles.triangles.vertex), n)]
-    normal, axis, lean = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
+    normal, axis, tilt_direction = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
     for i in range(n):
         tip = np.array([*rng.normal(0, 0.3, 2), 1.0])
         normal[i] = tip / np.linalg.norm(tip)
         first = np.cross(normal[i], rng.standard_normal(3))
-        axis[i], lean[i] = posture(normal[i], first / np.linalg.norm(first), rng.uniform(0, RIGHT), rng.uniform(0, 6.3))
-    postures = (point + 0.05 * normal, normal, axis, lean)
+        axis[i], tilt_direction[i] = posture(
+            normal[i], first / np.linalg.norm(first), rng.uniform(0, RIGHT), rng.uniform(0, 6.3)
+        )
+    postures = (point + 0.05 * normal, normal, axis, tilt_direction)
     return postures, probed(obstacles, postures, radius, length, depth)
 
 

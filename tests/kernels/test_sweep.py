@@ -46,10 +46,10 @@ def probed(contacts, solids, radius, row, depth):
     free = np.zeros((TURNS, TILTS), bool)
     for turn in range(TURNS):
         c, s = RANGES.rotation_cos[turn], RANGES.rotation_sin[turn]
-        lean = np.repeat([c * e1 + s * np.cross(n, e1)], TILTS, axis=0)
-        axis = np.cos(tilts)[:, None] * n + np.sin(tilts)[:, None] * lean
+        tilt_direction = np.repeat([c * e1 + s * np.cross(n, e1)], TILTS, axis=0)
+        axis = np.cos(tilts)[:, None] * n + np.sin(tilts)[:, None] * tilt_direction
         triangle = np.empty(TILTS, np.int32)
-        search.probe(np.arange(TILTS), np.repeat([contacts.point[row]], TILTS, 0), np.repeat([n], TILTS, 0), axis, lean,
+        search.probe(np.arange(TILTS), np.repeat([contacts.point[row]], TILTS, 0), np.repeat([n], TILTS, 0), axis, tilt_direction,
                      waves.flat(radius, LENGTH, depth), solids.tree, triangle, triangle.copy())  # fmt: skip
         free[turn] = (triangle < 0) & (np.sin(tilts) >= radius * (most * s * s + least * c * c))
     return free
@@ -61,14 +61,14 @@ def test_verdicts_are_those_of_a_twin_that_probes_each_rotation(comb, radius):
     rows = np.arange(len(contacts.point))
     reach = searched(contacts, solids, radius, rows)
     for row in rows:
-        light, heavy = (probed(contacts, solids, radius, row, depth) for depth in (SAFE, BLOCKED))
+        outer_tool, inner_tool = (probed(contacts, solids, radius, row, depth) for depth in (SAFE, BLOCKED))
         verdict = reach.verdict[row]
-        if light.any():
+        if outer_tool.any():
             assert verdict == ACCESSIBLE
-        elif heavy.any():
+        elif inner_tool.any():
             assert verdict in (ACCESSIBLE, UNDECIDED)
         if verdict == ACCESSIBLE:
-            posture = np.array([reach.axis[row]]), np.array([reach.lean[row]])
+            posture = np.array([reach.axis[row]]), np.array([reach.tilt_direction[row]])
             triangle = np.empty(1, np.int32)
             search.probe(np.zeros(1, np.int64), contacts.point[row : row + 1], contacts.normal[row : row + 1], *posture,
                          waves.flat(radius, LENGTH, SAFE), solids.tree, triangle, triangle.copy())  # fmt: skip
@@ -108,7 +108,7 @@ def test_the_least_depth_is_that_of_a_grid(comb):
         assert low < high <= low * (1 + 2 * share)
         for depth, free in ((high * (1 + 1e-9), True), (low, False)):
             triangle = np.empty(1, np.int32)
-            search.probe(np.zeros(1, np.int64), one.point, one.normal, best.axis, best.lean,
+            search.probe(np.zeros(1, np.int64), one.point, one.normal, best.axis, best.tilt_direction,
                          waves.flat(radius, LENGTH, depth), solids.tree, triangle, triangle.copy())  # fmt: skip
             assert (triangle[0] < 0) == free
         assert not probed(contacts, solids, radius, row, SAFE).any()

@@ -64,12 +64,12 @@ def test_no_tilt_of_a_free_interval_is_hit(kind, scene):
     tilt = np.tile(low, 10) + share * np.tile(high - low, 10)
     n, e1 = contacts.normal[place], contacts.direction_max[place]
     cosine, sine = ranges.rotation_cos[turn, None], ranges.rotation_sin[turn, None]
-    lean = cosine * e1 + sine * np.cross(n, e1)
-    axis = np.cos(tilt)[:, None] * n + np.sin(tilt)[:, None] * lean
+    tilt_direction = cosine * e1 + sine * np.cross(n, e1)
+    axis = np.cos(tilt)[:, None] * n + np.sin(tilt)[:, None] * tilt_direction
     # A hair shallower than what the map was made with: the ends are exact.
     tool = tool_of(assembly(TOOLS[kind], DEPTH + 1e-8, DEPTH + 1e-8))
     hit, piece = np.zeros(len(tilt), np.int32), np.zeros(len(tilt), np.int32)
-    probe(np.arange(len(tilt)), contacts.point[place], n, axis, lean, tool, tree, hit, piece)
+    probe(np.arange(len(tilt)), contacts.point[place], n, axis, tilt_direction, tool, tree, hit, piece)
     assert (hit == -1).all()
 
 

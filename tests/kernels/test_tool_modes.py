@@ -176,8 +176,8 @@ def test_the_dummy_holds_the_tool_in_every_rotation(kind):
             continue
         reference = Reference(cutter)
         contact = np.zeros(3)
-        normal, lean = random_frame(rng)
-        tip, frame = reference.frame(contact, normal, lean, 0.0, 0.5 * (low + high))
+        normal, tilt_direction = random_frame(rng)
+        tip, frame = reference.frame(contact, normal, tilt_direction, 0.0, 0.5 * (low + high))
         points = rng.uniform([-20, -20, -1], [20, 20, reference.end + 1], (4000, 3))
         deep = 0.02 - (cutter.allowance or 0.0), -0.01 - (cutter.clearance or 0.0)
         inside = reference.over(np.hypot(points[:, 0], points[:, 1]), points[:, 2], *deep) > 0

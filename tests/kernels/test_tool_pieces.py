@@ -108,7 +108,7 @@ def check(rng, kind, sort, cutters, n):
     for _ in range(cutters):
         error, asked = float(10.0 ** rng.uniform(-3, -1.5)), rng.random() < 0.7
         # As a plan asks for them; and as deep everywhere, as witnesses do.
-        flutes, rest = (4 * error, -error if sort == "cover" else error) if asked else (0.2, 0.2)
+        flutes, rest = (4 * error, -error if sort == "outer" else error) if asked else (0.2, 0.2)
         cutter = random_cutter(rng, kind, loose=asked)
         reference = Reference(cutter)
         made = assembly(cutter, flutes, rest, kind=sort)
@@ -127,7 +127,7 @@ def check(rng, kind, sort, cutters, n):
         piece = tool.piece[mode]
         _hits(vertex, bodies, piece, (1 << len(piece)) - 1, scratch, which, met)
         slack = EXACT + 1e-12 * np.abs(vertex).max()
-        if sort == "cover":
+        if sort == "outer":
             missed = (deepest(local, over) > slack) & (which < 0)
             assert not missed.any(), (cutter, flutes, rest, local[missed][0])
         some = which >= 0
@@ -184,17 +184,17 @@ def test_nothing_hides_in_a_re_entrant_corner(cutter, corner):
     held = np.max([in_row(row, q, w) for row in rows], axis=0) > 0
     assert held[deep].all()
     # The trap is there: pieces moved in one by one leave some of these points out.
-    apart = assembly(cutter, depth, depth, kind="certain")
+    apart = assembly(cutter, depth, depth, kind="inner")
     rows = apart.piece[0].copy()
     rows[:, [domain.LOW, domain.HIGH]] += height
     rows[rows[:, domain.KIND] == domain.ARC, domain.SLOPE] += height
     assert not (np.max([in_row(row, q, w) for row in rows], axis=0) > 0)[deep].all()
 
 
-@pytest.mark.parametrize("sort", ["cover", "certain"])
+@pytest.mark.parametrize("sort", ["outer", "inner"])
 @pytest.mark.parametrize("kind", KINDS)
 def test_pieces_hold_what_counts_and_no_more(kind, sort):
-    rng = np.random.default_rng([KINDS.index(kind), sort == "cover"])
+    rng = np.random.default_rng([KINDS.index(kind), sort == "outer"])
     hits, misses = check(rng, kind, sort, 12, 400)
     assert min(hits, misses) > 400
 
@@ -203,9 +203,9 @@ def test_pieces_hold_what_counts_and_no_more(kind, sort):
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_million_triangles_of_each_kind(kind):
     rng = np.random.default_rng([KINDS.index(kind), 7])
-    hits, misses = check(rng, kind, "cover", 500, 2000)
+    hits, misses = check(rng, kind, "outer", 500, 2000)
     assert hits + misses > 900_000
-    check(rng, kind, "certain", 100, 2000)
+    check(rng, kind, "inner", 100, 2000)
 
 
 def test_a_triangle_without_area_hits_where_its_longest_side_does():

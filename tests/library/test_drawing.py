@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plan_cutters import Cutter, Holder, Stage
-from plan_cutters.domain.drawer import builtin
+from plan_cutters.domain.default_tools import builtin
 from plan_cutters.domain.outline import outline
 from plan_cutters.library.drawing import draw
 from plan_cutters.library.sheet import legible, length, width_of, wrapped

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plan_cutters import LibraryError, PlanError
-from plan_cutters.domain.drawer import builtin
+from plan_cutters.domain.default_tools import builtin
 from plan_cutters.domain.holder import Stage
 from plan_cutters.library import read_library, to_toml
 from plan_cutters.library.formats import FORMATS

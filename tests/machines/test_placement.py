@@ -174,13 +174,13 @@ def test_the_tip_is_where_the_outline_touches(kind, seed):
         reach.tilt[k] = random.uniform(mode.low + 1e-4, mode.high - 1e-4)
     normal = random.normal(size=(30, 3))
     normal /= np.linalg.norm(normal, axis=1)[:, None]
-    lean = np.cross(normal, random.normal(size=(30, 3)))
-    reach.lean[:] = lean / np.linalg.norm(lean, axis=1)[:, None]
-    reach.axis[:] = np.cos(reach.tilt)[:, None] * normal + np.sin(reach.tilt)[:, None] * reach.lean
+    tilt_direction = np.cross(normal, random.normal(size=(30, 3)))
+    reach.tilt_direction[:] = tilt_direction / np.linalg.norm(tilt_direction, axis=1)[:, None]
+    reach.axis[:] = np.cos(reach.tilt)[:, None] * normal + np.sin(reach.tilt)[:, None] * reach.tilt_direction
     point = random.uniform(-9, 9, (30, 3))
     tip = tips(cutter, point, normal, reach)
     for k in range(30):
-        expected, rows = twin.frame(point[k], normal[k], reach.lean[k], reach.tilt[k])
+        expected, rows = twin.frame(point[k], normal[k], reach.tilt_direction[k], reach.tilt[k])
         assert np.abs(rows[2] - reach.axis[k]).max() < 1e-12
         assert np.abs(tip[k] - expected).max() < 1e-6
 

@@ -22,7 +22,7 @@ from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.placement import frame_of
-from plan_cutters.domain.posture import lean
+from plan_cutters.domain.posture import tilt_direction
 from plan_cutters.domain.shapes import flute_length
 from plan_cutters.domain.travel import tips
 from plan_cutters.domain.verdicts import ACCESSIBLE, INTERFERENCE_FREE
@@ -70,7 +70,7 @@ def true_clearance(cutter, tip, axis, points):
 
 def dense(result, spacing):
     """Points all over the obstacles, with which the triangles are covered to half a spacing or so."""
-    triangles = result.scene.around.may_be.triangles.vertex
+    triangles = result.scene.around.possible.triangles.vertex
     mesh = trimesh.Trimesh(triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3), process=False)
     count = int(4.0 * mesh.area / spacing**2)
     points, _ = trimesh.sample.sample_surface(mesh, count, seed=1)
@@ -153,8 +153,8 @@ def test_the_table_says_what_the_arrays_say(peaks, tmp_path):
         assert known.any()
         assert np.allclose(kinematics.axis(angle[known]), reach.axis[known], atol=1e-7)
     known = reach.reached
-    f = lean(peaks.samples.normal, peaks.samples.direction_max, np.radians(numbers["rotation_deg"]))
-    assert np.allclose(f[known], reach.lean[known], atol=1e-7)
+    f = tilt_direction(peaks.samples.normal, peaks.samples.direction_max, np.radians(numbers["rotation_deg"]))
+    assert np.allclose(f[known], reach.tilt_direction[known], atol=1e-7)
 
 
 def test_the_tip_lies_where_the_ball_touches(peaks, tmp_path):
@@ -341,7 +341,7 @@ def test_free_tilts_of_a_region_are_within_the_limits_of_the_machine(peaks, mach
     rng = np.random.default_rng(3)
     for cell in rng.choice(len(maps.offset) - 1, 300).tolist():
         row, turn = divmod(cell, k)
-        f = lean(samples.normal[row], samples.direction_max[row], float(maps.rotations[turn]))
+        f = tilt_direction(samples.normal[row], samples.direction_max[row], float(maps.rotations[turn]))
         for low, high in maps.free[maps.offset[cell] : maps.offset[cell + 1]].tolist():
             tilt = np.linspace(low, high, 23)[1:-1]
             axis = np.cos(tilt)[:, None] * samples.normal[row] + np.sin(tilt)[:, None] * f
@@ -355,7 +355,7 @@ def test_free_tilts_of_a_region_are_within_the_limits_of_the_machine(peaks, mach
         if found is None:
             continue
         tilt = np.radians(np.linspace(*found, 30)[1:-1])
-        f = lean(samples.normal[row], samples.direction_max[row], maps.rotations)
+        f = tilt_direction(samples.normal[row], samples.direction_max[row], maps.rotations)
         axes = np.cos(tilt)[:, None, None] * samples.normal[row] + np.sin(tilt)[:, None, None] * f
         assert machine.allows(axes.reshape(-1, 3), frame).reshape(len(tilt), k).all(axis=0).any()
         told += 1

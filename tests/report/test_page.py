@@ -257,9 +257,9 @@ def test_nothing_beyond_the_axis_limit_is_shown_free(page, planned):
         choose(page, row)
         normal, first = planned.samples.normal[row], planned.samples.direction_max[row]
         for turn, free in intervals(page)[0].items():
-            lean = np.cos(np.radians(turn)) * first + np.sin(np.radians(turn)) * np.cross(normal, first)
+            tilt_direction = np.cos(np.radians(turn)) * first + np.sin(np.radians(turn)) * np.cross(normal, first)
             for end in np.radians([end for each in free for end in each]):
-                axis = np.cos(end) * normal + np.sin(end) * lean
+                axis = np.cos(end) * normal + np.sin(end) * tilt_direction
                 assert np.degrees(np.arccos(axis[2])) <= 40.2
 
 
@@ -317,8 +317,8 @@ def test_the_posture_found_stands_as_in_the_plan(page, planned):
         choose(page, row)
         elements = page.evaluate("Array.from(review.tool.group.matrix.elements)")
         assert np.dot(elements[4:7], reach.axis[row]) > np.cos(np.radians(0.05))
-        tilt, lean = reach.tilt[row], reach.lean[row]
-        outward = np.cos(tilt) * lean - np.sin(tilt) * planned.samples.normal[row]
+        tilt, tilt_direction = reach.tilt[row], reach.tilt_direction[row]
+        outward = np.cos(tilt) * tilt_direction - np.sin(tilt) * planned.samples.normal[row]
         assert np.allclose(elements[12:15], planned.samples.point[row] - tool.radius * outward, atol=0.02)
 
 
@@ -515,9 +515,12 @@ def test_stored_intervals_are_cut_to_what_rotary_axes_hold(page, planned):
         first, last = whole[1][row * len(turns) + k : row * len(turns) + k + 2]
         stored = whole[0][first:last]
         tilts = np.arange(0.0, 90.0, 0.05)
-        lean = posture.lean(planned.samples.normal[row], planned.samples.direction_max[row], np.radians(turn))
+        tilt_direction = posture.tilt_direction(
+            planned.samples.normal[row], planned.samples.direction_max[row], np.radians(turn)
+        )
         axis = (
-            np.cos(np.radians(tilts))[:, None] * planned.samples.normal[row] + np.sin(np.radians(tilts))[:, None] * lean
+            np.cos(np.radians(tilts))[:, None] * planned.samples.normal[row]
+            + np.sin(np.radians(tilts))[:, None] * tilt_direction
         )
         held = axes.allows(axis) & np.any([(tilts >= a) & (tilts <= b) for a, b in stored] or [tilts < 0], axis=0)
         mine = np.any([(tilts >= a) & (tilts <= b) for a, b in shown[turn]] or [tilts < 0], axis=0)

@@ -14,7 +14,7 @@ from hypothesis.extra import numpy as arrays_of
 from cad_io.arrays import FaceGrid
 from cad_io.part import Part
 from plan_cutters import plan
-from plan_cutters.domain.posture import lean
+from plan_cutters.domain.posture import tilt_direction
 from plan_cutters.report.page import write
 from plan_cutters.report.page.atlas import sheet_of
 from plan_cutters.report.page.encode import COARSE, FILTERS, FINE, Stored, filtered, halves, joined, octahedral
@@ -207,9 +207,9 @@ def test_axes_are_those_of_tilt_and_rotation(valley):
     result, read = valley
     reach, samples = result.reaches["R6L80"], result.samples
     at = np.flatnonzero(reach.reached & (reach.tilt > 0.01))
-    f = lean(samples.normal[at], samples.direction_max[at], np.radians(read.array("lean.R6L80")[at] / 100))
+    f = tilt_direction(samples.normal[at], samples.direction_max[at], np.radians(read.array("lean.R6L80")[at] / 100))
     assert len(at)
-    assert np.abs(f - reach.lean[at]).max() < 2e-4
+    assert np.abs(f - reach.tilt_direction[at]).max() < 2e-4
 
 
 @pytest.mark.parametrize("which", ["valley", "rounded"])
@@ -442,19 +442,25 @@ def test_the_page_says_first_which_cutter_to_take(valley):
 
 
 def test_only_all_is_told_as_all():
-    from plan_cutters.document.shares import AreaShare, Verdicts
+    from plan_cutters.document.shares import AreaShare, VerdictCounts
     from plan_cutters.report.story.numbers import lost, reached
 
     nearly = AreaShare(accessible=1.0 - 1e-9, inaccessible=1e-9)
-    assert (reached(Verdicts(accessible=10**6, inaccessible=1), nearly), lost(Verdicts(inaccessible=1), nearly)) == (
+    assert (
+        reached(VerdictCounts(accessible=10**6, inaccessible=1), nearly),
+        lost(VerdictCounts(inaccessible=1), nearly),
+    ) == (
         ">99.9 %",
         "<0.1 %",
     )
-    assert reached(Verdicts(accessible=3), AreaShare(accessible=1.0 - 1e-12)) == "100 %"
+    assert reached(VerdictCounts(accessible=3), AreaShare(accessible=1.0 - 1e-12)) == "100 %"
     # A sample that stands for no area is lost all the same, and so is a face without samples.
-    assert reached(Verdicts(accessible=3, inaccessible=1), AreaShare(accessible=1.0)) == ">99.9 %"
-    assert reached(Verdicts(accessible=3), AreaShare(accessible=0.9, unjudged=0.1)) == "90 %"
-    assert (reached(Verdicts(), AreaShare()), lost(Verdicts(accessible=1), AreaShare(accessible=1.0))) == ("0 %", "0 %")
+    assert reached(VerdictCounts(accessible=3, inaccessible=1), AreaShare(accessible=1.0)) == ">99.9 %"
+    assert reached(VerdictCounts(accessible=3), AreaShare(accessible=0.9, unjudged=0.1)) == "90 %"
+    assert (reached(VerdictCounts(), AreaShare()), lost(VerdictCounts(accessible=1), AreaShare(accessible=1.0))) == (
+        "0 %",
+        "0 %",
+    )
 
 
 def test_worst_faces_are_those_that_lose_the_most_area(rounded):

@@ -18,7 +18,7 @@ from plan_cutters.domain.notes import NoteCode
 from plan_cutters.domain.reasons import NO_CONTACT, REASONS
 from plan_cutters.domain.verdicts import REASONS as CODES
 from plan_cutters.errors import OptionError
-from plan_cutters.hosts.shown import _posture
+from plan_cutters.hosts.viewer import _posture
 from plan_cutters.report.page.write import page
 from plan_cutters.report.story import notes
 from plan_cutters.report.story.story import story_of

@@ -182,7 +182,7 @@ def test_other_fixtures_cost_no_tessellation(monkeypatch):
     two = plan(scene, fixtures="box:4,4,4@0,0,40", **options)
     three = plan(two.scene, fixtures=["box:4,4,4@0,0,40", "cylinder:4,4@0,0,50"], **options)
     assert len(calls) == 1
-    assert two.scene.around.may_be is not one.scene.around.may_be
+    assert two.scene.around.possible is not one.scene.around.possible
     assert (three.scene.around.alone, two.scene.around.alone) == (one.scene.around, one.scene.around)
     again = plan(three.scene, fixtures=[], **options)
     assert len(calls) == 1
@@ -229,7 +229,7 @@ def test_cells_that_are_outside_are_so(pocket):
     around = pocket.clamped(
         ["table:-3", "box:30,90,60@61,-20,-2", "cylinder:9,20@30,-10,1", "box:9,9,9@300,0,0,0,0,40"]
     ).around
-    obstacles = around.may_be
+    obstacles = around.possible
     assert not obstacles.solids.whole
     assert 0.05 < obstacles.solids.cell.mean() < 0.95
     rng = np.random.default_rng(4)
@@ -272,12 +272,12 @@ def test_a_fixture_through_a_sheet_has_no_depth_but_one_around_it_has():
 
 
 def test_the_chord_error_is_the_larger_one(pocket):
-    own = pocket.around.surely.triangles.chord_error
-    rod = pocket.clamped("cylinder:8,30@30,-9,5").around.surely.triangles.chord_error
+    own = pocket.around.certain.triangles.chord_error
+    rod = pocket.clamped("cylinder:8,30@30,-9,5").around.certain.triangles.chord_error
     assert own <= rod <= 0.2 * 0.01 * (1 + 1e-9)
     block = trimesh.Trimesh(*_indexed(vises.block((61, 0, 0), (70, 9, 9))))
     scene = pocket.clamped(Fixture(block, chord_error=0.01))
-    assert scene.around.surely.triangles.chord_error == 0.01
+    assert scene.around.certain.triangles.chord_error == 0.01
     assert scene.tolerance == pytest.approx(0.04)
 
 

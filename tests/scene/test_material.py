@@ -165,8 +165,12 @@ def test_at_the_foot_of_a_wall_only_postures_outside_it_count():
     for i in range(24):
         for tilt in np.concatenate([np.linspace(*ends, 7) for ends in found.free[i]] or [[]]):
             axis = found.axis(i, tilt)
-            lean = found.axis(i, math.pi / 2)
-            middle = found.point - 2 * (math.cos(tilt) * lean - math.sin(tilt) * found.normal) + points[:, None] * axis
+            tilt_direction = found.axis(i, math.pi / 2)
+            middle = (
+                found.point
+                - 2 * (math.cos(tilt) * tilt_direction - math.sin(tilt) * found.normal)
+                + points[:, None] * axis
+            )
             # Not one point of the cutter's axis is in the wall by more than the tolerance.
             assert not ((middle[:, 0] > 20.011) & (middle[:, 2] > 20.011)).any()
             seen += 1
@@ -318,18 +322,18 @@ def test_winding_numbers_are_those_of_the_sum():
             ball(10), box(8, 8, 30, at=(3, -4, -5)), cut(box(60, 60, 20, at=(-30, -30, -30)), ball(5, at=(0, 0, -20)))
         )
     )
-    assert around.may_be is around.surely
+    assert around.possible is around.certain
     rng = np.random.default_rng(5)
     points = rng.uniform(-35, 35, (400, 3))
     found = np.empty(400)
-    windings(points, around.surely.solids, found)
-    exact = exact_winding(points, around.surely.triangles.vertex, around.surely.weight)
+    windings(points, around.certain.solids, found)
+    exact = exact_winding(points, around.certain.triangles.vertex, around.certain.weight)
     known = np.round(exact)
     assert np.abs(exact - known).max() < 0.02
     assert {0, 1, 2} <= set(known.astype(int).tolist())
     assert np.abs(found - known).max() < 0.1
     # What the cells say for sure is so.
-    cells_off = around.surely.solids._replace(cell=np.zeros_like(around.surely.solids.cell))
+    cells_off = around.certain.solids._replace(cell=np.zeros_like(around.certain.solids.cell))
     without = np.empty(400)
     windings(points, cells_off, without)
     assert np.abs(without - known).max() < 0.1
@@ -339,7 +343,7 @@ def test_winding_numbers_are_those_of_the_sum():
 def test_void_and_material_count_alike():
     hollow = solids_of(cut(box(100, 100, 100), box(80, 80, 80, at=(10, 10, 10))))
     found = np.empty(3)
-    windings(np.array([[50.0, 50, 50], [5, 50, 50], [-5, 50, 50]]), hollow.surely.solids, found)
+    windings(np.array([[50.0, 50, 50], [5, 50, 50], [-5, 50, 50]]), hollow.certain.solids, found)
     assert found == pytest.approx([2, 1, 0], abs=0.05)
 
 
@@ -352,9 +356,9 @@ def test_a_ball_far_inside_is_inside(seed):
     around = _ball_solids()
     clear = float(rng.uniform(0.2, 4))
     found = np.zeros(60, bool)
-    far_inside(points, clear, around.surely.solids, found)
+    far_inside(points, clear, around.certain.solids, found)
     depth = 10 - np.linalg.norm(points, axis=1)
-    error = around.surely.triangles.chord_error
+    error = around.certain.triangles.chord_error
     sure = np.abs(depth - clear) > error + 1e-9
     assert (found == (depth > clear))[sure].all()
 

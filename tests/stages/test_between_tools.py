@@ -31,9 +31,9 @@ def profile(cutter, n=4000):
     r, corner, top = cutter.radius, cutter.corner_radius, cutter.length
     stages = [] if cutter.holder is None else cutter.holder.stages
     w = np.linspace(0.0, top + sum(stage.length for stage in stages), n)
-    lean, offset = cutter.taper, r - corner
-    tangent = corner * (1.0 - math.sin(lean))
-    flank = offset + corner * math.cos(lean) + (w - tangent) * math.tan(lean)
+    tilt_direction, offset = cutter.taper, r - corner
+    tangent = corner * (1.0 - math.sin(tilt_direction))
+    flank = offset + corner * math.cos(tilt_direction) + (w - tangent) * math.tan(tilt_direction)
     nose = offset + np.sqrt(np.maximum(0.0, corner**2 - (corner - w) ** 2))
     q = np.where(w < tangent, nose, flank)
     if cutter.shape == "lollipop":

@@ -46,13 +46,13 @@ def test_every_tilt_in_a_free_interval_is_safe(found):
     sample, rotation = np.array(rows).T
     tilt, turn = np.array(tilts), maps.rotations[rotation]
     n, e1 = samples.normal[sample], samples.direction_max[sample]
-    lean = np.cos(turn)[:, None] * e1 + np.sin(turn)[:, None] * np.cross(n, e1)
-    axis = np.cos(tilt)[:, None] * n + np.sin(tilt)[:, None] * lean
+    tilt_direction = np.cos(turn)[:, None] * e1 + np.sin(turn)[:, None] * np.cross(n, e1)
+    axis = np.cos(tilt)[:, None] * n + np.sin(tilt)[:, None] * tilt_direction
     obstacles = Obstacles(tessellate(found.part, 0.002))
     hit = np.zeros(len(tilt), np.int32)
     # A hair shallower than what the map was made with: the ends are exact.
     depth = 0.01 - obstacles.triangles.chord_error + 1e-9
-    probe(np.arange(len(tilt)), samples.point[sample], n, axis, lean, waves.flat(CUTTER.radius, CUTTER.length, depth),
+    probe(np.arange(len(tilt)), samples.point[sample], n, axis, tilt_direction, waves.flat(CUTTER.radius, CUTTER.length, depth),
           obstacles.tree, hit, hit.copy())  # fmt: skip
     assert len(tilt) > 2000
     assert (hit < 0).all()

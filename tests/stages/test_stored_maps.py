@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from plan_cutters import Cutter, Options, PostureMaps, plan
-from plan_cutters.command import stored
+from plan_cutters.command import stored_maps
 from plan_cutters.command.cli import command
 from plan_cutters.command.codes import guarded, invoked
 from plan_cutters.domain.placement import Placement
@@ -164,7 +164,7 @@ def test_the_subcommand_answers_as_the_option_does(file, tmp_path, capsys):
 
     def subcommand(*words):
         line = guarded(
-            lambda: (invoked(stored.command, "plan-cutters stored", [str(word) for word in words]), ""), False
+            lambda: (invoked(stored_maps.command, "plan-cutters stored", [str(word) for word in words]), ""), False
         )
         return *line, "".join(capsys.readouterr())
 
@@ -192,7 +192,9 @@ def test_the_subcommand_answers_as_the_option_does(file, tmp_path, capsys):
     assert subcommand(file, tmp_path / "none.step")[0] == 3
     assert "No such option" in subcommand(file, "-o", "out")[1]
     assert subcommand("--help")[0] == 0
-    assert not any("default" in (each.help or "") for each in stored.command.params if isinstance(each, click.Option))
+    assert not any(
+        "default" in (each.help or "") for each in stored_maps.command.params if isinstance(each, click.Option)
+    )
 
 
 def kept(file, folder, maps, **more):

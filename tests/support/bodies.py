@@ -28,8 +28,8 @@ def within(result, low, high):
     turn = np.linspace(0, 2 * np.pi, 12, endpoint=False)
     found = []
     for i in np.flatnonzero(reach.reached):
-        normal, axis, lean = samples.normal[i], reach.axis[i], reach.lean[i]
-        x_t = (axis @ normal) * lean - (axis @ lean) * normal
+        normal, axis, tilt_direction = samples.normal[i], reach.axis[i], reach.tilt_direction[i]
+        x_t = (axis @ normal) * tilt_direction - (axis @ tilt_direction) * normal
         middle = samples.point[i] - cutter.radius * x_t
         heights = np.linspace(0.02, cutter.length - 0.02, 9)[:, None, None]
         ring = np.cos(turn)[:, None] * x_t + np.sin(turn)[:, None] * np.cross(axis, x_t)

@@ -3,12 +3,12 @@
 import numpy as np
 
 
-def depth_in_cutter(points, contact, normal, axis, lean, radius, length):
+def depth_in_cutter(points, contact, normal, axis, tilt_direction, radius, length):
     """How deep points lie in a flat-end cutter: distance to its nearest side, positive inside.
 
     The cutter touches `contact` with its bottom edge; its bottom centre lies on the other side of the lean.
     """
-    x_t = (axis @ normal) * lean - (axis @ lean) * normal
+    x_t = (axis @ normal) * tilt_direction - (axis @ tilt_direction) * normal
     offset = np.asarray(points) - (contact - radius * x_t)
     height = offset @ axis
     radial = np.linalg.norm(offset - height[..., None] * axis, axis=-1)
@@ -16,10 +16,10 @@ def depth_in_cutter(points, contact, normal, axis, lean, radius, length):
 
 
 def posture(normal, direction_max, tilt, rotation):
-    """Tool axis and lean direction of a posture."""
+    """Tool axis and tilt direction of a posture."""
     e2 = np.cross(normal, direction_max)
-    lean = np.cos(rotation) * direction_max + np.sin(rotation) * e2
-    return np.cos(tilt) * normal + np.sin(tilt) * lean, lean
+    tilt_direction = np.cos(rotation) * direction_max + np.sin(rotation) * e2
+    return np.cos(tilt) * normal + np.sin(tilt) * tilt_direction, tilt_direction
 
 
 def triangle_points(triangle, n):

@@ -175,13 +175,13 @@ class Reference:
             found = np.maximum(found, (self.whole if rest >= 0 else self.above).depth(q, w) - rest)
         return found
 
-    def frame(self, contact, normal, lean, tilt, towards=None):
+    def frame(self, contact, normal, tilt_direction, tilt, towards=None):
         """Tip, and rows x_T, y_T, axis of the tool that touches the contact at a tilt with its flutes, an allowance away."""
-        axis = math.cos(tilt) * normal + math.sin(tilt) * lean
-        x_t = math.cos(tilt) * lean - math.sin(tilt) * normal
+        axis = math.cos(tilt) * normal + math.sin(tilt) * tilt_direction
+        x_t = math.cos(tilt) * tilt_direction - math.sin(tilt) * normal
         q, w = self.flutes.support(tilt, towards)
         contact = contact + self.allowance * normal
-        return contact - q * x_t - w * axis, np.stack([x_t, np.cross(normal, lean), axis])
+        return contact - q * x_t - w * axis, np.stack([x_t, np.cross(normal, tilt_direction), axis])
 
 
 def in_row(row, q, w):

@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 
 from cad_io import read_part
 from cad_io.tessellate.start import starts
-from cad_io.write import drawn as drawing
+from cad_io.write import render_mesh as drawing
 from cad_io.write.net import Net, cut
 from plan_cutters import Cutter, Options, plan
 from plan_cutters.pipeline import prepare
-from plan_cutters.scene.buried import cover
+from plan_cutters.scene.inside_material import cover
 from plan_cutters.scene.work import Work
 from plan_cutters.stages import witness
 from plan_cutters.stages.access import access
@@ -75,7 +75,7 @@ def test_the_way_out_is_the_one_that_all_triangles_tell(ready, seed):
     """The walk of the tree, beside a look at each triangle."""
     rng = np.random.default_rng(seed)
     around = ready.conditions.around
-    skin, body = around.surely, around.enclosing[int(rng.integers(len(around.enclosing)))]
+    skin, body = around.certain, around.enclosing[int(rng.integers(len(around.enclosing)))]
     mine = np.isin(skin.triangles.face, body.faces)
     vertex, face = skin.triangles.vertex[mine], skin.triangles.face[mine]
     low, high = vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))

@@ -118,15 +118,15 @@ def test_postures_obey_the_ranges_asked_for():
     (found,) = result.reaches.values()
     reached = found.reached
     assert 0 < reached.sum() < len(reached)
-    axis, lean, normal = found.axis[reached], found.lean[reached], result.samples.normal[reached]
+    axis, tilt_direction, normal = found.axis[reached], found.tilt_direction[reached], result.samples.normal[reached]
     assert (axis[:, 2] >= math.cos(math.radians(35)) - 1e-12).all()
     angle = np.arccos(np.clip((axis * normal).sum(1), -1, 1))
     assert (angle >= tilt[0] - 1e-9).all()
     assert (angle <= tilt[1] + 1e-9).all()
     assert np.linalg.norm(axis, axis=1) == pytest.approx(1)
-    assert (lean * normal).sum(1) == pytest.approx(0, abs=1e-9)
+    assert (tilt_direction * normal).sum(1) == pytest.approx(0, abs=1e-9)
     e1 = result.samples.direction_max[reached]
-    rotation = np.arctan2((np.cross(normal, e1) * lean).sum(1), (e1 * lean).sum(1))
+    rotation = np.arctan2((np.cross(normal, e1) * tilt_direction).sum(1), (e1 * tilt_direction).sum(1))
     assert (rotation >= 0.5 - 1e-9).all()
     assert (rotation <= 2.0 + 1e-9).all()
 
@@ -158,8 +158,8 @@ def test_a_witness_stands_at_its_depth():
         normal, axis = result.samples.normal[row], np.array(w.best_posture.axis)
         e1 = result.samples.direction_max[row]
         turn = math.radians(w.best_posture.rotation)
-        lean = math.cos(turn) * e1 + math.sin(turn) * np.cross(normal, e1)
-        deepest = depth_in_cutter(points, np.array(w.point), normal, axis, lean, 6.0, 40.0).max()
+        tilt_direction = math.cos(turn) * e1 + math.sin(turn) * np.cross(normal, e1)
+        deepest = depth_in_cutter(points, np.array(w.point), normal, axis, tilt_direction, 6.0, 40.0).max()
         assert deepest == pytest.approx(w.depth_mm, abs=0.02)
         assert w.depth_mm > 0.0099
 

@@ -48,7 +48,7 @@ def depths(cutter, samples, reach, row, points):
     """How deep points lie in the true tool at the posture found, mm."""
     reference = Reference(cutter)
     tip, (_, _, axis) = reference.frame(
-        samples.point[row], samples.normal[row], reach.lean[row], float(reach.tilt[row])
+        samples.point[row], samples.normal[row], reach.tilt_direction[row], float(reach.tilt[row])
     )
     from_tip = points - tip
     height = from_tip @ axis

@@ -23,9 +23,9 @@ from tests.support.places import SAMPLES
 from tests.support.reference import depth_in_cutter, posture, random_frame
 
 
-def refined_depth(patch, contact, normal, axis, lean, radius, length, grid, lines):
+def refined_depth(patch, contact, normal, axis, tilt_direction, radius, length, grid, lines):
     """Deepest point of a patch in the cutter: a dense grid, then ever finer grids about its deepest nodes."""
-    depth = depth_in_cutter(grid, contact, normal, axis, lean, radius, length)
+    depth = depth_in_cutter(grid, contact, normal, axis, tilt_direction, radius, length)
     best = float(depth.max())
     step = lines[1] - lines[0]
     for flat in np.argpartition(depth.ravel(), -6)[-6:]:
@@ -34,7 +34,7 @@ def refined_depth(patch, contact, normal, axis, lean, radius, length, grid, line
         for _ in range(5):
             du, dv = np.meshgrid(np.linspace(-h, h, 9), np.linspace(-h, h, 9))
             us, vs = np.clip(u + du.ravel(), 0, 1), np.clip(v + dv.ravel(), 0, 1)
-            near = depth_in_cutter(patch.at(us, vs), contact, normal, axis, lean, radius, length)
+            near = depth_in_cutter(patch.at(us, vs), contact, normal, axis, tilt_direction, radius, length)
             k = int(near.argmax())
             u, v, h, best = us[k], vs[k], h / 4, max(best, float(near[k]))
     return best
@@ -51,13 +51,15 @@ def test_verdicts_equal_those_of_the_exact_surface_outside_the_band(seed):
     grid, lines = patch.grid(161)
     n = 160
     point, normal = rng.uniform([0, 0, -8], [60, 60, 20], (n, 3)), np.empty((n, 3))
-    axis, lean = np.empty((n, 3)), np.empty((n, 3))
+    axis, tilt_direction = np.empty((n, 3)), np.empty((n, 3))
     radius, length = 5.0, 40.0
     for i in range(n):
         normal[i], direction = random_frame(rng)
-        axis[i], lean[i] = posture(normal[i], direction, rng.uniform(0, math.pi / 2), rng.uniform(0, 2 * math.pi))
+        axis[i], tilt_direction[i] = posture(
+            normal[i], direction, rng.uniform(0, math.pi / 2), rng.uniform(0, 2 * math.pi)
+        )
     exact = np.array([
-        refined_depth(patch, point[i], normal[i], axis[i], lean[i], radius, length, grid, lines) for i in range(n)
+        refined_depth(patch, point[i], normal[i], axis[i], tilt_direction[i], radius, length, grid, lines) for i in range(n)
     ])  # fmt: skip
     blocked = exact > 0.05
     assert 20 < blocked.sum() < 140
@@ -67,7 +69,9 @@ def test_verdicts_equal_those_of_the_exact_surface_outside_the_band(seed):
         triangle = np.full(n, -1, np.int32)
         for i in range(n):
             tool = waves.flat(radius, length, depths[i])
-            search.probe(np.array([i]), point, normal, axis, lean, tool, obstacles.tree, triangle, triangle.copy())
+            search.probe(
+                np.array([i]), point, normal, axis, tilt_direction, tool, obstacles.tree, triangle, triangle.copy()
+            )
         assert (triangle[exact > depths + 2 * error] >= 0).all()
         assert (triangle[exact < depths - 2 * error] < 0).all()
 
@@ -98,20 +102,20 @@ def deepest_of_free_postures(name, cutter, count, dense, grid):
     tree = cKDTree(surface)
     deepest, radius = -np.inf, cutter.radius
     for row in rows:
-        normal, axis, lean = samples.normal[row], reach.axis[row], reach.lean[row]
+        normal, axis, tilt_direction = samples.normal[row], reach.axis[row], reach.tilt_direction[row]
         if reach.verdict[row] == INTERFERENCE_FREE:
             # Free in every rotation at tilt 0.
-            axis, lean = posture(normal, samples.direction_max[row], 0.0, rng.uniform(0, 2 * math.pi))
+            axis, tilt_direction = posture(normal, samples.direction_max[row], 0.0, rng.uniform(0, 2 * math.pi))
         else:
             assert reach.verdict[row] == ACCESSIBLE
         # Balls strung along the axis cover the cutter.
-        x_t = (axis @ normal) * lean - (axis @ lean) * normal
+        x_t = (axis @ normal) * tilt_direction - (axis @ tilt_direction) * normal
         heights = np.arange(radius, cutter.length + radius, 2 * radius)
         centres = samples.point[row] - radius * x_t + heights[:, None] * axis
         near = surface[np.unique(np.concatenate(tree.query_ball_point(centres, 1.4143 * radius)).astype(int))]
         if len(near) == 0:
             continue
-        depth = depth_in_cutter(near, samples.point[row], normal, axis, lean, cutter.radius, cutter.length)
+        depth = depth_in_cutter(near, samples.point[row], normal, axis, tilt_direction, cutter.radius, cutter.length)
         deepest = max(deepest, float(depth.max()))
     return deepest
 

@@ -15,20 +15,20 @@ from tests.support.closed_forms import WIDE, assert_intervals, floor, free, wall
 PI = math.pi
 
 
-def towards(part, cutter, lean, point=(0, 0, 0), **options):
+def towards(part, cutter, tilt_direction, point=(0, 0, 0), **options):
     """Free tilts, deg, when leaning in the direction given, and the map."""
     found, _ = free(part, cutter, [0.0], point, **options)
     e1, n = found.direction_max, found.normal
-    turn = math.degrees(math.atan2(np.dot(lean, np.cross(n, e1)), np.dot(lean, e1))) % 360
+    turn = math.degrees(math.atan2(np.dot(tilt_direction, np.cross(n, e1)), np.dot(tilt_direction, e1))) % 360
     found, (intervals,) = free(part, cutter, [turn], point, **options)
     return intervals, found
 
 
-def kept(part, cutter, lean, expected, point=(0, 0, 0)):
+def kept(part, cutter, tilt_direction, expected, point=(0, 0, 0)):
     """To a tolerance: what is free holds in all of the range expected and beyond it by no more than that leaves."""
     found = posture_map(part, point=point, cutter=cutter, rotations=[0.0], tolerance=0.01)
     e1, n = found.direction_max, found.normal
-    turn = math.atan2(np.dot(lean, np.cross(n, e1)), np.dot(lean, e1)) % (2 * PI)
+    turn = math.atan2(np.dot(tilt_direction, np.cross(n, e1)), np.dot(tilt_direction, e1)) % (2 * PI)
     found = posture_map(part, point=point, cutter=cutter, rotations=[turn], tolerance=0.01)
     (intervals,) = np.degrees(found.free)
     intervals = intervals[intervals[:, 1] - intervals[:, 0] > 0.02]
@@ -84,11 +84,11 @@ def test_a_bull_in_a_fillet_touches_floor_and_wall(corner):
     ).Face()
     part = shapes.shell(floor(-200.0, 0.0), quarter.Reversed(), wall(rho, rho, high, -1))
     s, c = math.sin(beta), math.cos(beta)
-    contact, lean = (rho * s, 0, rho - rho * c), (c, 0, s)
+    contact, tilt_direction = (rho * s, 0, rho - rho * c), (c, 0, s)
     x, z = (rho - corner) * s, rho - (rho - corner) * c
     first = math.degrees(beta - math.asin((z - corner) / (2 * (radius - corner))))
     last = math.degrees(beta) + before(rho - x, high - z, corner)
-    kept(part, Cutter.bull(radius=radius, corner_radius=corner, length=60), lean, (first, last), contact)
+    kept(part, Cutter.bull(radius=radius, corner_radius=corner, length=60), tilt_direction, (first, last), contact)
     large = Cutter.bull(radius=radius, corner_radius=2.5, length=60)
     found = posture_map(part, point=contact, cutter=large, rotations=[0.0], tolerance=0.01)
     assert np.isnan(found.local_gouge).all()
@@ -193,8 +193,8 @@ def test_a_barrel_on_a_cylinder():
     cutter = Cutter.barrel(radius=12, flank_radius=60, length=60, height=20, flutes=35)
     first, last = math.degrees(math.acos(20 / 60)), 90.0
     ridge = shapes.shell(shapes.ridge(10.0, 300.0))
-    for lean in ((0, 1, 0), (1, 0, 0), (1, 1, 0)):
-        found = kept(ridge, cutter, lean, (first, last))
+    for tilt_direction in ((0, 1, 0), (1, 0, 0), (1, 1, 0)):
+        found = kept(ridge, cutter, tilt_direction, (first, last))
         assert np.degrees(found.no_contact[0]) == pytest.approx(np.array([[0.0, first]]))
     found = posture_map(
         shapes.shell(shapes.trough(10.0, 300.0)), point=(0, 0, 0), cutter=cutter, rotations=[PI / 2], tolerance=0.01

@@ -143,8 +143,8 @@ def test_a_face_without_area_hides_nothing_and_leaves_no_doubt():
     assert result.plan.missing == []
     # It is in the way all the same, as a line.
     found = surroundings(result.part, 0.002)
-    assert 7 in found.may_be.triangles.face
-    assert 7 not in found.surely.triangles.face
+    assert 7 in found.possible.triangles.face
+    assert 7 not in found.certain.triangles.face
 
 
 # --- tolerance -------------------------------------------------------------------------------------------------------------
@@ -190,26 +190,36 @@ def test_kernels_take_what_is_no_number_for_a_hit():
     far = sheet(Tree(near.vertex + 1e6, near.box + np.array([1e6] * 3 + [0.0] * 13), near.depth))
     one, p, straight = np.zeros(1, np.int64), np.zeros(3), np.zeros((1, 2))
     small = assembly(SMALL, 0.01, 0.01)
-    tool, heavy, dummy = tool_of(small), tool_of(assembly(SMALL, 0.02, 0.02)), small.dummy
+    tool, inner_tool, dummy = tool_of(small), tool_of(assembly(SMALL, 0.02, 0.02)), small.dummy
     tried = 0
-    for point, normal, lean in [
+    for point, normal, tilt_direction in [
         *((x, n, e1) for x in spoilt(p)), *((p, x, e1) for x in spoilt(n)), *((p, n, x) for x in spoilt(e1)),
     ]:  # fmt: skip
         free = np.ones(1, bool)
-        search.dummy_clear(one, Contacts(point[None], normal[None], lean[None], straight), dummy, tool, far, free)
-        if lean is e1:
+        search.dummy_clear(
+            one, Contacts(point[None], normal[None], tilt_direction[None], straight), dummy, tool, far, free
+        )
+        if tilt_direction is e1:
             assert not free[0]
         triangle = np.full(1, -1, np.int32)
         search.probe(
-            one, point[None], normal[None], normal[None], lean[None], tool, far.tree, triangle, triangle.copy()
+            one,
+            point[None],
+            normal[None],
+            normal[None],
+            tilt_direction[None],
+            tool,
+            far.tree,
+            triangle,
+            triangle.copy(),
         )
         # What has no tilt touches nowhere, which is no way clear either.
         assert triangle[0] >= 0 or triangle[0] == -2
-        parts = free_tilts.free_tilts(point, normal, lean, 0.0, 1.5, tool, 0, 1e-3, far.tree, 2000)
+        parts = free_tilts.free_tilts(point, normal, tilt_direction, 0.0, 1.5, tool, 0, 1e-3, far.tree, 2000)
         assert not (parts[:, 2] == free_tilts.OPEN).any()
         out = blank(1)
-        contact = Contacts(point[None], normal[None], lean[None], straight)
-        search.search(one, contact, waves.ranges(np.zeros(1)), tool, heavy, far, far, found_of(out))
+        contact = Contacts(point[None], normal[None], tilt_direction[None], straight)
+        search.search(one, contact, waves.ranges(np.zeros(1)), tool, inner_tool, far, far, found_of(out))
         assert out.verdict[0] != ACCESSIBLE
         tried += 1
     assert tried == 9
@@ -233,7 +243,7 @@ def test_the_door_refuses_what_is_no_number():
     conditions = Conditions(
         Machine(), np.array([0, 0, 1.0]), PostureRange(), Surroundings.sheet(Obstacles(good)), 0.01, 1
     )
-    tools = conditions.light(SMALL), conditions.heavy(SMALL)
+    tools = conditions.outer_tool(SMALL), conditions.inner_tool(SMALL)
     contact = Contacts(np.zeros((1, 3)), n[None], e1[None], np.zeros((1, 2)))
     for which in range(4):
         broken = list(contact)

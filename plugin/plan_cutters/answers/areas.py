@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import connected_components
 
 from cad_io.arrays import Floats, Record, SurfaceSamples
 from plan_cutters.domain.area import Patch
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.preparation import Prepared
 
 Rows = NDArray[np.int64]
 

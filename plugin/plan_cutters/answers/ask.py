@@ -16,12 +16,12 @@ from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.change import Mend
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.radius_map import RadiusMap
-from plan_cutters.domain.verdicts import Reach
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, part_of
 
 Axis = tuple[float, float, float]
-Elsewhere = Sequence[tuple[Axis, Mapping[str, Reach]]]
+Elsewhere = Sequence[tuple[Axis, Mapping[str, Verdicts]]]
 
 #: Of every sample the least stick-out is found to this, mm.
 STEP = 0.5
@@ -31,7 +31,7 @@ NEAREST = 3
 
 
 def ask(
-    ready: Prepared, reaches: Mapping[Cutter, Reach], stage: Callable[[str], AbstractContextManager[Progress]],
+    ready: Prepared, reaches: Mapping[Cutter, Verdicts], stage: Callable[[str], AbstractContextManager[Progress]],
     elsewhere: Elsewhere = (),
 ) -> Answers:  # fmt: skip
     """Answer what is asked, and what costs nothing.
@@ -74,19 +74,19 @@ def ask(
 
 
 def _mended(
-    ready: Prepared, cutter: Cutter, reaches: Mapping[Cutter, Reach], elsewhere: Elsewhere, tell: Progress
+    ready: Prepared, cutter: Cutter, reaches: Mapping[Cutter, Verdicts], elsewhere: Elsewhere, tell: Progress
 ) -> Mend:  # fmt: skip
     alone = mend(ready, cutter, reaches[cutter], progress=part_of(tell, 0, 2))
     return steps(ready, alone, cutter, reaches, elsewhere, progress=part_of(tell, 1, 2))
 
 
-def nearest(ready: Prepared, reaches: Mapping[Cutter, Reach], elsewhere: Elsewhere) -> list[Cutter]:
+def nearest(ready: Prepared, reaches: Mapping[Cutter, Verdicts], elsewhere: Elsewhere) -> list[Cutter]:
     """Cutters that do not finish the part in all setups together, the one that leaves least first, then by rank."""
     finished, missing = Finished.of(ready), ready.conditions.around.doubtful
     left = {}
     for cutter in ready.cutters:
         each = [reaches[cutter], *(found[cutter.id] for _, found in elsewhere)]
-        lost = np.logical_and.reduce([reach.lost for reach in each]) & finished.wanted
+        lost = np.logical_and.reduce([verdicts.lost for verdicts in each]) & finished.wanted
         if lost.any() or missing:
             left[cutter] = finished.of_rows(np.flatnonzero(lost))
     return sorted(left, key=lambda cutter: round(left[cutter], 9))

@@ -13,7 +13,7 @@ from plan_cutters.domain.radius_map import RadiusMap, Shape
 from plan_cutters.domain.verdicts import BURIED, INACCESSIBLE, UNJUDGED, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.scene.conditions import contacts_of, found_of, require_finite
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, in_chunks
 
 if TYPE_CHECKING:
@@ -62,20 +62,20 @@ def largest_radius(
     samples, conditions = ready.samples, ready.conditions
     judged, within = samples.unjudged < 0, ready.buried >= 0
     level, beyond, reach = np.full(len(samples), -1), np.full(len(samples), UNJUDGED, np.uint8), blank(len(samples))
-    light = _ladder([conditions.light(cutter) for cutter in cutters])
-    heavy = _ladder([conditions.heavy(cutter) for cutter in cutters])
+    outer_tool = _ladder([conditions.outer_tool(cutter) for cutter in cutters])
+    inner_tool = _ladder([conditions.inner_tool(cutter) for cutter in cutters])
     rows, contacts, found = np.flatnonzero(judged & ~within), contacts_of(samples), found_of(reach)
-    may_be, surely = conditions.around.may_be.solids, conditions.around.surely.solids
+    possible, certain = conditions.around.possible.solids, conditions.around.certain.solids
     require_finite(contacts, rows)
 
     def work(piece: NDArray[np.int64]) -> None:
-        largest(piece, contacts, conditions.ranges, light, heavy, may_be, surely, found, level, beyond)
+        largest(piece, contacts, conditions.ranges, outer_tool, inner_tool, possible, certain, found, level, beyond)
 
     in_chunks(work, rows, conditions.jobs, progress, fixed=True)
     beyond[judged & within], reach.reason[judged & within] = INACCESSIBLE, BURIED
     radius = np.where(judged, np.where(level >= 0, radii[level], 0.0), np.nan)
     return RadiusMap(shape, float(ratio), float(step), float(radii[0]), float(radii[-1]), radius, beyond, reach.reason,
-                     reach.axis, reach.lean, reach.tilt, reach.rotation)  # fmt: skip
+                     reach.axis, reach.tilt_direction, reach.tilt, reach.rotation)  # fmt: skip
 
 
 def _cutters(

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from plan_cutters.answers.areas import Finished
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet, Run
-from plan_cutters.domain.verdicts import Reach
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.scene.preparation import Prepared
 
 Axis = tuple[float, float, float]
 #: Seconds that the proof may take; then the best set found so far is told as such.
@@ -19,7 +19,7 @@ _COMPARED = 3000
 
 
 def least_set(
-    ready: Prepared, reaches: Mapping[Cutter, Reach], elsewhere: Sequence[tuple[Axis, Mapping[str, Reach]]] = ()
+    ready: Prepared, reaches: Mapping[Cutter, Verdicts], elsewhere: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = ()
 ) -> LeastSet | None:
     """Find the fewest runs, a cutter in a setup each, that reach all that any of them reaches of the finished surface.
 
@@ -36,7 +36,7 @@ def least_set(
     LeastSet or None
         None where one cutter was judged in one setup.
     """
-    setups = [(ready.scene.setup, {cutter.id: reach for cutter, reach in reaches.items()}), *elsewhere]
+    setups = [(ready.scene.setup, {cutter.id: verdicts for cutter, verdicts in reaches.items()}), *elsewhere]
     cutters = [cutter for cutter in ready.cutters if cutter in reaches]
     if len(cutters) * len(setups) < 2:
         return None

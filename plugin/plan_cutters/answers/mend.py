@@ -11,8 +11,8 @@ from plan_cutters.answers.other_range import tilt_limit, tilt_range
 from plan_cutters.answers.trial import Case, Trials, samples
 from plan_cutters.domain.change import THINGS, Change, Mend, Thing
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.verdicts import Reach
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.scene.preparation import Prepared
 
 #: The order of work: what one finds spares another.
 _WORK: tuple[Thing, ...] = (
@@ -21,7 +21,7 @@ _WORK: tuple[Thing, ...] = (
 
 
 def mend(
-    ready: Prepared, cutter: Cutter, reach: Reach, *, progress: Callable[[int, int], None] | None = None
+    ready: Prepared, cutter: Cutter, verdicts: Verdicts, *, progress: Callable[[int, int], None] | None = None
 ) -> Mend:  # fmt: skip
     """Find for each thing that could be changed alone the change that asks least and lets a cutter finish the part.
 
@@ -33,7 +33,7 @@ def mend(
     ready : Prepared
     cutter : Cutter
         One that was judged.
-    reach : Reach
+    verdicts : Verdicts
         What it reaches, of all samples.
     progress : callable, optional
         Told how many of the things are done, of how many.
@@ -55,9 +55,9 @@ def mend(
     [('radius', 1.145), ('tilt_limit', 26.8)]
     """
     tell = progress or (lambda done, total: None)
-    trials = Trials.of(reach, ready.finished)
+    trials = Trials.of(verdicts, ready.finished)
     around = ready.conditions.around
-    within = int((ready.inside_bodies & reach.lost).sum())
+    within = int((ready.inside_bodies & verdicts.lost).sum())
     if not len(trials.lost):
         inside = f"{samples(within)} within another body, which is no surface of the finished part" if within else ""
         missing = (
@@ -71,7 +71,7 @@ def mend(
     found: dict[Thing, Change] = {}
     for done, thing in enumerate(_WORK):
         tell(done, len(_WORK))
-        found[thing] = _told(case, _change(thing, case, trials, reach, found), share)
+        found[thing] = _told(case, _change(thing, case, trials, verdicts, found), share)
     tell(len(_WORK), len(_WORK))
     if around.doubtful:
         found = {thing: _doubted(change) for thing, change in found.items()}
@@ -81,11 +81,11 @@ def mend(
     return Mend(cutter.id, len(trials.lost) + within, within, tuple(changes), why)
 
 
-def _change(thing: Thing, case: Case, trials: Trials, reach: Reach, found: dict[Thing, Change]) -> Change:
+def _change(thing: Thing, case: Case, trials: Trials, verdicts: Verdicts, found: dict[Thing, Change]) -> Change:
     if thing == "setup":
         return setup(case, trials, found["tilt_limit"])
     if thing == "tolerance":
-        return tolerance(case, trials, reach)
+        return tolerance(case, trials, verdicts)
     each: dict[Thing, Callable[[Case, Trials], Change]] = {
         "faces": faces, "stick_out": stick_out, "tilt_range": tilt_range, "tilt_limit": tilt_limit,
         "corner_radius": corner_radius, "radius": radius,

@@ -10,7 +10,7 @@ from plan_cutters.domain.spec import written
 from plan_cutters.errors import PlanError
 from plan_cutters.options import Options
 from plan_cutters.scene.conditions import Conditions
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.preparation import Prepared
 
 Axis = tuple[float, float, float]
 

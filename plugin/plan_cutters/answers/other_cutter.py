@@ -13,7 +13,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Stage
 from plan_cutters.domain.shapes import SAME, flute_length
 from plan_cutters.errors import CutterError
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.preparation import Prepared
 
 #: Steps of the stick-out, mm.
 GRAIN = 0.01

@@ -12,10 +12,10 @@ from plan_cutters.answers.outcome import none
 from plan_cutters.answers.trial import Case, Left, Trials, first, samples
 from plan_cutters.domain.change import Change
 from plan_cutters.domain.posture import unit
-from plan_cutters.domain.verdicts import INACCESSIBLE, Reach
+from plan_cutters.domain.verdicts import INACCESSIBLE, Verdicts
 from plan_cutters.options import LEAST_TOLERANCE
-from plan_cutters.scene.buried import buried
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.inside_material import buried
+from plan_cutters.scene.preparation import Prepared
 
 #: Steps of the setup axis, deg.
 TURN = 1.0
@@ -152,11 +152,11 @@ def flip_of(ready: Prepared, axis: Axis) -> bool | None:
     return None
 
 
-def tolerance(case: Case, trials: Trials, reach: Reach) -> Change:
+def tolerance(case: Case, trials: Trials, verdicts: Verdicts) -> Change:
     """A finer tolerance, where samples are undecided alone: `FINER` shares of it."""
     ready = case.ready
     now = ready.scene.asked
-    blocked = int((reach.verdict[trials.lost] == INACCESSIBLE).sum())
+    blocked = int((verdicts.verdict[trials.lost] == INACCESSIBLE).sum())
     if blocked:
         why = f"{samples(blocked)} blocked for certain, which no finer tolerance mends"
         return none("tolerance", now, blocked, why)
@@ -188,7 +188,7 @@ def closer(case: Case, asked: float) -> Case:
     scene = replace(ready.scene, asked=asked)
     around = scene.surround(jobs=ready.conditions.jobs)
     conditions = replace(ready.conditions, around=around, tolerance=scene.tolerance)
-    within = buried(ready.samples, scene.orientation, around.enclosing, around.surely, scene.tolerance)
+    within = buried(ready.samples, scene.orientation, around.enclosing, around.certain, scene.tolerance)
     return replace(case, ready=replace(ready, scene=scene, conditions=conditions, buried=within))
 
 

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from plan_cutters.answers.trial import Case
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.verdicts import Reach
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.scene.preparation import Prepared
 
 Rows = NDArray[np.int64]
 Axis = tuple[float, float, float]
@@ -74,14 +74,14 @@ class Judgements:
     def of(
         cls,
         ready: Prepared,
-        reaches: Mapping[Cutter, Reach],
-        elsewhere: Sequence[tuple[Axis, Mapping[str, Reach]]] = (),
+        reaches: Mapping[Cutter, Verdicts],
+        elsewhere: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = (),
     ) -> "Judgements":
         """Those of a plan."""
         found, wanted = cls(), ready.finished
-        for (axis, x), each in zip(setups_of(ready), (None, *(reach for _, reach in elsewhere)), strict=False):
-            for cutter, reach in reaches.items():
-                mine = reach if each is None else each[cutter.id]
+        for (axis, x), each in zip(setups_of(ready), (None, *(verdicts for _, verdicts in elsewhere)), strict=False):
+            for cutter, verdicts in reaches.items():
+                mine = verdicts if each is None else each[cutter.id]
                 name = key(ready, cutter, axis, x)
                 found.looked[name], found.missed[name] = wanted.copy(), mine.lost & wanted
         return found

@@ -13,8 +13,8 @@ from plan_cutters.answers.state import Judgements, State, setups_of
 from plan_cutters.domain.area import Patch, size
 from plan_cutters.domain.change import MEANS, Mend, Move, Step
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.verdicts import Reach
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress
 
 #: A step, and the samples that it leaves.
@@ -38,8 +38,8 @@ _APART = {"setup": {"second_setup", "tilt_limit"}, "second_setup": {"setup", "ti
 
 
 def steps(
-    ready: Prepared, found: Mend, cutter: Cutter, reaches: Mapping[Cutter, Reach],
-    elsewhere: Sequence[tuple[Axis, Mapping[str, Reach]]] = (), *, progress: Progress | None = None,
+    ready: Prepared, found: Mend, cutter: Cutter, reaches: Mapping[Cutter, Verdicts],
+    elsewhere: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = (), *, progress: Progress | None = None,
 ) -> Mend:  # fmt: skip
     """Find what to do next, and what it gains.
 

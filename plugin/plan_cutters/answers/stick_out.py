@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.stick_out import StickOut, floor_of, held, outline
-from plan_cutters.domain.verdicts import ACCESSIBLE, Reach, blank
+from plan_cutters.domain.verdicts import ACCESSIBLE, Verdicts, blank
 from plan_cutters.kernels.rows import Contacts, Tool
 from plan_cutters.scene.conditions import contacts_of, found_of, rotations_of, tool_of
 from plan_cutters.scene.deepest import deepest_on
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import CHUNK, in_chunks
 from plan_cutters.stages.judge import judge
 
@@ -32,7 +32,7 @@ Progress = Callable[[int, int], None]
 
 
 def least_stick_out(
-    ready: Prepared, cutter: Cutter, reach: Reach, *, step: float | None = None, progress: Progress | None = None
+    ready: Prepared, cutter: Cutter, verdicts: Verdicts, *, step: float | None = None, progress: Progress | None = None
 ) -> StickOut:
     """The least stick-out with which a cutter in its holder reaches every sample that it reaches now.
 
@@ -40,7 +40,7 @@ def least_stick_out(
     ----------
     ready : Prepared
     cutter : Cutter
-    reach : Reach
+    verdicts : Verdicts
         What `judge` found for it.
     step : float, optional
         Find the least stick-out of every sample, too, to this, mm.
@@ -52,12 +52,12 @@ def least_stick_out(
     StickOut
         `least` is exact to `EXACT` for the rotations of the plan's posture range.
     """
-    rows = np.flatnonzero(reach.reached)
+    rows = np.flatnonzero(verdicts.reached)
     longest = cutter.length
     if cutter.holder is None or not len(rows):
         why = "reaches nothing" if cutter.holder else "no holder"
         return StickOut(np.nan, np.nan, longest, why)
-    search = _Search(ready, cutter, reach, progress or (lambda done, total: None))
+    search = _Search(ready, cutter, verdicts, progress or (lambda done, total: None))
     least, limiting = search.all(rows)
     while len(lost := rows[~judge(ready, held(cutter, least), rows).reached]) and least < longest:
         # A holder that is not convex, or an interval of tilts as fine as the search: what is lost there needs more.
@@ -80,36 +80,39 @@ def _limited(ready: Prepared, cutter: Cutter, search: "_Search", found: StickOut
     axis, normal = posture.axis[row], ready.samples.normal[row]
     face, point = None, None
     if triangle >= 0:
-        light = ready.conditions.light(held(cutter, beyond))
+        outer_tool = ready.conditions.outer_tool(held(cutter, beyond))
         face = obstacles.face(triangle)
         point = deepest_on(
             obstacles.tree.vertex[triangle],
-            lambda at: light.depth(at, ready.samples.point[row], normal, posture.lean[row], float(posture.tilt[row])),
+            lambda at: outer_tool.depth(
+                at, ready.samples.point[row], normal, posture.tilt_direction[row], float(posture.tilt[row])
+            ),
         )
     samples = ready.samples
-    turn = float(rotations_of(samples.normal[one], samples.direction_max[one], posture.lean[one])[0])
+    turn = float(rotations_of(samples.normal[one], samples.direction_max[one], posture.tilt_direction[one])[0])
     return replace(found, beyond=beyond, verdict=int(shorter.verdict[0]), sample=row, tilt=float(posture.tilt[row]),
-                   rotation=turn, axis=axis, lean=posture.lean[row], obstacle_face=face, obstacle_point=point)  # fmt: skip
+                   rotation=turn, axis=axis, tilt_direction=posture.tilt_direction[row], obstacle_face=face,
+                   obstacle_point=point)  # fmt: skip
 
 
 class _Search:
     """Searches of one cutter at any stick-out; `found` holds the shortest posture known of each sample."""
 
-    def __init__(self, ready: Prepared, cutter: Cutter, reach: Reach, progress: Progress) -> None:
+    def __init__(self, ready: Prepared, cutter: Cutter, verdicts: Verdicts, progress: Progress) -> None:
         conditions = ready.conditions
         self.ready, self.cutter, self.conditions, self.progress = ready, cutter, conditions, progress
         self.contacts: Contacts = contacts_of(ready.samples)
         self.floor = min(cutter.length, floor_of(cutter, conditions.tolerance))
-        self.outline = outline(conditions.light(cutter), cutter.length)
-        self.whole = tool_of(conditions.light(cutter))
+        self.outline = outline(conditions.outer_tool(cutter), cutter.length)
+        self.whole = tool_of(conditions.outer_tool(cutter))
         self.found = blank(len(ready.samples))
-        for name in Reach.__slots__:
-            getattr(self.found, name)[:] = getattr(reach, name)
+        for name in Verdicts.__slots__:
+            getattr(self.found, name)[:] = getattr(verdicts, name)
 
     def tool(self, stick_out: float) -> Tool:
-        return tool_of(self.conditions.light(held(self.cutter, stick_out)))
+        return tool_of(self.conditions.outer_tool(held(self.cutter, stick_out)))
 
-    def needed(self, rows: NDArray[np.int64], posture: Reach) -> tuple[Floats, NDArray[np.int32]]:
+    def needed(self, rows: NDArray[np.int64], posture: Verdicts) -> tuple[Floats, NDArray[np.int32]]:
         """The stick-outs (n,) that known postures of some samples ask for, and the triangles that are in the way."""
         from plan_cutters.kernels.search.stick_out import least_stick_outs
 
@@ -117,7 +120,7 @@ class _Search:
         triangle = np.full(len(posture.tilt), -1, np.int32)
         samples, tree = self.ready.samples, self.conditions.obstacles.tree
         in_chunks(
-            lambda piece: least_stick_outs(piece, samples.point, samples.normal, posture.lean, posture.tilt, self.whole,
+            lambda piece: least_stick_outs(piece, samples.point, samples.normal, posture.tilt_direction, posture.tilt, self.whole,
                                            self.outline, self.floor, tree, stick_out, triangle),
             rows, self.conditions.jobs,
         )  # fmt: skip
@@ -168,20 +171,20 @@ class _Search:
             shorter = held(self.cutter, max(self.floor, least - BEYOND))
             if not judge(self.ready, shorter, np.array([limiting])).reached[0]:
                 break
-            reach = judge(self.ready, shorter)
-            lost = rows[~reach.reached[rows]]
+            verdicts = judge(self.ready, shorter)
+            lost = rows[~verdicts.reached[rows]]
             if len(lost):
                 limiting = int(lost[0])
                 self.keep(judge(self.ready, held(self.cutter, least)), limiting)
                 break
             least = shorter.length
-            self.keep(reach, limiting)
+            self.keep(verdicts, limiting)
         return least, -1 if least <= self.floor else limiting
 
-    def keep(self, reach: Reach, row: int) -> None:
+    def keep(self, verdicts: Verdicts, row: int) -> None:
         """Take over the posture of a sample."""
-        for name in ("axis", "lean", "tilt", "rotation"):
-            getattr(self.found, name)[row] = getattr(reach, name)[row]
+        for name in ("axis", "tilt_direction", "tilt", "rotation"):
+            getattr(self.found, name)[row] = getattr(verdicts, name)[row]
 
     def one(self, row: int, lost: float) -> tuple[float, int]:
         """The least stick-out of one sample, and the sample; the one given and -1 where that is enough.
@@ -210,11 +213,11 @@ class _Search:
         turns, solids = len(ranges.rotation_cos), self.conditions.obstacles.solids
         if not posture(contact, ranges, self.tool(stick_out), _NARROWEST, start, turns, solids, found_of(best)):
             return False
-        for name in ("axis", "lean", "tilt", "rotation"):
+        for name in ("axis", "tilt_direction", "tilt", "rotation"):
             getattr(self.found, name)[row] = getattr(best, name)[0]
         return True
 
-    def with_room(self, rows: NDArray[np.int64], posture: Reach) -> Floats:
+    def with_room(self, rows: NDArray[np.int64], posture: Verdicts) -> Floats:
         """What known postures ask for and `BEYOND` more, (m,): just there no other tilt is left, and a search would miss them."""
         needed = self.needed(rows, posture)[0][rows]
         return np.where(needed > self.floor, np.minimum(needed + BEYOND, self.cutter.length), needed)
@@ -235,7 +238,7 @@ class _Search:
                 some, found = left[middle == level], blank(len(best))
                 tool = self.tool(min(self.cutter.length, self.floor + level * step))
 
-                def work(piece: NDArray[np.int64], tool: Tool = tool, found: Reach = found) -> None:
+                def work(piece: NDArray[np.int64], tool: Tool = tool, found: Verdicts = found) -> None:
                     until_lost(piece, 0, self.contacts, ranges, tool, solids, True, found_of(found))
 
                 in_chunks(work, some, self.conditions.jobs)

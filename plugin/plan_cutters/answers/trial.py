@@ -19,12 +19,12 @@ from plan_cutters.domain.verdicts import (
     REASONS,
     TOLERANCE,
     UNDECIDED,
-    Reach,
+    Verdicts,
     blank,
 )
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import contacts_of, search_postures, tool_of
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.preparation import Prepared
 from plan_cutters.stages.judge import judge
 
 Rows = NDArray[np.int64]
@@ -50,7 +50,7 @@ class Case:
     ready: Prepared
     cutter: Cutter
 
-    def look(self, rows: Rows) -> Reach:
+    def look(self, rows: Rows) -> Verdicts:
         """What the cutter reaches of some judged samples: verdicts as `judge` finds them, but for the grain of a search
         that starts elsewhere."""
         from plan_cutters.kernels.search.search import dummy_clear
@@ -60,17 +60,22 @@ class Case:
             found.verdict[:], found.reason[:] = UNDECIDED, TOLERANCE
             return found
         contacts = Contacts(*(np.ascontiguousarray(column[rows]) for column in contacts_of(ready.samples)))
-        light, heavy = conditions.light(self.cutter), conditions.heavy(self.cutter)
+        outer_tool, inner_tool = conditions.outer_tool(self.cutter), conditions.inner_tool(self.cutter)
         free = np.zeros(len(rows), bool)
-        if len(light.dummy):
+        if len(outer_tool.dummy):
             upright = (ready.surface_class[rows] == CONVEX) & conditions.upright(contacts.normal)
             dummy_clear(
-                np.flatnonzero(upright), contacts, light.dummy, tool_of(light), conditions.obstacles.solids, free
+                np.flatnonzero(upright),
+                contacts,
+                outer_tool.dummy,
+                tool_of(outer_tool),
+                conditions.obstacles.solids,
+                free,
             )
         found.verdict[free] = ACCESSIBLE
         # Of the finished surface these lie within a fixture.
         within = ready.buried[rows] >= 0
-        search_postures(contacts, np.flatnonzero(~free & ~within), light, heavy, conditions, found)
+        search_postures(contacts, np.flatnonzero(~free & ~within), outer_tool, inner_tool, conditions, found)
         found.verdict[within], found.reason[within] = INACCESSIBLE, BURIED
         return found
 
@@ -105,9 +110,9 @@ class Trials:
     hard: list[int] = field(default_factory=list)
 
     @classmethod
-    def of(cls, reach: Reach, finished: NDArray[np.bool_]) -> "Trials":
+    def of(cls, verdicts: Verdicts, finished: NDArray[np.bool_]) -> "Trials":
         """The samples of a reach that are of the finished surface (n,)."""
-        return cls(np.flatnonzero(reach.lost & finished), np.flatnonzero(reach.reached & finished))
+        return cls(np.flatnonzero(verdicts.lost & finished), np.flatnonzero(verdicts.reached & finished))
 
     @property
     def count(self) -> int:
@@ -176,13 +181,13 @@ class Left:
     def by(cls, case: Case, rows: Rows) -> "Left":
         """What a case leaves of some samples."""
         few = rows[:: 1 + (len(rows) - 1) // _LOOKED_AT]
-        reach = case.look(few)
-        if len(few) < len(rows) and not (reach.verdict == INACCESSIBLE).any():
-            few, reach = rows, case.look(rows)
-        bad = ~reach.reached
-        count, blocked = int(bad.sum()), int((reach.verdict == INACCESSIBLE).sum())
+        verdicts = case.look(few)
+        if len(few) < len(rows) and not (verdicts.verdict == INACCESSIBLE).any():
+            few, verdicts = rows, case.look(rows)
+        bad = ~verdicts.reached
+        count, blocked = int(bad.sum()), int((verdicts.verdict == INACCESSIBLE).sum())
         of = None if len(few) == len(rows) else len(few)
-        words = reasons(reach.reason[bad], of) if blocked else f"{samples(count, of)} undecided"
+        words = reasons(verdicts.reason[bad], of) if blocked else f"{samples(count, of)} undecided"
         return cls(count, blocked, len(few), words)
 
 

@@ -11,11 +11,10 @@ from typing import Any, NoReturn
 
 import click
 
-from plan_cutters.command import grouped, terminal
+from plan_cutters.command import help_groups, terminal
 from plan_cutters.command.codes import ended, guarded, invoked
-from plan_cutters.command.declared import CODES, EXAMPLES, options
 from plan_cutters.command.entry import SUBCOMMANDS
-from plan_cutters.command.stopped import Unfinished
+from plan_cutters.command.option_groups import CODES, EXAMPLES, options
 from plan_cutters.command.supervise import (
     default_memory,
     keep_interrupts,
@@ -25,12 +24,13 @@ from plan_cutters.command.supervise import (
 )
 from plan_cutters.command.values import File
 from plan_cutters.command.worker import GO, INTERRUPTED, began, can_supervise, follow_parent, is_child, wait_to_begin
+from plan_cutters.command.worker_errors import Unfinished
 
 _SELF = "plan-cutters"
 
 
 @click.command(
-    cls=grouped.Command,
+    cls=help_groups.Command,
     subcommands=[(name, what) for name, (_, what) in SUBCOMMANDS.items()],
     examples=EXAMPLES,
     codes=CODES,
@@ -43,15 +43,15 @@ def command(parts: tuple[str, ...], **given: Any) -> int:
     Each is judged at samples of the surface: interference-free, accessible, undecided or inaccessible, and why. The plan,
     models coloured by verdict and the samples are written into a folder.
     """
-    from plan_cutters.command.again import set_aside
-    from plan_cutters.command.asked import check, folders
     from plan_cutters.command.one_part import one_part
+    from plan_cutters.command.retry import set_aside
+    from plan_cutters.command.validation import check, folders
 
     asked, _ = check(parts, given)
     if given["postures"] is not None:
-        from plan_cutters.command.stored import stored
+        from plan_cutters.command.stored_maps import stored
 
-        return stored(parts[0], given["postures"], asked, given, grouped.named())
+        return stored(parts[0], given["postures"], asked, given, help_groups.named())
     codes = []
     outs = folders(parts, given)
     since: float | None = began()
@@ -113,9 +113,9 @@ def load() -> None:
 
 def _watched(words: list[str], name: str) -> int:
     """Look at the words here, so that help and mistakes cost nothing; leave the work to a child."""
-    from plan_cutters.command.again import supervised
-    from plan_cutters.command.asked import check
     from plan_cutters.command.progress import Display
+    from plan_cutters.command.retry import supervised
+    from plan_cutters.command.validation import check
     from plan_cutters.report.story.names import called
 
     try:
@@ -136,7 +136,7 @@ def _watched(words: list[str], name: str) -> int:
     try:
         return supervised(words, read_timeout=given["read_timeout"], memory=memory, display=display)
     except Unfinished as stopped:
-        from plan_cutters.command.unfinished import without_models
+        from plan_cutters.command.partial_plan import without_models
 
         display.clear()
         return without_models(stopped, given)

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from plan_cutters.command.codes import USAGE, ended, guarded, invoked
-from plan_cutters.command.declared import ENDED, options
-from plan_cutters.command.grouped import Command, heading
+from plan_cutters.command.help_groups import Command, heading
+from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.terminal import clean, error, hand_out, paper
 from plan_cutters.command.values import File, Words, machine_names
 
@@ -125,7 +125,7 @@ def _facts(name: str, form: str, machine: "Machine", axis: Any, turned: Any) -> 
     import numpy as np
 
     from plan_cutters.machines.explain import share, singular, solutions, tool_axis
-    from plan_cutters.machines.own_out import plain
+    from plan_cutters.machines.toml_out import plain
 
     held, near = share(machine)
     cone = singular(machine)

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from plan_cutters.command.codes import ended, invoked
-from plan_cutters.command.declared import ENDED, options
-from plan_cutters.command.grouped import Command, heading
+from plan_cutters.command.help_groups import Command, heading
+from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.progress import Display
 from plan_cutters.command.supervise import report, supervise
 from plan_cutters.command.terminal import clean, hand_out, paper
@@ -149,7 +149,7 @@ def _point_of(text: str) -> tuple[float, float, float]:
 
 def _options(given: dict[str, Any]) -> "Options":
     """The options of a plan of one cutter, which is inline or of a library."""
-    from plan_cutters.command.asked import words_of
+    from plan_cutters.command.validation import words_of
     from plan_cutters.errors import OptionError
     from plan_cutters.options import LEAST_TOLERANCE, Options
 

@@ -75,7 +75,7 @@ def one_part(
 
 def _compiling(options: "Options", quiet: bool) -> Callable[[str], None]:
     """Let machine code be made meanwhile where there is none, and say so; what waits for an entry of it."""
-    from plan_cutters.command.ahead import begin
+    from plan_cutters.command.background_compile import begin
 
     wait = begin(options.posture_maps) if options.jobs > 1 else None
     if wait is not None and not quiet:

@@ -20,8 +20,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Protocol
 
-from plan_cutters.command.stopped import Stuck, Supervised, Unfinished
 from plan_cutters.command.worker import INTERRUPTED, MEMORY, REPORT, Worker, early, is_child
+from plan_cutters.command.worker_errors import Stuck, Supervised, Unfinished
 
 #: One line at a time: stages tell from their threads.
 _TELLING = threading.Lock()

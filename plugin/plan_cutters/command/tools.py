@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from plan_cutters.command.codes import USAGE, ended, guarded, invoked
-from plan_cutters.command.declared import ENDED, options
-from plan_cutters.command.grouped import Command, heading
+from plan_cutters.command.help_groups import Command, heading
+from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.terminal import clean, error, hand_out, paper
 from plan_cutters.command.values import File, Folder
 

@@ -99,7 +99,7 @@ def machine_names() -> Sequence[str]:
 
 
 def cutter_ids() -> Sequence[str]:
-    from plan_cutters.domain.drawer import builtin
+    from plan_cutters.domain.default_tools import builtin
 
     return [cutter.id for cutter in builtin()]
 

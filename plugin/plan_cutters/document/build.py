@@ -17,7 +17,7 @@ from plan_cutters.document.model import (
     CutterEntry,
     FaceEntry,
     MissingEntry,
-    StageEntry,
+    SegmentEntry,
     WitnessEntry,
 )
 from plan_cutters.document.part_info import OrientationInfo, PartInfo, SewingInfo
@@ -29,7 +29,7 @@ from plan_cutters.domain.verdicts import (
     INACCESSIBLE,
     REASONS,
     UNDECIDED,
-    Reach,
+    Verdicts,
     Witness,
 )
 from plan_cutters.scene.faces import Chosen
@@ -63,7 +63,7 @@ def degrees(pair: tuple[float, float]) -> tuple[float, float]:
 
 
 def cutter_entry(
-    cutter: Cutter, samples: SurfaceSamples, reach: Reach, found: Sequence[Witness], march_differs: int, seconds: float,
+    cutter: Cutter, samples: SurfaceSamples, reach: Verdicts, found: Sequence[Witness], march_differs: int, seconds: float,
     *, part: Part, around: Surroundings, slack: float, inside: NDArray[np.bool_], besides: NDArray[np.uint8],
 ) -> CutterEntry:  # fmt: skip
     """What a cutter reaches, and why not where it does not, among what is `around`; `slack` as in `Assembly`.
@@ -87,7 +87,7 @@ def cutter_entry(
         flutes_mm=flute_length(cutter),
         holder=cutter.holder.name if cutter.holder else "",
         stages=[
-            StageEntry(
+            SegmentEntry(
                 part=part,
                 low_mm=low,
                 length_mm=stage.length,
@@ -116,7 +116,7 @@ def cutter_entry(
 
 
 def _witness_entry(
-    witness: Witness, samples: SurfaceSamples, around: Surroundings, reach: Reach, inside: NDArray[np.bool_]
+    witness: Witness, samples: SurfaceSamples, around: Surroundings, reach: Verdicts, inside: NDArray[np.bool_]
 ) -> WitnessEntry:
     best = None
     if witness.tilt is not None and witness.rotation is not None and witness.axis is not None:

@@ -8,7 +8,7 @@ from plan_cutters.document.build import degrees
 from plan_cutters.document.model import Effective
 from plan_cutters.document.travel import placement_entry
 from plan_cutters.options import Options
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.preparation import Prepared
 
 
 def effective(ready: Prepared) -> Effective:
@@ -29,9 +29,9 @@ def effective(ready: Prepared) -> Effective:
         "spacing_mm": max(ready.spacing.values()) if isinstance(ready.spacing, dict) else ready.spacing,
         "sampled_by": "grid" if options.grid is not None else "default" if options.spacing is None else "spacing",
         "tolerance_mm": scene.tolerance,
-        "chord_error_mm": around.surely.triangles.chord_error,
-        "chord_measured_share": around.surely.triangles.measured_share,
-        "obstacle_triangles": len(around.may_be.triangles),
+        "chord_error_mm": around.certain.triangles.chord_error,
+        "chord_measured_share": around.certain.triangles.measured_share,
+        "obstacle_triangles": len(around.possible.triangles),
         "area_budget": options.contacts_between(len(ready.samples)),
     }
     return Effective(**{name: _as_asked(options, name) for name in Effective.model_fields if name not in made}, **made)

@@ -4,10 +4,10 @@ from pathlib import Path
 
 from cad_io.read.mesh import Mesh
 from plan_cutters.document.model import FixtureEntry
-from plan_cutters.scene.surroundings import Standing
+from plan_cutters.scene.surroundings import PlacedFixture
 
 
-def fixture_entry(standing: Standing) -> FixtureEntry:
+def fixture_entry(standing: PlacedFixture) -> FixtureEntry:
     """A fixture where it stands."""
     fixture, source, triangles = standing.fixture, standing.source, standing.obstacles.triangles
     file = None if source is None else source.file

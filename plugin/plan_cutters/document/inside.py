@@ -17,7 +17,7 @@ from plan_cutters.document.frozen import Frozen
 from plan_cutters.document.shares import FaceVerdicts, covered
 from plan_cutters.scene.covering import Covering, coverings, sheets
 from plan_cutters.scene.obstacles import weights
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.preparation import Prepared
 
 
 class CoveringBody(Frozen):
@@ -97,7 +97,7 @@ def _body(ready: Prepared, found: Covering, area: float, largest: bool) -> Cover
 
 def _volume(ready: Prepared, body: Body) -> float:
     """Volume that a body's triangles enclose, mm3."""
-    triangles = ready.conditions.around.surely.triangles
+    triangles = ready.conditions.around.certain.triangles
     mine = np.isin(triangles.face, body.faces)
     sign = weights(replace(triangles, vertex=triangles.vertex[mine], face=triangles.face[mine]), [body])
     a, b, c = np.moveaxis(triangles.vertex[mine], 1, 0)

@@ -13,7 +13,7 @@ from plan_cutters.document.inside import InsideEntry
 from plan_cutters.document.part_info import PartInfo
 from plan_cutters.document.scope import Scope
 from plan_cutters.document.setups import SetupEntry, SetupReach
-from plan_cutters.document.shares import AreaShare, FaceVerdicts, Verdicts
+from plan_cutters.document.shares import AreaShare, FaceVerdicts, VerdictCounts
 from plan_cutters.document.travel import PlacementEntry, TravelEntry
 
 FORMAT_VERSION = 1
@@ -159,7 +159,7 @@ class AreaEntry(Frozen):
     left_out: list[str] = Field(default=[], description="target faces whose area is not known: they are not in `share`")
 
 
-class StageEntry(Frozen):
+class SegmentEntry(Frozen):
     """What stands above the flutes, from there up: neck, shank, the stages of the holder."""
 
     part: Literal["neck", "shank", "holder"]
@@ -240,7 +240,7 @@ class FixtureEntry(Frozen):
     notes: list[str]
 
 
-class CutterEntry(Verdicts):
+class CutterEntry(VerdictCounts):
     id: str
     name: str
     sources: list[SourceEntry] = Field(default=[], description="where tool libraries list it, all places")
@@ -251,7 +251,7 @@ class CutterEntry(Verdicts):
     taper_deg: float = Field(default=0.0, description="half angle")
     flutes_mm: float | None = Field(default=None, description="height over the tip up to which it cuts")
     holder: str = Field(default="", description="its holder's name; empty where it has none, or one without a name")
-    stages: list[StageEntry] = Field(default=[], description="from the flutes up")
+    stages: list[SegmentEntry] = Field(default=[], description="from the flutes up")
     touches_deg: list[tuple[float, float]] = Field(default=[], description="tilts at which the cutting part can touch")
     allowance_mm: float = 0.0
     clearance_mm: float = Field(default=0.0, description="room asked of neck, shank and holder")

@@ -12,10 +12,10 @@ from plan_cutters.domain.notes import Note
 from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.travel import unjudged
 from plan_cutters.options import Options
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.spacing import BUDGET
-from plan_cutters.scene.surroundings import Standing, Surroundings
+from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
 
 
 def notes_of(ready: Prepared, entries: Sequence[CutterEntry]) -> list[Note]:
@@ -94,7 +94,7 @@ def _of_cutters(options: Options, cutters: Sequence[Cutter]) -> Iterator[Note]:
 def _of_obstacles(part: Part, around: Surroundings) -> Iterator[Note]:
     """What stands in the way otherwise than the file has it."""
     skins = {number for body in around.bodies if body.closed for number in body.faces}
-    present = set(np.unique((around.alone or around).may_be.triangles.face).tolist())
+    present = set(np.unique((around.alone or around).possible.triangles.face).tolist())
     sheets = [f.id for f in part.faces if f.number in present - skins]
     if sheets and skins:
         yield Note("open_faces", f"{listed(sheets)} enclose{'s' if len(sheets) == 1 else ''} no material: only the surface is "
@@ -147,7 +147,7 @@ def _of_travel(options: Options) -> Iterator[Note]:
         yield Note("travel_first_setup", "Linear travel is judged in the first setup alone.")
 
 
-def _of_fixtures(fixtures: Sequence[Standing], *, several: bool) -> Iterator[Note]:
+def _of_fixtures(fixtures: Sequence[PlacedFixture], *, several: bool) -> Iterator[Note]:
     """What the plan must say of fixtures; `several`: there is more than one setup."""
     for each in fixtures:
         for note in each.notes:

@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import SurfaceSamples
 from plan_cutters.document.model import CutterEntry, FaceEntry, WitnessEntry
-from plan_cutters.document.shares import Verdicts, counts
+from plan_cutters.document.shares import VerdictCounts, counts
 from plan_cutters.domain.stick_out import StickOut
-from plan_cutters.domain.verdicts import NO_REASON, REASONS, WORDS, Reach
+from plan_cutters.domain.verdicts import NO_REASON, REASONS, WORDS, Verdicts
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ class OnFace:
     cutter: str
     area: float
     samples: int
-    verdicts: Verdicts
+    verdicts: VerdictCounts
     shares: dict[str, float] = field(default_factory=dict)
     reasons: dict[str, float] = field(default_factory=dict)
     worst: WitnessEntry | None = None
@@ -81,7 +81,7 @@ class OnFace:
 
 
 def on_face(
-    entry: FaceEntry, cutter: CutterEntry, samples: SurfaceSamples, reach: Reach, stick_out: StickOut | None,
+    entry: FaceEntry, cutter: CutterEntry, samples: SurfaceSamples, reach: Verdicts, stick_out: StickOut | None,
     *, doubtful: bool, inside: NDArray[np.bool_],
 ) -> OnFace:  # fmt: skip
     """What a cutter reaches of a face; `stick_out`: what was answered for the samples, or for those of this face alone.
@@ -103,8 +103,8 @@ def on_face(
     deepest = [w for w in cutter.witnesses if w.face == entry.id and not w.inside_bodies]
     least, unknown = _least(entry, mine, reach, stick_out)
     return OnFace(
-        entry.id, entry.name, entry.component, entry.target, cutter.id, entry.area_mm2, int(whole_face.sum()), Verdicts(**found),
-        shares, reasons, max(deepest, key=lambda w: w.depth_mm or 0.0, default=None), least, unknown,
+        entry.id, entry.name, entry.component, entry.target, cutter.id, entry.area_mm2, int(whole_face.sum()),
+        VerdictCounts(**found), shares, reasons, max(deepest, key=lambda w: w.depth_mm or 0.0, default=None), least, unknown,
         doubtful, _unjudged(entry),
     )  # fmt: skip
 
@@ -114,7 +114,9 @@ def _words(verdict: NDArray[np.uint8]) -> list[tuple[int, str]]:
     return [(code, WORDS[code]) for code in np.unique(verdict).tolist()]
 
 
-def _least(entry: FaceEntry, mine: NDArray[np.bool_], reach: Reach, found: StickOut | None) -> tuple[float | None, str]:
+def _least(
+    entry: FaceEntry, mine: NDArray[np.bool_], reach: Verdicts, found: StickOut | None
+) -> tuple[float | None, str]:
     """The least stick-out for the face, or why it is not known."""
     if not mine.any():
         return None, "the face has no samples"

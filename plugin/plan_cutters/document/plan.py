@@ -42,8 +42,8 @@ from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.over_setups import positions
 from plan_cutters.domain.travel import Travel
-from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE, Reach
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE, Verdicts
+from plan_cutters.scene.preparation import Prepared
 
 RULE = "largest radius, then smaller corner radius, then shorter length, then library order, among the feasible"
 
@@ -110,7 +110,7 @@ def machine_entry(machine: Machine, kinematics: Kinematics | None) -> MachineEnt
 
 
 #: A setup axis, and what each cutter reaches there by its id.
-Elsewhere = tuple[Vector, Mapping[str, Reach]]
+Elsewhere = tuple[Vector, Mapping[str, Verdicts]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,8 +131,8 @@ class OverSetups:
         In each other setup.
     """
 
-    reaches: Mapping[str, Reach]
-    here: Mapping[str, Reach]
+    reaches: Mapping[str, Verdicts]
+    here: Mapping[str, Verdicts]
     served_in: Mapping[str, Ints]
     first: Vector
     elsewhere: tuple[Elsewhere, ...] = ()

@@ -3,7 +3,7 @@
 from pydantic import Field
 
 from plan_cutters.document.frozen import Frozen, Vector
-from plan_cutters.document.shares import Verdicts
+from plan_cutters.document.shares import VerdictCounts
 
 
 class SetupEntry(Frozen):
@@ -18,7 +18,7 @@ class SetupEntry(Frozen):
     reached_share: float | None = Field(default=None, description="of the judged samples' area, 0 to 1")
 
 
-class SetupReach(Verdicts):
+class SetupReach(VerdictCounts):
     """What a cutter reaches in one setup."""
 
     axis: Vector

@@ -9,10 +9,10 @@ from pydantic import Field
 
 from cad_io import Part, SurfaceSamples
 from plan_cutters.document.frozen import Frozen
-from plan_cutters.domain.verdicts import INACCESSIBLE, REASONS, UNDECIDED, WORDS, Reach
+from plan_cutters.domain.verdicts import INACCESSIBLE, REASONS, UNDECIDED, WORDS, Verdicts
 
 
-class Verdicts(Frozen):
+class VerdictCounts(Frozen):
     """How many samples have each verdict."""
 
     interference_free: int = 0
@@ -54,7 +54,7 @@ class AreaShare(Frozen):
     )
 
 
-class FaceVerdicts(Verdicts):
+class FaceVerdicts(VerdictCounts):
     """What a cutter reaches of a face."""
 
     area_share: AreaShare = Field(
@@ -71,7 +71,7 @@ def counts(verdict: NDArray[np.uint8], inside: NDArray[np.bool_] | None = None) 
 
 
 def face_verdicts(
-    samples: SurfaceSamples, reach: Reach, inside: NDArray[np.bool_] | None = None
+    samples: SurfaceSamples, reach: Verdicts, inside: NDArray[np.bool_] | None = None
 ) -> dict[str, FaceVerdicts]:
     """What is reached of each face that has samples, by its id; `inside` as in `counts`."""
     found, inside = {}, np.zeros(len(samples.face), bool) if inside is None else inside

@@ -11,7 +11,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.travel import Travel, tips, travel, unjudged
-from plan_cutters.domain.verdicts import Reach
+from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.options import Options
 
 
@@ -66,7 +66,7 @@ def placement_entry(placement: Placement | None) -> PlacementEntry | None:
     )
 
 
-def travels(options: Options, samples: SurfaceSamples, reaches: Mapping[Cutter, Reach]) -> dict[str, Travel]:
+def travels(options: Options, samples: SurfaceSamples, reaches: Mapping[Cutter, Verdicts]) -> dict[str, Travel]:
     """By the id of a cutter where the linear axes stand; empty where that is not judged."""
     placement = options.placement
     if placement is None or unjudged(options.machine, placement) is not None:
@@ -79,7 +79,7 @@ def travels(options: Options, samples: SurfaceSamples, reaches: Mapping[Cutter, 
     }
 
 
-def travel_entry(machine: Machine, found: Travel, reach: Reach, samples: SurfaceSamples) -> TravelEntry:
+def travel_entry(machine: Machine, found: Travel, reach: Verdicts, samples: SurfaceSamples) -> TravelEntry:
     """What a cutter asks of the linear axes."""
     known = reach.reached & np.isfinite(found.position).all(axis=1)
     axes, worst = [], []

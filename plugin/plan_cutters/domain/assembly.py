@@ -28,7 +28,7 @@ from plan_cutters.domain.pieces import (
     sharpest,
     solid,
 )
-from plan_cutters.domain.shapes import MOST_PIECES, Mode, flute_length, modes, stages, top_lean, top_radius
+from plan_cutters.domain.shapes import MOST_PIECES, Mode, flute_length, modes, stages, top_flank_angle, top_radius
 from plan_cutters.errors import CutterError
 from plan_cutters.kernels.codes import (
     ARC,
@@ -90,17 +90,20 @@ class Assembly(Record):
             found[(tilt >= self.mode[i, TILT_FROM] - HAIR) & (tilt <= self.mode[i, TILT_TO] + HAIR)] = i
         return found
 
-    def on_axis(self, contact: Floats, normal: Floats, lean: Floats, tilt: Floats) -> Floats:
+    def on_axis(self, contact: Floats, normal: Floats, tilt_direction: Floats, tilt: Floats) -> Floats:
         """The point (n, 3) of the axis as deep in the tool as any, at contacts, normals and leans (n, 3) and tilts (n,), rad."""
         offset, rise, _, _, height = self.mode[self.at(tilt)].T[:, :, None]
         cosine, sine = np.cos(tilt)[:, None], np.sin(tilt)[:, None]
-        along = (self.inner - height) * (cosine * normal + sine * lean)
-        return np.asarray(contact + rise * normal + along - offset * (cosine * lean - sine * normal))
+        along = (self.inner - height) * (cosine * normal + sine * tilt_direction)
+        return np.asarray(contact + rise * normal + along - offset * (cosine * tilt_direction - sine * normal))
 
-    def depth(self, points: Floats, contact: Floats, normal: Floats, lean: Floats, tilt: float) -> Floats:
-        """How deep at least points (n, 3) lie in a piece of the tool at a contact, lean (3,) and tilt; negative outside."""
+    def depth(self, points: Floats, contact: Floats, normal: Floats, tilt_direction: Floats, tilt: float) -> Floats:
+        """Give a lower bound of how deep points (n, 3) lie in the tool at a contact, tilt direction (3,) and tilt; negative outside."""
         offset, rise, *_ = self.mode[(mode := int(self.at(np.array([tilt]))[0]))]
-        axis, x_t = np.cos(tilt) * normal + np.sin(tilt) * lean, np.cos(tilt) * lean - np.sin(tilt) * normal
+        axis, x_t = (
+            np.cos(tilt) * normal + np.sin(tilt) * tilt_direction,
+            np.cos(tilt) * tilt_direction - np.sin(tilt) * normal,
+        )
         from_centre = points - (contact + rise * normal - offset * x_t)
         height = (from_centre @ axis)[:, None]
         q = np.linalg.norm(from_centre - height * axis, axis=1)[:, None]
@@ -145,7 +148,7 @@ class Assembly(Record):
         return wide
 
 
-def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "cover") -> Assembly:
+def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "outer") -> Assembly:
     """Pieces of a cutter.
 
     Parameters
@@ -157,15 +160,15 @@ def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "cover"
     rest : float
         The same for neck, shank and holder.
     kind : str
-        `cover`: no point that counts is outside the pieces. `certain`: every point of the pieces counts.
+        `outer`: no point that counts is outside the pieces. `inner`: every point of the pieces counts.
     """
     flutes, rest = flutes - (cutter.allowance or 0.0), rest - (cutter.clearance or 0.0)
     bands = [Band(PARTS[part], low, stage, rest) for part, low, stage in stages(cutter)]
     top = flute_length(cutter)
     rows = []
-    if kind == "certain" or not bands:
+    if kind == "inner" or not bands:
         # Grown ones end with square edges, which may hold too much, or below all edges.
-        rows += flute_rows(cutter, flutes, top + flutes if kind == "certain" and flutes < 0.0 else top - flutes, kind)
+        rows += flute_rows(cutter, flutes, top + flutes if kind == "inner" and flutes < 0.0 else top - flutes, kind)
         for band in bands:
             rows += alone(band)
     else:
@@ -174,16 +177,16 @@ def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "cover"
         if cutter.shape == "lollipop":
             rows += opening(cutter, flutes, top)
         else:
-            rows += between(top_radius(cutter), top_lean(cutter), first.stage.radius, first.lean, top,
+            rows += between(top_radius(cutter), top_flank_angle(cutter), first.stage.radius, first.flank_angle, top,
                             min(flutes, first.inset), FLUTES)  # fmt: skip
         if flutes < 0.0:
-            end = max(end, top + flutes * min(0.0, math.sin(top_lean(cutter))))
+            end = max(end, top + flutes * min(0.0, math.sin(top_flank_angle(cutter))))
         rows += flute_rows(cutter, flutes, end, kind)
         for i, band in enumerate(bands):
             if i + 1 < len(bands):
                 above = bands[i + 1]
                 end, after = seam(band.stage.upper_radius, band.inset, above.stage.radius, above.inset, band.high)
-                rows += between(band.stage.upper_radius, band.lean, above.stage.radius, above.lean, band.high,
+                rows += between(band.stage.upper_radius, band.flank_angle, above.stage.radius, above.flank_angle, band.high,
                                 min(band.inset, above.inset), band.part)  # fmt: skip
             else:
                 end, after = band.high - band.inset, math.inf
@@ -234,15 +237,15 @@ def _inner(cutter: Cutter, bands: list[Band]) -> tuple[float, float]:
 
 def _slack(cutter: Cutter, inset: float, bands: list[Band], kind: Kind) -> float:
     """How far at most a point is from what counts though a cover piece holds it, mm."""
-    if kind == "certain":
+    if kind == "inner":
         return 0.0
     most = 0.0
     for band in bands:
         if band.inset < 0.0 and (cutter.clearance or 0.0) > 0.0:
             # Where there is no step a side ends at its seam's height though its normal there does not lie along it.
-            most = max(most, -band.inset * (1.0 / math.cos(band.lean) - 1.0))
+            most = max(most, -band.inset * (1.0 / math.cos(band.flank_angle) - 1.0))
         elif band.inset < 0.0:
-            half = 0.25 * math.pi + 0.5 * abs(band.lean)
+            half = 0.25 * math.pi + 0.5 * abs(band.flank_angle)
             most = max(most, -band.inset * (1.0 / math.cos(half) - 1.0))
     if cutter.shape == "form":
         for i in range(len(cutter.outline) - 1):
@@ -250,9 +253,9 @@ def _slack(cutter: Cutter, inset: float, bands: list[Band], kind: Kind) -> float
             stage = cutter.outline[i : i + 2]
             if inset < 0.0 and stage[1][1] > stage[0][1]:
                 # Grown sides end at the heights of their corners.
-                lean = math.atan2(stage[1][0] - stage[0][0], stage[1][1] - stage[0][1])
-                most = max(most, -inset * (1.0 / math.cos(lean) - 1.0))
-    top = abs(top_lean(cutter))
+                flank_angle = math.atan2(stage[1][0] - stage[0][0], stage[1][1] - stage[0][1])
+                most = max(most, -inset * (1.0 / math.cos(flank_angle) - 1.0))
+    top = abs(top_flank_angle(cutter))
     if inset < 0.0:
         # Grown flutes have square upper edges.
         most = max(most, -inset * (1.0 / math.cos(0.25 * math.pi + 0.5 * top) - 1.0))
@@ -264,7 +267,10 @@ def _slack(cutter: Cutter, inset: float, bands: list[Band], kind: Kind) -> float
             most = max(most, 0.5 * (inset + min(0.0, bands[0].inset)))
         if cutter.shape == "lollipop":
             most = max(most, inset)
-    for lean, depth in ((top, min(inset, bands[0].inset) if bands else 0.0), *((abs(b.lean), b.inset) for b in bands)):
+    for flank_angle, depth in (
+        (top, min(inset, bands[0].inset) if bands else 0.0),
+        *((abs(b.flank_angle), b.inset) for b in bands),
+    ):
         if depth > 0.0:
-            most = max(most, depth * (1.0 - math.cos(0.25 * math.pi + 0.5 * lean) + math.tan(lean)))
+            most = max(most, depth * (1.0 - math.cos(0.25 * math.pi + 0.5 * flank_angle) + math.tan(flank_angle)))
     return most

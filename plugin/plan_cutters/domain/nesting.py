@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.shapes import SAME, flute_length
-from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, UNJUDGED, Reach, blank
+from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, UNJUDGED, Verdicts, blank
 
 
 def order(cutters: Sequence[Cutter]) -> list[Cutter]:
@@ -52,7 +52,7 @@ def _bands(cutter: Cutter) -> list[tuple[bool, float, float, float, float]]:
     return found
 
 
-def handed(cutter: Cutter, judged: Mapping[Cutter, Reach], n: int) -> Reach:
+def handed(cutter: Cutter, judged: Mapping[Cutter, Verdicts], n: int) -> Verdicts:
     """What follows for a cutter from those already judged: postures, and samples that it cannot reach either.
 
     A posture that is safe for a cutter is so for every cutter inside it: what reaches into the smaller body reaches at
@@ -65,13 +65,13 @@ def handed(cutter: Cutter, judged: Mapping[Cutter, Reach], n: int) -> Reach:
         UNJUDGED where nothing follows; where inaccessible, the reason of the smaller cutter.
     """
     known = blank(n)
-    for other, reach in judged.items():
+    for other, verdicts in judged.items():
         if inside(cutter, other):
-            rows = reach.reached & (known.verdict == UNJUDGED)
+            rows = verdicts.reached & (known.verdict == UNJUDGED)
             known.verdict[rows] = ACCESSIBLE
-            for name in ("axis", "lean", "tilt", "rotation"):
-                getattr(known, name)[rows] = getattr(reach, name)[rows]
+            for name in ("axis", "tilt_direction", "tilt", "rotation"):
+                getattr(known, name)[rows] = getattr(verdicts, name)[rows]
         elif inside(other, cutter):
-            rows = (reach.verdict == INACCESSIBLE) & (known.verdict == UNJUDGED)
-            known.verdict[rows], known.reason[rows] = INACCESSIBLE, reach.reason[rows]
+            rows = (verdicts.verdict == INACCESSIBLE) & (known.verdict == UNJUDGED)
+            known.verdict[rows], known.reason[rows] = INACCESSIBLE, verdicts.reason[rows]
     return known

@@ -161,9 +161,9 @@ def _flutes(cutter: Cutter) -> Iterator[tuple[Point, Point | None, float]]:
         yield (r, high), *_round((r - corner, high), corner)
         yield end, None, 0.0
     else:
-        centre, lean = (r - corner, corner), cutter.taper
+        centre, flank_angle = (r - corner, corner), cutter.taper
         yield (r - corner, 0.0), None, 0.0
-        foot = centre[0] + corner * math.cos(lean), corner - corner * math.sin(lean)
+        foot = centre[0] + corner * math.cos(flank_angle), corner - corner * math.sin(flank_angle)
         yield foot, *_round(centre, corner)
         yield end, None, 0.0
 

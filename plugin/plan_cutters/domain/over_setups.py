@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints
 from plan_cutters.domain.kinematics import Kinematics
-from plan_cutters.domain.verdicts import AXIS_LIMIT, FIXTURE, INACCESSIBLE, UNDECIDED, Reach, blank
+from plan_cutters.domain.verdicts import AXIS_LIMIT, FIXTURE, INACCESSIBLE, UNDECIDED, Verdicts, blank
 
 
-def over_setups(each: Sequence[Reach]) -> tuple[Reach, Ints]:
+def over_setups(each: Sequence[Verdicts]) -> tuple[Verdicts, Ints]:
     """What is reached in one setup or another, and in which.
 
     Parameters
@@ -28,20 +28,20 @@ def over_setups(each: Sequence[Reach]) -> tuple[Reach, Ints]:
     """
     n = len(each[0].verdict)
     found, which = blank(n), np.full(n, -1, np.int32)
-    for k, reach in enumerate(each):
-        rows = reach.reached & (which < 0)
+    for k, verdicts in enumerate(each):
+        rows = verdicts.reached & (which < 0)
         which[rows] = k
-        for name in Reach.__slots__:
-            getattr(found, name)[rows] = getattr(reach, name)[rows]
-    for reach in each:
-        rows = (which < 0) & reach.lost
+        for name in Verdicts.__slots__:
+            getattr(found, name)[rows] = getattr(verdicts, name)[rows]
+    for verdicts in each:
+        rows = (which < 0) & verdicts.lost
         first = rows & ~found.lost
-        found.verdict[first], found.reason[first] = reach.verdict[first], reach.reason[first]
-        unsure = rows & (reach.verdict == UNDECIDED) & (found.verdict == INACCESSIBLE)
-        found.verdict[unsure], found.reason[unsure] = UNDECIDED, reach.reason[unsure]
-        more = rows & ~first & (found.reason == AXIS_LIMIT) & (reach.verdict == found.verdict)
-        found.reason[more] = reach.reason[more]
-        found.reason[rows & (reach.reason == FIXTURE)] = FIXTURE
+        found.verdict[first], found.reason[first] = verdicts.verdict[first], verdicts.reason[first]
+        unsure = rows & (verdicts.verdict == UNDECIDED) & (found.verdict == INACCESSIBLE)
+        found.verdict[unsure], found.reason[unsure] = UNDECIDED, verdicts.reason[unsure]
+        more = rows & ~first & (found.reason == AXIS_LIMIT) & (verdicts.verdict == found.verdict)
+        found.reason[more] = verdicts.reason[more]
+        found.reason[rows & (verdicts.reason == FIXTURE)] = FIXTURE
     return found, which
 
 

@@ -36,7 +36,7 @@ PARTS = {"neck": NECK, "shank": SHANK, "holder": HOLDER}
 #: By which pieces overlap where they meet, mm: what lies in the plane between two of them is in one.
 HAIR = 1e-9
 
-Kind = Literal["cover", "certain"]
+Kind = Literal["outer", "inner"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +53,7 @@ class Band:
         return self.low + self.stage.length
 
     @property
-    def lean(self) -> float:
+    def flank_angle(self) -> float:
         """Of its side from the axis, rad."""
         return math.atan(self.stage.slope)
 
@@ -94,7 +94,7 @@ def seam(lower: float, lower_inset: float, upper: float, upper_inset: float, at:
 
 
 def between(
-    lower: float, lower_lean: float, upper: float, upper_lean: float, at: float, inset: float, part: int
+    lower: float, lower_flank_angle: float, upper: float, upper_flank_angle: float, at: float, inset: float, part: int
 ) -> list[list[float]]:
     """What lies deeper than `inset` over a re-entrant corner of which both sides are moved in: it may be in neither of them.
 
@@ -104,20 +104,22 @@ def between(
     if inset <= 0.0:
         return []
     radius = min(lower, upper)
-    low = at - inset if lower > upper else at + inset * min(0.0, math.sin(lower_lean)) - HAIR
-    high = at + inset if upper > lower else at + inset * max(0.0, math.sin(upper_lean)) + HAIR
+    low = at - inset if lower > upper else at + inset * min(0.0, math.sin(lower_flank_angle)) - HAIR
+    high = at + inset if upper > lower else at + inset * max(0.0, math.sin(upper_flank_angle)) + HAIR
     if lower == upper:
         # A kink: sides that are nearly along the axis.
-        side = radius - inset * math.cos(max(abs(lower_lean), abs(upper_lean)))
-        return [band_row(low, high, side, 0.0, part)] if upper_lean > lower_lean else []
-    lean, other = (lower_lean, upper_lean) if upper > lower else (upper_lean, lower_lean)
+        side = radius - inset * math.cos(max(abs(lower_flank_angle), abs(upper_flank_angle)))
+        return [band_row(low, high, side, 0.0, part)] if upper_flank_angle > lower_flank_angle else []
+    flank_angle, other = (
+        (lower_flank_angle, upper_flank_angle) if upper > lower else (upper_flank_angle, lower_flank_angle)
+    )
     # The wider side may be nearer than the corner: what is deep enough is as far from it.
     wide = max(lower, upper) + inset * (abs(math.tan(other)) - 1.0 / math.cos(other))
-    least = inset * math.cos(0.25 * math.pi + 0.5 * abs(lean))
-    slope = math.tan(lean)
+    least = inset * math.cos(0.25 * math.pi + 0.5 * abs(flank_angle))
+    slope = math.tan(flank_angle)
     step = (at + least, at + inset + HAIR) if upper > lower else (at - inset - HAIR, at - least)
     return [
-        band_row(low, high, radius + slope * (low - at) - least / math.cos(lean), slope, part),
+        band_row(low, high, radius + slope * (low - at) - least / math.cos(flank_angle), slope, part),
         band_row(*step, min(radius, wide), 0.0, part),
     ]
 
@@ -135,7 +137,7 @@ def among(band: Band, start: float, end: float, *, exact: bool) -> list[list[flo
     """A band among others, between two heights; grown with round edges or with square ones, which hold more."""
     stage, inset = band.stage, band.inset
     side = stage.radius - inset * math.hypot(1.0, stage.slope)
-    rows, shift = [], min(0.0, inset) * math.sin(band.lean)
+    rows, shift = [], min(0.0, inset) * math.sin(band.flank_angle)
     if inset <= 0.0 and start < band.low + inset - HAIR and stage.slope:
         # What runs down into a wider band does so as wide as it begins: its own slope could leave out what is deep under its rim.
         rows.append(band_row(start, band.low + HAIR, stage.radius, 0.0, band.part))
@@ -187,17 +189,17 @@ def _unless_higher(row: list[float], top: float) -> list[float]:
 
 
 def _end(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list[float]]:
-    offset, corner, lean = cutter.radius - cutter.corner_radius, cutter.corner_radius, cutter.taper
+    offset, corner, flank_angle = cutter.radius - cutter.corner_radius, cutter.corner_radius, cutter.taper
     left = corner - inset
     # The flank's distance from the axis at the height of the corner's centre.
-    side, slope = offset + left / math.cos(lean), math.tan(lean) if lean else 0.0
+    side, slope = offset + left / math.cos(flank_angle), math.tan(flank_angle) if flank_angle else 0.0
     rows = []
     if left > 0.0:
         rows.append(_unless_higher(row_of(ARC, -math.inf, math.inf, offset, corner, left, FLUTES), top))
-        low = corner - left * math.sin(lean)
+        low = corner - left * math.sin(flank_angle)
     else:
         low = inset
-    radius = cutter.radius - inset if lean == 0.0 else side + slope * (low - corner)
+    radius = cutter.radius - inset if flank_angle == 0.0 else side + slope * (low - corner)
     rows.append(band_row(low, top, radius, slope, FLUTES))
     return rows
 
@@ -205,7 +207,7 @@ def _end(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list[
 def _lollipop(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list[float]]:
     row = row_of(ARC, -math.inf, math.inf, 0.0, cutter.radius, cutter.radius - inset, FLUTES)
     # Grown, the ball that its neck cuts off does not go on in the round.
-    return [_unless_higher(row, top) if kind == "certain" and inset < 0.0 else row]
+    return [_unless_higher(row, top) if kind == "inner" and inset < 0.0 else row]
 
 
 def _barrel(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list[float]]:
@@ -253,7 +255,7 @@ def _form(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list
         if w1 <= w0:
             continue
         stage = Stage(max(r0, 1e-12), w1 - w0, max(r1, 1e-12))
-        if kind == "certain":
+        if kind == "inner":
             rows += alone(Band(FLUTES, w0, stage, inset))
             continue
         mine = inset * (share(points, i) if inset > 0.0 else 1.0)

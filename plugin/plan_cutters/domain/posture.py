@@ -67,8 +67,8 @@ class PostureRange:
         return self.tilt[0] <= _ROUNDING
 
 
-def lean(normal: Floats, direction_max: Floats, rotation: Floats | float) -> Floats:
-    """Unit lean directions (..., 3) at rotations (...,), rad, about normals (..., 3)."""
+def tilt_direction(normal: Floats, direction_max: Floats, rotation: Floats | float) -> Floats:
+    """Unit tilt directions (..., 3) at rotations (...,), rad, about normals (..., 3)."""
     turn = np.asarray(rotation)[..., None]
     return np.asarray(np.cos(turn) * direction_max + np.sin(turn) * np.cross(normal, direction_max))
 

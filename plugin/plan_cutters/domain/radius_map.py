@@ -36,8 +36,8 @@ class RadiusMap(Record):
         The verdict on the next radius, INACCESSIBLE or UNDECIDED; UNJUDGED where none was looked at.
     reason : (n,) uint8
         Why that one does not reach the sample, an index into REASONS; else NO_REASON.
-    axis, lean : (n, 3) float
-        Unit tool axis and lean direction of a posture at `radius`; nan where there is none.
+    axis, tilt_direction : (n, 3) float
+        Unit tool axis and tilt direction of a posture at `radius`; nan where there is none.
     tilt : (n,) float
         rad, nan where there is none.
     rotation : (n,) int32
@@ -53,7 +53,7 @@ class RadiusMap(Record):
     beyond: Bytes
     reason: Bytes
     axis: Floats
-    lean: Floats
+    tilt_direction: Floats
     tilt: Floats
     rotation: Ints
 

@@ -66,7 +66,7 @@ def top_radius(cutter: Dimensions) -> float:
     return cutter.radius + flank_offset(cutter) + (top - cutter.corner_radius) * math.tan(cutter.taper)
 
 
-def top_lean(cutter: Dimensions) -> float:
+def top_flank_angle(cutter: Dimensions) -> float:
     """How far the side of the flutes leans from the axis where they end, rad; positive where they widen."""
     if cutter.shape == "barrel":
         return math.asin((cutter.arc_height - flute_length(cutter)) / cutter.arc_radius)

@@ -41,7 +41,7 @@ class StickOut(Record):
         The one that limits it, -1 for none; at `least`, its posture and what is in the way of a shorter one are:
     tilt, rotation : float
         rad.
-    axis, lean : (3,) float
+    axis, tilt_direction : (3,) float
     obstacle_face : int, optional
     obstacle_point : (3,) float, optional
     served : int
@@ -62,7 +62,7 @@ class StickOut(Record):
     tilt: float = math.nan
     rotation: float = math.nan
     axis: Floats | None = None
-    lean: Floats | None = None
+    tilt_direction: Floats | None = None
     obstacle_face: int | None = None
     obstacle_point: Floats | None = None
     served: int = 0
@@ -149,8 +149,8 @@ def _lower_side(row: NDArray[np.float64], height: float) -> list[tuple[float, fl
         turn = 0.5 * math.pi / _CHORDS
         out = around / math.cos(0.5 * turn)
         angles = [0.0, *(turn * (i + 0.5) for i in range(_CHORDS)), 0.5 * math.pi]
-        reach = [around, *[out] * _CHORDS, around]
-        points = [(radius + r * math.sin(a), centre - r * math.cos(a)) for a, r in zip(angles, reach, strict=True)]
+        verdicts = [around, *[out] * _CHORDS, around]
+        points = [(radius + r * math.sin(a), centre - r * math.cos(a)) for a, r in zip(angles, verdicts, strict=True)]
         points[0] = (points[0][0], centre - around)
         points[-1] = (radius + around, points[-1][1])
         return [(q0, v0, q1, v1) for (q0, v0), (q1, v1) in pairwise(points)]

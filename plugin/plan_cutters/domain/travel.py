@@ -18,7 +18,7 @@ from plan_cutters.domain.kinematics import turned
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement, frame_of
 from plan_cutters.domain.shapes import modes
-from plan_cutters.domain.verdicts import Reach
+from plan_cutters.domain.verdicts import Verdicts
 
 #: Positions this close to a limit are on it, mm: a tool axis is held up to an angle of `kinematics.PARALLEL`.
 ON_LIMIT = 1e-4
@@ -65,12 +65,12 @@ def unjudged(machine: Machine, placement: Placement | None) -> str | None:
     return None
 
 
-def tips(cutter: Cutter, point: Floats, normal: Floats, reach: Reach) -> Floats:
+def tips(cutter: Cutter, point: Floats, normal: Floats, verdicts: Verdicts) -> Floats:
     """Tips (n, 3) of a cutter at the postures with which it touches points (n, 3) of surfaces with unit normals (n, 3)."""
     found = np.full(point.shape, np.nan)
     for mode in modes(cutter):
-        at = np.isnan(found[:, 0]) & (reach.tilt >= mode.low - 1e-9) & (reach.tilt <= mode.high + 1e-9)
-        n, f, a, tilt = normal[at], reach.lean[at], reach.axis[at], reach.tilt[at, None]
+        at = np.isnan(found[:, 0]) & (verdicts.tilt >= mode.low - 1e-9) & (verdicts.tilt <= mode.high + 1e-9)
+        n, f, a, tilt = normal[at], verdicts.tilt_direction[at], verdicts.axis[at], verdicts.tilt[at, None]
         centre = point[at] + (mode.radius + (cutter.allowance or 0.0)) * n
         # Across the axis, towards the contact.
         across = np.cos(tilt) * f - np.sin(tilt) * n

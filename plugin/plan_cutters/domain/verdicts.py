@@ -24,7 +24,7 @@ from plan_cutters.kernels.codes import (
 # The codes of verdicts and reasons are this module's as well.
 __all__ = [
     "ACCESSIBLE", "AXIS_LIMIT", "BURIED", "CONCAVE", "CONVEX", "FIXTURE", "INACCESSIBLE", "INTERFERENCE_FREE", "LOCAL_GOUGE",
-    "NO_REASON", "REASONS", "SADDLE", "TOLERANCE", "UNDECIDED", "UNJUDGED", "WORDS", "Bytes", "Reach", "Witness", "blank",
+    "NO_REASON", "REASONS", "SADDLE", "TOLERANCE", "UNDECIDED", "UNJUDGED", "WORDS", "Bytes", "Verdicts", "Witness", "blank",
 ]  # fmt: skip
 
 #: Words of verdicts, from best to worst.
@@ -37,15 +37,15 @@ Bytes = NDArray[np.uint8]
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Reach(Record):
+class Verdicts(Record):
     """What one cutter reaches, sample by sample.
 
     Attributes
     ----------
     verdict : (n,) uint8
         INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED or UNJUDGED.
-    axis, lean : (n, 3) float
-        Unit tool axis and lean direction of the posture found; nan where there is none.
+    axis, tilt_direction : (n, 3) float
+        Unit tool axis and tilt direction of the posture found; nan where there is none.
     tilt : (n,) float
         rad, nan where there is none.
     rotation : (n,) int32
@@ -56,7 +56,7 @@ class Reach(Record):
 
     verdict: Bytes
     axis: Floats
-    lean: Floats
+    tilt_direction: Floats
     tilt: Floats
     rotation: Ints
     reason: Bytes
@@ -76,9 +76,9 @@ class Reach(Record):
         """Samples (n,) at which every rotation serves at tilt 0."""
         return np.asarray(self.verdict == INTERFERENCE_FREE)
 
-    def of(self, rows: NDArray[np.int64]) -> "Reach":
+    def of(self, rows: NDArray[np.int64]) -> "Verdicts":
         """What is reached of some samples."""
-        return Reach(*(getattr(self, name)[rows] for name in Reach.__slots__))
+        return Verdicts(*(getattr(self, name)[rows] for name in Verdicts.__slots__))
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -117,12 +117,12 @@ class Witness(Record):
     untried: bool = False
 
 
-def blank(n: int) -> Reach:
+def blank(n: int) -> Verdicts:
     """A reach over n samples on which nothing is known yet, for a search to fill."""
-    return Reach(
+    return Verdicts(
         verdict=np.full(n, UNJUDGED, np.uint8),
         axis=np.full((n, 3), np.nan),
-        lean=np.full((n, 3), np.nan),
+        tilt_direction=np.full((n, 3), np.nan),
         tilt=np.full(n, np.nan),
         rotation=np.full(n, -1, np.int32),
         reason=np.full(n, NO_REASON, np.uint8),

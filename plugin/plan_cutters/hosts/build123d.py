@@ -32,7 +32,7 @@ def compound(result: "Result", *, at: "int | WitnessEntry | None" = None, cutter
     """
     import build123d
 
-    from plan_cutters.hosts.shown import shown
+    from plan_cutters.hosts.viewer import shown
 
     name, groups = shown(result, at, cutter)
 

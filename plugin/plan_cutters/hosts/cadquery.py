@@ -56,7 +56,7 @@ def assembly(result: "Result", *, at: "int | WitnessEntry | None" = None, cutter
     """
     import cadquery
 
-    from plan_cutters.hosts.shown import shown
+    from plan_cutters.hosts.viewer import shown
 
     name, groups = shown(result, at, cutter)
     whole = cadquery.Assembly(name=name)

@@ -6,7 +6,7 @@ from typing import Any
 
 from plan_cutters.domain.checks import flag, number, numbers, shown
 from plan_cutters.domain.holder import Holder
-from plan_cutters.domain.turned import stages_around
+from plan_cutters.domain.revolution import stages_around
 from plan_cutters.errors import CutterError
 
 #: Axes by their letters.

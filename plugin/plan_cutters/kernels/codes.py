@@ -6,7 +6,7 @@ It stands beside the kernels, for the compiler freezes these numbers: a change o
 #: Verdicts of a sample.
 INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 255
 
-#: Why no posture is left, in the order in which the attributes are applied; `Reach.reason` is an index into it.
+#: Why no posture is left, in the order in which the attributes are applied; `Verdicts.reason` is an index into it.
 #: `buried`: under or within a body; `tolerance`: that is too coarse for the cutter, which is undecided everywhere then;
 #: `fixture`: without the fixtures the sample would be reached. Kernels write neither of these two.
 REASONS = (

@@ -133,7 +133,7 @@ def hold(n, f, rotary, intervals, count):
     Parameters
     ----------
     n, f : (3,) float64
-        Normal and lean direction.
+        Normal and tilt direction.
     rotary : Rotary
     intervals : (m, 2) float64, read and written
         With room at the end: `CROSSINGS` rows, and three for each crossing and interval.

@@ -76,7 +76,7 @@ class Cylinder(NamedTuple):
 
 
 class Frame(NamedTuple):
-    """Contact p, normal n, lean direction f, and t = n x f; each (3,)."""
+    """Contact p, normal n, tilt direction f, and t = n x f; each (3,)."""
 
     p: Any
     n: Any
@@ -99,11 +99,11 @@ class Scratch(NamedTuple):
 
 
 class Found(NamedTuple):
-    """What a search writes, n of each: verdict, axis, lean, tilt, rotation, reason, as in `domain.verdicts.Reach`."""
+    """What a search writes, n of each: verdict, axis, tilt_direction, tilt, rotation, reason, as in `domain.verdicts.Reach`."""
 
     verdict: Any
     axis: Any
-    lean: Any
+    tilt_direction: Any
     tilt: Any
     rotation: Any
     reason: Any

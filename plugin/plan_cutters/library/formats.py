@@ -10,10 +10,10 @@ from collections.abc import Callable
 
 from plan_cutters.errors import LibraryError
 from plan_cutters.files.formats import Foreign, Format, is_blank, refused, unknown
-from plan_cutters.library import freecad, fusion_csv, fusion_json, hsmworks, linuxcnc, own_toml
+from plan_cutters.library import freecad, fusion_csv, fusion_json, hsmworks, linuxcnc, toml_in
 from plan_cutters.library.files import Content
-from plan_cutters.library.listed import Found
 from plan_cutters.library.milling import Ask
+from plan_cutters.library.raw_tool import Found
 
 
 def _plain(read: Callable[[Content], Found]) -> Callable[[Content, Ask], Found]:
@@ -28,7 +28,7 @@ FORMATS: tuple[Format[Ask, Found], ...] = (
     Format("FreeCAD library", (".fctl",), freecad.is_library, _plain(freecad.read_library)),
     Format("FreeCAD bit", (".fctb",), freecad.is_bit, _plain(freecad.read_bit)),
     Format("FreeCAD holder", (".fcholder",), freecad.is_holder, _plain(freecad.read_holder)),
-    Format("plan-cutters TOML", (".toml",), own_toml.is_toml, own_toml.read_toml),
+    Format("plan-cutters TOML", (".toml",), toml_in.is_toml, toml_in.read_toml),
     Format("LinuxCNC tool table", (".tbl",), linuxcnc.is_table, _plain(linuxcnc.read_table)),
 )
 

@@ -14,7 +14,17 @@ from plan_cutters.domain.holder import Holder
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.library.files import MOST_TOOLS, Content, data_of, is_file, lines_of, too_many
 from plan_cutters.library.fusion_json import MOST_SECTIONS
-from plan_cutters.library.listed import FaultError, Found, Listed, mm, name_of, number_in, number_of, sections, whole_of
+from plan_cutters.library.raw_tool import (
+    FaultError,
+    Found,
+    Listed,
+    mm,
+    name_of,
+    number_in,
+    number_of,
+    sections,
+    whole_of,
+)
 from plan_cutters.library.records import Entry
 
 _MM = {"mm": 1.0, "µm": 1e-3, "μm": 1e-3, "um": 1e-3, "nm": 1e-6, "cm": 10.0, "dm": 100.0, "m": 1000.0, "in": 25.4,

@@ -9,7 +9,7 @@ from plan_cutters.domain.holder import Holder, Stage
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.library.files import MOST_TOOLS, Content, too_many
 from plan_cutters.library.fusion_json import MOST_SECTIONS
-from plan_cutters.library.listed import FaultError, Found, Listed, mm, name_of, number_in, sections, unit_of, whole_of
+from plan_cutters.library.raw_tool import FaultError, Found, Listed, mm, name_of, number_in, sections, unit_of, whole_of
 from plan_cutters.library.records import Entry
 
 #: Our name of each dimension, and the name in brackets of its column.

@@ -4,7 +4,7 @@ import re
 
 from plan_cutters.domain.checks import shown
 from plan_cutters.library.files import MOST_TOOLS, Content, too_many
-from plan_cutters.library.listed import FaultError, Found, name_of, number_in, whole_of
+from plan_cutters.library.raw_tool import FaultError, Found, name_of, number_in, whole_of
 from plan_cutters.library.records import Entry
 
 _LINE = re.compile(r"^\s*T\s*[+-]?\d+(?:\s+[A-Z]\s*[+-]?[\d.,]+)*\s*(?:;.*)?$", re.IGNORECASE)

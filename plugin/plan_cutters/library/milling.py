@@ -11,8 +11,8 @@ from plan_cutters.domain.dimensions import Dimensions
 from plan_cutters.domain.holder import Holder, Stage
 from plan_cutters.domain.shapes import MOST_PIECES, SAME, pieces_at_most, top_radius
 from plan_cutters.errors import CutterError
-from plan_cutters.library.listed import Listed
 from plan_cutters.library.outlines import fewer, joined, up_to
+from plan_cutters.library.raw_tool import Listed
 from plan_cutters.library.records import Entry
 
 #: Kinds of end mills that are read, by their usual names: what their names promise.

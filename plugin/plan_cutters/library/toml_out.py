@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Stage
-from plan_cutters.library.listed import name_of
+from plan_cutters.library.raw_tool import name_of
 from plan_cutters.library.records import Library
 
 

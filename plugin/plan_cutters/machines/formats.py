@@ -8,12 +8,12 @@ from collections.abc import Callable
 
 from plan_cutters.domain.machine import Machine
 from plan_cutters.files.formats import Foreign, Format, is_blank, refused, unknown
-from plan_cutters.machines import freecad, fusion, linuxcnc, mtconnect, own
+from plan_cutters.machines import freecad, fusion, linuxcnc, mtconnect, toml_in
 from plan_cutters.machines.files import Added, Content, fault
 
 FORMATS: tuple[Format[Added, Machine], ...] = (
-    Format("plan-cutters TOML", (".toml",), own.is_toml, own.read_toml),
-    Format("plan-cutters JSON", (".json",), own.is_json, own.read_json),
+    Format("plan-cutters TOML", (".toml",), toml_in.is_toml, toml_in.read_toml),
+    Format("plan-cutters JSON", (".json",), toml_in.is_json, toml_in.read_json),
     Format("FreeCAD machine", (".fcm",), freecad.is_fcm, freecad.read_fcm),
     Format("Fusion machine", (".mch",), fusion.is_mch, fusion.read_mch),
     Format("LinuxCNC configuration", (".ini",), linuxcnc.is_ini, linuxcnc.read_ini),

@@ -13,7 +13,7 @@ from plan_cutters.domain.checks import shown
 from plan_cutters.domain.machine import Machine
 from plan_cutters.errors import MachineError
 from plan_cutters.machines import chain
-from plan_cutters.machines.arranged import arranged
+from plan_cutters.machines.arrangement import arranged
 from plan_cutters.machines.files import Added, Content
 from plan_cutters.machines.ini import Hal, Ini
 

@@ -13,7 +13,7 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.errors import MachineError
 from plan_cutters.files.xml_tree import Element
 from plan_cutters.machines import chain
-from plan_cutters.machines.arranged import arranged
+from plan_cutters.machines.arrangement import arranged
 from plan_cutters.machines.files import Added, Content
 
 _ROOT = re.compile(r"<\s*(?:\w+:)?MTConnectDevices\b")

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from plan_cutters.domain.clearance import part_words
 from plan_cutters.domain.travel import tips
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, NO_REASON, REASONS, SADDLE, UNJUDGED, WORDS
-from plan_cutters.report.judged import Judged
+from plan_cutters.report.protocol import Judged
 from plan_cutters.scene.conditions import rotations_of
 
 CLASSES = {CONVEX: "convex", CONCAVE: "concave", SADDLE: "saddle", UNJUDGED: "unjudged"}
@@ -49,12 +49,12 @@ class Column:
 def columns(result: Judged) -> list[Column]:
     """The columns, in their order, a row for each sample in the order of `samples.npz`."""
     samples, name = result.samples, result.shown
-    reach, cutter = result.reaches[name], result.judged(name)
+    verdicts, cutter = result.reaches[name], result.judged(name)
     near = result.clearances
     around = result.conditions.around
     n = len(samples)
-    rotation = np.degrees(rotations_of(samples.normal, samples.direction_max, reach.lean))
-    rotation[~reach.reached] = np.nan
+    rotation = np.degrees(rotations_of(samples.normal, samples.direction_max, verdicts.tilt_direction))
+    rotation[~verdicts.reached] = np.nan
     faces = {number: around.called(number) for number in np.unique(near.face).tolist() if number}
     found = [
         Column("sample", np.arange(n, dtype=np.int32)),
@@ -63,13 +63,13 @@ def columns(result: Judged) -> list[Column]:
         Column("normal", samples.normal, _UNIT),
         Column("area_mm2", samples.area, _MM),
         Column("surface_class", result.surface_class, words=CLASSES),
-        Column("verdict", reach.verdict, words=WORDS),
-        Column("reason", reach.reason, words=dict(enumerate(REASONS)) | {NO_REASON: ""}),
-        Column("axis", reach.axis, _UNIT),
-        Column("lean", reach.lean, _UNIT),
-        Column("tilt_deg", np.degrees(reach.tilt), _DEG),
+        Column("verdict", verdicts.verdict, words=WORDS),
+        Column("reason", verdicts.reason, words=dict(enumerate(REASONS)) | {NO_REASON: ""}),
+        Column("axis", verdicts.axis, _UNIT),
+        Column("lean", verdicts.tilt_direction, _UNIT),
+        Column("tilt_deg", np.degrees(verdicts.tilt), _DEG),
         Column("rotation_deg", rotation, _DEG),
-        Column("tip_mm", tips(cutter, samples.point, samples.normal, reach), _MM),
+        Column("tip_mm", tips(cutter, samples.point, samples.normal, verdicts), _MM),
         Column("clearance_mm", near.distance, _MM),
         Column("nearest_part", near.part, words={-1: "", **part_words()}),
         Column("nearest_face", near.face, words={0: "", **faces}),

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Protocol
 from cad_io.errors import CadIoError
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files.lock import Lock
-from plan_cutters.report.judged import Judged
 from plan_cutters.report.making import LATER, WRITERS, sha256
+from plan_cutters.report.protocol import Judged
 
 if TYPE_CHECKING:
     # What formats there are is asked before anything heavy is loaded.

@@ -8,11 +8,11 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from plan_cutters.report.judged import Judged
+from plan_cutters.report.protocol import Judged
 
 if TYPE_CHECKING:
     # What formats there are is asked before anything heavy is loaded.
-    from cad_io.kernel.meanwhile import Meanwhile
+    from cad_io.kernel.side_process import Meanwhile
     from plan_cutters.document.clock import Clock
     from plan_cutters.document.model import FileEntry
 
@@ -78,7 +78,7 @@ class Making:
 
         The page is made while the faces are split, the GLB while the STEP file is written.
         """
-        from cad_io.kernel.meanwhile import Meanwhile
+        from cad_io.kernel.side_process import Meanwhile
 
         models = [name for name in formats if name in _MODELS]
         with ExitStack() as copies:

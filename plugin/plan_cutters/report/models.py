@@ -21,7 +21,7 @@ from cad_io.write.step import write_step as write_cad
 from plan_cutters.document.model import SplitEntry
 from plan_cutters.document.palette import LABELS, MEANING, rgb
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED
-from plan_cutters.report.judged import Judged
+from plan_cutters.report.protocol import Judged
 
 _LABEL = {
     INTERFERENCE_FREE: LABELS.index("interference_free"),

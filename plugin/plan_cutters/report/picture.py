@@ -17,7 +17,7 @@ from cad_io.kernel import translated
 from cad_io.write import meshes_of
 from plan_cutters.document.palette import LABELS, label, rgb
 from plan_cutters.domain.posture import unit
-from plan_cutters.report.judged import Judged
+from plan_cutters.report.protocol import Judged
 from plan_cutters.report.sheet import DPI, figure, fitting, printable, save, write
 from plan_cutters.report.story.names import short_names
 from plan_cutters.report.story.numbers import VERDICTS, part_of

@@ -21,7 +21,7 @@ from plan_cutters.document.axis_regions import (
     Span,
 )
 from plan_cutters.document.frozen import vector
-from plan_cutters.report.judged import Judged
+from plan_cutters.report.protocol import Judged
 from plan_cutters.scene.clearance import clearances
 from plan_cutters.scene.fixed_axis import few_axes, held_at
 
@@ -41,8 +41,8 @@ def axis_regions(result: Judged) -> AxisRegions:
     """The regions of a result, for the cutter shown."""
     samples, name, plan = result.samples, result.shown, result.plan
     # Axes are held in the first setup.
-    reach, cutter, conditions = result.here.get(name, result.reaches[name]), result.judged(name), result.conditions
-    axes, number = few_axes(samples, cutter, reach, conditions)
+    verdicts, cutter, conditions = result.here.get(name, result.reaches[name]), result.judged(name), result.conditions
+    axes, number = few_axes(samples, cutter, verdicts, conditions)
     held = held_at(axes, number, samples)
     near = clearances(samples, cutter, held, conditions).distance
     label = _connected(number, samples.neighbours)
@@ -57,7 +57,7 @@ def axis_regions(result: Judged) -> AxisRegions:
             Region(
                 id=i, axis=int(number[rows[0]]), tilt_deg=_span(tilt), clearance_mm=least, samples=len(rows),
                 area_mm2=float(samples.area[rows].sum()), low=vector(point.min(axis=0)), high=vector(point.max(axis=0)),
-                faces=_faces(rows, samples), found=_found(rows, samples, reach), free=None if free is None else free.of(rows),
+                faces=_faces(rows, samples), found=_found(rows, samples, verdicts), free=None if free is None else free.of(rows),
                 rows=_runs(rows),
             )
         )  # fmt: skip
@@ -75,7 +75,7 @@ def axis_regions(result: Judged) -> AxisRegions:
     return AxisRegions(
         part=plan.part.file, sha256=plan.part.sha256, cutter=name, machine=plan.effective.machine,
         setup=plan.effective.setup, tolerance_mm=plan.effective.tolerance_mm, axes=fixed, regions=regions,
-        rest=_rest(reach.reached & (number < 0), samples), not_reached=_rest(~reach.reached, samples),
+        rest=_rest(verdicts.reached & (number < 0), samples), not_reached=_rest(~verdicts.reached, samples),
     )  # fmt: skip
 
 
@@ -116,15 +116,17 @@ def _faces(rows: NDArray[np.int64], samples: Any) -> list[RegionFace]:
     ]
 
 
-def _found(rows: NDArray[np.int64], samples: Any, reach: Any) -> AxisFound:
-    axis, area = reach.axis[rows], np.maximum(samples.area[rows], 1e-12)
+def _found(rows: NDArray[np.int64], samples: Any, verdicts: Any) -> AxisFound:
+    axis, area = verdicts.axis[rows], np.maximum(samples.area[rows], 1e-12)
     mean = (axis * area[:, None]).sum(axis=0)
     length = float(np.linalg.norm(mean))
     # Axes that cancel each other have no mean: any of them is as good.
     mean = mean / length if length > 1e-9 * float(area.sum()) else axis[0]
     apart = 2.0 * np.arcsin(np.clip(0.5 * np.linalg.norm(axis - mean, axis=1), 0.0, 1.0))
     return AxisFound(
-        mean=vector(mean), half_angle_deg=float(np.degrees(apart.max())), tilt_deg=_span(np.degrees(reach.tilt[rows]))
+        mean=vector(mean),
+        half_angle_deg=float(np.degrees(apart.max())),
+        tilt_deg=_span(np.degrees(verdicts.tilt[rows])),
     )
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from plan_cutters.report.axes import Column, columns
-from plan_cutters.report.judged import Judged
+from plan_cutters.report.protocol import Judged
 
 
 def write_csv(result: Judged, _split: object, path: Path) -> None:

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from plan_cutters.report.judged import Judged
+from plan_cutters.report.protocol import Judged
 
 
 def write_npz(result: Judged, _split: object, path: Path) -> None:
-    """Write `samples.npz`: the samples, and per cutter verdict, axis, lean and reason with its id as suffix.
+    """Write `samples.npz`: the samples, and per cutter verdict, axis, tilt_direction and reason with its id as suffix.
 
     Over several setups what one or another reaches, with the posture of the first that does: `setup_ID` is its index into
     `setups`, -1 where none does, and `reached_in_ID` says which do. `inside_bodies`: what is no surface of the finished part.
@@ -34,11 +34,11 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
         "surface_class": result.surface_class,
         "inside_bodies": result.inside_bodies,
     }
-    for name, reach in result.reaches.items():
-        arrays[f"verdict_{name}"] = reach.verdict
-        arrays[f"axis_{name}"] = reach.axis
-        arrays[f"lean_{name}"] = reach.lean
-        arrays[f"reason_{name}"] = reach.reason
+    for name, verdicts in result.reaches.items():
+        arrays[f"verdict_{name}"] = verdicts.verdict
+        arrays[f"axis_{name}"] = verdicts.axis
+        arrays[f"lean_{name}"] = verdicts.tilt_direction
+        arrays[f"reason_{name}"] = verdicts.reason
         if result.kinematics is not None:
             angles, taken = result.rotary(name)
             if name in result.travels:
@@ -46,8 +46,8 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
             arrays[f"rotary_{name}"], arrays[f"rotary_taken_{name}"] = np.degrees(angles), taken
     if result.elsewhere:
         arrays["setups"] = np.array([result.scene.setup, *(axis for axis, _ in result.elsewhere)])
-        for name, reach in result.here.items():
-            each = [reach, *(found[name] for _, found in result.elsewhere)]
+        for name, verdicts in result.here.items():
+            each = [verdicts, *(found[name] for _, found in result.elsewhere)]
             arrays[f"setup_{name}"] = result.served_in[name]
             arrays[f"reached_in_{name}"] = np.stack([one.reached for one in each], axis=1)
     for name, found in result.answers.stick_outs.items():
@@ -57,7 +57,7 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
         arrays[f"radius_{radii.shape}"] = radii.radius
         arrays[f"radius_beyond_{radii.shape}"] = radii.beyond
         arrays[f"radius_axis_{radii.shape}"] = radii.axis
-        arrays[f"radius_lean_{radii.shape}"] = radii.lean
+        arrays[f"radius_lean_{radii.shape}"] = radii.tilt_direction
     _write(arrays, path)
 
 

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from plan_cutters.domain.clearance import part_words
 from plan_cutters.domain.verdicts import REASONS, WORDS
 from plan_cutters.report.axes import CLASSES, columns
-from plan_cutters.report.judged import Judged
+from plan_cutters.report.protocol import Judged
 
 _TYPE = {
     "float64": "Float64",

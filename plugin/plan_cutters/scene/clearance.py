@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints, Record, SurfaceSamples
 from plan_cutters.domain.clearance import grown, rungs
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.verdicts import Reach
+from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.kernels.codes import PART
 from plan_cutters.scene.conditions import Conditions, tool_of
 from plan_cutters.scene.threads import in_chunks
@@ -42,14 +42,14 @@ class Clearances(Record):
     face: Ints
 
 
-def clearances(samples: SurfaceSamples, cutter: Cutter, reach: Reach, conditions: Conditions) -> Clearances:
+def clearances(samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts, conditions: Conditions) -> Clearances:
     """Clearance at every posture found.
 
     Parameters
     ----------
     samples : SurfaceSamples
     cutter : Cutter
-    reach : Reach
+    verdicts : Verdicts
         What was found for it.
     conditions : Conditions
 
@@ -63,7 +63,7 @@ def clearances(samples: SurfaceSamples, cutter: Cutter, reach: Reach, conditions
 
     n, obstacles, steps = len(samples), conditions.obstacles, rungs(cutter)
     found = Clearances(np.full(n, np.nan), np.full(n, -1, np.int8), np.zeros(n, np.int32))
-    rows = np.flatnonzero(reach.reached)
+    rows = np.flatnonzero(verdicts.reached)
     nothing = not grown(cutter, 0.0).piece.shape[1]
     if conditions.around.doubtful or nothing or not len(rows):
         return found
@@ -79,7 +79,15 @@ def clearances(samples: SurfaceSamples, cutter: Cutter, reach: Reach, conditions
             tool = tool_of(made)
             in_chunks(
                 lambda piece, tool=tool: probe(  # type: ignore[misc]
-                    piece, samples.point, samples.normal, reach.axis, reach.lean, tool, obstacles.tree, triangle, which
+                    piece,
+                    samples.point,
+                    samples.normal,
+                    verdicts.axis,
+                    verdicts.tilt_direction,
+                    tool,
+                    obstacles.tree,
+                    triangle,
+                    which,
                 ),
                 mine,
                 conditions.jobs,

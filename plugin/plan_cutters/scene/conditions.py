@@ -12,7 +12,7 @@ from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.posture import PostureRange
-from plan_cutters.domain.verdicts import Reach
+from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.kernels.rows import Contacts, Found, Ranges, Rotary, Tool
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
@@ -51,19 +51,19 @@ class Conditions(Record):
     @property
     def obstacles(self) -> Obstacles:
         """Everything that may be in the way."""
-        return self.around.may_be
+        return self.around.possible
 
     def judges(self, cutter: Cutter) -> bool:
         """Whether the tolerance that is kept is fine enough to say anything about a cutter."""
         return cutter.large_enough(self.tolerance)
 
-    def light(self, cutter: Cutter) -> Assembly:
+    def outer_tool(self, cutter: Cutter) -> Assembly:
         """All of a cutter that nothing may enter: a triangle that does not reach into it lets the surface come no deeper than
         allowed.
         """
         return tools(cutter, self.tolerance, self.obstacles.triangles.chord_error)[0]
 
-    def heavy(self, cutter: Cutter) -> Assembly:
+    def inner_tool(self, cutter: Cutter) -> Assembly:
         """What of a cutter is surely in the way: a triangle that reaches into it proves a point of the surface that is too
         deep.
         """
@@ -101,10 +101,10 @@ def ranges_of(machine: Machine, setup: Floats, postures: PostureRange, x: Floats
     )
 
 
-def rotations_of(normal: Floats, direction_max: Floats, lean: Floats) -> Floats:
-    """Rotations (n,) of lean directions (n, 3), rad from 0 to 2 pi."""
-    across = (lean * np.cross(normal, direction_max)).sum(axis=-1)
-    return np.asarray(np.remainder(np.arctan2(across, (lean * direction_max).sum(axis=-1)), 2.0 * np.pi))
+def rotations_of(normal: Floats, direction_max: Floats, tilt_direction: Floats) -> Floats:
+    """Rotations (n,) of tilt directions (n, 3), rad from 0 to 2 pi."""
+    across = (tilt_direction * np.cross(normal, direction_max)).sum(axis=-1)
+    return np.asarray(np.remainder(np.arctan2(across, (tilt_direction * direction_max).sum(axis=-1)), 2.0 * np.pi))
 
 
 def rotary_of(found: Kinematics | None) -> Rotary:
@@ -129,7 +129,7 @@ def tools(cutter: Cutter, tolerance: float, error: float) -> tuple[Assembly, Ass
     Every surface point has a triangle point within that error and the reverse: the flutes are smaller by the tolerance less the
     error, and all else larger by the error; or the flutes smaller by both, and all else by the error.
     """
-    return assembly(cutter, tolerance - error, -error), assembly(cutter, tolerance + error, error, kind="certain")
+    return assembly(cutter, tolerance - error, -error), assembly(cutter, tolerance + error, error, kind="inner")
 
 
 def tool_of(made: Assembly) -> Tool:
@@ -137,9 +137,11 @@ def tool_of(made: Assembly) -> Tool:
     return Tool(made.piece, made.mode, made.reach, made.inner, made.end)
 
 
-def found_of(reach: Reach) -> Found:
+def found_of(verdicts: Verdicts) -> Found:
     """Where kernels write what they find."""
-    return Found(reach.verdict, reach.axis, reach.lean, reach.tilt, reach.rotation, reach.reason)
+    return Found(
+        verdicts.verdict, verdicts.axis, verdicts.tilt_direction, verdicts.tilt, verdicts.rotation, verdicts.reason
+    )
 
 
 def require_finite(contacts: Contacts, rows: NDArray[np.int64]) -> None:
@@ -154,20 +156,20 @@ def require_finite(contacts: Contacts, rows: NDArray[np.int64]) -> None:
 
 
 def search_postures(
-    contacts: Contacts, rows: NDArray[np.int64], light: Assembly, heavy: Assembly, conditions: Conditions, reach: Reach,
-    progress: Progress | None = None, *, fixed: bool = False, strict: bool = False, work: Work | None = None,
+    contacts: Contacts, rows: NDArray[np.int64], outer_tool: Assembly, inner_tool: Assembly, conditions: Conditions,
+    verdicts: Verdicts, progress: Progress | None = None, *, fixed: bool = False, strict: bool = False, work: Work | None = None,
 ) -> None:  # fmt: skip
-    """Search a posture for contacts, neighbours in sequence, and write what is found into `reach`.
+    """Search a posture for contacts, neighbours in sequence, and write what is found into `verdicts`.
 
     Parameters
     ----------
     contacts : Contacts
     rows : (m,) int64
         Contacts to decide.
-    light, heavy : Assembly
-        As `Conditions.light` and `Conditions.heavy` make them of a cutter.
+    outer_tool, inner_tool : Assembly
+        As `Conditions.outer_tool` and `Conditions.inner_tool` make them of a cutter.
     conditions : Conditions
-    reach : Reach
+    verdicts : Verdicts
     fixed : bool
         As for `in_chunks`: each contact starts from what was found at the one before it in its piece.
     strict : bool
@@ -186,11 +188,11 @@ def search_postures(
 
     require_finite(contacts, rows)
     ranges, around = conditions.ranges._replace(strict=strict), conditions.around
-    may_be, surely = around.may_be.solids, around.surely.solids
-    tools, found, looked = (tool_of(light), tool_of(heavy)), found_of(reach), list[int]()
+    possible, certain = around.possible.solids, around.certain.solids
+    tools, found, looked = (tool_of(outer_tool), tool_of(inner_tool)), found_of(verdicts), list[int]()
 
     def searched(piece: NDArray[np.int64]) -> None:
-        looked.append(search(piece, contacts, ranges, *tools, may_be, surely, found))
+        looked.append(search(piece, contacts, ranges, *tools, possible, certain, found))
 
     in_chunks(searched, rows, conditions.jobs, progress, fixed=fixed)
     if work is not None:

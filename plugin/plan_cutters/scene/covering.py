@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Record
 from cad_io.part.bodies import Body
-from plan_cutters.scene.buried import balls_inside
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.inside_material import balls_inside
+from plan_cutters.scene.preparation import Prepared
 
 How = Literal["overlaps", "stands_on", "touches_or_overlaps"]
 
@@ -59,9 +59,9 @@ def _how(ready: Prepared, body: Body, rows: NDArray[np.int64]) -> How:
     """Whether a body lies over contacts or only against them."""
     from plan_cutters.kernels.material import near_skin
 
-    surely = ready.conditions.around.surely
-    _, deep = surely.depths(ready.scene.tolerance)
-    point, skin = np.ascontiguousarray(ready.samples.point[rows]), surely.skin_of(body)
+    certain = ready.conditions.around.certain
+    _, deep = certain.depths(ready.scene.tolerance)
+    point, skin = np.ascontiguousarray(ready.samples.point[rows]), certain.skin_of(body)
     on = np.zeros(len(rows), bool)
     # Where a body overlaps, a few of them tell.
     for some in (point[:: 1 + len(point) // _FEW], point):

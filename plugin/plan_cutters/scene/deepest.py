@@ -12,7 +12,7 @@ from cad_io.errors import SampleError
 from cad_io.sample import foot_on
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.verdicts import Reach
+from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.scene.conditions import tool_of
 from plan_cutters.scene.obstacles import Obstacles
 
@@ -73,7 +73,7 @@ def deepest(
     cutter: Cutter,
     contact: Floats,
     normal: Floats,
-    posture: Reach,
+    posture: Verdicts,
     guess: float,
 ) -> Deepest | None:
     """Find the deepest point of the obstacles in a cutter at a contact; None if nothing is in it.
@@ -85,7 +85,7 @@ def deepest(
     obstacles : Obstacles
     cutter : Cutter
     contact, normal : (3,) float
-    posture : Reach
+    posture : Verdicts
         Of length one.
     guess : float
         A depth, mm, that something surely has, or nearly.
@@ -96,7 +96,7 @@ def deepest(
 
     def beyond(points: Floats, depth: float) -> Floats:
         made = assembly(cutter, depth, depth)
-        return made.depth(points, contact, normal, posture.lean[0], float(posture.tilt[0]))
+        return made.depth(points, contact, normal, posture.tilt_direction[0], float(posture.tilt[0]))
 
     def depth_of(point: Floats, depth: float) -> float:
         # What lies d deep in what is left of a tool beyond a depth lies deeper than that by d, or more where pieces meet.
@@ -115,7 +115,7 @@ def deepest(
             contact[None],
             normal[None],
             posture.axis,
-            posture.lean,
+            posture.tilt_direction,
             tool,
             obstacles.tree,
             hit,

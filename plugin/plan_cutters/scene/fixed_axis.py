@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.placement import frame_of
-from plan_cutters.domain.verdicts import ACCESSIBLE, Reach, blank
+from plan_cutters.domain.verdicts import ACCESSIBLE, Verdicts, blank
 from plan_cutters.scene.conditions import Conditions, contacts_of, rotations_of, tool_of
 from plan_cutters.scene.threads import in_chunks
 
@@ -31,7 +31,11 @@ def serves(
     low, high = conditions.postures.tilt
     free = np.zeros(len(samples), bool)
     if conditions.machine.allows(axis[None], frame_of(conditions.setup, conditions.x))[0]:
-        tool, solids, contacts = tool_of(conditions.light(cutter)), conditions.obstacles.solids, contacts_of(samples)
+        tool, solids, contacts = (
+            tool_of(conditions.outer_tool(cutter)),
+            conditions.obstacles.solids,
+            contacts_of(samples),
+        )
         in_chunks(
             lambda piece: served(piece, axis, contacts, low - _END, high + _END, tool, solids, free),
             rows,
@@ -55,21 +59,25 @@ def _turned(
 
 
 def lean_of(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples) -> Floats:
-    """Unit lean directions (m, 3) of one axis at samples; `direction_max` where it is the normal."""
+    """Unit tilt directions (m, 3) of one axis at samples; `direction_max` where it is the normal."""
     normal = samples.normal[rows]
-    lean = axis - (normal @ axis)[:, None] * normal
-    length = np.linalg.norm(lean, axis=1)[:, None]
-    return np.asarray(np.where(length > 1e-12, lean / np.maximum(length, 1e-300), samples.direction_max[rows]))
+    tilt_direction = axis - (normal @ axis)[:, None] * normal
+    length = np.linalg.norm(tilt_direction, axis=1)[:, None]
+    return np.asarray(
+        np.where(length > 1e-12, tilt_direction / np.maximum(length, 1e-300), samples.direction_max[rows])
+    )
 
 
-def few_axes(samples: SurfaceSamples, cutter: Cutter, reach: Reach, conditions: Conditions) -> tuple[Floats, Ints]:
+def few_axes(
+    samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts, conditions: Conditions
+) -> tuple[Floats, Ints]:
     """Few axes that together serve what a cutter reaches: the one that serves most of what is left comes next.
 
     Parameters
     ----------
     samples : SurfaceSamples
     cutter : Cutter
-    reach : Reach
+    verdicts : Verdicts
         What was found for it.
     conditions : Conditions
 
@@ -81,11 +89,11 @@ def few_axes(samples: SurfaceSamples, cutter: Cutter, reach: Reach, conditions: 
         Of the axis that each sample goes with; -1 where it is not reached, or no axis was found before the search ended.
     """
     number = np.full(len(samples), -1, np.int32)
-    rows = np.flatnonzero(reach.reached)
+    rows = np.flatnonzero(verdicts.reached)
     if not len(rows):
         return np.zeros((0, 3)), number
     area = np.maximum(samples.area[rows], 1e-12)
-    tried = _candidates(reach.axis[rows], area, conditions.setup, int(np.clip(_TESTS // len(rows), _FEWEST, _MOST)))
+    tried = _candidates(verdicts.axis[rows], area, conditions.setup, int(np.clip(_TESTS // len(rows), _FEWEST, _MOST)))
     table = np.array([serves(rows, axis, samples, cutter, conditions) for axis in tried])
     left = np.ones(len(rows), bool)
     axes: list[Floats] = []
@@ -103,8 +111,8 @@ def few_axes(samples: SurfaceSamples, cutter: Cutter, reach: Reach, conditions: 
         spare = np.flatnonzero(left)
         if not len(spare):
             break
-        mean = (reach.axis[rows[spare]] * area[spare, None]).sum(axis=0)
-        axis = reach.axis[rows[spare[int((reach.axis[rows[spare]] @ mean).argmax())]]]
+        mean = (verdicts.axis[rows[spare]] * area[spare, None]).sum(axis=0)
+        axis = verdicts.axis[rows[spare[int((verdicts.axis[rows[spare]] @ mean).argmax())]]]
         mine = np.zeros(len(rows), bool)
         mine[spare] = serves(rows[spare], axis, samples, cutter, conditions)
         if not mine.any():
@@ -133,12 +141,12 @@ def _candidates(axis: Floats, area: Floats, setup: Floats, most: int) -> Floats:
     return np.array(kept)
 
 
-def held_at(axes: Floats, number: Ints, samples: SurfaceSamples) -> Reach:
+def held_at(axes: Floats, number: Ints, samples: SurfaceSamples) -> Verdicts:
     """The postures of samples that go with one of some axes each, as a search would write them."""
     found = blank(len(number))
     for k, axis in enumerate(axes):
         rows = np.flatnonzero(number == k)
-        found.axis[rows], found.lean[rows] = axis, lean_of(rows, axis, samples)
+        found.axis[rows], found.tilt_direction[rows] = axis, lean_of(rows, axis, samples)
         cosine = samples.normal[rows] @ axis
         across = np.linalg.norm(np.cross(samples.normal[rows], axis), axis=1)
         found.tilt[rows] = np.arctan2(across, cosine)

@@ -23,7 +23,7 @@ from plan_cutters.domain.fixture import CAD, MESH, Fixture
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.scene.obstacles import Obstacles
-from plan_cutters.scene.surroundings import Standing, Surroundings, surroundings
+from plan_cutters.scene.surroundings import PlacedFixture, Surroundings, surroundings
 
 #: A table reaches this much farther than the part, mm: as far as a cutter may.
 TABLE = 2000.0
@@ -40,8 +40,8 @@ Kept = MutableMapping[Any, Any]
 class _Body(Record):
     """A fixture's triangles in its own frame, with what they enclose: perhaps, and surely."""
 
-    may_be: Obstacles
-    surely: Obstacles
+    possible: Obstacles
+    certain: Obstacles
     missing: tuple[tuple[str, str, StandIn], ...] = ()
     notes: tuple[str, ...] = ()
 
@@ -114,7 +114,7 @@ def joined(
     """
     if not fixtures:
         return around
-    vertex = around.may_be.triangles.vertex
+    vertex = around.possible.triangles.vertex
     near = np.array([vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))])
     standing, bodies = [], []
     for number, fixture in enumerate(fixtures, 1):
@@ -123,19 +123,19 @@ def joined(
         shown = None if bed is None else bed(_SHOWN * float(np.ptp(near, axis=0).max()))
         standing.append(_standing(-number, packable(fixture, kept), body, read(fixture, kept), shown, setup))
         bodies.append(body)
-    may_be = _together(around.may_be, standing, [body.may_be for body in bodies], near)
-    surely = may_be
-    if around.surely is not around.may_be or any(body.surely is not body.may_be for body in bodies):
-        surely = _together(around.surely, standing, [body.surely for body in bodies], near)
-    return replace(around, may_be=may_be, surely=surely, fixtures=tuple(standing), alone=around)
+    possible = _together(around.possible, standing, [body.possible for body in bodies], near)
+    certain = possible
+    if around.certain is not around.possible or any(body.certain is not body.possible for body in bodies):
+        certain = _together(around.certain, standing, [body.certain for body in bodies], near)
+    return replace(around, possible=possible, certain=certain, fixtures=tuple(standing), alone=around)
 
 
 def _standing(
     number: int, fixture: Fixture, body: _Body, source: Part | Mesh | None, drawn: Floats | None, setup: Sequence[float]
-) -> Standing:  # fmt: skip
+) -> PlacedFixture:  # fmt: skip
     """A fixture in its place; `drawn`: triangles in its own frame that models show instead of all."""
-    vertex = fixture.placed(body.surely.triangles.vertex)
-    whole = Obstacles(replace(body.surely.triangles, vertex=vertex), body.surely.weight)
+    vertex = fixture.placed(body.certain.triangles.vertex)
+    whole = Obstacles(replace(body.certain.triangles, vertex=vertex), body.certain.weight)
     enclosing = Body((number,), (1,), True, np.zeros((0, 3, 3)))
     notes = list(body.notes)
     if isinstance(source, Mesh) and not fixture.chord_error:
@@ -145,11 +145,13 @@ def _standing(
         high = float((vertex @ np.asarray(setup, float)).max())
         axis = ",".join(f"{each + 0.0:.4g}" for each in setup)
         notes.append(f"its top is {high + 0.0:.6g} mm from the part's origin along the setup axis {axis}")
-    return Standing(number, fixture, source, whole, enclosing if body.surely.weight.any() else None, body.missing,
+    return PlacedFixture(number, fixture, source, whole, enclosing if body.certain.weight.any() else None, body.missing,
                     tuple(notes), shown)  # fmt: skip
 
 
-def _together(own: Obstacles, standing: Sequence[Standing], bodies: Sequence[Obstacles], near: Floats) -> Obstacles:
+def _together(
+    own: Obstacles, standing: Sequence[PlacedFixture], bodies: Sequence[Obstacles], near: Floats
+) -> Obstacles:
     """One set of obstacles, with one tree."""
     vertex, face, weight = [own.triangles.vertex], [own.triangles.face], [own.weight]
     boxes, gaps, errors = [own.open_boxes], [own.gap], [own.triangles.chord_error]
@@ -194,8 +196,8 @@ def _of_part(part: Part, fixture: Fixture, chord: float) -> _Body:
     missing += [
         (str(each.entity or each.name), each.why, "none" if each.box is None else "box") for each in around.lost
     ]
-    notes = [] if around.surely.weight.any() else ["encloses nothing: only its surface is in the way"]
-    return _Body(around.may_be, around.surely, tuple(missing), (*part.warnings, *notes))
+    notes = [] if around.certain.weight.any() else ["encloses nothing: only its surface is in the way"]
+    return _Body(around.possible, around.certain, tuple(missing), (*part.warnings, *notes))
 
 
 def _of_mesh(mesh: Mesh, error: float) -> _Body:
@@ -226,8 +228,8 @@ def _bed(fixture: Fixture, around: Surroundings, setup: Sequence[float], near: F
         (top,) = fixture.sizes
     else:
         # What surely is the part: what only stands for something missing may reach lower than anything does.
-        part = around.surely.triangles.vertex
-        part = part if len(part) else around.may_be.triangles.vertex
+        part = around.certain.triangles.vertex
+        part = part if len(part) else around.possible.triangles.vertex
         # Its shift comes on top, as for any fixture.
         top = float(heights(part + fixture.shift)[..., 2].min())
     corners = np.array([[near[i, 0], near[j, 1], near[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])

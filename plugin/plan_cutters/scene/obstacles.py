@@ -235,25 +235,25 @@ class Obstacles(Record):
         return Obstacles(triangles, weight)
 
     def holds(
-        self, tool: Assembly, contact: Floats, normal: Floats, lean: Floats, tilt: Floats, *, surely: bool = False
+        self, tool: Assembly, contact: Floats, normal: Floats, tilt_direction: Floats, tilt: Floats, *, certain: bool = False
     ) -> NDArray[np.bool_]:  # fmt: skip
         """Whether cutters that touch no skin lie within a body, or may: (n,).
 
         Parameters
         ----------
         tool : Assembly
-        contact, normal, lean : (n, 3) float
+        contact, normal, tilt_direction : (n, 3) float
         tilt : (n,) float
             rad.
-        surely : bool
+        certain : bool
             Only those of which it is sure.
         """
         from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, windings
 
-        point = tool.on_axis(contact, normal, lean, tilt)
+        point = tool.on_axis(contact, normal, tilt_direction, tilt)
         out = np.empty(len(point))
         windings(np.ascontiguousarray(point), self.solids, out)
-        return np.asarray(out >= SURELY_INSIDE if surely else ~(out < MAYBE_INSIDE))
+        return np.asarray(out >= SURELY_INSIDE if certain else ~(out < MAYBE_INSIDE))
 
 
 def divided(vertex: Floats, low: Floats, high: Floats, longest: float, most: int | None = None) -> Floats:

@@ -7,7 +7,7 @@ import numpy as np
 from cad_io.arrays import Floats, Record
 from plan_cutters.errors import FixtureError
 from plan_cutters.scene.obstacles import Obstacles, divided
-from plan_cutters.scene.surroundings import Standing, Surroundings
+from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
 
 #: Points are looked at this share apart of the box that a fixture and the part have in common; and at most about so many.
 _APART, _MOST = 1 / 64, 200_000
@@ -38,7 +38,7 @@ def refuse_overlaps(around: Surroundings, tolerance: float) -> None:
     FixtureError
         It names the fixture, the depth and the place.
     """
-    part = (around.alone or around).surely
+    part = (around.alone or around).certain
     for each in around.fixtures:
         found = overlap(part, each, tolerance)
         if found is not None:
@@ -47,7 +47,7 @@ def refuse_overlaps(around: Surroundings, tolerance: float) -> None:
                                "its placement and its unit")  # fmt: skip
 
 
-def overlap(part: Obstacles, standing: Standing, tolerance: float) -> Overlap | None:
+def overlap(part: Obstacles, standing: PlacedFixture, tolerance: float) -> Overlap | None:
     """How deep a fixture stands in a part, or the part in it; None where they touch at most.
 
     Only what is closed has an inside: two surfaces that enclose nothing are not compared.

@@ -22,7 +22,7 @@ from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import OptionError
 from plan_cutters.options import Options
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
 
 #: Of the method: raised by one whenever the same question may get another verdict.
@@ -68,7 +68,7 @@ def question(ready: Prepared, cutter: Cutter) -> dict[str, Any]:
         ],
         "tolerance": scene.asked,
         "tolerance_kept": scene.tolerance,
-        "chord_error": around.surely.triangles.chord_error,
+        "chord_error": around.certain.triangles.chord_error,
         "tool": json.loads(json.dumps(dataclasses.asdict(cutter))),
         "allowance": options.allowance,
         "holder_clearance": options.holder_clearance,

@@ -161,7 +161,7 @@ class Scene(Record):
             if "_alone" not in self.__dict__:
                 self.__dict__["_alone"] = surroundings(self.part, chord, ignored=self.ignored, jobs=jobs, at=at)
             around = joined(self.__dict__["_alone"], self.fixtures, chord, self._sources, self.setup)
-            kept = kept_tolerance(self.asked, around.surely.triangles.chord_error)
+            kept = kept_tolerance(self.asked, around.certain.triangles.chord_error)
             refuse_overlaps(around, kept)
             self.__dict__["_around"] = around
         found: Surroundings = self.__dict__["_around"]
@@ -181,4 +181,4 @@ class Scene(Record):
     @property
     def tolerance(self) -> float:
         """The gouge tolerance that is kept, mm: what was asked for or, where the triangles cannot be that close, more."""
-        return kept_tolerance(self.asked, self.around.surely.triangles.chord_error)
+        return kept_tolerance(self.asked, self.around.certain.triangles.chord_error)

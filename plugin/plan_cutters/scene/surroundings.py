@@ -22,7 +22,7 @@ _LOOKED_AT = 50
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Standing(Record):
+class PlacedFixture(Record):
     """A fixture where it stands.
 
     Attributes
@@ -65,9 +65,9 @@ class Surroundings(Record):
 
     Attributes
     ----------
-    may_be : Obstacles
+    possible : Obstacles
         Everything that may be in the way: what is missed by it is safe.
-    surely : Obstacles
+    certain : Obstacles
         What certainly is: what is hit by it is blocked. The same object where nothing is uncertain.
     bodies : tuple of Body
         What encloses something, of the faces that are not left out.
@@ -84,13 +84,13 @@ class Surroundings(Record):
         The part's own, without the fixtures; None where there are none.
     """
 
-    may_be: Obstacles
-    surely: Obstacles
+    possible: Obstacles
+    certain: Obstacles
     bodies: tuple[Body, ...]
     missing: tuple[tuple[int, str, StandIn], ...]
     on_bodies: tuple[int, ...] = ()
     lost: tuple[LostFace, ...] = ()
-    fixtures: tuple[Standing, ...] = ()
+    fixtures: tuple[PlacedFixture, ...] = ()
     alone: "Surroundings | None" = None
 
     @property
@@ -115,13 +115,13 @@ class Surroundings(Record):
     def build(self, jobs: int) -> None:
         """Build the trees of what may be and of what surely is in the way, where they are not one, side by side."""
         with ThreadPoolExecutor(min(jobs, 2)) as pool:
-            for _ in pool.map(lambda each: each.solids, {id(o): o for o in (self.may_be, self.surely)}.values()):
+            for _ in pool.map(lambda each: each.solids, {id(o): o for o in (self.possible, self.certain)}.values()):
                 pass
 
     @property
     def skins(self) -> "Surroundings":
         """The same without what is enclosed."""
-        return replace(self, may_be=self.may_be.skin, surely=self.surely.skin)
+        return replace(self, possible=self.possible.skin, certain=self.certain.skin)
 
 
 def surroundings(
@@ -153,34 +153,34 @@ def surroundings(
         raise UnjudgeableError(f"no face has triangles that could be in the way: {causes or 'all are left out'}",
                                file=part.file)  # fmt: skip
     found = bodies(part, without=ignored)
-    surely = Obstacles(triangles, weights(triangles, [b for b in found if b.closed]), gap=part.looseness)
+    certain = Obstacles(triangles, weights(triangles, [b for b in found if b.closed]), gap=part.looseness)
     stand = stand_ins(part, triangles.missing, chord)
     missing = tuple((n, why, stand.how[n]) for n, why in triangles.missing if stand.how[n] != "edges")
     lost = tuple(each for each in part.lost if each.face is None)
-    lying = _on_bodies(surely, found)
+    lying = _on_bodies(certain, found)
     everything = weights(triangles, found)
     caps = np.concatenate([np.zeros((0, 3, 3)), *(body.cap for body in found)])
-    if not len(stand.vertex) and not len(caps) and (everything == surely.weight).all():
-        return Surroundings(surely, surely, found, missing, lying, lost)
+    if not len(stand.vertex) and not len(caps) and (everything == certain.weight).all():
+        return Surroundings(certain, certain, found, missing, lying, lost)
     all_triangles = replace(
         triangles,
         vertex=np.concatenate([triangles.vertex, stand.vertex, caps]),
         face=np.concatenate([triangles.face, stand.face, np.zeros(len(caps), np.int32)]),
     )
     open_boxes = [_box(triangles, body) for body in found if not body.closed]
-    may_be = Obstacles(all_triangles, np.concatenate([everything, stand.weight, np.ones(len(caps), np.int8)]),
+    possible = Obstacles(all_triangles, np.concatenate([everything, stand.weight, np.ones(len(caps), np.int8)]),
                        np.array([box for box in open_boxes if np.isfinite(box).all()]).reshape(-1, 2, 3),
                        part.looseness)  # fmt: skip
-    return Surroundings(may_be, surely, found, missing, lying, lost)
+    return Surroundings(possible, certain, found, missing, lying, lost)
 
 
-def _on_bodies(surely: Obstacles, found: Sequence[Body]) -> tuple[int, ...]:
+def _on_bodies(certain: Obstacles, found: Sequence[Body]) -> tuple[int, ...]:
     """Numbers of faces of no body, most of whose triangles' middles lie on the skin of one."""
     from plan_cutters.kernels.material import near_skin
 
-    triangles = surely.triangles
+    triangles = certain.triangles
     own = {number for body in found for number in body.faces}
-    if not surely.weight.any():
+    if not certain.weight.any():
         return ()
     close = 2.0 * triangles.chord_error + 1e-9 * float(np.abs(triangles.vertex).max())
     lying = []
@@ -190,7 +190,7 @@ def _on_bodies(surely: Obstacles, found: Sequence[Body]) -> tuple[int, ...]:
         middle = triangles.vertex[triangles.face == number].mean(axis=1)
         middle = np.ascontiguousarray(middle[:: 1 + len(middle) // _LOOKED_AT])
         near = np.zeros(len(middle), bool)
-        near_skin(middle, close, surely.solids, near)
+        near_skin(middle, close, certain.solids, near)
         if near.mean() > 0.5:
             lying.append(number)
     return tuple(lying)

@@ -17,7 +17,7 @@ from plan_cutters.domain.verdicts import (
     TOLERANCE,
     UNDECIDED,
     UNJUDGED,
-    Reach,
+    Verdicts,
     blank,
 )
 from plan_cutters.kernels.rows import Contacts
@@ -33,11 +33,11 @@ def access(
     conditions: Conditions,
     *,
     buried: Ints | None = None,
-    known: Reach | None = None,
+    known: Verdicts | None = None,
     rows: NDArray[np.int64] | None = None,
     progress: Progress | None = None,
     work: Work | None = None,
-) -> Reach:
+) -> Verdicts:
     """Search a posture for every judged sample that is not interference-free.
 
     Parameters
@@ -48,7 +48,7 @@ def access(
     cutter, conditions
     buried : (n,) int32, optional
         The body that each sample lies within, -1 for none (default): none of those within is accessible.
-    known : Reach, optional
+    known : Verdicts, optional
         What follows from other cutters (`nesting.handed`): those samples are not searched again.
     rows : (m,) int64, optional
         The samples to search, all by default; the others stay unjudged. Whole pieces of them (`with_company`), or else
@@ -59,50 +59,52 @@ def access(
         Where what is looked at is counted.
     """
     n = len(samples)
-    reach = blank(n)
+    verdicts = blank(n)
     judged = samples.unjudged < 0
     if rows is not None:
         judged &= np.isin(np.arange(n), rows)
     if not conditions.judges(cutter):
-        reach.verdict[judged], reach.reason[judged] = UNDECIDED, TOLERANCE
-        return reach
+        verdicts.verdict[judged], verdicts.reason[judged] = UNDECIDED, TOLERANCE
+        return verdicts
     within = np.zeros(n, bool) if buried is None else judged & (buried >= 0)
-    reach.verdict[within], reach.reason[within] = INACCESSIBLE, BURIED
+    verdicts.verdict[within], verdicts.reason[within] = INACCESSIBLE, BURIED
     upright = judged & interference_free
-    reach.verdict[upright] = INTERFERENCE_FREE
-    reach.axis[upright] = samples.normal[upright]
-    reach.lean[upright] = samples.direction_max[upright]
-    reach.tilt[upright] = 0.0
-    reach.rotation[upright] = 0
+    verdicts.verdict[upright] = INTERFERENCE_FREE
+    verdicts.axis[upright] = samples.normal[upright]
+    verdicts.tilt_direction[upright] = samples.direction_max[upright]
+    verdicts.tilt[upright] = 0.0
+    verdicts.rotation[upright] = 0
     contacts = contacts_of(samples)
     wanted = judged & ~upright & ~within
     if known is not None:
         follows = wanted & (known.verdict != UNJUDGED)
-        for name in Reach.__slots__:
-            getattr(reach, name)[follows] = getattr(known, name)[follows]
+        for name in Verdicts.__slots__:
+            getattr(verdicts, name)[follows] = getattr(known, name)[follows]
         _first_reasons(
-            contacts, np.flatnonzero(follows & (known.verdict == INACCESSIBLE)), cutter, conditions, reach.reason
+            contacts, np.flatnonzero(follows & (known.verdict == INACCESSIBLE)), cutter, conditions, verdicts.reason
         )
         wanted &= ~follows
-    light, heavy = conditions.light(cutter), conditions.heavy(cutter)
-    search_postures(contacts, np.flatnonzero(wanted), light, heavy, conditions, reach, progress, fixed=True, work=work)
+    outer_tool, inner_tool = conditions.outer_tool(cutter), conditions.inner_tool(cutter)
+    search_postures(
+        contacts, np.flatnonzero(wanted), outer_tool, inner_tool, conditions, verdicts, progress, fixed=True, work=work
+    )
     if conditions.around.alone is not None:
         searched = wanted | (buried >= len(conditions.around.bodies) if buried is not None else False)
-        handed = judged & (reach.reason == FIXTURE)
-        _for_fixtures(contacts, np.flatnonzero((searched & reach.lost) | handed), cutter, conditions, reach)
-    return reach
+        handed = judged & (verdicts.reason == FIXTURE)
+        _for_fixtures(contacts, np.flatnonzero((searched & verdicts.lost) | handed), cutter, conditions, verdicts)
+    return verdicts
 
 
 def _for_fixtures(
-    contacts: Contacts, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, reach: Reach
+    contacts: Contacts, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, verdicts: Verdicts
 ) -> None:
     """Of lost samples, tell those that are lost to fixtures from those that would be lost without them, too."""
-    rows = rows[~np.isin(reach.reason[rows], (AXIS_LIMIT, LOCAL_GOUGE))]
+    rows = rows[~np.isin(verdicts.reason[rows], (AXIS_LIMIT, LOCAL_GOUGE))]
     if conditions.around.alone is None or not len(rows):
         return
-    bare, found = replace(conditions, around=conditions.around.alone), blank(len(reach.verdict))
-    search_postures(contacts, rows, bare.light(cutter), bare.heavy(cutter), bare, found, fixed=True)
-    reach.reason[rows] = np.where(found.reached[rows], FIXTURE, found.reason[rows])
+    bare, found = replace(conditions, around=conditions.around.alone), blank(len(verdicts.verdict))
+    search_postures(contacts, rows, bare.outer_tool(cutter), bare.inner_tool(cutter), bare, found, fixed=True)
+    verdicts.reason[rows] = np.where(found.reached[rows], FIXTURE, found.reason[rows])
 
 
 def _first_reasons(
@@ -111,5 +113,5 @@ def _first_reasons(
     """Where the axis limit, or curvature at the contact, leaves this cutter nothing, the reason is its own."""
     from plan_cutters.kernels.search.search import first_reason
 
-    ranges, tool, surely = conditions.ranges, tool_of(conditions.heavy(cutter)), conditions.around.surely.solids
-    in_chunks(lambda piece: first_reason(piece, contacts, ranges, tool, surely, reason), rows, conditions.jobs)
+    ranges, tool, certain = conditions.ranges, tool_of(conditions.inner_tool(cutter)), conditions.around.certain.solids
+    in_chunks(lambda piece: first_reason(piece, contacts, ranges, tool, certain, reason), rows, conditions.jobs)

@@ -15,7 +15,7 @@ from scipy import ndimage
 from cad_io.arrays import FaceGrid, Floats, Ints, Orientation, Record, SurfaceSamples
 from cad_io.part import Part
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.verdicts import Reach
+from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.cells import CellContacts, Field, laid
@@ -83,7 +83,7 @@ class Between(Record):
 
 def between(
     samples: SurfaceSamples,
-    reach: Reach,
+    verdicts: Verdicts,
     cutter: Cutter,
     part: Part,
     orientation: Orientation,
@@ -100,7 +100,7 @@ def between(
     ----------
     samples : SurfaceSamples
         The faces in them, `empty` ones included, are the target.
-    reach : Reach
+    verdicts : Verdicts
         Of the cutter.
     cutter : Cutter
     part : Part
@@ -128,7 +128,7 @@ def between(
         trim = part.trim(grid.face)
         if trim is None or not trim.closed:
             continue  # which part of the surface it uses is not known well enough
-        field, mine, bare = laid(part, orientation, samples, grid, reach, conditions)
+        field, mine, bare = laid(part, orientation, samples, grid, verdicts, conditions)
         on_grid = grid.index[grid.index >= 0]
         left -= int((~beside[on_grid]).sum())
         if beside[on_grid].any():

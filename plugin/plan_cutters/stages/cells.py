@@ -15,7 +15,7 @@ from cad_io.face.clip import Clipped, clipped
 from cad_io.face.evaluate import density, evaluate
 from cad_io.face.trim import Trim
 from cad_io.part import Part
-from plan_cutters.domain.verdicts import INTERFERENCE_FREE, Reach
+from plan_cutters.domain.verdicts import INTERFERENCE_FREE, Verdicts
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.stages.nodes import WIDER, WILDER, from_neighbours, steepest, tensors
 
@@ -125,7 +125,12 @@ class Field:
 
 
 def laid(
-    part: Part, orientation: Orientation, samples: SurfaceSamples, grid: FaceGrid, reach: Reach, conditions: Conditions
+    part: Part,
+    orientation: Orientation,
+    samples: SurfaceSamples,
+    grid: FaceGrid,
+    reach: Verdicts,
+    conditions: Conditions,
 ) -> tuple[Field, CellContacts, CellContacts]:
     """The cells of a face.
 
@@ -255,7 +260,7 @@ def _started(axis: Floats, flat: NDArray[np.bool_], normal: Floats, conditions: 
 
 
 def _beside(
-    index: Ints, tile: Indices, rows: NDArray[np.intp], reach: Reach
+    index: Ints, tile: Indices, rows: NDArray[np.intp], reach: Verdicts
 ) -> tuple[Floats, NDArray[np.bool_]]:  # fmt: skip
     """Axis (n, 3), nan where there is none, of a sample in the next tile, and whether that is interference-free."""
     axis, flat = np.full((len(tile), 3), np.nan), np.zeros(len(tile), bool)

@@ -42,8 +42,13 @@ def decompose(
     if buried is not None:
         allowed &= buried < 0
     asked = np.flatnonzero(allowed) if rows is None else rows[allowed[rows]]
-    light = conditions.light(cutter)
-    dummy, tool, solids, contacts = light.dummy, tool_of(light), conditions.obstacles.solids, contacts_of(samples)
+    outer_tool = conditions.outer_tool(cutter)
+    dummy, tool, solids, contacts = (
+        outer_tool.dummy,
+        tool_of(outer_tool),
+        conditions.obstacles.solids,
+        contacts_of(samples),
+    )
     if not len(dummy):
         return interference_free
 

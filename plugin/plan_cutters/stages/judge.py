@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.verdicts import CONVEX, Reach
-from plan_cutters.scene.prepared import Prepared
+from plan_cutters.domain.verdicts import CONVEX, Verdicts
+from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import with_company
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.access import access
@@ -18,11 +18,11 @@ def judge(
     ready: Prepared,
     cutter: Cutter,
     rows: NDArray[np.int64] | None = None,
-    known: Reach | None = None,
+    known: Verdicts | None = None,
     *,
     progress: Callable[[int, int], None] | None = None,
     work: Work | None = None,
-) -> Reach:
+) -> Verdicts:
     """What a cutter reaches of some samples, or of all; nothing else is looked at or changed.
 
     Parameters
@@ -32,7 +32,7 @@ def judge(
     rows : (m,) int64, optional
         Samples, ascending. However they are cut, each gets the same answer, bit for bit: what is found for its neighbours
         is found again.
-    known : Reach, optional
+    known : Verdicts, optional
         What follows from other cutters (`nesting.handed`), for all samples.
     progress : callable, optional
         Told how many pieces of the work are done, of how many.
@@ -49,7 +49,7 @@ def judge(
     free = decompose(
         samples, ready.surface_class == CONVEX, cutter, conditions, buried=ready.buried, rows=whole, work=work
     )
-    reach = access(
+    verdicts = access(
         samples, free, cutter, conditions, buried=ready.buried, known=known, rows=whole, progress=progress, work=work
     )
-    return reach if rows is None else reach.of(rows)
+    return verdicts if rows is None else verdicts.of(rows)

@@ -14,7 +14,7 @@ from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.intervals import common, complement, join, without
 from plan_cutters.domain.machine import Machine
-from plan_cutters.domain.posture import PostureRange, lean
+from plan_cutters.domain.posture import PostureRange, tilt_direction
 from plan_cutters.kernels.codes import FLUTES, HOLDER, NECK, SHANK, TILT_FROM, TILT_TO
 from plan_cutters.scene.conditions import ranges_of, tool_of
 from plan_cutters.scene.obstacles import Obstacles
@@ -94,7 +94,7 @@ class PostureMap(Record):
 
     def axis(self, i: int, tilt: float) -> Floats:
         """Unit tool axis at `rotations[i]` and a tilt (rad), in part coordinates."""
-        f = lean(self.normal, self.direction_max, float(self.rotations[i]))
+        f = tilt_direction(self.normal, self.direction_max, float(self.rotations[i]))
         return np.cos(tilt) * self.normal + np.sin(tilt) * f
 
 
@@ -115,25 +115,25 @@ class Ask(Record):
 def posture_map_of(
     ask: Ask, around: Surroundings, tools: tuple[Assembly, Assembly], narrowest: float, tolerance: float
 ) -> PostureMap:  # fmt: skip
-    """The map; `tools` as `Conditions.light` and `Conditions.heavy` make them."""
+    """The map; `tools` as `Conditions.outer_tool` and `Conditions.inner_tool` make them."""
     from plan_cutters.kernels.maps.free_tilts import FORBIDDEN, OPEN, UNSURE
     from plan_cutters.kernels.maps.points import axis_intervals
 
     contact, cutter, (low, high) = ask.contact, ask.cutter, ask.tilt
     p, n, e1 = contact.point[0], contact.normal[0], contact.direction_max[0]
     ranges = ranges_of(ask.machine, ask.setup, PostureRange(ask.tilt), ask.x)
-    whole, (light, heavy) = around.may_be, tools
+    whole, (outer_tool, inner_tool) = around.possible, tools
     near, far = _rear(whole.triangles, p, n, cutter.radius)
-    alone = {"rear_gouge": (near, light.only(FLUTES)), "collision": (far, light.only(FLUTES)),
-             "neck": (whole, light.only(NECK)), "shank": (whole, light.only(SHANK)),
-             "holder": (whole, light.only(HOLDER))}  # fmt: skip
+    alone = {"rear_gouge": (near, outer_tool.only(FLUTES)), "collision": (far, outer_tool.only(FLUTES)),
+             "neck": (whole, outer_tool.only(NECK)), "shank": (whole, outer_tool.only(SHANK)),
+             "holder": (whole, outer_tool.only(HOLDER))}  # fmt: skip
     free, undecided, axis, buried, no_contact = [], [], [], [], []
     apart: dict[str, list[Floats]] = {word: [] for word in alone}
     gouge = np.empty((len(ask.rotations), 2))
-    touching = join(common(light.mode[:, [TILT_FROM, TILT_TO]], np.array([[low, high]])))
+    touching = join(common(outer_tool.mode[:, [TILT_FROM, TILT_TO]], np.array([[low, high]])))
     for i, rotation in enumerate(ask.rotations):
-        f = lean(n, e1, float(rotation))
-        bounds = _gouge_bounds(contact.curvature[0], float(rotation), light)
+        f = tilt_direction(n, e1, float(rotation))
+        bounds = _gouge_bounds(contact.curvature[0], float(rotation), outer_tool)
         gouge[i] = (bounds[:, 0].min(), bounds[:, 1].max()) if len(bounds) else (np.nan, np.nan)
         allowed = axis_intervals(n, f, ranges)
         axis.append(complement(allowed, low, high))
@@ -145,12 +145,12 @@ def posture_map_of(
         pieces, sure = [np.zeros((0, 3))], [np.zeros((0, 3))]
         # With a tolerance the triangles decide what curvature forbids, too.
         for first, last in common(allowed, touching if tolerance > 0 else bounds).tolist():
-            pieces.append(_parts(whole, light, p, n, f, first, last, narrowest))
-            if around.surely is not whole:
-                sure.append(_parts(around.surely, heavy, p, n, f, first, last, narrowest))
+            pieces.append(_parts(whole, outer_tool, p, n, f, first, last, narrowest))
+            if around.certain is not whole:
+                sure.append(_parts(around.certain, inner_tool, p, n, f, first, last, narrowest))
         found = np.concatenate(pieces)
         open_tilts, unsure = _merged(found, OPEN), _merged(found, UNSURE)
-        if around.surely is not whole:
+        if around.certain is not whole:
             # What is not free for all that may be there, but is not surely blocked either.
             blocked = _merged(np.concatenate(sure), FORBIDDEN)
             rest = found[found[:, 2] != OPEN].copy()
@@ -158,9 +158,9 @@ def posture_map_of(
         within, sunk = np.zeros((2, len(open_tilts)), bool)
         if len(open_tilts):
             every = np.ones((len(open_tilts), 1))
-            frame = (light, every * p, every * n, every * f, open_tilts.mean(axis=1))
+            frame = (outer_tool, every * p, every * n, every * f, open_tilts.mean(axis=1))
             within = whole.holds(*frame)
-            sunk = within & around.surely.holds(*frame, surely=True)
+            sunk = within & around.certain.holds(*frame, certain=True)
         free.append(open_tilts[~within])
         buried.append(open_tilts[sunk])
         # Within what is only perhaps a body.

@@ -15,8 +15,8 @@ from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement, frame_of
-from plan_cutters.domain.posture import lean
-from plan_cutters.domain.verdicts import INACCESSIBLE, INTERFERENCE_FREE, REASONS, UNDECIDED, UNJUDGED, Reach, blank
+from plan_cutters.domain.posture import tilt_direction
+from plan_cutters.domain.verdicts import INACCESSIBLE, INTERFERENCE_FREE, REASONS, UNDECIDED, UNJUDGED, Verdicts, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.kernels.rows import Ranges
 from plan_cutters.options import Options, PlanOptions, machine_given
@@ -59,7 +59,7 @@ class PostureMaps(Record):
     normal, direction_max : (n, 3) float
         The samples' frames, from which tilts and rotations count.
     verdict, reason : (n,) uint8
-        What was found of each sample without limits of a machine, as in `Reach`.
+        What was found of each sample without limits of a machine, as in `Verdicts`.
     tilt : (float, float)
         Tilts that were looked at, rad.
     tolerance : float
@@ -120,7 +120,7 @@ class PostureMaps(Record):
     def within(
         self, machine: Any = None, setup: Any = (0.0, 0.0, 1.0), *, tilt: tuple[float, float] | None = None,
         rotation: tuple[float, float] | None = None, jobs: int = 1, x: Any = None,
-    ) -> Reach:  # fmt: skip
+    ) -> Verdicts:  # fmt: skip
         """What the cutter reaches on another machine, or in another setup, without a new search.
 
         Parameters
@@ -159,7 +159,7 @@ class PostureMaps(Record):
             raise OptionError("the posture maps have none of the rotations asked for")
         return self._laid(machine_given(machine), Placement(setup, x), turns, (low, high), jobs)
 
-    def asked(self, part: str | os.PathLike[str] | Part | None = None, **options: Unpack[PlanOptions]) -> Reach:
+    def asked(self, part: str | os.PathLike[str] | Part | None = None, **options: Unpack[PlanOptions]) -> Verdicts:
         """What a plan with these options would find, as far as the maps tell.
 
         Parameters
@@ -213,7 +213,7 @@ class PostureMaps(Record):
 
     def _laid(
         self, machine: Machine, place: Placement, turns: NDArray[np.int64], tilt: tuple[float, float], jobs: int
-    ) -> Reach:
+    ) -> Verdicts:
         """What is reached with a machine at some of the rotations, by their numbers, and tilts."""
         from plan_cutters.kernels.limits import any_axis
         from plan_cutters.kernels.maps.mask import mask
@@ -226,29 +226,29 @@ class PostureMaps(Record):
         frame = frame_of(axis, None if place.x is None else np.array(place.x))
         rotary = rotary_of(machine.kinematics(frame))
         ranges = Ranges(np.cos(self.rotations), np.sin(self.rotations), low, high, axis, machine.limit_cos, rotary)
-        reach = blank(len(self.verdict))
-        found = found_of(reach)
+        verdicts = blank(len(self.verdict))
+        found = found_of(verdicts)
         judged = self.verdict != UNJUDGED
         lost = judged & (self.verdict == INACCESSIBLE)
-        reach.verdict[lost], reach.reason[lost] = INACCESSIBLE, self.reason[lost]
+        verdicts.verdict[lost], verdicts.reason[lost] = INACCESSIBLE, self.reason[lost]
         rows = np.flatnonzero(judged & ~lost)
         maps = self.normal, self.direction_max, ranges, turns, self.offset, self.free, self.undecided
         in_chunks(lambda piece: mask(piece, *maps, found), rows, jobs)
         upright = self.verdict == INTERFERENCE_FREE
         if low <= _END and upright.any():
             upright[upright] = machine.allows(self.normal[upright], frame)
-            reach.verdict[upright] = INTERFERENCE_FREE
-            reach.axis[upright], reach.lean[upright] = self.normal[upright], self.direction_max[upright]
-            reach.tilt[upright], reach.rotation[upright] = 0.0, 0
-        axis_lost = judged & ~lost & np.isin(reach.verdict, (INACCESSIBLE, UNDECIDED))
-        reach.reason[axis_lost] = REASONS.index("axis_limit")
+            verdicts.verdict[upright] = INTERFERENCE_FREE
+            verdicts.axis[upright], verdicts.tilt_direction[upright] = self.normal[upright], self.direction_max[upright]
+            verdicts.tilt[upright], verdicts.rotation[upright] = 0.0, 0
+        axis_lost = judged & ~lost & np.isin(verdicts.verdict, (INACCESSIBLE, UNDECIDED))
+        verdicts.reason[axis_lost] = REASONS.index("axis_limit")
         # What is in doubt without a machine is so with any that holds some posture there.
         doubt, held = axis_lost & (self.verdict == UNDECIDED), np.zeros(len(self.verdict), bool)
         few = ranges._replace(rotation_cos=ranges.rotation_cos[turns], rotation_sin=ranges.rotation_sin[turns])
         any_axis(np.flatnonzero(doubt), self.normal, self.direction_max, few, low, high, held)
         doubt &= held
-        reach.verdict[doubt], reach.reason[doubt] = UNDECIDED, self.reason[doubt]
-        return reach
+        verdicts.verdict[doubt], verdicts.reason[doubt] = UNDECIDED, self.reason[doubt]
+        return verdicts
 
     def held(self, conditions: Conditions) -> "PostureMaps":
         """The maps of one machine and setup: of the free tilts those that it holds. The verdicts stay what they are."""
@@ -291,7 +291,7 @@ class PostureMaps(Record):
 
 
 def posture_maps(
-    samples: SurfaceSamples, cutter: Cutter, conditions: Conditions, reach: Reach, *, part: str = "",
+    samples: SurfaceSamples, cutter: Cutter, conditions: Conditions, verdicts: Verdicts, *, part: str = "",
     inside: NDArray[np.bool_] | None = None, about: Mapping[str, Any] | None = None, most: int | None = None,
     progress: Progress | None = None,
 ) -> PostureMaps:  # fmt: skip
@@ -305,7 +305,7 @@ def posture_maps(
     samples : SurfaceSamples
     cutter, conditions
         The machine is not looked at.
-    reach : Reach
+    verdicts : Verdicts
         What the cutter reaches without a machine.
     part : str
         SHA-256 of the part's file.
@@ -321,8 +321,8 @@ def posture_maps(
     from plan_cutters.kernels.maps.free_map import free_map
 
     conditions = conditions.machineless
-    rotations, ranges, light = conditions.postures.rotations, conditions.ranges, conditions.light(cutter)
-    may_be, surely, tool = conditions.obstacles, conditions.around.surely, tool_of(light)
+    rotations, ranges, outer_tool = conditions.postures.rotations, conditions.ranges, conditions.outer_tool(cutter)
+    possible, certain, tool = conditions.obstacles, conditions.around.certain, tool_of(outer_tool)
     contacts = contacts_of(samples)
     n, k = len(samples), len(rotations)
     count = np.zeros((n, k), np.int32)
@@ -335,22 +335,22 @@ def posture_maps(
         tree, wide = obstacles.tree, obstacles.wide_tree
         looked = free_map(rows, contacts, ranges, tool, NARROWEST, tree, wide, _ROOM, part, mine, unsure)
         if obstacles.solids.cell.size:
-            _leave_bodies(samples, rows, light, conditions, part, mine, surely=obstacles is not may_be)
+            _leave_bodies(samples, rows, outer_tool, conditions, part, mine, certain=obstacles is not possible)
         return part, mine, unsure, looked
 
     def work(rows: NDArray[np.int64]) -> None:
         # Room for the most intervals only while a piece is worked on: memory grows with what is found.
-        part, mine, unsure, _ = mapped(rows, may_be)
-        if surely is not may_be:
+        part, mine, unsure, _ = mapped(rows, possible)
+        if certain is not possible:
             # What is only perhaps in the way forbids nothing for sure.
-            perhaps, few, more, _ = mapped(rows, surely)
+            perhaps, few, more, _ = mapped(rows, certain)
             unsure = np.maximum(unsure, _width(perhaps, few) + more - _width(part, mine))
         count[rows], undecided[rows] = mine, unsure
         free[int(rows[0])] = part[np.arange(_ROOM) < mine[..., None]]
 
     judged = np.flatnonzero(samples.unjudged < 0)
     require_finite(contacts, judged)
-    rows = chosen(judged, most, lambda piece: mapped(piece, may_be)[3], conditions.jobs)
+    rows = chosen(judged, most, lambda piece: mapped(piece, possible)[3], conditions.jobs)
     in_chunks(work, rows, conditions.jobs, progress)
     left = np.setdiff1d(judged, rows)
     undecided[left] = conditions.postures.tilt[1] - conditions.postures.tilt[0]
@@ -358,7 +358,7 @@ def posture_maps(
     pieces = [free[first] for first in sorted(free)]
     offset = np.concatenate([[0], np.cumsum(count.ravel(), dtype=np.int64)])
     return PostureMaps(rotations, offset, np.concatenate([np.zeros((0, 2)), *pieces]), undecided, samples.normal,
-                       samples.direction_max, reach.verdict, reach.reason, conditions.postures.tilt, conditions.tolerance,
+                       samples.direction_max, verdicts.verdict, verdicts.reason, conditions.postures.tilt, conditions.tolerance,
                        cutter.id, part, np.zeros(0, bool) if inside is None else inside, known)  # fmt: skip
 
 
@@ -370,8 +370,8 @@ def _width(part: Floats, count: NDArray[np.int32]) -> Floats:
 
 
 def _leave_bodies(
-    samples: SurfaceSamples, rows: NDArray[np.int64], light: Assembly, conditions: Conditions, part: Floats,
-    count: NDArray[np.int32], *, surely: bool = False,
+    samples: SurfaceSamples, rows: NDArray[np.int64], outer_tool: Assembly, conditions: Conditions, part: Floats,
+    count: NDArray[np.int32], *, certain: bool = False,
 ) -> None:  # fmt: skip
     """Take out intervals (m, k, room, 2) in which the cutter lies within a body, or may; or only where it surely does.
 
@@ -381,14 +381,14 @@ def _leave_bodies(
     at = np.argwhere(np.arange(_ROOM) < count[..., None])
     row, turn = rows[at[:, 0]], rotations[at[:, 1]]
     tilt = part[at[:, 0], at[:, 1], at[:, 2]].mean(axis=1)
-    obstacles = conditions.around.surely if surely else conditions.obstacles
+    obstacles = conditions.around.certain if certain else conditions.obstacles
     inside = obstacles.holds(
-        light,
+        outer_tool,
         samples.point[row],
         samples.normal[row],
-        lean(samples.normal[row], samples.direction_max[row], turn),
+        tilt_direction(samples.normal[row], samples.direction_max[row], turn),
         tilt,
-        surely=surely,
+        certain=certain,
     )
     for i, j in np.unique(at[inside, :2], axis=0).tolist():
         mine = (at[:, 0] == i) & (at[:, 1] == j)

@@ -24,7 +24,7 @@ from plan_cutters.domain.verdicts import (
     REASONS,
     TOLERANCE,
     UNJUDGED,
-    Reach,
+    Verdicts,
     blank,
 )
 from plan_cutters.scene.conditions import Conditions, contacts_of, search_postures
@@ -39,13 +39,13 @@ class Explained:
 
     Attributes
     ----------
-    reach : Reach
+    verdicts : Verdicts
         Verdicts and postures as they were.
     besides : (n,) uint8
         Where the reason is the axis limit: what else is in the way within it, index into REASONS; else NO_REASON.
     """
 
-    reach: Reach
+    verdicts: Verdicts
     besides: NDArray[np.uint8]
 
 
@@ -65,26 +65,26 @@ class Reasons:
     samples: SurfaceSamples
     conditions: Sequence[Conditions]
     asked: NDArray[np.bool_]
-    _known: dict[str, dict[Cutter, Reach]] = field(default_factory=dict)
+    _known: dict[str, dict[Cutter, Verdicts]] = field(default_factory=dict)
 
-    def of(self, cutter: Cutter, reach: Reach, progress: Progress | None = None) -> Explained:
+    def of(self, cutter: Cutter, verdicts: Verdicts, progress: Progress | None = None) -> Explained:
         """Find the reasons of what a cutter loses.
 
         Parameters
         ----------
         cutter : Cutter
-        reach : Reach
+        verdicts : Verdicts
             What it reaches over all setups, with the reasons that its search found.
         progress : callable, optional
             Told how many searches are done, of how many.
         """
         tell = progress or (lambda done, total: None)
-        first, n = self.conditions[0], len(reach.verdict)
-        before, reason, besides = reach.reason, reach.reason.copy(), np.full(n, NO_REASON, np.uint8)
-        rows = np.flatnonzero(reach.lost & self.asked & ~np.isin(before, (BURIED, TOLERANCE)))
+        first, n = self.conditions[0], len(verdicts.verdict)
+        before, reason, besides = verdicts.reason, verdicts.reason.copy(), np.full(n, NO_REASON, np.uint8)
+        rows = np.flatnonzero(verdicts.lost & self.asked & ~np.isin(before, (BURIED, TOLERANCE)))
         limited, less, alone = first.machine.limited, list(_less(cutter)), first.around.alone
         if not len(rows) or not (limited or less or alone is not None):
-            return Explained(reach, besides)
+            return Explained(verdicts, besides)
         # Flutes by themselves, without limits and fixtures: what they do not reach nothing else frees, and is done with.
         bare = replace(first.machineless, around=alone or first.around)
         found = self._search("flutes", less[-1][1] if less else cutter, rows, bare)
@@ -111,7 +111,7 @@ class Reasons:
                 rows = rows[self._anywhere(less[-1][1], rows)]
             self._held(less, rows, reason)
         tell(3, 3)
-        return Explained(replace(reach, reason=reason), besides)
+        return Explained(replace(verdicts, reason=reason), besides)
 
     def _held(self, less: Sequence[tuple[int, Cutter]], rows: NDArray[np.int64], reason: NDArray[np.uint8]) -> None:
         """Write which of holder, shank and neck has to be away for there to be a posture, from the top down."""
@@ -129,7 +129,7 @@ class Reasons:
             served |= found.reached[rows]
         return served
 
-    def _search(self, under: str, cutter: Cutter, rows: NDArray[np.int64], conditions: Conditions) -> Reach:
+    def _search(self, under: str, cutter: Cutter, rows: NDArray[np.int64], conditions: Conditions) -> Verdicts:
         """Search for postures of some samples, but where what was found for other cutters `under` the same tells."""
         found, known = blank(len(self.asked)), self._known.setdefault(under, {})
         for other, earlier in known.items():
@@ -142,12 +142,12 @@ class Reasons:
                 mine = rows[(earlier.verdict[rows] == INACCESSIBLE) & (found.verdict[rows] == UNJUDGED)]
             else:
                 continue
-            for name in Reach.__slots__:
+            for name in Verdicts.__slots__:
                 getattr(found, name)[mine] = getattr(earlier, name)[mine]
         left = rows[found.verdict[rows] == UNJUDGED]
         if len(left):
-            light, heavy = conditions.light(cutter), conditions.heavy(cutter)
-            search_postures(contacts_of(self.samples), left, light, heavy, conditions, found, fixed=True)
+            outer_tool, inner_tool = conditions.outer_tool(cutter), conditions.inner_tool(cutter)
+            search_postures(contacts_of(self.samples), left, outer_tool, inner_tool, conditions, found, fixed=True)
         known[cutter] = found
         return found
 

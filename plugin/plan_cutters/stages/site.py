@@ -202,8 +202,8 @@ def _served(contacts: CellContacts, site: Site, rooms: Sequence[float], upto: fl
     known = np.isfinite(contacts.axis).all(axis=1) & _whole(contacts)
     rows = np.flatnonzero(known)
     outlook[rows] = _cover(contacts, tensor, contacts.axis, contacts.flat, site, rows)
-    light, bends = conditions.light(cutter), 1.0 / cutter.radius
-    if not (light.mode[:, OFFSET_OF] > 0.0).any():
+    outer_tool, bends = conditions.outer_tool(cutter), 1.0 / cutter.radius
+    if not (outer_tool.mode[:, OFFSET_OF] > 0.0).any():
         # A ball gouges at every tilt or at none.
         bends = 0.0
     for room in rooms:
@@ -215,7 +215,7 @@ def _served(contacts: CellContacts, site: Site, rooms: Sequence[float], upto: fl
         curved = contacts.curvature + room * bends
         at = Contacts(contacts.point, contacts.normal, contacts.direction_max, curved)
         found = blank(len(contacts))
-        search_postures(at, open_rows, light, light, conditions, found, strict=bends > 0.0, work=site.work)
+        search_postures(at, open_rows, outer_tool, outer_tool, conditions, found, strict=bends > 0.0, work=site.work)
         rows = open_rows[found.reached[open_rows]]
         if len(rows):
             new = _cover(contacts, tensor, found.axis, np.zeros(len(contacts), bool), site, rows)
@@ -233,11 +233,11 @@ def _cover(
     from plan_cutters.kernels.area.zone import Nodes
 
     field, cutter, conditions = site.field, site.cutter, site.conditions
-    obstacles, light = conditions.obstacles, conditions.light(cutter)
+    obstacles, outer_tool = conditions.obstacles, conditions.outer_tool(cutter)
     patches = Patches(contacts.point, contacts.normal, tensor, axes, flats, contacts.patch, contacts.home)
     nodes, outlook = Nodes(field.index, field.closed, site.about), np.zeros(len(contacts), np.uint8)
     chord = obstacles.triangles.chord_error
-    sweeping = Sweeping(tool_of(light), light.dummy, *light.noses(cutter.taper, cutter.shape), light.flutes,
+    sweeping = Sweeping(tool_of(outer_tool), outer_tool.dummy, *outer_tool.noses(cutter.taper, cutter.shape), outer_tool.flutes,
                         conditions.tolerance - chord, chord)  # fmt: skip
 
     looked = list[int]()
@@ -254,9 +254,9 @@ def _cover(
     across = axis - upright[:, None] * normal
     sine = np.linalg.norm(across, axis=1)
     flat = flats[mine] | (sine < _UPRIGHT)
-    lean = np.where(flat[:, None], contacts.direction_max[mine], across / np.where(flat, 1.0, sine)[:, None])
+    tilt_direction = np.where(flat[:, None], contacts.direction_max[mine], across / np.where(flat, 1.0, sine)[:, None])
     tilt = np.where(flat, 0.0, np.arctan2(sine, upright))
-    outlook[mine[conditions.obstacles.holds(light, contacts.point[mine], normal, lean, tilt)]] = NEVER
+    outlook[mine[conditions.obstacles.holds(outer_tool, contacts.point[mine], normal, tilt_direction, tilt)]] = NEVER
     return outlook[rows]
 
 

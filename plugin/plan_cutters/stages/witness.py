@@ -15,11 +15,11 @@ from cad_io.arrays import Floats, Ints, SurfaceSamples
 from cad_io.part import Part
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.verdicts import BURIED, REASONS, TOLERANCE, Reach, Witness, blank
+from plan_cutters.domain.verdicts import BURIED, REASONS, TOLERANCE, Verdicts, Witness, blank
 from plan_cutters.kernels.rows import Contacts
-from plan_cutters.scene.buried import cover
 from plan_cutters.scene.conditions import Conditions, found_of, rotations_of, tool_of
 from plan_cutters.scene.deepest import deepest, deepest_of
+from plan_cutters.scene.inside_material import cover
 from plan_cutters.scene.threads import in_chunks
 
 #: Witnesses kept for each group, samples tried in each to find them, and in all.
@@ -49,7 +49,7 @@ class _Group:
 
 
 def witnesses(
-    samples: SurfaceSamples, reach: Reach, cutter: Cutter, conditions: Conditions, *, buried: Ints | None = None,
+    samples: SurfaceSamples, verdicts: Verdicts, cutter: Cutter, conditions: Conditions, *, buried: Ints | None = None,
     part: Part | None = None,
 ) -> tuple[Witness, ...]:  # fmt: skip
     """Samples that are not reached, for each face and reason; `buried` as in `access`.
@@ -58,7 +58,7 @@ def witnesses(
     without it, on the triangles. Where there are too many groups to try a sample in each, those of less area have a witness
     without a depth; the largest of each face comes before the second of any.
     """
-    groups = list(_groups(samples, reach, buried))
+    groups = list(_groups(samples, verdicts, buried))
     tried = _measured(groups)
     most = max(1, min(_TRIED, _TRIED_IN_ALL // max(1, len(tried))))
     picked = {i: far_apart(samples.point, groups[i].rows, most) for i in tried}
@@ -67,7 +67,7 @@ def witnesses(
 
     def work(rows: NDArray[np.int64]) -> None:
         for row in rows.tolist():
-            looked[row] = _witness(samples, row, reach, cutter, alone, part)
+            looked[row] = _witness(samples, row, verdicts, cutter, alone, part)
 
     in_chunks(work, np.array([row for rows in picked.values() for row in rows], np.int64), conditions.jobs, chunk=1)
     found: list[Witness] = []
@@ -83,11 +83,11 @@ def witnesses(
     return tuple(found)
 
 
-def _groups(samples: SurfaceSamples, reach: Reach, buried: Ints | None) -> Iterator[_Group]:
+def _groups(samples: SurfaceSamples, verdicts: Verdicts, buried: Ints | None) -> Iterator[_Group]:
     """What is lost, in the order in which samples come."""
-    lost = np.flatnonzero(reach.lost)
+    lost = np.flatnonzero(verdicts.lost)
     body = np.full(len(lost), -1) if buried is None else buried[lost]
-    key = np.stack([samples.face[lost], reach.reason[lost], body], axis=1)
+    key = np.stack([samples.face[lost], verdicts.reason[lost], body], axis=1)
     each, first, which = np.unique(key, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(which.reshape(-1), kind="stable")
     pieces = (
@@ -131,17 +131,17 @@ def _kept(looked: Sequence[Witness], point: Floats) -> list[Witness]:
 
 
 def _witness(
-    samples: SurfaceSamples, row: int, reach: Reach, cutter: Cutter, conditions: Conditions, part: Part | None
+    samples: SurfaceSamples, row: int, verdicts: Verdicts, cutter: Cutter, conditions: Conditions, part: Part | None
 ) -> Witness:
     """Find the posture of least depth by halving the depth that is let pass, and measure it on the surface."""
-    reason = REASONS[reach.reason[row]]
+    reason = REASONS[verdicts.reason[row]]
     nothing = Witness(row, reason, None, None, None, None, None, None)
     found = _least_depth(samples, row, cutter, replace(conditions, around=conditions.around.skins))
     if found is None:
         return nothing
-    obstacles, at, light = conditions.obstacles, slice(row, row + 1), conditions.light(cutter)
+    obstacles, at, outer_tool = conditions.obstacles, slice(row, row + 1), conditions.outer_tool(cutter)
     best = found[0]
-    if obstacles.holds(light, samples.point[at], samples.normal[at], best.lean, best.tilt)[0]:
+    if obstacles.holds(outer_tool, samples.point[at], samples.normal[at], best.tilt_direction, best.tilt)[0]:
         # Its axis lies within material: one that does not says more, if there is any.
         found = _least_depth(samples, row, cutter, conditions) or found
     best, low, high = found
@@ -157,7 +157,7 @@ def _witness(
         obstacle_face=None if met is None else met.face,
         obstacle_point=None if met is None else met.point,
         tilt=float(best.tilt[0]),
-        rotation=float(rotations_of(samples.normal[at], samples.direction_max[at], best.lean)[0]),
+        rotation=float(rotations_of(samples.normal[at], samples.direction_max[at], best.tilt_direction)[0]),
         axis=best.axis[0],
         depth=high if met is None else met.depth,
     )
@@ -165,7 +165,7 @@ def _witness(
 
 def _least_depth(
     samples: SurfaceSamples, row: int, cutter: Cutter, conditions: Conditions
-) -> tuple[Reach, float, float] | None:
+) -> tuple[Verdicts, float, float] | None:
     """The posture of least depth, and depths, mm, between which that lies; None if no posture is left at any."""
     from plan_cutters.kernels.search.search import posture
 
@@ -197,5 +197,5 @@ def _covered(samples: SurfaceSamples, plain: Witness, body: int, conditions: Con
     """What a sample lies within is the witness: where the way out along the normal leaves it."""
     around = conditions.around
     within = around.enclosing[body] if body >= 0 else None
-    way_out = cover(samples.point[plain.sample], samples.normal[plain.sample], around.surely, within)
+    way_out = cover(samples.point[plain.sample], samples.normal[plain.sample], around.certain, within)
     return plain if way_out is None else replace(plain, obstacle_face=way_out.face, obstacle_point=way_out.point)

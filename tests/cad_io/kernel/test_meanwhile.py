@@ -14,8 +14,8 @@ import pytest
 
 from cad_io.kernel import copies
 from cad_io.kernel.each import each
-from cad_io.kernel.limited import TimeLimit, limited
-from cad_io.kernel.meanwhile import Meanwhile
+from cad_io.kernel.side_process import Meanwhile
+from cad_io.kernel.time_limit import TimeLimit, limited
 from plan_cutters import pipeline, plan
 from plan_cutters.report import making, models
 from plan_cutters.report.folder import write_all
@@ -103,7 +103,9 @@ def test_without_a_copy_the_work_is_done_here(monkeypatch):
     with Meanwhile(os.getpid, 5.0, worth=False) as copy:
         assert not copy.works
         assert copy.result() == os.getpid()
-    monkeypatch.setattr("cad_io.kernel.meanwhile.begin", lambda *_: (_ for _ in ()).throw(OSError("no more processes")))
+    monkeypatch.setattr(
+        "cad_io.kernel.side_process.begin", lambda *_: (_ for _ in ()).throw(OSError("no more processes"))
+    )
     with Meanwhile(os.getpid, 5.0) as copy:
         assert copy.result() == os.getpid()
 
@@ -158,7 +160,7 @@ def test_a_page_whose_copy_crashes_is_written_here(tmp_path, monkeypatch):
 
 def test_one_thread_asked_for_is_one_process(tmp_path, monkeypatch):
     begun = []
-    monkeypatch.setattr("cad_io.kernel.meanwhile.begin", lambda *given: begun.append(given))
+    monkeypatch.setattr("cad_io.kernel.side_process.begin", lambda *given: begun.append(given))
     result = plan(GROOVE, cutters="R2L30", grid=9, jobs=1)
     write_all(replace(result), tmp_path / "out", ("json", "html"))
     assert not begun

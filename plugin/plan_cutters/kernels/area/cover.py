@@ -19,7 +19,7 @@ from plan_cutters.kernels.linear.vectors import cross, dot, perpendicular
 from plan_cutters.kernels.rows import Frame, Scratch
 from plan_cutters.kernels.search.place import mode_at
 from plan_cutters.kernels.tool import hit
-from plan_cutters.kernels.tool.drawn import drawn_hit
+from plan_cutters.kernels.tool.extrusion import drawn_hit
 from plan_cutters.kernels.tool.hit import BODY, HALF, OFFSET, A, P, X, Y
 
 #: The smallest patch that is thought of, as a share of the one at hand.
@@ -53,21 +53,21 @@ class Sweeping(NamedTuple):
     """A tool as this asks for it.
 
     tool : Tool, without what does not matter; dummy (k, COLUMNS), as `search.dummy_clear` takes it; nose (m,) int64: of each
-    mode a mask of the pieces that lie in what its nose sweeps when it goes on along the axis, widening by `lean` (m,), rad;
-    flutes, a mask of the pieces that cut; safe, chord: the depth up to which a triangle does not matter, and the chord error,
+    mode a mask of the pieces that lie in what its nose sweeps when it goes on along the axis, widening by `widening` (m,),
+    rad; flutes, a mask of the pieces that cut; safe, chord: the depth up to which a triangle does not matter, and the chord error,
     mm.
     """
 
     tool: Any
     dummy: Any
     nose: Any
-    lean: Any
+    widening: Any
     flutes: int
     safe: float
     chord: float
 
 
-class _Room(NamedTuple):
+class _Workspace(NamedTuple):
     """Where a contact is worked out: directions along and across the lean, bodies and their pieces, bounds of curvature, what
     counts as near."""
 
@@ -102,7 +102,7 @@ def _grown(piece, out, radial, axial):
 
 
 @kernel
-def _bodies(body, piece, frame, h, pose, slides, grow, room, finest):
+def _bodies(body, piece, frame, h, pose, slides, grow, workspace, finest):
     """Write the bodies of a contact that wanders by no more than h: the whole, then in 2, 6 and 18 parts along the lean.
 
     Each holds those that it is cut into. `pose` is (sine, cosine) of the tilt. `slides`: what a step along the lean moves the
@@ -119,19 +119,19 @@ def _bodies(body, piece, frame, h, pose, slides, grow, room, finest):
         for step in range(count):
             shift = (2 * step + 1 - count) * wide
             for k in range(BODY):
-                room.bodies[at, k] = body[k]
+                workspace.bodies[at, k] = body[k]
             for k in range(3):
-                room.bodies[at, P + k] += shift * (forth * frame.f[k] - slide * frame.t[k])
-            room.bodies[at, HALF] = h * across + wide * abs(slide) + beside
+                workspace.bodies[at, P + k] += shift * (forth * frame.f[k] - slide * frame.t[k])
+            workspace.bodies[at, HALF] = h * across + wide * abs(slide) + beside
             along = wide * abs(forth) + h * back
-            _grown(piece, room.pieces[at], along * abs(cosine) + grow, along * sine + grow)
+            _grown(piece, workspace.pieces[at], along * abs(cosine) + grow, along * sine + grow)
             at += 1
 
 
 @kernel
-def _reaches(vertex, i, mask, room):
+def _reaches(vertex, i, mask, workspace):
     """Whether triangle i, which reaches into the whole, reaches into one of its finest parts."""
-    bodies, pieces, scratch = room.bodies, room.pieces, room.scratch
+    bodies, pieces, scratch = workspace.bodies, workspace.pieces, workspace.scratch
     for half in range(2):
         scratch.looked[0] += _TRIANGLE
         if not drawn_hit(vertex, i, bodies[1 + half], pieces[1 + half], mask, scratch):
@@ -148,30 +148,30 @@ def _reaches(vertex, i, mask, room):
 
 
 @kernel
-def _blocks(i, mask, nose, whole, frame, face, tree, triangle_face, room):
+def _blocks(i, mask, nose, whole, frame, face, tree, triangle_face, workspace):
     """Whether triangle i reaches into a piece of the moved cutter; into its nose only if it is not near."""
     vertex = tree.vertex
-    room.scratch.looked[0] += _TRIANGLE
-    hit = drawn_hit(vertex, i, room.bodies[0], room.pieces[0], mask, room.scratch)
-    if hit & nose and near_by(vertex, triangle_face, i, frame, face, room.near):
+    workspace.scratch.looked[0] += _TRIANGLE
+    hit = drawn_hit(vertex, i, workspace.bodies[0], workspace.pieces[0], mask, workspace.scratch)
+    if hit & nose and near_by(vertex, triangle_face, i, frame, face, workspace.near):
         hit &= ~nose
-    return hit != 0 and (whole or _reaches(vertex, i, hit, room))
+    return hit != 0 and (whole or _reaches(vertex, i, hit, workspace))
 
 
 @kernel
-def _first(hint, nose, whole, frame, face, tree, triangle_face, room):
+def _first(hint, nose, whole, frame, face, tree, triangle_face, workspace):
     """First triangle found that is in the way of the moved cutter, `hint` (-1: none) before others."""
     vertex, box, depth = tree.vertex, tree.box, tree.depth
-    stack, masks, count, first, top = room.scratch.stack, room.scratch.masks, len(vertex), (1 << depth) - 1, 1
-    every = hit.everything(room.pieces[0])
-    if hint >= 0 and _blocks(hint, every, nose, whole, frame, face, tree, triangle_face, room):
+    stack, masks, count, first, top = workspace.scratch.stack, workspace.scratch.masks, len(vertex), (1 << depth) - 1, 1
+    every = hit.everything(workspace.pieces[0])
+    if hint >= 0 and _blocks(hint, every, nose, whole, frame, face, tree, triangle_face, workspace):
         return hint
     stack[0], masks[0] = 0, every
     while top > 0:
         top -= 1
         node = stack[top]
-        room.scratch.looked[0] += 1
-        mask = hit.alive(box, node, room.bodies[0], room.pieces[0], masks[top], 0.0)
+        workspace.scratch.looked[0] += 1
+        mask = hit.alive(box, node, workspace.bodies[0], workspace.pieces[0], masks[top], 0.0)
         if mask == 0:
             continue
         if node < first:
@@ -181,7 +181,7 @@ def _first(hint, nose, whole, frame, face, tree, triangle_face, room):
             continue
         leaf = node - first
         for i in range((count * leaf) >> depth, (count * (leaf + 1)) >> depth):
-            if _blocks(i, mask, nose, whole, frame, face, tree, triangle_face, room):
+            if _blocks(i, mask, nose, whole, frame, face, tree, triangle_face, workspace):
                 return i
     return -1
 
@@ -209,10 +209,10 @@ def _motion(row, patches, nodes, frame, sine, h, turn, offset, rise):
 
 
 @kernel
-def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, room):
+def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace):
     """What `cover` writes for a contact, and the triangle in the way, -1 if there is none; `blocker` is looked at first."""
     tool, safe, chord = sweeping.tool, sweeping.safe, sweeping.chord
-    f, t, near = room.f, room.t, room.near
+    f, t, near = workspace.f, workspace.t, workspace.near
     p, n, a = patches.point[row], patches.normal[row], patches.axis[row]
     h, flat, home = patches.patch[row], patches.flat[row], patches.home[row]
     if not h > 0.0:
@@ -232,11 +232,11 @@ def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, 
     if mode < 0:
         return NEVER, -1
     offset, rise, low, high, _ = tool.mode[mode]
-    nose = Nose(offset, rise, np.cos(sweeping.lean[mode]), np.sin(sweeping.lean[mode]), low, high)
+    nose = Nose(offset, rise, np.cos(sweeping.widening[mode]), np.sin(sweeping.widening[mode]), low, high)
     if flat and len(tool.mode) > 1 and high < 0.25:
         return NEVER, -1
-    frame, pose, most = Frame(p, n, f, t), (sine, cosine), room.seen.most
-    if not begin(frame, h, home, nodes, room.seen):
+    frame, pose, most = Frame(p, n, f, t), (sine, cosine), workspace.seen.most
+    if not begin(frame, h, home, nodes, workspace.seen):
         return NEVER, -1
     # In the smallest patch there remain the home node's own curvature and what it may differ in its cell.
     least = spared(chord + distance_of(0) * _SMALLEST * h, safe, chord)
@@ -246,7 +246,7 @@ def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, 
     # Bounds do not get smaller with distance: what does not hold nearby needs no look farther out.
     for last in (0, _HALF_WAY, EXTENTS - 1):
         if full == np.inf:
-            full = look_round(frame, h, home, nodes, room.seen, h * distance_of(last))
+            full = look_round(frame, h, home, nodes, workspace.seen, h * distance_of(last))
         if full < 0.0:
             return 1, -1
         # How far the normal turns within the patch, and how far the surface leaves the tangent plane.
@@ -271,17 +271,17 @@ def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, 
     if flat:
         body[OFFSET] = 0.0
         for k in range(BODY):
-            room.bodies[0, k] = body[k]
-        _grown(sweeping.dummy, room.pieces[0], h + rise * turn, lift + rise * turn * turn)
+            workspace.bodies[0, k] = body[k]
+        _grown(sweeping.dummy, workspace.pieces[0], h + rise * turn, lift + rise * turn * turn)
     else:
         body[OFFSET] = offset
         grow = 0.5 * abs(offset) * psi * psi + lift + rise * rest
         # The centre of curvature wanders less than the contact on a concave surface, and turns with the normal.
         lever = rise + (offset / sine if sine > 0.0 else 0.0)
         slides = (1.0 - rise * k_ff, rise * abs(k_ft), lever * k_ft, abs(1.0 - lever * k_tt), abs(offset) * beside)
-        _bodies(body, tool.piece[mode], frame, h, pose, slides, grow, room, 18)
+        _bodies(body, tool.piece[mode], frame, h, pose, slides, grow, workspace, 18)
     exempt = sweeping.flutes if flat else sweeping.nose[mode]
-    found = _first(blocker, exempt, flat, frame, face, tree, triangle_face, room)
+    found = _first(blocker, exempt, flat, frame, face, tree, triangle_face, workspace)
     return 0 if found < 0 else 1, found
 
 
@@ -310,11 +310,13 @@ def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, outlook):
         How many boxes were looked at, and what else takes as long: triangles and nodes.
     """
     count = sweeping.tool.piece.shape[1]
-    room = _Room(np.empty(3), np.empty(3), np.empty((_BODIES, BODY)), np.empty((_BODIES, count, COLUMNS)), np.empty(6), seen(),
-                 hit.scratch())  # fmt: skip
+    workspace = _Workspace(np.empty(3), np.empty(3), np.empty((_BODIES, BODY)), np.empty((_BODIES, count, COLUMNS)), np.empty(6),
+                           seen(), hit.scratch())  # fmt: skip
     body, blocker = np.empty(BODY), -1
     for row in rows:
-        outlook[row], found = _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, room)
+        outlook[row], found = _outlook(
+            row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace
+        )
         # What was in the way of one contact is likely in the way of the next.
         blocker = found if found >= 0 else blocker
-    return room.scratch.looked[0] + room.seen.looked[0] // _NODES
+    return workspace.scratch.looked[0] + workspace.seen.looked[0] // _NODES

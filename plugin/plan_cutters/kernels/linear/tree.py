@@ -107,9 +107,9 @@ def _mean_normal(corner, normal, lo, hi):
 
 
 @kernel
-def _reach(corner, lo, hi, middle, axes, room):
+def _reach(corner, lo, hi, middle, axes, workspace):
     """Write into `room.least` and `room.most` (3,) how far triangles `lo` to `hi` reach along axes (3, 3) from a point."""
-    lows, highs, least, most = room.lows, room.highs, room.least, room.most
+    lows, highs, least, most = workspace.lows, workspace.highs, workspace.least, workspace.most
     mx, my, mz = middle[0], middle[1], middle[2]
     whole = lo + (hi - lo) // _LANES * _LANES
     for k in range(3):
@@ -137,7 +137,7 @@ def _reach(corner, lo, hi, middle, axes, room):
             least[k], most[k] = min(least[k], lows[k, lane]), max(most[k], highs[k, lane])
 
 
-class _Room(NamedTuple):
+class _Workspace(NamedTuple):
     """Room to bound a node in: low, high (levels, 2, 3), the boxes along x, y and z of a node's two children by its level;
     middle (3,), axes (3, 3), least, most (3,), and lows, highs (3, _LANES)."""
 
@@ -152,9 +152,9 @@ class _Room(NamedTuple):
 
 
 @kernel
-def _bound(corner, normal, lo, hi, low, high, box, node, room):
+def _bound(corner, normal, lo, hi, low, high, box, node, workspace):
     """Bound triangles `lo` to `hi`, which lie between low and high (3,), by a box whose third side is along the mean normal."""
-    middle, axes = room.middle, room.axes
+    middle, axes = workspace.middle, workspace.axes
     mean = _mean_normal(corner, normal, lo, hi)
     # The other sides: across the mean normal, the first along the longest side of the node that allows it.
     along, best = 0, -1.0
@@ -173,14 +173,14 @@ def _bound(corner, normal, lo, hi, low, high, box, node, room):
     axes[1, 1] = mean[2] * axes[0, 0] - mean[0] * axes[0, 2]
     axes[1, 2] = mean[0] * axes[0, 1] - mean[1] * axes[0, 0]
     # Extents from the box's middle, so that far from the origin nothing is lost to rounding.
-    _reach(corner, lo, hi, middle, axes, room)
+    _reach(corner, lo, hi, middle, axes, workspace)
     square, scale = 0.0, abs(middle[0]) + abs(middle[1]) + abs(middle[2])
     for k in range(3):
         box[node, k] = middle[k]
     for k in range(3):
         # A hair wider, so that rounding cannot leave a corner outside.
-        half = 0.5 * (room.most[k] - room.least[k]) * (1 + 1e-12) + 1e-14 * scale
-        centre = 0.5 * (room.most[k] + room.least[k])
+        half = 0.5 * (workspace.most[k] - workspace.least[k]) * (1 + 1e-12) + 1e-14 * scale
+        centre = 0.5 * (workspace.most[k] + workspace.least[k])
         for i in range(3):
             box[node, i] += centre * axes[k, i]
             box[node, 3 + 3 * k + i] = axes[k, i]
@@ -213,28 +213,28 @@ def _sort(order, centre, depth, lows, highs):
 
 
 @kernel
-def _bounds(corner, normal, depth, box, room):
+def _bounds(corner, normal, depth, box, workspace):
     """Bound every node, after the two below it."""
     n = corner.shape[1]
     for leaf in range(1 << depth):
         lo, hi = (n * leaf) >> depth, (n * (leaf + 1)) >> depth
-        low, high = room.low[depth, leaf & 1], room.high[depth, leaf & 1]
+        low, high = workspace.low[depth, leaf & 1], workspace.high[depth, leaf & 1]
         for k in range(3):
             low[k], high[k] = np.inf, -np.inf
             for i in range(lo, hi):
                 low[k] = min(low[k], min(corner[k, i], min(corner[3 + k, i], corner[6 + k, i])))
                 high[k] = max(high[k], max(corner[k, i], max(corner[3 + k, i], corner[6 + k, i])))
         level, j = depth, leaf
-        _bound(corner, normal, lo, hi, low, high, box, (1 << level) - 1 + j, room)
+        _bound(corner, normal, lo, hi, low, high, box, (1 << level) - 1 + j, workspace)
         while j & 1:
             # Both children are done: then so can be what is above them.
             level, j = level - 1, j >> 1
-            low, high = room.low[level, j & 1], room.high[level, j & 1]
+            low, high = workspace.low[level, j & 1], workspace.high[level, j & 1]
             for k in range(3):
-                low[k] = min(room.low[level + 1, 0, k], room.low[level + 1, 1, k])
-                high[k] = max(room.high[level + 1, 0, k], room.high[level + 1, 1, k])
+                low[k] = min(workspace.low[level + 1, 0, k], workspace.low[level + 1, 1, k])
+                high[k] = max(workspace.high[level + 1, 0, k], workspace.high[level + 1, 1, k])
             lo, hi = (n * j) >> level, (n * (j + 1)) >> level
-            _bound(corner, normal, lo, hi, low, high, box, (1 << level) - 1 + j, room)
+            _bound(corner, normal, lo, hi, low, high, box, (1 << level) - 1 + j, workspace)
 
 
 @kernel
@@ -277,11 +277,11 @@ def build_apart(vertex, own, away):
     normal = centre
     _normals(corner, normal)
     box = np.empty(((2 << depth) - 1, 16))
-    room = _Room(
+    workspace = _Workspace(
         np.empty((depth + 1, 2, 3)), np.empty((depth + 1, 2, 3)), np.empty(3), np.empty((3, 3)), np.empty(3), np.empty(3),
         np.empty((3, _LANES)), np.empty((3, _LANES)),
     )  # fmt: skip
-    _bounds(corner, normal, depth, box, room)
+    _bounds(corner, normal, depth, box, workspace)
     return order, box, depth
 
 

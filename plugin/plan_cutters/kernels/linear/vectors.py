@@ -30,7 +30,7 @@ def perpendicular(n, out):
 
 @kernel
 def lean_frame(e1, e2, cosine, sine, f, t):
-    """Write the lean direction f at a rotation, and t = n x f."""
+    """Write the tilt direction f at a rotation, and t = n x f."""
     for k in range(3):
         f[k] = cosine * e1[k] + sine * e2[k]
         t[k] = cosine * e2[k] - sine * e1[k]

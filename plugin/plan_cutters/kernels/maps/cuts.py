@@ -21,7 +21,7 @@ from plan_cutters.kernels.tool.tool_arcs import ARCS, arc_about, closed, forbidd
 _QUARTERED = 4
 
 
-class Room(NamedTuple):
+class Workspace(NamedTuple):
     """Room to work in: corner (3, 3), first and second (8, 3) polygons, a body, ranges (64, 2) of tilts, arcs (ARCS, 2).
 
     In lanes, as in `planes`: a triangle, boxes or triangles turned, ends, what is clear, by how much ends move. Parts (64, 3, 3)
@@ -48,7 +48,7 @@ class Room(NamedTuple):
 @entry
 def room_to_cut():
     """Room to cut gaps in."""
-    return Room(
+    return Workspace(
         np.empty((3, 3)), np.empty((8, 3)), np.empty((8, 3)), np.empty(BODY), np.empty((64, 2)), np.empty((ARCS, 2)),
         np.empty((11, LANES)), np.empty((BOXES, LANES)), np.empty((ENDS, LANES)), np.empty(LANES), np.empty(LANES),
         np.empty((64, 3, 3)), np.empty(64, np.int64), np.zeros(1, np.int64), scratch(),
@@ -120,14 +120,14 @@ def _fill(seen, corner):
 
 
 @kernel
-def _out(corner, ca, sa, cb, sb, turning, k, room):
+def _out(corner, ca, sa, cb, sb, turning, k, workspace):
     """Whether a triangle, rows (x, z, y) from the centre, is shown to stay out of piece k at all tilts of a gap."""
-    room.spent[0] += 1
+    workspace.spent[0] += 1
     if (turning.eight >> k) & 1:
-        return _passes(corner, ca, sa, cb, sb, flutes(turning, k), room.first, room.second)
-    _fill(room.seen, corner)
-    all_ends(room.end, ca, sa, cb, sb)
-    return triangles_clear(room.seen, room.end, turning, k, room.clear)
+        return _passes(corner, ca, sa, cb, sb, flutes(turning, k), workspace.first, workspace.second)
+    _fill(workspace.seen, corner)
+    all_ends(workspace.end, ca, sa, cb, sb)
+    return triangles_clear(workspace.seen, workspace.end, turning, k, workspace.clear)
 
 
 @kernel
@@ -145,23 +145,23 @@ def _quarters(part, seen):
 
 
 @kernel
-def _out_in_parts(corner, ca, sa, cb, sb, turning, k, room):
+def _out_in_parts(corner, ca, sa, cb, sb, turning, k, workspace):
     """`_out` for a triangle that is cut into four again and again."""
-    parts, times, seen, piece, offset = room.parts, room.times, room.seen, turning.piece, turning.offset
+    parts, times, seen, piece, offset = workspace.parts, workspace.times, workspace.seen, turning.piece, turning.offset
     for column in range(3):
         for row in range(3):
             parts[0, row, column] = corner[row, column]
     times[0], top = 0, 1
-    all_ends(room.end, ca, sa, cb, sb)
+    all_ends(workspace.end, ca, sa, cb, sb)
     while top > 0:
         top -= 1
-        room.spent[0] += 1
+        workspace.spent[0] += 1
         cut = times[top] + 1
         _quarters(parts[top], seen)
-        if triangles_clear(seen, room.end, turning, k, room.clear):
+        if triangles_clear(seen, workspace.end, turning, k, workspace.clear):
             continue
         for lane in range(4):
-            if room.clear[lane] > 0.0:
+            if workspace.clear[lane] > 0.0:
                 continue
             x, y, z = seen[0, lane] + seen[3, lane] + seen[6, lane], seen[1, lane] + seen[4, lane] + seen[7, lane], 0.0
             x, y, z = x / 3.0, y / 3.0, (seen[2, lane] + seen[5, lane] + seen[8, lane]) / 3.0
@@ -181,28 +181,28 @@ def _out_in_parts(corner, ca, sa, cb, sb, turning, k, room):
 
 
 @kernel
-def _in_the_way(vertex, i, frame, tilt, turning, k, room):
+def _in_the_way(vertex, i, frame, tilt, turning, k, workspace):
     """Whether a triangle reaches into piece k at a tilt."""
-    room.spent[0] += 1
-    stand(room.body, frame, np.cos(tilt), np.sin(tilt), turning.offset, 0.0)
-    return triangle_hit(vertex, i, room.body, turning.piece, 1 << k, 0.0, room.scratch)[0] >= 0
+    workspace.spent[0] += 1
+    stand(workspace.body, frame, np.cos(tilt), np.sin(tilt), turning.offset, 0.0)
+    return triangle_hit(vertex, i, workspace.body, turning.piece, 1 << k, 0.0, workspace.scratch)[0] >= 0
 
 
 @kernel
-def _first_in_the_way(vertex, i, frame, a, b, sign, narrowest, turning, k, room):
+def _first_in_the_way(vertex, i, frame, a, b, sign, narrowest, turning, k, workspace):
     """The first tilt, from a up or from b down (`sign`), at which a triangle is not shown to be clear of piece k; nan if none.
 
     A range is clear if planes part the triangle from the piece, or if it misses the piece widened by what tilting within the
     range can do. Others are halved.
     """
-    body, ranges, scratch, eight = room.body, room.ranges, room.scratch, (turning.eight >> k) & 1
+    body, ranges, scratch, eight = workspace.body, workspace.ranges, workspace.scratch, (turning.eight >> k) & 1
     ranges[0, 0], ranges[0, 1] = a, b
     top = 1
     while top > 0:
         top -= 1
-        room.spent[0] += 1
+        workspace.spent[0] += 1
         first, last = ranges[top, 0], ranges[top, 1]
-        if not eight and _in_the_way(vertex, i, frame, first if sign > 0.0 else last, turning, k, room):
+        if not eight and _in_the_way(vertex, i, frame, first if sign > 0.0 else last, turning, k, workspace):
             return first if sign > 0.0 else last
         middle, half = 0.5 * (first + last), 0.5 * (last - first)
         stand(body, frame, np.cos(middle), np.sin(middle), turning.offset, 0.0)
@@ -210,7 +210,7 @@ def _first_in_the_way(vertex, i, frame, a, b, sign, narrowest, turning, k, room)
         if which < 0 or not _swept_hit(vertex, i, body, turning.piece, 1 << k, half + 1e-12, scratch):
             continue
         if not eight and _out_in_parts(
-            room.corner, np.cos(first), np.sin(first), np.cos(last), np.sin(last), turning, k, room
+            workspace.corner, np.cos(first), np.sin(first), np.cos(last), np.sin(last), turning, k, workspace
         ):
             continue
         if last - first <= narrowest or top + 2 > len(ranges):
@@ -223,49 +223,49 @@ def _first_in_the_way(vertex, i, frame, a, b, sign, narrowest, turning, k, room)
 
 
 @kernel
-def _shrink_in_lanes(corner, gap, g, sign, narrowest, turning, k, room):
+def _shrink_in_lanes(corner, gap, g, sign, narrowest, turning, k, workspace):
     """`_shrink`, eight ends at a time: first farther and farther, then evenly between the last that failed and the first that
     passed.
     """
     ca, sa, cb, sb = gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL]
     width, passed, failed, step = gap[g, LAST] - gap[g, FIRST], np.inf, 0.0, narrowest
-    _fill(room.seen, corner)
+    _fill(workspace.seen, corner)
     while passed - failed > narrowest:
         if passed == np.inf and failed >= width - narrowest:
             return np.inf, width
-        room.spent[0] += 1
+        workspace.spent[0] += 1
         low, high = failed, passed
         for lane in range(LANES):
             if passed < np.inf:
                 move = low + (high - low) * (lane + 1) / (LANES + 1)
             else:
                 move = min(failed + step * 2.0**lane, width - narrowest)
-            room.moves[lane] = move
+            workspace.moves[lane] = move
             c, s = np.cos(gap[g, FIRST] + move), np.sin(gap[g, FIRST] + move)
             if sign < 0.0:
                 c, s = np.cos(gap[g, LAST] - move), np.sin(gap[g, LAST] - move)
-                put_ends(room.end, lane, ca, sa, c, s)
+                put_ends(workspace.end, lane, ca, sa, c, s)
             else:
-                put_ends(room.end, lane, c, s, cb, sb)
-        triangles_clear(room.seen, room.end, turning, k, room.clear)
+                put_ends(workspace.end, lane, c, s, cb, sb)
+        triangles_clear(workspace.seen, workspace.end, turning, k, workspace.clear)
         for lane in range(LANES):
-            if room.clear[lane] > 0.0 and room.moves[lane] > 0.0:
-                passed = room.moves[lane]
+            if workspace.clear[lane] > 0.0 and workspace.moves[lane] > 0.0:
+                passed = workspace.moves[lane]
                 break
-            failed = room.moves[lane]
+            failed = workspace.moves[lane]
         step *= 2.0**LANES
     return passed, failed
 
 
 @kernel
-def _shrink(corner, gap, g, sign, narrowest, turning, k, room):
+def _shrink(corner, gap, g, sign, narrowest, turning, k, workspace):
     """By how much a gap must shrink from its first tilt up (`sign` 1) or its last down for a triangle to pass.
 
     To `narrowest`; (by how much, a little less by which it did not pass); infinity if nothing wider is left.
     """
     if not (turning.eight >> k) & 1:
-        return _shrink_in_lanes(corner, gap, g, sign, narrowest, turning, k, room)
-    tool, first, second = flutes(turning, k), room.first, room.second
+        return _shrink_in_lanes(corner, gap, g, sign, narrowest, turning, k, workspace)
+    tool, first, second = flutes(turning, k), workspace.first, workspace.second
     ca, sa, cb, sb = gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL]
     width = gap[g, LAST] - gap[g, FIRST]
     passed, failed, move = np.inf, 0.0, narrowest
@@ -276,7 +276,7 @@ def _shrink(corner, gap, g, sign, narrowest, turning, k, room):
             move = min(2.0 * failed, width - narrowest)
         if move <= failed or move >= width:
             return np.inf, width
-        room.spent[0] += 1
+        workspace.spent[0] += 1
         end = gap[g, FIRST] + move if sign > 0.0 else gap[g, LAST] - move
         c, s = np.cos(end), np.sin(end)
         if sign > 0.0:
@@ -291,65 +291,65 @@ def _shrink(corner, gap, g, sign, narrowest, turning, k, room):
 
 
 @kernel
-def cut_gaps(vertex, i, frame, gap, count, narrowest, turning, k, room):
+def cut_gaps(vertex, i, frame, gap, count, narrowest, turning, k, workspace):
     """Take the tilts at which a triangle is in the way of piece k out of the gaps; (count of gaps, whether any was cut).
 
     The triangle is in `room.corner` too, as rows (x, z, y) from the centre.
     """
-    corner, cut = room.corner, False
+    corner, cut = workspace.corner, False
     # What its corners alone forbid is known in closed form, and mostly all that it does.
     for j in range(3):
-        count, took = take_point(corner[j, 0], corner[j, 2], corner[j, 1], gap, count, turning, k, room.arcs)
+        count, took = take_point(corner[j, 0], corner[j, 2], corner[j, 1], gap, count, turning, k, workspace.arcs)
         cut = cut or took
     g = 0
     while g < count:
         a, b, ca, sa, cb, sb = gap[g, FIRST], gap[g, LAST], gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL]
-        if _out(corner, ca, sa, cb, sb, turning, k, room):
+        if _out(corner, ca, sa, cb, sb, turning, k, workspace):
             g += 1
             continue
         # A side or the middle of the triangle sticks out further than its corners: mostly by a little, at one end.
         at_first, at_last = (
-            _in_the_way(vertex, i, frame, a, turning, k, room),
-            _in_the_way(vertex, i, frame, b, turning, k, room),
+            _in_the_way(vertex, i, frame, a, turning, k, workspace),
+            _in_the_way(vertex, i, frame, b, turning, k, workspace),
         )
         # What was undecided at its ends no longer is where this triangle is in the way.
-        if at_first and gap[g, UF] > 0.0 and _in_the_way(vertex, i, frame, a - gap[g, UF], turning, k, room):
+        if at_first and gap[g, UF] > 0.0 and _in_the_way(vertex, i, frame, a - gap[g, UF], turning, k, workspace):
             gap[g, UF] = 0.0
-        if at_last and gap[g, UL] > 0.0 and _in_the_way(vertex, i, frame, b + gap[g, UL], turning, k, room):
+        if at_last and gap[g, UL] > 0.0 and _in_the_way(vertex, i, frame, b + gap[g, UL], turning, k, workspace):
             gap[g, UL] = 0.0
         # From an end at which it is not in the way nothing is gained if it is at the other.
         up, up_failed, down, down_failed = np.inf, b - a, np.inf, b - a
         if not at_last:
-            up, up_failed = _shrink(corner, gap, g, 1.0, narrowest, turning, k, room)
+            up, up_failed = _shrink(corner, gap, g, 1.0, narrowest, turning, k, workspace)
         if up <= 2.0 * narrowest and gap[g, UF] + up <= 3.0 * narrowest:
             _begin(gap, g, a + up, gap[g, UF] + up)
             cut = True
             continue
         if not at_first:
-            down, down_failed = _shrink(corner, gap, g, -1.0, narrowest, turning, k, room)
+            down, down_failed = _shrink(corner, gap, g, -1.0, narrowest, turning, k, workspace)
         if down <= 2.0 * narrowest and gap[g, UL] + down <= 3.0 * narrowest:
             _end(gap, g, b - down, gap[g, UL] + down)
             cut = True
             continue
         left, right, unsure = max(a, b - down), min(b, a + up), narrowest
         if left > right or not (
-            _in_the_way(vertex, i, frame, max(a, b - down_failed), turning, k, room)
-            and _in_the_way(vertex, i, frame, min(b, a + up_failed), turning, k, room)
+            _in_the_way(vertex, i, frame, max(a, b - down_failed), turning, k, workspace)
+            and _in_the_way(vertex, i, frame, min(b, a + up_failed), turning, k, workspace)
         ):
             # Not known to be in the way right up to there: looked at closely.
             start, end = (left, right) if left <= right else (a, b)
             unsure = 2.0 * narrowest
-            left = _first_in_the_way(vertex, i, frame, start, end, 1.0, narrowest, turning, k, room)
+            left = _first_in_the_way(vertex, i, frame, start, end, 1.0, narrowest, turning, k, workspace)
             if np.isnan(left):
                 g += 1
                 continue
-            right = _first_in_the_way(vertex, i, frame, left, end, -1.0, narrowest, turning, k, room)
+            right = _first_in_the_way(vertex, i, frame, left, end, -1.0, narrowest, turning, k, workspace)
             right = left if np.isnan(right) else right
             middle = 0.5 * (left + right)
             if not (turning.eight >> k) & 1 and not (
-                _in_the_way(vertex, i, frame, min(left + unsure, middle), turning, k, room)
-                and _in_the_way(vertex, i, frame, middle, turning, k, room)
-                and _in_the_way(vertex, i, frame, max(right - unsure, middle), turning, k, room)
+                _in_the_way(vertex, i, frame, min(left + unsure, middle), turning, k, workspace)
+                and _in_the_way(vertex, i, frame, middle, turning, k, workspace)
+                and _in_the_way(vertex, i, frame, max(right - unsure, middle), turning, k, workspace)
             ):
                 # Where nothing shows the triangle clear it need not be in the way.
                 gap[GAPS, UF] += right - left

@@ -72,7 +72,7 @@ def _rising(view, below, block, lanes, low):
 
 
 @kernel
-def _leaf(leaf, which, vertex, frame, turn, gap, count, turning, mask, narrowest, margin, room):
+def _leaf(leaf, which, vertex, frame, turn, gap, count, turning, mask, narrowest, margin, workspace):
     """Take what the triangles of a leaf forbid to the pieces of a mask out of the gaps; (gaps, the lane that cut last or -1)."""
     cosine, sine = turn
     last = -1
@@ -82,26 +82,26 @@ def _leaf(leaf, which, vertex, frame, turn, gap, count, turning, mask, narrowest
         if (turning.eight >> k) & 1:
             _triangles_pass(leaf, cosine, sine, gap, count, flutes(turning, k), margin)
         else:
-            turn_triangles(leaf, cosine, sine, room.turned)
+            turn_triangles(leaf, cosine, sine, workspace.turned)
             for lane in range(LANES):
                 margin[lane] = 1.0
             for g in range(count):
-                all_ends(room.end, gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL])
-                triangles_clear(room.turned, room.end, turning, k, room.clear)
+                all_ends(workspace.end, gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL])
+                triangles_clear(workspace.turned, workspace.end, turning, k, workspace.clear)
                 for lane in range(LANES):
-                    margin[lane] = min(margin[lane], room.clear[lane] - 0.5)
+                    margin[lane] = min(margin[lane], workspace.clear[lane] - 0.5)
         for lane in range(LANES):
             if margin[lane] >= 0.0 or count == 0:
                 continue
-            _turn(leaf, lane, cosine, sine, room.corner)
-            count, cut = cut_gaps(vertex, which[lane], frame, gap, count, narrowest, turning, k, room)
+            _turn(leaf, lane, cosine, sine, workspace.corner)
+            count, cut = cut_gaps(vertex, which[lane], frame, gap, count, narrowest, turning, k, workspace)
             if cut:
                 last = lane
     return count, last
 
 
 @kernel
-def _reaching(view, block, cosine, sine, gap, count, turning, mask, margin, left, room):
+def _reaching(view, block, cosine, sine, gap, count, turning, mask, margin, left, workspace):
     """Write for each box of a block the pieces of a mask that it may reach into in some gap."""
     for lane in range(LANES):
         left[lane] = 0
@@ -115,13 +115,13 @@ def _reaching(view, block, cosine, sine, gap, count, turning, mask, margin, left
                 left[lane] |= 0 if margin[lane] >= 0.0 else 1 << k
             continue
         if not turned:
-            turn_boxes(view, block, cosine, sine, room.turned)
+            turn_boxes(view, block, cosine, sine, workspace.turned)
             turned = True
         for g in range(count):
-            all_ends(room.end, gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL])
-            if not boxes_clear(room.turned, room.end, turning, k, room.clear):
+            all_ends(workspace.end, gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL])
+            if not boxes_clear(workspace.turned, workspace.end, turning, k, workspace.clear):
                 for lane in range(LANES):
-                    left[lane] |= 0 if room.clear[lane] > 0.0 else 1 << k
+                    left[lane] |= 0 if workspace.clear[lane] > 0.0 else 1 << k
 
 
 class _View(NamedTuple):
@@ -130,7 +130,7 @@ class _View(NamedTuple):
     looked at in all.
 
     known (rotations + 1, LANES): triangles that cut gaps of each rotation last, of this sample or the one before, the last row
-    those of any; place (rotations,) of the next of a rotation. What is `reach` away from the contact is out of reach.
+    those of any; place (rotations,) of the next of a rotation. What is `verdicts` away from the contact is out of reach.
     """
 
     boxes: Any
@@ -150,7 +150,7 @@ class _View(NamedTuple):
 
 
 @kernel
-def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, narrowest, wide, seen, room):
+def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, narrowest, wide, seen, workspace):
     """Take the gaps of one rotation, its cosine and sine `turn`, through the tree, level by level; how many are left.
 
     `whole` is the mask of the pieces that anything can reach from this contact, `low` what is out of reach of them all.
@@ -166,10 +166,21 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, na
     for k in range(LANES):
         _see_triangle(leaves[_LEAVES + 2], k, vertex, known[rotation, k], p, e1, e2, n)
     count, _ = _leaf(
-        leaves[_LEAVES + 2], known[rotation], vertex, frame, turn, gap, count, turning, whole, narrowest, inside, room
+        leaves[_LEAVES + 2],
+        known[rotation],
+        vertex,
+        frame,
+        turn,
+        gap,
+        count,
+        turning,
+        whole,
+        narrowest,
+        inside,
+        workspace,
     )
     count, _ = _leaf(
-        leaves[_LEAVES + 1], known[-1], vertex, frame, turn, gap, count, turning, whole, narrowest, inside, room
+        leaves[_LEAVES + 1], known[-1], vertex, frame, turn, gap, count, turning, whole, narrowest, inside, workspace
     )
     queue[0, 0], queue[0, 1], queue[0, 2] = 0, 0, whole
     waiting = 1
@@ -184,7 +195,7 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, na
                 slot = _SEEN
                 _see(view, slot, blocks, offset[level] + block, p, e1, e2, n, seen.reach)
                 _rising(view, below, slot, LANES, low)
-            _reaching(view, slot, cosine, sine, gap, count, turning, mask, margin, left, room)
+            _reaching(view, slot, cosine, sine, gap, count, turning, mask, margin, left, workspace)
             for lane in range(LANES):
                 inner = below[slot, lane]
                 if left[lane] == 0 or inner == _NONE or count == 0:
@@ -214,7 +225,7 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, na
                         left[lane],
                         narrowest,
                         inside,
-                        room,
+                        workspace,
                     )
                     if cut >= 0:
                         known[-1, tally[2]] = begin + cut
@@ -228,7 +239,7 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, na
                 x, y = cosine * x + sine * y, cosine * y - sine * x
                 for k in range(len(turning.piece)):
                     if (left[lane] >> k) & 1:
-                        count, _ = take_point(x, y, z, gap, count, turning, k, room.arcs)
+                        count, _ = take_point(x, y, z, gap, count, turning, k, workspace.arcs)
                 if inner == _UNSEEN and tally[0] < _SEEN:
                     inner = tally[0]
                     _see(view, inner, blocks, offset[level + 1] + box, p, e1, e2, n, seen.reach)
@@ -250,14 +261,14 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, na
 
 
 @kernel
-def _write(gap, count, written, room, part):
+def _write(gap, count, written, workspace, part):
     """Write the gaps as intervals among others, ascending; (how many, how much is undecided at their ends and beyond `room`)."""
     unsure = gap[GAPS, UF] + gap[GAPS, UL]
     for g in range(count):
         unsure += gap[g, UF] + gap[g, UL]
         if gap[g, LAST] <= gap[g, FIRST]:
             continue
-        if written == room:
+        if written == workspace:
             unsure += gap[g, LAST] - gap[g, FIRST]
             continue
         written = insert(part, written, gap[g, FIRST], gap[g, LAST])
@@ -294,7 +305,7 @@ def _reachable(view, lanes, turning):
 
 
 @entry
-def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, room, part, count_out, undecided):
+def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, workspace, part, count_out, undecided):
     """Free tilts of samples at all rotations, in one walk of the tree each, with certified ends.
 
     Parameters
@@ -389,7 +400,7 @@ def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, room, part, co
                         frame, e1, e2, (cosine, sine), rotation, gap, count, turning, whole, floor, narrowest, wide, view,
                         work,
                     )  # fmt: skip
-                count, unsure = _write(gap, count, count_out[place, rotation], room, part[place, rotation])
+                count, unsure = _write(gap, count, count_out[place, rotation], workspace, part[place, rotation])
                 count_out[place, rotation] = join(part[place, rotation], count)
                 undecided[place, rotation] += unsure
         looked += view.tally[3]

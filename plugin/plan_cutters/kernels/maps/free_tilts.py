@@ -31,9 +31,11 @@ class Parts(NamedTuple):
 
 
 @entry
-def room_for_parts(room):
+def room_for_parts(workspace):
     """Room for so many parts."""
-    return Parts(np.empty((room + 4, 3)), np.empty((room + 4, 2)), np.empty((ARCS, 2)), np.empty(BODY), scratch())
+    return Parts(
+        np.empty((workspace + 4, 3)), np.empty((workspace + 4, 2)), np.empty((ARCS, 2)), np.empty(BODY), scratch()
+    )
 
 
 @kernel
@@ -41,7 +43,7 @@ def divide(frame, low, high, tool, mode, narrowest, tree, work):
     """`free_tilts` of a frame, its parts written into `work`; how many."""
     parts, pending, body, walk, piece = work.parts, work.pending, work.body, work.scratch, tool.piece[mode]
     pending[0, 0], pending[0, 1] = low, high
-    top, done, hint, room = 1, 0, -1, len(parts) - 4
+    top, done, hint, workspace = 1, 0, -1, len(parts) - 4
     while top > 0:
         top -= 1
         first, last = pending[top, 0], pending[top, 1]
@@ -61,7 +63,7 @@ def divide(frame, low, high, tool, mode, narrowest, tree, work):
                 )
                 kind = FORBIDDEN
                 cut_first, cut_last = max(first, min(arc_first, tilt)), min(last, max(arc_last, tilt))
-            if last - first <= narrowest or top + done + 3 > room:
+            if last - first <= narrowest or top + done + 3 > workspace:
                 kind, cut_first, cut_last = UNSURE, first, last
         # What is cut out is settled; the rest, at most half on either side or narrower, is not.
         parts[done, 0], parts[done, 1], parts[done, 2] = cut_first, cut_last, kind
@@ -77,13 +79,13 @@ def divide(frame, low, high, tool, mode, narrowest, tree, work):
 
 
 @entry
-def free_tilts(p, n, f, low, high, tool, mode, narrowest, tree, room):
+def free_tilts(p, n, f, low, high, tool, mode, narrowest, tree, workspace):
     """Split a range of tilts into free, forbidden and undecided parts.
 
     Parameters
     ----------
     p, n, f : (3,) float64
-        Contact, normal, lean direction.
+        Contact, normal, tilt direction.
     low, high : float
         rad.
     tool : Tool
@@ -101,7 +103,7 @@ def free_tilts(p, n, f, low, high, tool, mode, narrowest, tree, room):
     parts : (k, 3) float64
         first, last, kind (OPEN, FORBIDDEN, UNSURE); together the range asked for, in no order.
     """
-    t, work = np.empty(3), room_for_parts(room)
+    t, work = np.empty(3), room_for_parts(workspace)
     cross(n, f, t)
     count = divide(Frame(p, n, f, t), low, high, tool, mode, narrowest, tree, work)
     return work.parts[:count]

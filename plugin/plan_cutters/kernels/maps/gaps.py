@@ -24,8 +24,8 @@ def _cuts(x, y, z, gap, count, tool):
     if square <= 0.0 or z <= low:
         return False
     half = np.sqrt(square)
-    room, far, away = radius - half, radius + half, x * x + z * z
-    if away <= room * room + low * low or away >= far * far + high * high:
+    workspace, far, away = radius - half, radius + half, x * x + z * z
+    if away <= workspace * workspace + low * low or away >= far * far + high * high:
         return False
     for g in range(count):
         top = gap[g, CF] * z + gap[g, SF] * x
@@ -34,7 +34,7 @@ def _cuts(x, y, z, gap, count, tool):
         if gap[g, SF] * z - gap[g, CF] * x >= far:
             continue
         bottom = gap[g, CL] * z + gap[g, SL] * x
-        if bottom >= high or (bottom >= 0.0 and gap[g, SL] * z - gap[g, CL] * x <= room):
+        if bottom >= high or (bottom >= 0.0 and gap[g, SL] * z - gap[g, CL] * x <= workspace):
             continue
         return True
     return False

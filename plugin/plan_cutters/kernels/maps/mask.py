@@ -52,7 +52,7 @@ def mask(rows, normal, direction_max, ranges, turns, offset, free, undecided, fo
                 c, s = np.cos(tilt), np.sin(tilt)
                 found.tilt[row], found.rotation[row] = tilt, rotation
                 for k in range(3):
-                    found.lean[row, k] = f[k]
+                    found.tilt_direction[row, k] = f[k]
                     found.axis[row, k] = c * n[k] + s * f[k]
                 break
             if unsure:

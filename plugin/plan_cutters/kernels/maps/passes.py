@@ -92,14 +92,14 @@ def _plane_passes(corner, ca, sa, cb, sb, tool):
     x0, z0, y0 = corner[0, 0], corner[0, 1], corner[0, 2]
     x1, z1, y1 = corner[1, 0], corner[1, 1], corner[1, 2]
     x2, z2, y2 = corner[2, 0], corner[2, 1], corner[2, 2]
-    slope, room = _rim((y0 + y1 + y2) / 3.0, tool.radius, tool.shrunk)
+    slope, workspace = _rim((y0 + y1 + y2) / 3.0, tool.radius, tool.shrunk)
     nx, nz = (y1 - y0) * (z2 - z0) - (z1 - z0) * (y2 - y0), (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0)
     nx, nz = _facing(nx, nz, ca, sa, cb, sb)
     h0, h1, h2 = nx * x0 + nz * z0, nx * x1 + nz * z1, nx * x2 + nz * z2
     for c, s in ((ca, sa), (cb, sb)):
         begins, share = _from_plane(nx, nz, c, s, tool)
         d = share * slope
-        if max(h0 - d * y0, max(h1 - d * y1, h2 - d * y2)) > begins + share * room:
+        if max(h0 - d * y0, max(h1 - d * y1, h2 - d * y2)) > begins + share * workspace:
             return False
     return True
 
@@ -117,14 +117,14 @@ def _never(polygon, count, radius, shrunk):
         low, high, middle = min(low, y), max(high, y), middle + y / count
         square = shrunk * shrunk - y * y
         if square > 0.0:
-            room = radius - np.sqrt(square)
-            if x * x + z * z > room * room:
+            workspace = radius - np.sqrt(square)
+            if x * x + z * z > workspace * workspace:
                 return False
     pieces = 1 if high - low < 0.1 * shrunk else _SLABS
     wide = (high - low) / pieces
     for piece in range(pieces):
         at = low + piece * wide
-        slope, room = _rim(middle if pieces == 1 else at + 0.5 * wide, radius, shrunk)
+        slope, workspace = _rim(middle if pieces == 1 else at + 0.5 * wide, radius, shrunk)
         for i in range(count):
             j = i + 1 if i + 1 < count else 0
             yi, yj = polygon[i, 2], polygon[j, 2]
@@ -137,7 +137,7 @@ def _never(polygon, count, radius, shrunk):
             for part in (first, last):
                 x = polygon[i, 0] + part * (polygon[j, 0] - polygon[i, 0])
                 z = polygon[i, 1] + part * (polygon[j, 1] - polygon[i, 1])
-                gone = slope * (yi + part * (yj - yi)) + room
+                gone = slope * (yi + part * (yj - yi)) + workspace
                 if gone < 0.0 or x * x + z * z > gone * gone:
                     return False
     return True
@@ -150,23 +150,23 @@ def _parts_pass(polygon, count, ca, sa, cb, sb, tool):
     middle = 0.0
     for k in range(count):
         middle += polygon[k, 2]
-    slope, room = _rim(middle / count, radius, shrunk)
+    slope, workspace = _rim(middle / count, radius, shrunk)
     upper, lower, under, never, behind, top = -np.inf, -np.inf, -np.inf, True, np.inf, True
     k = count - 1
     x, z, y = polygon[k, 0], polygon[k, 1], polygon[k, 2]
-    last, last_front = cb * z + sb * x, sb * z - cb * x - slope * y - room
+    last, last_front = cb * z + sb * x, sb * z - cb * x - slope * y - workspace
     for k in range(count):
         before_x, before_z, before_y = x, z, y
         x, z, y = polygon[k, 0], polygon[k, 1], polygon[k, 2]
-        height, front = cb * z + sb * x, sb * z - cb * x - slope * y - room
-        below = max(z - sa * (slope * y + room) - ca * low, z - sb * (slope * y + room) - cb * low)
+        height, front = cb * z + sb * x, sb * z - cb * x - slope * y - workspace
+        below = max(z - sa * (slope * y + workspace) - ca * low, z - sb * (slope * y + workspace) - cb * low)
         behind = min(behind, sa * z - ca * x + slope * y)
         top = top and height >= high
         if height >= 0.0:
             upper = max(upper, front)
         if height <= 0.0:
             lower = max(lower, below)
-            gone = slope * y + room
+            gone = slope * y + workspace
             never = never and gone >= 0.0 and x * x + z * z <= gone * gone
         if (height > 0.0 and last < 0.0) or (height < 0.0 and last > 0.0):
             # Where the side of the polygon crosses from one part to the other.
@@ -174,12 +174,12 @@ def _parts_pass(polygon, count, ca, sa, cb, sb, tool):
             cx, cz = before_x + part * (x - before_x), before_z + part * (z - before_z)
             cy = before_y + part * (y - before_y)
             upper = max(upper, last_front + part * (front - last_front))
-            gone = slope * cy + room
+            gone = slope * cy + workspace
             lower = max(lower, max(cz - sa * gone - ca * low, cz - sb * gone - cb * low))
             never = never and gone >= 0.0 and cx * cx + cz * cz <= gone * gone
         under = max(under, below)
         last, last_front = height, front
-    if top or under <= 0.0 or behind >= 2.0 * radius - room:
+    if top or under <= 0.0 or behind >= 2.0 * radius - workspace:
         return True
     return upper <= 0.0 and (lower <= 0.0 or never)
 
@@ -241,8 +241,8 @@ def _boxes_pass(view, block, cosine, sine, gap, count, tool, margin):
             t2 = cosine * view[block, 8, lane] - sine * view[block, 5, lane]
             z0, z1, z2 = view[block, 9, lane], view[block, 10, lane], view[block, 11, lane]
             wide = abs(t0) + abs(t1) + abs(t2)
-            slope, room = _rim(y - max(-0.5 * wide, min(0.5 * wide, y)), radius, shrunk)
-            room += slope * y
+            slope, workspace = _rim(y - max(-0.5 * wide, min(0.5 * wide, y)), radius, shrunk)
+            workspace += slope * y
             top = ca * z + sa * x + abs(ca * z0 + sa * f0) + abs(ca * z1 + sa * f1) + abs(ca * z2 + sa * f2)
             bottom = cb * z + sb * x - abs(cb * z0 + sb * f0) - abs(cb * z1 + sb * f1) - abs(cb * z2 + sb * f2)
             front = sb * z - cb * x + abs(sb * z0 - cb * f0 - slope * t0)
@@ -250,27 +250,27 @@ def _boxes_pass(view, block, cosine, sine, gap, count, tool, margin):
             behind = sa * z - ca * x - abs(sa * z0 - ca * f0 + slope * t0)
             behind -= abs(sa * z1 - ca * f1 + slope * t1) + abs(sa * z2 - ca * f2 + slope * t2)
             d = sa * slope
-            under = ca * low + sa * room - z - abs(z0 - d * t0) - abs(z1 - d * t1) - abs(z2 - d * t2)
+            under = ca * low + sa * workspace - z - abs(z0 - d * t0) - abs(z1 - d * t1) - abs(z2 - d * t2)
             d = sb * slope
-            under = min(under, cb * low + sb * room - z - abs(z0 - d * t0) - abs(z1 - d * t1) - abs(z2 - d * t2))
+            under = min(under, cb * low + sb * workspace - z - abs(z0 - d * t0) - abs(z1 - d * t1) - abs(z2 - d * t2))
             nx, nz = _facing(t0 * z1 - z0 * t1, f0 * t1 - t0 * f1, ca, sa, cb, sb)
             over = nx * x + nz * z
             begins, share = _from_plane(nx, nz, ca, sa, tool)
             d = share * slope
-            own = begins + share * room - over - abs(nx * f0 + nz * z0 - d * t0)
+            own = begins + share * workspace - over - abs(nx * f0 + nz * z0 - d * t0)
             own -= abs(nx * f1 + nz * z1 - d * t1) + abs(nx * f2 + nz * z2 - d * t2)
             begins, share = _from_plane(nx, nz, cb, sb, tool)
             d = share * slope
-            other = begins + share * room - over - abs(nx * f0 + nz * z0 - d * t0)
+            other = begins + share * workspace - over - abs(nx * f0 + nz * z0 - d * t0)
             other -= abs(nx * f1 + nz * z1 - d * t1) + abs(nx * f2 + nz * z2 - d * t2)
             under = max(under, min(own, other))
             ahead = x - abs(f0) - abs(f1) - abs(f2)
             beside = abs(y) - wide
             best = max(beside - shrunk, level - top)
-            best = max(best, min(room - front, max(ahead, max(low - top, bottom))))
+            best = max(best, min(workspace - front, max(ahead, max(low - top, bottom))))
             best = max(best, under)
             best = max(best, bottom - high)
-            best = max(best, behind - 2.0 * radius + room)
+            best = max(best, behind - 2.0 * radius + workspace)
             margin[lane] = min(margin[lane], best)
 
 
@@ -293,7 +293,7 @@ def _triangles_pass(seen, cosine, sine, gap, count, tool, margin):
             x2 = cosine * seen[6, lane] + sine * seen[7, lane]
             y2 = cosine * seen[7, lane] - sine * seen[6, lane]
             z2 = seen[8, lane]
-            slope, room = _rim((y0 + y1 + y2) / 3.0, radius, shrunk)
+            slope, workspace = _rim((y0 + y1 + y2) / 3.0, radius, shrunk)
             highest = max(z0, max(z1, z2))
             top = max(ca * z0 + sa * x0, max(ca * z1 + sa * x1, ca * z2 + sa * x2))
             bottom = min(cb * z0 + sb * x0, min(cb * z1 + sb * x1, cb * z2 + sb * x2))
@@ -302,24 +302,24 @@ def _triangles_pass(seen, cosine, sine, gap, count, tool, margin):
             behind = min(sa * z0 - ca * x0 + slope * y0,
                          min(sa * z1 - ca * x1 + slope * y1, sa * z2 - ca * x2 + slope * y2))  # fmt: skip
             d = sa * slope
-            under = ca * low + sa * room - max(z0 - d * y0, max(z1 - d * y1, z2 - d * y2))
+            under = ca * low + sa * workspace - max(z0 - d * y0, max(z1 - d * y1, z2 - d * y2))
             d = sb * slope
-            under = min(under, cb * low + sb * room - max(z0 - d * y0, max(z1 - d * y1, z2 - d * y2)))
+            under = min(under, cb * low + sb * workspace - max(z0 - d * y0, max(z1 - d * y1, z2 - d * y2)))
             nx, nz = (y1 - y0) * (z2 - z0) - (z1 - z0) * (y2 - y0), (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0)
             nx, nz = _facing(nx, nz, ca, sa, cb, sb)
             h0, h1, h2 = nx * x0 + nz * z0, nx * x1 + nz * z1, nx * x2 + nz * z2
             begins, share = _from_plane(nx, nz, ca, sa, tool)
             d = share * slope
-            own = begins + share * room - max(h0 - d * y0, max(h1 - d * y1, h2 - d * y2))
+            own = begins + share * workspace - max(h0 - d * y0, max(h1 - d * y1, h2 - d * y2))
             begins, share = _from_plane(nx, nz, cb, sb, tool)
             d = share * slope
-            own = min(own, begins + share * room - max(h0 - d * y0, max(h1 - d * y1, h2 - d * y2)))
+            own = min(own, begins + share * workspace - max(h0 - d * y0, max(h1 - d * y1, h2 - d * y2)))
             under = max(under, own)
             beside = max(min(y0, min(y1, y2)), -max(y0, max(y1, y2)))
             best = max(beside - shrunk, low - highest)
             best = max(best, level - top)
-            best = max(best, min(room - front, max(min(x0, min(x1, x2)), max(low - top, bottom))))
+            best = max(best, min(workspace - front, max(min(x0, min(x1, x2)), max(low - top, bottom))))
             best = max(best, under)
             best = max(best, bottom - high)
-            best = max(best, behind - 2.0 * radius + room)
+            best = max(best, behind - 2.0 * radius + workspace)
             margin[lane] = min(margin[lane], best)

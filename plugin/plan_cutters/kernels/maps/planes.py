@@ -83,9 +83,9 @@ def _lean(edge, y, wide, sine):
     radius = max(edge[0], HAIR)
     y = y - max(-0.5 * wide, min(0.5 * wide, y))
     y = max(-_STEEP * radius, min(_STEEP * radius, y))
-    lean = sine * y / np.sqrt(radius * radius - y * y)
-    share = 1.0 / np.sqrt(1.0 + lean * lean)
-    return share * lean, -share
+    tilt_direction = sine * y / np.sqrt(radius * radius - y * y)
+    share = 1.0 / np.sqrt(1.0 + tilt_direction * tilt_direction)
+    return share * tilt_direction, -share
 
 
 @kernel

@@ -18,7 +18,7 @@ def local_gouge_range(
     return float(least), float(most)
 
 
-def axis_intervals(normal: Floats, lean: Floats, ranges: Ranges) -> Floats:
-    """Tilts (k, 2) within those asked for that a machine's limits leave at a normal and a lean direction (3,)."""
+def axis_intervals(normal: Floats, tilt_direction: Floats, ranges: Ranges) -> Floats:
+    """Tilts (k, 2) within those asked for that a machine's limits leave at a normal and a tilt direction (3,)."""
     out = np.empty((64, 2))
-    return out[: held_tilts(normal, lean, ranges, ranges.tilt_low, ranges.tilt_high, out)].copy()
+    return out[: held_tilts(normal, tilt_direction, ranges, ranges.tilt_low, ranges.tilt_high, out)].copy()

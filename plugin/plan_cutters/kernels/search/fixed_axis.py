@@ -34,7 +34,7 @@ def served(rows, axis, contacts, low, high, tool, solids, free):
         Whether the tool touches there at that tilt, no triangle reaches into it, and it lies in no body.
     """
     body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
-    room = scratch()
+    workspace = scratch()
     hint = -1
     for row in rows:
         free[row] = False
@@ -52,8 +52,8 @@ def served(rows, axis, contacts, low, high, tool, solids, free):
             continue
         offset, rise = tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE]
         stand(body, Frame(contacts.point[row], n, f, t), cosine, sine, offset, rise)
-        triangle, _, _, _, _ = tree_hit(solids.tree, body, tool.piece[mode], 0.0, hint, room)
+        triangle, _, _, _, _ = tree_hit(solids.tree, body, tool.piece[mode], 0.0, hint, workspace)
         if triangle >= 0:
             hint = triangle
             continue
-        free[row] = inside(body, tool, mode, solids, room.stack) < MAYBE_INSIDE
+        free[row] = inside(body, tool, mode, solids, workspace.stack) < MAYBE_INSIDE

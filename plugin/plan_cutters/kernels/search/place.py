@@ -122,8 +122,8 @@ def turned(frame, tilt, tool, mode, tree, body, scratch):
     return 0.5 * NARROWEST
 
 
-class Room(NamedTuple):
-    """Room to work in: intervals (k, 2), arcs (ARCS, 2), lean direction f and t = n x f, e2 = n x direction_max, a body, a
+class Workspace(NamedTuple):
+    """Room to work in: intervals (k, 2), arcs (ARCS, 2), tilt direction f and t = n x f, e2 = n x direction_max, a body, a
     tally by attribute."""
 
     intervals: Any
@@ -139,7 +139,7 @@ class Room(NamedTuple):
 @entry
 def room_to_search():
     """Room for searches."""
-    return Room(
+    return Workspace(
         np.empty((_ROOM, 2)), np.empty((ARCS, 2)), np.empty(3), np.empty(3), np.empty(3), np.empty(BODY), np.empty(FIXTURE),
         scratch(),
     )  # fmt: skip
@@ -147,7 +147,7 @@ def room_to_search():
 
 @kernel
 def permitted(contacts, row, ranges, tool, mode, f, intervals):
-    """Write the tilts of a lean direction f that the axis limit, the range asked for and the tool's own leave; their width, and
+    """Write the tilts of a tilt direction f that the axis limit, the range asked for and the tool's own leave; their width, and
     how many intervals they are.
     """
     low, high = max(ranges.tilt_low, tool.mode[mode, TILT_FROM]), min(ranges.tilt_high, tool.mode[mode, TILT_TO])
@@ -181,20 +181,20 @@ def kept_straight(least, most, intervals, count):
 
 
 @kernel
-def allowed(contacts, row, ranges, rotation, tool, mode, bent, room):
+def allowed(contacts, row, ranges, rotation, tool, mode, bent, workspace):
     """Write the tilts of a rotation that the axis limit leaves and curvature allows, or, if `bent`, forbids, and its frame; how
     many intervals they are.
 
     Those that it forbids gouge, but maybe no deeper than is allowed: the triangles tell (`docs/verdicts.md`). What each of the
     two leaves is booked on it.
     """
-    intervals, tally = room.intervals, room.tally
+    intervals, tally = workspace.intervals, workspace.tally
     cosine, sine = turn_of(contacts.normal[row], contacts.direction_max[row], ranges, rotation)
     least, most = straight(contacts, row, cosine, sine, tool, mode)
     if bent and least <= 0.0 and most >= np.pi:
         return 0
-    lean_frame(contacts.direction_max[row], room.e2, cosine, sine, room.f, room.t)
-    width, before = permitted(contacts, row, ranges, tool, mode, room.f, intervals)
+    lean_frame(contacts.direction_max[row], workspace.e2, cosine, sine, workspace.f, workspace.t)
+    width, before = permitted(contacts, row, ranges, tool, mode, workspace.f, intervals)
     tally[AXIS_LIMIT] += width + before * NARROWEST
     if not bent:
         count = kept_straight(least, most, intervals, before)
@@ -214,21 +214,21 @@ def booked(tally):
 
 
 @kernel
-def forbid_point(x, y, z, tool, mode, narrowest, intervals, count, room):
+def forbid_point(x, y, z, tool, mode, narrowest, intervals, count, workspace):
     """Take out the tilts at which an obstacle point, along f, t and n from the contact, is in the tool; the new count."""
     offset, height = tool.mode[mode, OFFSET_OF], z - tool.mode[mode, RISE]
     piece = tool.piece[mode]
     for k in range(len(piece)):
-        found = forbidden(height, x + offset, y, 0.0, offset, piece, k, room.arcs)
+        found = forbidden(height, x + offset, y, 0.0, offset, piece, k, workspace.arcs)
         for i in range(found):
             count = forbid(
                 intervals,
                 count,
-                room.arcs[i, 0],
-                room.arcs[i, 1],
+                workspace.arcs[i, 0],
+                workspace.arcs[i, 1],
                 narrowest,
                 _attribute(x, y, z, tool, mode, k),
-                room.tally,
+                workspace.tally,
             )
     return count
 
@@ -249,7 +249,7 @@ def arc_of(k, height, px, py, tilt, offset, piece, half, arcs):
 
 
 @kernel
-def forbid_probed(k, height, px, py, tilt, tool, mode, narrowest, intervals, count, room):
+def forbid_probed(k, height, px, py, tilt, tool, mode, narrowest, intervals, count, workspace):
     """The same of a point that a probe at a tilt has met in piece k, in the tool's frame; (the new count, the point along f, t,
     n).
     """
@@ -258,8 +258,8 @@ def forbid_probed(k, height, px, py, tilt, tool, mode, narrowest, intervals, cou
     x, z = cosine * back + sine * height, cosine * height - sine * back + tool.mode[mode, RISE]
     attribute = _attribute(x, py, z, tool, mode, k)
     # At the edge of the tool the arc may be no wider than rounding: take the probe's own neighbourhood too.
-    first, last = arc_of(k, height, px, py, tilt, offset, piece, 0.5 * narrowest, room.arcs)
-    return forbid(intervals, count, first, last, narrowest, attribute, room.tally), x, py, z
+    first, last = arc_of(k, height, px, py, tilt, offset, piece, 0.5 * narrowest, workspace.arcs)
+    return forbid(intervals, count, first, last, narrowest, attribute, workspace.tally), x, py, z
 
 
 @kernel

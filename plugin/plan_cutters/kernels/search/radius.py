@@ -41,7 +41,7 @@ class _Side(NamedTuple):
 
 
 @kernel
-def _look(contacts, row, ranges, side, level, starts, turns, rooms):
+def _look(contacts, row, ranges, side, level, starts, turns, workspaces):
     """`sweep_both` with one tool of a row."""
     tools, piece, mode = side.tools, side.piece, side.mode
     for m in range(len(mode)):
@@ -52,32 +52,32 @@ def _look(contacts, row, ranges, side, level, starts, turns, rooms):
                 piece[m, k, column] = tools.piece[level, m, k, column]
     tool = Tool(piece, mode, tools.reach[level], tools.inner[level], tools.end[level])
     return sweep_both(
-        contacts, row, ranges, tool, side.solids, side.within, side.narrowest, starts, turns, side.pasts, rooms
+        contacts, row, ranges, tool, side.solids, side.within, side.narrowest, starts, turns, side.pasts, workspaces
     )
 
 
 @kernel
-def _largest(contacts, row, ranges, light, heavy, guess, last, freed, rooms, found):
+def _largest(contacts, row, ranges, outer_tool, inner_tool, guess, last, freed, workspaces, found):
     """The number of the largest tool that finds a posture, -1 for none, and the verdict on the next; then where the searches
     of both sides ended.
     """
-    count, turns = len(light.tools.reach), len(ranges.rotation_cos)
+    count, turns = len(outer_tool.tools.reach), len(ranges.rotation_cos)
     # Reached, not reached; at most so far not surely blocked, surely blocked.
     low, high, free, blocked = -1, count, -1, count
     level, stride = guess, 1
     while high - low > 1:
-        rotation, tilt, last = _look(contacts, row, ranges, light, level, last, 1, rooms)
+        rotation, tilt, last = _look(contacts, row, ranges, outer_tool, level, last, 1, workspaces)
         if rotation < 0 and level > free:
-            turn, _, freed = _look(contacts, row, ranges, heavy, level, freed, turns, rooms)
+            turn, _, freed = _look(contacts, row, ranges, inner_tool, level, freed, turns, workspaces)
             if turn < 0:
                 blocked = level
-                found.reason[row] = _reason(rooms[0].tally, rooms[1].tally)
+                found.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
             else:
                 free = level
         if rotation < 0 and level < blocked:
-            rotation, tilt, last = _look(contacts, row, ranges, light, level, last, turns, rooms)
+            rotation, tilt, last = _look(contacts, row, ranges, outer_tool, level, last, turns, workspaces)
             if rotation < 0:
-                found.reason[row] = _reason(rooms[0].tally, rooms[1].tally)
+                found.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
         if rotation < 0:
             high = level
         else:
@@ -94,7 +94,7 @@ def _largest(contacts, row, ranges, light, heavy, guess, last, freed, rooms, fou
 
 
 @entry
-def largest(rows, contacts, ranges, light, heavy, may_be, surely, found, level, beyond):
+def largest(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, found, level, beyond):
     """Find the largest tool that reaches each sample.
 
     Parameters
@@ -103,9 +103,9 @@ def largest(rows, contacts, ranges, light, heavy, may_be, surely, found, level, 
         Samples, neighbours in sequence.
     contacts : Contacts
     ranges : Ranges
-    light, heavy : Ladder
+    outer_tool, inner_tool : Ladder
         Tools without what does not matter, and what of each is certainly in the way; each within the next.
-    may_be, surely : Solids
+    possible, certain : Solids
         As `search.search` takes them.
     found : Found, written
         The posture of the largest tool that has one, and why the next one has none.
@@ -115,13 +115,17 @@ def largest(rows, contacts, ranges, light, heavy, may_be, surely, found, level, 
         INACCESSIBLE or UNDECIDED for the tool after it; as it was where there is none.
     """
     rotations = len(ranges.rotation_cos)
-    pasts, rooms = both(rotations, light.mode.shape[1])
-    met, _ = both(rotations, heavy.mode.shape[1])
-    safe = _Side(light, light.piece[0].copy(), light.mode[0].copy(), may_be, MAYBE_INSIDE, _FINEST, pasts)
-    sure = _Side(heavy, heavy.piece[0].copy(), heavy.mode[0].copy(), surely, SURELY_INSIDE, _NO_GAP, met)
-    guess, last, freed = len(light.reach) // 2, START, START
+    pasts, workspaces = both(rotations, outer_tool.mode.shape[1])
+    met, _ = both(rotations, inner_tool.mode.shape[1])
+    safe = _Side(
+        outer_tool, outer_tool.piece[0].copy(), outer_tool.mode[0].copy(), possible, MAYBE_INSIDE, _FINEST, pasts
+    )
+    sure = _Side(
+        inner_tool, inner_tool.piece[0].copy(), inner_tool.mode[0].copy(), certain, SURELY_INSIDE, _NO_GAP, met
+    )
+    guess, last, freed = len(outer_tool.reach) // 2, START, START
     for row in rows:
-        low, verdict, last, freed = _largest(contacts, row, ranges, safe, sure, guess, last, freed, rooms, found)
+        low, verdict, last, freed = _largest(contacts, row, ranges, safe, sure, guess, last, freed, workspaces, found)
         level[row], guess = low, max(low, 0)
-        if low + 1 < len(light.reach):
+        if low + 1 < len(outer_tool.reach):
             beyond[row] = verdict

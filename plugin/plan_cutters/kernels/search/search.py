@@ -72,12 +72,12 @@ def _write(found, row, contacts, ranges, rotation, tilt):
     found.tilt[row], found.rotation[row] = tilt, rotation
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
-        found.lean[row, k] = turn_cos * e1[k] + turn_sin * (n[i] * e1[j] - n[j] * e1[i])
-        found.axis[row, k] = cosine * n[k] + sine * found.lean[row, k]
+        found.tilt_direction[row, k] = turn_cos * e1[k] + turn_sin * (n[i] * e1[j] - n[j] * e1[i])
+        found.axis[row, k] = cosine * n[k] + sine * found.tilt_direction[row, k]
 
 
 @entry
-def search(rows, contacts, ranges, light, heavy, may_be, surely, found):
+def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, found):
     """Decide the samples `rows`, one after the other, each starting from the posture of the one before.
 
     Parameters
@@ -86,9 +86,9 @@ def search(rows, contacts, ranges, light, heavy, may_be, surely, found):
         Samples to decide, neighbours in sequence.
     contacts : Contacts
     ranges : Ranges
-    light, heavy : Tool
+    outer_tool, inner_tool : Tool
         The tool without what does not matter, and what of it is certainly in the way.
-    may_be, surely : Solids
+    possible, certain : Solids
         All that may be in the way, for calling a posture safe; what certainly is, for calling it blocked.
     found : Found, written
 
@@ -99,35 +99,65 @@ def search(rows, contacts, ranges, light, heavy, may_be, surely, found):
     """
     rotations = len(ranges.rotation_cos)
     # What is only perhaps in the way must not count as surely in it: the two are remembered apart.
-    light_pasts, rooms = both(rotations, len(light.mode))
-    heavy_pasts, _ = both(rotations, len(heavy.mode))
+    outer_pasts, workspaces = both(rotations, len(outer_tool.mode))
+    inner_pasts, _ = both(rotations, len(inner_tool.mode))
     last, freed, lost = START, START, False
     for row in rows:
         asked, sure = lost, False
         if asked:
             turn, _, freed = sweep_both(
-                contacts, row, ranges, heavy, surely, SURELY_INSIDE, _NO_GAP, freed, rotations, heavy_pasts, rooms
+                contacts,
+                row,
+                ranges,
+                inner_tool,
+                certain,
+                SURELY_INSIDE,
+                _NO_GAP,
+                freed,
+                rotations,
+                inner_pasts,
+                workspaces,
             )
             sure = turn < 0
         if not sure:
             rotation, tilt, last = sweep_both(
-                contacts, row, ranges, light, may_be, MAYBE_INSIDE, _FINEST, last, rotations, light_pasts, rooms
+                contacts,
+                row,
+                ranges,
+                outer_tool,
+                possible,
+                MAYBE_INSIDE,
+                _FINEST,
+                last,
+                rotations,
+                outer_pasts,
+                workspaces,
             )
             lost = rotation < 0
             if not lost:
                 found.verdict[row] = ACCESSIBLE
                 _write(found, row, contacts, ranges, rotation, tilt)
                 continue
-        found.reason[row] = _reason(rooms[0].tally, rooms[1].tally)
+        found.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
         if not asked:
             turn, _, freed = sweep_both(
-                contacts, row, ranges, heavy, surely, SURELY_INSIDE, _NO_GAP, freed, rotations, heavy_pasts, rooms
+                contacts,
+                row,
+                ranges,
+                inner_tool,
+                certain,
+                SURELY_INSIDE,
+                _NO_GAP,
+                freed,
+                rotations,
+                inner_pasts,
+                workspaces,
             )
             sure = turn < 0
             if sure:
-                found.reason[row] = _reason(rooms[0].tally, rooms[1].tally)
+                found.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
         found.verdict[row] = INACCESSIBLE if sure else UNDECIDED
-    return rooms[0].scratch.looked[0] + rooms[1].scratch.looked[0]
+    return workspaces[0].scratch.looked[0] + workspaces[1].scratch.looked[0]
 
 
 @entry
@@ -139,12 +169,12 @@ def until_lost(rows, at, contacts, ranges, tool, solids, patient, found):
     parameters are those of `posture`.
     """
     rotations = len(ranges.rotation_cos)
-    (pasts, rooms), last = both(rotations, len(tool.mode)), START
+    (pasts, workspaces), last = both(rotations, len(tool.mode)), START
     while at < len(rows):
         row = rows[at]
         at += 1
         rotation, tilt, last = sweep_both(
-            contacts, row, ranges, tool, solids, MAYBE_INSIDE, _NO_GAP, last, rotations, pasts, rooms
+            contacts, row, ranges, tool, solids, MAYBE_INSIDE, _NO_GAP, last, rotations, pasts, workspaces
         )
         if rotation >= 0:
             found.verdict[row] = ACCESSIBLE
@@ -176,9 +206,9 @@ def posture(contacts, ranges, tool, narrowest, start, turns, solids, found):
     found : Found, written
         The posture.
     """
-    pasts, rooms = both(len(ranges.rotation_cos), len(tool.mode))
+    pasts, workspaces = both(len(ranges.rotation_cos), len(tool.mode))
     rotation, tilt, _ = sweep_both(
-        contacts, 0, ranges, tool, solids, MAYBE_INSIDE, narrowest, (start, start), turns, pasts, rooms
+        contacts, 0, ranges, tool, solids, MAYBE_INSIDE, narrowest, (start, start), turns, pasts, workspaces
     )
     if rotation >= 0:
         _write(found, 0, contacts, ranges, rotation, tilt)
@@ -186,15 +216,15 @@ def posture(contacts, ranges, tool, narrowest, start, turns, solids, found):
 
 
 @entry
-def first_reason(rows, contacts, ranges, heavy, surely, reason):
+def first_reason(rows, contacts, ranges, inner_tool, certain, reason):
     """Write the reason (n,) of samples that no posture of a tool serves, where axis limit or curvature alone leave none.
 
-    `heavy` and `surely` as for `search`; other reasons stay as they are.
+    `inner_tool` and `certain` as for `search`; other reasons stay as they are.
     """
-    rotations, modes = len(ranges.rotation_cos), len(heavy.mode)
+    rotations, modes = len(ranges.rotation_cos), len(inner_tool.mode)
     intervals = np.empty((64, 2))
     f, t, e2 = np.empty(3), np.empty(3), np.empty(3)
-    past, (room, other) = memory(rotations, modes, True), (room_to_search(), room_to_search())
+    past, (workspace, other) = memory(rotations, modes, True), (room_to_search(), room_to_search())
     for row in rows:
         n, e1 = contacts.normal[row], contacts.direction_max[row]
         cross(n, e1, e2)
@@ -203,9 +233,9 @@ def first_reason(rows, contacts, ranges, heavy, surely, reason):
             cosine, sine = turn_of(n, e1, ranges, rotation)
             lean_frame(e1, e2, cosine, sine, f, t)
             for mode in range(modes):
-                _, count = permitted(contacts, row, ranges, heavy, mode, f, intervals)
+                _, count = permitted(contacts, row, ranges, inner_tool, mode, f, intervals)
                 axis_left = axis_left or count > 0
-                least, most = straight(contacts, row, cosine, sine, heavy, mode)
+                least, most = straight(contacts, row, cosine, sine, inner_tool, mode)
                 count = kept_straight(least, most, intervals, count)
                 curvature_left = curvature_left or count > 0
             if curvature_left:
@@ -214,10 +244,22 @@ def first_reason(rows, contacts, ranges, heavy, surely, reason):
             reason[row] = AXIS_LIMIT
         elif not curvature_left:
             # As `search` would have told it.
-            sweep(contacts, row, ranges, heavy, surely, SURELY_INSIDE, _NO_GAP, (0, -1.0), rotations, past, room)
+            sweep(
+                contacts,
+                row,
+                ranges,
+                inner_tool,
+                certain,
+                SURELY_INSIDE,
+                _NO_GAP,
+                (0, -1.0),
+                rotations,
+                past,
+                workspace,
+            )
             other.tally[:] = 0.0
             other.tally[AXIS_LIMIT] = 1.0
-            reason[row] = _reason(other.tally, room.tally)
+            reason[row] = _reason(other.tally, workspace.tally)
 
 
 @entry
@@ -242,30 +284,30 @@ def dummy_clear(rows, contacts, dummy, tool, solids, clear):
         How many boxes were looked at.
     """
     body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
-    room = scratch()
+    workspace = scratch()
     hint = -1
     for row in rows:
         n = contacts.normal[row]
         perpendicular(n, f)
         cross(n, f, t)
         stand(body, Frame(contacts.point[row], n, f, t), 1.0, 0.0, 0.0, tool.mode[0, RISE])
-        triangle, _, _, _, _ = tree_hit(solids.tree, body, dummy, 0.0, hint, room)
-        clear[row] = triangle < 0 and inside(body, tool, 0, solids, room.stack) < MAYBE_INSIDE
+        triangle, _, _, _, _ = tree_hit(solids.tree, body, dummy, 0.0, hint, workspace)
+        clear[row] = triangle < 0 and inside(body, tool, 0, solids, workspace.stack) < MAYBE_INSIDE
         if triangle >= 0:
             hint = triangle
-    return room.looked[0]
+    return workspace.looked[0]
 
 
 @entry
-def probe(rows, point, normal, axis, lean, tool, tree, triangle, which):
+def probe(rows, point, normal, axis, tilt_direction, tool, tree, triangle, which):
     """Test given postures: the triangle that reaches into the tool at posture i and the piece that it reaches into, or -1.
 
     Parameters
     ----------
     rows : (m,) int64
         Rows to test.
-    point, normal, axis, lean : (n, 3) float64
-        Contact, unit normal, unit tool axis, unit lean direction.
+    point, normal, axis, tilt_direction : (n, 3) float64
+        Contact, unit normal, unit tool axis, unit tilt direction.
     tool : Tool
         Without what does not matter.
     tree : Tree
@@ -273,10 +315,10 @@ def probe(rows, point, normal, axis, lean, tool, tree, triangle, which):
         At a tilt at which the tool does not touch: -2.
     """
     body, t = np.empty(BODY), np.empty(3)
-    room = scratch()
+    workspace = scratch()
     hint = -1
     for row in rows:
-        n, f = normal[row], lean[row]
+        n, f = normal[row], tilt_direction[row]
         cross(n, f, t)
         cosine, sine = dot(axis[row], n), dot(axis[row], f)
         mode = mode_at(tool, np.arctan2(sine, cosine))
@@ -284,6 +326,6 @@ def probe(rows, point, normal, axis, lean, tool, tree, triangle, which):
             triangle[row], which[row] = -2, -2
             continue
         stand(body, Frame(point[row], n, f, t), cosine, sine, tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
-        triangle[row], which[row], _, _, _ = tree_hit(tree, body, tool.piece[mode], 0.0, hint, room)
+        triangle[row], which[row], _, _, _ = tree_hit(tree, body, tool.piece[mode], 0.0, hint, workspace)
         if triangle[row] >= 0:
             hint = triangle[row]

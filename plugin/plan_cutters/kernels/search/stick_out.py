@@ -170,14 +170,14 @@ def _cleared(tree, body, outline, floor, stack, bound, corner):
 
 
 @entry
-def least_stick_outs(rows, point, normal, lean, tilt, tool, outline, floor, tree, stick_out, triangle):
+def least_stick_outs(rows, point, normal, tilt_direction, tilt, tool, outline, floor, tree, stick_out, triangle):
     """Least stick-out at given postures, no less than `floor`, and the triangle that asks for it.
 
     Parameters
     ----------
     rows : (m,) int64
         Samples whose posture is known.
-    point, normal, lean : (n, 3) float64
+    point, normal, tilt_direction : (n, 3) float64
     tilt : (n,) float64
     tool : Tool
     outline : (k, 4) float64
@@ -188,13 +188,13 @@ def least_stick_outs(rows, point, normal, lean, tilt, tool, outline, floor, tree
         -1 where the floor is enough.
     """
     body, t = np.empty(BODY), np.empty(3)
-    room, bound = scratch(), np.empty(64)
+    workspace, bound = scratch(), np.empty(64)
     for row in rows:
-        n, f = normal[row], lean[row]
+        n, f = normal[row], tilt_direction[row]
         cross(n, f, t)
         mode = max(0, mode_at(tool, tilt[row]))
         over = tool.mode[mode, OVER_TIP]
         stand(body, Frame(point[row], n, f, t), np.cos(tilt[row]), np.sin(tilt[row]), tool.mode[mode, OFFSET_OF],
               tool.mode[mode, RISE])  # fmt: skip
-        best, triangle[row] = _cleared(tree, body, outline, floor - over, room.stack, bound, room.corner)
+        best, triangle[row] = _cleared(tree, body, outline, floor - over, workspace.stack, bound, workspace.corner)
         stick_out[row] = best + over

@@ -115,12 +115,14 @@ def _deepest(past, count, turn, tilt, tool, mode):
 
 
 @kernel
-def _rotation(contacts, row, ranges, rotation, tool, mode, solids, within, narrowest, wish, frame, past, pooled, room):
+def _rotation(
+    contacts, row, ranges, rotation, tool, mode, solids, within, narrowest, wish, frame, past, pooled, workspace
+):
     """`sweep` at one rotation and mode: (a tilt, -1 for none; how many points of the pool are seen from this contact)."""
-    p, n, e1, e2, f, t = frame.p, frame.n, contacts.direction_max[row], room.e2, room.f, room.t
-    intervals, body, tally = room.intervals, room.body, room.tally
+    p, n, e1, e2, f, t = frame.p, frame.n, contacts.direction_max[row], workspace.e2, workspace.f, workspace.t
+    intervals, body, tally = workspace.intervals, workspace.body, workspace.tally
     turn, place = turn_of(n, e1, ranges, rotation), rotation * len(tool.mode) + mode
-    count = allowed(contacts, row, ranges, rotation, tool, mode, past.bent, room)
+    count = allowed(contacts, row, ranges, rotation, tool, mode, past.bent, workspace)
     known, kept = past.count[place], 0
     for i in range(known):
         if count == 0:
@@ -132,7 +134,7 @@ def _rotation(contacts, row, ranges, rotation, tool, mode, solids, within, narro
             y += offset * t[k]
             z += offset * n[k]
         before = booked(tally)
-        count = forbid_point(x, y, z, tool, mode, narrowest, intervals, count, room)
+        count = forbid_point(x, y, z, tool, mode, narrowest, intervals, count, workspace)
         if booked(tally) > before:
             for k in range(3):
                 past.point[place, kept, k] = past.point[place, i, k]
@@ -146,15 +148,15 @@ def _rotation(contacts, row, ranges, rotation, tool, mode, solids, within, narro
         new = which < 0
         if new:
             put(body, frame, tilt, tool, mode)
-            triangle, which, height, px, py = deep_hit(solids.tree, body, tool.piece[mode], room.scratch)
+            triangle, which, height, px, py = deep_hit(solids.tree, body, tool.piece[mode], workspace.scratch)
             if triangle < 0:
-                if inside(body, tool, mode, solids, room.scratch.stack) < within:
+                if inside(body, tool, mode, solids, workspace.scratch.stack) < within:
                     past.count[place] = kept
                     return tilt, pooled
-                half = max(turned(frame, tilt, tool, mode, solids.tree, body, room.scratch), 0.5 * narrowest)
+                half = max(turned(frame, tilt, tool, mode, solids.tree, body, workspace.scratch), 0.5 * narrowest)
                 count = forbid(intervals, count, tilt - half, tilt + half, narrowest, BURIED, tally)
                 continue
-        count, x, y, z = forbid_probed(which, height, px, py, tilt, tool, mode, narrowest, intervals, count, room)
+        count, x, y, z = forbid_probed(which, height, px, py, tilt, tool, mode, narrowest, intervals, count, workspace)
         if kept < _KEPT:
             for k in range(3):
                 past.point[place, kept, k] = p[k] + x * f[k] + y * t[k] + z * n[k]
@@ -175,7 +177,7 @@ def _rotation(contacts, row, ranges, rotation, tool, mode, solids, within, narro
 
 
 @kernel
-def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, past, room):
+def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, past, workspace):
     """Look for a posture of one sample at all rotations, those next to the first looked at first, among the tilts that `past` is
     about.
 
@@ -208,8 +210,8 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, 
     tilt : float
         rad.
     """
-    p, n, e1, e2 = contacts.point[row], contacts.normal[row], contacts.direction_max[row], room.e2
-    f, t, tally = room.f, room.t, room.tally
+    p, n, e1, e2 = contacts.point[row], contacts.normal[row], contacts.direction_max[row], workspace.e2
+    f, t, tally = workspace.f, workspace.t, workspace.tally
     cross(n, e1, e2)
     frame, rotations, modes = Frame(p, n, f, t), len(ranges.rotation_cos), len(tool.mode)
     tally[:] = 0.0
@@ -217,7 +219,7 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, 
     for step in range(turns):
         side = (step + 1) // 2 if step % 2 else -(step // 2)
         rotation = (start[0] + side) % rotations
-        room.scratch.looked[0] += ROTATION * modes
+        workspace.scratch.looked[0] += ROTATION * modes
         for mode in range(modes):
             tilt, pooled = _rotation(
                 contacts,
@@ -233,7 +235,7 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, 
                 frame,
                 past,
                 pooled,
-                room,
+                workspace,
             )
             if tilt >= 0.0:
                 return rotation, tilt
@@ -247,19 +249,23 @@ def both(rotations, modes):
 
 
 @kernel
-def sweep_both(contacts, row, ranges, tool, solids, within, narrowest, starts, turns, pasts, rooms):
+def sweep_both(contacts, row, ranges, tool, solids, within, narrowest, starts, turns, pasts, workspaces):
     """`sweep` among the tilts that curvature allows at the contact, and, where these hold no posture, among the others.
 
     The parameters are those of `sweep`, one of each kind; the two remember nothing of each other, so that a sample that needs the
     others moves no posture of the samples after it. Returns rotation and tilt, and the starts for the next sample.
     """
-    rotation, tilt = sweep(contacts, row, ranges, tool, solids, within, narrowest, starts[0], turns, pasts[0], rooms[0])
+    rotation, tilt = sweep(
+        contacts, row, ranges, tool, solids, within, narrowest, starts[0], turns, pasts[0], workspaces[0]
+    )
     if rotation >= 0:
         return rotation, tilt, ((rotation, tilt), starts[1])
     if ranges.strict:
-        rooms[1].tally[:] = 0.0
+        workspaces[1].tally[:] = 0.0
         return -1, 0.0, starts
-    rotation, tilt = sweep(contacts, row, ranges, tool, solids, within, narrowest, starts[1], turns, pasts[1], rooms[1])
+    rotation, tilt = sweep(
+        contacts, row, ranges, tool, solids, within, narrowest, starts[1], turns, pasts[1], workspaces[1]
+    )
     if rotation >= 0:
         return rotation, tilt, (starts[0], (rotation, tilt))
     return -1, 0.0, starts

@@ -74,10 +74,10 @@ def local_gouge(kappa_max, kappa_min, cosine, sine, offset, radius):
         if offset == 0.0:
             return (0.0, np.pi) if radius * kappa_max <= 1.0 + ROUNDING else (np.nan, np.nan)
         mixed = (kappa_max - kappa_min) * sine * cosine
-        room = 1.0 - radius * along
-        if room <= 0.0:
+        workspace = 1.0 - radius * along
+        if workspace <= 0.0:
             return np.nan, np.nan
-        across += mixed * mixed * radius / room
+        across += mixed * mixed * radius / workspace
         left = 1.0 - radius * across
         if offset < 0.0:
             if left >= 0.0:

@@ -34,7 +34,7 @@ def scratch():
 
 @kernel
 def stand(body, frame, tilt_cos, tilt_sin, offset, rise):
-    """Write the body whose axis leans from the normal of a frame towards its lean direction by a tilt.
+    """Write the body whose axis leans from the normal of a frame towards its tilt direction by a tilt.
 
     Its centre stands `rise` over the contact, `offset` from the axis.
     """

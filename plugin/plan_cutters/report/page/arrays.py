@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.report.judged import Judged
 from plan_cutters.report.page.atlas import Atlas
 from plan_cutters.report.page.encode import COARSE, FINE, Stored, halves, octahedral, placed, turned, unfolded
 from plan_cutters.report.page.facts import tilt_and_lean
 from plan_cutters.report.page.stored_maps import stored
 from plan_cutters.report.page.surface import Surface
+from plan_cutters.report.protocol import Judged
 
 Arrays = dict[str, Stored]
 #: Instead of a setup: none serves the sample.
@@ -53,8 +53,8 @@ def sample_arrays(result: Judged, low: Floats, high: Floats) -> Arrays:
 
 def posture_arrays(result: Judged, name: str) -> Arrays:
     """The postures found for a cutter."""
-    tilt, lean = tilt_and_lean(result.samples, result.reaches[name])
-    return {f"tilt.{name}": Stored.of(tilt), f"lean.{name}": Stored.of(lean)}
+    tilt, tilt_direction = tilt_and_lean(result.samples, result.reaches[name])
+    return {f"tilt.{name}": Stored.of(tilt), f"lean.{name}": Stored.of(tilt_direction)}
 
 
 def scalar_arrays(result: Judged) -> tuple[Arrays, list[dict[str, Any]]]:

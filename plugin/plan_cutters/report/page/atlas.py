@@ -14,7 +14,7 @@ from scipy.ndimage import distance_transform_edt
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import FaceGrid, Floats, Ints, SurfaceSamples
-from cad_io.write.drawn import Mesh
+from cad_io.write.render_mesh import Mesh
 
 #: Largest width and height: a place is counted in 16ths of a texel in 16 bits; the last number says that there is none.
 _LONGEST = 4094

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.document.model import WitnessEntry
-from plan_cutters.domain.verdicts import Reach
-from plan_cutters.report.judged import Judged
+from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.report.protocol import Judged
 from plan_cutters.report.story.cutters import ranked_spots
 from plan_cutters.report.witness import row_of
 
@@ -39,11 +39,15 @@ def spots_of(result: Judged) -> tuple[list[Spot], dict[str, int]]:
     return found, more
 
 
-def tilt_and_lean(samples: Any, reach: Reach) -> tuple[NDArray[np.uint16], NDArray[np.int16]]:
+def tilt_and_lean(samples: Any, reach: Verdicts) -> tuple[NDArray[np.uint16], NDArray[np.int16]]:
     """Postures found: tilts (n,), NO_TILT where there is none, and angles (n,) from `direction_max` to the lean, in hundredths of
     degrees."""
     known = np.isfinite(reach.tilt) & reach.reached
     tilt = np.where(known, np.round(100 * np.degrees(np.where(known, reach.tilt, 0.0))), NO_TILT).astype(np.uint16)
-    lean, first, normal = (np.nan_to_num(a) for a in (reach.lean, samples.direction_max, samples.normal))
-    angle = np.degrees(np.arctan2((lean * np.cross(normal, first)).sum(axis=1), (lean * first).sum(axis=1)))
+    tilt_direction, first, normal = (
+        np.nan_to_num(a) for a in (reach.tilt_direction, samples.direction_max, samples.normal)
+    )
+    angle = np.degrees(
+        np.arctan2((tilt_direction * np.cross(normal, first)).sum(axis=1), (tilt_direction * first).sum(axis=1))
+    )
     return tilt, np.where(known, np.round(100 * angle), 0).astype(np.int16)

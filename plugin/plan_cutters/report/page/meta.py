@@ -16,10 +16,10 @@ from plan_cutters.domain.outline import Outline, outline, points
 from plan_cutters.domain.reasons import NO_CONTACT, REASONS
 from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.verdicts import WORDS
-from plan_cutters.report.judged import Judged
 from plan_cutters.report.page.atlas import Atlas
 from plan_cutters.report.page.facts import Spot
 from plan_cutters.report.page.surface import Surface
+from plan_cutters.report.protocol import Judged
 from plan_cutters.report.story.cutters import spot as sentence
 from plan_cutters.report.story.names import short_names
 from plan_cutters.report.story.numbers import VERDICTS

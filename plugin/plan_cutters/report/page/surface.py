@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from cad_io.write.drawn import Drawn, Mesh
-from plan_cutters.report.judged import Judged
+from cad_io.write.render_mesh import Drawn, Mesh
 from plan_cutters.report.page.atlas import NOWHERE, Atlas, placed_in
+from plan_cutters.report.protocol import Judged
 
 #: First triangle and number of triangles.
 Range = tuple[int, int]

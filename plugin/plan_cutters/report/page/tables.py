@@ -6,8 +6,8 @@ from typing import Any, NamedTuple
 from plan_cutters.document.model import CutterEntry, FaceEntry, Plan
 from plan_cutters.document.palette import label
 from plan_cutters.domain.reasons import REASONS
-from plan_cutters.report.judged import Judged
 from plan_cutters.report.page.facts import Spot
+from plan_cutters.report.protocol import Judged
 from plan_cutters.report.story import answers, cutters, headline, numbers
 from plan_cutters.report.story.names import named
 from plan_cutters.report.story.next_steps import step_told

@@ -14,9 +14,8 @@ import numpy as np
 from markupsafe import Markup
 from numpy.typing import NDArray
 
-from cad_io.write.drawn import drawn
+from cad_io.write.render_mesh import drawn
 from plan_cutters.document.model import Plan
-from plan_cutters.report.judged import Judged
 from plan_cutters.report.page import arrays, tables
 from plan_cutters.report.page.arrays import Arrays
 from plan_cutters.report.page.atlas import atlas_of
@@ -25,6 +24,7 @@ from plan_cutters.report.page.facts import spots_of
 from plan_cutters.report.page.meta import meta_of
 from plan_cutters.report.page.surface import box_of, surface_of
 from plan_cutters.report.page.tables import Drawing
+from plan_cutters.report.protocol import Judged
 
 #: Bytes that a page may have, with the posture maps of all samples, and without.
 LARGEST, LARGEST_WITHOUT = 8_000_000, 2_500_000

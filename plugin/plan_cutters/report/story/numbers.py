@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable, Sequence
 
-from plan_cutters.document.shares import AreaShare, Verdicts
+from plan_cutters.document.shares import AreaShare, VerdictCounts
 from plan_cutters.domain.verdicts import WORDS
 
 #: Verdicts, from best to worst.
@@ -40,7 +40,7 @@ def figure(number: float) -> str:
     return f"{float(f'{number:.3g}'):,.0f}" if abs(number) >= 100.0 else f"{number:.3g}"
 
 
-def part_of(counts: Verdicts, share: AreaShare, words: Iterable[str]) -> str:
+def part_of(counts: VerdictCounts, share: AreaShare, words: Iterable[str]) -> str:
     """How much of an area has one of some verdicts, in percent."""
     mine = set(words)
     there = {word for word in VERDICTS if counts.of(word) or getattr(share, word) > 0.0}
@@ -49,12 +49,12 @@ def part_of(counts: Verdicts, share: AreaShare, words: Iterable[str]) -> str:
     )
 
 
-def reached(counts: Verdicts, share: AreaShare) -> str:
+def reached(counts: VerdictCounts, share: AreaShare) -> str:
     """How much of an area is interference-free or accessible, in percent."""
     return part_of(counts, share, _REACHED)
 
 
-def lost(counts: Verdicts, share: AreaShare) -> str:
+def lost(counts: VerdictCounts, share: AreaShare) -> str:
     """How much of an area is inaccessible or undecided, in percent."""
     return part_of(counts, share, _LOST)
 

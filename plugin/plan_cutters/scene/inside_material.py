@@ -38,7 +38,7 @@ class Cover(Record):
 
 
 def buried(
-    samples: SurfaceSamples, orientation: Orientation, bodies: Sequence[Body], surely: Obstacles, tolerance: float,
+    samples: SurfaceSamples, orientation: Orientation, bodies: Sequence[Body], certain: Obstacles, tolerance: float,
     jobs: int = 1,
 ) -> Ints:  # fmt: skip
     """In which body contacts lie so deep that every posture is blocked.
@@ -49,7 +49,7 @@ def buried(
     orientation : Orientation
         Side of each face.
     bodies : sequence of Body
-    surely : Obstacles
+    certain : Obstacles
     tolerance : float
         Gouge tolerance that is kept, mm.
     jobs : int, optional
@@ -61,17 +61,17 @@ def buried(
         Index into `bodies`, -1 where there is none. Where a contact lies in the void of a body and in no material besides,
         that void (`voids`).
     """
-    _, deep = surely.depths(tolerance)
+    _, deep = certain.depths(tolerance)
     point = samples.point + _AWAY * deep * samples.normal
     open_rows = (samples.unjudged < 0) & np.isfinite(point).all(axis=1)
     result, hollow = np.full(len(samples), -1, np.int32), voids(bodies, orientation)
     # Every void lies in one more body than there is material.
     layers, void = np.zeros(len(samples), np.int32), np.full(len(samples), -1, np.int32)
     for index, body in enumerate(bodies):
-        mine = np.isin(surely.triangles.face, body.faces) if body.closed else np.zeros(0, bool)
+        mine = np.isin(certain.triangles.face, body.faces) if body.closed else np.zeros(0, bool)
         if not mine.any():
             continue
-        vertex = surely.triangles.vertex[mine]
+        vertex = certain.triangles.vertex[mine]
         within = ((point >= vertex.min(axis=(0, 1))) & (point <= vertex.max(axis=(0, 1)))).all(axis=1)
         # A contact on the outer side of a skin is not within that.
         outer = [n for n, side in zip(body.faces, body.sign, strict=True) if n > 0 and orientation.sign[n - 1] == side]
@@ -80,7 +80,7 @@ def buried(
             asked &= result < 0
         rows = np.flatnonzero(asked)
         if len(rows):
-            found = balls_inside(point[rows], _BALL * deep, surely.skin_of(body), jobs)
+            found = balls_inside(point[rows], _BALL * deep, certain.skin_of(body), jobs)
             if hollow[index]:
                 # In a corner of a void a ball is not all within it, but what lies on its wall looks into it.
                 found |= np.isin(samples.face[rows], body.faces)
@@ -119,21 +119,21 @@ def voids(bodies: Sequence[Body], orientation: Orientation) -> NDArray[np.bool_]
     )
 
 
-def cover(point: Floats, normal: Floats, surely: Obstacles, body: Body | None = None) -> Cover | None:
+def cover(point: Floats, normal: Floats, certain: Obstacles, body: Body | None = None) -> Cover | None:
     """Where the way out of a body along a normal (3,) leads from a contact (3,); None if it meets no skin.
 
     Without a body, that of all that encloses something.
     """
-    rows = _met(point, normal, surely)
-    face = surely.faces[rows]
-    weight = surely.weight[surely.order[rows]]
+    rows = _met(point, normal, certain)
+    face = certain.faces[rows]
+    weight = certain.weight[certain.order[rows]]
     if body is not None:
         mine = np.isin(face, body.faces)
         rows, face, weight = rows[mine], face[mine], weight[mine]
         if min(body.faces) > 0:
             # A fixture is one body whatever it consists of, and its triangles know what they count.
             weight = np.array([dict(zip(body.faces, body.sign, strict=True))[n] for n in face.tolist()], np.int8)
-    vertex = surely.tree.vertex[rows]
+    vertex = certain.tree.vertex[rows]
     a, b, c = vertex[:, 0] - point, vertex[:, 1] - point, vertex[:, 2] - point
     # Signed volumes tell on which side of each edge the ray passes; the corners' sense does not matter.
     sides = np.stack([np.cross(q, r) @ normal for q, r in ((a, b), (b, c), (c, a))])
@@ -148,9 +148,9 @@ def cover(point: Floats, normal: Floats, surely: Obstacles, body: Body | None = 
     return Cover(int(face[first]), point + along[first] * normal)
 
 
-def _met(point: Floats, normal: Floats, surely: Obstacles) -> NDArray[np.int64]:
+def _met(point: Floats, normal: Floats, certain: Obstacles) -> NDArray[np.int64]:
     """Triangles, in tree order, in whose leaves' boxes a ray comes."""
-    tree, node = surely.tree, np.zeros(1, np.int64)
+    tree, node = certain.tree, np.zeros(1, np.int64)
     for level in range(tree.depth + 1):
         box = tree.box[node]
         axes, half = box[:, 3:12].reshape(-1, 3, 3), box[:, 12:15]

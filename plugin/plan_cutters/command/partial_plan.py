@@ -4,8 +4,8 @@ from typing import Any
 
 from plan_cutters.command import terminal
 from plan_cutters.command.codes import UNREADABLE
-from plan_cutters.command.stopped import Unfinished
 from plan_cutters.command.worker import INTERRUPTED
+from plan_cutters.command.worker_errors import Unfinished
 
 
 def without_models(stopped: Unfinished, given: dict[str, Any]) -> int:

@@ -5,8 +5,8 @@ import os
 from collections.abc import Sequence
 
 from plan_cutters.command import terminal
-from plan_cutters.command.stopped import Stuck, Unfinished
 from plan_cutters.command.supervise import Display, supervise
+from plan_cutters.command.worker_errors import Stuck, Unfinished
 
 #: Environment variable by which the child knows which parts are done and which faces of the next one are set aside.
 ASIDE = "PLAN_CUTTERS_ASIDE"

@@ -7,7 +7,7 @@ import click
 
 from cad_io.units import UNITS
 from plan_cutters.command import values
-from plan_cutters.command.grouped import heading
+from plan_cutters.command.help_groups import heading
 from plan_cutters.command.values import File, Folder, Range, Setup, Words
 
 EXAMPLES = (
@@ -44,7 +44,7 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, asked: bool) -> No
     """Print the built-in drawer, one cutter a line, and end."""
     if not asked or ctx.resilient_parsing:
         return
-    from plan_cutters.domain.drawer import builtin
+    from plan_cutters.domain.default_tools import builtin
 
     click.echo(
         "Built-in cutters: usual metric sizes in plain holders, for a first look; nobody's tools. Lengths in mm."

@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 from cad_io.errors import CadIoError, ReadError
 from cad_io.kernel import translated
-from cad_io.kernel.limited import ChildDied, TimeLimit, limited
+from cad_io.kernel.time_limit import ChildDied, TimeLimit, limited
 from cad_io.part.packing import Found, packed, unpacked
 
 

@@ -50,7 +50,7 @@ def _shadow_distance(polygon, count, half):
 
 
 @kernel
-def drawn_hit(vertex, i, body, piece, mask, room):
+def drawn_hit(vertex, i, body, piece, mask, workspace):
     """Those of the pieces of a mask, drawn out as the body says, into which triangle i reaches.
 
     Parameters
@@ -61,7 +61,7 @@ def drawn_hit(vertex, i, body, piece, mask, room):
     mask : int
     room : Scratch
     """
-    corner, half = room.corner, body[HALF]
+    corner, half = workspace.corner, body[HALF]
     _, least, most, total = into_frame(vertex, i, body, 0.0, corner)
     # What is no number is in the way.
     total += half
@@ -71,17 +71,17 @@ def drawn_hit(vertex, i, body, piece, mask, room):
     for k in range(len(piece)):
         if not (mask >> k) & 1 or most <= piece[k, BOTTOM] or least >= piece[k, TOP]:
             continue
-        if _drawn(corner, least, most, half, piece, k, room):
+        if _drawn(corner, least, most, half, piece, k, workspace):
             hit |= 1 << k
     return hit
 
 
 @kernel
-def _drawn(corner, least, most, half, piece, k, room):
+def _drawn(corner, least, most, half, piece, k, workspace):
     """Whether a triangle of rows (height, x, y) reaches into a piece that is drawn out."""
     # What holds the piece: as wide as it ever is.
-    where, count = clipped(corner, 3, least, most, piece[k, BOTTOM], piece[k, TOP], room.polygon, room.spare)
-    source = corner if where == 0 else room.polygon if where == 1 else room.spare
+    where, count = clipped(corner, 3, least, most, piece[k, BOTTOM], piece[k, TOP], workspace.polygon, workspace.spare)
+    source = corner if where == 0 else workspace.polygon if where == 1 else workspace.spare
     wide = max(0.0, max(piece[k, RADIUS], piece[k, WIDE]))
     if count == 0 or _shadow_distance(source, count, half) >= wide * wide:
         return False
@@ -96,10 +96,12 @@ def _drawn(corner, least, most, half, piece, k, room):
                 at = (side - 2 + (1 if c == 1 or c == 2 else 0)) % 3
                 away = -half if c < 2 else half
             for j in range(3):
-                room.drawn[c, j] = corner[at, j]
-            room.drawn[c, 2] += away
-        where, count = clipped(room.drawn, count, least, most, piece[k, LOW], piece[k, HIGH], room.polygon, room.spare)
-        source = room.drawn if where == 0 else room.polygon if where == 1 else room.spare
+                workspace.drawn[c, j] = corner[at, j]
+            workspace.drawn[c, 2] += away
+        where, count = clipped(
+            workspace.drawn, count, least, most, piece[k, LOW], piece[k, HIGH], workspace.polygon, workspace.spare
+        )
+        source = workspace.drawn if where == 0 else workspace.polygon if where == 1 else workspace.spare
         if count > 0 and polygon_hit(source, count, piece, k, 0.0)[0]:
             return True
     middle = 0.5 * (piece[k, BOTTOM] + piece[k, TOP])

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from plan_cutters.command import terminal
-from plan_cutters.command.asked import NAMED
 from plan_cutters.command.codes import FEASIBLE, NONE_FEASIBLE, NOT_ALL_JUDGED, ended, invoked
-from plan_cutters.command.declared import ENDED, options
-from plan_cutters.command.grouped import Command, named
+from plan_cutters.command.help_groups import Command, named
+from plan_cutters.command.option_groups import ENDED, options
+from plan_cutters.command.validation import NAMED
 from plan_cutters.command.values import File
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def command(file: str, part: str | None, **given: Any) -> int:
     what the maps were made with; what they cannot answer is refused.
     """
     from cad_io.read.sniff import kind
-    from plan_cutters.command.asked import look_at, options_of
+    from plan_cutters.command.validation import look_at, options_of
     from plan_cutters.errors import OptionError
 
     if given["json_out"] not in (None, "-"):

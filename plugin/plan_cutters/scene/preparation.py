@@ -9,9 +9,9 @@ from cad_io import SurfaceSamples
 from cad_io.arrays import Ints, Record
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.options import Options
-from plan_cutters.scene.buried import voids
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.faces import Chosen
+from plan_cutters.scene.inside_material import voids
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.spacing import Spacing
 

@@ -29,7 +29,7 @@ def begin(maps: bool) -> Callable[[str], None] | None:
     if at_hand("search.search") is not False:
         return None
     environment = {name: value for name, value in os.environ.items() if name != REPORT} | {PARENT: str(os.getpid())}
-    words = [sys.executable, "-m", "plan_cutters.command.ahead", *(["maps"] if maps else [])]
+    words = [sys.executable, "-m", "plan_cutters.command.background_compile", *(["maps"] if maps else [])]
     try:
         other = subprocess.Popen(words, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                  stderr=subprocess.DEVNULL)  # fmt: skip

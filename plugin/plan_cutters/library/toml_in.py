@@ -14,8 +14,8 @@ from plan_cutters.domain.holder import Holder, Stage
 from plan_cutters.domain.shapes import SAME, flute_length
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.library.files import MOST_TOOLS, Content, too_many
-from plan_cutters.library.listed import FaultError, Found, mm, name_of, unit_of
 from plan_cutters.library.milling import Ask, cause_of
+from plan_cutters.library.raw_tool import FaultError, Found, mm, name_of, unit_of
 from plan_cutters.library.records import Entry
 
 _LOOKS = re.compile(

@@ -6,7 +6,7 @@ from typing import Any
 
 from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.machine import Machine
-from plan_cutters.machines.own import FORMAT
+from plan_cutters.machines.toml_in import FORMAT
 
 
 def plain(machine: Machine) -> dict[str, Any]:

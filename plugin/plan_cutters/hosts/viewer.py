@@ -15,7 +15,7 @@ from plan_cutters.domain.checks import shown as written
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.outline import outline
 from plan_cutters.domain.travel import tips
-from plan_cutters.domain.verdicts import UNDECIDED, Reach, blank
+from plan_cutters.domain.verdicts import UNDECIDED, Verdicts, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.report.models import product, split_result, styles, verdict_of
 from plan_cutters.report.witness import row_of
@@ -121,11 +121,11 @@ def _posture(result: Result, cutter: Cutter, at: int | WitnessEntry) -> tuple[Fl
             )
         axis, tilt = reach.axis[row], float(reach.tilt[row])
     normal = samples.normal[row]
-    lean = axis - (axis @ normal) * normal
-    if np.linalg.norm(lean) < 1e-9:
-        lean = samples.direction_max[row]
-    one: Reach = blank(1)
-    one.axis[0], one.lean[0], one.tilt[0] = axis, lean / np.linalg.norm(lean), tilt
+    tilt_direction = axis - (axis @ normal) * normal
+    if np.linalg.norm(tilt_direction) < 1e-9:
+        tilt_direction = samples.direction_max[row]
+    one: Verdicts = blank(1)
+    one.axis[0], one.tilt_direction[0], one.tilt[0] = axis, tilt_direction / np.linalg.norm(tilt_direction), tilt
     tip = tips(cutter, samples.point[row : row + 1], normal[None], one)[0]
     if not np.isfinite(tip).all():
         raise OptionError(f"{cutter.id} cannot touch at a tilt of {np.degrees(tilt):.3g} deg: there is nothing to show")
