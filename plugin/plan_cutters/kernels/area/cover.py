@@ -52,10 +52,9 @@ class Patches(NamedTuple):
 class Sweeping(NamedTuple):
     """A tool as this asks for it.
 
-    tool : Tool, without what does not matter; dummy (k, COLUMNS), as `search.dummy_clear` takes it; nose (m,) int64: of each
-    mode a mask of the pieces that lie in what its nose sweeps when it goes on along the axis, widening by `widening` (m,),
-    rad; flutes, a mask of the pieces that cut; safe, chord: the depth up to which a triangle does not matter, and the chord error,
-    mm.
+    tool : Tool, the outer one; dummy (k, COLUMNS), as `search.dummy_clear` takes it; nose (m,) int64: of each mode a mask of the
+    pieces that lie in the volume that its nose sweeps when it goes on along the axis, widening by `widening` (m,), rad; flutes, a
+    mask of the pieces that cut; safe, chord: the depth up to which a triangle does not matter, and the chord error, mm.
     """
 
     tool: Any
