@@ -14,7 +14,8 @@ __version__ = "0.1.0"
 _HOME = {
     "Cutter": "domain.cutter",
     "Holder": "domain.holder",
-    "Stage": "domain.holder",
+    "Segment": "domain.holder",
+    "Stage": "domain.holder",  # its former name
     "Machine": "domain.machine",
     "Axis": "domain.axis",
     "Placement": "domain.placement",

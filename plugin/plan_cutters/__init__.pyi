@@ -4,7 +4,7 @@ from plan_cutters.document.model import Plan
 from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fixture import Fixture
-from plan_cutters.domain.holder import Holder, Stage
+from plan_cutters.domain.holder import Holder, Segment, Stage
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange
@@ -38,6 +38,7 @@ __all__ = [
     "PostureRange",
     "Result",
     "Scene",
+    "Segment",
     "Stage",
     "__version__",
     "plan",

@@ -208,10 +208,10 @@ def prepare(
         job = partial(sampled, whole, scene.orientation, options, chosen.targets, cutters)
     # Sampling and meshing need nothing of each other.
     with Meanwhile(job, _SAMPLING, worth=options.jobs > 1 and len(chosen.targets) >= _MANY_FACES) as copy:
-        if copy.works:
+        if meshed := copy.works:
             with clock.stage("tessellate"):
                 scene.surround(at, jobs=options.jobs)
-        with clock.stage("sample"):
+        with clock.stage("sample", shown=not meshed):
             samples, spacing, coarser = copy.result(partial(job, at=partial(at, "kernel")))
     with clock.stage("classify"):
         surface_class = classify(samples, float(np.linalg.norm(whole.size)))

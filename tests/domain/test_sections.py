@@ -20,7 +20,7 @@ def test_one_neck_has_one_form():
     assert one == same
     assert one.neck == Stage(2, 5)
     assert Cutter.flat(radius=3, length=40, neck=()) == Cutter.flat(radius=3, length=40)
-    with pytest.raises(CutterError, match="a Stage or several"):
+    with pytest.raises(CutterError, match="a Segment or several"):
         Cutter.flat(radius=3, length=40, neck=(Stage(2, 5), 3))
 
 

@@ -9,7 +9,7 @@ from plan_cutters.answers.scan import HALF, NEARLY, Candidate, Scan
 from plan_cutters.answers.state import State
 from plan_cutters.domain.change import Move
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.holder import Holder, Stage
+from plan_cutters.domain.holder import Holder, Segment
 
 #: Radii that are tried for the rest: those sold, mm, and down to this share of the present one.
 _RADII = (
@@ -59,7 +59,7 @@ def holder(scan: Scan) -> Iterator[Candidate]:
 
     def slimmed(at: int) -> Holder:
         share = _SLIM[at]
-        return Holder(tuple(Stage(slim(s.radius, share), s.length, slim(s.upper_radius, share)) for s in stages))
+        return Holder(tuple(Segment(slim(s.radius, share), s.length, slim(s.upper_radius, share)) for s in stages))
 
     def make(at: int) -> State | None:
         return _with_first(scan.state, made_of(cutter, holder=slimmed(at)))

@@ -10,7 +10,7 @@ from plan_cutters.answers.outcome import none, short
 from plan_cutters.answers.trial import Case, Left, Trials, first, least
 from plan_cutters.domain.change import Change
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.holder import Stage
+from plan_cutters.domain.holder import Segment
 from plan_cutters.domain.shapes import SAME, flute_length
 from plan_cutters.errors import CutterError
 from plan_cutters.scene.preparation import Prepared
@@ -142,7 +142,7 @@ def thinner(cutter: Cutter, radius: float) -> Cutter | None:
         changes["corner_radius"] = radius
     if cutter.shank_radius is not None and cutter.shape != "lollipop":
         changes["shank_radius"] = slim(cutter.shank_radius)
-    changes["neck"] = [Stage(slim(each.radius), each.length, slim(each.upper_radius)) for each in cutter.necks]
+    changes["neck"] = [Segment(slim(each.radius), each.length, slim(each.upper_radius)) for each in cutter.necks]
     if cutter.shape == "barrel" and cutter.corner_radius:
         # The ball at its tip is tangent to its flank, which stays as round as it is.
         inner, outer = cutter.arc_radius - radius, cutter.arc_radius - cutter.corner_radius

@@ -7,7 +7,7 @@ from typing import Any
 
 from plan_cutters.domain.checks import items
 from plan_cutters.domain.dimensions import Dimensions, points_of
-from plan_cutters.domain.holder import Holder, Stage, text_of
+from plan_cutters.domain.holder import Holder, Segment, text_of
 from plan_cutters.domain.shapes import Part, check, flute_length, stages
 from plan_cutters.domain.spec import dimensions, written
 from plan_cutters.errors import CutterError
@@ -120,7 +120,7 @@ class Cutter(Dimensions):
         return tuple(cls.of(each) for each in items(given, "cutters", "cutters", error=CutterError))
 
     @property
-    def stages(self) -> tuple[tuple[Part, float, Stage], ...]:
+    def stages(self) -> tuple[tuple[Part, float, Segment], ...]:
         """What stands above the flutes, from there up: its part, the height over the tip at which it begins, mm, the stage."""
         return stages(self)
 

@@ -1,7 +1,7 @@
 """The built-in drawer: metric end mills of usual sizes in plain holders, for a first look. They are nobody's tools."""
 
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.holder import Holder, Stage
+from plan_cutters.domain.holder import Holder, Segment
 
 #: Radius, stick-out, flutes, corner radius of the bull nose (0: none), nose radius of the holder; mm.
 _SIZES = (
@@ -32,10 +32,10 @@ def builtin() -> tuple[Cutter, ...]:
                 continue
             neck, shank = None, float(radius)
             if radius < _SHANK:
-                neck, shank = Stage(0.95 * radius, length - flutes - _STUB), _SHANK
+                neck, shank = Segment(0.95 * radius, length - flutes - _STUB), _SHANK
             what = f"{name} D{2 * radius:g}" + (f" rc{rounding:g}" if name == "bull nose" else "")
             found.append(
                 Cutter(radius, length, rounding, f"{what} x {length:g}, built-in", flutes=flutes, neck=neck, shank_radius=shank,
-                       holder=Holder((Stage(nose, _HOLDER),), "plain, built-in"))
+                       holder=Holder((Segment(nose, _HOLDER),), "plain, built-in"))
             )  # fmt: skip
     return tuple(found)

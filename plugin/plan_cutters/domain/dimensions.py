@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from plan_cutters.domain.checks import items, name, number, shown
-from plan_cutters.domain.holder import Holder, Stage, positive
+from plan_cutters.domain.holder import Holder, Segment, positive
 from plan_cutters.errors import CutterError
 
 #: Kinds of cutting part: an end mill, straight or tapered; a ball on a neck; a flank of a large arc; a bottom of one; points.
@@ -32,7 +32,7 @@ class Dimensions:
         Half angle, rad: positive where the radius grows from the tip up, negative for a dovetail.
     flutes : float, optional
         Height over the tip up to which it cuts, mm. None: up to the first stage above, or all of its length.
-    neck : Stage or tuple of Stage, optional
+    neck : Segment or tuple of Segment, optional
         What stands right above the flutes: one section, or several from there up.
     shank_radius : float, optional
         From there up to `length`, mm. None: the part that cuts, or the neck, goes on.
@@ -53,7 +53,7 @@ class Dimensions:
     name: str = ""
     taper: float = 0.0
     flutes: float | None = None
-    neck: Stage | tuple[Stage, ...] | None = None
+    neck: Segment | tuple[Segment, ...] | None = None
     shank_radius: float | None = None
     holder: Holder | None = None
     shape: Shape = "end"
@@ -86,11 +86,11 @@ class Dimensions:
         object.__setattr__(self, "outline", points_of(self.outline))
 
     @property
-    def necks(self) -> tuple[Stage, ...]:
+    def necks(self) -> tuple[Segment, ...]:
         """The sections of the neck, from the flutes up; none where there is no neck."""
         if self.neck is None:
             return ()
-        return (self.neck,) if isinstance(self.neck, Stage) else self.neck
+        return (self.neck,) if isinstance(self.neck, Segment) else self.neck
 
     @property
     def neck_length(self) -> float:
@@ -98,14 +98,14 @@ class Dimensions:
         return math.fsum(stage.length for stage in self.necks)
 
 
-def _neck(given: Any) -> Stage | tuple[Stage, ...] | None:
+def _neck(given: Any) -> Segment | tuple[Segment, ...] | None:
     """One section as itself, several as a tuple: so that one neck has one form."""
-    if given is None or isinstance(given, Stage):
+    if given is None or isinstance(given, Segment):
         return given
     found = items(given, "a cutter's neck", "stages", error=CutterError)
     for each in found:
-        if not isinstance(each, Stage):
-            raise CutterError(f"a cutter's neck must be a Stage or several, not {shown(each)}")
+        if not isinstance(each, Segment):
+            raise CutterError(f"a cutter's neck must be a Segment or several, not {shown(each)}")
     return tuple(found) if len(found) > 1 else found[0] if found else None
 
 

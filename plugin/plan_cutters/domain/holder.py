@@ -30,7 +30,7 @@ def positive(value: Any, what: str, *, zero: bool = False) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class Stage:
+class Segment:
     """A round section of a holder, shank or neck: a cylinder or a cone.
 
     Attributes
@@ -63,13 +63,17 @@ class Stage:
         return f"R{text_of(self.radius)}{upper}L{text_of(self.length)}"
 
 
+#: Its former name.
+Stage = Segment
+
+
 @dataclass(frozen=True, slots=True)
 class Holder:
     """A tool holder: stages from its nose up. It sits where the cutter's length ends.
 
     Attributes
     ----------
-    stages : tuple of Stage
+    stages : tuple of Segment
     name : str
         For people; the id is made from the stages.
     bore : float, optional
@@ -77,17 +81,17 @@ class Holder:
 
     Examples
     --------
-    >>> Holder((Stage(15, 30),)).id
+    >>> Holder((Segment(15, 30),)).id
     'R15L30'
     """
 
-    stages: tuple[Stage, ...]
+    stages: tuple[Segment, ...]
     name: str = ""
     bore: float | None = None
 
     def __post_init__(self) -> None:
         stages = tuple(items(self.stages, "a holder's stages", "stages", error=CutterError))
-        if not stages or not all(isinstance(stage, Stage) for stage in stages):
+        if not stages or not all(isinstance(stage, Segment) for stage in stages):
             raise CutterError("a holder needs at least one stage: a radius and a length, as R15L30")
         object.__setattr__(self, "stages", stages)
         object.__setattr__(self, "name", name(self.name, "a holder's name", error=CutterError))
@@ -119,7 +123,7 @@ class Holder:
             raise CutterError(f"{shown(spec)} is no holder: give a Holder or a text such as 'R15L30'")
         made = chuck(spec.strip())
         if made is not None:
-            return cls(tuple(Stage(radius, long) for radius, long in made.stages), made.name, made.bore)
+            return cls(tuple(Segment(radius, long) for radius, long in made.stages), made.name, made.bore)
         found = []
         for word in spec.strip().split("+"):
             match = _STAGE.fullmatch(word.strip())
@@ -129,7 +133,7 @@ class Holder:
                     "nor a word as er32 or hsk63a-er32"
                 )
             upper = across(match["by"], match["upper"]) if match["upper"] else math.nan
-            found.append(Stage(across(match["by"], match["lower"]), length(match["length"]), upper))
+            found.append(Segment(across(match["by"], match["lower"]), length(match["length"]), upper))
         return cls(tuple(found))
 
     @classmethod

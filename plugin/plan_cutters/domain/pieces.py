@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from plan_cutters.domain.dimensions import Dimensions
-from plan_cutters.domain.holder import Stage
+from plan_cutters.domain.holder import Segment
 from plan_cutters.domain.shapes import flank, lens_height, tip_angle
 from plan_cutters.kernels.codes import (
     ARC,
@@ -45,7 +45,7 @@ class Band:
 
     part: int
     low: float
-    stage: Stage
+    stage: Segment
     inset: float
 
     @property
@@ -254,7 +254,7 @@ def _form(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list
         (r0, w0), (r1, w1) = points[i], points[i + 1]
         if w1 <= w0:
             continue
-        stage = Stage(max(r0, 1e-12), w1 - w0, max(r1, 1e-12))
+        stage = Segment(max(r0, 1e-12), w1 - w0, max(r1, 1e-12))
         if kind == "inner":
             rows += alone(Band(FLUTES, w0, stage, inset))
             continue

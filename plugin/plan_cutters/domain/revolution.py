@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.holder import Stage
+from plan_cutters.domain.holder import Segment
 from plan_cutters.errors import CutterError
 
 #: Heights and radii this close to each other, mm, are the same.
@@ -24,7 +24,7 @@ Line = tuple[float, float, float, float]
 
 def stages_around(
     line: Floats, exact: NDArray[np.bool_], foot: float, *, tolerance: float, most: int
-) -> tuple[tuple[Stage, ...], float]:
+) -> tuple[tuple[Segment, ...], float]:
     """Stages that enclose lines of a half-plane.
 
     Parameters
@@ -42,7 +42,7 @@ def stages_around(
 
     Returns
     -------
-    stages : tuple of Stage
+    stages : tuple of Segment
         From the lowest up.
     tolerance : float
         The one that was kept.
@@ -66,7 +66,7 @@ def stages_around(
         allowed *= 2.0
         found = _merged(top, allowed, keep=keep)
     stages = [
-        Stage(max(r, _THINNEST), to - z, max(s, _THINNEST)) for z, to, r, s in found if to - z > _SAME
+        Segment(max(r, _THINNEST), to - z, max(s, _THINNEST)) for z, to, r, s in found if to - z > _SAME
     ]  # fmt: skip
     return tuple(stages), allowed
 

@@ -5,7 +5,7 @@ from itertools import pairwise
 from typing import Literal, NamedTuple
 
 from plan_cutters.domain.dimensions import Dimensions
-from plan_cutters.domain.holder import Stage
+from plan_cutters.domain.holder import Segment
 from plan_cutters.errors import CutterError
 
 #: Parts of an assembly that do not cut, from the flutes up.
@@ -100,9 +100,9 @@ def lens_height(cutter: Dimensions) -> float:
     return cutter.arc_radius - math.sqrt(max(0.0, outer**2 - inner**2))
 
 
-def stages(cutter: Dimensions) -> tuple[tuple[Part, float, Stage], ...]:
+def stages(cutter: Dimensions) -> tuple[tuple[Part, float, Segment], ...]:
     """What stands above the flutes, from there up: its part, the height at which it begins, the stage."""
-    found: list[tuple[Part, float, Stage]] = []
+    found: list[tuple[Part, float, Segment]] = []
     top = flute_length(cutter)
     for stage in cutter.necks:
         found.append(("neck", top, stage))
@@ -112,7 +112,7 @@ def stages(cutter: Dimensions) -> tuple[tuple[Part, float, Stage], ...]:
         if radius is None:
             radius = cutter.necks[-1].upper_radius if cutter.necks else top_radius(cutter)
         part: Part = "neck" if cutter.shape == "lollipop" else "shank"
-        found.append((part, top, Stage(radius, cutter.length - top)))
+        found.append((part, top, Segment(radius, cutter.length - top)))
     top = cutter.length
     for stage in cutter.holder.stages if cutter.holder else ():
         found.append(("holder", top, stage))

@@ -6,7 +6,7 @@ from typing import Any
 
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.dimensions import Dimensions
-from plan_cutters.domain.holder import Stage, text_of
+from plan_cutters.domain.holder import Segment, text_of
 from plan_cutters.domain.lengths import LENGTH, across, length
 from plan_cutters.errors import CutterError
 
@@ -42,7 +42,7 @@ def dimensions(spec: str) -> dict[str, Any]:
         raise CutterError(_wrong(spec))
     words, by = match.groupdict(), match["by"]
     necks = [
-        Stage(across(by, each["radius"]), length(each["length"]), across(by, each["upper"] or each["radius"]))
+        Segment(across(by, each["radius"]), length(each["length"]), across(by, each["upper"] or each["radius"]))
         for each in _NECK.finditer(words["necks"])
     ]
     return {

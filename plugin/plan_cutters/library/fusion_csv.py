@@ -5,7 +5,7 @@ import io
 import re
 
 from plan_cutters.domain.checks import shown
-from plan_cutters.domain.holder import Holder, Stage
+from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.library.files import MOST_TOOLS, Content, too_many
 from plan_cutters.library.fusion_json import MOST_SECTIONS
@@ -107,7 +107,7 @@ def _tool(row: dict[str | None, str], place: str) -> Listed:
     return tool
 
 
-def _sections(text: str, tool: Listed, where: str) -> list[Stage]:
+def _sections(text: str, tool: Listed, where: str) -> list[Segment]:
     """`H4 U3.175 L1; ...`: heights, upper and lower diameters, from the tip's side up."""
     rows = []
     words = [word for word in text.split(";") if word.strip()]

@@ -2,7 +2,7 @@
 
 import re
 
-from plan_cutters.domain.holder import Holder, Stage
+from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.files.xml_tree import Element
 from plan_cutters.library.files import MOST_TOOLS, Content, too_many
@@ -92,7 +92,7 @@ def _holder(element: Element, scale: float) -> Holder:
     return Holder(tuple(stages), name_of(element.given.get("description")))
 
 
-def _sections(element: Element, scale: float, where: str) -> list[Stage]:
+def _sections(element: Element, scale: float, where: str) -> list[Segment]:
     """Each section is a height over the one before and the diameter there; one without a height is a step."""
     given = [child for child in element.children if child.tag == "section"]
     if len(given) > MOST_SECTIONS:

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.dimensions import Dimensions
-from plan_cutters.domain.holder import Holder, Stage
+from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.domain.shapes import MOST_PIECES, SAME, pieces_at_most, top_radius
 from plan_cutters.errors import CutterError
 from plan_cutters.library.outlines import fewer, joined, up_to
@@ -323,15 +323,15 @@ def _top(bare: Cutter, tool: Listed) -> float:
     return bare.stages[0][1] if bare.shape == "lollipop" else tool.values["LCF"]
 
 
-def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Stage, ...]:
+def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Segment, ...]:
     """The sections from the end of the flutes to the holder's nose."""
     v, at = tool.values, _top(bare, tool)
-    found: list[Stage] = []
+    found: list[Segment] = []
     shoulder = min(v.get("LN", 0.0), length) - at
     if shoulder > SAME:
         if "DN" not in v:
             tool.notes.append(f"no {tool.word('DN')}: {tool.said('LN')} as wide as {tool.word('DC')}")
-        found.append(Stage(0.5 * v.get("DN", v["DC"]), round(shoulder, 9)))
+        found.append(Segment(0.5 * v.get("DN", v["DC"]), round(shoulder, 9)))
         at += shoulder
     shaft = up_to(tool.shaft, length - at) if length - at > SAME else ()
     found += shaft
@@ -340,7 +340,7 @@ def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Stage, ...]:
         if "DMM" not in v:
             raise UnfitError(f"{tool.word('DMM')} is missing: the diameter of the shank between {at / tool.scale:.10g} and "
                              f"{length / tool.scale:.10g} {tool.unit} over its tip")  # fmt: skip
-        found.append(Stage(0.5 * v["DMM"], round(length - at, 9)))
+        found.append(Segment(0.5 * v["DMM"], round(length - at, 9)))
         if v["DMM"] < v["DC"] - _slack(v["DC"]):
             tool.notes.append(f"{tool.said('DMM')} is thinner than {tool.said('DC')}")
         elif v["DMM"] < 2.0 * top_radius(bare) - _slack(v["DMM"]):
@@ -356,7 +356,7 @@ def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Stage, ...]:
     return around
 
 
-def _standing(bare: Cutter, above: tuple[Stage, ...], length: float) -> Cutter:
+def _standing(bare: Cutter, above: tuple[Segment, ...], length: float) -> Cutter:
     """A cutter with what stands above its flutes: the last straight section is its shank, the others are its neck."""
     if bare.shape == "lollipop":
         plain = all(stage.radius == stage.upper_radius == bare.shank_radius for stage in above)

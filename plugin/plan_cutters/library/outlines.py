@@ -3,24 +3,24 @@
 from collections.abc import Sequence
 from itertools import pairwise
 
-from plan_cutters.domain.holder import Stage
+from plan_cutters.domain.holder import Segment
 from plan_cutters.domain.shapes import SAME
 
 #: Digits of lengths and radii, mm; see `listed`.
 _DIGITS = 9
 
 
-def joined(stages: Sequence[Stage]) -> tuple[Stage, ...]:
+def joined(stages: Sequence[Segment]) -> tuple[Segment, ...]:
     """The same outline, with what goes on straight in one section."""
     return _merged(stages, 0, SAME)[0]
 
 
-def fewer(stages: Sequence[Stage], most: int) -> tuple[tuple[Stage, ...], float]:
+def fewer(stages: Sequence[Segment], most: int) -> tuple[tuple[Segment, ...], float]:
     """At most so many sections that enclose the given ones, and by how much they are wider at most, mm."""
     return _merged(stages, max(1, most), SAME)
 
 
-def _merged(stages: Sequence[Stage], most: int, free: float) -> tuple[tuple[Stage, ...], float]:
+def _merged(stages: Sequence[Segment], most: int, free: float) -> tuple[tuple[Segment, ...], float]:
     # Each section with what it stands for, so that what is added is measured against the truth.
     found = [(stage, [stage]) for stage in stages]
     worst = 0.0
@@ -40,7 +40,7 @@ def _merged(stages: Sequence[Stage], most: int, free: float) -> tuple[tuple[Stag
     return tuple(stage for stage, _ in found), worst if worst > free else 0.0
 
 
-def _enclosing(stages: Sequence[Stage]) -> tuple[Stage, float]:
+def _enclosing(stages: Sequence[Segment]) -> tuple[Segment, float]:
     """One section around several, a cone or a cylinder, and by how much it is wider at most, mm."""
     length = round(sum(stage.length for stage in stages), _DIGITS)
     corners, at = [], 0.0
@@ -48,15 +48,15 @@ def _enclosing(stages: Sequence[Stage]) -> tuple[Stage, float]:
         corners += [(at, stage.radius), (at + stage.length, stage.upper_radius)]
         at += stage.length
     wide = max(r for _, r in corners)
-    cylinder = Stage(wide, length), wide - min(r for _, r in corners)
+    cylinder = Segment(wide, length), wide - min(r for _, r in corners)
     low, high = corners[0][1], corners[-1][1]
     over = [low + (high - low) * z / at - r for z, r in corners]
     if min(over) < -SAME or max(over) >= cylinder[1]:
         return cylinder
-    return Stage(low, length, high), max(over)
+    return Segment(low, length, high), max(over)
 
 
-def up_to(stages: Sequence[Stage], length: float) -> tuple[Stage, ...]:
+def up_to(stages: Sequence[Segment], length: float) -> tuple[Segment, ...]:
     """Sections from the bottom up, those beyond a height cut off there."""
     found, at = [], 0.0
     for stage in stages:
@@ -67,6 +67,6 @@ def up_to(stages: Sequence[Stage], length: float) -> tuple[Stage, ...]:
             found.append(stage)
         else:
             upper = stage.radius + stage.slope * room
-            found.append(Stage(stage.radius, round(room, _DIGITS), round(upper, _DIGITS)))
+            found.append(Segment(stage.radius, round(room, _DIGITS), round(upper, _DIGITS)))
         at += stage.length
     return tuple(found)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from plan_cutters.domain.checks import shown
-from plan_cutters.domain.holder import Holder, Stage
+from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError
 from plan_cutters.library.records import Entry
 
@@ -109,7 +109,7 @@ class Listed:
         What the file calls each.
     kind : str
         As the file words it; `sort`, if given, is what that is among `milling.MILLS`.
-    shaft : list of Stage
+    shaft : list of Segment
         Sections that the file gives above LN (or LCF), from there up.
     holder : Holder, optional
     faults : list of str
@@ -125,7 +125,7 @@ class Listed:
     scale: float = 1.0
     values: dict[str, float] = field(default_factory=dict)
     words: dict[str, str] = field(default_factory=dict)
-    shaft: list[Stage] = field(default_factory=list)
+    shaft: list[Segment] = field(default_factory=list)
     holder: Holder | None = None
     faults: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
@@ -189,7 +189,7 @@ class Found:
     faulty: list[Entry] = field(default_factory=list)
 
 
-def sections(given: Iterable[tuple[float, float, float]], what: str) -> list[Stage]:
+def sections(given: Iterable[tuple[float, float, float]], what: str) -> list[Segment]:
     """Stages from (height, lower diameter, upper diameter), mm; those without a height are steps.
 
     Raises
@@ -203,5 +203,5 @@ def sections(given: Iterable[tuple[float, float, float]], what: str) -> list[Sta
             continue
         if not (lower > 0.0 and upper > 0.0):
             raise FaultError(f"{what} {i} has a diameter of 0")
-        found.append(Stage(0.5 * lower, height, 0.5 * upper))
+        found.append(Segment(0.5 * lower, height, 0.5 * upper))
     return found

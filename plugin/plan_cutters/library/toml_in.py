@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from plan_cutters.domain.checks import radians_said, shown
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.holder import Holder, Stage
+from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.domain.shapes import SAME, flute_length
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.library.files import MOST_TOOLS, Content, too_many
@@ -209,12 +209,12 @@ def _outlined(model: HolderTable, scale: float) -> Holder:
             if z1 < z0:
                 raise FaultError(f"holder points fall from z {z0:g} to {z1:g}: they must rise from the nose up")
             if z1 > z0:
-                stages.append(Stage(r0, round(z1 - z0, 9), r1))
+                stages.append(Segment(r0, round(z1 - z0, 9), r1))
     return Holder(tuple(stages), model.name)
 
 
-def _stages(rows: list[Section], scale: float, field: str) -> list[Stage]:
-    return [Stage(*(_length(value, scale, field) for value in row)) for row in rows]
+def _stages(rows: list[Section], scale: float, field: str) -> list[Segment]:
+    return [Segment(*(_length(value, scale, field) for value in row)) for row in rows]
 
 
 class _Reading:
@@ -306,7 +306,7 @@ class _Reading:
             )
         return -found if kind == "dovetail" else found
 
-    def necks(self) -> list[Stage]:
+    def necks(self) -> list[Segment]:
         if self.model.neck:
             twice = "LN" if self.model.LN is not None else "DN" if self.model.DN is not None else ""
             if twice and (twice == "LN" or self.model.type != "lollipop"):
@@ -318,9 +318,9 @@ class _Reading:
             if self.value("DN"):
                 raise LackError("LN is missing: the length of its neck of DN")
             return []
-        return [Stage(0.5 * self.needed("DN", "the diameter of its neck of LN"), self.value("LN"))]
+        return [Segment(0.5 * self.needed("DN", "the diameter of its neck of LN"), self.value("LN"))]
 
-    def flutes(self, shape: str, necks: list[Stage], length: float) -> float | None:
+    def flutes(self, shape: str, necks: list[Segment], length: float) -> float | None:
         if shape in ("lollipop", "form"):
             if self.model.LCF is not None:
                 raise FaultError(f"LCF: the flutes of a {shape} end where its outline does; leave it out")
@@ -376,7 +376,7 @@ class _Reading:
                 self.notes.append(f'called "{kind}", but RE is {self.model.RE:g}: read as {is_}')
         return corner
 
-    def under(self, necks: list[Stage], ball: Cutter, length: float) -> list[Stage]:
+    def under(self, necks: list[Segment], ball: Cutter, length: float) -> list[Segment]:
         """Of a lollipop whose neck ends at LN over the ball, below a shank of DMM."""
         reach = self.value("LN")
         if necks or not reach:
@@ -384,8 +384,8 @@ class _Reading:
         top = flute_length(ball)
         rest = length - top - reach
         if rest <= SAME:
-            return [Stage(ball.shank_radius or 0.0, length - top)]
+            return [Segment(ball.shank_radius or 0.0, length - top)]
         return [
-            Stage(ball.shank_radius or 0.0, reach),
-            Stage(0.5 * self.needed("DMM", "the diameter of its shank"), rest),
+            Segment(ball.shank_radius or 0.0, reach),
+            Segment(0.5 * self.needed("DMM", "the diameter of its shank"), rest),
         ]

@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterable
 
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.holder import Stage
+from plan_cutters.domain.holder import Segment
 from plan_cutters.library.raw_tool import name_of
 from plan_cutters.library.records import Library
 
@@ -16,7 +16,7 @@ def _text(text: str) -> str:
     return json.dumps(clean, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
-def _rows(stages: Iterable[Stage]) -> str:
+def _rows(stages: Iterable[Segment]) -> str:
     rows = []
     for stage in stages:
         upper = [] if stage.upper_radius == stage.radius else [stage.upper_radius]

@@ -339,6 +339,6 @@ def _ids(about: Mapping[str, Any], options: Options, given: Collection[str]) -> 
 
 def _made(words: Mapping[str, Any]) -> Holder:
     """The holder that was written by its numbers."""
-    from plan_cutters.domain.holder import Stage
+    from plan_cutters.domain.holder import Segment
 
-    return Holder(**{**words, "stages": tuple(Stage(**each) for each in words["stages"])})
+    return Holder(**{**words, "stages": tuple(Segment(**each) for each in words["stages"])})

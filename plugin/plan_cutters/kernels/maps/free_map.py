@@ -10,7 +10,19 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from plan_cutters.kernels.codes import (
-    ARC, BOTTOM, HIGH, KIND, LOW, OFFSET_OF, RADIUS, RISE, ROUND, SLOPE, TILT_FROM, TILT_TO, TOP,
+    ARC,
+    BOTTOM,
+    HIGH,
+    KIND,
+    LOW,
+    OFFSET_OF,
+    RADIUS,
+    RISE,
+    ROUND,
+    SLOPE,
+    TILT_FROM,
+    TILT_TO,
+    TOP,
 )  # fmt: skip
 from plan_cutters.kernels.codes import COLUMNS as PIECE
 from plan_cutters.kernels.intervals import insert, join
