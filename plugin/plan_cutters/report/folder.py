@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 from cad_io.errors import CadIoError
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files.lock import Lock
-from plan_cutters.report.making import LATER, WRITERS, sha256
+from plan_cutters.report.formats import LATER, WRITERS, sha256
 from plan_cutters.report.protocol import Judged
 
 if TYPE_CHECKING:
@@ -149,7 +149,7 @@ def write_all(
     read_formats(",".join(formats))
     clock = clock or Clock.after(result.plan.run)
     with clock.stage("start", shown=False):
-        from plan_cutters.report.making import Making
+        from plan_cutters.report.formats import Making
         from plan_cutters.report.models import SCHEMAS, rungs
         from plan_cutters.report.to_json import PENDING, write_plan
 

@@ -17,7 +17,7 @@ from cad_io.kernel.each import each
 from cad_io.kernel.side_process import Meanwhile
 from cad_io.kernel.time_limit import TimeLimit, limited
 from plan_cutters import pipeline, plan
-from plan_cutters.report import making, models
+from plan_cutters.report import formats, models
 from plan_cutters.report.folder import write_all
 from tests.support.places import ROOT
 
@@ -123,9 +123,9 @@ def test_samples_and_files_are_the_same_with_copies_and_without(tmp_path, monkey
     asked = {"cutters": "R2L30", "grid": 9, "jobs": 2}
     one, other = plan(GROOVE, **asked), plan(GROOVE, **asked | {"jobs": 1})
     assert one.samples == other.samples
-    formats = ("json", "npz", "html", "glb", "step")
-    written = [write_all(each, tmp_path / str(k), formats) for k, each in enumerate((one, other))]
-    assert [set(each.files) for each in written] == 2 * [set(formats) - {"json"}]
+    wanted = ("json", "npz", "html", "glb", "step")
+    written = [write_all(each, tmp_path / str(k), wanted) for k, each in enumerate((one, other))]
+    assert [set(each.files) for each in written] == 2 * [set(wanted) - {"json"}]
     assert not any(each.not_written for each in written)
     assert written[0].split == written[1].split
     for name in ("npz", "glb"):
@@ -145,14 +145,14 @@ def test_a_split_that_fails_costs_the_models_not_the_page(tmp_path, monkeypatch)
 
 
 def test_a_page_whose_copy_crashes_is_written_here(tmp_path, monkeypatch):
-    made = making.Making.file
+    made = formats.Making.file
 
     def file(self, name, split=None):
         if os.getpid() != HERE:
             os.kill(os.getpid(), signal.SIGSEGV)
         return made(self, name, split)
 
-    monkeypatch.setattr(making.Making, "file", file)
+    monkeypatch.setattr(formats.Making, "file", file)
     result = plan(GROOVE, cutters="R2L30", grid=9, jobs=2)
     document = write_all(result, tmp_path / "out", ("json", "html", "glb", "step"))
     assert set(document.files) == {"html", "glb", "step"}
