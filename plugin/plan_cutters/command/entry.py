@@ -14,7 +14,7 @@ _SELF = "plan-cutters"
 SUBCOMMANDS = {
     "plan": ("cli", "Which cutters finish a part: below, and meant where no command is named."),
     "map": ("map", "All postures of one cutter at one point, drawn."),
-    "stored": ("stored", "Another machine or setup, from the posture maps of a plan."),
+    "stored": ("stored_maps", "Another machine or setup, from the posture maps of a plan."),
     "tools": ("tools", "What is understood of a tool library."),
     "machines": ("machines", "The built-in machines, and what is understood of a machine file."),
 }

@@ -41,7 +41,7 @@ CODES = (
 
 
 def _list_cutters(ctx: click.Context, param: click.Parameter, asked: bool) -> None:
-    """Print the built-in drawer, one cutter a line, and end."""
+    """Print the default tool set, one cutter a line, and end."""
     if not asked or ctx.resilient_parsing:
         return
     from plan_cutters.domain.default_tools import builtin
@@ -77,7 +77,7 @@ _OPTIONS = (
         multiple=True,
         help="D12L80: diameter 12, 80 mm from tip to holder, or R6L80 by radius; then rc1 corner radius (rc6: ball), T5 taper "
         "(half angle, deg), F20 length of flutes, N11x40 neck (diameter x length; more of them upwards), S12 shank; behind R, "
-        "N and S are radii, too. Inches: D0.5inL3in. Repeatable.  [default: the built-in drawer]",
+        "N and S are radii, too. Inches: D0.5inL3in. Repeatable.  [default: the built-in tool set]",
     ),
     _cutters(
         "--cutters",

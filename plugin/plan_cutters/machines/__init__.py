@@ -8,9 +8,9 @@ from typing import Any
 
 _HOME = {
     "machine_of": "read",
-    "plain": "own_out",
+    "plain": "toml_out",
     "read_machine": "read",
-    "to_toml": "own_out",
+    "to_toml": "toml_out",
 }
 __all__ = sorted(_HOME)
 
