@@ -213,7 +213,7 @@ def prepare(
                 scene.surround(at, jobs=options.jobs)
         with clock.stage("sample", shown=not meshed):
             samples, spacing, coarser = copy.result(partial(job, at=partial(at, "kernel")))
-    with clock.stage("classify"):
+    with clock.stage("classify", shown=not meshed):
         surface_class = classify(samples, float(np.linalg.norm(whole.size)))
         region = regions(samples, surface_class)
     if not (samples.unjudged < 0).any():
@@ -221,7 +221,7 @@ def prepare(
         raise UnjudgeableError(
             f"no target face can be judged: {'; '.join(sorted(causes)) or 'no samples'}", file=whole.file
         )
-    with clock.stage("tessellate"):
+    with clock.stage("tessellate", shown=not meshed):
         around = scene.surround(at, jobs=options.jobs)
     along = None if options.placement is None else options.placement.x
     conditions = Conditions(
