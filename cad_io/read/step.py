@@ -237,13 +237,13 @@ class Loaded:
         return dict(numbers)
 
     def _no_faces(self) -> list[str]:
-        """What shells in the text name as faces that no statement makes: to the reader, its type is unknown or it is missing."""
+        """Return the entities that shells list as faces, but that are missing from the text or have a type unknown to the reader."""
         kinds = dict(_STATEMENT.findall(self.data))
         named = dict.fromkeys(ident.strip() for shell in _SHELL.findall(self.data) for ident in shell.split(b","))
         return [ident.decode(errors="replace") for ident in named if kinds.get(ident, b"?") not in _FACE_KINDS]
 
     def _idents(self) -> dict[int, str]:
-        """What the file calls its entities. The kernel knows them, but does not tell."""
+        """Return the names (`#12`) of the entities in the file, by number. The kernel knows them, but does not give them."""
         idents = {i: ident.decode() for i, ident in enumerate(_IDENTS.findall(self.data), 1)}
         return idents if len(idents) == len(self.model.entities) else {}
 

@@ -47,7 +47,7 @@ class Table(NamedTuple):
 
 
 class Ground(NamedTuple):
-    """What all tables of a surface over a rectangle (u0, u1, v0, v1) begin with.
+    """This record holds the data that all tables of a surface over a rectangle (u0, u1, v0, v1) share.
 
     lines: along u and v at which its pieces end, None where only the kernel can evaluate it or its bends have no bound. ways:
     whether it is bent along u and along v. bends: over the cells between the lines. kinks: as in `Table`. whole: whether nothing

@@ -209,7 +209,7 @@ def _motion(row, patches, nodes, frame, sine, h, turn, offset, rise):
 
 @kernel
 def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace):
-    """What `cover` writes for a contact, and the triangle in the way, -1 if there is none; `blocker` is looked at first."""
+    """Return the `outlook` of `cover` for a contact, and the triangle in the way, -1 if none; test the triangle `blocker` first."""
     tool, safe, chord = sweeping.tool, sweeping.safe, sweeping.chord
     f, t, near = workspace.f, workspace.t, workspace.near
     p, n, a = patches.point[row], patches.normal[row], patches.axis[row]

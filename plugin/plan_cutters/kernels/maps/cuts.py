@@ -1,4 +1,4 @@
-"""What a point or a triangle takes out of the gaps of a rotation, piece by piece."""
+"""Take the tilts that a point or a triangle forbids out of the intervals of a rotation, piece by piece of the tool."""
 
 from typing import Any, NamedTuple
 

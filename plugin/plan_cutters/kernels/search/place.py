@@ -59,7 +59,10 @@ def forbid(intervals, count, first, last, narrowest, attribute, tally):
 
 @kernel
 def _attribute(x, y, z, tool, mode, k):
-    """What an obstacle point that far from the contact, which is in piece k, is in the way of."""
+    """Return the reason that an obstacle point gives, which lies in piece k and at (x, y, z) from the contact.
+
+    In the flutes it is a rear gouge within the rear-gouge radius and a collision beyond it; in other pieces it is their part.
+    """
     part = int(tool.piece[mode, k, PART])
     if part != FLUTES:
         return BY_NECK + part - NECK

@@ -28,8 +28,11 @@ class Ladder(NamedTuple):
 
 
 class _Side(NamedTuple):
-    """What a search takes of the tools without what does not matter, or of what of them is surely in the way: the tools, room
-    for one, what is in the way, what was met before, and narrower intervals of tilt than which are none, rad."""
+    """This record holds the arguments of a search with the outer tools and possible obstacles, or with the inner and certain ones.
+
+    It holds the tools; `piece` and `mode`, a workspace for one tool; the obstacles; the winding number from which a posture
+    lies within a body; the angular resolution, rad: narrower intervals of tilts are passed over; and the obstacle caches.
+    """
 
     tools: Ladder
     piece: Any
