@@ -107,7 +107,7 @@ class _Walk:
 
 
 class _Inherited(NamedTuple):
-    """This record holds the attributes of the enclosing labels: the colour of an enclosing instance replaces the product's own."""
+    """This record holds the attributes of enclosing labels: the colour of an enclosing instance replaces the product's own."""
 
     place: TopLoc_Location
     colour: Colour | None = None

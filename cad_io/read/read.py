@@ -64,7 +64,7 @@ def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, ti
     Raises
     ------
     ReadError
-        In one line: what is wrong and what to try.
+        In one line: the fault and its remedy.
 
     Notes
     -----

@@ -175,7 +175,7 @@ class Lost:
     faults : sequence of Fault
         Of the model, before the transfer.
     mended : mapping
-        The faces that `mend` took away before the transfer, by number, with the reason.
+        The faces that `mend` took away before the transfer: entity number -> reason.
     shapes : sequence of TopoDS_Face
         Faces of the part.
     numbers : mapping

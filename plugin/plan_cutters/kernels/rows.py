@@ -99,7 +99,7 @@ class Scratch(NamedTuple):
 
 
 class Found(NamedTuple):
-    """A search writes these arrays, n of each: verdict, axis, tilt_direction, tilt, rotation, reason, as in `domain.verdicts.Reach`."""
+    """A search writes these arrays (n): verdict, axis, tilt_direction, tilt, rotation, reason; see `domain.verdicts.Verdicts`."""
 
     verdict: Any
     axis: Any

@@ -112,7 +112,7 @@ class Seen(NamedTuple):
     curvatures, the largest square of the distance between the nodes' normals and n, and the largest radius of a cell.
     lines (4,) int: grid lines looked at before and after the home node, along u and along v. nearest (4,): how far from the
     patch the nodes on the outermost of them are at least. gap (4,) bool: some of these lie outside the trim. looked (1,) int:
-    nodes looked at since there is this room.
+    nodes looked at since this record was made.
     """
 
     most: Any

@@ -1,4 +1,4 @@
-"""Where a tool is placed at a contact, which tilts are left there, and what stops it: what searches of all kinds share."""
+"""Place a tool at a contact, find the tilts that are left there and the reasons that forbid others, for all searches."""
 
 from typing import Any, NamedTuple
 
@@ -126,7 +126,7 @@ def turned(frame, tilt, tool, mode, tree, body, scratch):
 
 
 class Workspace(NamedTuple):
-    """Room to work in: intervals (k, 2), arcs (ARCS, 2), tilt direction f and t = n x f, e2 = n x direction_max, a body, a
+    """This is a workspace: intervals (k, 2), arcs (ARCS, 2), tilt direction f and t = n x f, e2 = n x direction_max, a body, a
     tally by attribute."""
 
     intervals: Any

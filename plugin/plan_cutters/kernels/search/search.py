@@ -88,9 +88,9 @@ def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, fo
     contacts : Contacts
     ranges : Ranges
     outer_tool, inner_tool : Tool
-        The tool without what does not matter, and what of it is certainly in the way.
+        The outer and the inner tool.
     possible, certain : Solids
-        All that may be in the way, for calling a posture safe; what certainly is, for calling it blocked.
+        The possible obstacles, to call a posture safe; the certain ones, to call it blocked.
     found : Found, written
 
     Returns

@@ -190,9 +190,9 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, 
         The sample.
     ranges : Ranges
     tool : Tool
-        The cutter, smaller by the depth that does not matter.
+        The outer or the inner tool.
     solids : Solids
-        What is in the way.
+        The possible or the certain obstacles.
     within : float
         Winding number from which a posture lies within a body.
     narrowest : float
@@ -202,8 +202,8 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, 
     turns : int
         How many rotations to look at.
     past : Memory, read and written
-    room : Room
-        Tilts are booked on what forbids them.
+    workspace : Workspace
+        Forbidden tilts are booked in its tally, by reason.
 
     Returns
     -------
