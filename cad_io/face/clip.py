@@ -41,7 +41,7 @@ class Clipped(NamedTuple):
 
 
 def clipped(trim: Trim, u: Floats, v: Floats, tile: Indices) -> Clipped:
-    """Cut tiles of the parameter plane off at a trim: area, middle and box of what is left of each.
+    """Clip tiles of the parameter plane to a trim.
 
     Parameters
     ----------

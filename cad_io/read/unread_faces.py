@@ -175,7 +175,7 @@ class Lost:
     faults : sequence of Fault
         Of the model, before the transfer.
     mended : mapping
-        The faces that `mend` took away before the transfer: entity number -> reason.
+        The faces, or bounds of faces, that `mend` took out before the transfer: entity number -> text.
     shapes : sequence of TopoDS_Face
         Faces of the part.
     numbers : mapping

@@ -99,7 +99,7 @@ class Ground(NamedTuple):
 def table_of(ground: Ground, cells: int = COARSE) -> tuple[Table, bool]:
     """The table of a surface over a rectangle, of so many cells each way or more, and whether its bounds are proved.
 
-    Where only the kernel can evaluate a surface, its bounds are estimated from derivatives in places. A surface between knots
+    Where only the kernel can evaluate a surface, its bounds are estimated from derivatives in places. The shape between knots
     that are nearly one is left out. Results that rest on either must be measured.
     """
     form = ground.surface.form
