@@ -1,4 +1,4 @@
-"""What can go wrong at the CAD boundary. Every error says the file, the face where there is one, and the cause."""
+"""This module defines the errors of `cad_io`. Every error names the file, the face where there is one, and the cause."""
 
 
 class CadIoError(Exception):
@@ -7,7 +7,7 @@ class CadIoError(Exception):
     Parameters
     ----------
     cause : str
-        What is wrong and what to try, one line.
+        The fault and its remedy, one line.
     file : str, optional
         The file concerned.
     face : str, optional

@@ -131,10 +131,10 @@ def _also_from_python(kernel: Any, sources: Path) -> Any:
 def decorators(file: str) -> tuple[Decorator, Decorator]:
     """`entry` and `kernel` for the sources in the folder of a file, and in the rooms below it.
 
-    An entry is compiled on first call, its result kept on disk, and it releases the GIL: what Python calls, and what makes
-    arrays. A kernel is what entries call, and makes no array itself: it goes without the counting of references, two atomic
-    instructions for every array at every call, of which a third of all time went. Arrays are kept alive by the entry. It has
-    no machine code of its own.
+    An entry is called by Python, and may make arrays. It is compiled on its first call, its machine code is kept on disk, and
+    it releases the GIL. A kernel is called by entries, and makes no array itself: it works without the counting of references,
+    two atomic instructions for every array at every call, which took a third of all time. The entry keeps the arrays alive. A
+    kernel has no machine code of its own.
     """
     sources = Path(file).parent
 

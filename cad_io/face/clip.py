@@ -22,7 +22,7 @@ _AT_ONCE = 1 << 22  # points times segments compared at once
 
 
 class Clipped(NamedTuple):
-    """What of n tiles lies in a trim, in parameters.
+    """This record describes the parts of n tiles that lie in a trim, in parameters.
 
     area : (n,) float; middle : (n, 2) float, centre of gravity, or a point on the border where that lies outside;
     low, high : (n, 2) float, a box around it; whole : (n,) bool, the tile lies in the trim altogether. Where the area is
@@ -41,7 +41,7 @@ class Clipped(NamedTuple):
 
 
 def clipped(trim: Trim, u: Floats, v: Floats, tile: Indices) -> Clipped:
-    """What of tiles lies in a trim.
+    """Clip tiles of the parameter plane to a trim.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a surface is in shape, whatever the file calls it: plane, cylinder, cone, sphere, torus or sculptured.
+"""Recognise the shape of a surface, whatever the file calls it: plane, cylinder, cone, sphere, torus or sculptured.
 
 Many systems write quadrics as rational B-splines. Curvature rejects nearly every sculptured surface at once; what is
 left is fitted, and the fit counts only if the whole surface lies within a tolerance of it: a ridge between two nodes is no

@@ -55,7 +55,7 @@ def revolved(start: tuple[float, float], sides: Iterable[Side]) -> Any:
 
 
 def turned(shape: Any, origin: Sequence[float], direction: Sequence[float]) -> Any:
-    """What a face, wire or edge sweeps in a full turn about an axis."""
+    """Revolve a face, a wire or an edge by a full turn about an axis."""
     with translated("turning a profile"):
         made = BRepPrimAPI_MakeRevol(shape, gp_Ax1(gp_Pnt(*origin), gp_Dir(*direction)))
         return made.Shape()

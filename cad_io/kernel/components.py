@@ -1,4 +1,4 @@
-"""What a shape falls into: solids, shells and faces that share no edge can be worked on one by one."""
+"""Divide a shape into components: solids, shells and faces that share no edge can be worked on one by one."""
 
 from typing import Any
 

@@ -23,7 +23,7 @@ class Ended(Exception):
 def each(
     call: Callable[[Item], Done], items: Sequence[Item], *, seconds: float, hangs: int = 2
 ) -> Iterator[Done | Ended]:
-    """What `call` makes of each item, in their order.
+    """Yield the result of `call` for each item, in the order of the items.
 
     It runs in a forked copy of this process, which ends with it and is made again behind an item that ends it. Where the
     system cannot fork (Windows), it runs here, without a limit.

@@ -58,7 +58,11 @@ class Meanwhile(Generic[Done]):
         return self._copy is not None
 
     def result(self, here: Callable[[], Done] | None = None) -> Done:
-        """What the call returns; `here`: the same call for this process, if it is another one, as it may tell how far it is."""
+        """Return the result of the call.
+
+        Where the copy gives none, this process makes the call itself: `here` in its place, if that is given, which may
+        report its progress.
+        """
         answer = self._read()
         if len(answer) < _LENGTH.size or len(answer) != _LENGTH.size + _LENGTH.unpack_from(answer)[0]:
             return (here or self._call)()

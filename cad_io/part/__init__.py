@@ -1,4 +1,4 @@
-"""All faces of a part: their numbers, what they enclose, which side of each is out, and what was sewn to tell.
+"""Number the faces of a part, and find the volumes that they enclose and the outer side of each, by sewing where needed.
 
 May use: single faces and the kernel's manners.
 """

@@ -34,11 +34,11 @@ class Body:
     faces : tuple of int
         Face numbers.
     sign : tuple of int
-        +1 for a face whose `dS/du x dS/dv` points out of what is enclosed, else -1.
+        +1 for a face whose `dS/du x dS/dv` points out of the enclosed volume, else -1.
     closed : bool
-        False where edges are open: what is within is then a guess.
+        False where edges are open: the enclosed volume is then a guess.
     cap : (t, 3, 3) float
-        Triangles that close what is open, corners counter-clockwise seen from outside; none where it is closed.
+        Triangles that close open edges, corners counter-clockwise seen from outside; none where it is closed.
     """
 
     faces: tuple[int, ...]

@@ -1,4 +1,4 @@
-"""What a part is made of as plain bytes: to come from another process, or to be kept."""
+"""Convert the arguments that make a part to plain bytes and back: to pass them between processes, or to store them."""
 
 import io
 from collections.abc import Iterator
@@ -28,7 +28,7 @@ def packed(found: Found) -> Found:
 
 
 def unpacked(packed: Found) -> Found:
-    """What `packed` was given, with a shape and locations of its own."""
+    """Return the arguments that were given to `packed`, with new copies of the shape and of the locations."""
     whole = TopoDS_Shape()
     BinTools.Read_s(whole, io.BytesIO(packed["shape"]))
     shape, *vertices = children(whole)

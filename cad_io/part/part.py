@@ -154,7 +154,7 @@ class Part:
         return _again, (packed(self._found()), dict(self.aside))
 
     def _found(self) -> Found:
-        """What it was made of."""
+        """Return the arguments that the part was made from, by the names of its parameters."""
         return {
             "shape": self.shape, "file": self.file, "sha256": self.sha256, "unit": self.unit, "names": self._names,
             "colours": self._colours, "layers": self.layers, "tree": self.tree, "warnings": self._said,

@@ -1,7 +1,7 @@
 """A file or an object becomes a Part, or an error of one line.
 
-May use: parts, and what is below them. `read_part` is handed on lazily: what kind of file something is (`sniff`) is told
-without the CAD kernel.
+May use: parts, and what is below them. `read_part` is handed on lazily: `sniff` tells the kind of a file without
+the CAD kernel.
 """
 
 from typing import TYPE_CHECKING, Any

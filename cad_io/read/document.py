@@ -1,4 +1,4 @@
-"""What STEP and IGES share: the kernel's document of products, names, colours and layers, walked down to numbered faces."""
+"""Read products, names, colours and layers of numbered faces from the kernel's document, in the same way for STEP and IGES."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -22,7 +22,7 @@ Colour = tuple[float, float, float]
 
 @dataclass
 class Read:
-    """What a reader found: one shape, its products, and by face number names, sRGB colours and layers."""
+    """A reader returns this: one shape, its products, and by face number names, sRGB colours and layers."""
 
     shape: TopoDS_Shape
     names: dict[int, str] = field(default_factory=dict)
@@ -107,7 +107,7 @@ class _Walk:
 
 
 class _Inherited(NamedTuple):
-    """What the labels around give: an enclosing instance's colour beats the product's own."""
+    """This record holds the attributes of enclosing labels: the colour of an enclosing instance replaces the product's own."""
 
     place: TopLoc_Location
     colour: Colour | None = None

@@ -1,4 +1,4 @@
-"""What the kernel's check of a loaded file finds wrong, at which entity, and which entities use that one.
+"""List the faults that the kernel's check finds in a loaded file, with the entity of each, and the entities that use it.
 
 The kernel's lists give entities by number and take them by number: its Python binding loses an entity that is handed
 back to it. So everything here goes by number, from 1.
@@ -35,7 +35,7 @@ class Fault:
 
     @property
     def short(self) -> str:
-        """What the kernel says, without its numbering of parameters."""
+        """Return the kernel's message without its numbering of parameters."""
         text = re.sub(r"^Parameter n\d+\.\d+ \(([\w.]+)\) ?:? ?", r"\1: ", self.text)
         text = re.sub(r", Ent\.Id\.#-?\d+ Param\.n\d+ \d+ \(Id\.(#\d+)\)", r" to \1", text)
         return text.replace("%d ", "").rstrip(".")
@@ -86,7 +86,7 @@ class Model:
                 waiting += new
 
     def faults(self) -> list[Fault]:
-        """What the check of the model finds, before anything is transferred. That a text is missing is no fault."""
+        """Return the faults of the model, found before anything is transferred. A missing text does not count as a fault."""
         return [fault for fault in told(self.work.ModelCheckList(True), fails=True) if _TEXT not in fault.text]
 
     @cached_property
@@ -95,7 +95,7 @@ class Model:
         return self.work.TransferReader().TransientProcess()
 
     def trouble(self, *, fails: bool) -> list[Fault]:
-        """What the transfer complained of: what it failed in, or what it mended or doubted."""
+        """Return the fails of the transfer or, if not `fails`, its warnings: entities that it repaired or doubted."""
         return told(self.process.CheckList(fails), fails=fails)
 
     def makers(self, shapes: Mapping[int, Any]) -> dict[int, int] | None:

@@ -1,4 +1,4 @@
-"""What an object of a CAD host holds: components and picked faces.
+"""Collect the components and the picked faces of a CAD host's object.
 
 CadQuery and build123d are not imported: their objects are told by what they can do. A picked face is a target, not a
 part: the part is the shape that it belongs to, for what stands around a face is in the way of a cutter.
@@ -29,7 +29,7 @@ _SAME_PLACE = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """What a host says of faces in a component: their shape as it stands there, a name, a colour, a layer."""
+    """A mark gives the attributes of faces in a component: their shape at its place there, a name, a colour, a layer."""
 
     shape: TopoDS_Shape
     name: str
@@ -50,7 +50,7 @@ class Item:
 
 @dataclass(slots=True)
 class Held:
-    """What was found in an object."""
+    """This record collects the components, the picked faces and the warnings of an object."""
 
     items: list[Item] = field(default_factory=list)
     picked: list[Mark] = field(default_factory=list)

@@ -33,11 +33,11 @@ class Mesh(Record):
     vertex : (n, 3, 3) float
         Corners, mm.
     skins : Skins
-        What of them encloses something.
+        The triangles that enclose something.
     unit : str
-        What the file's lengths were taken in.
+        The unit that the file's lengths were taken to be in.
     notes : tuple of str
-        What was assumed.
+        The assumptions that were made.
     file, sha256 : str, optional
     """
 
@@ -62,7 +62,7 @@ def read_mesh(source: Any, unit: str | None = None) -> Mesh:
     Raises
     ------
     ReadError
-        In one line: what is wrong and what to try.
+        In one line: the fault and its remedy.
     """
     notes: tuple[str, ...] = ()
     file = sha256 = None

@@ -17,7 +17,7 @@ from cad_io.read.host_objects import Colour, Held, Item, Mark, each_of, gather, 
 
 
 def from_object(source: Any) -> dict[str, Any]:
-    """What `Part` is made of, by the names of its parameters.
+    """Return the arguments that make a `Part` of an object, by the names of its parameters.
 
     Parameters
     ----------

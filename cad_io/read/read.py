@@ -64,7 +64,7 @@ def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, ti
     Raises
     ------
     ReadError
-        In one line: what is wrong and what to try.
+        In one line: the fault and its remedy.
 
     Notes
     -----
@@ -103,7 +103,7 @@ def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, ti
 
 
 def _find(source: Any, unit: str | None, timeout: float) -> Found:
-    """What the part is made of."""
+    """Return the arguments that make the part, by the names of its parameters."""
     if isinstance(source, str | os.PathLike):
         return _read_file(os.fspath(source), unit, timeout)
     found = from_object(source)

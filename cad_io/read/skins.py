@@ -21,7 +21,7 @@ _SAME = 1e-6
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Skins(Record):
-    """What of a mesh encloses something.
+    """This record tells which triangles of a mesh enclose something.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What kind of file is this? Told from its content, since names lie; what is no CAD file is not read to its end."""
+"""Tell the kind of a file from its content, since names can be wrong; files other than CAD files are not read to the end."""
 
 import os
 import re

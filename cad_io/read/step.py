@@ -1,8 +1,8 @@
-"""Read STEP through the kernel's document reader: products, names, colours and layers, and what of it got lost.
+"""Read STEP through the kernel's document reader: products, names, colours and layers, and list the unread faces.
 
 The reader's return codes mean little: a file with "NaN" in it hangs the transfer, and one with a bad knot loses faces
-without a word. So what is known to hang is refused before the transfer, what may hang is left to a copy of the process
-(`Loaded.risky`), and what became of each face is asked afterwards.
+without a message. So files that are known to hang are refused before the transfer, files that may hang are left to a copy of
+the process (`Loaded.risky`), and the result of each face is checked afterwards.
 """
 
 import re
@@ -237,13 +237,13 @@ class Loaded:
         return dict(numbers)
 
     def _no_faces(self) -> list[str]:
-        """What shells in the text name as faces that no statement makes: to the reader, its type is unknown or it is missing."""
+        """Return entities that shells list as faces, but that are missing in the text or of a type unknown to the reader."""
         kinds = dict(_STATEMENT.findall(self.data))
         named = dict.fromkeys(ident.strip() for shell in _SHELL.findall(self.data) for ident in shell.split(b","))
         return [ident.decode(errors="replace") for ident in named if kinds.get(ident, b"?") not in _FACE_KINDS]
 
     def _idents(self) -> dict[int, str]:
-        """What the file calls its entities. The kernel knows them, but does not tell."""
+        """Return the names (`#12`) of the entities in the file, by number. The kernel knows them, but does not give them."""
         idents = {i: ident.decode() for i, ident in enumerate(_IDENTS.findall(self.data), 1)}
         return idents if len(idents) == len(self.model.entities) else {}
 

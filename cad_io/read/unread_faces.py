@@ -165,17 +165,17 @@ def missing_faces(model: Model) -> Iterator[tuple[int, int]]:
 
 
 class Lost:
-    """What is lost of a transferred file.
+    """Find the unread faces of a transferred file.
 
     Parameters
     ----------
     model : Model
     idents : mapping
-        What the file calls an entity, `#12`, by its number.
+        The name of an entity in the file, `#12`, by its number.
     faults : sequence of Fault
         Of the model, before the transfer.
     mended : mapping
-        What `mend` took away before the transfer.
+        The faces, or bounds of faces, that `mend` took out before the transfer: entity number -> text.
     shapes : sequence of TopoDS_Face
         Faces of the part.
     numbers : mapping

@@ -61,7 +61,7 @@ class Stretch:
 
 
 class Arrangement:
-    """What curves make of a face.
+    """An arrangement divides a face by curves.
 
     Attributes
     ----------

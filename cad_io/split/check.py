@@ -35,7 +35,7 @@ def wrong_whole(before: Any, after: Any) -> str:
 
 
 def valid(shape: Any) -> bool:
-    """What the kernel says."""
+    """Return whether the kernel's own check finds the shape valid."""
     return bool(BRepCheck_Analyzer(shape).IsValid())
 
 

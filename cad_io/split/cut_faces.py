@@ -40,7 +40,7 @@ _WHOLE, _EACH = 4, 0.2
 
 @dataclass(slots=True)
 class Found:
-    """What came of it.
+    """This record holds the result of `cut_faces`.
 
     Attributes
     ----------
@@ -139,7 +139,7 @@ class _Watch:
             end_within(max(self._limits[n] for n in told))
 
     def seen(self) -> set[int]:
-        """What was told last."""
+        """Return the numbers of the faces that the copy named last in `works_on`."""
         numbers = [int.from_bytes(self._page[8 * i : 8 * i + 8], "little") for i in range(len(self._limits) + 1)]
         return set(numbers[1 : 1 + numbers[0]])
 
@@ -153,7 +153,7 @@ def _answer(
     watch: _Watch,
     careful: bool,
 ) -> bytes:
-    """What `_unpacked` takes."""
+    """Cut the faces, and return the pickled result that `_unpacked` reads."""
     found = Found()
     base, faces = copied(shape, faces)
     drawings: dict[int, Drawing] = {}

@@ -179,7 +179,7 @@ def joined(parts: list[Judged], group: dict[int, int], again: list[Region]) -> l
 
 
 def _mark(half: Half) -> tuple[float, ...]:
-    """What is the same of a half before and after stretches are left out: a point next to its start, and its way."""
+    """Return the first two points of a half as a key: they stay the same when stretches are left out."""
     return (*half.xy[0].tolist(), *half.xy[1].tolist())
 
 

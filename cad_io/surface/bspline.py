@@ -99,7 +99,7 @@ class Net(NamedTuple):
 
 
 class _Workspace(NamedTuple):
-    """Room to work in: basis functions along u and v, what they are made from, rows summed along v, and what is found."""
+    """This is a workspace: basis functions along u and v and their tables, rows summed along v, the sums, and the origin."""
 
     bu: Any
     bv: Any
@@ -113,7 +113,7 @@ class _Workspace(NamedTuple):
 
 @kernel
 def _summed(net, row, column, order, workspace):
-    """Sum a patch's poles: S, Su, Sv, Suu, Svv, Suv and their weights into `room.found`, from the patch's first pole.
+    """Sum a patch's poles: S, Su, Sv, Suu, Svv, Suv and their weights into `workspace.found`, from the patch's first pole.
 
     What is far from the origin would lose digits of its derivatives.
     """

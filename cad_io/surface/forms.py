@@ -1,4 +1,4 @@
-"""What is known of a kernel's surface without calling the kernel: its values, and how it bends.
+"""Evaluate a kernel's surface, and bound its second derivatives, without calling the kernel.
 
 Planes, quadrics and tori in closed form, B-spline and Bezier surfaces by compiled code; extruded curves are B-spline
 surfaces of degree one along their direction, curves turned about an axis are turned after the curve was evaluated.

@@ -35,7 +35,7 @@ class Surface:
 
     @property
     def form(self) -> Form | None:
-        """What is known of it without the kernel; None where only the kernel evaluates it."""
+        """Return the data that evaluate the surface without the kernel; None where only the kernel evaluates it."""
         self._settle()
         return self._form
 

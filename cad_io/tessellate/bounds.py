@@ -47,7 +47,7 @@ class Table(NamedTuple):
 
 
 class Ground(NamedTuple):
-    """What all tables of a surface over a rectangle (u0, u1, v0, v1) begin with.
+    """This record holds the data that all tables of a surface over a rectangle (u0, u1, v0, v1) share.
 
     lines: along u and v at which its pieces end, None where only the kernel can evaluate it or its bends have no bound. ways:
     whether it is bent along u and along v. bends: over the cells between the lines. kinks: as in `Table`. whole: whether nothing
@@ -99,8 +99,8 @@ class Ground(NamedTuple):
 def table_of(ground: Ground, cells: int = COARSE) -> tuple[Table, bool]:
     """The table of a surface over a rectangle, of so many cells each way or more, and whether its bounds are proved.
 
-    Bounds of a surface that only the kernel can evaluate are guessed from derivatives in places, and what a surface does between
-    knots that are nearly one is left out: what stands on either must be measured.
+    Where only the kernel can evaluate a surface, its bounds are estimated from derivatives in places. The shape between knots
+    that are nearly one is left out. Results that rest on either must be measured.
     """
     form = ground.surface.form
     u, v = ground.finer(cells)
@@ -172,7 +172,7 @@ def _bends(of: Any, u: Floats, v: Floats) -> Bends:
 
 
 def _guessed(surface: Surface, u: Floats, v: Floats) -> Bends:
-    """Bends from derivatives at the cells' corners: what differs within a cell is taken to be what its corners differ by."""
+    """Estimate bends from derivatives at the cells' corners: the spread within a cell is taken to be that of its corners."""
     s, t = (grid.ravel() for grid in np.meshgrid(u, v, indexing="ij"))
     with np.errstate(all="ignore"):
         corner = surface.second(s, t).reshape(len(u), len(v), 6, 3)

@@ -101,7 +101,7 @@ def places(uv: Floats) -> tuple[Indices, Indices]:
 
 
 def _region(segments: Floats) -> shapely.Geometry | None:
-    """What segments (k, 2, 2) enclose by the even-odd rule; None where they cross, or do not close."""
+    """Return the region that segments (k, 2, 2) enclose by the even-odd rule; None where they cross, or do not close."""
     if len(segments) < 3:
         return None
     lines = shapely.multilinestrings(shapely.linestrings(segments))

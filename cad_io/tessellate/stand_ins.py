@@ -1,4 +1,4 @@
-"""What stands in for a face that could not be turned into triangles close to its surface: it is there all the same.
+"""Make proxy geometry for faces that could not be meshed within the chord error: they are obstacles all the same.
 
 A face that holds only triangles stands with them, any other one with the box around it. A face without area is no wider
 than its own edges: these stand for it, as triangles without area.

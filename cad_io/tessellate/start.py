@@ -83,7 +83,7 @@ def starts(
 
 
 def _second(part: Part, number: int, chord: float, seconds: float) -> tuple[tuple[UVMesh | None, str], float]:
-    """What the kernel's mesher makes of a face, why if that is nothing, and the seconds it took."""
+    """Mesh a face with the kernel's mesher: the mesh, or None and the reason; and the seconds it took."""
     try:
         mesh, spent = kernel_start(part, number, chord, _ANGLE, seconds)
         if mesh is None or not _fits(mesh, part.trim(number)):
@@ -203,7 +203,7 @@ def _steps(density: Floats, width: float, chord: float) -> Floats:
 
 
 def _metric(bend: Floats, trim: Trim, lines: list[Floats]) -> Floats:
-    """What to multiply u and v by, so that triangles that are well shaped there bend evenly."""
+    """Return the factors of u and v after which triangles of a good shape have an even chord error both ways."""
     if max(map(len, lines)) == 2:
         return trim.scale
     wide = np.array([trim.box[1] - trim.box[0], trim.box[3] - trim.box[2]])

@@ -170,7 +170,7 @@ def _lent(workspaces: list[Found]) -> Iterator[Found]:
 
 
 def _each(work: Callable[[Item], Done], items: Iterable[Item], jobs: int) -> Iterator[Done]:
-    """What `work` makes of each item, in their order, `jobs` at a time; those not begun are dropped when no more are taken."""
+    """Yield the result of `work` for each item, in order, `jobs` at a time; if the caller stops, items not begun are dropped."""
     if jobs == 1:
         yield from map(work, items)
         return

@@ -51,8 +51,10 @@ class Case:
     cutter: Cutter
 
     def look(self, rows: Rows) -> Verdicts:
-        """What the cutter reaches of some judged samples: verdicts as `judge` finds them, but for the grain of a search
-        that starts elsewhere."""
+        """Judge some of the judged samples again, for this part and cutter.
+
+        The verdicts are those of `judge`, except that a search from another start may differ by its angular resolution.
+        """
         from plan_cutters.kernels.search.search import dummy_clear
 
         ready, conditions, found = self.ready, self.ready.conditions, blank(len(rows))

@@ -125,7 +125,7 @@ def between(
 
 
 def opening(cutter: Dimensions, inset: float, at: float) -> list[list[float]]:
-    """What of a lollipop's ball lies under its neck, which begins at a height: it is deeper than the ball's side says."""
+    """Make the piece of a lollipop's ball below its neck, which begins at a height: it is deeper than the ball's side says."""
     if inset <= 0.0:
         return []
     share, rise = 1.0 - inset / cutter.radius, at - cutter.radius

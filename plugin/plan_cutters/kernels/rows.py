@@ -1,4 +1,4 @@
-"""What kernels take together, under one name each: the compiler knows named tuples as it knows single values."""
+"""This module defines the records that kernels take, as named tuples: the compiler handles these like single values."""
 
 from typing import Any, NamedTuple
 
@@ -99,7 +99,7 @@ class Scratch(NamedTuple):
 
 
 class Found(NamedTuple):
-    """What a search writes, n of each: verdict, axis, tilt_direction, tilt, rotation, reason, as in `domain.verdicts.Reach`."""
+    """A search writes these arrays (n): verdict, axis, tilt_direction, tilt, rotation, reason; see `domain.verdicts.Verdicts`."""
 
     verdict: Any
     axis: Any

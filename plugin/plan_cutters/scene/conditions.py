@@ -58,14 +58,14 @@ class Conditions(Record):
         return cutter.large_enough(self.tolerance)
 
     def outer_tool(self, cutter: Cutter) -> Assembly:
-        """All of a cutter that nothing may enter: a triangle that does not reach into it lets the surface come no deeper than
+        """Make the outer tool of a cutter: a triangle that does not reach into it lets the surface come no deeper than
         allowed.
         """
         return tools(cutter, self.tolerance, self.obstacles.triangles.chord_error)[0]
 
     def inner_tool(self, cutter: Cutter) -> Assembly:
-        """What of a cutter is surely in the way: a triangle that reaches into it proves a point of the surface that is too
-        deep.
+        """Make the inner tool of a cutter: a triangle that reaches into it proves that a point of the surface is too deep in
+        the cutter.
         """
         return tools(cutter, self.tolerance, self.obstacles.triangles.chord_error)[1]
 
@@ -124,10 +124,11 @@ def contacts_of(samples: SurfaceSamples) -> Contacts:
 
 
 def tools(cutter: Cutter, tolerance: float, error: float) -> tuple[Assembly, Assembly]:
-    """What of a cutter nothing may enter, and what is surely in the way, for obstacles with a chord error, mm.
+    """Make the outer and the inner tool of a cutter, for obstacles with a chord error, mm.
 
-    Every surface point has a triangle point within that error and the reverse: the flutes are smaller by the tolerance less the
-    error, and all else larger by the error; or the flutes smaller by both, and all else by the error.
+    Every point of the surface has a point of the triangles within that error, and the reverse. The outer tool has flutes that are
+    smaller by the tolerance less the error, and all else is larger by the error. The inner tool has flutes that are smaller by
+    the tolerance and the error, and all else is smaller by the error.
     """
     return assembly(cutter, tolerance - error, -error), assembly(cutter, tolerance + error, error, kind="inner")
 

@@ -104,9 +104,9 @@ def _grown(piece, out, radial, axial):
 def _bodies(body, piece, frame, h, pose, slides, grow, workspace, finest):
     """Write the bodies of a contact that wanders by no more than h: the whole, then in 2, 6 and 18 parts along the lean.
 
-    Each holds those that it is cut into. `pose` is (sine, cosine) of the tilt. `slides`: what a step along the lean moves the
-    tool along it and aside, what a step across it does, and what else may move it aside; `grow`: what else may move it at all.
-    `body` is that of no wandering.
+    Each holds those that it is cut into. `pose` is (sine, cosine) of the tilt. `slides` says how far the tool
+    moves along the tilt direction for a step along it and for a step across it; then the same across that direction; then how
+    much farther it may move across it. `grow` is the bound of any other motion. `body` is the body without wandering.
     """
     sine, cosine = pose
     forth, back, slide, across, beside = slides
@@ -189,8 +189,8 @@ def _first(hint, nose, whole, frame, face, tree, triangle_face, workspace):
 def _motion(row, patches, nodes, frame, sine, h, turn, offset, rise):
     """How a contact's cutter moves and turns about its axis as the contact wanders.
 
-    Returns the surface's curvature along the lean, across it and mixed; the turn within the patch about the axis, in all (psi)
-    and beside what follows from the curvature at the contact; what the normal may differ beside that.
+    Returns the surface's curvature along the tilt direction, across it and mixed; the turn about the axis within the patch, in
+    all (psi), and the part of it that does not follow from the curvature at the contact; that part of the normal's change.
     """
     k_ff, k_tt, k_ft, home = 0.0, 0.0, 0.0, patches.home[row]
     for k in range(3):
@@ -209,7 +209,7 @@ def _motion(row, patches, nodes, frame, sine, h, turn, offset, rise):
 
 @kernel
 def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace):
-    """What `cover` writes for a contact, and the triangle in the way, -1 if there is none; `blocker` is looked at first."""
+    """Return the `outlook` of `cover` for a contact, and the triangle in the way, -1 if none; `blocker` is tested first."""
     tool, safe, chord = sweeping.tool, sweeping.safe, sweeping.chord
     f, t, near = workspace.f, workspace.t, workspace.near
     p, n, a = patches.point[row], patches.normal[row], patches.axis[row]

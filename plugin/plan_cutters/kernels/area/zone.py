@@ -13,9 +13,11 @@ _MOST_LINES = 40
 
 
 class Nose(NamedTuple):
-    """What of a cutter is held against the surface around its contact: the centre of its curvature `offset` from the axis, its
-    radius of curvature there, mm; cosine and sine of the angle by which it widens along the axis, on which it goes on without
-    end; the tilts from and to at which it touches, rad. With a negative offset, a barrel, it is a ball alone.
+    """This record describes the part of a cutter that is compared with the surface around its contact.
+
+    It holds the distance `offset` of its centre of curvature from the axis and its radius of curvature there, mm; the cosine
+    and sine of the angle by which it widens along the axis, where it goes on without end; the first and the last tilt at which
+    it touches, rad. With a negative offset, as of a barrel, it is a ball alone.
     """
 
     offset: float
@@ -103,14 +105,14 @@ def held_below(pose, turn, k_ff, k_ft, k_tt, extent, nose):
 
 
 class Seen(NamedTuple):
-    """What was looked at around a contact.
+    """This record holds what was found out about the surface around a contact.
 
     most (EXTENTS, 7): row k holds, over the nodes whose cells come within distance k of any contact of the patch, but not within
     distance k - 1: the largest normal curvature along f and t, the largest mixed term, the largest curvature and spread of
     curvatures, the largest square of the distance between the nodes' normals and n, and the largest radius of a cell.
     lines (4,) int: grid lines looked at before and after the home node, along u and along v. nearest (4,): how far from the
     patch the nodes on the outermost of them are at least. gap (4,) bool: some of these lie outside the trim. looked (1,) int:
-    nodes looked at since there is this room.
+    nodes looked at since this record was made.
     """
 
     most: Any

@@ -6,9 +6,9 @@ counts, and it shrinks with the square of their size.
 The tree is complete: node j of level k covers the triangles `[n j >> k, n (j + 1) >> k)` of the ordered list, so
 no pointers are kept. Splitting is at the median of the triangles' centres along the longest side of their box.
 
-What is looked at together lies together: centres move with the triangles they stand for, and what is below a node is done
-before the next node of its level, so that all but the uppermost levels run in the processor's own memory. Corners lie
-coordinate by coordinate, for several to be looked at at a time.
+Data that are used together lie together: centres move with their triangles, and the nodes below a node are done before the
+next node of its level, so that all but the uppermost levels run in the processor's cache. Corners lie coordinate by
+coordinate, so that several can be processed at a time.
 """
 
 from typing import Any, NamedTuple

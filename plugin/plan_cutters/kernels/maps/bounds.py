@@ -1,4 +1,4 @@
-"""What bounds the pieces of a tool that tilts, and how far they go along a direction over a gap of tilts."""
+"""Bound the pieces of a tool that tilts, and their extent along a direction over an interval of tilts."""
 
 from typing import Any, NamedTuple
 
@@ -107,7 +107,7 @@ def _bounds_of(piece, k, bound):
 
 @entry
 def turning_of(piece, offset, low, high):
-    """What posture maps need to know of a tool in one mode.
+    """Compute the bounds of a tool's pieces in one mode, which posture maps need.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a point or a triangle takes out of the gaps of a rotation, piece by piece."""
+"""Take the tilts that a point or a triangle forbids out of the intervals of a rotation, piece by piece of the tool."""
 
 from typing import Any, NamedTuple
 
@@ -22,7 +22,7 @@ _QUARTERED = 4
 
 
 class Workspace(NamedTuple):
-    """Room to work in: corner (3, 3), first and second (8, 3) polygons, a body, ranges (64, 2) of tilts, arcs (ARCS, 2).
+    """This is a workspace: corner (3, 3), first and second (8, 3) polygons, a body, ranges (64, 2) of tilts, arcs (ARCS, 2).
 
     In lanes, as in `planes`: a triangle, boxes or triangles turned, ends, what is clear, by how much ends move. Parts (64, 3, 3)
     of a triangle, and how often each was cut. `spent` (1,) counts how often a triangle was looked at: the work that it took.

@@ -125,12 +125,13 @@ def _reaching(view, block, cosine, sine, gap, count, turning, mask, margin, left
 
 
 class _View(NamedTuple):
-    """What is kept of the tree as seen from one contact, for all rotations: boxes and leaves, what lies below each box, which
-    box each block hangs below, and tallies: blocks and leaves kept, place of the next triangle that is tried first, blocks
-    looked at in all.
+    """This record caches the part of the tree that was visited, as seen from one contact, for all rotations.
 
-    known (rotations + 1, LANES): triangles that cut gaps of each rotation last, of this sample or the one before, the last row
-    those of any; place (rotations,) of the next of a rotation. What is `verdicts` away from the contact is out of reach.
+    boxes, leaves: the blocks of boxes and of triangles. below: the block below each box. home: the box above each block. tally:
+    blocks kept, leaves kept, the place of the next triangle that is tried first, and blocks visited in all.
+
+    known (rotations + 1, LANES): triangles that cut intervals of each rotation last, of this sample or the one before, the last
+    row those of any; place (rotations,) of the next of a rotation. Obstacles beyond `reach` of the contact cannot be hit.
     """
 
     boxes: Any

@@ -62,7 +62,7 @@ def mask(rows, normal, direction_max, ranges, turns, offset, free, undecided, fo
 
 @entry
 def held_free(rows, normal, direction_max, ranges, offset, free, place, kept):
-    """What the machine holds of free tilts, at every rotation of the maps: how many intervals or, with room, these.
+    """Keep the free tilts that the machine can hold, at every rotation of the maps: count the intervals, or write them to `kept`.
 
     Parameters
     ----------

@@ -145,7 +145,7 @@ def _never(polygon, count, radius, shrunk):
 
 @kernel
 def _parts_pass(polygon, count, ca, sa, cb, sb, tool):
-    """`_boxes_pass` for a polygon, in two parts where need be: what the bottom sweeps over, and what it stays below."""
+    """Test a polygon like `_boxes_pass`, if necessary in two parts: one that the bottom sweeps over, one that stays below it."""
     radius, shrunk, low, high, _ = tool
     middle = 0.0
     for k in range(count):

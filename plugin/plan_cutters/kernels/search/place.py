@@ -1,4 +1,4 @@
-"""Where a tool is placed at a contact, which tilts are left there, and what stops it: what searches of all kinds share."""
+"""Place a tool at a contact, find the tilts that are left there and the reasons that forbid others, for all searches."""
 
 from typing import Any, NamedTuple
 
@@ -59,7 +59,10 @@ def forbid(intervals, count, first, last, narrowest, attribute, tally):
 
 @kernel
 def _attribute(x, y, z, tool, mode, k):
-    """What an obstacle point that far from the contact, which is in piece k, is in the way of."""
+    """Return the reason that an obstacle point gives, which lies in piece k and at (x, y, z) from the contact.
+
+    In the flutes it is a rear gouge within the rear-gouge radius and a collision beyond it; in other pieces it is their part.
+    """
     part = int(tool.piece[mode, k, PART])
     if part != FLUTES:
         return BY_NECK + part - NECK
@@ -123,7 +126,7 @@ def turned(frame, tilt, tool, mode, tree, body, scratch):
 
 
 class Workspace(NamedTuple):
-    """Room to work in: intervals (k, 2), arcs (ARCS, 2), tilt direction f and t = n x f, e2 = n x direction_max, a body, a
+    """This is a workspace: intervals (k, 2), arcs (ARCS, 2), tilt direction f and t = n x f, e2 = n x direction_max, a body, a
     tally by attribute."""
 
     intervals: Any

@@ -28,8 +28,11 @@ class Ladder(NamedTuple):
 
 
 class _Side(NamedTuple):
-    """What a search takes of the tools without what does not matter, or of what of them is surely in the way: the tools, room
-    for one, what is in the way, what was met before, and narrower intervals of tilt than which are none, rad."""
+    """This record is one side of a search: the outer tools with the possible obstacles, or the inner with the certain ones.
+
+    It holds the tools; `piece` and `mode`, a workspace for one tool; the obstacles; the winding number from which a posture
+    lies within a body; the angular resolution, rad: narrower intervals of tilts are passed over; and the obstacle caches.
+    """
 
     tools: Ladder
     piece: Any
@@ -104,11 +107,11 @@ def largest(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, f
     contacts : Contacts
     ranges : Ranges
     outer_tool, inner_tool : Ladder
-        Tools without what does not matter, and what of each is certainly in the way; each within the next.
+        The outer and the inner tools; each lies within the next.
     possible, certain : Solids
         As `search.search` takes them.
     found : Found, written
-        The posture of the largest tool that has one, and why the next one has none.
+        The posture of the largest tool that has one, and the reason why the next one has none.
     level : (n,) int64, written
         The number of the largest tool that has a posture, -1 where none has.
     beyond : (n,) uint8, written

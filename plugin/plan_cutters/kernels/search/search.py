@@ -46,10 +46,11 @@ START = ((0, -1.0), (0, -1.0))
 
 @kernel
 def _reason(tally, bent):
-    """What leaves no posture, by what tilts are booked on that curvature allows, and that it forbids (`bent`).
+    """Return the reason why no posture is left, from the tilts that each reason has taken.
 
-    The attribute that leaves none alone, or the one that most tilts are booked on. Where curvature forbids all tilts, what is in
-    the way near the contact is what it tells of.
+    `tally` counts those among the tilts that curvature allows, `bent` those among the tilts that it forbids. The reason is the
+    one that alone leaves no tilt, or else the one that took most. Where curvature forbids all tilts, a rear gouge counts as the
+    local gouge.
     """
     if tally[AXIS_LIMIT] == 0.0:
         return AXIS_LIMIT
@@ -87,9 +88,9 @@ def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, fo
     contacts : Contacts
     ranges : Ranges
     outer_tool, inner_tool : Tool
-        The tool without what does not matter, and what of it is certainly in the way.
+        The outer and the inner tool.
     possible, certain : Solids
-        All that may be in the way, for calling a posture safe; what certainly is, for calling it blocked.
+        The possible obstacles, to call a posture safe; the certain ones, to call it blocked.
     found : Found, written
 
     Returns

@@ -37,10 +37,12 @@ ROTATION = 16
 
 
 class Memory(NamedTuple):
-    """What the sweeps before have met: points (rotations x modes, k, 3) that forbade tilts of each, and how many of each; the
-    last points (3, m) that the tree gave, and the same as seen from the contact, along direction_max, e2 and the normal;
-    how deep each is in the tool (m,), and in which piece; how many the tree gave in all (1,). bent: of sweeps among the tilts
-    that curvature forbids.
+    """This record is the obstacle cache: it holds the points that earlier sweeps have met.
+
+    point (rotations x modes, k, 3), count: points that forbade tilts of each rotation and mode, and how many of each. pool
+    (3, m): the last points that the tree gave; seen (3, m): the same from the contact, along direction_max, e2 and the normal;
+    depth (m,), which (m,): how deep each is in the tool, and in which piece. given (1,): how many points the tree gave in all.
+    bent: whether the sweeps are among the tilts that curvature forbids.
     """
 
     point: Any
@@ -188,9 +190,9 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, 
         The sample.
     ranges : Ranges
     tool : Tool
-        The cutter, smaller by the depth that does not matter.
+        The outer or the inner tool.
     solids : Solids
-        What is in the way.
+        The possible or the certain obstacles.
     within : float
         Winding number from which a posture lies within a body.
     narrowest : float
@@ -200,8 +202,8 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, 
     turns : int
         How many rotations to look at.
     past : Memory, read and written
-    room : Room
-        Tilts are booked on what forbids them.
+    workspace : Workspace
+        Forbidden tilts are booked in its tally, by reason.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Closed-form ranges of tilt: what one obstacle point forbids, what local gouging and an axis limit leave."""
+"""Compute ranges of tilt in closed form: those that an obstacle point forbids, and that a local gouge or an axis limit leaves."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""One convex piece of a tool: what is deep in it, what its support is, and whether a polygon reaches into it.
+"""Find the depth of a point in one convex piece of a tool, its support, and whether a polygon reaches into it.
 
 A piece is a row of `COLUMNS` numbers, as in `codes`, its heights counted from the centre about which
 the tool tilts. All kinds are convex functions of (distance from the axis q, height w) below a bound, between two heights: so a

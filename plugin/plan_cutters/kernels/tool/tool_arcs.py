@@ -56,7 +56,7 @@ def _half(out, count, zero, low, high, d, floor, ceiling, up):
 
 @kernel
 def _cylinder(out, count, zero, d, y, offset, radius, floor, ceiling):
-    """What a cylinder about the axis forbids, of any radius, between any heights."""
+    """Write the arcs of tilts that a cylinder about the axis forbids, of any radius and between any heights; the new count."""
     square = radius * radius - y * y
     if square <= 0.0 or radius <= 0.0 or floor >= ceiling:
         return count
@@ -68,7 +68,10 @@ def _cylinder(out, count, zero, d, y, offset, radius, floor, ceiling):
 
 @kernel
 def _own_arc(out, count, zero, d, y, radius, around, floor, ceiling):
-    """What the arc forbids whose circle of centres goes through the centre of turning; `radius` may have any sign."""
+    """Write the tilts that a revolved arc forbids, whose circle of centres goes through the centre of tilting; the new count.
+
+    `radius` may have any sign.
+    """
     for up in (1.0, -1.0):
         if radius == 0.0:
             if d * d + y * y < around * around:
