@@ -1,4 +1,4 @@
-"""What would make it feasible: for a cutter that does not finish a part, the least change of one thing, found and then judged."""
+"""Find what-if answers: if a cutter does not finish a part, find the least change of one thing, and then judge it."""
 
 from collections.abc import Callable
 from dataclasses import replace

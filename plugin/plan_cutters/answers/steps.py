@@ -1,4 +1,7 @@
-"""What next: steps for a cutter that does not finish, each with its effect, judged on all samples; what leaves least first."""
+"""Find the next steps for a cutter that does not finish the part.
+
+The effect of each step is judged on all samples. The step after which the least area is not reached comes first.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

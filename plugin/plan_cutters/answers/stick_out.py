@@ -218,7 +218,10 @@ class _Search:
         return True
 
     def with_room(self, rows: NDArray[np.int64], posture: Verdicts) -> Floats:
-        """What known postures ask for and `BEYOND` more, (m,): just there no other tilt is left, and a search would miss them."""
+        """Stick-outs (m,), mm, that known postures need, and `BEYOND` more.
+
+        With no more than they need, no other tilt is left, and a search would miss the posture.
+        """
         needed = self.needed(rows, posture)[0][rows]
         return np.where(needed > self.floor, np.minimum(needed + BEYOND, self.cutter.length), needed)
 

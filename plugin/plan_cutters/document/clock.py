@@ -11,7 +11,7 @@ Progress = Callable[[str, int, int], None]
 
 
 class Clock:
-    """What each stage takes, stage after stage; one that comes again goes on.
+    """Measure the seconds of each stage, one after the other; a stage that comes again is added to.
 
     Parameters
     ----------

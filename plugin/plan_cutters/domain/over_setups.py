@@ -1,4 +1,4 @@
-"""What one cutter reaches over several setups, one after the other."""
+"""Combine the verdicts of one cutter over several setups, one after the other."""
 
 from collections.abc import Sequence
 
@@ -11,7 +11,7 @@ from plan_cutters.domain.verdicts import AXIS_LIMIT, FIXTURE, INACCESSIBLE, UNDE
 
 
 def over_setups(each: Sequence[Verdicts]) -> tuple[Verdicts, Ints]:
-    """What is reached in one setup or another, and in which.
+    """Combine the verdicts of all setups, and name the setup that reaches each sample.
 
     Parameters
     ----------

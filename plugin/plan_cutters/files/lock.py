@@ -163,7 +163,7 @@ def _stands(handle: int, file: Path) -> bool:
 
 
 def _said(file: Path) -> dict[str, object]:
-    """What an owner wrote; nothing where it has not yet."""
+    """Read the entry that the owner of a lock wrote; it is empty where the owner has not written yet."""
     with contextlib.suppress(OSError, ValueError, RecursionError):
         with file.open("rb") as opened:
             found = json.loads(opened.read(_LONGEST))
