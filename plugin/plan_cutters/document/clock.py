@@ -16,7 +16,7 @@ class Clock:
     Parameters
     ----------
     progress : callable, optional
-        Told of stages that are shown.
+        Called for the stages that are shown.
     began : float, optional
         `time.monotonic()` when the command began: what has passed since then is the stage `start`.
 

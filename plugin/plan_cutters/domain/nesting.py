@@ -61,7 +61,7 @@ def handed(cutter: Cutter, judged: Mapping[Cutter, Verdicts], n: int) -> Verdict
 
     Returns
     -------
-    Reach
+    Verdicts
         UNJUDGED where nothing follows; where inaccessible, the reason of the smaller cutter.
     """
     known = blank(n)

@@ -15,12 +15,12 @@ def over_setups(each: Sequence[Verdicts]) -> tuple[Verdicts, Ints]:
 
     Parameters
     ----------
-    each : sequence of Reach
+    each : sequence of Verdicts
         In each setup, of the same n samples.
 
     Returns
     -------
-    Reach
+    Verdicts
         Verdict and posture of the first setup that reaches a sample. Where none does: undecided if it is so in any; the reason
         is that of the first one in which not the axis limit alone leaves nothing, or the fixture if that is so in any.
     (n,) int32

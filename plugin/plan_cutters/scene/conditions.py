@@ -1,4 +1,4 @@
-"""What every stage judges a cutter under, and the search for a posture that several of them ask for."""
+"""Every stage judges a cutter under these conditions; several of them use the search for a posture that is here, too."""
 
 from dataclasses import dataclass, replace
 
@@ -64,14 +64,12 @@ class Conditions(Record):
         return tools(cutter, self.tolerance, self.obstacles.triangles.chord_error)[0]
 
     def inner_tool(self, cutter: Cutter) -> Assembly:
-        """What of a cutter is surely in the way: a triangle that reaches into it proves a point of the surface that is too
-        deep.
-        """
+        """Build the inner tool: a triangle that reaches into it proves that a point of the surface is too deep."""
         return tools(cutter, self.tolerance, self.obstacles.triangles.chord_error)[1]
 
     @property
     def ranges(self) -> Ranges:
-        """What kernels take of postures and machine."""
+        """Give the postures and the limits of the machine, in the form that kernels take."""
         return ranges_of(self.machine, self.setup, self.postures, self.x)
 
     @property
@@ -90,7 +88,7 @@ class Conditions(Record):
 
 
 def ranges_of(machine: Machine, setup: Floats, postures: PostureRange, x: Floats | None = None) -> Ranges:
-    """What kernels take of postures and machine."""
+    """Put the postures and the limits of a machine into the form that kernels take."""
     rotations, (low, high) = postures.rotations, postures.tilt
     rotary = rotary_of(machine.kinematics(frame_of(setup, x)))
     if len(rotary.aim):
@@ -124,7 +122,7 @@ def contacts_of(samples: SurfaceSamples) -> Contacts:
 
 
 def tools(cutter: Cutter, tolerance: float, error: float) -> tuple[Assembly, Assembly]:
-    """What of a cutter nothing may enter, and what is surely in the way, for obstacles with a chord error, mm.
+    """Build the outer and the inner tool of a cutter, for obstacles with a chord error, mm.
 
     Every surface point has a triangle point within that error and the reverse: the flutes are smaller by the tolerance less the
     error, and all else larger by the error; or the flutes smaller by both, and all else by the error.
