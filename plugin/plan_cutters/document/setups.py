@@ -19,7 +19,7 @@ class SetupEntry(Frozen):
 
 
 class SetupReach(VerdictCounts):
-    """Each verdict of a cutter in one setup has this number of samples."""
+    """The verdicts of a cutter in one setup are counted in samples."""
 
     axis: Vector
     serves: int = Field(

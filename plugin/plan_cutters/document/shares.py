@@ -55,7 +55,7 @@ class AreaShare(Frozen):
 
 
 class FaceVerdicts(VerdictCounts):
-    """Each verdict of a cutter has this share of a face."""
+    """The verdicts of a cutter on a face are counted in samples and in shares of its area."""
 
     area_share: AreaShare = Field(
         default=AreaShare(),

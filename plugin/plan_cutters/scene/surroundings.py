@@ -70,7 +70,7 @@ class Surroundings(Record):
     certain : Obstacles
         Everything that is surely in the way: a posture that hits it is blocked. The same object where nothing is uncertain.
     bodies : tuple of Body
-        Shells that enclose a volume, of the faces that are not ignored.
+        Bodies that enclose a volume, made of the faces that are not ignored; for an open shell the volume is a guess.
     missing : tuple of (int, str, str)
         Faces that stand in the way only as a guess, with the reason and the proxy geometry of each: its own `triangles`, a
         `box`, or `none` where its place is not known.
