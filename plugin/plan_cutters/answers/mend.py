@@ -36,7 +36,7 @@ def mend(
     verdicts : Verdicts
         What it reaches, of all samples.
     progress : callable, optional
-        Told how many of the things are done, of how many.
+        Called with the number of things done, and the number of all.
 
     Returns
     -------

@@ -61,7 +61,7 @@ def steps(
     elsewhere : sequence
         Of each other setup its axis, and what each cutter reaches there by its id.
     progress : callable, optional
-        Told how many cases were judged, of how many at most.
+        Called with the number of cases judged, and the largest number there can be.
 
     Returns
     -------

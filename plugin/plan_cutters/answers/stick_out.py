@@ -45,7 +45,7 @@ def least_stick_out(
     step : float, optional
         Find the least stick-out of every sample, too, to this, mm.
     progress : callable, optional
-        Told how many samples are done, of how many.
+        Called with the number of samples done, and the number of all.
 
     Returns
     -------

@@ -98,7 +98,7 @@ class Assembly(Record):
         return np.asarray(contact + rise * normal + along - offset * (cosine * tilt_direction - sine * normal))
 
     def depth(self, points: Floats, contact: Floats, normal: Floats, tilt_direction: Floats, tilt: float) -> Floats:
-        """Bound from below how deep points (n, 3) lie in the tool at a contact, tilt direction (3,) and tilt; negative outside."""
+        """Bound from below how deep points (n, 3) lie in the tool at a contact, tilt direction (3,) and tilt; outside < 0."""
         offset, rise, *_ = self.mode[(mode := int(self.at(np.array([tilt]))[0]))]
         axis, x_t = (
             np.cos(tilt) * normal + np.sin(tilt) * tilt_direction,

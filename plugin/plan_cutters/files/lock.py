@@ -35,7 +35,7 @@ class Lock:
     out : Path
         The folder; it need not be there.
     named : callable, optional
-        Told the lock's file before it exists.
+        Called with the lock's file before it exists.
     staging : Path, optional
         The folder beside it that its owner is about to make, which goes with it: the one of an owner that was killed is removed.
 

@@ -173,7 +173,7 @@ def search_postures(
     strict : bool
         Only postures that curvature at the contact allows, as if there were no tolerance.
     progress : callable, optional
-        Told how many pieces of the work are done, of how many.
+        Called with the number of pieces of work that are done, and the number of all.
     work : Work, optional
         Where what is looked at is counted.
 

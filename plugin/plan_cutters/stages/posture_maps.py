@@ -316,7 +316,7 @@ def posture_maps(
     most : int, optional
         Samples to map, at most. None: as many as take `map_budget.WORK`.
     progress : callable, optional
-        Told how many pieces of the work are done, of how many.
+        Called with the number of pieces of work that are done, and the number of all.
     """
     from plan_cutters.kernels.maps.free_map import free_map
 
