@@ -1,4 +1,4 @@
-"""What can go wrong in planning. Every error says the file, the face where there is one, and the cause."""
+"""Planning raises these errors. Every error says the file, the face where there is one, and the cause."""
 
 
 class PlanError(Exception):

@@ -1,4 +1,4 @@
-"""What is asked for: every option of a plan, with its default."""
+"""The options of a plan, each with its default, are defined here."""
 
 import math
 import os

@@ -69,7 +69,7 @@ def plan(part: Any, *, progress: Progress | None = None, **options: Unpack[PlanO
         An object that holds picked faces stands for the shape that they belong to. A Scene brings its setup, flip, ignored
         faces and tolerance with it.
     progress : callable, optional
-        Told (stage, done, total).
+        Called with the stage, the number of pieces done, and the number of all pieces.
     **options
         Every attribute of `Options`, by its name: `cutters="R6L80"`, `grid=201`, `machine="tilt:60"`.
 
@@ -170,7 +170,7 @@ def run(
 def _elsewhere(
     ready: Prepared, here: Mapping[Cutter, Verdicts], axis: Vector, x: Vector | None, clock: Clock
 ) -> dict[str, Verdicts]:
-    """What each cutter reaches in another setup."""
+    """Find the verdicts of each cutter in another setup."""
     found = {}
     for cutter, verdicts in here.items():
         with clock.stage("setups") as tell:
@@ -257,7 +257,7 @@ def _read(part: Any, options: Options, timeout: float) -> Part | Scene:
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """What is known of one cutter.
+    """The verdicts of one cutter, over all setups and in the first one, with its line in the plan.
 
     Attributes
     ----------
@@ -281,7 +281,7 @@ def _judged(
     ready: Prepared, here: Mapping[Cutter, Verdicts], elsewhere: Sequence[Elsewhere], seconds: Mapping[Cutter, float],
     clock: Clock,
 ) -> dict[Cutter, Judged]:  # fmt: skip
-    """What each cutter reaches over all setups, why not the rest, and its line in the plan."""
+    """Combine the verdicts of each cutter over all setups, find the reasons, and make its line in the plan."""
     samples, convex, around = ready.samples, ready.surface_class == CONVEX, ready.conditions.around
     inside = ready.inside_bodies
     reasons = Reasons(samples, ready.setups, ready.finished & (ready.buried < 0))

@@ -138,7 +138,7 @@ class Result:
 
     @property
     def conditions(self) -> Conditions:
-        """What all cutters were judged under."""
+        """All cutters were judged under these conditions."""
         if self.ready is None:
             raise ValueError("this result was made without what its cutters were judged on")
         return self.ready.conditions
@@ -158,7 +158,7 @@ class Result:
         return found
 
     def face(self, which: Any, cutter: str | None = None, *, stick_out: bool = False) -> OnFace:
-        """What a cutter reaches of one face, why not the rest, and where it is worst.
+        """Tell how much of one face a cutter reaches, why not the rest, and where the worst place is.
 
         Parameters
         ----------

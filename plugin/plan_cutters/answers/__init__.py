@@ -1,1 +1,1 @@
-"""What a planner asks next: how short a cutter may stand out, how large one may be where, what would make it feasible."""
+"""Answer the planner's next questions: the least stick-out, the largest radius at each place, and the what-if answers."""

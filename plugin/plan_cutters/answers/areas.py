@@ -19,7 +19,7 @@ _WAYS = 200
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Finished(Record):
-    """What samples stand for.
+    """The areas and shares of the finished surface that the samples stand for; one value belongs to each sample.
 
     Attributes
     ----------

@@ -48,7 +48,7 @@ def largest_radius(
         Radii to try, from and to, mm. The most is half the longest side of the part's box by default; the least is 0.1, or a
         hundredth of the most if that is less, or what the tolerance lets be judged if that is more.
     progress : callable, optional
-        Told how many pieces of the work are done, of how many.
+        Called with the number of pieces of work that are done, and the number of all.
 
     Raises
     ------

@@ -1,7 +1,7 @@
-"""What a step may change, each with a value that gains nearly all that the thing can gain and asks for no more than that.
+"""Find the changes for a step, each with the smallest value that gains nearly all that such a change can gain.
 
 Values are those of a shop: whole steps of length and angle, sides of the part, radii that are sold. They are compared on a few of
-the samples that are lost; `steps` judges what is told.
+the samples that are not reached; `steps` judges each step before it is reported.
 """
 
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What would make it feasible: for a cutter that does not finish a part, the least change of one thing, found and then judged."""
+"""Find what-if answers: if a cutter does not finish a part, find the least change of one thing, and then judge it."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -36,7 +36,7 @@ def mend(
     verdicts : Verdicts
         What it reaches, of all samples.
     progress : callable, optional
-        Told how many of the things are done, of how many.
+        Called with the number of things done, and the number of all.
 
     Returns
     -------

@@ -20,10 +20,11 @@ def option(
     conditions: Conditions | None = None, tolerance: float | None = None, flip: bool | None = None,
     faces: Sequence[int] | None = None,
 ) -> str | None:  # fmt: skip
-    """What to say so that a plan has these cutters, setups and so on: what differs from now; None where no option says it.
+    """Write the command-line options that differ from now, so that a plan has these cutters, setups and so on.
 
-    `--cutter` comes beside what is said now, all else in place of its like. Cutters that are said now are not said again; the
-    built-in ones are, for they go where others are given.
+    The result is None where no option can say it. `--cutter` is added to the options of now; every other option replaces the same
+    option. Cutters that the options name now are not repeated. Those of the default tool set are written, because a plan leaves
+    them out as soon as other cutters are given.
     """
     words: list[str] = []
     options = ready.options

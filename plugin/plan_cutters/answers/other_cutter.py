@@ -1,4 +1,4 @@
-"""What another cutter would have to be: held further out, of a smaller radius, with another corner."""
+"""Find another cutter that would do: one with a longer stick-out, a smaller radius or another corner radius."""
 
 import math
 from collections.abc import Callable

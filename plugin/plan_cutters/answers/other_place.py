@@ -1,4 +1,4 @@
-"""What would have to be different about the part: how it is clamped, how closely it is judged, which faces are to be finished."""
+"""Find changes beside the cutter: another clamping, a finer tolerance, or fewer target faces."""
 
 import math
 from dataclasses import dataclass, replace
@@ -142,7 +142,7 @@ def _turned(case: Case, axis: Axis) -> Case | None:
 
 
 def flip_of(ready: Prepared, axis: Axis) -> bool | None:
-    """What to say of `flip` under a setup axis, so that faces keep the sides that they have; None if neither keeps them."""
+    """Choose `flip` for a setup axis so that the faces keep their sides; the result is None if no value keeps them."""
     scene, flip = ready.scene, ready.options.flip
     if scene.orientation.confident:
         return flip

@@ -43,7 +43,7 @@ class Candidate:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scan:
-    """What is lost now, and some of it.
+    """The samples that are not reached now, and a few of them that are looked at first.
 
     state : State
     left : (m,) int64

@@ -1,4 +1,4 @@
-"""What a plan would be about after a step: which cutters, in which setups, under what; and which samples it would leave."""
+"""Describe the plan after a step: its cutters, setups and conditions, and the samples that it would not reach."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -49,14 +49,14 @@ class State:
 
 
 def key(ready: Prepared, cutter: Cutter, axis: Axis, x: Axis | None) -> Any:
-    """What the verdicts on the samples of a part depend on."""
+    """Make the key of a case: the verdicts on the samples of a part depend on these values."""
     conditions = ready.conditions
     return cutter, axis, x, conditions.machine, conditions.postures, conditions.tolerance
 
 
 @dataclass(slots=True)
 class Judgements:
-    """What was judged so far, so that nothing is judged twice.
+    """Keep all that was judged so far, so that nothing is judged twice.
 
     Attributes
     ----------

@@ -1,4 +1,7 @@
-"""What next: steps for a cutter that does not finish, each with its effect, judged on all samples; what leaves least first."""
+"""Find the next steps for a cutter that does not finish the part.
+
+The effect of each step is judged on all samples. The step after which the least area is not reached comes first.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -58,7 +61,7 @@ def steps(
     elsewhere : sequence
         Of each other setup its axis, and what each cutter reaches there by its id.
     progress : callable, optional
-        Told how many cases were judged, of how many at most.
+        Called with the number of cases judged, and the largest number there can be.
 
     Returns
     -------

@@ -45,7 +45,7 @@ def least_stick_out(
     step : float, optional
         Find the least stick-out of every sample, too, to this, mm.
     progress : callable, optional
-        Told how many samples are done, of how many.
+        Called with the number of samples done, and the number of all.
 
     Returns
     -------
@@ -218,7 +218,10 @@ class _Search:
         return True
 
     def with_room(self, rows: NDArray[np.int64], posture: Verdicts) -> Floats:
-        """What known postures ask for and `BEYOND` more, (m,): just there no other tilt is left, and a search would miss them."""
+        """Stick-outs (m,), mm, that known postures need, and `BEYOND` more.
+
+        With no more than they need, no other tilt is left, and a search would miss the posture.
+        """
         needed = self.needed(rows, posture)[0][rows]
         return np.where(needed > self.floor, np.minimum(needed + BEYOND, self.cutter.length), needed)
 

@@ -164,14 +164,14 @@ def batches(rows: Rows) -> Iterator[Rows]:
 
 @dataclass(frozen=True, slots=True)
 class Left:
-    """What a value leaves of the samples that are lost now, and to what.
+    """Count the samples that are not reached now and stay so with a new value, and give the reasons.
 
     count, blocked : int
         Samples that are inaccessible or undecided, and those that are inaccessible.
     looked : int
-        Samples looked at: some of those lost now, spread evenly, if one of these is inaccessible, else all.
+        Samples looked at: some of those not reached now, spread evenly, if one of these is inaccessible, else all.
     words : str
-        How many samples are lost to what, the reason with the most of them first; or undecided, if all are.
+        How many samples each reason has, the reason with the most of them first; or undecided, if all are.
     """
 
     count: int
@@ -181,7 +181,7 @@ class Left:
 
     @classmethod
     def by(cls, case: Case, rows: Rows) -> "Left":
-        """What a case leaves of some samples."""
+        """Count the samples among some that a case does not reach."""
         few = rows[:: 1 + (len(rows) - 1) // _LOOKED_AT]
         verdicts = case.look(few)
         if len(few) < len(rows) and not (verdicts.verdict == INACCESSIBLE).any():

@@ -1,4 +1,4 @@
-"""What a shell may offer: the subcommands for the first word, then what each of them takes."""
+"""Tell the shell which words it may offer: the subcommands for the first word, then the options and values of each."""
 
 import os
 from typing import NoReturn

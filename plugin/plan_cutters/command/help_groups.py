@@ -25,7 +25,7 @@ class Grouped(click.Option):
 
 
 def heading(title: str) -> Any:
-    """What declares options under a heading: `click.option` with a group."""
+    """Make a decorator that declares options under a heading: `click.option` with a group."""
 
     def option(*words: str, **more: Any) -> Any:
         return click.option(*words, cls=Grouped, group=title, **more)

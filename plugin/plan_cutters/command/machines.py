@@ -121,7 +121,7 @@ def _angles(text: str) -> dict[str, float]:
 
 
 def _facts(name: str, form: str, machine: "Machine", axis: Any, turned: Any) -> dict[str, Any]:
-    """What is told of one machine, as JSON has it."""
+    """Gather the facts of one machine, in the form that JSON has."""
     import numpy as np
 
     from plan_cutters.machines.explain import share, singular, solutions, tool_axis

@@ -174,7 +174,7 @@ def _text(values: Any) -> str:
 
 
 def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: dict[str, Any]) -> list[str]:
-    """What the map is of, line by line; the first is its title."""
+    """Describe the map line by line: its contact, cutter and search; the first line is its title."""
     from plan_cutters.report.sheet import printable
     from plan_cutters.report.story.names import called
 

@@ -1,4 +1,4 @@
-"""What is said when models could not be made to an end; loads next to nothing, for an interrupted command ends at once."""
+"""Tell the user that models could not be finished. This module loads almost nothing: an interrupted command must end at once."""
 
 from typing import Any
 

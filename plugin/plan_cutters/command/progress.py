@@ -91,7 +91,7 @@ class Display:
         self.tick()
 
     def detail(self, text: str) -> None:
-        """What is done just now, where the stage's own words say too little."""
+        """Show the work of this moment, where the stage's own words say too little."""
         self.doing = text
         self.tick()
 
@@ -111,7 +111,7 @@ class Display:
 
     @property
     def line(self) -> str:
-        """What is being done."""
+        """Name the work that goes on."""
         if self.name in _WORDS:
             return self.doing or self.words
         name = terminal.clean(self.names.get(self.name) or self.name.partition("H")[0])

@@ -151,7 +151,7 @@ def stored(part: str | None, postures: str, options: "Options", given: dict[str,
 
 
 def _asked(options: "Options", given: dict[str, Any], named: Collection[str]) -> dict[str, Any]:
-    """What was asked for, by the names of `Options`."""
+    """Gather the options that the user gave, by the names of `Options`."""
     from dataclasses import fields
 
     known = {each.name for each in fields(options)}

@@ -1,4 +1,4 @@
-"""What is found, in a terminal: a story laid out in paragraphs and tables."""
+"""Print the results in a terminal: the story of a plan is laid out in paragraphs and tables."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
@@ -47,7 +47,7 @@ def summary(plan: "Plan", *, verbose: bool = False) -> None:
 
 
 def written(plan: "Plan", out: Path | None, formats: Sequence[str]) -> list[Any]:
-    """What is in the output, and which faces the models show otherwise than split in their place."""
+    """List the files of the output, and the faces that the models do not show split in their place."""
     from plan_cutters.report.folder import left_over
 
     lines = []
@@ -66,7 +66,7 @@ def written(plan: "Plan", out: Path | None, formats: Sequence[str]) -> list[Any]
 
 
 def not_reached(plan: "Plan", *, verbose: bool = False) -> list[str]:
-    """What the larger cutters than the one to take (or all) leave, and why: of many those that come nearest."""
+    """Say how much the cutters before the one to take (or all) do not reach, and why; of many, only the nearest ones."""
     larger: list[CutterEntry] = []
     for c in plan.cutters:
         if c.id == plan.selected:
@@ -112,7 +112,7 @@ def _lines(lines: "Iterable[Line]", verbose: bool) -> Iterator[Text]:
 
 
 def _doubts(story: Story, verbose: bool) -> Iterator[Text]:
-    """What makes verdicts unsure, the first of each kind."""
+    """Give the causes that make verdicts unsure, the first ones of each kind."""
     for what, lines in story.doubts.items():
         most = len(lines) if verbose else _LINES
         yield from (_marked(line.mark, line.text) for line in lines[:most])
@@ -125,7 +125,7 @@ def _marked(word: str, rest: str) -> Text:
 
 
 def _details(plan: "Plan") -> Iterator[Text]:
-    """What only those want who ask for all."""
+    """Give the details that are only shown to users who ask for all of them."""
     size = " x ".join(f"{s:.4g}" for s in plan.part.size_mm)
     e = plan.effective
     yield cell(f"Part: {size} mm, {plan.part.solids} solids, SHA-256 {plan.part.sha256}.")

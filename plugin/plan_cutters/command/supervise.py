@@ -103,7 +103,7 @@ def default_memory() -> int:
 
 
 class Display(Protocol):
-    """What shows the user how far the child is."""
+    """A display shows the user how far the child is."""
 
     def begins(self, part: str) -> None:
         """Another part is begun."""
@@ -112,7 +112,7 @@ class Display(Protocol):
         """Another stage is begun."""
 
     def detail(self, text: str) -> None:
-        """What of the stage is done just now."""
+        """Another piece of work of the stage is begun."""
 
     def at(self, done: int, total: int) -> None:
         """So much of the stage is done."""
@@ -231,7 +231,7 @@ def _processor(child: int | None) -> float:
 
 
 class _Watch:
-    """What the child has told so far."""
+    """Keep all that the child has reported so far."""
 
     def __init__(self, read_timeout: float, display: Display | None = None) -> None:
         self.pipe, self.read_timeout, self.display = -1, read_timeout, display
@@ -303,7 +303,7 @@ class _Watch:
         return self.work.partition(" ")[2]
 
     def verdict(self) -> tuple[str, str]:
-        """What took too long, whose work it was and where; and what to try."""
+        """Say which work took too long, whose it was and where; and give advice."""
         where, within = f"{self.face}: " if self.face else "", f"within {self.limit:g} s"
         more = "give more time (--read-timeout)"
         if self.stage == "read":
@@ -316,7 +316,7 @@ class _Watch:
                 f"the file may be damaged: export it again, or try {fewer}a coarser --tolerance, or {more}")  # fmt: skip
 
     def ended(self, what: str, advice: str, *, interrupted: bool = False) -> Supervised:
-        """What to raise when the child is gone."""
+        """Make the error to raise when the child is gone."""
         if self.safe is None and self.face and self.why and not interrupted:
             face, before = int(self.face[1:]), self.parts - 1
             return Stuck(f"{self.part}: {what}; {advice}", self.part, face, self.why, before, self.code)

@@ -1,4 +1,4 @@
-"""What people read on standard error: wrapped, coloured where that helps, and free of what could steer a terminal."""
+"""Write texts for people to standard error: wrapped, coloured where that helps, and free of terminal control codes."""
 
 import contextlib
 import errno
@@ -146,7 +146,7 @@ class _Paper(StringIO):
 
 @contextlib.contextmanager
 def paper(width: int) -> Iterator["Console"]:
-    """What is printed on it goes to standard output at the end, as by `hand_out`; `width` holds where that is no terminal.
+    """Give a console whose text goes to standard output at the end, as by `hand_out`; `width` holds where that is no terminal.
 
     Rich itself would end the process where standard output is closed.
     """

@@ -1,4 +1,4 @@
-"""What the words of the command line ask for, looked at before anything heavy is loaded and any process is started.
+"""Check the words of the command line before any large module is loaded and any process is started.
 
 Cheap questions come first: files before numbers, so that a name that is mistyped costs nothing.
 """
@@ -161,7 +161,7 @@ def options_of(given: dict[str, Any]) -> "Options":
 
 
 def words_of(given: dict[str, Any]) -> dict[str, Any]:
-    """What is given on a command line, by the names that `Options` has for it; what `Options` does not have is left out."""
+    """Give the values of a command line by the names that `Options` has for them, without values that `Options` does not have."""
     from dataclasses import fields
 
     from plan_cutters.domain.posture import PostureRange

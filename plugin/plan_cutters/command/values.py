@@ -1,4 +1,4 @@
-"""What options take, read without the CAD kernel, and what a shell may offer for each."""
+"""Read the values of options without the CAD kernel, and tell the shell which words it may offer for each."""
 
 import os
 from collections.abc import Callable, Iterable, Sequence

@@ -111,7 +111,7 @@ class LostAreaEntry(Frozen):
 
 
 class StepEntry(Frozen):
-    """What to do next, and what it gains: judged on every sample, not estimated."""
+    """A step is a thing to do next; its gain is judged on every sample, not estimated."""
 
     changes: list[MoveEntry] = Field(description="one, or two")
     lost_before: float = Field(description="share of the finished area that is lost now, 0 to 1")
@@ -129,7 +129,7 @@ class StepEntry(Frozen):
 
 
 class MendEntry(Frozen):
-    """What would make a cutter finish the part, those changes that help first; and what to do next."""
+    """A what-if answer gives the changes that would make a cutter finish the part, those that help first, and the next steps."""
 
     lost: int = Field(description="samples that are inaccessible or undecided now")
     buried: int = Field(description="those of them that lie within another body: nothing is asked about them")
@@ -215,7 +215,7 @@ def radius_entry(found: RadiusMap, samples: SurfaceSamples, *, doubtful: bool = 
 
 
 def mend_entry(found: Mend) -> MendEntry:
-    """What would make a cutter feasible."""
+    """Make the entry of a what-if answer: the changes that would make a cutter feasible, and the next steps."""
     return filled(
         MendEntry, found, changes=[_change_entry(each) for each in found.changes], lost_share=found.share,
         steps=[_step_entry(each) for each in found.steps], lost_areas=[_area_entry(each) for each in found.areas],

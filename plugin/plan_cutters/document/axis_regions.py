@@ -14,7 +14,7 @@ Span = tuple[float, float]
 
 
 class RegionFace(Frozen):
-    """What a region has of a face."""
+    """A region has these samples and this area of a face."""
 
     face: str
     samples: int

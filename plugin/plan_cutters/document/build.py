@@ -66,9 +66,9 @@ def cutter_entry(
     cutter: Cutter, samples: SurfaceSamples, reach: Verdicts, found: Sequence[Witness], march_differs: int, seconds: float,
     *, part: Part, around: Surroundings, slack: float, inside: NDArray[np.bool_], besides: NDArray[np.uint8],
 ) -> CutterEntry:  # fmt: skip
-    """What a cutter reaches, and why not where it does not, among what is `around`; `slack` as in `Assembly`.
+    """Make the plan's entry of a cutter: its verdicts among the obstacles `around`, and the reasons; `slack` as in `Assembly`.
 
-    `inside` (n,): samples inside other bodies of the part. `besides` (n,): what takes part in the axis limit.
+    `inside` (n,): samples inside other bodies of the part. `besides` (n,): the reasons that take part in the axis limit.
     """
     mine = counts(reach.verdict, inside)
     blocked = mine["inaccessible"] - mine["inside_bodies"]
@@ -211,7 +211,7 @@ def versions() -> dict[str, str]:
 
 
 def scope_of(faces: Sequence[FaceEntry]) -> Scope:
-    """What was judged of all faces."""
+    """Say which of all faces were judged and which were not, with their areas, mm2."""
     targets = [f for f in faces if f.target]
     others = [f for f in faces if not f.target and not f.ignored]
     return Scope(

@@ -11,12 +11,12 @@ Progress = Callable[[str, int, int], None]
 
 
 class Clock:
-    """What each stage takes, stage after stage; one that comes again goes on.
+    """Measure the seconds of each stage, one after the other; a stage that comes again is added to.
 
     Parameters
     ----------
     progress : callable, optional
-        Told of stages that are shown.
+        Called for the stages that are shown.
     began : float, optional
         `time.monotonic()` when the command began: what has passed since then is the stage `start`.
 

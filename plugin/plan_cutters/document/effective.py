@@ -1,4 +1,4 @@
-"""What was asked for, after defaults, as the plan file has it."""
+"""The plan file states here the options in force, after defaults."""
 
 from typing import Any
 

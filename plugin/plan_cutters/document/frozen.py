@@ -1,4 +1,4 @@
-"""What all entries of the plan are made of."""
+"""All entries of the plan file derive from the class of this module."""
 
 from collections.abc import Sequence
 from typing import Any, TypeVar

@@ -1,4 +1,4 @@
-"""What of the target faces lies inside other bodies of the part, as the plan file has it."""
+"""The plan file states here how much of the target faces lies inside other bodies of the part."""
 
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
@@ -46,7 +46,7 @@ class SheetsEntry(Frozen):
 
 
 class InsideEntry(Frozen):
-    """What of the target faces lies inside other bodies of the part: it is no surface of the finished part."""
+    """This much of the target faces lies inside other bodies of the part: it is no surface of the finished part."""
 
     samples: int = 0
     area_mm2: float = 0.0
@@ -56,7 +56,7 @@ class InsideEntry(Frozen):
 
 
 def inside_entry(ready: Prepared, faces: Mapping[str, FaceVerdicts]) -> InsideEntry:
-    """What lies inside other bodies, and in which; `faces`: the verdicts of a cutter, whichever it is."""
+    """Sum up the surface that lies inside other bodies, body by body; `faces`: the verdicts of any one cutter."""
     inside, samples, part = ready.inside_bodies, ready.samples, ready.scene.part
     if not inside.any():
         return InsideEntry()

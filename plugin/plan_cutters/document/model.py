@@ -160,7 +160,7 @@ class AreaEntry(Frozen):
 
 
 class SegmentEntry(Frozen):
-    """What stands above the flutes, from there up: neck, shank, the stages of the holder."""
+    """A segment is one cylinder or cone above the flutes: of the neck, the shank or the holder."""
 
     part: Literal["neck", "shank", "holder"]
     low_mm: float = Field(description="height over the tip at which it begins")
@@ -181,7 +181,7 @@ class RotaryEntry(Frozen):
 
 
 class MachineEntry(Frozen):
-    """What the tool axes were limited by."""
+    """The machine limited the tool axes in this way."""
 
     name: str
     tilt_limit_deg: float | None = Field(description="largest angle from the setup axis")
@@ -333,7 +333,7 @@ class SplitEntry(Frozen):
 
 
 class Run(Frozen):
-    """What differs between two runs with the same input."""
+    """Only these values differ between two runs with the same input."""
 
     time: str
     seconds: dict[str, float] = Field(description="by stage; those of a cutter, by its id, are its judging")

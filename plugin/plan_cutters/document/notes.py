@@ -92,7 +92,7 @@ def _of_cutters(options: Options, cutters: Sequence[Cutter]) -> Iterator[Note]:
 
 
 def _of_obstacles(part: Part, around: Surroundings) -> Iterator[Note]:
-    """What stands in the way otherwise than the file has it."""
+    """Name the obstacles that enclose no material: only their surface is in the way."""
     skins = {number for body in around.bodies if body.closed for number in body.faces}
     present = set(np.unique((around.alone or around).possible.triangles.face).tolist())
     sheets = [f.id for f in part.faces if f.number in present - skins]
@@ -148,7 +148,7 @@ def _of_travel(options: Options) -> Iterator[Note]:
 
 
 def _of_fixtures(fixtures: Sequence[PlacedFixture], *, several: bool) -> Iterator[Note]:
-    """What the plan must say of fixtures; `several`: there is more than one setup."""
+    """Give the notes on fixtures that the plan must have; `several`: there is more than one setup."""
     for each in fixtures:
         for note in each.notes:
             yield Note("fixture", f"{each.name}: {note}.")

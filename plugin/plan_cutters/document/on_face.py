@@ -1,4 +1,4 @@
-"""What a plan says of one face: how much of it a cutter reaches, why not the rest, where it is worst, the least stick-out."""
+"""Tell the results of one face: how much of it a cutter reaches, why not the rest, the worst place, the least stick-out."""
 
 from dataclasses import dataclass, field
 
@@ -14,7 +14,7 @@ from plan_cutters.domain.verdicts import NO_REASON, REASONS, WORDS, Verdicts
 
 @dataclass(frozen=True, slots=True)
 class OnFace:
-    """What one cutter reaches of one face.
+    """The results of one cutter on one face: its verdicts, the reasons, the worst place and the least stick-out.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ def on_face(
     entry: FaceEntry, cutter: CutterEntry, samples: SurfaceSamples, reach: Verdicts, stick_out: StickOut | None,
     *, doubtful: bool, inside: NDArray[np.bool_],
 ) -> OnFace:  # fmt: skip
-    """What a cutter reaches of a face; `stick_out`: what was answered for the samples, or for those of this face alone.
+    """Gather the results of a cutter on a face; `stick_out`: the answer for all samples, or for those of this face alone.
 
     `inside` (n,): samples that are no surface of the finished part.
     """

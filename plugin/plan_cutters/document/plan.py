@@ -115,7 +115,7 @@ Elsewhere = tuple[Vector, Mapping[str, Verdicts]]
 
 @dataclass(frozen=True, slots=True)
 class OverSetups:
-    """What each cutter reaches, by its id.
+    """The verdicts of each cutter over all setups and in each of them, by its id.
 
     Attributes
     ----------
@@ -143,7 +143,7 @@ class OverSetups:
 
 
 def _of_setups(ready: Prepared, name: str, over: OverSetups) -> dict[str, Any]:
-    """What a cutter reaches in each of several setups, and in none of them."""
+    """Count the samples that a cutter reaches in each of several setups, and those that it reaches in none."""
     if not over.elsewhere:
         return {}
     inside, serves = ready.inside_bodies, over.served_in[name]

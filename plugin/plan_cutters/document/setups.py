@@ -1,4 +1,4 @@
-"""What is reached in each of several setups, as the plan file has it."""
+"""The plan file states here how much is reached in each of several setups."""
 
 from pydantic import Field
 
@@ -19,7 +19,7 @@ class SetupEntry(Frozen):
 
 
 class SetupReach(VerdictCounts):
-    """What a cutter reaches in one setup."""
+    """The verdicts of a cutter in one setup are counted in samples."""
 
     axis: Vector
     serves: int = Field(

@@ -55,7 +55,7 @@ class AreaShare(Frozen):
 
 
 class FaceVerdicts(VerdictCounts):
-    """What a cutter reaches of a face."""
+    """The verdicts of a cutter on a face are counted in samples and in shares of its area."""
 
     area_share: AreaShare = Field(
         default=AreaShare(),
@@ -73,7 +73,7 @@ def counts(verdict: NDArray[np.uint8], inside: NDArray[np.bool_] | None = None) 
 def face_verdicts(
     samples: SurfaceSamples, reach: Verdicts, inside: NDArray[np.bool_] | None = None
 ) -> dict[str, FaceVerdicts]:
-    """What is reached of each face that has samples, by its id; `inside` as in `counts`."""
+    """Sum up the verdicts on each face that has samples, by its id; `inside` as in `counts`."""
     found, inside = {}, np.zeros(len(samples.face), bool) if inside is None else inside
     numbers, first = np.unique(np.sort(samples.face), return_index=True)
     groups = np.split(np.argsort(samples.face, kind="stable"), first[1:])
@@ -97,7 +97,7 @@ def covered(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part: Pa
 
 
 def whole_share(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part: Part) -> AreaShare:
-    """What is reached of the finished part's surface in all target faces.
+    """Give the shares of the verdicts in the finished part's surface of all target faces.
 
     Faces without samples are not judged; those of unknown area do not count. Where the area of none is known, every face counts
     as one.

@@ -27,7 +27,7 @@ class PlacementEntry(Frozen):
 
 
 class AxisTravel(Frozen):
-    """What the postures found ask of a linear axis."""
+    """The postures found need this travel of a linear axis."""
 
     name: str
     limits_mm: tuple[float | None, float | None] = Field(description="null: no limit on that side")
@@ -80,7 +80,7 @@ def travels(options: Options, samples: SurfaceSamples, reaches: Mapping[Cutter, 
 
 
 def travel_entry(machine: Machine, found: Travel, reach: Verdicts, samples: SurfaceSamples) -> TravelEntry:
-    """What a cutter asks of the linear axes."""
+    """Give the travel of the linear axes that a cutter needs."""
     known = reach.reached & np.isfinite(found.position).all(axis=1)
     axes, worst = [], []
     for k, axis in enumerate(machine.linear):

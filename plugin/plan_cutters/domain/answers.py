@@ -49,7 +49,7 @@ def answers_of(given: Any) -> tuple[str, ...]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Answers:
-    """What was asked for after the plan.
+    """The answers that are computed after the plan, where the user asked for them.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What would make a cutter finish a part: one thing changed, by how much, and what of that is known."""
+"""What-if answers name the change that would make a cutter finish a part: the thing, the amount, and how far that is known."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -97,7 +97,7 @@ class Move:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """What to do next, and what it gains.
+    """A step is a thing to do next; its gain was judged on every sample.
 
     Attributes
     ----------
@@ -112,8 +112,8 @@ class Step:
     setups : tuple of (float, float, float)
         Setup axes in which they do.
     option : str, optional
-        What to say on the command line: `--cutter` beside what is said there, all else in place of its like. None where no option
-        says it.
+        The options for the command line: `--cutter` is added to those of now, each other option replaces the same option. None
+        where no option says it.
     remains : tuple of Patch
         The largest areas that stay lost.
     """
@@ -131,7 +131,7 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Mend:
-    """What would make one cutter finish a part.
+    """A what-if answer: the changes that would make one cutter finish a part, and the next steps.
 
     Attributes
     ----------
@@ -143,11 +143,11 @@ class Mend:
     changes : tuple of Change
         Those that help first, then those that could not be decided, then those that do not; within each in the order of THINGS.
     why : str
-        What is to be said before all of them; empty where that is nothing.
+        A remark that comes before all of them; may be empty.
     share : float
         Of the finished area that is lost now, in all setups of the plan.
     steps : tuple of Step
-        What to do next: what leaves least first, an area to leave out last. Empty where they were not looked for.
+        The next steps: first the one that leaves least, last an area to leave out. Empty where they were not looked for.
     areas : tuple of Patch
         Connected areas that are lost now, the largest first, and how many more there are.
     unsure : bool

@@ -83,7 +83,7 @@ def pair(value: Any, what: str) -> tuple[float, float]:
 
 
 def choice(value: Any, what: str) -> None:
-    """What may be words or objects; which objects, only the part can tell."""
+    """Refuse a value that can be neither words nor faces; only the part can tell which objects are its faces."""
     if isinstance(value, bool | float | complex | bytes | Mapping | Set):
         raise OptionError(f"{what} must be words or faces of the part, not {shown(value)}")
 

@@ -22,7 +22,7 @@ def working_height(cutter: Cutter) -> float:
 
 
 def grown(cutter: Cutter, by: float) -> Assembly:
-    """What of a cutter counts, and all points that are no farther from it than a distance, mm.
+    """Build the cutter as far as it counts, with all points that are no farther from it than a distance, mm.
 
     Neck, shank and holder are grown exactly. The flutes' pieces hold a little more at their edges, never less.
 
@@ -53,12 +53,12 @@ def rungs(cutter: Cutter) -> Floats:
 
 
 def part_words() -> dict[int, str]:
-    """What the parts of an assembly are called."""
+    """Give the names of the parts of an assembly, by their numbers."""
     return {FLUTES: "flutes", **{number: word for word, number in PARTS.items()}}
 
 
 def _from(row: list[float], low: float) -> list[float]:
-    """What of a piece is not below a height."""
+    """Cut a piece off below a height, mm, and keep the rest."""
     if row[LOW] >= low:
         return row
     if row[KIND] == ARC:

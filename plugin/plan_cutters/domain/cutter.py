@@ -121,7 +121,7 @@ class Cutter(Dimensions):
 
     @property
     def stages(self) -> tuple[tuple[Part, float, Segment], ...]:
-        """What stands above the flutes, from there up: its part, the height over the tip at which it begins, mm, the stage."""
+        """List the segments above the flutes, upwards: the part, the height over the tip at which it begins, mm, the segment."""
         return stages(self)
 
     @property

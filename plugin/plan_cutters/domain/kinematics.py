@@ -98,8 +98,10 @@ class Kinematics(Record):
         return found
 
     def positions(self, axis: Floats) -> tuple[Floats, NDArray[np.int8], NDArray[np.bool_]]:
-        """What holds tool axes (n, 3): both solutions (n, 2, k), rad, nan where beyond a limit; the one to take (n,), that with
-        the smaller angles, -1 for none; where (n,) the axis next to the part is near to the tool axis: singular.
+        """Find the angles that hold tool axes (n, 3).
+
+        They are: both solutions (n, 2, k), rad, nan where beyond a limit; the one to take (n,), that with the smaller angles, -1
+        for none; and where (n,) the axis next to the part is near to the tool axis, so that the position is singular.
         """
         found = self.angles(axis)
         for k, (low, high) in enumerate(self.limit):

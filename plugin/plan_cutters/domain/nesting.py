@@ -1,4 +1,4 @@
-"""What a cutter need not search, because of cutters that it lies within or that lie within it."""
+"""Save a cutter a part of its search, because it lies within cutters that were judged, or they lie within it."""
 
 from collections.abc import Mapping, Sequence
 
@@ -53,15 +53,15 @@ def _bands(cutter: Cutter) -> list[tuple[bool, float, float, float, float]]:
 
 
 def handed(cutter: Cutter, judged: Mapping[Cutter, Verdicts], n: int) -> Verdicts:
-    """What follows for a cutter from those already judged: postures, and samples that it cannot reach either.
+    """Infer verdicts on a cutter from cutters already judged: known postures, and samples that it cannot reach either.
 
-    A posture that is safe for a cutter is so for every cutter inside it: what reaches into the smaller body reaches at
-    least as deep into the larger one. So a sample at which the smaller one is
-    blocked at every posture is lost to the larger one too.
+    A posture that is safe for a cutter is safe for every cutter inside it: an obstacle that reaches into the smaller body reaches
+    at least as deep into the larger one. So a sample at which the smaller one is blocked at every posture is inaccessible to the
+    larger one too.
 
     Returns
     -------
-    Reach
+    Verdicts
         UNJUDGED where nothing follows; where inaccessible, the reason of the smaller cutter.
     """
     known = blank(n)

@@ -12,7 +12,7 @@ NoteCode = Literal[
 
 
 class Note(NamedTuple):
-    """What the verdicts do not say."""
+    """A note tells a reader of the plan something that the verdicts do not say."""
 
     code: NoteCode
     text: str

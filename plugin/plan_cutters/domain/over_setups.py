@@ -1,4 +1,4 @@
-"""What one cutter reaches over several setups, one after the other."""
+"""Combine the verdicts of one cutter over several setups, one after the other."""
 
 from collections.abc import Sequence
 
@@ -11,16 +11,16 @@ from plan_cutters.domain.verdicts import AXIS_LIMIT, FIXTURE, INACCESSIBLE, UNDE
 
 
 def over_setups(each: Sequence[Verdicts]) -> tuple[Verdicts, Ints]:
-    """What is reached in one setup or another, and in which.
+    """Combine the verdicts of all setups, and name the setup that reaches each sample.
 
     Parameters
     ----------
-    each : sequence of Reach
+    each : sequence of Verdicts
         In each setup, of the same n samples.
 
     Returns
     -------
-    Reach
+    Verdicts
         Verdict and posture of the first setup that reaches a sample. Where none does: undecided if it is so in any; the reason
         is that of the first one in which not the axis limit alone leaves nothing, or the fixture if that is so in any.
     (n,) int32

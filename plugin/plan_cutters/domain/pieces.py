@@ -96,7 +96,7 @@ def seam(lower: float, lower_inset: float, upper: float, upper_inset: float, at:
 def between(
     lower: float, lower_flank_angle: float, upper: float, upper_flank_angle: float, at: float, inset: float, part: int
 ) -> list[list[float]]:
-    """What lies deeper than `inset` over a re-entrant corner of which both sides are moved in: it may be in neither of them.
+    """Give the piece deeper than `inset` over a re-entrant corner: with both sides moved in, it may be in neither of them.
 
     Its nearest point is the corner, of the narrower of two radii, where sides meet that lean (rad) from the axis. Of the
     directions from there inwards each lies within half the corner's turn of one side's own.

@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 
 class Reason(NamedTuple):
-    """What is known of a reason but where it holds.
+    """A reason has words, a hint, a colour and patterns; the samples for which it holds are not stored here.
 
-    `name` is a label, `noun` stands after "lost to", `hint` is tried first against it (nothing of that is computed). `colour` is
-    sRGB; `pattern`, on the page, and `hatch`, on sheets as matplotlib writes it, are the second channel.
+    `name` is a label, `noun` stands after "lost to", `hint` is the thing to try first (it is not computed). `colour` is sRGB;
+    `pattern`, on the page, and `hatch`, on sheets as matplotlib writes it, show the same without colour.
     """
 
     code: str

@@ -1,4 +1,4 @@
-"""What follows from a cutter's words: where its flutes end, what stands above them, where it touches, and that it can exist."""
+"""Derive the shape from a cutter's dimensions: flutes, the segments above, the contacts; and check that it can exist."""
 
 import math
 from itertools import pairwise
@@ -101,7 +101,7 @@ def lens_height(cutter: Dimensions) -> float:
 
 
 def stages(cutter: Dimensions) -> tuple[tuple[Part, float, Segment], ...]:
-    """What stands above the flutes, from there up: its part, the height at which it begins, the stage."""
+    """List the segments above the flutes, upwards: the part, the height over the tip at which it begins, mm, and the segment."""
     found: list[tuple[Part, float, Segment]] = []
     top = flute_length(cutter)
     for stage in cutter.necks:

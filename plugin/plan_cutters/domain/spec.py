@@ -57,7 +57,7 @@ def dimensions(spec: str) -> dict[str, Any]:
 
 
 def _wrong(spec: str) -> str:
-    """What is wrong with a text that is no cutter, and what would be right."""
+    """Say why a text is no valid cutter, and how it should be written."""
     begun = _CUTTER.match(spec.strip())
     if begun is None:
         return (f"cutter {spec!r} is not of the form R6L80 (radius 6 mm, length 80 mm) or D12L80 (diameter 12 mm, length "

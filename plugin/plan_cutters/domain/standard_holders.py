@@ -22,7 +22,7 @@ class Nose(NamedTuple):
 
 
 class Taper(NamedTuple):
-    """What of a holder stands below its gauge line, mm: flange, the body behind it, and the usual gauge length.
+    """The dimensions of a holder below its gauge line, mm: the flange, the body behind it, and the usual gauge length.
 
     flange, depth : float
         Diameter, and how far it reaches down from the gauge line or the contact face.
@@ -143,7 +143,7 @@ def _taper(plain: str) -> Taper | None:
 
 
 def _near(plain: str) -> str:
-    """What may have been meant."""
+    """Suggest holders whose names are like an unknown one, or list the known ones."""
     known = words()
     by = {word.replace("-", ""): word for word in known}
     near = [by[each] for each in get_close_matches(plain.partition("x")[0], by, 3, 0.5)]

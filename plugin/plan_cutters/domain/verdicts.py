@@ -38,7 +38,7 @@ Bytes = NDArray[np.uint8]
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Verdicts(Record):
-    """What one cutter reaches, sample by sample.
+    """The verdicts of one cutter, sample by sample, with the posture found or the reason.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class Verdicts(Record):
         return np.asarray(self.verdict == INTERFERENCE_FREE)
 
     def of(self, rows: NDArray[np.int64]) -> "Verdicts":
-        """What is reached of some samples."""
+        """Take the verdicts of some samples."""
         return Verdicts(*(getattr(self, name)[rows] for name in Verdicts.__slots__))
 
 

@@ -27,7 +27,7 @@ _FAULTS = (zipfile.BadZipFile, zlib.error, OSError, EOFError, ValueError, Runtim
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """What an array is said to be: its type (`<f8`), its shape, and how many bytes stand before its numbers."""
+    """The header of an array states its type (`<f8`), its shape, and how many bytes stand before its numbers."""
 
     dtype: str
     shape: tuple[int, ...]
@@ -184,6 +184,6 @@ def _most() -> int:
 
 
 def _said(fault: BaseException) -> str:
-    """What a fault says of itself, on one line."""
+    """Shorten the message of a fault to one line."""
     text = " ".join(str(fault).split())[:80]
     return f": {ascii(text)[1:-1]}" if text else ""

@@ -71,7 +71,7 @@ class Content:
 
     @classmethod
     def of(cls, path: str | os.PathLike[str]) -> Self:
-        """What a regular file holds."""
+        """Read the content of a regular file."""
         return cls(Path(path), data_of(path, cls.noun, cls.error))
 
     @property
@@ -108,7 +108,7 @@ class Content:
 
     @cached_property
     def json(self) -> Any:
-        """What JSON it holds; None where it is none."""
+        """Read the content as JSON; the result is None where it is no valid JSON."""
         if self.head[:1] not in ("{", "["):
             return None
         try:
@@ -138,7 +138,7 @@ class Content:
 
     @cached_property
     def members(self) -> dict[str, zipfile.ZipInfo] | None:
-        """What a zip archive holds, by name; None where it is none."""
+        """List the members of a zip archive by name; the result is None where the file is no zip archive."""
         if not self.data.startswith((b"PK\x03\x04", b"PK\x05\x06")):
             return None
         try:

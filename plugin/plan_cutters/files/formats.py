@@ -1,4 +1,4 @@
-"""What a table of formats is made of: those that are read, and those that are known well enough to say what to give instead."""
+"""A table of formats lists those that are read, and those that are only recognised, with advice on the file to give instead."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ class Format(Generic[Asked, Read]):
 
 @dataclass(frozen=True, slots=True)
 class Foreign:
-    """What is recognised but not read: its name, its content, and what to do instead."""
+    """A foreign format is recognised but not read: it has a name, a test of the content, and advice."""
 
     name: str
     recognises: Callable[[Any], bool]

@@ -35,7 +35,7 @@ class Lock:
     out : Path
         The folder; it need not be there.
     named : callable, optional
-        Told the lock's file before it exists.
+        Called with the lock's file before it exists.
     staging : Path, optional
         The folder beside it that its owner is about to make, which goes with it: the one of an owner that was killed is removed.
 
@@ -163,7 +163,7 @@ def _stands(handle: int, file: Path) -> bool:
 
 
 def _said(file: Path) -> dict[str, object]:
-    """What an owner wrote; nothing where it has not yet."""
+    """Read the entry that the owner of a lock wrote; it is empty where the owner has not written yet."""
     with contextlib.suppress(OSError, ValueError, RecursionError):
         with file.open("rb") as opened:
             found = json.loads(opened.read(_LONGEST))

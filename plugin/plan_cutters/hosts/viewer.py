@@ -1,4 +1,4 @@
-"""What hosts show of a result: kernel shapes with names and colours, by groups."""
+"""Make the shapes of a result that a host shows: kernel shapes with names and colours, in groups."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

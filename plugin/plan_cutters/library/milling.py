@@ -51,7 +51,7 @@ class UnfitError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Ask:
-    """What is assumed of tools that do not say it.
+    """These values are assumed for tools that do not state them.
 
     stickout : float, optional
         mm.
@@ -75,7 +75,7 @@ def entry_of(tool: Listed, ask: Ask) -> Entry:
 
 
 def cause_of(error: CutterError) -> str:
-    """What is wrong, without the id of a cutter that cannot exist."""
+    """Say the cause of an error without the id of the cutter, because such a cutter cannot exist."""
     head, colon, rest = error.cause.partition(": ")
     return rest if colon and head.startswith("cutter ") else error.cause
 

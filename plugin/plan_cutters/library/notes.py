@@ -1,4 +1,4 @@
-"""What a drawing says of a tool assembly: the dimensions of its parts, lengths along its axis, and all of it in one text."""
+"""Write the notes on the drawing of a tool assembly: dimensions of its parts, lengths along its axis, and all in one text."""
 
 import math
 from typing import NamedTuple
@@ -41,7 +41,7 @@ def across(radius: float, upper: float | None = None) -> str:
 
 
 def notes_of(cutter: Cutter, line: Outline) -> list[Note]:
-    """What is said of each part and stage, from the tip up."""
+    """Write a note on each part and segment, from the tip upwards."""
     flutes = max((s for s in line.of("flutes") if s.end[1] > s.start[1]), key=lambda s: s.end[1] - s.start[1])
     found = [Note(flutes.at(0.5), _cutting(cutter))]
     holder = 0
@@ -95,7 +95,7 @@ def spans_of(cutter: Cutter) -> list[Span]:
 
 
 def facts_of(cutter: Cutter) -> list[str]:
-    """What is true of the whole."""
+    """List the facts of the whole assembly: its holder, allowance and clearance."""
     holder = "no holder"
     if cutter.holder:
         holder = f"holder: {legible(cutter.holder.name)}" if cutter.holder.name else "a holder without a name"

@@ -1,4 +1,4 @@
-"""What formats hand on: a tool as it is listed, its numbers in mm and degrees, and what was wrong with them."""
+"""All formats hand on raw tools: a tool as the file lists it, its numbers in mm and degrees, and the faults found in them."""
 
 import math
 import unicodedata
@@ -131,7 +131,7 @@ class Listed:
     notes: list[str] = field(default_factory=list)
 
     def tried(self, make: Callable[[], Any], otherwise: Any) -> Any:
-        """What is made of a part of the tool; where that cannot be read, the fault is kept and `otherwise` stands for it."""
+        """Make a part of the tool; where it cannot be read, record the fault and return `otherwise` in its place."""
         try:
             return make()
         except (FaultError, CutterError) as fault:
@@ -139,7 +139,7 @@ class Listed:
             return otherwise
 
     def word(self, key: str) -> str:
-        """What the file calls a dimension."""
+        """Give the name that the file has for a dimension."""
         return self.words.get(key, key)
 
     def said(self, key: str) -> str:
@@ -180,7 +180,7 @@ class Listed:
 
 @dataclass(slots=True)
 class Found:
-    """What a reader finds in a file."""
+    """A reader finds these tools, holders and notes in a file."""
 
     tools: list[Listed | Entry] = field(default_factory=list)
     holders: list[Holder] = field(default_factory=list)

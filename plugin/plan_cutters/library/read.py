@@ -116,7 +116,7 @@ def nothing(library: Library) -> LibraryError:
 
 
 def holder_of(given: Any) -> Holder | str:
-    """What `--holder` takes: `none`, a text as `R15L30`, or a file with a holder; `FILE#NAME` where it has several.
+    """Read a value of `--holder`: `none`, a text as `R15L30`, or a file with a holder; `FILE#NAME` where it has several.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What a tool library holds: each entry with the cutter that it became or why it became none."""
+"""A tool library holds entries: each has the cutter that was made of it, or the reason why none was made."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field

@@ -82,7 +82,7 @@ def _mm(value: float) -> str:
 
 
 class Sheet:
-    """What is drawn, from the ground up: fills and lines first, texts over them.
+    """A sheet collects a drawing in layers: fills and lines at the bottom, texts over them.
 
     Parameters
     ----------

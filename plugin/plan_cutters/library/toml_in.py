@@ -72,7 +72,7 @@ class ToolTable(BaseModel):
 
 
 class LackError(Exception):
-    """What is missing, and how to add it."""
+    """A value is missing; the message says which, and how to add it."""
 
 
 def is_toml(content: Content) -> bool:

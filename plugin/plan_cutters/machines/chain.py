@@ -81,7 +81,7 @@ def ranged(low: float | None, high: float | None, size: float) -> tuple[float, f
 
 
 def narrowed(limits: Sequence[tuple[float, float] | None], what: str) -> tuple[float, float] | None:
-    """What all of several limits allow."""
+    """Give the range that all of several limits allow; None where there is no limit."""
     given = [each for each in limits if each is not None]
     if not given:
         return None

@@ -1,4 +1,4 @@
-"""What a machine can do, in numbers and words: the share of all directions that it holds, its angles, its tool axes."""
+"""Explain a machine in numbers and words: the share of all directions that it holds, its angles, its tool axes."""
 
 import math
 from typing import NamedTuple
@@ -64,7 +64,7 @@ class Solution(NamedTuple):
 
 
 def solutions(machine: Machine, axis: Floats) -> list[Solution]:
-    """What holds a tool axis (3,), in the machine's frame: within the limits, the one to take first.
+    """Find the angles within the limits that hold a tool axis (3,) in the machine's frame; the solution to take comes first.
 
     Raises
     ------
@@ -123,7 +123,7 @@ def limits_text(axis: Axis) -> str:
 
 
 def summary(machine: Machine) -> list[str]:
-    """What a machine can do, in plain sentences."""
+    """Describe in plain sentences which tool axes a machine can hold."""
     rotary = machine.rotary
     said = []
     if not machine.limited:

@@ -18,7 +18,7 @@ class Content(content.Content):
 
 
 class Added(NamedTuple):
-    """What is said beside a file.
+    """The user adds these facts to a machine's file, where the file leaves them open.
 
     Attributes
     ----------

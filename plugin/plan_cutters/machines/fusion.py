@@ -79,7 +79,7 @@ def _name(content: Content) -> str:
 
 
 def _controls(found: Any) -> dict[str, dict[str, Any]]:
-    """What the controller says of each part, by its id."""
+    """Gather the controller's settings of each part, by its id."""
     controller = found.get("controller")
     inner = controller.get("default", controller) if isinstance(controller, dict) else None
     parts = inner.get("parts") if isinstance(inner, dict) else None

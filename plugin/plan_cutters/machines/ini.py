@@ -92,7 +92,7 @@ def _pin(name: str) -> str:
 
 
 class Hal:
-    """What HAL lines set: pins and signals. Lines stand in the file, or in HAL files beside it."""
+    """Read the pins and signals that HAL lines set. The lines stand in the file, or in HAL files beside it."""
 
     def __init__(self, ini: Ini) -> None:
         self.ini = ini
@@ -136,7 +136,7 @@ class Hal:
                 self.signal_of[_pin(pin)] = _pin(signal)
 
     def value(self, pin: str, default: float) -> float | None:
-        """What a pin is set to, `default` where nothing sets it; None where something else feeds it."""
+        """Give the value that a pin is set to: `default` where nothing sets it, None where something else feeds it."""
         text = self.pins.get(pin)
         if pin in self.signal_of:
             text = self.signals.get(self.signal_of[pin])

@@ -54,7 +54,9 @@ def described(path: str | os.PathLike[str], added: str = "") -> tuple[Machine, s
 
 
 def machine_of(given: Any) -> Machine:
-    """What `--machine` takes: `unlimited`, `tilt:DEG`, a built-in name, or a file; `FILE#C,A` where the file leaves that open.
+    """Read a value of `--machine`: `unlimited`, `tilt:DEG`, a built-in name, or a file.
+
+    `FILE#C,A` gives the order of the rotary axes where the file leaves it open.
 
     Raises
     ------

@@ -45,7 +45,7 @@ class Staging:
     ----------
     out : Path
     named : callable, optional
-        Told the folder and the lock before they exist, so that whoever ends this process at any moment can take them away.
+        Called with the folder and the lock before they exist, so that whoever ends this process at any moment can take them away.
 
     Raises
     ------
@@ -91,7 +91,7 @@ class Staging:
 
 
 class Onlooker(Protocol):
-    """Told of the writing as it goes on."""
+    """An onlooker is called as the writing goes on."""
 
     def safe(self, plan: "Plan") -> None:
         """The plan and the arrays are in the output; models follow."""

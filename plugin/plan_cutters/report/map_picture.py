@@ -19,7 +19,7 @@ _TITLE, _NOTE, _TITLE_LINE, _NOTE_LINE = 11, 8, 0.23, 0.168
 
 
 class Cause(NamedTuple):
-    """What is drawn of a map: its name in it, its words, its colour and its hatch."""
+    """A map shows a cause with these: its name in the map, its words, its colour and its hatch."""
 
     name: str
     words: str
@@ -46,7 +46,9 @@ OTHER = Cause("other", "not free", "#555555", "")
 
 
 def forbidden(found: Any, low: float, high: float) -> dict[str, list[Floats]]:
-    """What each cause forbids in a posture map, rad, at each rotation (k, 2), none of it twice: the first cause has it.
+    """Find the tilts that each cause forbids in a posture map: intervals (k, 2) at each rotation, rad.
+
+    No tilt is counted twice: it belongs to the first cause that forbids it.
 
     Parameters
     ----------

@@ -173,5 +173,5 @@ def write_merged(result: Judged, split: Any, path: Path) -> None:
 
 
 def product(result: Judged) -> str:
-    """What the part is called."""
+    """Give the name of the part: that of its file, without the suffix, or "part"."""
     return Path(result.part.file).stem if result.part.file else "part"

@@ -110,7 +110,7 @@ def _fixtures(result: Judged) -> list[Body]:
 
 
 def _near(part: Body, fixtures: list[Body]) -> Floats:
-    """What is to fill the views, points (n, 3): the part, and of fixtures what is within half its size of it."""
+    """Give the points (n, 3) that must fill the views: the part, and its fixtures as far as half its size around it."""
     points = part.corner.reshape(-1, 3)
     low, high = points.min(axis=0), points.max(axis=0)
     room = 0.5 * float(np.linalg.norm(high - low))

@@ -1,4 +1,4 @@
-"""What writers take: a plan with the arrays behind it."""
+"""All writers take an object of this form: a plan with the arrays behind it."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Protocol

@@ -27,7 +27,7 @@ def write_csv(result: Judged, _split: object, path: Path) -> None:
 
 
 def _cells(column: Column) -> list[list[Any]]:
-    """What to write, one list for each column of text."""
+    """Make the cells of a column, one list for each column of the file."""
     values = column.values
     if column.words is not None:
         codes, index = np.unique(values, return_inverse=True)

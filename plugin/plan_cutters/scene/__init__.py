@@ -1,4 +1,4 @@
-"""What every stage judges under: obstacles and what they enclose, faces chosen, spacing, conditions, threads.
+"""Every stage judges in this scene: obstacles and the bodies they enclose, chosen faces, spacing, conditions, threads.
 
 May use: domain, kernels, and `cad_io`.
 """

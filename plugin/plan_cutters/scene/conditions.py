@@ -1,4 +1,4 @@
-"""What every stage judges a cutter under, and the search for a posture that several of them ask for."""
+"""Every stage judges a cutter under these conditions; several of them use the search for a posture that is here, too."""
 
 from dataclasses import dataclass, replace
 
@@ -71,7 +71,7 @@ class Conditions(Record):
 
     @property
     def ranges(self) -> Ranges:
-        """What kernels take of postures and machine."""
+        """Give the postures and the limits of the machine, in the form that kernels take."""
         return ranges_of(self.machine, self.setup, self.postures, self.x)
 
     @property
@@ -90,7 +90,7 @@ class Conditions(Record):
 
 
 def ranges_of(machine: Machine, setup: Floats, postures: PostureRange, x: Floats | None = None) -> Ranges:
-    """What kernels take of postures and machine."""
+    """Put the postures and the limits of a machine into the form that kernels take."""
     rotations, (low, high) = postures.rotations, postures.tilt
     rotary = rotary_of(machine.kinematics(frame_of(setup, x)))
     if len(rotary.aim):
@@ -176,7 +176,7 @@ def search_postures(
     strict : bool
         Only postures that curvature at the contact allows, as if there were no tolerance.
     progress : callable, optional
-        Told how many pieces of the work are done, of how many.
+        Called with the number of pieces of work that are done, and the number of all.
     work : Work, optional
         Where what is looked at is counted.
 

@@ -1,4 +1,4 @@
-"""What covers surface of the part: bodies that overlap others or stand on them, and sheets that lie on a body."""
+"""Find the covers of the part's surface: bodies that overlap others or stand on them, and open shells that lie on a body."""
 
 from dataclasses import dataclass
 from typing import Literal

@@ -36,7 +36,7 @@ _LISTED, _LONGEST = 5, 60
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
-    """What becomes of the faces of a part; those in neither are check faces.
+    """The choice makes some faces of a part targets and ignores some; those in neither list are other faces.
 
     Attributes
     ----------

@@ -47,7 +47,7 @@ class _Body(Record):
 
 
 def read(fixture: Fixture, kept: Kept, *, timeout: float = TIMEOUT) -> Part | Mesh | None:
-    """What a fixture's source holds; None for words.
+    """Read the source of a fixture; the result is None where words describe the fixture.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def _read(fixture: Fixture, timeout: float) -> Part | Mesh:
 def joined(
     around: Surroundings, fixtures: Sequence[Fixture], chord: float, kept: Kept, setup: Sequence[float] = (0.0, 0.0, 1.0)
 ) -> Surroundings:  # fmt: skip
-    """What stands around a part with fixtures.
+    """Add the fixtures to the surroundings of a part.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def joined(
     chord : float
         Chord error to ask for, mm.
     kept : mapping, changed
-        What is known of fixtures by their sources: it is not found again.
+        Fixtures that are known, by their sources: they are not read again.
     setup : sequence of float
         Unit setup axis, across which tables lie.
 

@@ -23,7 +23,7 @@ _AWAY, _BALL = 2.0, 1.5
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Cover(Record):
-    """What a buried contact lies under.
+    """A contact inside material lies under this face.
 
     Attributes
     ----------

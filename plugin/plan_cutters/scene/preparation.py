@@ -55,7 +55,7 @@ class Prepared(Record):
 
     @property
     def setups(self) -> tuple[Conditions, ...]:
-        """What cutters are judged under in each setup that was asked for, the first one first."""
+        """Give the conditions for judging cutters in each requested setup, the first one first."""
         options = self.options
         places = options.other_placements or (None,) * len(options.other_setups)
         found = [self.conditions]

@@ -1,7 +1,7 @@
-"""What verdicts depend on, written beside them; and whether what is asked later is the same question.
+"""Write down beside verdicts the question that they answer, and check whether a later question is the same.
 
-An answer that is stored is one to the question that it was found for. What a machine, a setup or a narrower range of postures
-changes can be found from the maps; what anything else changes cannot, so it is refused by its name.
+A stored answer belongs to the question for which it was found. The maps tell the effect of another machine, another setup or a
+narrower range of postures. They do not tell the effect of any other change, so that change is refused by its name.
 """
 
 import dataclasses
@@ -40,7 +40,7 @@ _UNSAID = "these maps do not say what they were made for: write them again with 
 
 
 def question(ready: Prepared, cutter: Cutter) -> dict[str, Any]:
-    """What the verdicts of a cutter depend on, as JSON has it; lengths mm, angles rad.
+    """Gather all that the verdicts of a cutter depend on, in the form of JSON; lengths mm, angles rad.
 
     Parameters
     ----------

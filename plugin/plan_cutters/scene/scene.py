@@ -127,13 +127,13 @@ class Scene(Record):
 
     @property
     def options(self) -> dict[str, Any]:
-        """What was asked for, as options of a plan."""
+        """Give the requested values as options of a plan."""
         return {"setup": self.setup, "flip": self.flip, "ignore": self.ignore, "tolerance": self.asked,
                 "fixtures": self.fixtures}  # fmt: skip
 
     @property
     def _sources(self) -> Kept:
-        """What was read of fixtures."""
+        """Keep the fixtures that were read, so that none is read twice."""
         kept: Kept = self.__dict__.setdefault("_kept", {})
         return kept
 
@@ -148,8 +148,9 @@ class Scene(Record):
             read(each, self._sources, timeout=timeout)
 
     def surround(self, at: At = lambda whose, face: None, *, jobs: int = 1) -> Surroundings:
-        """What is, and what may be, in the way; if there is any work to do, `at` is told whose goes on at which face, and `jobs`
-        faces are worked on at a time.
+        """Gather the possible and the certain obstacles, unless that was done before.
+
+        While it works, `at` is called with the owner of the work and the face; `jobs` faces are worked on at a time.
 
         Raises
         ------
@@ -175,7 +176,7 @@ class Scene(Record):
 
     @property
     def around(self) -> Surroundings:
-        """What is, and what may be, in the way."""
+        """Give the possible and the certain obstacles."""
         return self.surround()
 
     @property

@@ -1,4 +1,4 @@
-"""What is, and what may be, in a cutter's way: everything that stands around the faces to machine."""
+"""Gather the possible and the certain obstacles: everything that stands around the faces to machine."""
 
 from collections.abc import Collection, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -61,24 +61,24 @@ class PlacedFixture(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Surroundings(Record):
-    """What is, and what may be, in a cutter's way.
+    """The surroundings hold the possible and the certain obstacles of a part in one setup.
 
     Attributes
     ----------
     possible : Obstacles
-        Everything that may be in the way: what is missed by it is safe.
+        Everything that may be in the way: a posture that misses it is safe.
     certain : Obstacles
-        What certainly is: what is hit by it is blocked. The same object where nothing is uncertain.
+        Everything that is surely in the way: a posture that hits it is blocked. The same object where nothing is uncertain.
     bodies : tuple of Body
-        What encloses something, of the faces that are not left out.
+        Bodies that enclose a volume, made of the faces that are not ignored; for an open shell the volume is a guess.
     missing : tuple of (int, str, str)
-        Faces that stand in the way only as a guess, with the reason and what stands in for each: its own `triangles`, a
+        Faces that stand in the way only as a guess, with the reason and the proxy geometry of each: its own `triangles`, a
         `box`, or `none` where its place is not known.
     on_bodies : tuple of int
         Faces of no body that lie on the faces of one, as construction geometry does.
     lost : tuple of LostFace
         Faces of the file that the part does not have; those it has in another form are in `missing`.
-    fixtures : tuple of Standing
+    fixtures : tuple of PlacedFixture
         Fixtures that stand among the obstacles; nothing else here is about them.
     alone : Surroundings, optional
         The part's own, without the fixtures; None where there are none.
@@ -100,7 +100,7 @@ class Surroundings(Record):
 
     @property
     def enclosing(self) -> tuple[Body, ...]:
-        """What encloses something: the part's bodies, then fixtures."""
+        """List the bodies that enclose a volume: those of the part, then those of fixtures."""
         return (*self.bodies, *(each.body for each in self.fixtures if each.body is not None))
 
     def called(self, face: int) -> str:

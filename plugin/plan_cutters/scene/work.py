@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(slots=True)
 class Work:
-    """What kernels have looked at.
+    """Count the work that kernels have done.
 
     Attributes
     ----------

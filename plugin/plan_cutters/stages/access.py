@@ -54,7 +54,7 @@ def access(
         The samples to search, all by default; the others stay unjudged. Whole pieces of them (`with_company`), or else
         other postures may be found for the same sample.
     progress : callable, optional
-        Told how many pieces of the work are done, of how many.
+        Called with the number of pieces of work that are done, and the number of all.
     work : Work, optional
         Where what is looked at is counted.
     """

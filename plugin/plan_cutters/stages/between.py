@@ -47,7 +47,7 @@ class Cells(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Between(Record):
-    """What of the target area is served.
+    """The search between samples proved this part of the target area.
 
     Attributes
     ----------
@@ -57,13 +57,13 @@ class Between(Record):
     contacts : int
         Contacts looked at, samples included.
     left : int
-        Contacts whose cells are not served, when the budget or the levels ended, and samples of faces without cells.
+        Contacts whose cells are not proved, when the budget or the levels ended, and samples of faces without cells.
     short : int
         Those of them for which the budget was spent.
     dropped : int
         Those of them that were not looked at more closely since too little was to be gained.
     unknown : tuple of int
-        Target faces whose area is not known: none of them is served, and they are not in `share`.
+        Target faces whose area is not known: none of them is proved, and they are not in `share`.
     cells : Cells
     """
 

@@ -97,7 +97,7 @@ class Field:
 
     @property
     def about(self) -> Floats:
-        """What kernels take of the nodes (`kernels.area.zone.Nodes`)."""
+        """Put the nodes into the form that kernels take (`kernels.area.zone.Nodes`)."""
         upper = self.tensor.reshape(-1, 9)[:, [0, 1, 2, 4, 5, 8]]
         largest, spread = steepest(self.tensor, self.wobble)
         return np.column_stack([self.point, self.normal, upper, self.wobble, self.radius, largest, spread])

@@ -23,25 +23,25 @@ def judge(
     progress: Callable[[int, int], None] | None = None,
     work: Work | None = None,
 ) -> Verdicts:
-    """What a cutter reaches of some samples, or of all; nothing else is looked at or changed.
+    """Find the verdicts of a cutter on some samples, or on all; nothing else is looked at or changed.
 
     Parameters
     ----------
     ready : Prepared
     cutter : Cutter
     rows : (m,) int64, optional
-        Samples, ascending. However they are cut, each gets the same answer, bit for bit: what is found for its neighbours
-        is found again.
+        Samples, ascending. However they are divided, each gets the same answer, bit for bit: the search of its neighbours is
+        repeated.
     known : Verdicts, optional
-        What follows from other cutters (`nesting.handed`), for all samples.
+        Verdicts that follow from other cutters (`nesting.handed`), for all samples.
     progress : callable, optional
-        Told how many pieces of the work are done, of how many.
+        Called with the number of pieces of work that are done, and the number of all.
     work : Work, optional
-        Where what is looked at is counted.
+        Counter of the work done.
 
     Returns
     -------
-    Reach
+    Verdicts
         Of the m samples.
     """
     samples, conditions = ready.samples, ready.conditions

@@ -59,7 +59,7 @@ def require(maps: Any) -> None:
 
 
 def arrays_of(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """What `postures.npz` says, by the names of `PostureMaps`: types and shapes go together, no more is looked at.
+    """Read `postures.npz` into the names of `PostureMaps`; types and shapes are checked against each other, but no values.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def arrays_of(path: str | os.PathLike[str]) -> dict[str, Any]:
 
 
 def _about(archive: Archive) -> dict[str, Any]:
-    """What the file says of itself."""
+    """Read the description that the file has of itself."""
     header = archive.headers.get("about")
     if header is None or np.dtype(header.dtype).kind != "U" or math.prod(header.shape) != 1:
         raise archive.fault("it does not say what it is of")
@@ -149,7 +149,7 @@ def _angles(rotations: Floats, refuse: Fault) -> None:
 
 
 def _rows(maps: Any, refuse: Fault) -> None:
-    """What is said of each sample."""
+    """Check the values of each sample."""
     verdict, reason, undecided = maps.verdict, maps.reason, maps.undecided
     for row in np.flatnonzero(~np.isin(verdict, list(WORDS)))[:1].tolist():
         raise refuse(f"verdict, row {row}: {verdict[row]} is none")

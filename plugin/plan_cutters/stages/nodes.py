@@ -1,4 +1,4 @@
-"""What the nodes of a face's grid tell of the surface about them: how far their cells reach, how curvature changes there."""
+"""Infer the surface about the nodes of a face's grid: how far their cells extend, and how curvature changes there."""
 
 import numpy as np
 from numpy.typing import NDArray

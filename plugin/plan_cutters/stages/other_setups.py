@@ -21,7 +21,7 @@ def in_setup(
     x: tuple[float, float, float] | None = None,
     progress: Progress | None = None,
 ) -> Verdicts:
-    """What a cutter reaches in another setup.
+    """Find the verdicts of a cutter in another setup.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def in_setup(
     setup : (float, float, float)
         Unit direction of the part along the machine's spindle at zero angles. The side of open faces stays as it is.
     verdicts : Verdicts
-        What it reaches in the setup of `ready`.
+        Its verdicts in the setup of `ready`.
     x : (float, float, float), optional
         Unit direction of the part along the machine's X there, as `Placement` has it.
     """

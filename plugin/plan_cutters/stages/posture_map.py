@@ -100,7 +100,7 @@ class PostureMap(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Ask(Record):
-    """What a map is asked for: contact, cutter, rotations (k,) and tilts from and to, rad, machine, unit setup axis and, if it
+    """A map is made of these: contact, cutter, rotations (k,) and tilts from and to, rad, machine, unit setup axis and, if it
     is known, unit direction along the machine's X."""
 
     contact: SurfaceSamples

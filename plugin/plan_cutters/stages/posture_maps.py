@@ -121,7 +121,7 @@ class PostureMaps(Record):
         self, machine: Any = None, setup: Any = (0.0, 0.0, 1.0), *, tilt: tuple[float, float] | None = None,
         rotation: tuple[float, float] | None = None, jobs: int = 1, x: Any = None,
     ) -> Verdicts:  # fmt: skip
-        """What the cutter reaches on another machine, or in another setup, without a new search.
+        """Find the verdicts of the cutter on another machine, or in another setup, without a new search.
 
         Parameters
         ----------
@@ -138,7 +138,7 @@ class PostureMaps(Record):
 
         Returns
         -------
-        Reach
+        Verdicts
             INACCESSIBLE where the part itself leaves no posture, or the machine holds none of the free ones; UNDECIDED where only
             tilts that the maps leave undecided may serve.
 
@@ -160,18 +160,18 @@ class PostureMaps(Record):
         return self._laid(machine_given(machine), Placement(setup, x), turns, (low, high), jobs)
 
     def asked(self, part: str | os.PathLike[str] | Part | None = None, **options: Unpack[PlanOptions]) -> Verdicts:
-        """What a plan with these options would find, as far as the maps tell.
+        """Find the verdicts of a plan with these options, as far as the maps tell.
 
         Parameters
         ----------
         part : path or Part, optional
             The maps must be of it; not looked at by default.
         **options
-            As for `plan`. What is not given means what the maps were made with.
+            As for `plan`. An option that is not given has the value that the maps were made with.
 
         Returns
         -------
-        Reach
+        Verdicts
             As `within` gives it.
 
         Raises
@@ -214,7 +214,7 @@ class PostureMaps(Record):
     def _laid(
         self, machine: Machine, place: Placement, turns: NDArray[np.int64], tilt: tuple[float, float], jobs: int
     ) -> Verdicts:
-        """What is reached with a machine at some of the rotations, by their numbers, and tilts."""
+        """Find the verdicts with a machine at some of the rotations, by their numbers, and tilts."""
         from plan_cutters.kernels.limits import any_axis
         from plan_cutters.kernels.maps.mask import mask
 
@@ -316,7 +316,7 @@ def posture_maps(
     most : int, optional
         Samples to map, at most. None: as many as take `map_budget.WORK`.
     progress : callable, optional
-        Told how many pieces of the work are done, of how many.
+        Called with the number of pieces of work that are done, and the number of all.
     """
     from plan_cutters.kernels.maps.free_map import free_map
 

@@ -76,7 +76,7 @@ class Reasons:
         verdicts : Verdicts
             What it reaches over all setups, with the reasons that its search found.
         progress : callable, optional
-            Told how many searches are done, of how many.
+            Called with the number of searches done, and the number of all.
         """
         tell = progress or (lambda done, total: None)
         first, n = self.conditions[0], len(verdicts.verdict)

@@ -1,4 +1,4 @@
-"""What lies within the axis limits in one setup or another, whatever cutter is taken: samples that no cutter can reach there."""
+"""Find the samples within the axis limits of one setup or another: there no cutter at all can reach the other samples."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -84,7 +84,7 @@ def witnesses(
 
 
 def _groups(samples: SurfaceSamples, verdicts: Verdicts, buried: Ints | None) -> Iterator[_Group]:
-    """What is lost, in the order in which samples come."""
+    """Group the samples that are not reached by face, reason and body, in the order in which samples come."""
     lost = np.flatnonzero(verdicts.lost)
     body = np.full(len(lost), -1) if buried is None else buried[lost]
     key = np.stack([samples.face[lost], verdicts.reason[lost], body], axis=1)
@@ -194,7 +194,7 @@ def _least_depth(
 
 
 def _covered(samples: SurfaceSamples, plain: Witness, body: int, conditions: Conditions) -> Witness:
-    """What a sample lies within is the witness: where the way out along the normal leaves it."""
+    """Add the obstacle to the witness of a sample inside material: the point where the way out along the normal leaves it."""
     around = conditions.around
     within = around.enclosing[body] if body >= 0 else None
     way_out = cover(samples.point[plain.sample], samples.normal[plain.sample], around.certain, within)

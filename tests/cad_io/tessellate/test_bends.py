@@ -19,7 +19,7 @@ from cad_io.kernel import faces, is_kernel_error
 from cad_io.surface import Surface
 from cad_io.tessellate import tessellate
 from cad_io.tessellate.bounds import FINE, Ground, bend, most_inside, table_of, window
-from cad_io.tessellate.curves import packed, point, room, strays
+from cad_io.tessellate.curves import packed, point, strays, workspace
 from tests.support.cad_parts import as_nurbs, ball, compound, cone, drilled, patch, real, ring, rod
 from tests.support.distances import farthest_from
 from tests.support.splines import array, bspline
@@ -218,7 +218,7 @@ def test_no_border_strays_farther_than_said(seed, degree, spans, rational):
     curve, knots = spline_2d(rng, degree, spans, rational)
     curves, exact = packed([curve], [(knots[0], knots[-1])])
     assert exact
-    spare, share = room(), np.linspace(0, 1, 60)
+    spare, share = workspace(), np.linspace(0, 1, 60)
     for _ in range(8):
         a, b = rng.uniform(knots[0], knots[-1], 2)
         ends = np.array([curve.Value(a).Coord(), curve.Value(b).Coord()])

@@ -69,7 +69,7 @@ def _piece(data: bytes, level: int) -> bytes:
 
 
 def joined(arrays: Mapping[str, Stored]) -> tuple[dict[str, dict[str, Any]], str]:
-    """What the page is told of arrays, and all of them as base64 of one raw deflate stream (RFC 1951)."""
+    """Describe arrays for the page, and join all of them in one raw deflate stream (RFC 1951), as base64."""
     entries, offset = {}, 0
     for name, each in arrays.items():
         entries[name] = {

@@ -1,4 +1,4 @@
-"""What is found for the page: the worst spots of each cutter with their samples, and the postures found as numbers."""
+"""Collect facts for the page: the worst spots of each cutter with their samples, and the postures found as numbers."""
 
 from dataclasses import dataclass
 from typing import Any

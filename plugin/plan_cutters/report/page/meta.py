@@ -1,4 +1,4 @@
-"""What the page is told beside arrays: the `meta` object of `docs/review_page.md`."""
+"""Make the `meta` object of `docs/review_page.md`: all that the page needs beside arrays."""
 
 import math
 from typing import Any
@@ -82,7 +82,7 @@ def meta_of(
 
 
 def _kinematics(axes: Kinematics) -> dict[str, Any]:
-    """What the page asks which tool axes the machine holds; None: no limit that way."""
+    """Describe the rotary axes: the page finds with them which tool axes the machine holds; None: no limit that way."""
     ends = [[end if math.isfinite(end) else None for end in pair] for pair in np.degrees(axes.limit).tolist()]
     return {"direction": axes.direction.tolist(), "limit_deg": ends, "tool": axes.tool.tolist()}
 

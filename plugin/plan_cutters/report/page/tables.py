@@ -1,4 +1,4 @@
-"""What the page says without JavaScript: its tables and lists, as the template takes them."""
+"""Make the tables and lists that the page shows without JavaScript, in the form that the template takes."""
 
 import math
 from typing import Any, NamedTuple
@@ -77,7 +77,7 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
 
 
 def _why(plan: Plan, story: Story, shown: CutterEntry) -> str:
-    """What stands below the title, in sentences."""
+    """Write the sentences below the title."""
     _, _, about, why = story.headline
     taken = next((c for c in plan.cutters if c.id == story.taken), shown)
     least = taken.least_stick_out.least_mm if taken.least_stick_out else None

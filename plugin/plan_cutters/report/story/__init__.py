@@ -1,1 +1,1 @@
-"""What is told of a plan, once: the terminal, the review page and pictures lay it out. May use: the document and domain."""
+"""Put a plan into words once: the terminal, the review page and pictures lay them out. May use: the document and domain."""

@@ -1,4 +1,4 @@
-"""What was asked for after the plan: least stick-outs, largest radii, what would help and what to do next."""
+"""Put the answers after the plan into words: least stick-outs, largest radii, what-if answers and next steps."""
 
 from collections.abc import Iterator
 
@@ -35,7 +35,7 @@ def answers(plan: Plan) -> list[Line]:
 
 
 def limit(found: StickOutEntry) -> str:
-    """What limits a stick-out, in a sentence."""
+    """Say in a sentence which obstacle or part of the tool limits a stick-out."""
     if found.least_mm is None:
         return f"It was not looked for: {found.limited_by}."
     if found.limited_by == "floor" or found.face is None:
@@ -90,7 +90,7 @@ def _radii(plan: Plan) -> Iterator[Line]:
 
 
 def change(found: ChangeEntry) -> tuple[str, str]:
-    """What is changed, and whether that helps: subject and rest of a sentence."""
+    """Say which thing is changed, and whether that helps: subject and rest of a sentence."""
     subject = _THINGS.get(found.thing, found.thing.replace("_", " "))
     return subject, f"{'helps: ' * bool(found.helps)}{'may help: ' * found.doubted}{found.why}."
 

@@ -1,4 +1,4 @@
-"""What is told of each cutter: what it is, what it reaches, where it fails, and why."""
+"""Describe each cutter: its kind, how much it reaches, where it fails, and why."""
 
 import math
 from collections.abc import Sequence
@@ -34,18 +34,20 @@ class WorstFace:
 
 @dataclass(frozen=True, slots=True)
 class CutterStory:
-    """What is told of a cutter, in words; empty where there is nothing to tell.
+    """A cutter's story has these texts; a text is empty where there is nothing to say.
 
     Attributes
     ----------
     name, tool : str
-        How it is called everywhere; what it is, and how far it stands out of what.
+        Its name in all texts; its kind, and how far it stands out of which holder.
     reached, shares : str, dict
         Of the area, in percent: in all, and by verdict.
     reason, hint, besides : str
-        By which most is lost, what is tried first against it, and what else is in the way within the axis limit.
+        The reason of most of the area that is not reached, the thing to try first against it, and other reasons within the axis
+        limit.
     next, left, between : str
-        Sentences: what to do next, or what would help; what it leaves, why and where; what is known between its samples.
+        Sentences: the next step, or a change that would help; how much is not reached, why and where; how much is known between
+        its samples.
     faces, failing : tuple of WorstFace, int
         The worst faces, and how many there are in all.
     """
@@ -94,19 +96,19 @@ def main_reason(share: AreaShare) -> str:
 
 
 def reason(code: str) -> str:
-    """What a reason is called: nothing where there is none, its code where a newer plan has one."""
+    """Give the name of a reason: it is empty where there is none, and the code where a newer plan has an unknown reason."""
     return REASONS[code].name if code in REASONS else code.replace("_", " ")
 
 
 def _besides(c: CutterEntry) -> str:
-    """What takes part in the axis limit, by samples, the most of them first."""
+    """List the reasons that take part in the axis limit, by samples, the most of them first."""
     ranked = sorted(c.axis_limit_with.items(), key=lambda item: (-item[1], item[0]))
     each = ", ".join(f"{reason(word)} at {count:,}" for word, count in ranked)
     return f"{each} sample{'' if ranked[-1][1] == 1 else 's'}" if each else ""
 
 
 def _next(plan: Plan, c: CutterEntry) -> str:
-    """What to do next, or else what would help, in a sentence."""
+    """Say in a sentence the next step, or else a change that would help."""
     if c.mend is None:
         return ""
     if (step := first_step(c)) is not None:
@@ -127,7 +129,7 @@ def reasons(c: CutterEntry) -> list[str]:
 
 
 def left(plan: Plan, c: CutterEntry) -> str:
-    """What a cutter leaves: how much, why, on which faces, and the worst place."""
+    """Say how much a cutter does not reach, why, on which faces, and the worst place."""
     why = ", ".join(reasons(c))
     if c.undecided:
         why += f"; of it {percent(c.area_share.undecided, some=True, whole=False)} is undecided"
@@ -148,7 +150,7 @@ def left(plan: Plan, c: CutterEntry) -> str:
 
 
 def called(obstacle: str | None) -> str:
-    """What is in the way, as it is told.
+    """Give the name of an obstacle for a text.
 
     >>> called("fixture:table"), called("F12"), called(None)
     ('fixture table', 'F12', '')

@@ -70,7 +70,7 @@ def every(plan: Plan) -> str:
 
 
 def could_not(plan: Plan) -> str:
-    """What could not be judged, in a sentence behind others; empty where all could."""
+    """Say what part could not be judged, in a sentence that follows others; empty where all could be judged."""
     found, number = [], plan.samples.unjudged
     if number:
         faces = [f.id for f in plan.faces if f.target and f.unjudged and f.samples]
@@ -87,12 +87,12 @@ def not_sampled(plan: Plan) -> list[str]:
 
 
 def area(plan: Plan) -> str:
-    """What shares are of: faces without samples may be of no known area."""
+    """Name the area that shares refer to: the area of faces without samples may be unknown."""
     return "the area that could be sampled" if not_sampled(plan) else "the area"
 
 
 def between(plan: Plan, c: CutterEntry) -> str:
-    """What is known of the area between the samples, and what that means; empty where that was not asked for."""
+    """Say how much is known of the area between the samples, and its meaning; empty where that was not requested."""
     return "" if c.area is None else _between(c.area, area(plan))
 
 

@@ -1,4 +1,4 @@
-"""What lies inside other bodies of the part, in sentences."""
+"""Say in sentences how much of the surface lies inside other bodies of the part."""
 
 from collections.abc import Sequence
 
@@ -9,7 +9,7 @@ from plan_cutters.report.story.numbers import figure, percent
 
 
 def inside(plan: Plan, most: int = 5) -> list[str]:
-    """What lies inside other bodies of the part, in sentences: how much, then the bodies that a planner must look at."""
+    """Say how much lies inside other bodies of the part, then name the bodies that a planner must look at."""
     found = plan.inside_other_bodies
     if not found.samples:
         return []

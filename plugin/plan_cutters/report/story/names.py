@@ -17,7 +17,7 @@ _END, _BALL, _BULL = "flat end", "ball end", "bull nose"
 
 
 def kind(cutter: "Cutter | CutterEntry") -> str:
-    """What a cutter is called, whatever its size.
+    """Give the kind of a cutter, whatever its size.
 
     >>> from plan_cutters.domain.cutter import Cutter
     >>> kind(Cutter.parse("D12L80rc6")), kind(Cutter.parse("D12L80"))
@@ -85,7 +85,7 @@ def _numbers(plan: "Plan") -> dict[str, list[str]]:
 
 
 def described(entry: "CutterEntry", name: str) -> str:
-    """What a cutter's name does not say of it: what it is, and how far it stands out of what."""
+    """Describe a cutter beyond its name: its kind, and how far it stands out of which holder."""
     what = called_plainly(entry)
     from plan_cutters.domain.spec import is_spec
 

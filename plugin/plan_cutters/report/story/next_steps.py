@@ -1,4 +1,4 @@
-"""What to do next, in words."""
+"""Put the next steps into words."""
 
 from plan_cutters.document.answers import ChangeEntry, MendEntry, RunEntry, StepEntry
 from plan_cutters.document.model import CutterEntry, Plan
@@ -48,7 +48,7 @@ def _run(run: RunEntry, several: bool) -> str:
 
 
 def effect(step: StepEntry) -> str:
-    """What a step gains.
+    """Say how much a step gains.
 
     >>> effect(StepEntry(changes=[], lost_before=0.348, lost_after=0.322, gained=883, left=9000, cutters=[], setups=[],
     ...                  option=None, why="", remains=[]))
@@ -89,7 +89,7 @@ def cures(mend: MendEntry) -> list[ChangeEntry]:
 
 
 def remaining(mend: MendEntry) -> str:
-    """What stays lost after the best step, as a clause; empty where nothing does."""
+    """Say in a clause which areas are still not reached after the best step; empty where there are none."""
     best = next((step for step in mend.steps if not is_left_out(step)), None)
     if best is None or not best.remains:
         return ""

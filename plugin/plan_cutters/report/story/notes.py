@@ -1,4 +1,4 @@
-"""What makes a verdict unsure, what limits the tool, and the notes of a plan: a code decides who reads them, never a text."""
+"""Give the doubts about verdicts, the limits of the tool and the notes of a plan: a code decides who reads them, never a text."""
 
 from collections.abc import Iterator
 from itertools import zip_longest
@@ -30,7 +30,7 @@ def notes(plan: Plan) -> Iterator[Line]:
 
 
 def warnings(plan: Plan) -> Iterator[Line]:
-    """What is odd about the part."""
+    """Warn of the unusual properties of the part."""
     for text in plan.part.warnings:
         yield Line(text if text.endswith(".") else f"{text}.", "Warning:")
 
@@ -62,13 +62,13 @@ def side(plan: Plan) -> Line:
 
 
 def libraries(plan: Plan) -> Iterator[Line]:
-    """What was read of tool libraries, and what of them is not used, reason by reason."""
+    """Say how many tools were read from tool libraries, and which are not used, reason by reason."""
     for library in plan.libraries:
         yield from library_lines(library)
 
 
 def library_lines(library: LibraryEntry) -> Iterator[Line]:
-    """What was read of a tool library."""
+    """Say how many tools were read from a tool library, and which are not used."""
     unused = len(library.unused)
     more = f"; {unused} {'is' if unused == 1 else 'are'} not used (-v says why)" if unused else ""
     of = f"{library.file} ({library.format}) gives {count(library.cutters, 'cutter')} of {count(library.tools, 'tool')}"
@@ -84,7 +84,7 @@ def library_lines(library: LibraryEntry) -> Iterator[Line]:
 
 
 def machine(plan: Plan) -> str:
-    """What limits the tool axis, and how the part stands."""
+    """Say which machine limits the tool axis, and how the part stands."""
     along = f"spindle points along {axis(plan.effective.setup)} of the part"
     if plan.effective.other_setups:
         along += f", in other setups along {'; '.join(map(axis, plan.effective.other_setups))}"
@@ -94,7 +94,7 @@ def machine(plan: Plan) -> str:
 
 
 def setups(plan: Plan, best: CutterEntry) -> Iterator[Line]:
-    """What no cutter can reach in this setup, which cutter does the rest, and how much is within the limit in other setups."""
+    """Say how much no cutter can reach in this setup, which cutter does the rest, and the area within the limit in others."""
     number, samples = 1 + len(plan.effective.other_setups), plan.samples
     if number > 1:
         each = "; ".join(f"{s.interference_free + s.accessible:,} with {axis(s.axis)}" for s in best.setups)

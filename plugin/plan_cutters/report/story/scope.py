@@ -1,4 +1,4 @@
-"""What was judged and what was not: faces, samples, and what lies between them."""
+"""Say which faces and samples were judged and which were not, and how much is known between the samples."""
 
 from collections.abc import Mapping
 
@@ -19,7 +19,7 @@ def judged(plan: Plan) -> str:
 
 
 def not_judged(plan: Plan) -> list[str]:
-    """What was not judged, and how it is asked for, in a sentence."""
+    """Say in a sentence which faces were not judged, and which option requests them."""
     scope = plan.scope
     if scope is None or not scope.not_judged:
         return []

@@ -17,20 +17,20 @@ from plan_cutters.report.story.scope import not_judged, not_seen
 
 @dataclass(frozen=True, slots=True)
 class Story:
-    """What is told of a plan, in the order in which people read it.
+    """A story puts a plan into words, in the order in which people read them.
 
     Attributes
     ----------
     names : dict
-        Id of a cutter -> how it is called.
+        Id of a cutter -> its name in the texts.
     taken, shown : str
         Ids of the cutter that the headline says to take, if any, and of the one that the models show.
     inside, scope, between : tuple of str
-        What is no surface of the finished part, which comes first; what was not judged or not seen, and what cutters reach
-        together; what is known between the samples.
+        Surface that does not belong to the finished part, which comes first; faces that were not judged or not seen, and how
+        much the cutters reach together; how much is known between the samples.
     setups, answers, notes : tuple of Line
     doubts : dict
-        What makes verdicts unsure, by its kind in the plural.
+        Causes that make verdicts unsure, by their kind in the plural.
     """
 
     names: Mapping[str, str]
