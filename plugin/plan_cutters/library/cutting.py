@@ -91,8 +91,6 @@ def _taper(tool: Listed) -> Cutter:
 
 
 def _dovetail(tool: Listed) -> Cutter:
-    if "TA" not in tool.values:
-        raise UnfitError(f"{tool.word('TA')} is missing: the angle of its flank from the axis")
     return _leaning(tool, -math.radians(tool.values["TA"]))
 
 
@@ -107,8 +105,6 @@ def _face(tool: Listed) -> Cutter:
 def _chamfer(tool: Listed) -> Cutter:
     """A cone from the tip's diameter on, a cylinder where it has become as wide as the tool."""
     v = tool.values
-    if "TA" not in v:
-        raise UnfitError(f"{tool.word('TA')} is missing: the angle of its flank from the axis")
     if "RE" in v:
         raise UnfitError(
             f"{tool.said('RE')}: chamfer mills with a corner radius are not read; write its outline as TOML"
@@ -142,8 +138,6 @@ def _lollipop(tool: Listed) -> Cutter:
     v = tool.values
     radius, flutes = 0.5 * v["DC"], v["LCF"]
     agree_ball(tool)
-    if "DN" not in v:
-        raise UnfitError(f"{tool.word('DN')} is missing: the diameter of its neck")
     neck = 0.5 * v["DN"]
     if neck >= radius - SAME:
         raise UnfitError(

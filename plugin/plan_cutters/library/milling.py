@@ -39,11 +39,13 @@ _OTHERS = re.compile(
 _NEEDED = {
     "DC": "the cutting diameter",
     "LCF": "the length of its flutes",
-    "TA": "the angle of its flank from the axis, degrees",
+    "TA": "the angle of its flank from the axis",
     "DN": "the diameter of its neck",
     "LN": "the length of its neck",
     "outline": "points [[z, r], ...] from the tip up",
 }
+#: Kinds that need more than all others do.
+_NEEDS = {"dovetail": ("TA",), "chamfer": ("TA",), "lollipop": ("DN",)}
 #: Sections between the flutes and the holder that are told apart.
 _MOST_ABOVE = 6
 
@@ -103,9 +105,9 @@ def _cutter(tool: Listed, ask: Ask) -> Cutter:
     if tool.faults:
         raise UnfitError("; ".join(tool.faults), broken=True)
     _agree(tool)
-    _complete(tool, ask)
+    _complete(tool, (*tool.needs, *_NEEDS.get(sort, ())), ask)
     if tool.stated is not None:
-        return _held(tool, _as_stated(tool, tool.stated, _stickout(tool, ask)), _holder(tool, ask))
+        return _as_stated(tool, tool.stated, ask)
     bare = CUTTING[sort](tool)
     length = _stickout(tool, ask)
     if length < tool.values["LCF"] - slack(length):
@@ -117,9 +119,9 @@ def _cutter(tool: Listed, ask: Ask) -> Cutter:
     return _held(tool, _standing(bare, _above(tool, bare, length), length), holder)
 
 
-def _complete(tool: Listed, ask: Ask) -> None:
+def _complete(tool: Listed, needs: tuple[str, ...], ask: Ask) -> None:
     """All that is missing, at once."""
-    lacks = [f"{tool.word(key)} is missing ({_NEEDED[key]})" for key in tool.needs if key not in tool.values]
+    lacks = [f"{tool.word(key)} is missing ({_NEEDED[key]})" for key in needs if key not in tool.values]
     if "LPR" not in tool.values and ask.stickout is None:
         lacks.append(f"{tool.word('LPR')} is missing (the stick-out, from the tip to the holder's nose): add it, or give "
                      "--assume-stickout MM")  # fmt: skip
@@ -214,8 +216,8 @@ def _shank(tool: Listed, at: float, length: float) -> float:
     return 0.5 * tool.values["DMM"]
 
 
-def _as_stated(tool: Listed, stated: Stated, length: float) -> Cutter:
-    """A cutter of our own format, without its holder."""
+def _as_stated(tool: Listed, stated: Stated, ask: Ask) -> Cutter:
+    """A cutter of our own format."""
     radius, neck, shank = 0.5 * tool.values["DC"], tuple(tool.shaft), None
     if "TA" in tool.values and tool.kind in ("flat", "bull", "ball"):
         note_tapered(tool)
@@ -226,6 +228,7 @@ def _as_stated(tool: Listed, stated: Stated, length: float) -> Cutter:
         top = flute_length(Cutter.lollipop(radius=radius, neck_radius=shank, length=10 * radius))
     elif tool.kind == "form":
         top = stated.attributes["outline"][-1][1]
+    length, holder = _stickout(tool, ask), _holder(tool, ask)
     if top is not None and not stated.straight:
         rest = length - top - math.fsum(stage.length for stage in neck)
         if rest <= SAME:
@@ -235,7 +238,8 @@ def _as_stated(tool: Listed, stated: Stated, length: float) -> Cutter:
             shank = _shank(tool, length - rest, length)
         else:
             neck = (*neck, Segment(_shank(tool, length - rest, length), rest))
-    return Cutter(radius, length, corner, tool.name, neck=neck or None, shank_radius=shank, **stated.attributes)
+    made = Cutter(radius, length, corner, tool.name, neck=neck or None, shank_radius=shank, **stated.attributes)
+    return _held(tool, made, holder)
 
 
 def _standing(bare: Cutter, above: tuple[Segment, ...], length: float) -> Cutter:

@@ -185,7 +185,7 @@ def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) 
     stated.attributes = {"shape": "end" if model.type in _ENDS else model.type, "taper": _taper(model, tool),
                          "flutes": flutes or None, "arc_radius": length(model.PRFRAD, "PRFRAD"), "outline": outline,
                          "arc_height": length(model.profile_height, "profile_height"), **given}  # fmt: skip
-    needs = {"DC": True, "LCF": model.LCF != "rest" and not flutes, "TA": model.type in ("taper", "dovetail")}
+    needs = {"DC": True, "LCF": model.LCF != "rest" and not flutes, "TA": model.type == "taper"}
     if model.type in ("lollipop", "form"):
         needs["LCF"] = False
         if model.LCF is not None:
@@ -214,7 +214,7 @@ def _neck(model: ToolTable, tool: Listed, reach: float, needs: dict[str, bool]) 
     if lollipop:
         # Its neck goes on up to the nose, unless a shank of DMM begins where LN ends.
         stated.straight = stated.straight or bool(model.neck) or not reach
-    needs["DN"] = lollipop or bool(reach and not model.neck)
+    needs["DN"] = bool(reach and not model.neck and not lollipop)
     needs["LN"] = "DN" in tool.values and not (lollipop or reach or model.neck)
     if model.neck:
         twice = "LN" if model.LN is not None else "DN" if model.DN is not None and not lollipop else ""
