@@ -252,3 +252,35 @@ def test_a_holder_that_is_called_none_is_no_reason_to_judge_without(tmp_path):
         read(tmp_path, MM + TOOL.replace('"R12:15L20+R15L30"', '"none"') + holder)
     (cutter,) = read(tmp_path, to_toml(read(tmp_path, MM + TOOL + holder)))
     assert cutter.holder.id == "R12:15L20+R15L30"
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{}, {"LB": None}, {"DC": 0}, {"LCF": None}, {"SFDM": None}, {"OAL": 30}, {"LB": None, "OAL": 20}, {"RE": 1}, {"RE": 3},
+     {"DC": None, "LB": None}, {"LB": -4}, {"kind": "ball"}, {"kind": "ball", "RE": 1}, {"kind": "bull"},
+     {"kind": "dovetail"}, {"kind": "lollipop", "LCF": 5}],
+)  # fmt: skip
+@pytest.mark.parametrize("asked", [{}, {"holder": "none"}, {"holder": "R15L30", "assume_stickout": 25}])
+def test_a_tool_is_judged_in_the_words_of_all_formats(tmp_path, change, asked):
+    """The same lack, contradiction or note as of a Fusion tool, but for what the file calls its dimensions."""
+    kinds = {"flat": "flat end mill", "ball": "ball end mill", "bull": "bull nose end mill", "dovetail": "dovetail mill",
+             "lollipop": "lollipop mill"}  # fmt: skip
+    kind, dimensions = change.get("kind", "flat"), {"LB": 40, "DC": 6, "LCF": 12, "SFDM": 8, "OAL": 60}
+    dimensions |= {key: value for key, value in change.items() if key != "kind"}
+    bare = {"shoulder_length": None, "shoulder_diameter": None, "shaft": None, "holder": None}
+    tools = write_json(tmp_path / "a.json", [fusion(kinds[kind], **bare, **dimensions)])
+    words = {"LB": "LPR", "SFDM": "DMM"}
+    own = {words.get(key, key): value for key, value in dimensions.items()}
+    if kind == "lollipop":
+        own.pop("LCF")
+    lines = [f"{key} = {value}" for key, value in own.items() if value is not None]
+    (tmp_path / "a.toml").write_text(f'{MM}[[tool]]\ntype = "{kind}"\n' + "\n".join(lines), encoding="utf-8")
+    theirs, ours = (listing(path, skip_bad=True, **asked).entries[0] for path in (tools, tmp_path / "a.toml"))
+
+    def said(text):
+        for word, own_word in {**words, "shoulder-diameter": "DN", kinds[kind]: kind}.items():
+            text = text.replace(word, own_word)
+        return text
+
+    assert (ours.unused, ours.broken) == (theirs.unused and said(theirs.unused), theirs.broken)
+    assert ours.notes == tuple(said(note) for note in theirs.notes)

@@ -28,7 +28,7 @@ FORMATS: tuple[Format[Ask, Found], ...] = (
     Format("FreeCAD library", (".fctl",), freecad.is_library, _plain(freecad.read_library)),
     Format("FreeCAD bit", (".fctb",), freecad.is_bit, _plain(freecad.read_bit)),
     Format("FreeCAD holder", (".fcholder",), freecad.is_holder, _plain(freecad.read_holder)),
-    Format("plan-cutters TOML", (".toml",), toml_in.is_toml, toml_in.read_toml),
+    Format("plan-cutters TOML", (".toml",), toml_in.is_toml, _plain(toml_in.read_toml)),
     Format("LinuxCNC tool table", (".tbl",), linuxcnc.is_table, _plain(linuxcnc.read_table)),
 )
 

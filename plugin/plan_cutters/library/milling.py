@@ -2,17 +2,17 @@
 
 import math
 import re
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.dimensions import Dimensions
 from plan_cutters.domain.holder import Holder, Segment
-from plan_cutters.domain.shapes import MOST_PIECES, SAME, pieces_at_most, top_radius
+from plan_cutters.domain.shapes import MOST_PIECES, SAME, flute_length, pieces_at_most, top_radius
 from plan_cutters.errors import CutterError
+from plan_cutters.library.cutting import CUTTING, UnfitError, agree_ball, corner_of, note_tapered, slack
 from plan_cutters.library.outlines import fewer, joined, up_to
-from plan_cutters.library.raw_tool import Listed
+from plan_cutters.library.raw_tool import Listed, Stated
 from plan_cutters.library.records import Entry
 
 #: Kinds of end mills that are read, by their usual names: what their names promise.
@@ -35,18 +35,19 @@ _OUTLINE = ("form mill", "radius mill", "thread mill", "circle segment barrel", 
 _OTHERS = re.compile(
     r"drill|\btap\b|ream|counter|bore|boring|probe|turning|laser|plasma|waterjet|deposit|holder|inspect|broach|weld"
 )
+#: What a tool may need, in words.
+_NEEDED = {
+    "DC": "the cutting diameter",
+    "LCF": "the length of its flutes",
+    "TA": "the angle of its flank from the axis",
+    "DN": "the diameter of its neck",
+    "LN": "the length of its neck",
+    "outline": "points [[z, r], ...] from the tip up",
+}
+#: Kinds that need more than all others do.
+_NEEDS = {"dovetail": ("TA",), "chamfer": ("TA",), "lollipop": ("DN",)}
 #: Sections between the flutes and the holder that are told apart.
 _MOST_ABOVE = 6
-#: Dimensions given twice agree up to the rounding of the file, mm and as a share.
-_ROUNDED, _SHARE = 1e-3, 1e-5
-
-
-class UnfitError(Exception):
-    """Why a tool is not used; `broken`: it contradicts itself."""
-
-    def __init__(self, why: str, *, broken: bool = False) -> None:
-        super().__init__(why)
-        self.broken = broken
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +83,8 @@ def cause_of(error: CutterError) -> str:
 
 def _sort(tool: Listed) -> str:
     """Which mill it is."""
+    if tool.stated is not None:
+        return tool.kind
     kind = " ".join((tool.sort or tool.kind).lower().split())
     if kind in MILLS:
         return MILLS[kind]
@@ -102,29 +105,23 @@ def _cutter(tool: Listed, ask: Ask) -> Cutter:
     if tool.faults:
         raise UnfitError("; ".join(tool.faults), broken=True)
     _agree(tool)
-    _complete(tool, ask)
-    bare = _CUTTING[sort](tool)
+    _complete(tool, (*tool.needs, *_NEEDS.get(sort, ())), ask)
+    if tool.stated is not None:
+        return _as_stated(tool, tool.stated, ask)
+    bare = CUTTING[sort](tool)
     length = _stickout(tool, ask)
-    if length < tool.values["LCF"] - _slack(length):
+    if length < tool.values["LCF"] - slack(length):
         raise UnfitError(f"the assumed stick-out of {length:g} mm is shorter than its flutes, {tool.said('LCF')}")
     if bare.shape != "lollipop":
         # What is shorter only by rounding ends where its flutes do.
         length = max(length, tool.values["LCF"])
     holder = _holder(tool, ask)
-    above = _above(tool, bare, length)
-    cutter = _standing(bare, above, length)
-    if holder == "none":
-        return cutter
-    return _held(tool, cutter, holder, own=tool.holder is not None)
+    return _held(tool, _standing(bare, _above(tool, bare, length), length), holder)
 
 
-def _complete(tool: Listed, ask: Ask) -> None:
+def _complete(tool: Listed, needs: tuple[str, ...], ask: Ask) -> None:
     """All that is missing, at once."""
-    lacks = [
-        f"{tool.word(key)} is missing ({what})"
-        for key, what in (("DC", "the cutting diameter"), ("LCF", "the length of its flutes"))
-        if key not in tool.values
-    ]
+    lacks = [f"{tool.word(key)} is missing ({_NEEDED[key]})" for key in needs if key not in tool.values]
     if "LPR" not in tool.values and ask.stickout is None:
         lacks.append(f"{tool.word('LPR')} is missing (the stick-out, from the tip to the holder's nose): add it, or give "
                      "--assume-stickout MM")  # fmt: skip
@@ -134,23 +131,19 @@ def _complete(tool: Listed, ask: Ask) -> None:
         raise UnfitError("; ".join(lacks))
 
 
-def _slack(value: float) -> float:
-    return _ROUNDED + _SHARE * abs(value)
-
-
 def _agree(tool: Listed) -> None:
     """Dimensions that bound each other, or are given twice."""
     v = tool.values
     for low, high in (("LCF", "LPR"), ("LCF", "OAL"), ("LPR", "OAL"), ("LCF", "LN"), ("LN", "LPR"), ("LN", "OAL"), ("TIP", "DC"),
                       ("DC", "DCX")):  # fmt: skip
-        if low in v and high in v and v[low] > v[high] + _slack(v[high]):
+        if low in v and high in v and v[low] > v[high] + slack(v[high]):
             raise UnfitError(f"{tool.said(low)} is more than {tool.said(high)}", broken=True)
     whole = tool.holder is not None and all(key in v for key in ("LF", "LH", "LPR"))
-    if whole and abs(v["LF"] - v["LH"] - v["LPR"]) > _slack(v["LF"]):
+    if whole and abs(v["LF"] - v["LH"] - v["LPR"]) > slack(v["LF"]):
         raise UnfitError(f"{tool.said('LF')} is not {tool.said('LH')} and {tool.said('LPR')} together", broken=True)
     if tool.shaft and "OAL" in v and "LCF" in v:
         top = max(v["LCF"], v.get("LN", 0.0)) + math.fsum(stage.length for stage in tool.shaft)
-        if top > v["OAL"] + _slack(top):
+        if top > v["OAL"] + slack(top):
             raise UnfitError(
                 f"its shaft's sections end {top / tool.scale:.10g} over its tip, more than {tool.said('OAL')}",
                 broken=True,
@@ -163,7 +156,7 @@ def _stickout(tool: Listed, ask: Ask) -> float:
         return own
     assert ask.stickout is not None, "_complete asks for it"
     longest = tool.values.get("OAL")
-    if longest is not None and ask.stickout > longest + _slack(longest):
+    if longest is not None and ask.stickout > longest + slack(longest):
         raise UnfitError(f"the assumed stick-out of {ask.stickout:g} mm is longer than the tool, {tool.said('OAL')}")
     tool.notes.append(f"no {tool.word('LPR')}: the assumed stick-out of {ask.stickout:g} mm is taken")
     return ask.stickout
@@ -178,144 +171,6 @@ def _holder(tool: Listed, ask: Ask) -> Holder | Literal["none"]:
         return "none"
     tool.notes.append(f"no holder: the given one is taken, {ask.holder.name or ask.holder.id}")
     return ask.holder
-
-
-def _ball(tool: Listed, radius: float, promise: str) -> float:
-    """The corner radius, and what the tool then is where its name says otherwise."""
-    corner = tool.values.get("RE", 0.0)
-    if corner > radius + _slack(radius):
-        raise UnfitError(f"{tool.said('RE')} is more than half of {tool.said('DC')}", broken=True)
-    if not corner and promise == "ball":
-        tool.notes.append(f"no {tool.word('RE')}: half of {tool.word('DC')}")
-        return radius
-    if abs(corner - radius) <= _slack(radius):
-        corner = radius
-    is_ = "flat" if not corner else "ball" if corner == radius else "bull"
-    if promise in ("flat", "bull", "ball") and is_ != promise:
-        what = {"flat": "flat end", "bull": "bull nose", "ball": "ball end"}
-        why = tool.said("RE") if corner else f"no {tool.word('RE')}"
-        tool.notes.append(f'called "{tool.kind}", but {why}: read as a {what[is_]}')
-    return corner
-
-
-def _end(tool: Listed, promise: str) -> Cutter:
-    radius, flutes = 0.5 * tool.values["DC"], tool.values["LCF"]
-    if "TA" in tool.values:
-        tool.notes.append(f'called "{tool.kind}", but {tool.said("TA")}: read as tapered')
-        return _leaning(tool, math.radians(tool.values["TA"]))
-    if tool.values.get("TIP", 0.0) and abs(tool.values["TIP"] - tool.values["DC"]) > _slack(radius):
-        tool.notes.append(f"{tool.said('TIP')} is not used: there is no {tool.word('TA')}")
-    return Cutter(radius, flutes, _ball(tool, radius, promise), tool.name, flutes=flutes)
-
-
-def _leaning(tool: Listed, taper: float) -> Cutter:
-    """The diameter of a leaning flank is given at the tip, as if there were no corner."""
-    corner, flutes, tip = tool.values.get("RE", 0.0), tool.values["LCF"], tool.values.get("TIP")
-    if tip is not None and abs(tip - tool.values["DC"]) > _slack(tip):
-        raise UnfitError(
-            f"{tool.said('DC')} and {tool.said('TIP')}: which of them is the diameter at its tip? Give that as "
-            f"{tool.word('DC')}, and no {tool.word('TIP')}"
-        )
-    radius = 0.5 * tool.values["DC"] + corner * (1.0 - (1.0 - math.sin(taper)) / math.cos(taper))
-    if corner > radius + _slack(radius):
-        raise UnfitError(
-            f"{tool.said('RE')} does not fit under a flank of {tool.said('TA')} and {tool.said('DC')}", broken=True
-        )
-    if abs(corner - radius) <= _slack(radius):
-        radius = corner = max(radius, corner)
-    elif abs(corner - 0.5 * tool.values["DC"]) <= _slack(corner):
-        # A half diameter is meant as a ball more often than not: as one it would be given with a smaller diameter.
-        ball = 2.0 * corner * (1.0 - math.sin(taper)) / math.cos(taper)
-        flat = 2.0 * (radius - corner) / tool.scale
-        tool.notes.append(
-            f"{tool.said('RE')} is half of {tool.said('DC')}, but its tip keeps a flat {flat:.4g} wide: "
-            f"a ball under {tool.said('TA')} deg has {tool.word('DC')} {ball / tool.scale:.6g}"
-        )
-    return Cutter(radius, flutes, corner, tool.name, flutes=flutes, taper=taper)
-
-
-def _taper(tool: Listed) -> Cutter:
-    if "TA" not in tool.values:
-        tool.notes.append(f"no {tool.word('TA')}: read as straight")
-        return _end(tool, "taper")
-    return _leaning(tool, math.radians(tool.values["TA"]))
-
-
-def _dovetail(tool: Listed) -> Cutter:
-    if "TA" not in tool.values:
-        raise UnfitError(f"{tool.word('TA')} is missing: the angle of its flank from the axis")
-    return _leaning(tool, -math.radians(tool.values["TA"]))
-
-
-def _face(tool: Listed) -> Cutter:
-    v = tool.values
-    leans = "TA" if "TA" in v else "DCX" if v.get("DCX", 0.0) > v["DC"] + _slack(v["DC"]) else ""
-    if leans:
-        raise UnfitError(f"{tool.said(leans)}: face mills with leaning edges are not read; write its outline as TOML")
-    return _end(tool, "face")
-
-
-def _chamfer(tool: Listed) -> Cutter:
-    """A cone from the tip's diameter on, a cylinder where it has become as wide as the tool."""
-    v = tool.values
-    if "TA" not in v:
-        raise UnfitError(f"{tool.word('TA')} is missing: the angle of its flank from the axis")
-    if "RE" in v:
-        raise UnfitError(
-            f"{tool.said('RE')}: chamfer mills with a corner radius are not read; write its outline as TOML"
-        )
-    radius, tip, slope = 0.5 * v["DC"], 0.5 * v.get("TIP", 0.0), math.tan(math.radians(v["TA"]))
-    height = (radius - tip) / slope
-    points = [(0.0, 0.0), (tip, 0.0)] if tip else [(0.0, 0.0)]
-    if not tip:
-        tool.notes.append(f"no {tool.word('TIP')}: its tip is a point, which finishes nothing")
-    if tip >= radius - SAME:
-        points.append((radius, v["LCF"]))
-    elif height < v["LCF"] - SAME:
-        points += [(radius, height), (radius, v["LCF"])]
-    else:
-        wide = tip + v["LCF"] * slope
-        if radius - wide > _slack(radius):
-            tool.notes.append(f"{tool.said('DC')} is not reached: a cone of {tool.said('TA')} deg is {2 * wide / tool.scale:.4g} "
-                              f"wide where {tool.said('LCF')} ends")  # fmt: skip
-        points.append((min(radius, wide), v["LCF"]))
-    return Cutter.form([(round(r, 9), round(h, 9)) for r, h in points], length=v["LCF"], name=tool.name)
-
-
-def _lollipop(tool: Listed) -> Cutter:
-    v = tool.values
-    radius, flutes = 0.5 * v["DC"], v["LCF"]
-    if "RE" in v and abs(v["RE"] - radius) > _slack(radius):
-        raise UnfitError(f"{tool.said('RE')} is not half of {tool.said('DC')}", broken=True)
-    if "DN" not in v:
-        raise UnfitError(f"{tool.word('DN')} is missing: the diameter of its neck")
-    neck = 0.5 * v["DN"]
-    if neck >= radius - SAME:
-        raise UnfitError(
-            f"{tool.said('DN')} is no less than {tool.said('DC')}: a lollipop's neck is thinner", broken=True
-        )
-    if flutes <= radius:
-        raise UnfitError(f"{tool.said('LCF')} ends below the middle of its ball, {tool.said('DC')}", broken=True)
-    cut = math.sqrt(max(0.0, radius**2 - (flutes - radius) ** 2))
-    if cut > neck + _slack(neck):
-        tool.notes.append(
-            f"{tool.said('LCF')} cuts the ball off above its middle: so far up its neck is taken that wide"
-        )
-        neck = round(cut, 9)
-    return Cutter.lollipop(radius=radius, neck_radius=neck, length=10 * radius, name=tool.name)
-
-
-_CUTTING: dict[str, Callable[[Listed], Cutter]] = {
-    "flat": lambda tool: _end(tool, "flat"),
-    "bull": lambda tool: _end(tool, "bull"),
-    "ball": lambda tool: _end(tool, "ball"),
-    "slot": lambda tool: _end(tool, "slot"),
-    "face": _face,
-    "taper": _taper,
-    "chamfer": _chamfer,
-    "dovetail": _dovetail,
-    "lollipop": _lollipop,
-}
 
 
 def _top(bare: Cutter, tool: Listed) -> float:
@@ -337,13 +192,10 @@ def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Segment, ...]:
     found += shaft
     at += math.fsum(stage.length for stage in shaft)
     if length - at > SAME:
-        if "DMM" not in v:
-            raise UnfitError(f"{tool.word('DMM')} is missing: the diameter of the shank between {at / tool.scale:.10g} and "
-                             f"{length / tool.scale:.10g} {tool.unit} over its tip")  # fmt: skip
-        found.append(Segment(0.5 * v["DMM"], round(length - at, 9)))
-        if v["DMM"] < v["DC"] - _slack(v["DC"]):
+        found.append(Segment(_shank(tool, at, length), round(length - at, 9)))
+        if v["DMM"] < v["DC"] - slack(v["DC"]):
             tool.notes.append(f"{tool.said('DMM')} is thinner than {tool.said('DC')}")
-        elif v["DMM"] < 2.0 * top_radius(bare) - _slack(v["DMM"]):
+        elif v["DMM"] < 2.0 * top_radius(bare) - slack(v["DMM"]):
             wide = 2.0 * top_radius(bare) / tool.scale
             tool.notes.append(f"{tool.said('DMM')} is thinner than its flutes where they end, {wide:.6g}")
     straight = joined(found)
@@ -354,6 +206,40 @@ def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Segment, ...]:
         f"the {len(straight)} sections of its shaft are taken as {len(around)} around them, up to {wider:.3g} mm wider"
     )
     return around
+
+
+def _shank(tool: Listed, at: float, length: float) -> float:
+    """The radius of the shank that is needed between two heights over the tip, mm."""
+    if "DMM" not in tool.values:
+        raise UnfitError(f"{tool.word('DMM')} is missing: the diameter of the shank between {at / tool.scale:.10g} and "
+                         f"{length / tool.scale:.10g} {tool.unit} over its tip")  # fmt: skip
+    return 0.5 * tool.values["DMM"]
+
+
+def _as_stated(tool: Listed, stated: Stated, ask: Ask) -> Cutter:
+    """A cutter of our own format."""
+    radius, neck, shank = 0.5 * tool.values["DC"], tuple(tool.shaft), None
+    if "TA" in tool.values and tool.kind in ("flat", "bull", "ball"):
+        note_tapered(tool)
+    corner, top = corner_of(tool, radius, tool.kind), stated.attributes.get("flutes")
+    if tool.kind == "lollipop":
+        agree_ball(tool)
+        corner, shank = radius, 0.5 * tool.values["DN"]
+        top = flute_length(Cutter.lollipop(radius=radius, neck_radius=shank, length=10 * radius))
+    elif tool.kind == "form":
+        top = stated.attributes["outline"][-1][1]
+    length, holder = _stickout(tool, ask), _holder(tool, ask)
+    if top is not None and not stated.straight:
+        rest = length - top - math.fsum(stage.length for stage in neck)
+        if rest <= SAME:
+            # The neck of a lollipop goes on up to the nose, however much longer it is.
+            neck = neck if shank is None else (Segment(shank, length - top),)
+        elif shank is None:
+            shank = _shank(tool, length - rest, length)
+        else:
+            neck = (*neck, Segment(_shank(tool, length - rest, length), rest))
+    made = Cutter(radius, length, corner, tool.name, neck=neck or None, shank_radius=shank, **stated.attributes)
+    return _held(tool, made, holder)
 
 
 def _standing(bare: Cutter, above: tuple[Segment, ...], length: float) -> Cutter:
@@ -369,9 +255,11 @@ def _standing(bare: Cutter, above: tuple[Segment, ...], length: float) -> Cutter
     return replace(bare, length=length, neck=above[:-1], shank_radius=last.radius)
 
 
-def _held(tool: Listed, cutter: Cutter, holder: Holder, *, own: bool) -> Cutter:
+def _held(tool: Listed, cutter: Cutter, holder: Holder | Literal["none"]) -> Cutter:
     """With its holder, of as many sections as can be judged."""
-    plain = Holder(joined(holder.stages), holder.name)
+    if holder == "none":
+        return cutter
+    plain = holder if tool.stated is not None else Holder(joined(holder.stages), holder.name)
     fits: Any = lambda made: pieces_at_most(_with(cutter, made)) <= MOST_PIECES  # noqa: E731
     # A section has three pieces at least: no more than a third of them is worth a trial.
     most = min(len(plain.stages) - 1, MOST_PIECES // 3)
@@ -385,7 +273,7 @@ def _held(tool: Listed, cutter: Cutter, holder: Holder, *, own: bool) -> Cutter:
     try:
         return replace(cutter, holder=plain)
     except CutterError as error:
-        raise UnfitError(cause_of(error), broken=own) from None
+        raise UnfitError(cause_of(error), broken=tool.holder is not None) from None
 
 
 def _with(cutter: Cutter, holder: Holder) -> Dimensions:

@@ -4,7 +4,7 @@ import math
 import unicodedata
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.holder import Holder, Segment
@@ -84,14 +84,30 @@ def number_in(text: str, field: str) -> tuple[float, bool]:
         raise FaultError(f"{field} is {shown(text)}, not a number") from None
 
 
-def mm(value: float, scale: float, field: str) -> float:
-    """A length that may be 0, mm."""
+def mm(value: float, scale: float, field: str, *, exact: bool = False) -> float:
+    """A length that may be 0, mm; `exact`: one that is given in mm stays as it is."""
     found = round(value * scale, _DIGITS) + 0.0
     if found < 0.0:
         raise FaultError(f"{field} is {value:g}: a length cannot be negative")
     if found > _LONGEST:
         raise FaultError(f"{field} is {value:g}: no tool is longer than 10 m")
-    return found
+    return value if exact and scale == 1.0 else found
+
+
+@dataclass(slots=True)
+class Stated:
+    """What our own format alone says; with it, all lengths in mm are taken to the last digit, and sections as they are.
+
+    Attributes
+    ----------
+    attributes : dict
+        Of the cutter, as in `Dimensions`: what no dimension of `Listed` says.
+    straight : bool
+        No shank is asked for: what is below it goes on.
+    """
+
+    attributes: dict[str, Any] = field(default_factory=dict)
+    straight: bool = False
 
 
 @dataclass(slots=True)
@@ -111,9 +127,13 @@ class Listed:
         As the file words it; `sort`, if given, is what that is among `milling.MILLS`.
     shaft : list of Segment
         Sections that the file gives above LN (or LCF), from there up.
-    holder : Holder, optional
+    holder : Holder, str, optional
+        `none`: the file says that there is none.
     faults : list of str
         What could not be read.
+    needs : tuple of str
+        Dimensions without which there is no cutter.
+    stated : Stated, optional
     """
 
     place: str
@@ -126,9 +146,11 @@ class Listed:
     values: dict[str, float] = field(default_factory=dict)
     words: dict[str, str] = field(default_factory=dict)
     shaft: list[Segment] = field(default_factory=list)
-    holder: Holder | None = None
+    holder: Holder | Literal["none"] | None = None
     faults: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    needs: tuple[str, ...] = ("DC", "LCF")
+    stated: Stated | None = None
 
     def tried(self, make: Callable[[], Any], otherwise: Any) -> Any:
         """Make a part of the tool; where it cannot be read, record the fault and return `otherwise` in its place."""
@@ -158,7 +180,7 @@ class Listed:
                 if not 0.0 <= found < 90.0:
                     raise FaultError(f"{field} is {found:g}: a half angle lies between 0 and 90 degrees")
             else:
-                found = mm(found, self.scale, field)
+                found = mm(found, self.scale, field, exact=self.stated is not None)
             if found:
                 self.values[key] = found
         except FaultError as fault:

@@ -9,13 +9,11 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from plan_cutters.domain.checks import radians_said, shown
-from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder, Segment
-from plan_cutters.domain.shapes import SAME, flute_length
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.library.files import MOST_TOOLS, Content, too_many
-from plan_cutters.library.milling import Ask, cause_of
-from plan_cutters.library.raw_tool import FaultError, Found, mm, name_of, unit_of
+from plan_cutters.library.milling import cause_of
+from plan_cutters.library.raw_tool import FaultError, Found, Listed, Stated, mm, name_of, number_of, unit_of, whole_of
 from plan_cutters.library.records import Entry
 
 _LOOKS = re.compile(
@@ -24,8 +22,6 @@ _LOOKS = re.compile(
 _TABLE = re.compile(r"^[ \t]*\[\[[ \t]*tool[ \t]*\]\]", re.MULTILINE)
 _ENDS = ("flat", "bull", "ball", "taper", "dovetail", "end")
 
-#: A tool's number is no larger, as in all formats.
-_LARGEST = 10**9
 _MOST = 8 << 20
 #: What pydantic puts into the place of an error for a kind that it tried.
 _KINDS = ("HolderTable", "str", "float")
@@ -49,7 +45,7 @@ class ToolTable(BaseModel):
     """A tool: ISO 13399 names where there are such."""
 
     model_config = ConfigDict(extra="forbid")
-    number: Annotated[int, Field(strict=True, ge=0, lt=_LARGEST)] | None = None
+    number: Any = None
     name: str = ""
     type: Literal["flat", "bull", "ball", "taper", "dovetail", "end", "lollipop", "barrel", "lens", "form"]
     unit: str | None = None
@@ -71,10 +67,6 @@ class ToolTable(BaseModel):
     clearance: Number | None = None
 
 
-class LackError(Exception):
-    """A value is missing; the message says which, and how to add it."""
-
-
 def is_toml(content: Content) -> bool:
     """Tables `[[tool]]` or `[[holder]]`, or a unit; what is called so may have none of them yet."""
     if content.head[:1] in ("{", "<") or content.members is not None:
@@ -82,7 +74,7 @@ def is_toml(content: Content) -> bool:
     return _LOOKS.search(content.text) is not None or content.path.suffix.lower() == ".toml"
 
 
-def read_toml(content: Content, ask: Ask) -> Found:
+def read_toml(content: Content) -> Found:
     """Read it."""
     if len(content.data) > _MOST:
         # TOML is read by Python itself, some MB in a second.
@@ -110,7 +102,7 @@ def read_toml(content: Content, ask: Ask) -> Found:
     for i, table in enumerate(holders, 1):
         try:
             model = HolderTable.model_validate(table)
-            holder = _outlined(model, _scale(model.unit or given.get("unit"))[1])
+            holder = _outlined(model, unit_of(model.unit or given.get("unit"), "unit")[1])
         except (ValidationError, FaultError, CutterError) as error:
             found.faulty.append(Entry(f"holder {i}", kind="holder", unused=_why(error), broken=True))
             continue
@@ -120,7 +112,7 @@ def read_toml(content: Content, ask: Ask) -> Found:
     lines = [content.text.count("\n", 0, match.start()) + 1 for match in _TABLE.finditer(content.text)]
     for i, table in enumerate(tools):
         line = f" (line {lines[i]})" if len(lines) == len(tools) else ""
-        found.tools.append(_entry(table, f"tool {i + 1}{line}", given.get("unit"), named, ask))
+        found.tools.append(_listed(table, f"tool {i + 1}{line}", given.get("unit"), named))
     return found
 
 
@@ -134,10 +126,6 @@ def _syntax(error: Exception) -> str:
     if "Expected newline" in why or "Invalid value" in why:
         why += '; numbers have a decimal point and no unit (12.5), words have quotes ("mm")'
     return why
-
-
-def _scale(unit: Any) -> tuple[str, float]:
-    return unit_of(unit, "unit")
 
 
 def _why(error: Exception) -> str:
@@ -166,226 +154,130 @@ def _meant(word: Any) -> str:
     return ""
 
 
-def _entry(table: Any, place: str, unit: Any, named: dict[str, Holder | None], ask: Ask) -> Entry:
-    number = name = None
+def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) -> Listed:
+    """A table as a listed tool; what it needs depends on its type."""
+    stated = Stated()
+    tool = Listed(place, stated=stated)
     if isinstance(table, dict):
-        number, name = table.get("number"), table.get("name")
-    made: dict[str, Any] = {
-        "place": place,
-        "number": number
-        if isinstance(number, int) and not isinstance(number, bool) and 0 <= number < _LARGEST
-        else None,
-        "name": name_of(name),
-    }
-    notes: list[str] = []
+        tool.name = name_of(table.get("name"))
+        tool.number = tool.tried(lambda: whole_of(table.get("number"), "number"), None)
     try:
         model = ToolTable.model_validate(table)
-        made["kind"] = model.type
-        made["unit"], scale = _scale(model.unit or unit)
-        return Entry(**made, cutter=_Reading(model, scale, named, ask, notes).cutter(), notes=tuple(notes))
-    except LackError as lack:
-        return Entry(**made, unused=str(lack), notes=tuple(notes))
-    except (ValidationError, FaultError, CutterError) as error:
-        return Entry(**made, unused=_why(error), broken=True, notes=tuple(notes))
+    except ValidationError as error:
+        tool.faults.append(_why(error))
+        return tool
+    tool.kind = model.type
+    tool.unit, tool.scale = tool.tried(lambda: unit_of(model.unit or unit, "unit"), ("", 1.0))
+    for key in ("DC", "RE", "LPR", "OAL", "DN"):
+        tool.take(key, getattr(model, key), key)
+    tool.take("DMM", None if model.DMM == "same" else model.DMM, "DMM")
+    tool.take("TA", model.TA, "TA", _degrees)
+    tool.holder = tool.tried(lambda: _holder(model.holder, tool.scale, named), None)
+
+    def length(value: Any, field: str) -> float:
+        return tool.tried(lambda: mm(value or 0.0, tool.scale, field, exact=True), 0.0)
+
+    flutes = 0.0 if model.LCF == "rest" else length(model.LCF, "LCF")
+    outline = tuple((length(r, "outline"), length(z, "outline")) for z, r in model.outline)
+    given = {word: length(value, word) for word in ("allowance", "clearance")
+             if (value := getattr(model, word)) is not None}  # fmt: skip
+    stated.straight = model.DMM == "same" or (model.LCF == "rest" and model.type != "form")
+    stated.attributes = {"shape": "end" if model.type in _ENDS else model.type, "taper": _taper(model, tool),
+                         "flutes": flutes or None, "arc_radius": length(model.PRFRAD, "PRFRAD"), "outline": outline,
+                         "arc_height": length(model.profile_height, "profile_height"), **given}  # fmt: skip
+    needs = {"DC": True, "LCF": model.LCF != "rest" and not flutes, "TA": model.type == "taper"}
+    if model.type in ("lollipop", "form"):
+        needs["LCF"] = False
+        if model.LCF is not None:
+            tool.faults.append(f"LCF: the flutes of a {model.type} end where its outline does; leave it out")
+    if model.type == "form":
+        widest = 2.0 * max((r for r, _ in outline), default=0.0)
+        if widest and abs(tool.values.get("DC", widest) - widest) > 1e-3:
+            tool.faults.append(f"{tool.said('DC')} is not the largest diameter of its outline")
+        needs["DC"], needs["outline"], tool.values["DC"] = False, not widest, widest
+    _neck(model, tool, length(model.LN, "LN"), needs)
+    tool.needs = tuple(key for key, needed in needs.items() if needed)
+    return tool
 
 
-def _length(value: float, scale: float, field: str) -> float:
-    """mm; those given in mm stay as they are."""
-    found = mm(value, scale, field)
-    return value if scale == 1.0 else found
+def _taper(model: ToolTable, tool: Listed) -> float:
+    """Half angle, rad, to the last digit; negative for a dovetail."""
+    if "TA" not in tool.values:
+        return 0.0
+    found = radians_said(model.TA) if isinstance(model.TA, str) else math.radians(tool.values["TA"])
+    return -found if model.type == "dovetail" else found
+
+
+def _neck(model: ToolTable, tool: Listed, reach: float, needs: dict[str, bool]) -> None:
+    """Read the neck: sections, or DN and LN."""
+    lollipop, stated = model.type == "lollipop", tool.stated or Stated()
+    if lollipop:
+        # Its neck goes on up to the nose, unless a shank of DMM begins where LN ends.
+        stated.straight = stated.straight or bool(model.neck) or not reach
+    needs["DN"] = bool(reach and not model.neck and not lollipop)
+    needs["LN"] = "DN" in tool.values and not (lollipop or reach or model.neck)
+    if model.neck:
+        twice = "LN" if model.LN is not None else "DN" if model.DN is not None and not lollipop else ""
+        if twice:
+            tool.faults.append(f"neck and {twice}: give one of them")
+        tool.shaft = tool.tried(lambda: _stages(model.neck, tool.scale, "neck"), [])
+    elif reach and "DN" in tool.values and not (lollipop and stated.straight):
+        tool.shaft = [Segment(0.5 * tool.values["DN"], reach)]
+
+
+def _degrees(given: Any, field: str) -> float:
+    """A half angle: degrees, or a text with its unit."""
+    if not isinstance(given, str):
+        return number_of(given, field)
+    found = math.degrees(radians_said(given))
+    if math.isnan(found):
+        raise FaultError(f"{field} is {shown(given)}: a half angle in degrees, or as 0.0873 rad")
+    return found
+
+
+def _holder(given: Any, scale: float, named: dict[str, Holder | None]) -> Holder | Literal["none"] | None:
+    """The holder that a tool names or describes."""
+    if given is None:
+        return None
+    if isinstance(given, list):
+        return _outlined(HolderTable(points=given), scale)
+    if isinstance(given, HolderTable):
+        return _outlined(given, unit_of(given.unit, "unit")[1] if given.unit else scale)
+    if given == "none":
+        if "none" in named:
+            raise FaultError(
+                "holder 'none' means that there is none, but a [[holder]] is called so: call that otherwise"
+            )
+        return "none"
+    if given in named:
+        meant = named[given]
+        if meant is None:
+            raise FaultError(f"holder {shown(given)}: several different [[holder]] are called so")
+        return meant
+    try:
+        return Holder.parse(given)
+    except CutterError:
+        raise FaultError(
+            f"holder {shown(given)} is neither none, nor of the form R15L30 (mm), nor one of [[holder]]"
+        ) from None
 
 
 def _outlined(model: HolderTable, scale: float) -> Holder:
     if (model.points is None) == (model.stages is None):
         raise FaultError("holder needs points [[z, r], ...] or stages [[radius, length], ...], and not both")
     if model.stages is not None:
-        stages = _stages(model.stages, scale, "holder stages")
-    else:
-        stages = []
-        points = [[_length(value, scale, "holder points") for value in point] for point in model.points or ()]
-        if not points or points[0][0] != 0.0:
-            raise FaultError("holder points must begin at its nose, z 0")
-        for (z0, r0), (z1, r1) in pairwise(points):
-            if z1 < z0:
-                raise FaultError(f"holder points fall from z {z0:g} to {z1:g}: they must rise from the nose up")
-            if z1 > z0:
-                stages.append(Segment(r0, round(z1 - z0, 9), r1))
+        return Holder(tuple(_stages(model.stages, scale, "holder stages")), model.name)
+    stages = []
+    points = [[mm(value, scale, "holder points", exact=True) for value in point] for point in model.points or ()]
+    if not points or points[0][0] != 0.0:
+        raise FaultError("holder points must begin at its nose, z 0")
+    for (z0, r0), (z1, r1) in pairwise(points):
+        if z1 < z0:
+            raise FaultError(f"holder points fall from z {z0:g} to {z1:g}: they must rise from the nose up")
+        if z1 > z0:
+            stages.append(Segment(r0, round(z1 - z0, 9), r1))
     return Holder(tuple(stages), model.name)
 
 
 def _stages(rows: list[Section], scale: float, field: str) -> list[Segment]:
-    return [Segment(*(_length(value, scale, field) for value in row)) for row in rows]
-
-
-class _Reading:
-    """One tool being read."""
-
-    def __init__(self, model: ToolTable, scale: float, named: dict[str, Holder | None], ask: Ask,
-                 notes: list[str]) -> None:  # fmt: skip
-        self.model, self.scale, self.named, self.ask, self.notes = model, scale, named, ask, notes
-
-    def value(self, field: str) -> float:
-        """A length, mm; 0 where it is missing."""
-        given = getattr(self.model, field)
-        return 0.0 if given is None else _length(given, self.scale, field)
-
-    def needed(self, field: str, what: str) -> float:
-        found = self.value(field)
-        if not found:
-            raise LackError(f"{field} is missing: {what}")
-        return found
-
-    def stickout(self) -> float:
-        own, overall = self.value("LPR"), self.value("OAL")
-        if own and overall and own > overall:
-            raise FaultError(f"LPR {self.model.LPR:g} is more than OAL {self.model.OAL:g}")
-        if own:
-            return own
-        if self.ask.stickout is None:
-            raise LackError("LPR is missing (the stick-out, from the tip to the holder's nose): add it, or give "
-                            "--assume-stickout MM")  # fmt: skip
-        if overall and self.ask.stickout > overall:
-            raise LackError(
-                f"the assumed stick-out of {self.ask.stickout:g} mm is longer than the tool, OAL {self.model.OAL:g}"
-            )
-        self.notes.append(f"no LPR: the assumed stick-out of {self.ask.stickout:g} mm is taken")
-        return self.ask.stickout
-
-    def holder(self) -> Holder | None:
-        given = self.model.holder
-        if isinstance(given, list):
-            return _outlined(HolderTable(points=given), self.scale)
-        if isinstance(given, HolderTable):
-            return _outlined(given, _scale(given.unit)[1] if given.unit else self.scale)
-        if given == "none":
-            if "none" in self.named:
-                raise FaultError(
-                    "holder 'none' means that there is none, but a [[holder]] is called so: call that otherwise"
-                )
-            return None
-        if given is not None:
-            if given in self.named:
-                meant = self.named[given]
-                if meant is None:
-                    raise FaultError(f"holder {shown(given)}: several different [[holder]] are called so")
-                return meant
-            try:
-                return Holder.parse(given)
-            except CutterError:
-                raise FaultError(
-                    f"holder {shown(given)} is neither none, nor of the form R15L30 (mm), nor one of [[holder]]"
-                ) from None
-        if self.ask.holder is None:
-            raise LackError('holder is missing: add it ("none" if there is none), or give --holder SPEC, as R15L30')
-        if self.ask.holder == "none":
-            self.notes.append("no holder: it is judged without one, as asked")
-            return None
-        self.notes.append(f"no holder: the given one is taken, {self.ask.holder.name or self.ask.holder.id}")
-        return self.ask.holder
-
-    def taper(self) -> float:
-        """Half angle, rad; negative for a dovetail."""
-        given, kind = self.model.TA, self.model.type
-        if given is None:
-            if kind in ("taper", "dovetail"):
-                raise LackError("TA is missing: the angle of its flank from the axis, degrees")
-            return 0.0
-        if isinstance(given, str):
-            found = radians_said(given)
-            if math.isnan(found):
-                raise FaultError(f"TA is {shown(given)}: a half angle in degrees, or as 0.0873 rad")
-        else:
-            found = math.radians(given)
-        if kind in ("taper", "dovetail") and not 0.0 < found < math.pi / 2:
-            raise FaultError(
-                f"TA is {given}: a half angle lies between 0 and 90 degrees; of a dovetail it is positive, too"
-            )
-        if found and kind in ("flat", "bull", "ball"):
-            self.notes.append(
-                f'called "{kind}", but TA is {given}: read as {"tapered" if found > 0.0 else "a dovetail"}'
-            )
-        return -found if kind == "dovetail" else found
-
-    def necks(self) -> list[Segment]:
-        if self.model.neck:
-            twice = "LN" if self.model.LN is not None else "DN" if self.model.DN is not None else ""
-            if twice and (twice == "LN" or self.model.type != "lollipop"):
-                raise FaultError(f"neck and {twice}: give one of them")
-            return _stages(self.model.neck, self.scale, "neck")
-        if self.model.type == "lollipop":
-            return []
-        if not self.value("LN"):
-            if self.value("DN"):
-                raise LackError("LN is missing: the length of its neck of DN")
-            return []
-        return [Segment(0.5 * self.needed("DN", "the diameter of its neck of LN"), self.value("LN"))]
-
-    def flutes(self, shape: str, necks: list[Segment], length: float) -> float | None:
-        if shape in ("lollipop", "form"):
-            if self.model.LCF is not None:
-                raise FaultError(f"LCF: the flutes of a {shape} end where its outline does; leave it out")
-            return None
-        return (
-            None
-            if self.model.LCF == "rest"
-            else self.needed("LCF", 'the length of its flutes ("rest": all below the neck)')
-        )
-
-    def cutter(self) -> Cutter:
-        model = self.model
-        shape: Any = "end" if model.type in _ENDS else model.type
-        outline = [(_length(r, self.scale, "outline"), _length(z, self.scale, "outline")) for z, r in model.outline]
-        if shape == "form":
-            radius = max((r for r, _ in outline), default=0.0)
-            if not radius:
-                raise LackError("outline is missing: points [[z, r], ...] from the tip up")
-            if model.DC is not None and abs(self.value("DC") - 2.0 * radius) > 1e-3:
-                raise FaultError(f"DC {model.DC:g} is not the largest diameter of its outline")
-        else:
-            radius = 0.5 * self.needed("DC", "the cutting diameter")
-        length, necks = self.stickout(), self.necks()
-        corner = self.corner(radius)
-        flutes = self.flutes(shape, necks, length)
-        shank: float | None = None
-        if shape == "lollipop":
-            shank = 0.5 * self.needed("DN", "the diameter of its neck")
-            necks = self.under(necks, Cutter.lollipop(radius=radius, neck_radius=shank, length=10 * radius), length)
-        elif model.DMM != "same":
-            top = outline[-1][1] if outline else length if flutes is None and not necks else flutes
-            rest = 0.0 if top is None else length - top - math.fsum(stage.length for stage in necks)
-            if rest > SAME:
-                shank = 0.5 * self.needed("DMM", 'the diameter of its shank ("same": as wide as what is below it)')
-        return Cutter(radius, length, corner, name_of(model.name) if model.name != name_of(model.name) else model.name,
-                      self.taper(), flutes, tuple(necks) or None, shank, self.holder(), shape, self.value("PRFRAD"),
-                      self.value("profile_height"), tuple(outline),
-                      None if model.allowance is None else self.value("allowance"),
-                      None if model.clearance is None else self.value("clearance"))  # fmt: skip
-
-    def corner(self, radius: float) -> float:
-        corner, kind = self.value("RE"), self.model.type
-        if kind == "lollipop":
-            if corner and abs(corner - radius) > 1e-3:
-                raise FaultError(f"RE {self.model.RE:g} is not half of DC {self.model.DC:g}: that of its ball")
-            return radius
-        if kind == "ball" and not corner:
-            self.notes.append("no RE: half of DC")
-            return radius
-        if kind in ("flat", "bull", "ball"):
-            is_ = "flat" if not corner else "ball" if corner == radius else "bull"
-            if is_ != kind:
-                self.notes.append(f'called "{kind}", but RE is {self.model.RE:g}: read as {is_}')
-        return corner
-
-    def under(self, necks: list[Segment], ball: Cutter, length: float) -> list[Segment]:
-        """Of a lollipop whose neck ends at LN over the ball, below a shank of DMM."""
-        reach = self.value("LN")
-        if necks or not reach:
-            return necks
-        top = flute_length(ball)
-        rest = length - top - reach
-        if rest <= SAME:
-            return [Segment(ball.shank_radius or 0.0, length - top)]
-        return [
-            Segment(ball.shank_radius or 0.0, reach),
-            Segment(0.5 * self.needed("DMM", "the diameter of its shank"), rest),
-        ]
+    return [Segment(*(mm(value, scale, field, exact=True) for value in row)) for row in rows]

@@ -9,21 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.codes import (
-    ARC,
-    BOTTOM,
-    HIGH,
-    KIND,
-    LOW,
-    OFFSET_OF,
-    RADIUS,
-    RISE,
-    ROUND,
-    SLOPE,
-    TILT_FROM,
-    TILT_TO,
-    TOP,
-)  # fmt: skip
+from plan_cutters.kernels import codes
 from plan_cutters.kernels.codes import COLUMNS as PIECE
 from plan_cutters.kernels.intervals import insert, join
 from plan_cutters.kernels.jit import entry, kernel
@@ -281,7 +267,12 @@ def _ball(turning):
     """The piece that is the same body at all tilts, -1 if there is none: a ball about the centre."""
     piece = turning.piece
     for k in range(len(piece)):
-        if piece[k, KIND] == ARC and piece[k, RADIUS] == 0.0 and piece[k, SLOPE] == 0.0 and turning.offset == 0.0:
+        if (
+            piece[k, codes.KIND] == codes.ARC
+            and piece[k, codes.RADIUS] == 0.0
+            and piece[k, codes.SLOPE] == 0.0
+            and turning.offset == 0.0
+        ):
             return k
     return -1
 
@@ -340,8 +331,11 @@ def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, workspace, par
     work = room_to_cut()
     count_out[:, :], undecided[:, :] = 0, 0.0
     for mode in range(len(tool.mode)):
-        offset, rise, piece = tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE], tool.piece[mode]
-        low, high = max(ranges.tilt_low, tool.mode[mode, TILT_FROM]), min(ranges.tilt_high, tool.mode[mode, TILT_TO])
+        offset, rise, piece = tool.mode[mode, codes.OFFSET_OF], tool.mode[mode, codes.RISE], tool.piece[mode]
+        low, high = (
+            max(ranges.tilt_low, tool.mode[mode, codes.TILT_FROM]),
+            min(ranges.tilt_high, tool.mode[mode, codes.TILT_TO]),
+        )
         if low > high:
             continue
         bound, facts, eight = turning_of(piece, offset, low, high)
@@ -356,11 +350,11 @@ def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, workspace, par
         if ball >= 0:
             for i in range(PIECE):
                 alone[0, i] = piece[ball, i]
-            alone[0, LOW], alone[0, HIGH], alone[0, BOTTOM], alone[0, TOP] = (
+            alone[0, codes.LOW], alone[0, codes.HIGH], alone[0, codes.BOTTOM], alone[0, codes.TOP] = (
                 -np.inf,
                 np.inf,
-                -alone[0, ROUND],
-                alone[0, ROUND],
+                -alone[0, codes.ROUND],
+                alone[0, codes.ROUND],
             )
         for place in range(len(rows)):
             row = rows[place]
@@ -376,7 +370,10 @@ def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, workspace, par
                 stand(work.body, Frame(c, n, e1, e2), 1.0, 0.0, 0.0, 0.0)
                 if tree_hit(tree, work.body, alone, 0.0, -1, work.scratch)[0] < 0:
                     whole ^= 1 << ball
-                elif piece[ball, BOTTOM] == alone[0, BOTTOM] and piece[ball, TOP] == alone[0, TOP]:
+                elif (
+                    piece[ball, codes.BOTTOM] == alone[0, codes.BOTTOM]
+                    and piece[ball, codes.TOP] == alone[0, codes.TOP]
+                ):
                     # In the way at every posture.
                     continue
             floor = np.inf

@@ -1,0 +1,167 @@
+"""The cutting part of a listed tool, by its kind: what its name promises, and what its dimensions say."""
+
+import math
+from collections.abc import Callable
+
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.shapes import SAME
+from plan_cutters.library.raw_tool import Listed
+
+#: Dimensions given twice agree up to the rounding of the file, mm and as a share.
+_ROUNDED, _SHARE = 1e-3, 1e-5
+
+
+class UnfitError(Exception):
+    """Why a tool is not used; `broken`: it contradicts itself."""
+
+    def __init__(self, why: str, *, broken: bool = False) -> None:
+        super().__init__(why)
+        self.broken = broken
+
+
+def slack(value: float) -> float:
+    """By how much dimensions that are given twice may differ, mm."""
+    return _ROUNDED + _SHARE * abs(value)
+
+
+def corner_of(tool: Listed, radius: float, promise: str) -> float:
+    """The corner radius, and what the tool then is where its name says otherwise."""
+    corner = tool.values.get("RE", 0.0)
+    if not corner and promise == "ball":
+        tool.notes.append(f"no {tool.word('RE')}: half of {tool.word('DC')}")
+        return radius
+    if tool.stated is None and abs(corner - radius) <= slack(radius):
+        corner = radius
+    is_ = "flat" if not corner else "ball" if corner == radius else "bull"
+    if promise in ("flat", "bull", "ball") and is_ != promise:
+        what = {"flat": "flat end", "bull": "bull nose", "ball": "ball end"}
+        why = tool.said("RE") if corner else f"no {tool.word('RE')}"
+        tool.notes.append(f'called "{tool.kind}", but {why}: read as a {what[is_]}')
+    return corner
+
+
+def note_tapered(tool: Listed) -> None:
+    """Note that a mill that is called straight has a half angle."""
+    tool.notes.append(f'called "{tool.kind}", but {tool.said("TA")}: read as tapered')
+
+
+def _end(tool: Listed, promise: str) -> Cutter:
+    radius, flutes = 0.5 * tool.values["DC"], tool.values["LCF"]
+    if "TA" in tool.values:
+        note_tapered(tool)
+        return _leaning(tool, math.radians(tool.values["TA"]))
+    if tool.values.get("TIP", 0.0) and abs(tool.values["TIP"] - tool.values["DC"]) > slack(radius):
+        tool.notes.append(f"{tool.said('TIP')} is not used: there is no {tool.word('TA')}")
+    if tool.values.get("RE", 0.0) > radius + slack(radius):
+        raise UnfitError(f"{tool.said('RE')} is more than half of {tool.said('DC')}", broken=True)
+    return Cutter(radius, flutes, corner_of(tool, radius, promise), tool.name, flutes=flutes)
+
+
+def _leaning(tool: Listed, taper: float) -> Cutter:
+    """The diameter of a leaning flank is given at the tip, as if there were no corner."""
+    corner, flutes, tip = tool.values.get("RE", 0.0), tool.values["LCF"], tool.values.get("TIP")
+    if tip is not None and abs(tip - tool.values["DC"]) > slack(tip):
+        raise UnfitError(
+            f"{tool.said('DC')} and {tool.said('TIP')}: which of them is the diameter at its tip? Give that as "
+            f"{tool.word('DC')}, and no {tool.word('TIP')}"
+        )
+    radius = 0.5 * tool.values["DC"] + corner * (1.0 - (1.0 - math.sin(taper)) / math.cos(taper))
+    if corner > radius + slack(radius):
+        raise UnfitError(
+            f"{tool.said('RE')} does not fit under a flank of {tool.said('TA')} and {tool.said('DC')}", broken=True
+        )
+    if abs(corner - radius) <= slack(radius):
+        radius = corner = max(radius, corner)
+    elif abs(corner - 0.5 * tool.values["DC"]) <= slack(corner):
+        # A half diameter is meant as a ball more often than not: as one it would be given with a smaller diameter.
+        ball = 2.0 * corner * (1.0 - math.sin(taper)) / math.cos(taper)
+        flat = 2.0 * (radius - corner) / tool.scale
+        tool.notes.append(
+            f"{tool.said('RE')} is half of {tool.said('DC')}, but its tip keeps a flat {flat:.4g} wide: "
+            f"a ball under {tool.said('TA')} deg has {tool.word('DC')} {ball / tool.scale:.6g}"
+        )
+    return Cutter(radius, flutes, corner, tool.name, flutes=flutes, taper=taper)
+
+
+def _taper(tool: Listed) -> Cutter:
+    if "TA" not in tool.values:
+        tool.notes.append(f"no {tool.word('TA')}: read as straight")
+        return _end(tool, "taper")
+    return _leaning(tool, math.radians(tool.values["TA"]))
+
+
+def _dovetail(tool: Listed) -> Cutter:
+    return _leaning(tool, -math.radians(tool.values["TA"]))
+
+
+def _face(tool: Listed) -> Cutter:
+    v = tool.values
+    leans = "TA" if "TA" in v else "DCX" if v.get("DCX", 0.0) > v["DC"] + slack(v["DC"]) else ""
+    if leans:
+        raise UnfitError(f"{tool.said(leans)}: face mills with leaning edges are not read; write its outline as TOML")
+    return _end(tool, "face")
+
+
+def _chamfer(tool: Listed) -> Cutter:
+    """A cone from the tip's diameter on, a cylinder where it has become as wide as the tool."""
+    v = tool.values
+    if "RE" in v:
+        raise UnfitError(
+            f"{tool.said('RE')}: chamfer mills with a corner radius are not read; write its outline as TOML"
+        )
+    radius, tip, slope = 0.5 * v["DC"], 0.5 * v.get("TIP", 0.0), math.tan(math.radians(v["TA"]))
+    height = (radius - tip) / slope
+    points = [(0.0, 0.0), (tip, 0.0)] if tip else [(0.0, 0.0)]
+    if not tip:
+        tool.notes.append(f"no {tool.word('TIP')}: its tip is a point, which finishes nothing")
+    if tip >= radius - SAME:
+        points.append((radius, v["LCF"]))
+    elif height < v["LCF"] - SAME:
+        points += [(radius, height), (radius, v["LCF"])]
+    else:
+        wide = tip + v["LCF"] * slope
+        if radius - wide > slack(radius):
+            tool.notes.append(f"{tool.said('DC')} is not reached: a cone of {tool.said('TA')} deg is {2 * wide / tool.scale:.4g} "
+                              f"wide where {tool.said('LCF')} ends")  # fmt: skip
+        points.append((min(radius, wide), v["LCF"]))
+    return Cutter.form([(round(r, 9), round(h, 9)) for r, h in points], length=v["LCF"], name=tool.name)
+
+
+def agree_ball(tool: Listed) -> None:
+    """Refuse a lollipop whose corner radius is not that of its ball."""
+    v = tool.values
+    if "RE" in v and abs(v["RE"] - 0.5 * v["DC"]) > slack(0.5 * v["DC"]):
+        raise UnfitError(f"{tool.said('RE')} is not half of {tool.said('DC')}", broken=True)
+
+
+def _lollipop(tool: Listed) -> Cutter:
+    v = tool.values
+    radius, flutes = 0.5 * v["DC"], v["LCF"]
+    agree_ball(tool)
+    neck = 0.5 * v["DN"]
+    if neck >= radius - SAME:
+        raise UnfitError(
+            f"{tool.said('DN')} is no less than {tool.said('DC')}: a lollipop's neck is thinner", broken=True
+        )
+    if flutes <= radius:
+        raise UnfitError(f"{tool.said('LCF')} ends below the middle of its ball, {tool.said('DC')}", broken=True)
+    cut = math.sqrt(max(0.0, radius**2 - (flutes - radius) ** 2))
+    if cut > neck + slack(neck):
+        tool.notes.append(
+            f"{tool.said('LCF')} cuts the ball off above its middle: so far up its neck is taken that wide"
+        )
+        neck = round(cut, 9)
+    return Cutter.lollipop(radius=radius, neck_radius=neck, length=10 * radius, name=tool.name)
+
+
+CUTTING: dict[str, Callable[[Listed], Cutter]] = {
+    "flat": lambda tool: _end(tool, "flat"),
+    "bull": lambda tool: _end(tool, "bull"),
+    "ball": lambda tool: _end(tool, "ball"),
+    "slot": lambda tool: _end(tool, "slot"),
+    "face": _face,
+    "taper": _taper,
+    "chamfer": _chamfer,
+    "dovetail": _dovetail,
+    "lollipop": _lollipop,
+}
