@@ -45,7 +45,7 @@ class ToolTable(BaseModel):
     """A tool: ISO 13399 names where there are such."""
 
     model_config = ConfigDict(extra="forbid")
-    number: Any = None
+    number: Annotated[int, Field(strict=True)] | None = None
     name: str = ""
     type: Literal["flat", "bull", "ball", "taper", "dovetail", "end", "lollipop", "barrel", "lens", "form"]
     unit: str | None = None
@@ -57,7 +57,7 @@ class ToolTable(BaseModel):
     DMM: Number | Literal["same"] | None = None
     DN: Number | None = None
     LN: Number | None = None
-    TA: Number | str | None = None
+    TA: Number | Annotated[str, Field(min_length=1)] | None = None
     PRFRAD: Number = 0.0
     profile_height: Number = 0.0
     neck: list[Section] = []
@@ -160,7 +160,8 @@ def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) 
     tool = Listed(place, stated=stated)
     if isinstance(table, dict):
         tool.name = name_of(table.get("name"))
-        tool.number = tool.tried(lambda: whole_of(table.get("number"), "number"), None)
+        if isinstance(table.get("number"), int):
+            tool.number = tool.tried(lambda: whole_of(table["number"], "number"), None)
     try:
         model = ToolTable.model_validate(table)
     except ValidationError as error:
