@@ -269,9 +269,7 @@ def _ball(turning):
     for k in range(len(piece)):
         if (
             piece[k, codes.KIND] == codes.ARC
-            and piece[k, codes.RADIUS] == 0.0
-            and piece[k, codes.SLOPE] == 0.0
-            and turning.offset == 0.0
+            and piece[k, codes.RADIUS] == piece[k, codes.SLOPE] == turning.offset == 0.0
         ):
             return k
     return -1
@@ -332,10 +330,8 @@ def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, workspace, par
     count_out[:, :], undecided[:, :] = 0, 0.0
     for mode in range(len(tool.mode)):
         offset, rise, piece = tool.mode[mode, codes.OFFSET_OF], tool.mode[mode, codes.RISE], tool.piece[mode]
-        low, high = (
-            max(ranges.tilt_low, tool.mode[mode, codes.TILT_FROM]),
-            min(ranges.tilt_high, tool.mode[mode, codes.TILT_TO]),
-        )
+        low = max(ranges.tilt_low, tool.mode[mode, codes.TILT_FROM])
+        high = min(ranges.tilt_high, tool.mode[mode, codes.TILT_TO])
         if low > high:
             continue
         bound, facts, eight = turning_of(piece, offset, low, high)
