@@ -1,13 +1,12 @@
 """What another cutter would have to be: held further out, of a smaller radius, with another corner."""
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
-from plan_cutters.answers.outcome import none, short
-from plan_cutters.answers.trial import Case, Left, Trials, first, least
+from plan_cutters.answers.trial import Case, Trials
+from plan_cutters.answers.what_if import Way, WhatIf, none
 from plan_cutters.domain.change import Change
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Segment
@@ -26,7 +25,7 @@ THINNEST, SLIMMEST = 4.0, 0.005
 CORNERS = (0.2, 0.3, 0.4, 0.5, 0.8, 1.0, 1.2, 1.5, 1.6, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0)
 
 
-def stick_out(case: Case, trials: Trials) -> Change:
+def stick_out(case: Case, trials: Trials) -> WhatIf | Change:
     """The least length from the tip to the holder's nose, the flutes as they are; to `GRAIN`."""
     cutter, lost = case.cutter, len(trials.lost)
     now = cutter.length
@@ -36,25 +35,18 @@ def stick_out(case: Case, trials: Trials) -> Change:
     if most < 1:
         return none("stick_out", now, lost, f"its {now:g} mm already hold the holder above all obstacles")
 
-    def length(at: int) -> float:
-        return round(now + at * GRAIN, 6)
+    def make(length: float) -> Case | None:
+        return _with(case, longer(cutter, length))
 
-    def steps(at: int) -> Case | None:
-        made = longer(cutter, length(at))
-        return None if made is None else replace(case, cutter=made)
-
-    end = steps(most)
-    if end is None:
+    way = Way(most, lambda at: round(now + at * GRAIN, 6))
+    if (end := make(way.value(most))) is None:
         return none("stick_out", now, lost, "no shank can go on above it")
-    left = Left.by(end, trials.lost)
-    if left.count:
-        return short("stick_out", now, length(most), left, f"{left.words} at every stick-out")
-    found = least(steps, most, trials)
-    if found is None:
-        return none("stick_out", now, 0, "where the holder is out of the way, something else is", lost)
-    asked, made = length(found.steps), found.case.cutter
-    return Change("stick_out", now, asked, True, 0, lost, trials.count, _beyond(found.beyond, length), made,
-                  f"a stick-out of {asked:g} mm instead of {now:g} mm", {"cutters": (made,)})  # fmt: skip
+    return WhatIf(
+        now=now, ways=[way], make=make, ends=[end], nested=True, reads=lambda end: end.cutter.length,
+        fails=lambda end, left: f"{left.words} at every stick-out" if left.count else
+        "where the holder is out of the way, something else is",
+        serves=lambda asked, made: (f"a stick-out of {asked:g} mm instead of {now:g} mm", {"cutters": (made.cutter,)}),
+    )  # fmt: skip
 
 
 def highest(ready: Prepared, cutter: Cutter) -> float:
@@ -64,7 +56,7 @@ def highest(ready: Prepared, cutter: Cutter) -> float:
     return size + 2.0 * cutter.radius + flute_length(cutter) + (cutter.clearance or 0.0)
 
 
-def radius(case: Case, trials: Trials) -> Change:
+def radius(case: Case, trials: Trials) -> WhatIf | Change:
     """The largest smaller radius, in steps of `SHARE`."""
     cutter, conditions, lost = case.cutter, case.ready.conditions, len(trials.lost)
     now = cutter.radius
@@ -76,58 +68,49 @@ def radius(case: Case, trials: Trials) -> Change:
     def value(at: int) -> float:
         return float(f"{now * (1.0 - SHARE) ** at:.4g}")
 
-    def steps(at: int) -> Case | None:
-        made = thinner(cutter, value(at))
-        return None if made is None or not conditions.judges(made) else replace(case, cutter=made)
+    def make(radius: float) -> Case | None:
+        made = thinner(cutter, radius)
+        return _with(case, made) if made is not None and conditions.judges(made) else None
 
-    while most and (end := steps(most)) is None:
+    while most and (end := make(value(most))) is None:
         most -= 1
     if not most:
         return none("radius", now, lost, "there is no thinner cutter like it that could be judged")
-    found = first(steps, most, trials)
-    if found is None:
-        assert end is not None
-        left = Left.by(end, trials.lost)
-        why = f"none of {most} radii down to {value(most):g} mm serves all samples"
-        if left.count:
-            why = f"with {value(most):g} mm, the least tried, {left.words}"
-        return short("radius", now, value(most), left, why)
-    asked, made = value(found.steps), found.case.cutter
-    return Change("radius", now, asked, True, 0, lost, trials.count, _beyond(found.beyond, value), made,
-                  f"a radius of {asked:g} mm instead of {now:g} mm", {"cutters": (made,)})  # fmt: skip
+    assert end is not None
+    return WhatIf(
+        now=now, ways=[Way(most, value)], make=make, ends=[end], reads=lambda end: end.cutter.radius,
+        fails=lambda end, left: f"with {end.cutter.radius:g} mm, the least tried, {left.words}" if left.count else
+        f"none of {most} radii down to {end.cutter.radius:g} mm serves all samples",
+        serves=lambda asked, made: (f"a radius of {asked:g} mm instead of {now:g} mm", {"cutters": (made.cutter,)}),
+    )  # fmt: skip
 
 
-def corner_radius(case: Case, trials: Trials) -> Change:
+def corner_radius(case: Case, trials: Trials) -> WhatIf | Change:
     """Another corner on an end mill of the same radius, from flat to ball; the nearest that serves."""
     cutter = case.cutter
     now, r = cutter.corner_radius, cutter.radius
     if cutter.shape != "end":
         return none("corner_radius", now, len(trials.lost), f"a {cutter.shape} has no corner to change alone")
-    values = sorted({0.0, r, *(c for c in CORNERS if c < r)} - {now}, key=lambda c: (abs(c - now), c))
 
-    def value(at: int) -> float:
-        return values[at - 1] if at else now
+    def make(corner: float) -> Case | None:
+        return _with(case, made_of(cutter, corner_radius=corner))
 
-    def steps(at: int) -> Case | None:
-        made = made_of(cutter, corner_radius=value(at))
-        return None if made is None else replace(case, cutter=made)
+    corners = sorted({0.0, r, *(c for c in CORNERS if c < r)} - {now}, key=lambda c: (abs(c - now), c))
+    ends = [made for corner in corners if (made := make(corner)) is not None]
+    if not ends:
+        return none("corner_radius", now, len(trials.lost), "its flutes are too short for any other corner")
+    values = [now, *(end.cutter.corner_radius for end in ends)]
 
-    found = first(steps, len(values), trials)
-    if found is None:
-        tried = [each for at in range(1, len(values) + 1) if (each := steps(at)) is not None]
-        if not tried:
-            return none("corner_radius", now, len(trials.lost), "its flutes are too short for any other corner")
-        best = trials.closest(tried)
-        left = Left.by(best, trials.lost)
-        corner = best.cutter.corner_radius
-        why = f"with {corner:g} mm, the best of {len(tried)} tried, {left.words}" if left.count else \
-              f"each of {len(tried)} corner radii tried loses some samples"  # fmt: skip
-        return short("corner_radius", now, corner, left, why)
-    asked, made = value(found.steps), found.case.cutter
-    words = "a flat end" if not asked else "a ball end" if asked == r else f"a corner radius of {asked:g} mm"
-    was = "a flat end" if not now else "a ball end" if now == r else f"{now:g} mm"
-    return Change("corner_radius", now, asked, True, 0, len(trials.lost), trials.count, _beyond(found.beyond, value), made,
-                  f"{words} instead of {was}", {"cutters": (made,)})  # fmt: skip
+    def words(corner: float, other: str) -> str:
+        return "a flat end" if not corner else "a ball end" if corner == r else f"{other}{corner:g} mm"
+
+    return WhatIf(
+        now=now, ways=[Way(len(ends), values.__getitem__)], make=make, ends=ends, reads=lambda end: end.cutter.corner_radius,
+        fails=lambda end, left: f"with {end.cutter.corner_radius:g} mm, the best of {len(ends)} tried, {left.words}" if left.count
+        else f"each of {len(ends)} corner radii tried loses some samples",
+        serves=lambda asked, made: (
+            f"{words(asked, 'a corner radius of ')} instead of {words(now, '')}", {"cutters": (made.cutter,)}),
+    )  # fmt: skip
 
 
 def thinner(cutter: Cutter, radius: float) -> Cutter | None:
@@ -163,5 +146,5 @@ def made_of(cutter: Cutter, **changes: object) -> Cutter | None:
         return None
 
 
-def _beyond(at: int | None, value: Callable[[int], float]) -> float | None:
-    return None if at is None else value(at)
+def _with(case: Case, cutter: Cutter | None) -> Case | None:
+    return None if cutter is None else replace(case, cutter=cutter)
