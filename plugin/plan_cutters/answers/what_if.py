@@ -1,4 +1,4 @@
-"""What if one thing were another: its values, and the driver that finds the one that asks least and tells what comes of it."""
+"""A what-if has values of one thing; one driver finds the value that asks least and tells what comes of it."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from plan_cutters.domain.change import Change, Thing, Value
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """Values by the number of steps from the present one, so many of them; the last resort is taken where no other way serves."""
+    """Give values by the number of steps from the present one; a last resort is tried where no other way serves."""
 
     most: int
     value: Callable[[int], Any]
@@ -19,7 +19,7 @@ class Way:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WhatIf:
-    """Values of one thing to try, and the words for what comes of it.
+    """Hold the values of one thing to try, and the words for what comes of it.
 
     `make` gives the case with a value, None where there can be none. Of `ways` the one that serves with the fewest steps is
     taken, of equals the first; where each value allows all that those before it allow (`nested`), steps are halved. A value that
@@ -73,6 +73,6 @@ def _fewest(what: WhatIf, trials: Trials) -> tuple[Step, Callable[[int], Any]] |
 
 
 def none(thing: Thing, now: Value, left: int, why: str, looked: int | None = None) -> Change:
-    """Nothing serves, or there is nothing to try; `looked`: samples looked at, if not all that are left."""
+    """Tell that nothing serves, or that there is nothing to try; `looked`: samples looked at, if not all that are left."""
     looked = left if looked is None else looked
     return Change(thing, now, None, False, left, looked, 0, None, None, f"does not help: {why}")

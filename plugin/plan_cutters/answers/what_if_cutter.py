@@ -1,4 +1,4 @@
-"""What another cutter would have to be: held further out, of a smaller radius, with another corner."""
+"""Another cutter may serve: held further out, of a smaller radius, with another corner."""
 
 import math
 from dataclasses import replace
@@ -26,7 +26,7 @@ CORNERS = (0.2, 0.3, 0.4, 0.5, 0.8, 1.0, 1.2, 1.5, 1.6, 2.0, 2.5, 3.0, 4.0, 5.0,
 
 
 def stick_out(case: Case, trials: Trials) -> WhatIf | Change:
-    """The least length from the tip to the holder's nose, the flutes as they are; to `GRAIN`."""
+    """Try the least length from the tip to the holder's nose, the flutes as they are; to `GRAIN`."""
     cutter, lost = case.cutter, len(trials.lost)
     now = cutter.length
     if cutter.holder is None:
@@ -50,14 +50,14 @@ def stick_out(case: Case, trials: Trials) -> WhatIf | Change:
 
 
 def highest(ready: Prepared, cutter: Cutter) -> float:
-    """A stick-out with which the nose is above all obstacles wherever the cutter touches them, mm."""
+    """Give a stick-out with which the nose is above all obstacles wherever the cutter touches them, mm."""
     vertex = ready.conditions.obstacles.triangles.vertex
     size = float(np.linalg.norm(vertex.max(axis=(0, 1)) - vertex.min(axis=(0, 1))))
     return size + 2.0 * cutter.radius + flute_length(cutter) + (cutter.clearance or 0.0)
 
 
 def radius(case: Case, trials: Trials) -> WhatIf | Change:
-    """The largest smaller radius, in steps of `SHARE`."""
+    """Try smaller radii, the largest first, in steps of `SHARE`."""
     cutter, conditions, lost = case.cutter, case.ready.conditions, len(trials.lost)
     now = cutter.radius
     if cutter.shape == "form":
@@ -86,7 +86,7 @@ def radius(case: Case, trials: Trials) -> WhatIf | Change:
 
 
 def corner_radius(case: Case, trials: Trials) -> WhatIf | Change:
-    """Another corner on an end mill of the same radius, from flat to ball; the nearest that serves."""
+    """Try another corner on an end mill of the same radius, from flat to ball; the nearest that serves is taken."""
     cutter = case.cutter
     now, r = cutter.corner_radius, cutter.radius
     if cutter.shape != "end":
@@ -114,8 +114,8 @@ def corner_radius(case: Case, trials: Trials) -> WhatIf | Change:
 
 
 def thinner(cutter: Cutter, radius: float) -> Cutter | None:
-    """The same of a smaller radius: a ball stays one, another corner stays as it is, and so does what is above; but what was no
-    thicker than the flutes stays so. None if there can be none."""
+    """Make the same of a smaller radius: a ball stays one, another corner stays as it is, and so does what is above; but what was
+    no thicker than the flutes stays so. None if there can be none."""
 
     def slim(own: float) -> float:
         return min(own, radius) if own <= cutter.radius + SAME else own
@@ -134,7 +134,7 @@ def thinner(cutter: Cutter, radius: float) -> Cutter | None:
 
 
 def longer(cutter: Cutter, length: float) -> Cutter | None:
-    """The same with its nose so far from the tip; what it has right below it goes on, and it cuts no higher up than it does."""
+    """Make the same with its nose so far from the tip; what is right below it goes on, and it cuts no higher up than it does."""
     ends = {} if cutter.shape in ("lollipop", "form") else {"flutes": flute_length(cutter)}
     return made_of(cutter, length=length, **ends)
 

@@ -1,4 +1,4 @@
-"""What would have to be different about the part: how it is clamped, how closely it is judged, which faces are to be finished."""
+"""Something else about the part may serve: how it is clamped, how closely it is judged, which faces are to be finished."""
 
 import math
 from dataclasses import replace
@@ -31,7 +31,7 @@ Axis = tuple[float, float, float]
 
 
 def setup(case: Case, trials: Trials) -> WhatIf | Change:
-    """Another setup axis: of the directions tried the nearest that serves, and on the way there the first.
+    """Try other setup axes: of the directions tried the nearest that serves, and on the way there the first.
 
     What a machine of another limit changes is known already. The side of the material stays as it is.
     """
@@ -74,8 +74,8 @@ def setup(case: Case, trials: Trials) -> WhatIf | Change:
 
 
 def directions(ready: Prepared, trials: Trials) -> list[Axis]:
-    """Directions to try: faces, edges and corners of a cube, and the mean normals of what is lost and of all; the nearest to the
-    present axis first."""
+    """Give directions to try: faces, edges and corners of a cube, and the mean normals of what is lost and of all; the nearest to
+    the present axis first."""
     now = ready.scene.setup
     means = [ready.samples.normal[rows].mean(axis=0) for rows in (trials.lost, np.sort([*trials.lost, *trials.kept]))]
     cube = [np.array(each, float) for each in product((-1, 0, 1), repeat=3) if any(each)]
@@ -89,18 +89,18 @@ def directions(ready: Prepared, trials: Trials) -> list[Axis]:
 
 
 def _axis(vector: Floats) -> Axis:
-    """A direction as it is told: what is judged is what is told."""
+    """Round a direction as it is told: what is judged is what is told."""
     x, y, z = (float(each) + 0.0 for each in np.round(vector / np.linalg.norm(vector), 6))
     return x, y, z
 
 
 def angle(a: Axis, b: Axis) -> float:
-    """Between two directions, deg."""
+    """Measure the angle between two directions, deg."""
     return math.degrees(math.atan2(float(np.linalg.norm(np.cross(a, b))), float(np.dot(a, b))))
 
 
 def _towards(now: Axis, end: Axis, at: int) -> Axis:
-    """The direction so many steps of `TURN` from the present one on the way to another; no farther than that."""
+    """Give the direction so many steps of `TURN` from the present one on the way to another; no farther than that."""
     degrees = at * TURN
     if not 0.0 < degrees < angle(now, end):
         return end if degrees > 0.0 else now
@@ -114,7 +114,7 @@ def _towards(now: Axis, end: Axis, at: int) -> Axis:
 
 
 def _turned(case: Case, axis: Axis) -> Case | None:
-    """The same under another setup axis; None if a plan would then work on other sides of open faces, flipped or not."""
+    """Make the same under another setup axis; None if a plan would then work on other sides of open faces, flipped or not."""
     ready = case.ready
     if flip_of(ready, axis) is None:
         return None
@@ -123,7 +123,7 @@ def _turned(case: Case, axis: Axis) -> Case | None:
 
 
 def flip_of(ready: Prepared, axis: Axis) -> bool | None:
-    """What to say of `flip` under a setup axis, so that faces keep the sides that they have; None if neither keeps them."""
+    """Tell what to say of `flip` under a setup axis, so that faces keep the sides that they have; None if neither keeps them."""
     scene, flip = ready.scene, ready.options.flip
     if scene.orientation.confident:
         return flip
@@ -134,7 +134,7 @@ def flip_of(ready: Prepared, axis: Axis) -> bool | None:
 
 
 def tolerance(case: Case, trials: Trials) -> Change:
-    """A finer tolerance, where samples are undecided alone: `FINER` shares of it."""
+    """Try a finer tolerance, where samples are undecided alone: `FINER` shares of it."""
     ready = case.ready
     now = ready.scene.asked
     if trials.blocked:
@@ -163,7 +163,7 @@ def tolerance(case: Case, trials: Trials) -> Change:
 
 
 def closer(case: Case, asked: float) -> Case:
-    """The same, surrounded anew for a finer tolerance."""
+    """Make the same, surrounded anew for a finer tolerance."""
     ready = case.ready
     scene = replace(ready.scene, asked=asked)
     around = scene.surround(jobs=ready.conditions.jobs)
@@ -173,7 +173,7 @@ def closer(case: Case, asked: float) -> Case:
 
 
 def faces(case: Case, trials: Trials) -> Change:
-    """Leaving out the faces with samples that are lost: they stay in the way, but need not be finished."""
+    """Leave out the faces with samples that are lost: they stay in the way, but need not be finished."""
     ready = case.ready
     face, infos = ready.samples.face, ready.scene.part.faces
     bad = np.unique(face[trials.lost]).tolist()

@@ -1,4 +1,4 @@
-"""Which wider ranges of tilt would serve: those that are searched, and those of the machine."""
+"""Wider ranges of tilt may serve: those that are searched, and those of the machine."""
 
 import math
 from collections.abc import Iterator
@@ -18,17 +18,15 @@ Range = tuple[float, float]
 
 
 def tilt_limit(case: Case, trials: Trials) -> WhatIf | Change:
-    """The least limit of the machine's axis, to `GRAIN`; for one whose rotary axes limit it, a machine that tilts every way."""
+    """Try the least limit of the axis, to `GRAIN`; for a machine whose rotary axes limit it, one that tilts every way."""
     machine = case.ready.conditions.machine
     if not machine.limited:
         return none("tilt_limit", None, len(trials.lost), "the machine has no limit")
     now = None if machine.turns or machine.tilt_limit is None else _degrees(machine.tilt_limit)
     base = math.floor((now or 0.0) / GRAIN + 1e-6)
     instead = f"every way instead of {machine.name}" if now is None else f"instead of {now:g} deg"
-
-    way = Way(
-        math.ceil(180.0 / GRAIN) - base, lambda at: min(180.0, round((base + at) * GRAIN, 6)) if at else now or 0.0
-    )
+    most = math.ceil(180.0 / GRAIN) - base
+    way = Way(most, lambda at: min(180.0, round((base + at) * GRAIN, 6)) if at else now or 0.0)
     return WhatIf(
         now=now, ways=[way], ends=[_within(case, machine=Machine())], nested=True,
         make=lambda limit: _within(case, machine=Machine.parse(f"tilt:{limit:.6g}")), reads=lambda _: 180.0,
@@ -40,7 +38,7 @@ def tilt_limit(case: Case, trials: Trials) -> WhatIf | Change:
 
 
 def tilt_range(case: Case, trials: Trials) -> WhatIf | Change:
-    """A wider range of tilts to search: one end of it as far as is needed, or both; to `GRAIN`."""
+    """Try a wider range of tilts to search: one end of it as far as is needed, or both; to `GRAIN`."""
     low, high = (_degrees(tilt) for tilt in case.ready.conditions.postures.tilt)
     touching = modes(case.cutter)
     lowest = min(low, round(math.floor(_degrees(min(mode.low for mode in touching)) / GRAIN) * GRAIN, 6))
