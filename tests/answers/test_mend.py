@@ -11,8 +11,8 @@ from cad_io import read_part
 from plan_cutters import Cutter, Options, Scene, plan
 from plan_cutters.answers import trial
 from plan_cutters.answers.mend import mend
-from plan_cutters.answers.other_cutter import GRAIN, thinner
 from plan_cutters.answers.trial import Case, batches
+from plan_cutters.answers.what_if_cutter import GRAIN, thinner
 from plan_cutters.domain.change import THINGS
 from plan_cutters.domain.machine import Machine
 from plan_cutters.pipeline import prepare
@@ -195,7 +195,7 @@ def test_the_corner_that_the_surface_asks_for():
 
 
 def trial_corners():
-    from plan_cutters.answers.other_cutter import CORNERS
+    from plan_cutters.answers.what_if_cutter import CORNERS
 
     return [0.0, *CORNERS]
 

@@ -8,10 +8,10 @@ import numpy as np
 
 from cad_io.arrays import Floats
 from plan_cutters.answers.option import Axis
-from plan_cutters.answers.other_place import FINER, angle, closer, directions, flip_of
 from plan_cutters.answers.scan import Candidate, Rows, Scan, spread, under
 from plan_cutters.answers.state import State
 from plan_cutters.answers.trial import Case, Trials
+from plan_cutters.answers.what_if_place import FINER, angle, closer, directions, flip_of
 from plan_cutters.domain.change import Move
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.shapes import modes

@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
-from plan_cutters.answers.other_cutter import CORNERS, THINNEST, highest, longer, made_of, thinner
 from plan_cutters.answers.scan import HALF, NEARLY, Candidate, Scan
 from plan_cutters.answers.state import State
+from plan_cutters.answers.what_if_cutter import CORNERS, THINNEST, highest, longer, made_of, thinner
 from plan_cutters.domain.change import Move
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder, Segment

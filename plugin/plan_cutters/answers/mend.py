@@ -5,19 +5,21 @@ from dataclasses import replace
 
 from plan_cutters.answers.areas import Finished
 from plan_cutters.answers.option import option
-from plan_cutters.answers.other_cutter import corner_radius, radius, stick_out
-from plan_cutters.answers.other_place import faces, setup, tolerance
-from plan_cutters.answers.other_range import tilt_limit, tilt_range
 from plan_cutters.answers.trial import Case, Trials, samples
+from plan_cutters.answers.what_if import WhatIf, search
+from plan_cutters.answers.what_if_cutter import corner_radius, radius, stick_out
+from plan_cutters.answers.what_if_place import faces, setup, tolerance
+from plan_cutters.answers.what_if_tilt import tilt_limit, tilt_range
 from plan_cutters.domain.change import THINGS, Change, Mend, Thing
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.scene.preparation import Prepared
 
-#: The order of work: what one finds spares another.
-_WORK: tuple[Thing, ...] = (
-    "faces", "stick_out", "tilt_range", "tilt_limit", "setup", "corner_radius", "radius", "tolerance"
-)  # fmt: skip
+#: What if one thing were another, in the order of work: what one finds spares another.
+_WHAT_IFS: dict[Thing, Callable[[Case, Trials], WhatIf | Change]] = {
+    "faces": faces, "stick_out": stick_out, "tilt_range": tilt_range, "tilt_limit": tilt_limit, "setup": setup,
+    "corner_radius": corner_radius, "radius": radius, "tolerance": tolerance,
+}  # fmt: skip
 
 
 def mend(
@@ -68,29 +70,18 @@ def mend(
         return Mend(cutter.id, within, within, (), why)
     case = Case(ready, cutter)
     share = Finished.of(ready).of_rows(trials.lost)
-    found: dict[Thing, Change] = {}
-    for done, thing in enumerate(_WORK):
-        tell(done, len(_WORK))
-        found[thing] = _told(case, _change(thing, case, trials, verdicts, found), share)
-    tell(len(_WORK), len(_WORK))
+    for done, (thing, what_if) in enumerate(_WHAT_IFS.items()):
+        tell(done, len(_WHAT_IFS))
+        what = what_if(case, trials)
+        trials.found[thing] = what if isinstance(what, Change) else search(thing, what, trials)
+    tell(len(_WHAT_IFS), len(_WHAT_IFS))
+    found = [_told(case, change, share) for change in trials.found.values()]
     if around.doubtful:
-        found = {thing: _doubted(change) for thing, change in found.items()}
+        found = [_doubted(change) for change in found]
     rank = {True: 0, None: 1, False: 2}
-    changes = sorted(found.values(), key=lambda change: (rank[change.helps], THINGS.index(change.thing)))
+    changes = sorted(found, key=lambda change: (rank[change.helps], THINGS.index(change.thing)))
     why = "" if any(change.helps for change in changes) else "no change of one thing is known to help"
     return Mend(cutter.id, len(trials.lost) + within, within, tuple(changes), why)
-
-
-def _change(thing: Thing, case: Case, trials: Trials, verdicts: Verdicts, found: dict[Thing, Change]) -> Change:
-    if thing == "setup":
-        return setup(case, trials, found["tilt_limit"])
-    if thing == "tolerance":
-        return tolerance(case, trials, verdicts)
-    each: dict[Thing, Callable[[Case, Trials], Change]] = {
-        "faces": faces, "stick_out": stick_out, "tilt_range": tilt_range, "tilt_limit": tilt_limit,
-        "corner_radius": corner_radius, "radius": radius,
-    }  # fmt: skip
-    return each[thing](case, trials)
 
 
 def _told(case: Case, change: Change, share: float) -> Change:

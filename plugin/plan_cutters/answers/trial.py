@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from plan_cutters.domain.change import Change, Thing
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.reasons import REASONS as WORDS
 from plan_cutters.domain.verdicts import (
@@ -105,16 +106,23 @@ class Trials:
         Samples of the finished surface that the cutter does not reach now, and those that it reaches, ascending.
     hard : list of int
         Samples that stopped a value, the last one first.
+    blocked : int
+        Samples of those lost that are inaccessible.
+    found : dict
+        Changes that are known already, by their thing: one may spare another.
     """
 
     lost: Rows
     kept: Rows
     hard: list[int] = field(default_factory=list)
+    blocked: int = 0
+    found: dict[Thing, Change] = field(default_factory=dict)
 
     @classmethod
     def of(cls, verdicts: Verdicts, finished: NDArray[np.bool_]) -> "Trials":
         """The samples of a reach that are of the finished surface (n,)."""
-        return cls(np.flatnonzero(verdicts.lost & finished), np.flatnonzero(verdicts.reached & finished))
+        lost, kept = np.flatnonzero(verdicts.lost & finished), np.flatnonzero(verdicts.reached & finished)
+        return cls(lost, kept, blocked=int((verdicts.verdict[lost] == INACCESSIBLE).sum()))
 
     @property
     def count(self) -> int:

@@ -96,7 +96,7 @@ def mm(value: float, scale: float, field: str, *, exact: bool = False) -> float:
 
 @dataclass(slots=True)
 class Stated:
-    """What our own format alone says; with it, all lengths in mm are taken to the last digit, and sections as they are.
+    """Values that our own format alone states. With them, lengths in mm are taken to the last digit, and sections as they are.
 
     Attributes
     ----------

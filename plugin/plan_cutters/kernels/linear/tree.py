@@ -108,7 +108,7 @@ def _mean_normal(corner, normal, lo, hi):
 
 @kernel
 def _reach(corner, lo, hi, middle, axes, workspace):
-    """Write into `room.least` and `room.most` (3,) how far triangles `lo` to `hi` reach along axes (3, 3) from a point."""
+    """Write into `workspace.least` and `.most` (3,) how far triangles `lo` to `hi` reach along axes (3, 3) from a point."""
     lows, highs, least, most = workspace.lows, workspace.highs, workspace.least, workspace.most
     mx, my, mz = middle[0], middle[1], middle[2]
     whole = lo + (hi - lo) // _LANES * _LANES

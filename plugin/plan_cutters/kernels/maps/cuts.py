@@ -294,7 +294,7 @@ def _shrink(corner, gap, g, sign, narrowest, turning, k, workspace):
 def cut_gaps(vertex, i, frame, gap, count, narrowest, turning, k, workspace):
     """Take the tilts at which a triangle is in the way of piece k out of the gaps; (count of gaps, whether any was cut).
 
-    The triangle is in `room.corner` too, as rows (x, z, y) from the centre.
+    The triangle is in `workspace.corner` too, as rows (x, z, y) from the centre.
     """
     corner, cut = workspace.corner, False
     # What its corners alone forbid is known in closed form, and mostly all that it does.

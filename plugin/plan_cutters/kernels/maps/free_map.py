@@ -248,14 +248,14 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, na
 
 
 @kernel
-def _write(gap, count, written, workspace, part):
-    """Write the gaps as intervals among others, ascending; (how many, how much is undecided at their ends and beyond `room`)."""
+def _write(gap, count, written, most, part):
+    """Write the gaps as intervals among others, ascending; (how many, how much is undecided at their ends and beyond `most`)."""
     unsure = gap[GAPS, UF] + gap[GAPS, UL]
     for g in range(count):
         unsure += gap[g, UF] + gap[g, UL]
         if gap[g, LAST] <= gap[g, FIRST]:
             continue
-        if written == workspace:
+        if written == most:
             unsure += gap[g, LAST] - gap[g, FIRST]
             continue
         written = insert(part, written, gap[g, FIRST], gap[g, LAST])
@@ -295,7 +295,7 @@ def _reachable(view, lanes, turning):
 
 
 @entry
-def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, workspace, part, count_out, undecided):
+def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, most, part, count_out, undecided):
     """Free tilts of samples at all rotations, in one walk of the tree each, with certified ends.
 
     Parameters
@@ -310,9 +310,9 @@ def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, workspace, par
     tree : Tree
     wide : WideTree
         The same.
-    room : int
+    most : int
         Most intervals of one rotation.
-    part : (m, k, room, 2) float64, written
+    part : (m, k, most, 2) float64, written
         Free intervals, ascending, by place in `rows`.
     count_out : (m, k) int32, written
     undecided : (m, k) float64, written
@@ -323,10 +323,9 @@ def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, workspace, par
     int
         Blocks of the tree and triangles that were looked at: the same for the same rows, whatever the machine's speed.
     """
-    turns, looked = len(ranges.rotation_cos), 0
+    turns, looked, work = len(ranges.rotation_cos), 0, room_to_cut()
     c, t, f, e2 = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
     gap, arcs, alone = np.empty((GAPS + 1, COLUMNS)), np.empty((8, 2)), np.empty((1, PIECE))
-    work = room_to_cut()
     count_out[:, :], undecided[:, :] = 0, 0.0
     for mode in range(len(tool.mode)):
         offset, rise, piece = tool.mode[mode, codes.OFFSET_OF], tool.mode[mode, codes.RISE], tool.piece[mode]
@@ -394,7 +393,7 @@ def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, workspace, par
                         frame, e1, e2, (cosine, sine), rotation, gap, count, turning, whole, floor, narrowest, wide, view,
                         work,
                     )  # fmt: skip
-                count, unsure = _write(gap, count, count_out[place, rotation], workspace, part[place, rotation])
+                count, unsure = _write(gap, count, count_out[place, rotation], most, part[place, rotation])
                 count_out[place, rotation] = join(part[place, rotation], count)
                 undecided[place, rotation] += unsure
         looked += view.tally[3]

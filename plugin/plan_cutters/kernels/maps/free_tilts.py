@@ -31,11 +31,9 @@ class Parts(NamedTuple):
 
 
 @entry
-def room_for_parts(workspace):
+def room_for_parts(most):
     """Room for so many parts."""
-    return Parts(
-        np.empty((workspace + 4, 3)), np.empty((workspace + 4, 2)), np.empty((ARCS, 2)), np.empty(BODY), scratch()
-    )
+    return Parts(np.empty((most + 4, 3)), np.empty((most + 4, 2)), np.empty((ARCS, 2)), np.empty(BODY), scratch())
 
 
 @kernel
@@ -43,7 +41,7 @@ def divide(frame, low, high, tool, mode, narrowest, tree, work):
     """`free_tilts` of a frame, its parts written into `work`; how many."""
     parts, pending, body, walk, piece = work.parts, work.pending, work.body, work.scratch, tool.piece[mode]
     pending[0, 0], pending[0, 1] = low, high
-    top, done, hint, workspace = 1, 0, -1, len(parts) - 4
+    top, done, hint, most = 1, 0, -1, len(parts) - 4
     while top > 0:
         top -= 1
         first, last = pending[top, 0], pending[top, 1]
@@ -63,7 +61,7 @@ def divide(frame, low, high, tool, mode, narrowest, tree, work):
                 )
                 kind = FORBIDDEN
                 cut_first, cut_last = max(first, min(arc_first, tilt)), min(last, max(arc_last, tilt))
-            if last - first <= narrowest or top + done + 3 > workspace:
+            if last - first <= narrowest or top + done + 3 > most:
                 kind, cut_first, cut_last = UNSURE, first, last
         # What is cut out is settled; the rest, at most half on either side or narrower, is not.
         parts[done, 0], parts[done, 1], parts[done, 2] = cut_first, cut_last, kind
@@ -79,7 +77,7 @@ def divide(frame, low, high, tool, mode, narrowest, tree, work):
 
 
 @entry
-def free_tilts(p, n, f, low, high, tool, mode, narrowest, tree, workspace):
+def free_tilts(p, n, f, low, high, tool, mode, narrowest, tree, most):
     """Split a range of tilts into free, forbidden and undecided parts.
 
     Parameters
@@ -95,7 +93,7 @@ def free_tilts(p, n, f, low, high, tool, mode, narrowest, tree, workspace):
     narrowest : float
         rad.
     tree : Tree
-    room : int
+    most : int
         Most parts that can be told apart.
 
     Returns
@@ -103,7 +101,7 @@ def free_tilts(p, n, f, low, high, tool, mode, narrowest, tree, workspace):
     parts : (k, 3) float64
         first, last, kind (OPEN, FORBIDDEN, UNSURE); together the range asked for, in no order.
     """
-    t, work = np.empty(3), room_for_parts(workspace)
+    t, work = np.empty(3), room_for_parts(most)
     cross(n, f, t)
     count = divide(Frame(p, n, f, t), low, high, tool, mode, narrowest, tree, work)
     return work.parts[:count]

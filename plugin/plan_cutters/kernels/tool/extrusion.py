@@ -59,7 +59,7 @@ def drawn_hit(vertex, i, body, piece, mask, workspace):
     body : (14,) float64
     piece : (k, COLUMNS) float64
     mask : int
-    room : Scratch
+    workspace : Scratch
     """
     corner, half = workspace.corner, body[HALF]
     _, least, most, total = into_frame(vertex, i, body, 0.0, corner)

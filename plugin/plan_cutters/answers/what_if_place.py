@@ -1,18 +1,19 @@
-"""Find changes beside the cutter: another clamping, a finer tolerance, or fewer target faces."""
+"""Something else about the part may serve: how it is clamped, how closely it is judged, which faces are to be finished."""
 
 import math
-from dataclasses import dataclass, replace
-from itertools import product
+from dataclasses import replace
+from functools import partial
+from itertools import islice, product
+from typing import Any
 
 import numpy as np
 
 from cad_io.arrays import Floats
 from cad_io.part.orient import orient
-from plan_cutters.answers.outcome import none
-from plan_cutters.answers.trial import Case, Left, Trials, first, samples
+from plan_cutters.answers.trial import Case, Left, Trials, samples
+from plan_cutters.answers.what_if import Way, WhatIf, none
 from plan_cutters.domain.change import Change
 from plan_cutters.domain.posture import unit
-from plan_cutters.domain.verdicts import INACCESSIBLE, Verdicts
 from plan_cutters.options import LEAST_TOLERANCE
 from plan_cutters.scene.inside_material import buried
 from plan_cutters.scene.preparation import Prepared
@@ -29,73 +30,52 @@ FINER = (0.5, 0.25)
 Axis = tuple[float, float, float]
 
 
-@dataclass(frozen=True, slots=True)
-class _Found:
-    """An axis that serves, how far it is from the present one, deg, and one a step nearer that does not."""
+def setup(case: Case, trials: Trials) -> WhatIf | Change:
+    """Try other setup axes: of the directions tried the nearest that serves, and on the way there the first.
 
-    axis: Axis
-    angle: float
-    beyond: Axis
-
-
-def setup(case: Case, trials: Trials, unlimited: Change) -> Change:
-    """Another setup axis: of the directions tried the nearest that serves, and on the way there the first.
-
-    `unlimited`: what a machine of another limit changes. The side of the material stays as it is.
+    What a machine of another limit changes is known already. The side of the material stays as it is.
     """
-    ready = case.ready
+    ready, lost = case.ready, len(trials.lost)
     now: Axis = ready.scene.setup
     if not ready.conditions.machine.limited:
-        return none("setup", now, len(trials.lost), "the machine has no limit, so it turns to any axis")
+        return none("setup", now, lost, "the machine has no limit, so it turns to any axis")
     if any(each.follows_setup for each in ready.scene.fixtures):
         why = "is not decided: a table lies across the setup axis, so it would lie elsewhere; ask with another --setup"
-        return replace(none("setup", now, len(trials.lost), why), helps=None)
+        return replace(none("setup", now, lost, why), helps=None, why=why)
+    unlimited = trials.found["tilt_limit"]
     if unlimited.left:
         # An axis within a limit is one without.
         why = f"{unlimited.left:,} of {unlimited.looked:,} samples are not reached without any limit of the axis"
         change = none("setup", now, unlimited.left, why, unlimited.looked)
         return change if unlimited.helps is False else replace(change, helps=None, why=f"is not decided: {why}")
-    tried = [(axis, made) for axis in directions(ready, trials) if (made := _turned(case, axis)) is not None]
-    found, ways = None, 0
-    for axis, made in tried:
-        if ways < _APPROACHED and not trials.stopped(made, everywhere=True):
-            ways += 1
-            found = _nearest(case, trials, axis, found) or found
-    if found is None:
-        if not tried:
-            why = "under every other axis a plan would work on other sides of open faces"
-            return none("setup", now, len(trials.lost), why)
-        left = Left.by(trials.closest([made for _, made in tried]), trials.lost)
+    tried = {axis: made for axis in directions(ready, trials) if (made := _turned(case, axis)) is not None}
+    if not tried:
+        return none("setup", now, lost, "under every other axis a plan would work on other sides of open faces")
+    ends = (axis for axis, made in tried.items() if not trials.stopped(made, everywhere=True))
+    ways = (
+        Way(math.ceil(angle(now, end) / TURN - 1e-9), partial(_towards, now, end)) for end in islice(ends, _APPROACHED)
+    )
+
+    def fails(_: Case, left: Left) -> str:
         why = f"the best leaves {left.count:,} of {left.looked:,} samples" if left.count else "each loses some samples"
-        return none("setup", now, left.count, f"none of {len(tried)} directions tried serves, {why}", left.looked)
-    options: dict[str, object] = {"setup": found.axis}
-    more = ""
-    if (flip := flip_of(ready, found.axis)) != ready.options.flip:
-        options["flip"] = flip
-        more = ", with --flip" if flip else ", without --flip"
-    words = ",".join(f"{each:.4g}" for each in found.axis)
-    return Change("setup", now, found.axis, True, 0, len(trials.lost), trials.count, found.beyond, None,
-                  f"the part clamped with {words} along the spindle, {found.angle:.4g} deg from now{more}", options)  # fmt: skip
+        return f"none of {len(tried)} directions tried serves, {why}"
 
+    def serves(asked: Axis, _: Case) -> tuple[str, dict[str, Any]]:
+        axis = ",".join(f"{each:.4g}" for each in asked)
+        words = f"the part clamped with {axis} along the spindle, {angle(now, asked):.4g} deg from now"
+        if (flip := flip_of(ready, asked)) == ready.options.flip:
+            return words, {"setup": asked}
+        return f"{words}, {'with' if flip else 'without'} --flip", {"setup": asked, "flip": flip}
 
-def _nearest(case: Case, trials: Trials, end: Axis, found: _Found | None) -> _Found | None:
-    """The first axis that serves on the way to another, in steps of `TURN`; None if it is no nearer than what is found."""
-    now: Axis = case.ready.scene.setup
-    whole = angle(now, end)
-    far = whole if found is None else min(whole, found.angle - TURN)
-
-    def axis(at: int) -> Axis:
-        return _towards(now, end, at * TURN)
-
-    step = first(lambda at: _turned(case, axis(at)), math.ceil(far / TURN - 1e-9), trials)
-    if step is None:
-        return None
-    return _Found(axis(step.steps), min(whole, step.steps * TURN), axis(step.beyond or 0))
+    return WhatIf(
+        now=now, ways=ways, make=lambda axis: _turned(case, axis), ends=[*tried.values()],
+        fails=fails, serves=serves,
+    )  # fmt: skip
 
 
 def directions(ready: Prepared, trials: Trials) -> list[Axis]:
-    """Directions to try: faces, edges and corners of a cube, and the mean normals of what is lost and of all; the nearest to the
-    present axis first."""
+    """Give directions to try: faces, edges and corners of a cube, and the mean normals of what is lost and of all; the nearest to
+    the present axis first."""
     now = ready.scene.setup
     means = [ready.samples.normal[rows].mean(axis=0) for rows in (trials.lost, np.sort([*trials.lost, *trials.kept]))]
     cube = [np.array(each, float) for each in product((-1, 0, 1), repeat=3) if any(each)]
@@ -109,18 +89,19 @@ def directions(ready: Prepared, trials: Trials) -> list[Axis]:
 
 
 def _axis(vector: Floats) -> Axis:
-    """A direction as it is told: what is judged is what is told."""
+    """Round a direction as it is told: what is judged is what is told."""
     x, y, z = (float(each) + 0.0 for each in np.round(vector / np.linalg.norm(vector), 6))
     return x, y, z
 
 
 def angle(a: Axis, b: Axis) -> float:
-    """Between two directions, deg."""
+    """Measure the angle between two directions, deg."""
     return math.degrees(math.atan2(float(np.linalg.norm(np.cross(a, b))), float(np.dot(a, b))))
 
 
-def _towards(now: Axis, end: Axis, degrees: float) -> Axis:
-    """The direction so far from the present one on the way to another; no farther than that."""
+def _towards(now: Axis, end: Axis, at: int) -> Axis:
+    """Give the direction so many steps of `TURN` from the present one on the way to another; no farther than that."""
+    degrees = at * TURN
     if not 0.0 < degrees < angle(now, end):
         return end if degrees > 0.0 else now
     start, other = np.array(now), np.array(end)
@@ -133,7 +114,7 @@ def _towards(now: Axis, end: Axis, degrees: float) -> Axis:
 
 
 def _turned(case: Case, axis: Axis) -> Case | None:
-    """The same under another setup axis; None if a plan would then work on other sides of open faces, flipped or not."""
+    """Make the same under another setup axis; None if a plan would then work on other sides of open faces, flipped or not."""
     ready = case.ready
     if flip_of(ready, axis) is None:
         return None
@@ -152,14 +133,13 @@ def flip_of(ready: Prepared, axis: Axis) -> bool | None:
     return None
 
 
-def tolerance(case: Case, trials: Trials, verdicts: Verdicts) -> Change:
-    """A finer tolerance, where samples are undecided alone: `FINER` shares of it."""
+def tolerance(case: Case, trials: Trials) -> Change:
+    """Try a finer tolerance, where samples are undecided alone: `FINER` shares of it."""
     ready = case.ready
     now = ready.scene.asked
-    blocked = int((verdicts.verdict[trials.lost] == INACCESSIBLE).sum())
-    if blocked:
-        why = f"{samples(blocked)} blocked for certain, which no finer tolerance mends"
-        return none("tolerance", now, blocked, why)
+    if trials.blocked:
+        why = f"{samples(trials.blocked)} blocked for certain, which no finer tolerance mends"
+        return none("tolerance", now, trials.blocked, why)
     left, best, before = len(trials.lost), now, now
     for share in FINER:
         finer = float(f"{now * share:.6g}")
@@ -183,7 +163,7 @@ def tolerance(case: Case, trials: Trials, verdicts: Verdicts) -> Change:
 
 
 def closer(case: Case, asked: float) -> Case:
-    """The same, surrounded anew for a finer tolerance."""
+    """Make the same, surrounded anew for a finer tolerance."""
     ready = case.ready
     scene = replace(ready.scene, asked=asked)
     around = scene.surround(jobs=ready.conditions.jobs)
@@ -193,7 +173,7 @@ def closer(case: Case, asked: float) -> Case:
 
 
 def faces(case: Case, trials: Trials) -> Change:
-    """Leaving out the faces with samples that are lost: they stay in the way, but need not be finished."""
+    """Leave out the faces with samples that are lost: they stay in the way, but need not be finished."""
     ready = case.ready
     face, infos = ready.samples.face, ready.scene.part.faces
     bad = np.unique(face[trials.lost]).tolist()
@@ -206,9 +186,8 @@ def faces(case: Case, trials: Trials) -> Change:
     whole = sum(infos[n - 1].area for n in ready.chosen.targets)
     out = np.isin(np.concatenate([trials.lost, trials.kept]), np.flatnonzero(np.isin(face, bad)))
     much = f"{area:,.0f}" if area >= 100.0 else f"{area:.3g}"
-    which = (
-        ids[0] if len(ids) == 1 else f"{len(ids)} faces ({', '.join(ids[:5])}{' and others' if len(ids) > 5 else ''})"
-    )
+    some = ", ".join(ids[:5]) + " and others" * (len(ids) > 5)
+    which = ids[0] if len(ids) == 1 else f"{len(ids)} faces ({some})"
     return Change("faces", ids, ids, True, 0, len(trials.lost), int((~out).sum()), None, None,
                   f"{which} left out of what is to be finished: {much} mm2, {100.0 * area / whole:.3g} % of the target area",
                   {"faces": ",".join(f"F{n}" for n in rest)})  # fmt: skip

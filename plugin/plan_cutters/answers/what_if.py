@@ -1,0 +1,78 @@
+"""A what-if has values of one thing; one driver finds the value that asks least and tells what comes of it."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from plan_cutters.answers.trial import Case, Left, Step, Trials, first, least
+from plan_cutters.domain.change import Change, Thing, Value
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """Give values by the number of steps from the present one; a last resort is tried where no other way serves."""
+
+    most: int
+    value: Callable[[int], Any]
+    last_resort: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WhatIf:
+    """Hold the values of one thing to try, and the words for what comes of it.
+
+    `make` gives the case with a value, None where there can be none. Of `ways` the one that serves with the fewest steps is
+    taken, of equals the first; where each value allows all that those before it allow (`nested`), steps are halved. A value that
+    serves has its sentence, and the options of a plan that differ with it (`serves`). Where nothing serves, the best case of
+    `ends` is told (`fails`), with its value (`reads`) if samples stay undecided; without `reads` that is told as no help.
+    """
+
+    now: Value
+    ways: Iterable[Way]
+    make: Callable[[Any], Case | None]
+    ends: list[Case]
+    nested: bool = False
+    reads: Callable[[Case], Value] | None = None
+    fails: Callable[[Case, Left], str]
+    serves: Callable[[Any, Case], tuple[str, dict[str, Any]]]
+
+
+def search(thing: Thing, what: WhatIf, trials: Trials) -> Change:
+    """Find the value that asks least, judged on all samples as is the one before it; or tell what the best one leaves."""
+    left = Left.by(what.ends[0], trials.lost) if what.nested else None
+    found = None if left and left.count else _fewest(what, trials)
+    if found:
+        step, value = found
+        asked, beyond = value(step.steps), None if step.beyond is None else value(step.beyond)
+        words, options = what.serves(asked, step.case)
+        (cutter,) = options.get("cutters", (None,))
+        return Change(thing, what.now, asked, True, 0, len(trials.lost), trials.count, beyond, cutter, words, options)
+    end = what.ends[0] if what.nested else trials.closest(what.ends)
+    left = left or Left.by(end, trials.lost)
+    why = what.fails(end, left)
+    if what.reads is None or left.blocked or not left.count:
+        return none(thing, what.now, left.count, why, left.looked)
+    why = f"is not decided: {why}"
+    return Change(thing, what.now, what.reads(end), None, left.count, left.looked, 0, None, None, why)
+
+
+def _fewest(what: WhatIf, trials: Trials) -> tuple[Step, Callable[[int], Any]] | None:
+    found: tuple[Step, Callable[[int], Any]] | None = None
+    for way in what.ways:
+        if found and way.last_resort:
+            break
+
+        def steps(at: int, way: Way = way) -> Case | None:
+            return what.make(way.value(at))
+
+        most = min(way.most, found[0].steps - 1) if found and not what.nested else way.most
+        step = (least if what.nested else first)(steps, most, trials)
+        if step and (found is None or step.steps < found[0].steps):
+            found = step, way.value
+    return found
+
+
+def none(thing: Thing, now: Value, left: int, why: str, looked: int | None = None) -> Change:
+    """Tell that nothing serves, or that there is nothing to try; `looked`: samples looked at, if not all that are left."""
+    looked = left if looked is None else looked
+    return Change(thing, now, None, False, left, looked, 0, None, None, f"does not help: {why}")
