@@ -58,6 +58,11 @@ class RadiusMap(Record):
     rotation: Ints
 
     @property
+    def lean(self) -> Floats:
+        """The former name of `tilt_direction`."""
+        return self.tilt_direction
+
+    @property
     def judged(self) -> NDArray[np.bool_]:
         """Samples (n,) of which something is known."""
         return ~np.isnan(self.radius)

@@ -69,6 +69,11 @@ class StickOut(Record):
     each: Floats | None = None
     step: float = math.nan
 
+    @property
+    def lean(self) -> Floats | None:
+        """The former name of `tilt_direction`."""
+        return self.tilt_direction
+
 
 def held(cutter: Cutter, stick_out: float) -> Cutter:
     """The same cutter in its holder with another stick-out, mm: flutes and neck stay, the shank makes up the length.

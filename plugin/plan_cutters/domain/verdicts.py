@@ -62,6 +62,11 @@ class Verdicts(Record):
     reason: Bytes
 
     @property
+    def lean(self) -> Floats:
+        """The former name of `tilt_direction`."""
+        return self.tilt_direction
+
+    @property
     def reached(self) -> NDArray[np.bool_]:
         """Samples (n,) at which a posture is known."""
         return self.interference_free | (self.verdict == ACCESSIBLE)
@@ -79,6 +84,10 @@ class Verdicts(Record):
     def of(self, rows: NDArray[np.int64]) -> "Verdicts":
         """Take the verdicts of some samples."""
         return Verdicts(*(getattr(self, name)[rows] for name in Verdicts.__slots__))
+
+
+#: The former name.
+Reach = Verdicts
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
