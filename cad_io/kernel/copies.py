@@ -4,17 +4,21 @@ import contextlib
 import faulthandler
 import math
 import os
+import pickle
 import select
 import signal
+import struct
 import time
 import warnings
 from collections.abc import Callable, Iterator
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from cad_io.lifetime import end_with
 
 #: Seconds between two looks at a copy, and looks at one that sleeps and does nothing before it is taken for stuck.
 _LOOK, _ASLEEP = 1.0, 60
+#: Answers begin with their length in bytes.
+_LENGTH = struct.Struct("<q")
 
 
 def begin(work: Callable[[BinaryIO], None], seconds: float) -> tuple[int, int]:
@@ -124,6 +128,32 @@ def parts_of(end: int, late: Callable[[], float]) -> Iterator[bytes]:
                 return
             yield part
     raise TimeoutError
+
+
+def tell(pipe: BinaryIO, answer: object) -> None:
+    """Write an answer for `answers` to read."""
+    data = pickle.dumps(answer)
+    pipe.write(_LENGTH.pack(len(data)) + data)
+    pipe.flush()
+
+
+def answers(end: int, child: int) -> Iterator[Any]:
+    """Whole answers of a copy as they come, until it ends: half an answer is none.
+
+    Raises
+    ------
+    TimeoutError
+        It sleeps and does nothing.
+    """
+    data = bytearray()
+    for part in parts_of(end, stuck(child)):
+        data += part
+        while len(data) >= _LENGTH.size:
+            whole = _LENGTH.size + _LENGTH.unpack_from(data)[0]
+            if len(data) < whole:
+                break
+            yield pickle.loads(bytes(data[_LENGTH.size : whole]))
+            del data[:whole]
 
 
 def _end_alone(seconds: float) -> None:

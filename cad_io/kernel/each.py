@@ -1,19 +1,14 @@
 """The kernel's work on one thing after another, in a copy that can be ended: what hangs or crashes costs that thing alone."""
 
 import os
-import pickle
-import struct
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import BinaryIO, TypeVar, cast
 
-from cad_io.kernel.copies import begin, end_within, ended, out_of_time, parts_of, stuck
+from cad_io.kernel.copies import answers, begin, end_within, ended, out_of_time, tell
 
 Item = TypeVar("Item")
 Done = TypeVar("Done")
-
-#: Answers begin with their length in bytes.
-_LENGTH = struct.Struct("<q")
 
 
 class Ended(Exception):
@@ -53,7 +48,7 @@ def each(
         end, child = begin(partial(_work, call, items[first:], seconds), seconds * (len(items) - first + 1))
         why, status = "", 0
         try:
-            for answer in _answers(end, child):
+            for answer in answers(end, child):
                 first += 1
                 if isinstance(answer, Exception):
                     raise answer
@@ -84,21 +79,6 @@ def _work(call: Callable[[Item], Done], items: Sequence[Item], seconds: float, p
         except Exception as error:
             answer = error
         end_within(0.0)
-        data = pickle.dumps(answer)
-        pipe.write(_LENGTH.pack(len(data)) + data)
-        pipe.flush()
+        tell(pipe, answer)
         if isinstance(answer, Exception):
             break
-
-
-def _answers(end: int, child: int) -> Iterator[object]:
-    """Whole answers as they come, until the copy ends; TimeoutError if it sleeps and does nothing."""
-    data = b""
-    for part in parts_of(end, stuck(child)):
-        data += part
-        while len(data) >= _LENGTH.size:
-            (length,) = _LENGTH.unpack_from(data)
-            if len(data) < _LENGTH.size + length:
-                break
-            yield pickle.loads(data[_LENGTH.size : _LENGTH.size + length])
-            data = data[_LENGTH.size + length :]

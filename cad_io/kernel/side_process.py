@@ -5,18 +5,13 @@ that is taken here.
 """
 
 import os
-import pickle
-import struct
 from collections.abc import Callable
 from types import TracebackType
-from typing import BinaryIO, Generic, TypeVar
+from typing import BinaryIO, Generic, TypeVar, cast
 
-from cad_io.kernel.copies import begin, ended, parts_of, stuck
+from cad_io.kernel.copies import answers, begin, ended, tell
 
 Done = TypeVar("Done")
-
-#: Answers begin with their length in bytes: half an answer is none.
-_LENGTH = struct.Struct("<q")
 
 
 class Meanwhile(Generic[Done]):
@@ -63,26 +58,18 @@ class Meanwhile(Generic[Done]):
         Where the copy gives none, this process makes the call itself: `here` in its place, if that is given, which may
         report its progress.
         """
-        answer = self._read()
-        if len(answer) < _LENGTH.size or len(answer) != _LENGTH.size + _LENGTH.unpack_from(answer)[0]:
-            return (here or self._call)()
-        found: Done = pickle.loads(memoryview(answer)[_LENGTH.size :])
-        return found
+        if self._copy is not None:
+            try:
+                for found in answers(*self._copy):
+                    return cast(Done, found)
+            except TimeoutError:
+                pass
+            finally:
+                self._end()
+        return (here or self._call)()
 
     def _answer(self, pipe: BinaryIO) -> None:
-        data = pickle.dumps(self._call(), protocol=pickle.HIGHEST_PROTOCOL)
-        pipe.write(_LENGTH.pack(len(data)) + data)
-
-    def _read(self) -> bytes:
-        """All that the copy says."""
-        if self._copy is None:
-            return b""
-        try:
-            return b"".join(parts_of(self._copy[0], stuck(self._copy[1])))
-        except TimeoutError:
-            return b""
-        finally:
-            self._end()
+        tell(pipe, self._call())
 
     def _end(self) -> None:
         """Leave nothing of the copy."""

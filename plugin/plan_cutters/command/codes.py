@@ -81,6 +81,12 @@ def invoked(command: click.Command, name: str, words: Sequence[str]) -> int:
         raise KeyboardInterrupt from None
 
 
+def run(command: click.Command, name: str, args: Sequence[str] | None) -> NoReturn:
+    """Run a command to its end with some words, by default those of the process."""
+    words = list(sys.argv[1:] if args is None else args)
+    ended(name, words, lambda: invoked(command, name, words))
+
+
 def ended(name: str, words: Sequence[str], work: Callable[[], int]) -> NoReturn:
     """Run a command with its words to its end, whatever becomes of the streams that it writes to."""
 

@@ -1,21 +1,19 @@
 """`plan-cutters machines`: the machines that are built in, and what is understood of a machine file."""
 
-import contextlib
 import json
 import math
-import os
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from plan_cutters.command.codes import USAGE, ended, guarded, invoked
+from plan_cutters.command.codes import USAGE, guarded, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.terminal import clean, error, hand_out, paper
 from plan_cutters.command.values import File, Words, machine_names
+from plan_cutters.files.whole import whole
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -229,20 +227,12 @@ def _solutions(told: dict[str, Any], say: Any) -> None:
 
 
 def _write(machine: "Machine", path: Path) -> None:
-    from plan_cutters.errors import PlanError
     from plan_cutters.machines import to_toml
 
-    aside = path.with_name(f".{path.name}.part")
-    try:
+    with whole(path) as aside:
         aside.write_text(to_toml(machine), encoding="utf-8")
-        os.replace(aside, path)
-    except OSError as error:
-        with contextlib.suppress(OSError):
-            aside.unlink(missing_ok=True)
-        raise PlanError(f"cannot be written: {error.strerror}", file=str(path)) from None
 
 
 def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
     """Run the command."""
-    words = list(sys.argv[1:] if args is None else args)
-    ended(name, words, lambda: invoked(command, name, words))
+    run(command, name, args)

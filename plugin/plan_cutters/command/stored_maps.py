@@ -2,7 +2,6 @@
 
 import json
 import os
-import sys
 from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -10,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from plan_cutters.command import terminal
-from plan_cutters.command.codes import FEASIBLE, NONE_FEASIBLE, NOT_ALL_JUDGED, ended, invoked
+from plan_cutters.command.codes import FEASIBLE, NONE_FEASIBLE, NOT_ALL_JUDGED, run
 from plan_cutters.command.help_groups import Command, named
 from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.validation import NAMED
@@ -74,8 +73,7 @@ def command(file: str, part: str | None, **given: Any) -> int:
 
 def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
     """Run the command."""
-    words = list(sys.argv[1:] if args is None else args)
-    ended(name, words, lambda: invoked(command, name, words))
+    run(command, name, args)
 
 
 def stored(part: str | None, postures: str, options: "Options", given: dict[str, Any], named: Collection[str]) -> int:

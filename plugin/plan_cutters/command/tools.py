@@ -1,22 +1,20 @@
 """`plan-cutters tools`: what was understood of tool libraries, as a table, as JSON, as drawings and in our own format."""
 
-import contextlib
 import json
-import os
 import re
-import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from plan_cutters.command.codes import USAGE, ended, guarded, invoked
+from plan_cutters.command.codes import USAGE, guarded, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.terminal import clean, error, hand_out, paper
 from plan_cutters.command.values import File, Folder
+from plan_cutters.files.whole import whole
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -231,28 +229,13 @@ def _words(entry: "Entry") -> list[str]:
     return [*words, *(f"{length:.6g}" for length in lengths), shank, holder, "; ".join([cutter.id, *entry.notes])]
 
 
-@contextlib.contextmanager
-def _aside(path: Path) -> Iterator[Path]:
-    """A path to write to, which takes the place of `path` when all is written."""
-    from plan_cutters.errors import PlanError
-
-    aside = path.with_name(f".{path.name}.part")
-    try:
-        yield aside
-        os.replace(aside, path)
-    except OSError as error:
-        with contextlib.suppress(OSError):
-            aside.unlink(missing_ok=True)
-        raise PlanError(f"cannot be written: {error.strerror}", file=str(path)) from None
-
-
 def _to_toml(found: "Sequence[Library]", path: Path) -> None:
     from plan_cutters.library import to_toml
 
     texts = [to_toml(library) for library in found]
     # Every part says the unit; the file says it once.
     text = "".join([texts[0], *(part.replace('unit = "mm"\n', "", 1) for part in texts[1:])])
-    with _aside(path) as aside:
+    with whole(path) as aside:
         aside.write_text(text, encoding="utf-8")
 
 
@@ -278,11 +261,10 @@ def _draw(found: "Sequence[Library]", folder: Path) -> None:
     except OSError as error:
         raise PlanError(f"cannot be made: {error.strerror}", file=str(folder)) from None
     for name, text in drawn.items():
-        with _aside(folder / f"{name}.svg") as aside:
+        with whole(folder / f"{name}.svg") as aside:
             aside.write_text(text, encoding="utf-8")
 
 
 def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
     """Run the command."""
-    words = list(sys.argv[1:] if args is None else args)
-    ended(name, words, lambda: invoked(command, name, words))
+    run(command, name, args)

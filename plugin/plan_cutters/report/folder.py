@@ -198,6 +198,7 @@ def write_all(
         if onlooker:
             with clock.stage("show", shown=False):
                 onlooker.safe(document)
+        split = None
         with closing(making.files(later)) as each:
             for name, make in each:
                 if onlooker:
@@ -211,8 +212,9 @@ def write_all(
                         onlooker.failed(name, error)
                 else:
                     del missing[name]
-                if making.split is not None:
-                    document = document.model_copy(update={"split": rungs(making.split)})
+                if making.split is not None and split is None:
+                    split = rungs(making.split)
+                    document = document.model_copy(update={"split": split})
                 document = put()
                 if name in files:
                     staging.publish(files[name].name)
