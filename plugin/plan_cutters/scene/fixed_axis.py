@@ -20,30 +20,52 @@ _TESTS, _FEWEST, _MOST = 3_000_000, 12, 64
 _MORE = 64
 #: Axes this close are one, rad; ends of ranges this close to a posture's are on it.
 _SAME, _END = 1e-6, 1e-9
+#: Rows of one axis that are tested together, and tests that a thread makes in one go.
+_BLOCK, _AT_ONCE = 4096, 20_000
 
 
 def serves(
     rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, cutter: Cutter, conditions: Conditions
 ) -> NDArray[np.bool_]:
     """At which of some samples (m,) a cutter stands free with one axis (3,)."""
+    return np.asarray(served_by(rows, np.asarray(axis)[None], samples, cutter, conditions)[0][0])
+
+
+def served_by(
+    rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, cutter: Cutter, conditions: Conditions
+) -> tuple[NDArray[np.bool_], int]:
+    """At which of some samples (m,) a cutter stands free with each of some axes (k, 3).
+
+    Returns
+    -------
+    free : (k, m) bool
+    made : int
+        How many times the tool was put down.
+    """
     from plan_cutters.kernels.search.fixed_axis import served
 
     low, high = conditions.postures.tilt
-    free = np.zeros(len(samples), bool)
-    if conditions.machine.allows(axis[None], frame_of(conditions.setup, conditions.x))[0]:
-        tool, solids, contacts = (
-            tool_of(conditions.outer_tool(cutter)),
-            conditions.obstacles.solids,
-            contacts_of(samples),
-        )
-        in_chunks(
-            lambda piece: served(piece, axis, contacts, low - _END, high + _END, tool, solids, free),
-            rows,
-            conditions.jobs,
-        )
-        found = rows[free[rows]]
-        free[found] &= _turned(found, axis, samples, conditions)
-    return free[rows]
+    free = np.zeros((len(axes), len(rows)), bool)
+    held = np.flatnonzero(conditions.machine.allows(axes, frame_of(conditions.setup, conditions.x)))
+    if not len(held) or not len(rows):
+        return free, 0
+    tool, solids, contacts = tool_of(conditions.outer_tool(cutter)), conditions.obstacles.solids, contacts_of(samples)
+    made = list[int]()
+
+    def tested(piece: NDArray[np.int64]) -> None:
+        """Test a piece of a table of axes by blocks of rows."""
+        which, block = np.divmod(piece, blocks)
+        for k, part in zip(held[which].tolist(), block.tolist(), strict=True):
+            ends = slice(part * _BLOCK, (part + 1) * _BLOCK)
+            made.append(served(rows[ends], axes[k], contacts, low - _END, high + _END, tool, solids, free[k, ends]))
+
+    blocks = -(-len(rows) // _BLOCK)
+    in_chunks(tested, np.arange(len(held) * blocks), conditions.jobs, chunk=max(1, _AT_ONCE // min(_BLOCK, len(rows))))
+    if conditions.postures.rotation[1] - conditions.postures.rotation[0] <= 2.0 * np.pi - _END:
+        for k in held.tolist():
+            found = np.flatnonzero(free[k])
+            free[k, found] &= _turned(rows[found], axes[k], samples, conditions)
+    return free, sum(made)
 
 
 def _turned(
@@ -51,8 +73,6 @@ def _turned(
 ) -> NDArray[np.bool_]:
     """At which samples (m,) an axis leans as the rotations that were asked for let it."""
     first, last = conditions.postures.rotation
-    if last - first > 2.0 * np.pi - _END:
-        return np.ones(len(rows), bool)
     turn = rotations_of(samples.normal[rows], samples.direction_max[rows], lean_of(rows, axis, samples))
     beyond = np.remainder(turn - first + _END, 2.0 * np.pi)
     return np.asarray((beyond <= last - first + 2.0 * _END) | (samples.normal[rows] @ axis > 1.0 - _SAME**2))

@@ -1,0 +1,189 @@
+"""Candidates: the tool axes that a fixed orientation may have, in the coordinates of the machine's rotary axes.
+
+Angles are rounded to the digits of a control before anything is probed, so what is proved is the orientation that is set.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from cad_io.arrays import Floats, SurfaceSamples
+from plan_cutters.domain.kinematics import Kinematics
+from plan_cutters.domain.placement import frame_of
+from plan_cutters.errors import OptionError
+from plan_cutters.scene.conditions import Conditions
+
+#: Digits of an angle in degrees that a control shows.
+DIGITS = 3
+#: Distance of grid angles unless one is asked for, deg, and the least and the largest that may be.
+STEP, _LEAST, _LARGEST = 5.0, 0.5, 90.0
+#: Tool axes nearer than this are one, rad.
+_SAME = math.radians(10.0**-DIGITS)
+#: Faces whose directions are looked at, at most, the largest first, and how far normals of a plane may differ.
+_FACES, _EVEN = 200, 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Orientations:
+    """The orientations that a machine can be set to in one setup.
+
+    Attributes
+    ----------
+    conditions : Conditions
+    kinematics : Kinematics
+        The machine's; one that turns about the setup axis and across it where the machine names none.
+    names : tuple of str
+        Of its two axes.
+    """
+
+    conditions: Conditions
+    kinematics: Kinematics
+    names: tuple[str, str]
+
+    @classmethod
+    def of(cls, conditions: Conditions) -> "Orientations":
+        """Find those of a machine.
+
+        Raises
+        ------
+        OptionError
+            The machine has fewer than two rotary axes.
+        """
+        machine, found = conditions.machine, conditions.kinematics
+        if found is None:
+            frame = frame_of(conditions.setup, conditions.x)
+            free = np.full((2, 2), math.inf) * (-1.0, 1.0)
+            return cls(conditions, Kinematics(frame[[2, 1]], free, frame[2]), ("azimuth", "tilt"))
+        if len(machine.rotary) < 2:
+            raise OptionError(f"machine {machine.name} has {len(machine.rotary)} rotary axes: a plan of operations needs two, to "
+                              "choose fixed orientations; leave out --operations, or name another machine")  # fmt: skip
+        first, second = machine.rotary
+        return cls(conditions, found, (first.name, second.name))
+
+    def set_to(self, angle: Floats) -> tuple[Floats, Floats]:
+        """Angles (n, 2), deg, as a control shows them, and their axes (n, 3): those alone that the machine can hold."""
+        shown = np.round(angle, DIGITS) + 0.0
+        axis = self.kinematics.axis(np.radians(shown))
+        held = self.conditions.machine.allows(axis, frame_of(self.conditions.setup, self.conditions.x))
+        low, high = np.degrees(self.kinematics.limit).T
+        held &= ((shown >= low - 1e-9) & (shown <= high + 1e-9)).all(axis=1)
+        return shown[held], axis[held]
+
+    def near(self, axis: Floats) -> tuple[Floats, Floats]:
+        """The angles that come nearest to axes (n, 3), and the axes that they hold: those alone that the machine can hold."""
+        angle, taken, _ = self.kinematics.positions(axis)
+        held = np.flatnonzero(taken >= 0)
+        return self.set_to(np.degrees(angle[held, taken[held]]))
+
+    def grid(self, step: float) -> tuple[Floats, Floats]:
+        """Angles (n, 2) that are whole multiples of a step, deg, and their axes.
+
+        Nearer to the first axis fewer multiples of its angle are taken, so that the axes are about equally far apart.
+        """
+        start = self.kinematics.swing[0]
+        turns = _multiples(*np.degrees(self.kinematics.limit[1]), step)
+        found = []
+        for second in turns:
+            arm = self.kinematics.axis(np.array([[0.0, math.radians(second)]]))[0]
+            sine = float(np.linalg.norm(np.cross(arm, self.kinematics.direction[0])))
+            every = max(1, int(1.0 / max(sine, 1e-9))) if sine > 1e-9 else 10**9
+            first = _multiples(*np.degrees(self.kinematics.limit[0]), step)
+            numbers = np.round(first / step).astype(np.int64)
+            found.append(np.column_stack([first[numbers % every == 0], np.full((numbers % every == 0).sum(), second)]))
+        angle = np.concatenate(found)
+        # Of the two solutions of an axis the one with the smaller second angle comes first, and stays.
+        angle = angle[np.lexsort((np.abs(angle[:, 0]), np.abs(angle[:, 1] - math.degrees(start))))]
+        return self.set_to(angle)
+
+
+def _multiples(low: float, high: float, step: float) -> Floats:
+    """Whole multiples of a step within limits, one turn at most."""
+    low, high = max(low, -180.0), min(high, 180.0)
+    whole = high - low >= 360.0 - 1e-9
+    numbers = np.arange(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)
+    return np.asarray(numbers[1:] if whole and len(numbers) * step > 360.0 else numbers) * step
+
+
+def directions(samples: SurfaceSamples, setup: Floats) -> Floats:
+    """Directions (n, 3) that a tool axis may well have: the part's axes, normals of planes, axes of revolved and ruled faces."""
+    found = [setup, *np.eye(3), *-np.eye(3)]
+    judged = samples.unjudged < 0
+    area = np.bincount(samples.face[judged], np.nan_to_num(samples.area[judged]))
+    for number in np.argsort(-area, kind="stable")[:_FACES]:
+        normal = samples.normal[judged & (samples.face == number)]
+        if len(normal) and np.ptp(normal, axis=0).max() <= _EVEN:
+            found.append(normal[0])
+        elif len(normal) > 3:
+            spread, axes = np.linalg.svd(normal - normal.mean(axis=0), full_matrices=False)[1:]
+            if spread[2] <= _EVEN * math.sqrt(len(normal)):
+                found += [axes[2], -axes[2]]
+    return np.array(found)
+
+
+def apart(axis: Floats, least: float = _SAME, old: Floats | None = None) -> Floats:
+    """Which (k,) of axes (n, 3) are at least an angle, rad, from all earlier ones, and from old ones (m, 3)."""
+    chord = 2.0 * math.sin(0.5 * least)
+    kept = np.ones(len(axis), bool)
+    if old is not None and len(old):
+        kept &= cKDTree(old).query(axis, distance_upper_bound=chord)[0] > chord
+    tree = cKDTree(axis)
+    for i in range(len(axis)):
+        if kept[i]:
+            near = np.array(tree.query_ball_point(axis[i], chord))
+            kept[near[near > i]] = False
+    return np.flatnonzero(kept)
+
+
+def beside(axis: Floats, spacing: float) -> Floats:
+    """Six axes (6 n, 3) at an angle, rad, about each of some axes (n, 3)."""
+    other = np.where(np.abs(axis[:, 2:]) < 0.9, (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
+    u = np.cross(axis, other)
+    u /= np.linalg.norm(u, axis=1)[:, None]
+    v = np.cross(axis, u)
+    turn = np.arange(6) * (math.pi / 3.0)
+    out = (
+        math.cos(spacing) * axis[:, None]
+        + math.sin(spacing) * (np.cos(turn)[:, None] * u[:, None] + np.sin(turn)[:, None] * v[:, None])
+    )
+    return np.asarray(out.reshape(-1, 3))
+
+
+def candidates(where: Orientations, samples: SurfaceSamples, step: float | None) -> tuple[Floats, Floats]:
+    """The first candidates of one setup.
+
+    Parameters
+    ----------
+    where : Orientations
+    samples : SurfaceSamples
+    step : float, optional
+        Angles are whole multiples of it, deg, where the machine's rotary axes lock at these alone. None: a grid of `STEP`, and
+        the directions of the part.
+
+    Returns
+    -------
+    angle : (m, 2) float
+        deg.
+    axis : (m, 3) float
+    """
+    if step is not None and not _LEAST <= step <= _LARGEST:
+        raise OptionError(f"index step {step:g} must lie between {_LEAST:g} and {_LARGEST:g} degrees")
+    angle, axis = where.grid(STEP if step is None else step)
+    if step is None:
+        own_angle, own_axis = where.near(directions(samples, where.conditions.setup))
+        angle, axis = np.concatenate([own_angle, angle]), np.concatenate([own_axis, axis])
+    low, high = where.conditions.postures.tilt
+    normal = samples.normal[samples.unjudged < 0]
+    facing = _faces_any(axis, normal, math.cos(min(high, math.pi)))
+    kept = np.flatnonzero(facing)
+    kept = kept[apart(axis[kept])]
+    return angle[kept], axis[kept]
+
+
+def _faces_any(axis: Floats, normal: Floats, least: float) -> np.ndarray:
+    """Which axes (m,) face at least one normal."""
+    if not len(normal):
+        return np.zeros(len(axis), bool)
+    nearest = cKDTree(normal).query(axis)[0]
+    return np.asarray(1.0 - 0.5 * nearest**2 >= least - 1e-9)

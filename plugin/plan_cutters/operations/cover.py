@@ -1,0 +1,197 @@
+"""The fewest columns that cover all rows of a table, and weights on rows that prove how few can do.
+
+Weights of rows that load no column with more than 1 sum up to no more than the columns of any cover: each of its columns
+carries 1 at most, and every row's weight is carried by one of them. So the sum, rounded up, is a bound that needs no trust
+in the solver that found the weights.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+
+Table = NDArray[np.bool_]
+Which = NDArray[np.int64]
+
+#: Weights are whole parts of so many.
+UNIT = 1_000_000
+#: Greedy covers that are tried, each with other random weights, and how much the weights differ.
+_TRIES, _SPREAD = 24, 0.5
+#: Nodes of branch and bound: for a cover of some rows only, and for the proof.
+_FEW_NODES, _NODES = 40, 20_000
+#: Seconds that a proof may take, whatever its nodes.
+SECONDS = 60.0
+#: Rows that are compared with each other, at most: those that hold another one follow from it.
+_COMPARED = 3000
+_ROUNDING = 1e-6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Cover:
+    """A cover of the rows of a table.
+
+    Attributes
+    ----------
+    chosen : (k,) int64
+        Columns, ascending.
+    at_least : int
+        No cover has fewer columns.
+    weight : (n,) int64
+        Of the rows, in parts of `UNIT`.
+    bound : float
+        What the weights prove: their sum, at the largest load of a column.
+    relaxed : float
+        The least sum of shares of columns that covers all rows, where columns may be taken in part.
+    """
+
+    chosen: Which
+    at_least: int
+    weight: Which
+    bound: float
+    relaxed: float
+
+    @property
+    def closed(self) -> bool:
+        """Whether no cover has fewer columns than this one."""
+        return len(self.chosen) <= self.at_least
+
+
+def fewest(table: Table, known: Which | None = None, *, prove: bool = True) -> Cover:
+    """Find few columns that cover every row, each row of which some column covers.
+
+    Parameters
+    ----------
+    table : (n, m) bool
+    known : (k,) int64, optional
+        A cover.
+    prove : bool
+        Search until no smaller cover is possible; else stop early.
+
+    Examples
+    --------
+    >>> found = fewest(np.array([[1, 0, 1], [0, 1, 1], [1, 1, 0]], bool))
+    >>> len(found.chosen), found.at_least, found.closed
+    (2, 2, True)
+    """
+    n, m = table.shape
+    if not n:
+        return Cover(np.zeros(0, np.int64), 0, np.zeros(0, np.int64), 0.0, 0.0)
+    rows, own = _essential(table)
+    small = table[rows]
+    relaxed, share, dual = _relaxed(small)
+    weight = np.zeros(n, np.int64)
+    weight[rows] = whole_weights(small, dual)
+    bound = weight.sum() / UNIT
+    least = max(1, math.ceil(bound - 1e-9))
+    covers = [_without_spare(small, known)] if known is not None and small[:, known].any(axis=1).all() else []
+    covers.append(_greedy_covers(small, share, least))
+    best = min(covers, key=len)
+    at_least = least
+    if len(best) > least:
+        # A cover with one column less has none whose price, by the weights, passes what is left over.
+        price = 1.0 - dual @ small
+        kept = np.flatnonzero(price <= len(best) - 1 - dual.sum() + _ROUNDING)
+        smaller, proven = _smaller(small[:, kept], len(best) - 1, _NODES if prove else _FEW_NODES)
+        best = best if smaller is None else kept[smaller]
+        if proven is not None:
+            at_least = max(at_least, min(proven, len(best)))
+    return Cover(np.sort(best), at_least, weight, bound, relaxed)
+
+
+def _essential(table: Table) -> tuple[Which, Which]:
+    """Rows (k,) that no other row follows from, and of each row (n,) the place of its equal among the different ones."""
+    packed = np.packbits(table, axis=1)
+    _, first, own = np.unique(packed, axis=0, return_index=True, return_inverse=True)
+    if len(first) <= _COMPARED:
+        some = table[first].astype(np.float32)
+        size = some.sum(axis=1)
+        both = some @ some.T
+        # A row that holds all columns of another one is covered with it.
+        holds = both >= size[None, :] - 0.5
+        np.fill_diagonal(holds, False)
+        first = first[~holds.any(axis=1)]
+    return np.sort(first), own.reshape(-1)
+
+
+def _relaxed(table: Table) -> tuple[float, Floats, Floats]:
+    """The least sum of parts of columns that covers each row, those parts (m,), and the rows' weights (n,)."""
+    from scipy.optimize import linprog
+    from scipy.sparse import csr_array
+
+    held = csr_array(table.T.astype(float))
+    # The weights' own problem: most weight of which no column carries more than 1.
+    found = linprog(-np.ones(len(table)), A_ub=held, b_ub=np.ones(table.shape[1]), bounds=(0.0, None), method="highs")
+    if found.x is None:
+        return 0.0, np.ones(table.shape[1]), np.zeros(len(table))
+    return float(-found.fun), np.maximum(0.0, -found.ineqlin.marginals), np.maximum(0.0, found.x)
+
+
+def whole_weights(table: Table, weight: Floats) -> Which:
+    """Weights (n,) as whole parts of `UNIT`, of which no column carries more than `UNIT`."""
+    found = np.floor(weight * UNIT).astype(np.int64)
+    load = int((found @ table.astype(np.int64)).max(initial=0))
+    return found if load <= UNIT else found * UNIT // load
+
+
+def _greedy_covers(table: Table, share: Floats, least: int) -> Which:
+    """The smallest of some greedy covers, led by the parts that the relaxed cover takes."""
+    rng = np.random.default_rng(0)
+    held, best = table.astype(np.float32), None
+    for attempt in range(_TRIES):
+        lead = 1.0 + (share * rng.uniform(0.5, 2.0) if attempt else 0.0) + (
+            _SPREAD * rng.random(len(share)) * (share > 0.0) if attempt else 0.0
+        )  # fmt: skip
+        left, chosen = np.ones(len(table), np.float32), []
+        gain = held.sum(axis=0)
+        while left.any():
+            column = int((gain * lead).argmax())
+            chosen.append(column)
+            new = left * held[:, column]
+            left -= new
+            gain -= new @ held
+        found = _without_spare(table, np.array(chosen, np.int64))
+        if best is None or len(found) < len(best):
+            best = found
+            if len(best) <= least:
+                break
+    assert best is not None
+    return best
+
+
+def _without_spare(table: Table, chosen: Which) -> Which:
+    """A cover without the columns that the others make up for."""
+    times = table[:, chosen].sum(axis=1)
+    kept = np.ones(len(chosen), bool)
+    for k in np.argsort(table[:, chosen].sum(axis=0), kind="stable").tolist():
+        mine = table[:, chosen[k]]
+        if (times[mine] > 1).all():
+            kept[k] = False
+            times = times - mine
+    return chosen[kept]
+
+
+def _smaller(table: Table, most: int, nodes: int) -> tuple[Which | None, int | None]:
+    """A cover of at most so many columns; else None, and how many every cover needs, where that is known."""
+    from scipy.optimize import Bounds, LinearConstraint, milp
+    from scipy.sparse import csr_array
+
+    if not table.any(axis=1).all():
+        return None, most + 1
+    held = csr_array(table.astype(float))
+    few = csr_array(np.ones((1, table.shape[1])))
+    found = milp(
+        np.ones(table.shape[1]), integrality=np.ones(table.shape[1]), bounds=Bounds(0, 1),
+        constraints=[LinearConstraint(held, 1.0, np.inf), LinearConstraint(few, 0.0, most)],
+        options={"time_limit": SECONDS, "mip_rel_gap": 0.99 / (most + 1), "node_limit": nodes},
+    )  # fmt: skip
+    if found.status == 2:
+        return None, most + 1
+    bound = found.mip_dual_bound
+    proven = math.ceil(bound - _ROUNDING) if bound is not None and math.isfinite(bound) else None
+    if found.x is None:
+        return None, proven
+    chosen = np.flatnonzero(found.x > 0.5)
+    return (chosen if table[:, chosen].any(axis=1).all() else None), proven

@@ -1,0 +1,188 @@
+"""The fewest fixed orientations that serve samples, found from few of them, and checked at all.
+
+Rows of the table are made only for samples that the cover of the others misses; candidates are made denser where the
+weights of rows lie.
+"""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from plan_cutters.operations.candidates import Orientations, apart, beside
+from plan_cutters.operations.columns import Columns, columns_of
+from plan_cutters.operations.cover import Cover, fewest
+from plan_cutters.operations.probes import Probes
+
+Rows = NDArray[np.int64]
+#: Samples that the first table holds, and samples that are added to it at once.
+_FIRST, _MORE = 400, 120
+#: Rounds, at most, until a cover of some samples must serve all.
+_ROUNDS = 60
+#: Candidates about which new ones are laid, at most, at each halving of their spacing.
+_LOADED = 250
+#: Spacing down to which candidates are laid, rad.
+FINEST = math.radians(0.5)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Fewest:
+    """The fewest orientations found, with what proves how few there can be.
+
+    Attributes
+    ----------
+    columns : Columns
+        All candidates.
+    chosen : (k,) int64
+        Of the candidates.
+    rows : (r,) int64
+        Samples in the table.
+    weight : (r,) int64
+        Their weights, in parts of `cover.UNIT`.
+    at_least : int
+        No choice among the candidates has fewer.
+    bound, relaxed : float
+        As of `cover.Cover`.
+    spacing : float
+        Between candidates where the weights lie, rad.
+    alone : (s,) int64
+        Samples that no candidate serves.
+    """
+
+    columns: Columns
+    chosen: Rows
+    rows: Rows
+    weight: Rows
+    at_least: int
+    bound: float
+    relaxed: float
+    spacing: float
+    alone: Rows
+
+
+class Search:
+    """A table of samples and candidates that grows until a cover of it serves all samples.
+
+    Parameters
+    ----------
+    probes : Probes
+    columns : Columns
+        The first candidates.
+    rows : (n,) int64
+        Samples to serve.
+    stored : callable
+        Gives columns for samples that no candidate serves: their own postures.
+    """
+
+    def __init__(self, probes: Probes, columns: Columns, rows: Rows, stored: Callable[[Rows], Columns]) -> None:
+        self._probes, self.columns, self._wanted, self._stored = probes, columns, rows, stored
+        self.rows: Rows = np.zeros(0, np.int64)
+        self.alone: Rows = np.zeros(0, np.int64)
+        self.table = np.zeros((0, len(columns)), bool)
+        rng = np.random.default_rng(0)
+        first = rng.choice(rows, min(_FIRST, len(rows)), replace=False) if len(rows) else rows
+        self._add_rows(np.sort(first))
+
+    def solve(self) -> Cover:
+        """Return the smallest cover of the candidates that serves all samples but those that none serves."""
+        known: Rows | None = None
+        for _ in range(_ROUNDS):
+            found = fewest(self.table, known, prove=False)
+            missed = self._missed(found.chosen)
+            if not len(missed) and not found.closed:
+                known = found.chosen
+                found = fewest(self.table, known)
+                missed = self._missed(found.chosen) if len(found.chosen) < len(known) else missed
+            if not len(missed):
+                return found
+            self._add_rows(_spread(missed, self._probes.samples.point, _MORE))
+        return self._patched()
+
+    def refine(self, cover: Cover, spacing: float, orientations: Sequence[Orientations]) -> None:
+        """Lay candidates at a spacing, rad, about those that the weights load most, and about those chosen."""
+        load = cover.weight @ self.table
+        top = np.unique(np.concatenate([np.argsort(-load, kind="stable")[:_LOADED], cover.chosen]))
+        for c, s in sorted({*zip(self.columns.cutter[top].tolist(), self.columns.setup[top].tolist(), strict=True)}):
+            same = (self.columns.cutter == c) & (self.columns.setup == s)
+            angle, axis = orientations[s].near(beside(self.columns.axis[top[same[top]]], spacing))
+            new = apart(axis, 0.6 * spacing, self.columns.axis[same])
+            self._add_columns(columns_of(axis[new], angle[new], c, s))
+
+    def _missed(self, chosen: Rows) -> Rows:
+        """Samples that chosen candidates do not serve."""
+        left = np.setdiff1d(self._wanted, self.alone)
+        order = np.argsort(-self.table[:, chosen].sum(axis=0), kind="stable")
+        for column in chosen[order].tolist():
+            left = left[~self._probes.one(left, self.columns, column)]
+        return left
+
+    def _add_rows(self, rows: Rows) -> None:
+        new = self._probes.table(rows, self.columns)
+        bare = rows[~new.any(axis=1)]
+        if len(bare):
+            before = len(self.columns)
+            self._add_columns(self._stored(bare))
+            added = np.arange(before, len(self.columns))
+            new = np.concatenate([new, self._probes.table(rows, self.columns.of(added))], axis=1)
+        served = new.any(axis=1)
+        self.alone = np.union1d(self.alone, rows[~served])
+        self.rows = np.concatenate([self.rows, rows[served]])
+        self.table = np.concatenate([self.table, new[served]])
+
+    def _add_columns(self, new: Columns) -> None:
+        self.table = np.concatenate([self.table, self._probes.table(self.rows, new)], axis=1)
+        self.columns = self.columns.and_(new)
+
+    def _patched(self) -> Cover:
+        """A cover that serves all samples, without the proof: what rounds have left is served by the samples' own postures."""
+        found = fewest(self.table, prove=False)
+        while len(missed := self._missed(found.chosen)):
+            self._add_rows(missed[:_MORE])
+            found = fewest(self.table, found.chosen, prove=False)
+        return found
+
+
+def search_fewest(
+    search: Search, orientations: Sequence[Orientations], spacing: float, finest: float, tell: Callable[[int, int], None],
+) -> Fewest:  # fmt: skip
+    """Find the fewest orientations, with candidates that are refined down to a spacing.
+
+    Parameters
+    ----------
+    search : Search
+    orientations : sequence of Orientations
+        Of each setup.
+    spacing, finest : float
+        Of the first candidates, and the least, rad; equal: none are added.
+    tell : callable
+        Told the number of levels done and of all.
+    """
+    levels = max(0, math.ceil(math.log2(spacing / finest) - 1e-9))
+    best = search.solve()
+    for level in range(levels):
+        tell(level, levels)
+        if len(best.chosen) <= 1:
+            break
+        spacing *= 0.5
+        search.refine(best, spacing, orientations)
+        best = search.solve()
+    return Fewest(search.columns, best.chosen, search.rows, best.weight, best.at_least, best.bound, best.relaxed, spacing,
+                  search.alone)  # fmt: skip
+
+
+def _spread(rows: Rows, point: Floats, most: int) -> Rows:
+    """Some of the samples, far from each other."""
+    if len(rows) <= most:
+        return rows
+    apart_ = np.linalg.norm(point[rows] - point[rows[0]], axis=1)
+    picked = [0]
+    while len(picked) < most:
+        far = int(apart_.argmax())
+        if apart_[far] <= 0.0:
+            break
+        picked.append(far)
+        apart_ = np.minimum(apart_, np.linalg.norm(point[rows] - point[rows[far]], axis=1))
+    return np.sort(rows[picked])

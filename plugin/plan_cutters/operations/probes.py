@@ -1,0 +1,55 @@
+"""Probes: whether a cutter in a setup with a fixed tool axis stands free at a sample, by the certified test."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import SurfaceSamples
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.operations.columns import Columns
+from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.fixed_axis import served_by
+
+Rows = NDArray[np.int64]
+
+
+class Probes:
+    """The test of columns at samples, and how often it was made.
+
+    Parameters
+    ----------
+    samples : SurfaceSamples
+    cutters : sequence of Cutter
+    setups : sequence of Conditions
+        Of each setup, with its own machine frame, fixtures and obstacles.
+    outside : sequence of (n,) bool
+        Of each setup the samples that can be machined there: not clamped faces, not inside material.
+
+    Attributes
+    ----------
+    made : int
+        Times that the tool was put down.
+    """
+
+    def __init__(
+        self, samples: SurfaceSamples, cutters: Sequence[Cutter], setups: Sequence[Conditions],
+        outside: Sequence[NDArray[np.bool_]],
+    ) -> None:  # fmt: skip
+        self.samples, self.cutters, self.setups, self.outside, self.made = samples, cutters, setups, outside, 0
+
+    def table(self, rows: Rows, columns: Columns) -> NDArray[np.bool_]:
+        """Where each column serves: (rows, columns)."""
+        found = np.zeros((len(columns), len(rows)), bool)
+        for c, s in {*zip(columns.cutter.tolist(), columns.setup.tolist(), strict=True)}:
+            mine = np.flatnonzero((columns.cutter == c) & (columns.setup == s))
+            open_ = np.flatnonzero(self.outside[s][rows])
+            if len(open_):
+                free, made = served_by(rows[open_], columns.axis[mine], self.samples, self.cutters[c], self.setups[s])
+                found[np.ix_(mine, open_)] = free
+                self.made += made
+        return found.T
+
+    def one(self, rows: Rows, columns: Columns, which: int) -> NDArray[np.bool_]:
+        """Where one column serves: (rows,)."""
+        return np.asarray(self.table(rows, columns.of(np.array([which])))[:, 0])
