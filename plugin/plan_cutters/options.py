@@ -16,6 +16,7 @@ from plan_cutters.domain.default_tools import builtin
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.operations import operations_of
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange, along, unit
 from plan_cutters.errors import OptionError
@@ -25,6 +26,10 @@ from plan_cutters.library.records import Entry, Library, libraries_of
 LEAST_TOLERANCE, MOST_TOLERANCE = 1e-4, 10.0
 #: Longest length that can be asked for, mm: longer ones are rather a mistake. Most threads.
 _LONGEST, _MOST_JOBS = 1e6, 1024
+#: What the plan of operations reckons with: the least and the largest value of each option, and its unit.
+_RECKONED = {"feed": (0.1, 1e6, "mm/min"), "scallop": (1e-5, 10.0, "mm"), "stepover": (0.01, 1.0, "diameters"),
+             "index_step": (math.radians(0.5), math.radians(90.0), "rad"), "index_time": (0.0, 1e5, "s"),
+             "change_time": (0.0, 1e5, "s"), "setup_time": (0.0, 1e6, "s"), "overlap": (0.0, 1e3, "mm")}  # fmt: skip
 
 
 def machine_given(given: Any) -> Machine:
@@ -106,6 +111,16 @@ class PlanOptions(SceneOptions, total=False):
     map_budget: int | None
     answers: str | Sequence[str]
     length_over_radius: float
+    operations: str | None
+    feed: float | None
+    scallop: float
+    stepover: float
+    index_step: float | None
+    index_time: float
+    change_time: float
+    setup_time: float
+    overlap: float
+    most_operations: int | None
     unit: str | None
     placement: Placement | None
     other_placements: Sequence[Placement | None]
@@ -164,6 +179,20 @@ class Options:
         What is to be answered after the plan, of `domain.answers.ANSWERS`, or `all`; may be given as one text.
     length_over_radius : float
         Of the bare flat and ball ends whose largest radius is asked for.
+    operations : str, optional
+        `fewest`, `fastest` or `both`: plan operations with fixed orientations, by their number, by their time, or both.
+    feed : float, optional
+        Of all cutters, mm/min; None: that of a library's finishing preset, and without one there are lengths and no times.
+    scallop, stepover : float
+        Height of the cusps between passes, mm, and the widest distance of passes, in diameters.
+    index_step : float, optional
+        Rotary axes lock at whole multiples of this angle alone, rad. None: anywhere.
+    index_time, change_time, setup_time : float
+        Seconds that another orientation, another cutter and another setup take.
+    overlap : float
+        Width by which operations overlap at a common border, mm.
+    most_operations : int, optional
+        Fixed orientations at most: the rest is left to simultaneous motion.
     unit : str, optional
         Length unit to take instead of the part's own, one of `cad_io.units.UNITS`.
     fixtures : tuple of Fixture
@@ -213,6 +242,16 @@ class Options:
     map_budget: int | None = None
     answers: tuple[str, ...] = ()
     length_over_radius: float = 10.0
+    operations: str | None = None
+    feed: float | None = None
+    scallop: float = 0.01
+    stepover: float = 0.75
+    index_step: float | None = None
+    index_time: float = 5.0
+    change_time: float = 20.0
+    setup_time: float = 300.0
+    overlap: float = 2.0
+    most_operations: int | None = None
     unit: str | None = None
     fixtures: tuple[Fixture, ...] = ()
     placement: Placement | None = None
@@ -244,6 +283,15 @@ class Options:
             raise OptionError(f"area budget {self.area_budget} must not be negative")
         if self.map_budget is not None and self.map_budget < 1:
             raise OptionError(f"map budget {self.map_budget} must be at least 1 sample")
+        if self.operations is not None and self.machine.turns and len(self.machine.rotary) < 2:
+            raise OptionError(f"machine {self.machine.name} has {len(self.machine.rotary)} rotary axes: a plan of operations "
+                              "chooses orientations of two; leave out --operations, or name another machine")  # fmt: skip
+        if self.most_operations is not None and self.most_operations < 1:
+            raise OptionError(f"most operations {self.most_operations} must be at least 1")
+        for word, (low, high, unit_) in _RECKONED.items():
+            value = getattr(self, word)
+            if value is not None and not low <= value <= high:
+                raise OptionError(f"{word.replace('_', ' ')} {value:g} must lie between {low:g} and {high:g} {unit_}")
         if not 1 <= self.jobs <= _MOST_JOBS:
             raise OptionError(f"jobs {self.jobs} must be at least 1 and at most {_MOST_JOBS}")
         for cutter in self.judged:
@@ -271,7 +319,12 @@ class Options:
         if self.map_budget is not None:
             take(map_budget=whole(self.map_budget, "map budget"))
         take(flip=flag(self.flip, "flip"), posture_maps=flag(self.posture_maps, "posture_maps"))
-        take(answers=answers_of(self.answers))
+        take(answers=answers_of(self.answers), operations=operations_of(self.operations))
+        if self.most_operations is not None:
+            take(most_operations=whole(self.most_operations, "most operations"))
+        for word in _RECKONED:
+            if getattr(self, word) is not None:
+                take(**{word: number(getattr(self, word), word.replace("_", " "))})
         take(length_over_radius=number(self.length_over_radius, "length over radius"))
         take(allowance=number(self.allowance, "allowance"))
         take(holder_clearance=number(self.holder_clearance, "holder clearance"))

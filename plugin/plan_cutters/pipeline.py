@@ -143,6 +143,14 @@ def run(
     elsewhere = [(axis, _elsewhere(ready, here, axis, x, clock)) for axis, x in others]
     judged = _judged(ready, here, elsewhere, seconds, clock)
     answers = ask(ready, {cutter: each.here for cutter, each in judged.items()}, clock.stage, elsewhere)
+    if options.operations is not None:
+        from plan_cutters.operations.planning import plan_operations
+
+        everywhere = [
+            {c: each.here for c, each in judged.items()},
+            *({c: found[c.id] for c in judged} for _, found in elsewhere),
+        ]
+        answers = replace(answers, operations=plan_operations(ready, everywhere, answers.least_set, clock.stage))
     result = assemble(ready, judged, clock, started, answers, elsewhere, searched, ahead)
     if not options.posture_maps:
         return result

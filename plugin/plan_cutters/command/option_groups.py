@@ -69,6 +69,7 @@ def _group(title: str) -> Callable[..., _Declared]:
 _cutters, _machine, _faces = _group("Cutters"), _group("Machine and setup"), _group("Faces")
 _samples, _postures = _group("Sampling and tolerances"), _group("Postures")
 _output, _answers, _run = _group("Output"), _group("Answers"), _group("Run")
+_operations = _group("Plan of operations")
 
 _OPTIONS = (
     _cutters(
@@ -237,6 +238,66 @@ _OPTIONS = (
         default=10.0,
         metavar="N",
         help="Length of the ends of --answers radius, in radii.  [default: 10]",
+    ),
+    _operations(
+        "--operations",
+        type=click.Choice(["fewest", "fastest", "both"]),
+        help="Plan operations with fixed orientations (3+2) that finish together all that is reached: the fewest, with a proof "
+        "that there are no fewer, the fastest, or both.",
+    ),
+    _operations(
+        "--feed",
+        type=float,
+        metavar="MM/MIN",
+        help="Feed of all cutters.  [default: the libraries' finishing presets; without them "
+        "cut lengths are told, and no times]",
+    ),
+    _operations(
+        "--scallop", type=float, default=0.01, metavar="MM", help="Height of the cusps between passes.  [default: 0.01]"
+    ),
+    _operations(
+        "--stepover",
+        type=float,
+        default=0.75,
+        metavar="N",
+        help="Widest distance of passes, in diameters.  [default: 0.75]",
+    ),
+    _operations(
+        "--index-step",
+        type=float,
+        metavar="DEG",
+        help="Rotary axes lock at whole multiples of this angle alone.  [default: they lock anywhere]",
+    ),
+    _operations(
+        "--index-time",
+        type=float,
+        default=5.0,
+        metavar="S",
+        help="Seconds that another orientation takes.  [default: 5]",
+    ),
+    _operations(
+        "--change-time", type=float, default=20.0, metavar="S", help="Seconds that another cutter takes.  [default: 20]"
+    ),
+    _operations(
+        "--setup-time", type=float, default=300.0, metavar="S", help="Seconds that another setup takes.  [default: 300]"
+    ),
+    _operations(
+        "--overlap",
+        type=float,
+        default=2.0,
+        metavar="MM",
+        help="Overlap of operations at a common border.  [default: 2]",
+    ),
+    _operations(
+        "--most-operations",
+        type=int,
+        metavar="N",
+        help="Fixed orientations, at most; simultaneous motion finishes the rest.",
+    ),
+    _operations(
+        "--check-operations",
+        type=File("FILE"),
+        help="Check the plan of operations in a plan.json, with the part and the options that it was made with; write nothing.",
     ),
     _run("--jobs", type=int, metavar="N", help="Threads.  [default: all cores]"),
     _run("--cluster", metavar="ADDRESS", hidden=True),

@@ -41,6 +41,7 @@ def summary(plan: "Plan", *, verbose: bool = False) -> None:
         *_unjudged_share(plan),
         *_apart(worst_faces(story)),
         *_apart(list(_lines(story.setups, verbose))),
+        *_apart([cell(line.text) for line in story.operations]),
         *_apart([cell(line.text + line.typed) for line in story.answers]),
         *_apart([*_doubts(story, verbose), *_lines(story.notes, verbose), *(_details(plan) if verbose else ())]),
     )  # fmt: skip

@@ -171,6 +171,8 @@ def words_of(given: dict[str, Any]) -> dict[str, Any]:
     words = {NAMED.get(name, name): value for name, value in given.items() if NAMED.get(name, name) in known}
     postures = PostureRange.degrees(given["tilt"], given["rotation"], given["rotation_step"])
     words |= {"tilt": postures.tilt, "rotation": postures.rotation, "rotation_step": postures.step}
+    if words.get("index_step") is not None:
+        words["index_step"] = math.radians(words["index_step"])
     words |= {"setup": given["setup"][0], "other_setups": given["setup"][1:]}
     return words | _tools(given)
 

@@ -1,5 +1,6 @@
 """The plan file states here the options in force, after defaults."""
 
+import re
 from typing import Any
 
 import numpy as np
@@ -39,8 +40,8 @@ def effective(ready: Prepared) -> Effective:
 
 def _as_asked(options: Options, name: str) -> Any:
     """The option of an entry's name."""
-    value = getattr(options, name.removesuffix("_mm").removesuffix("_deg"))
-    if not name.endswith("_deg"):
+    value = getattr(options, re.sub("_(mm|deg|s|mm_min)$", "", name))
+    if value is None or not name.endswith("_deg"):
         return value
     return degrees(value) if isinstance(value, tuple) else float(np.degrees(value))
 

@@ -10,6 +10,7 @@ from pydantic import Field
 from plan_cutters.document.answers import LeastSetEntry, MendEntry, RadiusEntry, StickOutEntry
 from plan_cutters.document.frozen import Frozen, Posture, Vector
 from plan_cutters.document.inside import InsideEntry
+from plan_cutters.document.operations import OperationsEntry
 from plan_cutters.document.part_info import PartInfo
 from plan_cutters.document.scope import Scope
 from plan_cutters.document.setups import SetupEntry, SetupReach
@@ -66,6 +67,16 @@ class Effective(Frozen):
     map_budget: int | None = Field(default=None, description="samples to map, at most; null: what some minutes allow")
     answers: list[str] = Field(default=[], description="what was asked for after the plan")
     length_over_radius: float = Field(default=10.0, description="of the ends whose largest radius is asked for")
+    operations: str | None = Field(default=None, description="plan of operations asked for: fewest, fastest or both")
+    feed_mm_min: float | None = Field(default=None, description="of all cutters; null: of the libraries' presets")
+    scallop_mm: float = 0.01
+    stepover: float = Field(default=0.75, description="widest distance of passes, in diameters")
+    index_step_deg: float | None = Field(default=None, description="rotary axes lock at whole multiples of it alone")
+    index_time_s: float = 5.0
+    change_time_s: float = 20.0
+    setup_time_s: float = 300.0
+    overlap_mm: float = Field(default=2.0, description="of operations at a common border")
+    most_operations: int | None = None
 
 
 class SampleCounts(Frozen):
@@ -386,6 +397,7 @@ class Plan(Frozen):
         description="which of the given cutters and setups reach together all that any of them reaches; null where there "
         "is one of each",
     )
+    operations: OperationsEntry | None = Field(default=None, description="null unless asked for (--operations)")
     not_mended: list[str] = Field(
         default=[],
         description="ids of cutters that fail and were left out of `mend`, as others come nearer: mend-all has them",

@@ -33,6 +33,7 @@ from plan_cutters.document.model import (
     Selection,
 )
 from plan_cutters.document.notes import notes_of
+from plan_cutters.document.operations import OperationsEntry, operations_entry
 from plan_cutters.document.palette import MEANING, PALETTE
 from plan_cutters.document.setups import SetupEntry, SetupReach
 from plan_cutters.document.shares import counts
@@ -86,6 +87,7 @@ def plan_of(
         selected_for_setup=None if selected else for_setup(entries),
         setups=list(setups),
         least_set=None if answers.least_set is None else least_set_entry(answers.least_set, doubtful=around.doubtful),
+        operations=_operations(ready, answers),
         not_mended=list(answers.not_mended),
         largest_radius=[radius_entry(found, samples, doubtful=around.doubtful) for found in answers.radius_maps],
         notes=[each.text for each in remarks],
@@ -94,6 +96,14 @@ def plan_of(
         legend_words={word: MEANING[word] for word in PALETTE if word not in absent},
         run=Run(time=started.isoformat(timespec="seconds"), seconds={}),
     )
+
+
+def _operations(ready: Prepared, answers: Answers) -> OperationsEntry | None:
+    options = ready.options
+    if answers.operations is None:
+        return None
+    times = options.index_time, options.change_time, options.setup_time
+    return operations_entry(answers.operations, ready.samples, ready.finished, times)
 
 
 def machine_entry(machine: Machine, kinematics: Kinematics | None) -> MachineEntry:

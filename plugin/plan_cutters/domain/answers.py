@@ -7,6 +7,7 @@ from typing import Any
 from plan_cutters.domain.change import Mend
 from plan_cutters.domain.checks import items, shown
 from plan_cutters.domain.least_set import LeastSet
+from plan_cutters.domain.operations import Operations
 from plan_cutters.domain.radius_map import RadiusMap
 from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.errors import OptionError
@@ -63,6 +64,8 @@ class Answers:
         Ids of the others of them, where that was asked.
     least_set : LeastSet, optional
         The fewest of the given cutters and setups that reach all that any of them reaches; None where there is but one of each.
+    operations : Operations, optional
+        The plan of operations.
     """
 
     stick_outs: Mapping[str, StickOut] = field(default_factory=dict)
@@ -70,3 +73,4 @@ class Answers:
     mends: Mapping[str, Mend] = field(default_factory=dict)
     not_mended: tuple[str, ...] = ()
     least_set: LeastSet | None = None
+    operations: Operations | None = None

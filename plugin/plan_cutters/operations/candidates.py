@@ -7,18 +7,18 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.placement import frame_of
-from plan_cutters.errors import OptionError
 from plan_cutters.scene.conditions import Conditions
 
 #: Digits of an angle in degrees that a control shows.
 DIGITS = 3
-#: Distance of grid angles unless one is asked for, deg, and the least and the largest that may be.
-STEP, _LEAST, _LARGEST = 5.0, 0.5, 90.0
+#: Distance of grid angles unless one is asked for, rad.
+STEP = math.radians(5.0)
 #: Tool axes nearer than this are one, rad.
 _SAME = math.radians(10.0**-DIGITS)
 #: Faces whose directions are looked at, at most, the largest first, and how far normals of a plane may differ.
@@ -44,21 +44,12 @@ class Orientations:
 
     @classmethod
     def of(cls, conditions: Conditions) -> "Orientations":
-        """Find those of a machine.
-
-        Raises
-        ------
-        OptionError
-            The machine has fewer than two rotary axes.
-        """
+        """Find those of a machine; options see to it that it has two rotary axes, or none that is named."""
         machine, found = conditions.machine, conditions.kinematics
         if found is None:
             frame = frame_of(conditions.setup, conditions.x)
             free = np.full((2, 2), math.inf) * (-1.0, 1.0)
             return cls(conditions, Kinematics(frame[[2, 1]], free, frame[2]), ("azimuth", "tilt"))
-        if len(machine.rotary) < 2:
-            raise OptionError(f"machine {machine.name} has {len(machine.rotary)} rotary axes: a plan of operations needs two, to "
-                              "choose fixed orientations; leave out --operations, or name another machine")  # fmt: skip
         first, second = machine.rotary
         return cls(conditions, found, (first.name, second.name))
 
@@ -83,13 +74,13 @@ class Orientations:
         Nearer to the first axis fewer multiples of its angle are taken, so that the axes are about equally far apart.
         """
         start = self.kinematics.swing[0]
-        turns = _multiples(*np.degrees(self.kinematics.limit[1]), step)
+        turns = _multiples(self.kinematics.limit[1], step)
         found = []
         for second in turns:
             arm = self.kinematics.axis(np.array([[0.0, math.radians(second)]]))[0]
             sine = float(np.linalg.norm(np.cross(arm, self.kinematics.direction[0])))
             every = max(1, int(1.0 / max(sine, 1e-9))) if sine > 1e-9 else 10**9
-            first = _multiples(*np.degrees(self.kinematics.limit[0]), step)
+            first = _multiples(self.kinematics.limit[0], step)
             numbers = np.round(first / step).astype(np.int64)
             found.append(np.column_stack([first[numbers % every == 0], np.full((numbers % every == 0).sum(), second)]))
         angle = np.concatenate(found)
@@ -98,12 +89,12 @@ class Orientations:
         return self.set_to(angle)
 
 
-def _multiples(low: float, high: float, step: float) -> Floats:
-    """Whole multiples of a step within limits, one turn at most."""
-    low, high = max(low, -180.0), min(high, 180.0)
+def _multiples(limit: Floats, step: float) -> Floats:
+    """Whole multiples of a step, deg, within limits (2,), rad: one turn at most."""
+    low, high = max(float(np.degrees(limit[0])), -180.0), min(float(np.degrees(limit[1])), 180.0)
     whole = high - low >= 360.0 - 1e-9
     numbers = np.arange(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)
-    return np.asarray(numbers[1:] if whole and len(numbers) * step > 360.0 else numbers) * step
+    return np.asarray((numbers[1:] if whole and len(numbers) * step > 360.0 else numbers) * step, float)
 
 
 def directions(samples: SurfaceSamples, setup: Floats) -> Floats:
@@ -122,7 +113,7 @@ def directions(samples: SurfaceSamples, setup: Floats) -> Floats:
     return np.array(found)
 
 
-def apart(axis: Floats, least: float = _SAME, old: Floats | None = None) -> Floats:
+def apart(axis: Floats, least: float = _SAME, old: Floats | None = None) -> NDArray[np.int64]:
     """Which (k,) of axes (n, 3) are at least an angle, rad, from all earlier ones, and from old ones (m, 3)."""
     chord = 2.0 * math.sin(0.5 * least)
     kept = np.ones(len(axis), bool)
@@ -143,9 +134,8 @@ def beside(axis: Floats, spacing: float) -> Floats:
     u /= np.linalg.norm(u, axis=1)[:, None]
     v = np.cross(axis, u)
     turn = np.arange(6) * (math.pi / 3.0)
-    out = (
-        math.cos(spacing) * axis[:, None]
-        + math.sin(spacing) * (np.cos(turn)[:, None] * u[:, None] + np.sin(turn)[:, None] * v[:, None])
+    out = math.cos(spacing) * axis[:, None] + math.sin(spacing) * (
+        np.cos(turn)[:, None] * u[:, None] + np.sin(turn)[:, None] * v[:, None]
     )
     return np.asarray(out.reshape(-1, 3))
 
@@ -158,7 +148,7 @@ def candidates(where: Orientations, samples: SurfaceSamples, step: float | None)
     where : Orientations
     samples : SurfaceSamples
     step : float, optional
-        Angles are whole multiples of it, deg, where the machine's rotary axes lock at these alone. None: a grid of `STEP`, and
+        Angles are whole multiples of it, rad, where the machine's rotary axes lock at these alone. None: a grid of `STEP`, and
         the directions of the part.
 
     Returns
@@ -167,13 +157,11 @@ def candidates(where: Orientations, samples: SurfaceSamples, step: float | None)
         deg.
     axis : (m, 3) float
     """
-    if step is not None and not _LEAST <= step <= _LARGEST:
-        raise OptionError(f"index step {step:g} must lie between {_LEAST:g} and {_LARGEST:g} degrees")
-    angle, axis = where.grid(STEP if step is None else step)
+    angle, axis = where.grid(math.degrees(STEP if step is None else step))
     if step is None:
         own_angle, own_axis = where.near(directions(samples, where.conditions.setup))
         angle, axis = np.concatenate([own_angle, angle]), np.concatenate([own_axis, axis])
-    low, high = where.conditions.postures.tilt
+    high = where.conditions.postures.tilt[1]
     normal = samples.normal[samples.unjudged < 0]
     facing = _faces_any(axis, normal, math.cos(min(high, math.pi)))
     kept = np.flatnonzero(facing)
@@ -181,7 +169,7 @@ def candidates(where: Orientations, samples: SurfaceSamples, step: float | None)
     return angle[kept], axis[kept]
 
 
-def _faces_any(axis: Floats, normal: Floats, least: float) -> np.ndarray:
+def _faces_any(axis: Floats, normal: Floats, least: float) -> NDArray[np.bool_]:
     """Which axes (m,) face at least one normal."""
     if not len(normal):
         return np.zeros(len(axis), bool)

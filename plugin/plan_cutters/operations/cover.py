@@ -76,10 +76,10 @@ def fewest(table: Table, known: Which | None = None, *, prove: bool = True) -> C
     >>> len(found.chosen), found.at_least, found.closed
     (2, 2, True)
     """
-    n, m = table.shape
+    n = len(table)
     if not n:
         return Cover(np.zeros(0, np.int64), 0, np.zeros(0, np.int64), 0.0, 0.0)
-    rows, own = _essential(table)
+    rows = _essential(table)
     small = table[rows]
     relaxed, share, dual = _relaxed(small)
     weight = np.zeros(n, np.int64)
@@ -101,10 +101,10 @@ def fewest(table: Table, known: Which | None = None, *, prove: bool = True) -> C
     return Cover(np.sort(best), at_least, weight, bound, relaxed)
 
 
-def _essential(table: Table) -> tuple[Which, Which]:
-    """Rows (k,) that no other row follows from, and of each row (n,) the place of its equal among the different ones."""
+def _essential(table: Table) -> Which:
+    """Rows (k,) of which no other one is covered with another row."""
     packed = np.packbits(table, axis=1)
-    _, first, own = np.unique(packed, axis=0, return_index=True, return_inverse=True)
+    first = np.unique(packed, axis=0, return_index=True)[1]
     if len(first) <= _COMPARED:
         some = table[first].astype(np.float32)
         size = some.sum(axis=1)
@@ -113,7 +113,7 @@ def _essential(table: Table) -> tuple[Which, Which]:
         holds = both >= size[None, :] - 0.5
         np.fill_diagonal(holds, False)
         first = first[~holds.any(axis=1)]
-    return np.sort(first), own.reshape(-1)
+    return np.sort(first)
 
 
 def _relaxed(table: Table) -> tuple[float, Floats, Floats]:

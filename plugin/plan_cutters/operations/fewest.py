@@ -6,14 +6,14 @@ weights of rows lie.
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
+from plan_cutters.domain.columns import Columns, columns_of
+from plan_cutters.domain.operations import Fewest
 from plan_cutters.operations.candidates import Orientations, apart, beside
-from plan_cutters.operations.columns import Columns, columns_of
 from plan_cutters.operations.cover import Cover, fewest
 from plan_cutters.operations.probes import Probes
 
@@ -26,41 +26,6 @@ _ROUNDS = 60
 _LOADED = 250
 #: Spacing down to which candidates are laid, rad.
 FINEST = math.radians(0.5)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Fewest:
-    """The fewest orientations found, with what proves how few there can be.
-
-    Attributes
-    ----------
-    columns : Columns
-        All candidates.
-    chosen : (k,) int64
-        Of the candidates.
-    rows : (r,) int64
-        Samples in the table.
-    weight : (r,) int64
-        Their weights, in parts of `cover.UNIT`.
-    at_least : int
-        No choice among the candidates has fewer.
-    bound, relaxed : float
-        As of `cover.Cover`.
-    spacing : float
-        Between candidates where the weights lie, rad.
-    alone : (s,) int64
-        Samples that no candidate serves.
-    """
-
-    columns: Columns
-    chosen: Rows
-    rows: Rows
-    weight: Rows
-    at_least: int
-    bound: float
-    relaxed: float
-    spacing: float
-    alone: Rows
 
 
 class Search:

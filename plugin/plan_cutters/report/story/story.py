@@ -12,6 +12,7 @@ from plan_cutters.report.story.inside import inside
 from plan_cutters.report.story.line import Line
 from plan_cutters.report.story.names import named, short_names
 from plan_cutters.report.story.next_steps import together
+from plan_cutters.report.story.operations import operations
 from plan_cutters.report.story.scope import not_judged, not_seen
 
 
@@ -28,7 +29,7 @@ class Story:
     inside, scope, between : tuple of str
         Surface that does not belong to the finished part, which comes first; faces that were not judged or not seen, and how
         much the cutters reach together; how much is known between the samples.
-    setups, answers, notes : tuple of Line
+    setups, operations, answers, notes : tuple of Line
     doubts : dict
         Causes that make verdicts unsure, by their kind in the plural.
     """
@@ -42,6 +43,7 @@ class Story:
     between: tuple[str, ...]
     cutters: tuple[CutterStory, ...]
     setups: tuple[Line, ...]
+    operations: tuple[Line, ...]
     answers: tuple[Line, ...]
     doubts: Mapping[str, tuple[Line, ...]]
     notes: tuple[Line, ...]
@@ -67,6 +69,7 @@ def story_of(plan: Plan) -> Story:
         between=tuple(each.between for each in cutters if each.between),
         cutters=cutters,
         setups=(*notes.setups(plan, best), *notes.travel(plan, best)),
+        operations=tuple(operations(plan)),
         answers=tuple(answers(plan)),
         doubts={
             "warnings": tuple(notes.warnings(plan)),

@@ -1,0 +1,72 @@
+"""The share of the area that one, two, three ... fixed orientations serve, and the most that so many can.
+
+What columns serve together grows by less and less (it is submodular), so what k columns add to any set of columns is at most
+the sum of the k largest gains: the least of such sums over the prefixes of a greedy choice bounds the best k columns. It
+is a bound where the table has all samples; else columns are chosen by some samples, and their shares measured at all.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from plan_cutters.domain.operations import Fewest, Step
+from plan_cutters.operations.probes import Probes
+
+#: Tests that the table of the curve may take.
+_TESTS = 3_000_000
+
+
+def curve(probes: Probes, fewest: Fewest, rows: NDArray[np.int64], area: Floats, whole: float) -> tuple[Step, ...]:
+    """Steps of the greedy choice by area, as many as the cover has columns.
+
+    Parameters
+    ----------
+    probes : Probes
+    fewest : Fewest
+    rows : (r,) int64
+        Samples that are reached.
+    area : (n,) float
+        Of all samples, mm2.
+    whole : float
+        Area that shares are of, mm2.
+    """
+    most = len(fewest.chosen)
+    if not most or not len(rows):
+        return ()
+    some = rows[:: max(1, -(-len(rows) * len(fewest.columns) // _TESTS))]
+    table, size = probes.table(some, fewest.columns).T.astype(np.float32), np.nan_to_num(area[some])
+    order = _order(table, size, most)
+    bound = _bound(table, size, order) / max(whole, 1e-300) if len(some) == len(rows) else None
+    own = fewest.chosen[_order(table[fewest.chosen], size, most)]
+    ways = [probes.table(rows, fewest.columns.of(each)) for each in (np.array(order, np.int64), own)]
+    steps, left = [], np.nan_to_num(area[rows])
+    for k in range(most):
+        share = min(1.0, max(float(left[way[:, : k + 1].any(axis=1)].sum()) for way in ways) / max(whole, 1e-300))
+        steps.append(Step(k + 1, share, None if bound is None else min(1.0, max(share, float(bound[k])))))
+    return tuple(steps)
+
+
+def _order(table: NDArray[np.float32], size: Floats, most: int) -> list[int]:
+    """Columns in the order of how much each serves of what those before it leave."""
+    left, order = size.astype(np.float32), list[int]()
+    for _ in range(most):
+        gain = table @ left
+        gain[order] = -1.0
+        order.append(int(gain.argmax()))
+        left = left * (1.0 - table[order[-1]])
+    return order
+
+
+def _bound(table: NDArray[np.float32], size: Floats, order: list[int]) -> Floats:
+    """The most area (k,) that one, two, three ... columns serve."""
+    most, left, have = np.full(len(order), np.inf), size.astype(np.float32), 0.0
+    for column in [*order, -1]:
+        gain = np.sort(table @ left)[::-1][: len(order)]
+        ahead = have + np.cumsum(gain, dtype=float)
+        most[: len(ahead)] = np.minimum(most[: len(ahead)], ahead)
+        most[len(ahead) :] = np.minimum(most[len(ahead) :], ahead[-1])
+        if column >= 0:
+            have += float((left * table[column]).sum())
+            left = left * (1.0 - table[column])
+    # Sums of single precision are rounded up.
+    return np.asarray(most * (1.0 + 1e-5))

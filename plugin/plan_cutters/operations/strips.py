@@ -1,0 +1,113 @@
+"""The width of the strip that one pass leaves within the scallop height, and the feed direction in which it is widest.
+
+At a contact the gap between the tool and the surface is, to second order, a quadratic form `D = S_tool - S_surface` in the
+tangent plane. Its inverse gives the width of a pass in the feed direction d, with e at right angles to d, as
+`2 sqrt(2 h e D^-1 e)`: the pass is widest where e is the eigenvector of the largest eigenvalue of `D^-1`
+(`docs/operations.md`, lemma 6).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cad_io.arrays import Floats, Record, SurfaceSamples
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.shapes import modes
+
+#: Tilts are within a mode up to this, rad; sines below it are that of an axis along the normal.
+_HAIR = 1e-9
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Strips(Record):
+    """Widest strips at contacts.
+
+    Attributes
+    ----------
+    width : (n,) float
+        mm, at most the step-over that is allowed; nan where the tool does not touch at that tilt.
+    feed : (n, 3) float
+        Unit feed direction of the widest strip, in the tangent plane.
+    room : (n,) float
+        Largest eigenvalue of `D^-1`, mm, the radius of a ball that leaves the same gap; infinite where curvatures match. The
+        smaller it is, the farther is the tool from gouging.
+    """
+
+    width: Floats
+    feed: Floats
+    room: Floats
+
+
+def strips(cutter: Cutter, samples: SurfaceSamples, axis: Floats, scallop: float, stepover: float) -> Strips:
+    """Find the widest strips of a cutter at samples.
+
+    Parameters
+    ----------
+    cutter : Cutter
+    samples : SurfaceSamples
+        n of them.
+    axis : (n, 3) float
+        Unit tool axis at each; nan where there is none.
+    scallop : float
+        Height of the cusps between passes, mm.
+    stepover : float
+        Widest distance of passes, in diameters.
+    """
+    normal = samples.normal
+    cosine = np.clip((normal * axis).sum(axis=1), -1.0, 1.0)
+    across = axis - cosine[:, None] * normal
+    sine = np.linalg.norm(across, axis=1)
+    tilt = np.arctan2(sine, cosine)
+    f = np.where((sine > _HAIR)[:, None], across / np.maximum(sine, 1e-300)[:, None], samples.direction_max)
+    t = np.cross(normal, f)
+    offset, radius = _touching(cutter, tilt)
+    inverse = np.zeros((len(axis), 2, 2))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        wide = radius + np.where(offset == 0.0, 0.0, offset / sine)
+        inverse[:, 0, 0], inverse[:, 1, 1] = radius, wide
+        inverse[np.isinf(wide), 1, 1] = 1e12
+        relative = np.eye(2) - inverse @ _surface(samples, f)
+        gap = _product(relative, inverse)
+    value, vector = np.linalg.eigh(np.where(np.isfinite(gap), gap, 0.0))
+    # Where D is not positive the curvatures match within the tolerance: the strip is as wide as is allowed.
+    matched = (np.linalg.det(relative) <= 0.0) | (value[:, 1] <= 0.0) | (np.trace(relative, axis1=1, axis2=2) <= 0.0)
+    room = np.where(matched, np.inf, value[:, 1])
+    most = stepover * 2.0 * cutter.radius
+    with np.errstate(invalid="ignore"):
+        width = np.minimum(most, 2.0 * np.sqrt(2.0 * scallop * room))
+    e = vector[:, :, 1]
+    feed = e[:, :1] * t - e[:, 1:] * f
+    known = np.isfinite(radius) & np.isfinite(axis).all(axis=1)
+    return Strips(np.where(known, width, np.nan), feed, np.where(known, room, np.nan))
+
+
+def _touching(cutter: Cutter, tilt: Floats) -> tuple[Floats, Floats]:
+    """Of the part that touches at each tilt (n,): how far its centre of curvature is off the axis, and its radius, mm."""
+    offset, radius = np.full((2, len(tilt)), np.nan)
+    for mode in reversed(modes(cutter)):
+        mine = (tilt >= mode.low - _HAIR) & (tilt <= mode.high + _HAIR)
+        offset[mine], radius[mine] = mode.offset, mode.radius
+    return offset, radius
+
+
+def _surface(samples: SurfaceSamples, f: Floats) -> Floats:
+    """Second fundamental forms (n, 2, 2) in the frame of f and n x f, concave positive."""
+    largest = samples.direction_max
+    c = (f * largest).sum(axis=1)
+    s = (np.cross(samples.normal, largest) * f).sum(axis=1)
+    high, low = samples.curvature.T
+    form = np.empty((len(f), 2, 2))
+    form[:, 0, 0] = high * c**2 + low * s**2
+    form[:, 1, 1] = high * s**2 + low * c**2
+    form[:, 0, 1] = form[:, 1, 0] = (low - high) * s * c
+    return form
+
+
+def _product(relative: Floats, inverse: Floats) -> Floats:
+    """`relative^-1 inverse` (n, 2, 2), made symmetric; `relative` may be singular."""
+    det = np.linalg.det(relative)
+    turned = np.empty_like(relative)
+    turned[:, 0, 0], turned[:, 1, 1] = relative[:, 1, 1], relative[:, 0, 0]
+    turned[:, 0, 1], turned[:, 1, 0] = -relative[:, 0, 1], -relative[:, 1, 0]
+    found = (turned @ inverse) / det[:, None, None]
+    return np.asarray(0.5 * (found + found.transpose(0, 2, 1)))
