@@ -59,7 +59,54 @@ class Cover:
         return len(self.chosen) <= self.at_least
 
 
-def fewest(table: Table, known: Which | None = None, *, prove: bool = True) -> Cover:
+@dataclass(frozen=True, slots=True, eq=False)
+class Relaxed:
+    """The cover of a table whose columns may be taken in part, and the weights that belong to it.
+
+    Attributes
+    ----------
+    rows : (r,) int64
+        Rows of which no other one follows from them.
+    share : (m,) float
+        Part of each column that is taken.
+    dual : (r,) float
+        Weights of `rows`: no column carries more than 1.
+    weight : (n,) int64
+        Of all rows, in parts of `UNIT`.
+    value : float
+        Sum of the parts.
+    """
+
+    rows: Which
+    share: Floats
+    dual: Floats
+    weight: Which
+    value: float
+
+    @property
+    def bound(self) -> float:
+        """What the whole weights prove."""
+        return float(self.weight.sum()) / UNIT
+
+
+def relax(table: Table) -> Relaxed:
+    """Find the least sum of parts of columns that covers each row (n, m), and the weights that prove it."""
+    from scipy.optimize import linprog
+    from scipy.sparse import csr_array
+
+    rows, weight = _essential(table), np.zeros(len(table), np.int64)
+    small = table[rows]
+    # The weights' own problem: most weight of which no column carries more than 1.
+    found = linprog(-np.ones(len(small)), A_ub=csr_array(small.T.astype(float)), b_ub=np.ones(table.shape[1]), bounds=(0.0, None),
+                    method="highs")  # fmt: skip
+    if found.x is None:
+        return Relaxed(rows, np.ones(table.shape[1]), np.zeros(len(small)), weight, 0.0)
+    dual = np.maximum(0.0, found.x)
+    weight[rows] = whole_weights(small, dual)
+    return Relaxed(rows, np.maximum(0.0, -found.ineqlin.marginals), dual, weight, float(-found.fun))
+
+
+def fewest(table: Table, known: Which | None = None, *, relaxed: Relaxed | None = None, prove: bool = True) -> Cover:
     """Find few columns that cover every row, each row of which some column covers.
 
     Parameters
@@ -67,6 +114,8 @@ def fewest(table: Table, known: Which | None = None, *, prove: bool = True) -> C
     table : (n, m) bool
     known : (k,) int64, optional
         A cover.
+    relaxed : Relaxed, optional
+        Of this table, where it is known.
     prove : bool
         Search until no smaller cover is possible; else stop early.
 
@@ -76,29 +125,23 @@ def fewest(table: Table, known: Which | None = None, *, prove: bool = True) -> C
     >>> len(found.chosen), found.at_least, found.closed
     (2, 2, True)
     """
-    n = len(table)
-    if not n:
+    if not len(table):
         return Cover(np.zeros(0, np.int64), 0, np.zeros(0, np.int64), 0.0, 0.0)
-    rows = _essential(table)
-    small = table[rows]
-    relaxed, share, dual = _relaxed(small)
-    weight = np.zeros(n, np.int64)
-    weight[rows] = whole_weights(small, dual)
-    bound = weight.sum() / UNIT
-    least = max(1, math.ceil(bound - 1e-9))
+    relaxed = relax(table) if relaxed is None else relaxed
+    small, bound = table[relaxed.rows], relaxed.bound
+    at_least = max(1, math.ceil(bound - 1e-9))
     covers = [_without_spare(small, known)] if known is not None and small[:, known].any(axis=1).all() else []
-    covers.append(_greedy_covers(small, share, least))
+    covers.append(_greedy_covers(small, relaxed.share, at_least))
     best = min(covers, key=len)
-    at_least = least
-    if len(best) > least:
+    if len(best) > at_least:
         # A cover with one column less has none whose price, by the weights, passes what is left over.
-        price = 1.0 - dual @ small
-        kept = np.flatnonzero(price <= len(best) - 1 - dual.sum() + _ROUNDING)
+        price = 1.0 - relaxed.dual @ small
+        kept = np.flatnonzero(price <= len(best) - 1 - relaxed.dual.sum() + _ROUNDING)
         smaller, proven = _smaller(small[:, kept], len(best) - 1, _NODES if prove else _FEW_NODES)
         best = best if smaller is None else kept[smaller]
         if proven is not None:
             at_least = max(at_least, min(proven, len(best)))
-    return Cover(np.sort(best), at_least, weight, bound, relaxed)
+    return Cover(np.sort(best), at_least, relaxed.weight, bound, relaxed.value)
 
 
 def _essential(table: Table) -> Which:
@@ -114,19 +157,6 @@ def _essential(table: Table) -> Which:
         np.fill_diagonal(holds, False)
         first = first[~holds.any(axis=1)]
     return np.sort(first)
-
-
-def _relaxed(table: Table) -> tuple[float, Floats, Floats]:
-    """The least sum of parts of columns that covers each row, those parts (m,), and the rows' weights (n,)."""
-    from scipy.optimize import linprog
-    from scipy.sparse import csr_array
-
-    held = csr_array(table.T.astype(float))
-    # The weights' own problem: most weight of which no column carries more than 1.
-    found = linprog(-np.ones(len(table)), A_ub=held, b_ub=np.ones(table.shape[1]), bounds=(0.0, None), method="highs")
-    if found.x is None:
-        return 0.0, np.ones(table.shape[1]), np.zeros(len(table))
-    return float(-found.fun), np.maximum(0.0, -found.ineqlin.marginals), np.maximum(0.0, found.x)
 
 
 def whole_weights(table: Table, weight: Floats) -> Which:

@@ -6,6 +6,7 @@ weights of rows lie.
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,7 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.operations import Fewest
 from plan_cutters.operations.candidates import Orientations, apart, beside
-from plan_cutters.operations.cover import Cover, fewest
+from plan_cutters.operations.cover import UNIT, Cover, fewest, relax
 from plan_cutters.operations.probes import Probes
 
 Rows = NDArray[np.int64]
@@ -24,12 +25,20 @@ _FIRST, _MORE = 400, 120
 _ROUNDS = 60
 #: Candidates about which new ones are laid, at most, at each halving of their spacing.
 _LOADED = 250
+#: Candidates that enter the table at once.
+_ENTER = 150
+#: Whole weights and those of the solver differ by less, summed up.
+_MARGIN = 0.01
 #: Spacing down to which candidates are laid, rad.
 FINEST = math.radians(0.5)
 
 
 class Search:
     """A table of samples and candidates that grows until a cover of it serves all samples.
+
+    Candidates that are laid later wait: a weight on samples says which of them could make a cover smaller, and only these enter
+    the table whole. Of the others no more is known than that the weights do not load them too much, which is all that the
+    bound needs.
 
     Parameters
     ----------
@@ -40,13 +49,23 @@ class Search:
         Samples to serve.
     stored : callable
         Gives columns for samples that no candidate serves: their own postures.
+
+    Attributes
+    ----------
+    columns : Columns
+        All candidates.
+    rows : (r,) int64
+        Samples in the table.
+    alone : (s,) int64
+        Samples that no candidate serves.
     """
 
     def __init__(self, probes: Probes, columns: Columns, rows: Rows, stored: Callable[[Rows], Columns]) -> None:
         self._probes, self.columns, self._wanted, self._stored = probes, columns, rows, stored
         self.rows: Rows = np.zeros(0, np.int64)
         self.alone: Rows = np.zeros(0, np.int64)
-        self.table = np.zeros((0, len(columns)), bool)
+        self._table = np.zeros((0, len(columns)), np.int8)
+        self._active = np.ones(len(columns), bool)
         rng = np.random.default_rng(0)
         first = rng.choice(rows, min(_FIRST, len(rows)), replace=False) if len(rows) else rows
         self._add_rows(np.sort(first))
@@ -55,11 +74,11 @@ class Search:
         """Return the smallest cover of the candidates that serves all samples but those that none serves."""
         known: Rows | None = None
         for _ in range(_ROUNDS):
-            found = fewest(self.table, known, prove=False)
+            found = self._cover(known, prove=False)
             missed = self._missed(found.chosen)
             if not len(missed) and not found.closed:
                 known = found.chosen
-                found = fewest(self.table, known)
+                found = self._cover(known, prove=True)
                 missed = self._missed(found.chosen) if len(found.chosen) < len(known) else missed
             if not len(missed):
                 return found
@@ -68,45 +87,85 @@ class Search:
 
     def refine(self, cover: Cover, spacing: float, orientations: Sequence[Orientations]) -> None:
         """Lay candidates at a spacing, rad, about those that the weights load most, and about those chosen."""
-        load = cover.weight @ self.table
-        top = np.unique(np.concatenate([np.argsort(-load, kind="stable")[:_LOADED], cover.chosen]))
+        active = np.flatnonzero(self._active)
+        load = cover.weight @ self._table[:, active]
+        top = np.union1d(active[np.argsort(-load, kind="stable")[:_LOADED]], cover.chosen)
         for c, s in sorted({*zip(self.columns.cutter[top].tolist(), self.columns.setup[top].tolist(), strict=True)}):
             same = (self.columns.cutter == c) & (self.columns.setup == s)
             angle, axis = orientations[s].near(beside(self.columns.axis[top[same[top]]], spacing))
             new = apart(axis, 0.6 * spacing, self.columns.axis[same])
             self._add_columns(columns_of(axis[new], angle[new], c, s))
 
+    def _cover(self, known: Rows | None, *, prove: bool) -> Cover:
+        """The fewest columns of the table whole, once the weights load none of those that wait too much."""
+        while True:
+            active = np.flatnonzero(self._active)
+            table = self._table[:, active] == 1
+            relaxed = relax(table)
+            if self._enter(relaxed.weight, 1.0):
+                continue
+            own = None if known is None else np.searchsorted(active, known)
+            found = fewest(table, own, relaxed=relaxed, prove=prove)
+            found = replace(found, chosen=active[found.chosen])
+            # The weights' bound holds for all. Branch and bound has seen those alone that are in the table whole.
+            by_weights = math.ceil(found.bound - 1e-9)
+            if not prove or by_weights >= len(found.chosen):
+                return replace(found, at_least=max(1, by_weights))
+            if not self._enter(relaxed.weight, found.bound + 2.0 - len(found.chosen) - _MARGIN):
+                return found
+
+    def _enter(self, weight: Rows, most: float) -> bool:
+        """Take candidates into the table whole that wait and that the weights load with more than so much."""
+        idle, rows = np.flatnonzero(~self._active), np.flatnonzero(weight)
+        if not len(idle):
+            return False
+        open_ = rows[(self._table[np.ix_(rows, idle)] < 0).any(axis=1)]
+        if len(open_):
+            self._table[np.ix_(open_, idle)] = self._probes.table(self.rows[open_], self.columns.of(idle))
+        load = weight[rows] @ (self._table[np.ix_(rows, idle)] == 1)
+        over = np.flatnonzero(load > most * UNIT)
+        new = np.sort(idle[over[np.argsort(-load[over], kind="stable")[:_ENTER]]])
+        if len(new):
+            self._table[:, new] = self._probes.table(self.rows, self.columns.of(new))
+            self._active[new] = True
+        return bool(len(new))
+
     def _missed(self, chosen: Rows) -> Rows:
         """Samples that chosen candidates do not serve."""
         left = np.setdiff1d(self._wanted, self.alone)
-        order = np.argsort(-self.table[:, chosen].sum(axis=0), kind="stable")
+        order = np.argsort(-self._table[:, chosen].sum(axis=0), kind="stable")
         for column in chosen[order].tolist():
             left = left[~self._probes.one(left, self.columns, column)]
         return left
 
     def _add_rows(self, rows: Rows) -> None:
-        new = self._probes.table(rows, self.columns)
-        bare = rows[~new.any(axis=1)]
+        active = np.flatnonzero(self._active)
+        new = np.full((len(rows), len(self.columns)), -1, np.int8)
+        new[:, active] = self._probes.table(rows, self.columns.of(active))
+        bare = rows[~(new == 1).any(axis=1)]
         if len(bare):
             before = len(self.columns)
             self._add_columns(self._stored(bare))
             added = np.arange(before, len(self.columns))
-            new = np.concatenate([new, self._probes.table(rows, self.columns.of(added))], axis=1)
-        served = new.any(axis=1)
+            self._table[:, added] = self._probes.table(self.rows, self.columns.of(added))
+            self._active[added] = True
+            new = np.concatenate([new, self._probes.table(rows, self.columns.of(added)).astype(np.int8)], axis=1)
+        served = (new == 1).any(axis=1)
         self.alone = np.union1d(self.alone, rows[~served])
         self.rows = np.concatenate([self.rows, rows[served]])
-        self.table = np.concatenate([self.table, new[served]])
+        self._table = np.concatenate([self._table, new[served]])
 
     def _add_columns(self, new: Columns) -> None:
-        self.table = np.concatenate([self.table, self._probes.table(self.rows, new)], axis=1)
+        self._table = np.concatenate([self._table, np.full((len(self.rows), len(new)), -1, np.int8)], axis=1)
+        self._active = np.concatenate([self._active, np.zeros(len(new), bool)])
         self.columns = self.columns.and_(new)
 
     def _patched(self) -> Cover:
-        """A cover that serves all samples, without the proof: what rounds have left is served by the samples' own postures."""
-        found = fewest(self.table, prove=False)
+        """A cover that serves all samples, without the proof: the rounds did not do."""
+        found = self._cover(None, prove=False)
         while len(missed := self._missed(found.chosen)):
             self._add_rows(missed[:_MORE])
-            found = fewest(self.table, found.chosen, prove=False)
+            found = self._cover(None, prove=False)
         return found
 
 
@@ -125,13 +184,13 @@ def search_fewest(
     tell : callable
         Told the number of levels done and of all.
     """
-    levels = max(0, math.ceil(math.log2(spacing / finest) - 1e-9))
+    levels = max(0, math.ceil(math.log2(spacing / finest) - 0.5))
     best = search.solve()
     for level in range(levels):
         tell(level, levels)
         if len(best.chosen) <= 1:
             break
-        spacing *= 0.5
+        spacing *= (finest / spacing) ** (1.0 / (levels - level))
         search.refine(best, spacing, orientations)
         best = search.solve()
     return Fewest(search.columns, best.chosen, search.rows, best.weight, best.at_least, best.bound, best.relaxed, spacing,

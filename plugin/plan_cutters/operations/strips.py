@@ -67,10 +67,11 @@ def strips(cutter: Cutter, samples: SurfaceSamples, axis: Floats, scallop: float
         inverse[:, 0, 0], inverse[:, 1, 1] = radius, wide
         inverse[np.isinf(wide), 1, 1] = 1e12
         relative = np.eye(2) - inverse @ _surface(samples, f)
-        gap = _product(relative, inverse)
+        gap, det = _product(relative, inverse)
     value, vector = np.linalg.eigh(np.where(np.isfinite(gap), gap, 0.0))
+    trace = relative[:, 0, 0] + relative[:, 1, 1]
     # Where D is not positive the curvatures match within the tolerance: the strip is as wide as is allowed.
-    matched = (np.linalg.det(relative) <= 0.0) | (value[:, 1] <= 0.0) | (np.trace(relative, axis1=1, axis2=2) <= 0.0)
+    matched = (det <= 0.0) | (value[:, 1] <= 0.0) | (trace <= 0.0)
     room = np.where(matched, np.inf, value[:, 1])
     most = stepover * 2.0 * cutter.radius
     with np.errstate(invalid="ignore"):
@@ -103,11 +104,11 @@ def _surface(samples: SurfaceSamples, f: Floats) -> Floats:
     return form
 
 
-def _product(relative: Floats, inverse: Floats) -> Floats:
-    """`relative^-1 inverse` (n, 2, 2), made symmetric; `relative` may be singular."""
-    det = np.linalg.det(relative)
+def _product(relative: Floats, inverse: Floats) -> tuple[Floats, Floats]:
+    """`relative^-1 inverse` (n, 2, 2), made symmetric, and the determinants of `relative`, which may be singular."""
+    det = relative[:, 0, 0] * relative[:, 1, 1] - relative[:, 0, 1] * relative[:, 1, 0]
     turned = np.empty_like(relative)
     turned[:, 0, 0], turned[:, 1, 1] = relative[:, 1, 1], relative[:, 0, 0]
     turned[:, 0, 1], turned[:, 1, 0] = -relative[:, 0, 1], -relative[:, 1, 0]
     found = (turned @ inverse) / det[:, None, None]
-    return np.asarray(0.5 * (found + found.transpose(0, 2, 1)))
+    return np.asarray(0.5 * (found + found.transpose(0, 2, 1))), det
