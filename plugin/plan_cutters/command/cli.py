@@ -52,6 +52,10 @@ def command(parts: tuple[str, ...], **given: Any) -> int:
         from plan_cutters.command.stored_maps import stored
 
         return stored(parts[0], given["postures"], asked, given, help_groups.named())
+    if given["check_operations"] is not None:
+        from plan_cutters.command.check_operations import checked
+
+        return checked(parts[0], given["check_operations"], asked, given)
     codes = []
     outs = folders(parts, given)
     since: float | None = began()

@@ -87,6 +87,8 @@ def _words(parts: Sequence[str], given: dict[str, Any]) -> None:
         raise OptionError("-o: the folder has no name")
     if "" in parts:
         raise OptionError("PART: a file has no name")
+    if given["check_operations"] is not None and len(parts) > 1:
+        raise OptionError("--check-operations is about one part")
     if given["postures"] is not None and len(parts) > 1:
         raise OptionError("--postures is about one part")
     if given["postures"] is not None and not os.path.isfile(given["postures"]):

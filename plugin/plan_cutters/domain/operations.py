@@ -152,6 +152,8 @@ class Operations:
     ----------
     which : str
         One of WHICH.
+    cutters : tuple of Cutter
+        Those whose operations were compared; columns count in them.
     plans : tuple of OperationPlan
     fewest : Fewest
     curve : tuple of Step
@@ -162,6 +164,7 @@ class Operations:
     """
 
     which: str
+    cutters: tuple[Cutter, ...]
     plans: tuple[OperationPlan, ...]
     fewest: Fewest
     curve: tuple[Step, ...]

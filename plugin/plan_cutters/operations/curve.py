@@ -13,7 +13,7 @@ from plan_cutters.domain.operations import Fewest, Step
 from plan_cutters.operations.probes import Probes
 
 #: Tests that the table of the curve may take.
-_TESTS = 3_000_000
+_TESTS = 600_000
 
 
 def curve(probes: Probes, fewest: Fewest, rows: NDArray[np.int64], area: Floats, whole: float) -> tuple[Step, ...]:

@@ -72,7 +72,9 @@ def plan_operations(
             kept = _best(serves, samples.area, options.most_operations)
             chosen, serves = chosen.of(kept), serves[:, kept]
         plan = _plan("fewest", ready, cutters, chosen, serves, everywhere, reached, orientations)
-    return Operations(options.operations or "", (plan,), fewest, steps, orientations[0].names, probes.made)
+    return Operations(
+        options.operations or "", tuple(cutters), (plan,), fewest, steps, orientations[0].names, probes.made
+    )
 
 
 def _considered(cutters: Sequence[Cutter], needed: Sequence[Cutter]) -> list[Cutter]:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from plan_cutters.document.model import FileEntry, Plan
 
 PLAN = "plan.json"
-FORMATS = ("json", *(f for f in WRITERS if f != "postures"))
+FORMATS = ("json", *(f for f in WRITERS if f not in {"postures", "operations", "operations_csv"}))
 #: What is written unless asked otherwise (`docs/decisions/0017-formats-on-request.md`).
 DEFAULT_FORMATS = ("json", "html", "step", "glb", "npz")
 
@@ -157,6 +157,7 @@ def write_all(
         raise OptionError(f"STEP schema {step_schema!r} is not built in; give one of {', '.join(SCHEMAS)}")
     later = [name for name in LATER if name in formats]
     arrays = [name for name in ("npz",) if name in formats] + (["postures"] if result.maps else [])
+    arrays += ["operations", "operations_csv"] if result.plan.operations else []
     with staging or Staging(out) as staging:
         document: Plan = result.plan
         files: dict[str, FileEntry] = {}

@@ -24,6 +24,8 @@ WRITERS = {
     "merged": ("merged.glb", "models", "write_merged"),
     "npz": ("samples.npz", "to_npz", "write_npz"),
     "postures": ("postures.npz", "to_npz", "write_postures"),
+    "operations": ("operations.npz", "operation_files", "write_operations"),
+    "operations_csv": ("operations.csv", "operation_files", "write_operations_csv"),
     "csv": ("axes.csv", "to_csv", "write_csv"),
     "vtk": ("axes.vtp", "to_vtk", "write_vtk"),
     "regions": ("axis_regions.json", "regions", "write_regions"),

@@ -58,7 +58,7 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
         arrays[f"radius_beyond_{radii.shape}"] = radii.beyond
         arrays[f"radius_axis_{radii.shape}"] = radii.axis
         arrays[f"radius_lean_{radii.shape}"] = radii.tilt_direction
-    _write(arrays, path)
+    write_arrays(arrays, path)
 
 
 def write_postures(result: Judged, _split: object, path: Path) -> None:
@@ -70,13 +70,13 @@ def write_postures(result: Judged, _split: object, path: Path) -> None:
     name = maps.cutter
     about = {"format": "plan-cutters-postures", "version": 2, "cutter": name, "part": maps.part, "tilt": maps.tilt,
              "tolerance": maps.tolerance, "question": dict(maps.about)}  # fmt: skip
-    _write({"about": np.array(json.dumps(about)), "rotation": maps.rotations, "normal": maps.normal,
+    write_arrays({"about": np.array(json.dumps(about)), "rotation": maps.rotations, "normal": maps.normal,
             "direction_max": maps.direction_max, "inside": maps.inside, f"offset_{name}": maps.offset,
             f"free_{name}": maps.free, f"undecided_{name}": maps.undecided, f"verdict_{name}": maps.verdict,
             f"reason_{name}": maps.reason}, path)  # fmt: skip
 
 
-def _write(arrays: dict[str, Any], path: Path) -> None:
+def write_arrays(arrays: dict[str, Any], path: Path) -> None:
     # numpy's own writer stamps the time: two runs would differ.
     with zipfile.ZipFile(path, "w") as archive:
         for key, array in arrays.items():

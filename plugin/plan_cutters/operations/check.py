@@ -1,0 +1,129 @@
+"""Check a written plan of operations against the part, by code that shares nothing with the search.
+
+It asks three things. Does each operation serve its samples with the orientation that is written down? Does some operation
+take each sample that is reached? Do the weights load no candidate with more than 1,000,000, so that they prove the bound?
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.errors import OptionError
+from plan_cutters.operations.candidates import Orientations
+from plan_cutters.scene.fixed_axis import served_by
+from plan_cutters.scene.preparation import Prepared
+
+_UNIT = 1_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """One statement of the plan, whether it holds, and in words how it was checked."""
+
+    holds: bool
+    words: str
+
+
+def check_operations(ready: Prepared, document: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> list[Finding]:
+    """Check the operations of a plan.
+
+    Parameters
+    ----------
+    ready : Prepared
+        The part, with the options that the plan was made with.
+    document : mapping
+        plan.json as it was read.
+    arrays : mapping
+        operations.npz as it was read.
+
+    Raises
+    ------
+    OptionError
+        They are not of this part or of these options.
+    """
+    entry = document.get("operations")
+    if not isinstance(entry, dict):
+        raise OptionError("the plan has no operations: make it with --operations")
+    _fits(ready, document, arrays)
+    cutters = {cutter.id: cutter for cutter in ready.cutters}
+    orientations = [Orientations.of(conditions) for conditions in ready.setups]
+    findings = [_weights(ready, entry, arrays, orientations)]
+    for plan in entry["plans"]:
+        findings += _plan(ready, plan, entry["rotary"], arrays, cutters, orientations)
+    return findings
+
+
+def _fits(ready: Prepared, document: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> None:
+    """Refuse a plan of another part or of other options."""
+    asked, options = document["effective"], ready.options
+    pairs = [
+        ("part", document["part"].get("sha256"), ready.scene.part.sha256),
+        ("cutters (--cutter, --holder)", asked["cutters"], [cutter.id for cutter in ready.cutters]),
+        ("machine (--machine)", asked["machine"], options.machine.name),
+        ("setup (--setup)", [round(x, 9) for x in asked["setup"]], [round(x, 9) for x in ready.scene.setup]),
+        ("tolerance (--tolerance)", asked["tolerance_mm"], ready.scene.tolerance),
+        ("number of samples (--grid, --spacing, --faces)", document["samples"]["count"], len(ready.samples)),
+    ]
+    for what, was, now in pairs:
+        if was != now:
+            raise OptionError(f"the plan of operations was made with another {what}: {_short(was)}, not {_short(now)}")
+    if any(len(array) != len(ready.samples) for name, array in arrays.items() if name.startswith("operation_")):
+        raise OptionError("operations.npz is of other samples than the plan")
+
+
+def _short(value: Any) -> str:
+    text = ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _weights(
+    ready: Prepared, entry: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]], orientations: list[Orientations]
+) -> Finding:
+    """The weights on samples, added up for each candidate."""
+    few = entry["fewest"]
+    rows = np.array([row for row, _ in few["weights"]], np.int64)
+    weight = np.array([w for _, w in few["weights"]], np.int64)
+    cutter, setup, angle = arrays["candidate_cutter"], arrays["candidate_setup"], arrays["candidate_angle"]
+    if len(rows) and (rows.min() < 0 or rows.max() >= len(ready.samples) or weight.min() < 0):
+        return Finding(False, "The weights name samples that there are not, or are negative.")
+    most = 0
+    for c, s in sorted({*zip(cutter.tolist(), setup.tolist(), strict=True)}):
+        axes = orientations[s].kinematics.axis(np.radians(angle[(cutter == c) & (setup == s)]))
+        free, _ = served_by(rows, axes, ready.samples, ready.cutters[c], ready.setups[s])
+        most = max(most, int((free @ weight).max(initial=0)))
+    total = int(weight.sum())
+    proved = -(-total // _UNIT)
+    claimed = few["at_least"] if few["proof"] == "weights" else min(few["at_least"], proved)
+    words = (f"The weights of {len(rows)} samples sum up to {total / _UNIT:.6f}; none of {len(angle)} candidates carries more "
+             f"than {most / _UNIT:.6f}: at least {proved} orientations are needed, the plan says {few['at_least']}"
+             f"{' (by branch and bound, which is not checked)' * (few['proof'] == 'branch and bound')}.")  # fmt: skip
+    return Finding(most <= _UNIT and proved >= claimed and few["at_least"] <= few["found"], words)
+
+
+def _plan(
+    ready: Prepared, plan: Mapping[str, Any], names: list[str], arrays: Mapping[str, NDArray[Any]],
+    cutters: Mapping[str, Cutter], orientations: list[Orientations],
+) -> list[Finding]:  # fmt: skip
+    """Each operation at its own samples, with the axis that its angles give."""
+    label = arrays[f"operation_{plan['name'].replace(' ', '_')}"]
+    wrong, tested = 0, 0
+    for k, operation in enumerate(plan["operations"]):
+        rows = np.flatnonzero(label == k)
+        if operation["mode"] != "fixed":
+            continue
+        angle = np.radians([[operation["angles_deg"][name] for name in names]])
+        axis = orientations[operation["setup"]].kinematics.axis(angle)
+        free, _ = served_by(rows, axis, ready.samples, cutters[operation["cutter"]], ready.setups[operation["setup"]])
+        wrong += int((~free[0]).sum())
+        tested += len(rows)
+    each = len([operation for operation in plan["operations"] if operation["mode"] == "fixed"])
+    served = Finding(wrong == 0, f"The {plan['name']} plan: each of {each} fixed operations was put down at its samples, {tested} in "
+                                 f"all; {wrong} of them are not served.")  # fmt: skip
+    rest = int((ready.finished & (label < 0)).sum())
+    whole = Finding(rest == plan["rest"]["samples"],
+                    f"The {plan['name']} plan leaves {rest} judged samples, and says {plan['rest']['samples']}.")  # fmt: skip
+    return [served, whole]

@@ -1,0 +1,68 @@
+"""The plan of operations as files: `operations.npz` and `operations.csv`."""
+
+import csv
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from plan_cutters.domain.operations import OperationPlan
+from plan_cutters.report.protocol import Judged
+from plan_cutters.report.to_npz import write_arrays
+
+
+def write_operations(result: Judged, _split: object, path: Path) -> None:
+    """Write `operations.npz`: of each plan what each sample goes with, and the candidates that the proof is about.
+
+    For each plan, its name behind the word: `operation_` (n,) int16, an index into its operations, -1 for none; `strip_mm_`, the
+    width of a pass; `seconds_`, nan without a feed; `exclusive_`, that no other operation of it serves the sample. `candidate_cutter`
+    and `candidate_setup` (m,) are indices into the plan's cutters and setups, `candidate_angle` (m, 2) is in degrees.
+    """
+    found = result.answers.operations
+    assert found is not None, "written where operations were asked for"
+    few, ids = found.fewest, [entry.id for entry in result.cutters]
+    number = np.array([ids.index(cutter.id) for cutter in found.cutters], np.int32)
+    arrays: dict[str, Any] = {
+        "candidate_cutter": number[few.columns.cutter],
+        "candidate_setup": few.columns.setup,
+        "candidate_angle": few.columns.angle,
+        "candidate_axis": few.columns.axis,
+        "chosen": few.chosen,
+    }
+    for plan in found.plans:
+        arrays |= {f"{word}_{plan.name.replace(' ', '_')}": each for word, each in _columns(plan).items()}
+    write_arrays(arrays, path)
+
+
+def _columns(plan: OperationPlan) -> dict[str, Any]:
+    alone = np.zeros(len(plan.label), bool)
+    for each in plan.operations:
+        alone[each.only] = True
+    return {
+        "operation": plan.label.astype(np.int16),
+        "strip_mm": plan.strip,
+        "seconds": plan.seconds,
+        "exclusive": alone,
+    }
+
+
+def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
+    """Write `operations.csv`: a header line, then a line for each operation of each plan; numbers have a point."""
+    entry = result.plan.operations
+    assert entry is not None, "written where operations were asked for"
+    first, second = entry.rotary
+    with path.open("w", encoding="utf-8", newline="") as file:
+        rows = csv.writer(file, lineterminator="\r\n")
+        rows.writerow(["plan", "operation", "mode", "cutter", "setup", f"{first}_deg", f"{second}_deg", "axis_x", "axis_y", "axis_z",
+                       "area_mm2", "share", "exclusive_mm2", "cut_length_mm", "seconds", "faces"])  # fmt: skip
+        for plan in entry.plans:
+            for each in plan.operations:
+                angles = each.angles_deg or {}
+                axis = each.axis or ("", "", "")
+                rows.writerow([plan.name, each.id, each.mode, each.cutter, each.setup + 1, angles.get(first, ""), angles.get(second, ""),
+                               *axis, each.area_mm2, each.share, each.exclusive_mm2, _or_empty(each.cut_length_mm),
+                               _or_empty(each.seconds), " ".join(face.face for face in each.faces)])  # fmt: skip
+
+
+def _or_empty(value: float | None) -> float | str:
+    return "" if value is None else value
