@@ -53,5 +53,5 @@ def _read(file: str) -> tuple[dict[str, Any], dict[str, Any]]:
         raise OptionError(f"cannot be read ({error.strerror or error})", file=error.filename or str(beside)) from None
     except (ValueError, KeyError) as error:
         raise OptionError(
-            f"cannot be understood ({error}): give a plan.json with its operations.npz beside it", file=file
+            f"cannot be understood ({error}): give a plan.json beside its operations.npz", file=file
         ) from None

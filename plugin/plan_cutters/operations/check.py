@@ -121,8 +121,8 @@ def _plan(
         wrong += int((~free[0]).sum())
         tested += len(rows)
     each = len([operation for operation in plan["operations"] if operation["mode"] == "fixed"])
-    served = Finding(wrong == 0, f"The {plan['name']} plan: each of {each} fixed operations was put down at its samples, {tested} in "
-                                 f"all; {wrong} of them are not served.")  # fmt: skip
+    served = Finding(wrong == 0, f"The {plan['name']} plan: each of {each} fixed operations was put down at its samples, "
+                                 f"{tested} in all; {wrong} of them are not served.")  # fmt: skip
     rest = int((ready.finished & (label < 0)).sum())
     whole = Finding(rest == plan["rest"]["samples"],
                     f"The {plan['name']} plan leaves {rest} judged samples, and says {plan['rest']['samples']}.")  # fmt: skip

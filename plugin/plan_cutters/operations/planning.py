@@ -15,7 +15,7 @@ from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.candidates import STEP, Orientations, apart, candidates
 from plan_cutters.operations.curve import curve
 from plan_cutters.operations.fewest import FINEST, Search, search_fewest
-from plan_cutters.operations.labels import labelled
+from plan_cutters.operations.labels import joined, labelled
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.strips import strips
 from plan_cutters.scene.preparation import Prepared
@@ -26,6 +26,8 @@ Rows = NDArray[np.int64]
 Everywhere = Sequence[Mapping[Cutter, Verdicts]]
 #: Cutters whose operations are compared, at most: the fewest that reach all, and then by rank.
 _CUTTERS = 4
+#: Pieces of an operation smaller than so many squares of the overlap are joined to another operation, if one serves them.
+_SMALL = 4.0
 
 
 def plan_operations(
@@ -134,7 +136,11 @@ def _plan(
     area = np.nan_to_num(samples.area)
     with np.errstate(divide="ignore", invalid="ignore"):
         length = np.where(serves & (width > 0.0), area[:, None] / width, np.inf)
-    label = labelled(length, samples)
+    edge = samples.neighbours
+    # A border is cut twice over the overlap: what that takes with a pass of usual width.
+    usual = float(np.nanmedian(np.where(serves, width, np.nan))) if serves.any() else 1.0
+    border = np.sqrt(0.5 * area[edge].sum(axis=1)) * options.overlap / usual
+    label = joined(labelled(length, edge, border), serves, edge, area, _SMALL * options.overlap**2)
     rest = np.flatnonzero(reached & (label < 0))
     sizes = np.bincount(label[label >= 0], area[label >= 0], len(columns))
     used = np.flatnonzero(np.bincount(label[label >= 0], minlength=len(columns)))

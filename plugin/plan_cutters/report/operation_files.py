@@ -15,8 +15,9 @@ def write_operations(result: Judged, _split: object, path: Path) -> None:
     """Write `operations.npz`: of each plan what each sample goes with, and the candidates that the proof is about.
 
     For each plan, its name behind the word: `operation_` (n,) int16, an index into its operations, -1 for none; `strip_mm_`, the
-    width of a pass; `seconds_`, nan without a feed; `exclusive_`, that no other operation of it serves the sample. `candidate_cutter`
-    and `candidate_setup` (m,) are indices into the plan's cutters and setups, `candidate_angle` (m, 2) is in degrees.
+    width of a pass; `seconds_`, nan without a feed; `exclusive_`, that no other operation of it serves the sample.
+    `candidate_cutter` and `candidate_setup` (m,) are indices into the plan's cutters and setups, `candidate_angle` (m, 2) is in
+    degrees.
     """
     found = result.answers.operations
     assert found is not None, "written where operations were asked for"
@@ -53,15 +54,16 @@ def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
     first, second = entry.rotary
     with path.open("w", encoding="utf-8", newline="") as file:
         rows = csv.writer(file, lineterminator="\r\n")
-        rows.writerow(["plan", "operation", "mode", "cutter", "setup", f"{first}_deg", f"{second}_deg", "axis_x", "axis_y", "axis_z",
-                       "area_mm2", "share", "exclusive_mm2", "cut_length_mm", "seconds", "faces"])  # fmt: skip
+        rows.writerow(["plan", "operation", "mode", "cutter", "setup", f"{first}_deg", f"{second}_deg", "axis_x", "axis_y",
+                       "axis_z", "area_mm2", "share", "exclusive_mm2", "cut_length_mm", "seconds", "faces"])  # fmt: skip
         for plan in entry.plans:
             for each in plan.operations:
                 angles = each.angles_deg or {}
                 axis = each.axis or ("", "", "")
-                rows.writerow([plan.name, each.id, each.mode, each.cutter, each.setup + 1, angles.get(first, ""), angles.get(second, ""),
-                               *axis, each.area_mm2, each.share, each.exclusive_mm2, _or_empty(each.cut_length_mm),
-                               _or_empty(each.seconds), " ".join(face.face for face in each.faces)])  # fmt: skip
+                rows.writerow([plan.name, each.id, each.mode, each.cutter, each.setup + 1, angles.get(first, ""),
+                               angles.get(second, ""), *axis, each.area_mm2, each.share, each.exclusive_mm2,
+                               _or_empty(each.cut_length_mm), _or_empty(each.seconds),
+                               " ".join(face.face for face in each.faces)])  # fmt: skip
 
 
 def _or_empty(value: float | None) -> float | str:

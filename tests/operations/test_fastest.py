@@ -1,0 +1,61 @@
+"""The choice of least cost, against all choices, and its bound."""
+
+from itertools import combinations
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from plan_cutters.operations.fastest import Costs, Problem, fastest, lagrange
+
+
+def problem_of(seed, n, m):
+    rng = np.random.default_rng(seed)
+    cost = np.where(rng.random((n, m)) < 0.6, 10.0 * rng.random((n, m)), np.inf)
+    cost = cost[np.isfinite(cost).any(axis=1)]
+    costs = Costs(*(10.0 * rng.random(3)))
+    return Problem(cost, rng.integers(0, 3, m).astype(np.int32), rng.integers(0, 2, m).astype(np.int32), costs)
+
+
+def brute(problem):
+    m = problem.cost.shape[1]
+    return min(problem.total(np.array(some)) for k in range(1, m + 1) for some in combinations(range(m), k))
+
+
+@given(st.integers(0, 2**31), st.integers(1, 9), st.integers(1, 7))
+@settings(max_examples=80, deadline=None)
+def test_what_is_chosen_serves_all_and_the_least_lies_between_it_and_its_bound(seed, n, m):
+    problem = problem_of(seed, n, m)
+    if not len(problem.cost):
+        return
+    found = fastest(problem)
+    least = brute(problem)
+    assert np.isfinite(problem.cost[:, found.chosen]).any(axis=1).all()
+    assert found.cost == problem.total(found.chosen)
+    assert found.bound <= least * (1.0 + 1e-9) + 1e-9
+    assert found.cost >= least - 1e-9
+
+
+@given(st.integers(0, 2**31))
+@settings(max_examples=60, deadline=None)
+def test_any_prices_bound_the_cost_of_any_choice(seed):
+    problem = problem_of(seed, 6, 5)
+    if not len(problem.cost):
+        return
+    price = np.random.default_rng(seed).normal(5.0, 10.0, len(problem.cost))
+    assert lagrange(problem, price)[0] <= brute(problem) + 1e-9
+
+
+def test_without_costs_of_operations_each_sample_takes_its_best_and_the_bound_is_that():
+    rng = np.random.default_rng(3)
+    problem = Problem(rng.random((20, 6)), np.zeros(6, np.int32), np.zeros(6, np.int32), Costs(0.0, 0.0, 0.0))
+    found = fastest(problem)
+    assert np.isclose(found.cost, problem.cost.min(axis=1).sum())
+    assert np.isclose(found.bound, found.cost)
+
+
+def test_dear_operations_leave_one_if_one_serves_all():
+    cost = np.array([[1.0, 0.5, np.inf], [1.0, np.inf, 0.5]])
+    found = fastest(Problem(cost, np.zeros(3, np.int32), np.zeros(3, np.int32), Costs(100.0, 0.0, 0.0)))
+    assert found.chosen.tolist() == [0]
+    assert found.cost == 102.0
