@@ -82,6 +82,19 @@ class FewestEntry(Frozen):
     alone: int = Field(description="reached samples that no candidate serves: they need simultaneous motion")
 
 
+class FastestEntry(Frozen):
+    """How good the fastest plan is, by some samples that stand for the area of all."""
+
+    seconds: float = Field(description="with orientations, cutters and setups")
+    bound_seconds: float = Field(description="no choice among the candidates takes less")
+    at_best_seconds: float = Field(
+        description="cutting alone, each sample with its own best axis among the candidates: simultaneous motion at its best, "
+        "without its rotary speeds"
+    )
+    samples: int
+    candidates: int
+
+
 class StepEntry(Frozen):
     """So many orientations serve this share of the judged area."""
 
@@ -99,6 +112,7 @@ class OperationsEntry(Frozen):
     rotary: tuple[str, str] = Field(description="names of the angles")
     plans: list[OperationPlanEntry]
     fewest: FewestEntry
+    fastest: FastestEntry | None = Field(description="null unless the fastest were asked for")
     curve: list[StepEntry]
     probes: int = Field(description="how many times a tool was put down")
     notes: list[str]
@@ -121,8 +135,11 @@ def operations_entry(
     area = np.where(wanted, np.nan_to_num(samples.area), 0.0)
     plans = [_plan(each, found.names, samples, area, wanted, times) for each in found.plans]
     steps = [StepEntry(orientations=s.orientations, share=s.share, at_most=s.at_most) for s in found.curve]
-    return OperationsEntry(asked=found.which, rotary=found.names, plans=plans, fewest=_fewest(found.fewest), curve=steps,  # type: ignore[arg-type]
-                           probes=found.probes, notes=list(found.notes))  # fmt: skip
+    return OperationsEntry(
+        asked=found.which,  # type: ignore[arg-type]
+        rotary=found.names, plans=plans, fewest=_fewest(found.fewest), curve=steps, fastest=_fastest(found), probes=found.probes,
+        notes=list(found.notes),
+    )  # fmt: skip
 
 
 def _fewest(found: Fewest) -> FewestEntry:
@@ -132,6 +149,14 @@ def _fewest(found: Fewest) -> FewestEntry:
         relaxed=found.relaxed, candidates=len(found.columns), spacing_deg=float(np.degrees(found.spacing)),
         alone=len(found.alone),
     )  # fmt: skip
+
+
+def _fastest(found: Operations) -> FastestEntry | None:
+    timed = found.fastest
+    if timed is None:
+        return None
+    return FastestEntry(seconds=timed.seconds, bound_seconds=timed.bound, at_best_seconds=timed.at_best, samples=timed.samples,
+                        candidates=timed.candidates)  # fmt: skip
 
 
 def _plan(

@@ -31,6 +31,12 @@ class Columns(Record):
     def __len__(self) -> int:
         return len(self.axis)
 
+    @property
+    def key(self) -> NDArray[np.str_]:
+        """A text for each, the same for the same ones."""
+        rows = zip(self.cutter.tolist(), self.setup.tolist(), self.angle.tolist(), strict=True)
+        return np.array([f"{c} {s} {a:.3f} {b:.3f}" for c, s, (a, b) in rows], np.str_)
+
     def of(self, which: NDArray[np.int64]) -> "Columns":
         """Take some of them."""
         return Columns(self.cutter[which], self.setup[which], self.axis[which], self.angle[which])

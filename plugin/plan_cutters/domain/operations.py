@@ -83,6 +83,27 @@ class Fewest(Record):
         return "branch and bound" if self.at_least >= len(self.chosen) else "not closed"
 
 
+@dataclass(frozen=True, slots=True)
+class Fastest:
+    """How good the fastest choice is, by some samples that stand for the area of all.
+
+    Attributes
+    ----------
+    seconds, bound : float
+        Of the choice, with the times of its orientations, cutters and setups; no choice among the candidates takes less.
+    at_best : float
+        Cutting alone, each sample with its own best axis among the candidates: simultaneous motion at its best.
+    samples, candidates : int
+        How many they were.
+    """
+
+    seconds: float
+    bound: float
+    at_best: float
+    samples: int
+    candidates: int
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Operation:
     """One operation of a plan.
@@ -161,6 +182,8 @@ class Operations:
         Of the two rotary axes, or `azimuth` and `tilt`.
     probes : int
         How many times a tool was put down.
+    fastest : Fastest, optional
+        Where the fastest were asked for.
     """
 
     which: str
@@ -170,6 +193,7 @@ class Operations:
     curve: tuple[Step, ...]
     names: tuple[str, str]
     probes: int
+    fastest: Fastest | None = None
     notes: tuple[str, ...] = field(default_factory=tuple)
 
     def plan(self, name: str) -> OperationPlan | None:

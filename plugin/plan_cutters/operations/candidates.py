@@ -17,6 +17,8 @@ from plan_cutters.scene.conditions import Conditions
 
 #: Digits of an angle in degrees that a control shows.
 DIGITS = 3
+#: Sums of angles that differ by less are the same position, deg.
+_SAME_DEG = 0.01
 #: Distance of grid angles unless one is asked for, rad.
 STEP = math.radians(5.0)
 #: Tool axes nearer than this are one, rad.
@@ -67,6 +69,13 @@ class Orientations:
         angle, taken, _ = self.kinematics.positions(axis)
         held = np.flatnonzero(taken >= 0)
         return self.set_to(np.degrees(angle[held, taken[held]]))
+
+    def other(self, axis: Floats, angle: Floats) -> Floats | None:
+        """The other angles (2,), deg, that hold an axis (3,); None where there are none."""
+        both = np.degrees(self.kinematics.positions(axis[None])[0][0])
+        apart_ = np.abs((both - angle + 180.0) % 360.0 - 180.0).sum(axis=1)
+        other = both[int(np.nan_to_num(apart_, nan=-1.0).argmax())]
+        return np.round(other, DIGITS) + 0.0 if np.isfinite(other).all() and np.nanmax(apart_) > _SAME_DEG else None
 
     def grid(self, step: float) -> tuple[Floats, Floats]:
         """Angles (n, 2) that are whole multiples of a step, deg, and their axes.

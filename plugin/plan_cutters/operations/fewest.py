@@ -85,6 +85,18 @@ class Search:
             self._add_rows(_spread(missed, self._probes.samples.point, _MORE))
         return self._patched()
 
+    @property
+    def whole(self) -> tuple[Rows, NDArray[np.bool_]]:
+        """The candidates of which it is known where each serves, and the table (rows, candidates) of these."""
+        active = np.flatnonzero(self._active)
+        return active, self._table[:, active] == 1
+
+    def require(self, rows: Rows) -> None:
+        """Take samples into the table."""
+        new = np.setdiff1d(rows, np.union1d(self.rows, self.alone))
+        if len(new):
+            self._add_rows(new)
+
     def refine(self, cover: Cover, spacing: float, orientations: Sequence[Orientations]) -> None:
         """Lay candidates at a spacing, rad, about those that the weights load most, and about those chosen."""
         active = np.flatnonzero(self._active)

@@ -1,0 +1,152 @@
+"""A plan made of chosen columns: what each sample goes with, region by region."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from plan_cutters.domain.columns import Columns
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.operations import Operation, OperationPlan
+from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.operations.candidates import Orientations
+from plan_cutters.operations.labels import joined, labelled
+from plan_cutters.operations.probes import Probes
+from plan_cutters.operations.strips import strips
+from plan_cutters.operations.timing import Paths, costs_of, widths
+from plan_cutters.scene.preparation import Prepared
+
+Rows = NDArray[np.int64]
+#: Pieces of an operation smaller than so many squares of the overlap are joined to another operation, if one serves them.
+_SMALL = 4.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Task:
+    """The same for all plans of a part.
+
+    Attributes
+    ----------
+    ready : Prepared
+    cutters : tuple of Cutter
+        Those that are compared; columns count in them.
+    orientations : tuple of Orientations
+        Of each setup.
+    everywhere : tuple of mapping
+        Of each setup, the verdicts by cutter.
+    rows : (r,) int64
+        Samples that are reached by one of the cutters in one of the setups.
+    probes : Probes
+    paths : Paths
+    """
+
+    ready: Prepared
+    cutters: tuple[Cutter, ...]
+    orientations: tuple[Orientations, ...]
+    everywhere: tuple[Mapping[Cutter, Verdicts], ...]
+    rows: Rows
+    probes: Probes
+    paths: Paths
+
+
+def plan_with(task: Task, name: str, columns: Columns) -> OperationPlan:
+    """Make the plan of some columns: each sample goes with one that serves it, the rest with simultaneous operations."""
+    samples, rows = task.ready.samples, task.rows
+    n, overlap = len(samples), task.ready.options.overlap
+    area, edge = np.nan_to_num(samples.area), samples.neighbours
+    serves, width = np.zeros((n, len(columns)), bool), np.full((n, len(columns)), np.nan)
+    serves[rows], width[rows] = (
+        task.probes.table(rows, columns),
+        widths(columns, rows, samples, task.cutters, task.paths),
+    )
+    cost = np.full((n, len(columns)), np.inf)
+    cost[rows] = costs_of(columns, width[rows], serves[rows], area[rows], task.cutters, task.paths)
+    # A border is cut twice over the overlap: what that takes is what the same area costs elsewhere.
+    finite = np.isfinite(cost)
+    each = float((cost[finite].sum() / max(1e-300, (finite * area[:, None]).sum())) if finite.any() else 0.0)
+    border = np.sqrt(0.5 * area[edge].sum(axis=1)) * overlap * each
+    label = joined(labelled(cost, edge, border), finite, edge, area, _SMALL * overlap**2)
+    operations, order = _fixed(task, columns, finite, label, area)
+    place = np.full(len(columns) + 1, -1, np.int32)
+    place[order] = np.arange(len(order))
+    number, table = place[label], finite[:, order]
+    strip = (
+        np.where(label >= 0, width[np.arange(n), np.maximum(label, 0)], np.nan) if len(columns) else np.full(n, np.nan)
+    )
+    number, table, strip, others = _simultaneous(task, len(operations), number, table, strip)
+    operations += others
+    speed = np.full(n, np.nan)
+    if task.paths.feed is not None:
+        for k, operation in enumerate(operations):
+            speed[number == k] = task.paths.feed[operation.cutter] / 60.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        seconds = area / (strip * speed)
+    return OperationPlan(name, tuple(operations), number, table, strip, seconds)
+
+
+def _fixed(
+    task: Task, columns: Columns, serves: NDArray[np.bool_], label: NDArray[np.int32], area: Floats
+) -> tuple[list[Operation], list[int]]:
+    """The operations of columns that some sample goes with, the largest first; and the columns in that order."""
+    mine = label >= 0
+    size = np.bincount(label[mine], area[mine], len(columns))
+    used = np.flatnonzero(np.bincount(label[mine], minlength=len(columns)))
+    order = sorted(used.tolist(), key=lambda k: (-size[k], columns.setup[k], *columns.axis[k].tolist()))
+    times = serves[:, order].sum(axis=1)
+    found = [
+        Operation(
+            f"op{i}", "fixed", task.cutters[columns.cutter[k]], int(columns.setup[k]), columns.axis[k], columns.angle[k],
+            task.orientations[columns.setup[k]].other(columns.axis[k], columns.angle[k]), np.flatnonzero(label == k),
+            np.flatnonzero(serves[:, k] & (times == 1)),
+        )
+        for i, k in enumerate(order, 1)
+    ]  # fmt: skip
+    return found, order
+
+
+def _simultaneous(
+    task: Task, before: int, number: NDArray[np.int32], table: NDArray[np.bool_], strip: Floats
+) -> tuple[NDArray[np.int32], NDArray[np.bool_], Floats, list[Operation]]:
+    """Give what no fixed operation takes to simultaneous ones: number, what serves, strips and operations."""
+    samples, paths, found = task.ready.samples, task.paths, list[Operation]()
+    rest = task.rows[number[task.rows] < 0]
+    for s, verdicts in enumerate(task.everywhere):
+        for cutter in task.cutters:
+            mine = rest[verdicts[cutter].reached[rest]]
+            if not len(mine):
+                continue
+            rest = np.setdiff1d(rest, mine)
+            number[mine] = before + len(found)
+            strip[mine] = strips(cutter, samples, verdicts[cutter].axis, paths.scallop, paths.stepover).width[mine]
+            column = np.zeros((len(samples), 1), bool)
+            column[mine] = True
+            table = np.concatenate([table, column], axis=1)
+            found.append(
+                Operation(f"op{before + len(found) + 1}", "simultaneous", cutter, s, None, None, None, mine, mine)
+            )
+    return number, table, strip, found
+
+
+def best_area(task: Task, columns: Columns, most: int) -> Columns:
+    """Of some columns so many that serve most of the area, one after the other."""
+    serves, left = task.probes.table(task.rows, columns), np.nan_to_num(task.ready.samples.area[task.rows])
+    picked = list[int]()
+    for _ in range(min(most, len(columns))):
+        gain = left @ serves
+        gain[picked] = -1.0
+        picked.append(int(gain.argmax()))
+        left = np.where(serves[:, picked[-1]], 0.0, left)
+    return columns.of(np.array(picked, np.int64))
+
+
+def orientations_of(ready: Prepared) -> tuple[Orientations, ...]:
+    """Those of each setup."""
+    return tuple(Orientations.of(conditions) for conditions in ready.setups)
+
+
+def considered(cutters: Sequence[Cutter], needed: Sequence[Cutter], most: int) -> tuple[Cutter, ...]:
+    """The cutters whose operations are compared, by rank: those that are needed, and the most wanted of the others."""
+    wanted = [*needed, *(each for each in cutters if each not in needed)][: max(most, len(needed))]
+    return tuple(each for each in cutters if each in wanted)
