@@ -385,12 +385,13 @@ def test_where_nothing_is_shared_no_set_is_told():
 
 
 def test_a_set_is_a_sentence():
-    def of(runs, share, left=0, proven=True, doubtful=False):
+    def of(runs, share, left=0, proven=True, doubtful=False, unjudged=0):
         made = [SimpleNamespace(cutter=c, share=s, setup=axis) for c, s, axis in runs]
         found = SimpleNamespace(
             runs=made, share=share, left=left, left_share=1 - share, proven=proven, doubtful=doubtful
         )
-        return together(SimpleNamespace(least_set=found))
+        samples = SimpleNamespace(unjudged=unjudged)
+        return together(SimpleNamespace(least_set=found, samples=samples, faces=[]))
 
     up, down = (0, 0, 1), (0, 0, -1)
     assert of([("R6L60", 0.81, up), ("R1L12", 0.182, up)], 0.992, left=9) == (
@@ -402,6 +403,13 @@ def test_a_set_is_a_sentence():
     assert "before the proof" in of([("A", 0.6, up), ("B", 0.4, up)], 1.0, proven=False)
     assert "missing from the obstacles" in of([("A", 0.6, up), ("B", 0.4, up)], 1.0, doubtful=True)
     assert of([("A", 1.0, up)], 1.0) == ""
+    # What could not be judged is not reached.
+    assert of([("A", 0.6, up), ("B", 0.3, up)], 0.9, unjudged=3) == (
+        "A for 60 % of the area and B for the rest reach all of it that could be judged"
+    )
+    assert of([("A", 0.6, up), ("B", 0.3, up)], 0.9, left=2, unjudged=3).endswith(
+        "; nothing given reaches another 10 %"
+    )
 
 
 # --- areas ----------------------------------------------------------------------------------------------------------------

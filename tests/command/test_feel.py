@@ -165,7 +165,7 @@ def test_the_first_line_says_which_cutter_to_take(capsys, planned):
     assert re.search(r"^> flat end D12 x 80 +yes ", said, re.MULTILINE)
     assert re.search(r"^  flat end D24 x 120 +no ", said, re.MULTILINE)
     # Last is what is not reached, and why.
-    assert re.search(r"\nflat end D24 x 120 does not reach (.*\n  )*.*(rear\s+gouge|collision)(.*\n  )*.*\n$", said)
+    assert re.search(r"\nFlat end D24 x 120 does not reach (.*\n  )*.*(rear\s+gouge|collision)(.*\n  )*.*\n$", said)
 
 
 def test_what_is_served_between_samples_is_put_in_words(capsys, planned):

@@ -5,7 +5,8 @@ from dataclasses import replace
 
 from plan_cutters.answers.areas import Finished
 from plan_cutters.answers.option import option
-from plan_cutters.answers.trial import Case, Trials, samples
+from plan_cutters.answers.sentences import samples
+from plan_cutters.answers.trial import Case, Trials
 from plan_cutters.answers.what_if import WhatIf, search
 from plan_cutters.answers.what_if_cutter import corner_radius, radius, stick_out
 from plan_cutters.answers.what_if_place import faces, setup, tolerance

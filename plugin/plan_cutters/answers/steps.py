@@ -8,12 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from plan_cutters.answers import sentences
 from plan_cutters.answers.areas import Finished, Rows, patches
 from plan_cutters.answers.means import candidates, joined
 from plan_cutters.answers.option import Axis, option
 from plan_cutters.answers.scan import Candidate, Scan
 from plan_cutters.answers.state import Judgements, State, setups_of
-from plan_cutters.domain.area import Patch, size
+from plan_cutters.domain.area import Patch
 from plan_cutters.domain.change import MEANS, Mend, Move, Step
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
@@ -185,9 +186,8 @@ def _left_out(base: tuple[Prepared, Cutter, State], finished: Finished, left: Ro
     whole = len(rest) and len(left) == int((finished.wanted & np.isin(face, bad)).sum())
     said = option(ready, cutter, cutters=(cutter,), faces=rest.tolist()) if whole else None
     area, share = float(finished.area[left].sum()), finished.of_rows(left)
-    words = f"{areas[0].words} left to other means" if len(areas) == 1 else (
-        f"{size(area)} in {len(areas):,} places left to other means, the largest {areas[0].words}")  # fmt: skip
+    move = Move("area", None, round(area, 6), sentences.left_out(areas, area))
     return Step(
-        (Move("area", None, round(area, 6), words),), share, 0.0, 0, len(left), (cutter,), state.axes, said,
+        (move,), share, 0.0, 0, len(left), (cutter,), state.axes, said,
         tuple(areas[:_REMAINS]),
     )  # fmt: skip

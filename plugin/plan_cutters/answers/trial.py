@@ -9,15 +9,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from plan_cutters.answers.sentences import reasons, samples
 from plan_cutters.domain.change import Change, Thing
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.reasons import REASONS as WORDS
 from plan_cutters.domain.verdicts import (
     ACCESSIBLE,
     BURIED,
     CONVEX,
     INACCESSIBLE,
-    REASONS,
     TOLERANCE,
     UNDECIDED,
     Verdicts,
@@ -153,9 +152,15 @@ class Trials:
             yield from batches(self.kept)
 
     def closest(self, cases: list[Case]) -> Case:
-        """Of cases that all leave some, the one that leaves fewest of a few samples spread over those lost now."""
+        """Of cases that all leave some, the one that leaves fewest of a few samples spread over those lost now; one that leaves
+        them undecided comes before one that is blocked at any of them."""
         few = self.lost[:: 1 + len(self.lost) // _COMPARED]
-        return min(cases, key=lambda case: len(case.misses(few)))
+
+        def leaves(case: Case) -> tuple[bool, int]:
+            verdicts = case.look(few)
+            return bool((verdicts.verdict == INACCESSIBLE).any()), int((~verdicts.reached).sum())
+
+        return min(cases, key=leaves)
 
 
 def batches(rows: Rows) -> Iterator[Rows]:
@@ -199,23 +204,6 @@ class Left:
         of = None if len(few) == len(rows) else len(few)
         words = reasons(verdicts.reason[bad], of) if blocked else f"{samples(count, of)} undecided"
         return cls(count, blocked, len(few), words)
-
-
-def reasons(codes: NDArray[np.uint8], of: int | None = None) -> str:
-    """How many samples, of how many, are lost, and to what."""
-    found = [(int((codes == code).sum()), REASONS[code]) for code in np.unique(codes).tolist()]
-    ranked = sorted(found, key=lambda each: (-each[0], each[1]))
-    if len(ranked) == 1:
-        return f"{samples(len(codes), of)} lost to {WORDS[ranked[0][1]].noun}"
-    whole = ", ".join(f"{count:,} to {WORDS[reason].noun}" for count, reason in ranked)
-    return f"{samples(len(codes), of)} lost ({whole})"
-
-
-def samples(count: int, of: int | None = None) -> str:
-    """A number of samples, of those looked at if these are not all, as the subject of a sentence and its verb."""
-    if of is not None:
-        return f"{count:,} of {of:,} samples looked at are"
-    return "1 sample is" if count == 1 else f"{count:,} samples are"
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,7 +24,7 @@ class WhatIf:
     `make` gives the case with a value, None where there can be none. Of `ways` the one that serves with the fewest steps is
     taken, of equals the first; where each value allows all that those before it allow (`nested`), steps are halved. A value that
     serves has its sentence, and the options of a plan that differ with it (`serves`). Where nothing serves, the best case of
-    `ends` is told (`fails`), with its value (`reads`) if samples stay undecided; without `reads` that is told as no help.
+    `ends` is told (`fails`): as no help if it leaves a sample blocked, else as undecided, with its value (`reads`).
     """
 
     now: Value
@@ -32,7 +32,7 @@ class WhatIf:
     make: Callable[[Any], Case | None]
     ends: list[Case]
     nested: bool = False
-    reads: Callable[[Case], Value] | None = None
+    reads: Callable[[Case], Value]
     fails: Callable[[Case, Left], str]
     serves: Callable[[Any, Case], tuple[str, dict[str, Any]]]
 
@@ -50,10 +50,12 @@ def search(thing: Thing, what: WhatIf, trials: Trials) -> Change:
     end = what.ends[0] if what.nested else trials.closest(what.ends)
     left = left or Left.by(end, trials.lost)
     why = what.fails(end, left)
-    if what.reads is None or left.blocked or not left.count:
+    # Where all that are lost now are reached, others are not.
+    worst = left if left.count or not len(trials.kept) else Left.by(end, trials.kept)
+    if worst.blocked or not worst.count:
         return none(thing, what.now, left.count, why, left.looked)
     why = f"is not decided: {why}"
-    return Change(thing, what.now, what.reads(end), None, left.count, left.looked, 0, None, None, why)
+    return Change(thing, what.now, what.reads(end), None, worst.count, worst.looked, 0, None, None, why)
 
 
 def _fewest(what: WhatIf, trials: Trials) -> tuple[Step, Callable[[int], Any]] | None:

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from plan_cutters.answers import sentences
 from plan_cutters.answers.trial import Case, Trials
 from plan_cutters.answers.what_if import Way, WhatIf, none
 from plan_cutters.domain.change import Change
@@ -45,7 +46,7 @@ def stick_out(case: Case, trials: Trials) -> WhatIf | Change:
         now=now, ways=[way], make=make, ends=[end], nested=True, reads=lambda end: end.cutter.length,
         fails=lambda end, left: f"{left.words} at every stick-out" if left.count else
         "where the holder is out of the way, something else is",
-        serves=lambda asked, made: (f"a stick-out of {asked:g} mm instead of {now:g} mm", {"cutters": (made.cutter,)}),
+        serves=lambda asked, made: (sentences.stick_out(asked, now), {"cutters": (made.cutter,)}),
     )  # fmt: skip
 
 
@@ -81,7 +82,7 @@ def radius(case: Case, trials: Trials) -> WhatIf | Change:
         now=now, ways=[Way(most, value)], make=make, ends=[end], reads=lambda end: end.cutter.radius,
         fails=lambda end, left: f"with {end.cutter.radius:g} mm, the least tried, {left.words}" if left.count else
         f"none of {most} radii down to {end.cutter.radius:g} mm serves all samples",
-        serves=lambda asked, made: (f"a radius of {asked:g} mm instead of {now:g} mm", {"cutters": (made.cutter,)}),
+        serves=lambda asked, made: (sentences.radius(asked, now), {"cutters": (made.cutter,)}),
     )  # fmt: skip
 
 
@@ -101,15 +102,11 @@ def corner_radius(case: Case, trials: Trials) -> WhatIf | Change:
         return none("corner_radius", now, len(trials.lost), "its flutes are too short for any other corner")
     values = [now, *(end.cutter.corner_radius for end in ends)]
 
-    def words(corner: float, other: str) -> str:
-        return "a flat end" if not corner else "a ball end" if corner == r else f"{other}{corner:g} mm"
-
     return WhatIf(
         now=now, ways=[Way(len(ends), values.__getitem__)], make=make, ends=ends, reads=lambda end: end.cutter.corner_radius,
         fails=lambda end, left: f"with {end.cutter.corner_radius:g} mm, the best of {len(ends)} tried, {left.words}" if left.count
         else f"each of {len(ends)} corner radii tried loses some samples",
-        serves=lambda asked, made: (
-            f"{words(asked, 'a corner radius of ')} instead of {words(now, '')}", {"cutters": (made.cutter,)}),
+        serves=lambda asked, made: (sentences.corner_radius(asked, now, r), {"cutters": (made.cutter,)}),
     )  # fmt: skip
 
 

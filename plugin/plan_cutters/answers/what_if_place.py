@@ -10,7 +10,9 @@ import numpy as np
 
 from cad_io.arrays import Floats
 from cad_io.part.orient import orient
-from plan_cutters.answers.trial import Case, Left, Trials, samples
+from plan_cutters.answers import sentences
+from plan_cutters.answers.sentences import samples
+from plan_cutters.answers.trial import Case, Left, Trials
 from plan_cutters.answers.what_if import Way, WhatIf, none
 from plan_cutters.domain.change import Change
 from plan_cutters.domain.posture import unit
@@ -57,19 +59,21 @@ def setup(case: Case, trials: Trials) -> WhatIf | Change:
     )
 
     def fails(_: Case, left: Left) -> str:
+        if left.count and not left.blocked:
+            return (
+                f"the best of {len(tried)} directions tried leaves {left.count:,} of {left.looked:,} samples undecided"
+            )
         why = f"the best leaves {left.count:,} of {left.looked:,} samples" if left.count else "each loses some samples"
         return f"none of {len(tried)} directions tried serves, {why}"
 
     def serves(asked: Axis, _: Case) -> tuple[str, dict[str, Any]]:
-        axis = ",".join(f"{each:.4g}" for each in asked)
-        words = f"the part clamped with {axis} along the spindle, {angle(now, asked):.4g} deg from now"
-        if (flip := flip_of(ready, asked)) == ready.options.flip:
-            return words, {"setup": asked}
-        return f"{words}, {'with' if flip else 'without'} --flip", {"setup": asked, "flip": flip}
+        flip = flip_of(ready, asked)
+        changes = {} if flip == ready.options.flip else {"flip": flip}
+        return sentences.setup(asked, angle(now, asked), changes.get("flip")), {"setup": asked, **changes}
 
     return WhatIf(
         now=now, ways=ways, make=lambda axis: _turned(case, axis), ends=[*tried.values()],
-        fails=fails, serves=serves,
+        reads=lambda end: _axis(end.ready.conditions.setup), fails=fails, serves=serves,
     )  # fmt: skip
 
 
@@ -148,7 +152,7 @@ def tolerance(case: Case, trials: Trials) -> Change:
         finely = closer(case, finer)
         if not trials.stopped(finely, everywhere=True) and not len(finely.judged()):
             return Change("tolerance", now, finer, True, 0, len(trials.lost), trials.count, before, None,
-                          f"a tolerance of {finer:g} mm instead of {now:g} mm", {"tolerance": finer})  # fmt: skip
+                          sentences.tolerance(finer, now), {"tolerance": finer})  # fmt: skip
         still = Left.by(finely, trials.lost)
         if still.blocked:
             why = f"with {finer:g} mm {samples(still.blocked)} blocked for certain"
@@ -185,9 +189,5 @@ def faces(case: Case, trials: Trials) -> Change:
     area = sum(infos[n - 1].area for n in bad)
     whole = sum(infos[n - 1].area for n in ready.chosen.targets)
     out = np.isin(np.concatenate([trials.lost, trials.kept]), np.flatnonzero(np.isin(face, bad)))
-    much = f"{area:,.0f}" if area >= 100.0 else f"{area:.3g}"
-    some = ", ".join(ids[:5]) + " and others" * (len(ids) > 5)
-    which = ids[0] if len(ids) == 1 else f"{len(ids)} faces ({some})"
     return Change("faces", ids, ids, True, 0, len(trials.lost), int((~out).sum()), None, None,
-                  f"{which} left out of what is to be finished: {much} mm2, {100.0 * area / whole:.3g} % of the target area",
-                  {"faces": ",".join(f"F{n}" for n in rest)})  # fmt: skip
+                  sentences.faces(ids, area, area / whole), {"faces": ",".join(f"F{n}" for n in rest)})  # fmt: skip

@@ -38,10 +38,10 @@ _SELF = "plan-cutters"
 @click.argument("parts", nargs=-1, required=True, metavar="PART...", type=File("PART"))
 @options()
 def command(parts: tuple[str, ...], **given: Any) -> int:
-    """Which cutters can finish the sculptured faces of PART (STEP, IGES, BREP) without gouging or collision?
+    """Find the cutters that can finish the sculptured faces of PART (STEP, IGES, BREP) without gouging or collision.
 
-    Each is judged at samples of the surface: interference-free, accessible, undecided or inaccessible, and why. The plan,
-    models coloured by verdict and the samples are written into a folder.
+    Each cutter is judged at samples of the surface: a sample is interference-free, accessible, undecided or inaccessible, for a
+    reason. The plan, models coloured by verdict and the samples are written into a folder.
     """
     from plan_cutters.command.one_part import one_part
     from plan_cutters.command.retry import set_aside

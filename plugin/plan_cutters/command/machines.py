@@ -31,7 +31,7 @@ _questions, _output = heading("Questions"), heading("Output")
     examples=(
         (_SELF, "The machines that are built in:"),
         (f"{_SELF} trunnion-ac --angles 0.3,0,1", "The angles that hold a tool axis:"),
-        (f"{_SELF} shop.fcm --to-toml shop.toml", "What is understood of a machine file, and the same as TOML:"),
+        (f"{_SELF} shop.fcm --to-toml shop.toml", "A machine file as it is understood, and the same as TOML:"),
     ),
     codes=(("0", "each machine is understood"), ("2", "one is not, or the command line is wrong"), ENDED),
 )
@@ -44,9 +44,9 @@ _questions, _output = heading("Questions"), heading("Output")
 @_output("--to-toml", type=File("FILE"), help="Write the machine in our own format.")
 @options("debug")
 def command(machines: tuple[str, ...], **given: Any) -> int:
-    """What is understood of each machine: a built-in one by its name, or a file.
+    """Show how each machine is understood: a built-in one by its name, or a file.
 
-    Reads our own TOML and JSON, FreeCAD .fcm, LinuxCNC .ini, Fusion .mch, and MTConnect probes. Where a file does not say how
+    It reads our own TOML and JSON, FreeCAD .fcm, LinuxCNC .ini, Fusion .mch, and MTConnect probes. Where a file does not say how
     rotary axes stand on each other, add it: FILE#C,A (from the part to the tool), FILE#C/B (C carries the part, B the tool).
     Without an argument, the machines that are built in are listed.
     """

@@ -37,7 +37,10 @@ _point = heading("Point")
     cls=Command,
     examples=(
         (f"{_SELF} samples/v_groove.step --at 0,0,0 --cutter R8L90 --tilt 0:60", "A cutter at the bottom of a groove:"),
-        (f"{_SELF} blade.step --at 12,3,4 --cutter R6L80 --machine trunnion-ac", "What a machine can hold there:"),
+        (
+            f"{_SELF} blade.step --at 12,3,4 --cutter R6L80 --machine trunnion-ac",
+            "The tilts that a machine holds there:",
+        ),
     ),
     codes=(
         ("0", "some tilt is free"),
@@ -72,10 +75,10 @@ _point = heading("Point")
     quiet={"help": "No table."},
 )  # fmt: skip
 def command(part: str, **given: Any) -> int:
-    """Which tilts of one cutter are free at one point of PART, rotation by rotation, and what forbids the others?
+    """Find the free tilts of one cutter at one point of PART, rotation by rotation, and the causes that forbid the others.
 
-    Prints the free intervals and draws the map: tilt against rotation, forbidden tilts coloured by cause, undecided ones
-    apart.
+    The free intervals are printed, and the map is drawn: tilt against rotation, forbidden tilts coloured by cause, undecided
+    ones apart.
     """
     from cad_io.read.sniff import kind
     from plan_cutters.errors import OptionError

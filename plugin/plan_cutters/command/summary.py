@@ -12,7 +12,7 @@ from plan_cutters.report.story.cutters import left
 from plan_cutters.report.story.headline import area
 from plan_cutters.report.story.names import named
 from plan_cutters.report.story.notes import machine
-from plan_cutters.report.story.numbers import count, lost, percent
+from plan_cutters.report.story.numbers import capital, count, lost, percent
 from plan_cutters.report.story.story import Story, story_of
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def not_reached(plan: "Plan", *, verbose: bool = False) -> list[str]:
     if not verbose and len(larger) > _OTHERS:
         taken = plan.selected_over_setups or plan.selected_for_setup
         near = sorted(larger, key=lambda c: (c.id != taken, c.lost))[:_OTHERS]
-    lines = [named(plan, left(plan, c)) for c in larger if c in near]
+    lines = [capital(named(plan, left(plan, c))) for c in larger if c in near]
     if rest := [c for c in larger if c not in near]:
         ends = [min(rest, key=_lost_share), max(rest, key=_lost_share)]
         least, most = (lost(c, c.area_share) for c in ends)

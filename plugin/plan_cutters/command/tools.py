@@ -34,7 +34,7 @@ _cutters, _output = heading("Cutters"), heading("Output")
 @click.command(
     cls=Command,
     examples=(
-        (f"{_SELF} shop.tools", "What of a library can be judged, and why the rest cannot:"),
+        (f"{_SELF} shop.tools", "The tools of a library that can be judged, and why the rest cannot:"),
         (f"{_SELF} shop.tools --assume-stickout 35 --holder R15L40", "With what the library leaves out:"),
         (
             f"{_SELF} --cutter D12L80 --holder hsk63a-er32 --draw drawings",
@@ -63,9 +63,9 @@ _cutters, _output = heading("Cutters"), heading("Output")
 @_output("--draw", type=Folder("DIR"), help="Draw each assembly to scale (SVG) into a folder.")
 @options("debug")
 def command(files: tuple[str, ...], **given: Any) -> int:
-    """What is understood of the tools in FILE, and why some cannot be judged.
+    """List the tools in FILE as they are understood, and say why some cannot be judged.
 
-    Reads Fusion .tools, .json and CSV, HSMWorks .hsmlib, FreeCAD .fctl, .fctb and .fcholder, LinuxCNC .tbl, and TOML.
+    It reads Fusion .tools, .json and CSV, HSMWorks .hsmlib, FreeCAD .fctl, .fctb and .fcholder, LinuxCNC .tbl, and TOML.
     """
     from plan_cutters.library.read import holder_of, listing, nothing
     from plan_cutters.library.words import of_words

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from cad_io import Part, SurfaceSamples
 from plan_cutters.document.frozen import Frozen
+from plan_cutters.domain.area import weights
 from plan_cutters.domain.verdicts import INACCESSIBLE, REASONS, UNDECIDED, WORDS, Verdicts
 
 
@@ -78,10 +79,7 @@ def face_verdicts(
     numbers, first = np.unique(np.sort(samples.face), return_index=True)
     groups = np.split(np.argsort(samples.face, kind="stable"), first[1:])
     for number, mine in zip(numbers.tolist(), groups, strict=False):
-        area = samples.area[mine]
-        if not area.sum() > 0.0:
-            # How large the face is, is not known: each of its samples stands for as much of it.
-            area = np.ones(len(mine))
+        area = weights(samples.area[mine])
         within, seen = inside[mine], mine[~inside[mine]]
         share = _share(reach.verdict[seen], reach.reason[seen], area[~within])
         part = min(1.0, float(area[within].sum() / area.sum())) if len(seen) else 1.0
@@ -117,17 +115,15 @@ def whole_share(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part
 
 def _areas(names: Sequence[str], part: Part) -> dict[str, float]:
     """Areas of faces by their ids, mm2; 1 each where none is known."""
-    areas = np.array([part.faces[int(name[1:]) - 1].area for name in names])
-    areas = np.where(np.isfinite(areas), np.maximum(areas, 0.0), 0.0)
-    areas = areas if areas.sum() > 0.0 else np.ones(len(names))
+    areas = weights(np.array([part.faces[int(name[1:]) - 1].area for name in names]))
     return dict(zip(names, areas.tolist(), strict=True))
 
 
 def _share(verdict: NDArray[np.uint8], reason: NDArray[np.uint8], area: NDArray[np.float64]) -> AreaShare:
     if not len(area):
         return AreaShare()
-    # Where the rest stands for no area, each of its samples stands for as much.
-    area = area / area.sum() if area.sum() > 0.0 else np.full(len(area), 1.0 / len(area))
+    area = weights(area)
+    area = area / area.sum()
     shares = {name: min(1.0, float(area[verdict == code].sum())) for code, name in WORDS.items()}
     lost = (verdict == INACCESSIBLE) | (verdict == UNDECIDED)
     by = {

@@ -18,7 +18,7 @@ from cad_io.part.orient import orient
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
-from plan_cutters.domain.placement import Placement
+from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import OptionError
 from plan_cutters.options import Options
@@ -159,9 +159,8 @@ def require_side(about: Mapping[str, Any], setup: Any) -> None:
         return
     own = setup_of(about).z
     if math.dist(own, setup) > _TOLERATED:
-        axis = ",".join(f"{x:.4g}" for x in own)
-        raise OptionError(f"these maps are of a part with open faces, whose sides follow from the setup {axis}: give that "
-                          "as the setup, or plan again")  # fmt: skip
+        raise OptionError("these maps are of a part with open faces, whose sides follow from the setup "
+                          f"{axis_words(own)}: give that as the setup, or plan again")  # fmt: skip
 
 
 def setup_of(about: Mapping[str, Any]) -> Placement:

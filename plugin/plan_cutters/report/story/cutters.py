@@ -11,7 +11,18 @@ from plan_cutters.domain.reasons import REASONS
 from plan_cutters.report.story.headline import area, between
 from plan_cutters.report.story.names import described, named
 from plan_cutters.report.story.next_steps import cures, first_step, step_told
-from plan_cutters.report.story.numbers import VERDICTS, angle, figure, lost, mm, part_of, percent, place, reached
+from plan_cutters.report.story.numbers import (
+    VERDICTS,
+    angle,
+    capital,
+    figure,
+    lost,
+    mm,
+    part_of,
+    percent,
+    place,
+    reached,
+)
 
 #: Faces that are named on which a cutter leaves something.
 _FACES = 3
@@ -83,7 +94,7 @@ def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
         hint=main.hint if main else "",
         besides=_besides(c),
         next=_next(plan, c),
-        left=named(plan, left(plan, c)) if c.lost else "",
+        left=capital(named(plan, left(plan, c))) if c.lost else "",
         between=between(plan, c),
         faces=tuple(faces),
         failing=failing,
@@ -162,8 +173,7 @@ def spot(witness: WitnessEntry) -> str:
     """A witness in a sentence."""
     if witness.reason == "tolerance":
         return "The tolerance is too coarse to say anything about this cutter."
-    said, best, obstacle = reason(witness.reason), witness.best_posture, called(witness.obstacle_face)
-    said = said[0].upper() + said[1:]
+    said, best, obstacle = capital(reason(witness.reason)), witness.best_posture, called(witness.obstacle_face)
     unsure = witness.verdict == "undecided"
     said += ", undecided" * unsure
     if witness.depth_mm is not None and best is not None:
@@ -174,7 +184,7 @@ def spot(witness: WitnessEntry) -> str:
         where = f" in {obstacle}" if obstacle else ""
         return f"{said}. The best posture found ({there}) is still {mm(witness.depth_mm)} too deep{where}."
     if obstacle:
-        return f"{said}. {obstacle[0].upper() + obstacle[1:]} {'may be' if unsure else 'is'} in the way."
+        return f"{said}. {capital(obstacle)} {'may be' if unsure else 'is'} in the way."
     return f"{said}. No posture is {'sure' if unsure else 'left'}."
 
 
