@@ -1,6 +1,7 @@
 """Values are tried on the samples that are lost now; what serves there is judged on all samples.
 
-A trial asks only whether samples have a posture, in any company; what is told of a change rests on `judge`.
+A trial asks only whether samples have a posture, in any company; what is told of a change rests on `judge`: Lemma W1 of
+`docs/what_if_proof.md`.
 """
 
 from collections.abc import Callable, Iterator

@@ -1,4 +1,4 @@
-"""Another cutter may serve: held further out, of a smaller radius, with another corner."""
+"""Another cutter may serve: held further out (Lemma W3 of `docs/what_if_proof.md`), of a smaller radius, with another corner (W4)."""
 
 import math
 from dataclasses import replace

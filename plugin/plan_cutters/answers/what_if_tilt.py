@@ -1,4 +1,4 @@
-"""Wider ranges of tilt may serve: those that are searched, and those of the machine."""
+"""Wider ranges of tilt may serve: those that are searched, and those of the machine (Lemma W2 of `docs/what_if_proof.md`)."""
 
 import math
 from collections.abc import Iterator

@@ -3,7 +3,7 @@
 Two looks: a grid of cells, some of which are surely outside because a way leads from them past every triangle to where
 there is nothing (whatever is open, turned or doubled); and for points elsewhere the winding number of the bodies' skins,
 summed over the tree. Bodies may touch, overlap, repeat each other or hold voids: each skin counts as enclosing all that
-is within it, so a void is as little to be got into as material.
+is within it, so a void is as little to be got into as material. Lemmas F1 and F5 of `docs/material_proof.md`.
 
 Source of the hierarchical sum: Barill, Dickson, Schmidt, Levin, Jacobson, *Fast winding numbers for soups and clouds* (2018).
 """

@@ -1,6 +1,6 @@
 """Arrays as the page reads them: whole numbers, differences, planes of bytes, one deflate stream.
 
-`docs/review_page.md` has the layout for people who want to read it.
+`docs/review_page_data.md` has the layout for people who want to read it.
 """
 
 import base64

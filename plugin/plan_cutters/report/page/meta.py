@@ -1,4 +1,4 @@
-"""Make the `meta` object of `docs/review_page.md`: all that the page needs beside arrays."""
+"""Make the `meta` object of `docs/review_page_data.md`: all that the page needs beside arrays."""
 
 import math
 from typing import Any
