@@ -477,7 +477,7 @@ def test_worst_faces_are_those_that_lose_the_most_area(rounded):
 
 def test_the_reader_in_the_docs_reads_it(valley):
     _, read = valley
-    text = (ROOT / "docs" / "review_page.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "review_page_data.md").read_text(encoding="utf-8")
     (code,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     names: dict = {"np": np}
     exec(code, names)

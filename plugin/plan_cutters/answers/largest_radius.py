@@ -1,5 +1,7 @@
-"""Which is the largest flat or ball end that reaches each sample, whatever cutters there are? `docs/largest_radius.md`;
-lemmas N3 and N4 of `docs/nested_cutters_proof.md`."""
+"""Find the largest flat or ball end that reaches each sample, whatever cutters there are.
+
+Lemmas N3 and N4 of `docs/nested_cutters_proof.md`.
+"""
 
 import math
 from typing import TYPE_CHECKING

@@ -1,8 +1,8 @@
 """Least stick-out: how short a cutter can be held and still reach what it reaches.
 
 A stick-out is tried by the search that judges every cutter. Where a sample is lost, the postures that it has with a longer one
-say exactly how far each lets the holder come down, so that few searches find the least. The result is judged as a plan judges: Lemma H3 of
-`docs/stick_out_proof.md`.
+say exactly how far each lets the holder come down, so that few searches find the least. The result is judged as a plan judges
+(Lemma H3 of `docs/stick_out_proof.md`).
 """
 
 from collections.abc import Callable

@@ -1,4 +1,7 @@
-"""Another cutter may serve: held further out (Lemma W3 of `docs/what_if_proof.md`), of a smaller radius, with another corner (W4)."""
+"""Another cutter may serve: held further out, of a smaller radius, with another corner.
+
+Lemmas W3 and W4 of `docs/what_if_proof.md`.
+"""
 
 import math
 from dataclasses import replace
