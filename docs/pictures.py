@@ -65,7 +65,7 @@ def _readme(lines: list[str]) -> None:
     shown = "\n".join([*lines[:first], *lines[table : lines.index("", table)]])
     page = ROOT / "README.md"
     before, fence, rest = page.read_text(encoding="utf-8").partition("```text\n")
-    page.write_text(f"{before}{fence}{shown}\n{rest[rest.index('```'):]}", encoding="utf-8")
+    page.write_text(f"{before}{fence}{shown}\n{rest[rest.index('```') :]}", encoding="utf-8")
 
 
 def _page(page: Path, picture: Path) -> None:
