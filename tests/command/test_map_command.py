@@ -56,7 +56,7 @@ def test_the_table_and_both_pictures(capsys, tmp_path, monkeypatch):
     words = [part, "--at", "0,0,0.3", "--cutter", "R8L90", "--rotation", "0:90", "--rotation-step", "30"]
     code, out, err = run(capsys, *words)
     assert (code, err) == (0, "")
-    assert "flat end D16 x 90 (R8L90) at (0, 0, 0) on F2 of v_groove.step" in out
+    assert "Flat end D16 x 90 (R8L90) at (0, 0, 0) on F2 of v_groove.step" in out
     assert "0.3 mm off" in out
     assert max(map(len, [line for line in out.splitlines() if "│" in line])) <= 80
     row = next(line for line in out.splitlines() if line.startswith("│        0 │"))

@@ -180,6 +180,7 @@ def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: 
     """Describe the map line by line: its contact, cutter and search; the first line is its title."""
     from plan_cutters.report.sheet import printable
     from plan_cutters.report.story.names import called
+    from plan_cutters.report.story.numbers import capital
 
     curvature = ", ".join(f"{x + 0.0:.4g}" for x in found.curvature)
     apart = "one rotation: nothing is said of others"
@@ -188,7 +189,7 @@ def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: 
         apart = f"rotations {step:.4g} deg apart: nothing is said between them"
     proved = f"gouge tolerance {found.tolerance:g} mm" if found.tolerance else "nominal, not certified"
     held = f", {cutter.holder.name or cutter.holder.id}" if cutter.holder else ""
-    title = f"{called(cutter)}{held} ({cutter.id.partition('H')[0]})"
+    title = f"{capital(called(cutter))}{held} ({cutter.id.partition('H')[0]})"
     moved = f"; the point asked for is {off:.3g} mm off" if off > 1e-3 else ""
     lines = [
         f"{title} at ({_text(_round(found.point))}) on {face} of {printable(Path(given['part']).name, 80)}",
