@@ -8,7 +8,7 @@ import re
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 #: Dots an inch of PNG files.
 DPI = 150
@@ -22,6 +22,27 @@ _STYLE = {
     "hatch.linewidth": 0.6,
     "axes.linewidth": 0.8,
 }
+
+
+class Look(NamedTuple):
+    """What is drawn has a look: its words in the legend, a colour of matplotlib, a hatch, and the colour of hatch and edge."""
+
+    words: str
+    colour: Any
+    hatch: str = ""
+    edge: Any = "#00000066"
+
+    @property
+    def style(self) -> dict[str, Any]:
+        return {"facecolor": self.colour, "edgecolor": self.edge, "hatch": self.hatch or None}
+
+
+def legend(sheet: Any, looks: Sequence[Look], **place: Any) -> None:
+    """Put a legend on a sheet, at a place as matplotlib has it."""
+    from matplotlib.patches import Patch
+
+    handles = [Patch(label=look.words, linewidth=0.5, **look.style) for look in looks]
+    sheet.legend(handles=handles, frameon=False, fontsize=9, handlelength=2.6, handleheight=1.5, **place)
 
 
 def figure(width: float, height: float) -> Any:
