@@ -16,7 +16,7 @@ from cad_io.kernel import translated
 from cad_io.write import meshes_of
 from plan_cutters.document.palette import LABELS, label, rgb
 from plan_cutters.domain.posture import unit
-from plan_cutters.report.drawing.sheet import DPI, Look, figure, fitting, legend, printable, save, write
+from plan_cutters.report.drawing.sheet import DPI, Look, figure, fitting, legend, printable, save, standard, write
 from plan_cutters.report.drawing.view import Body, View, averaged, borders, fitted, frame_towards, view
 from plan_cutters.report.protocol import Judged
 from plan_cutters.report.story.names import short_names
@@ -200,7 +200,7 @@ def _window(sheet: Any, place: tuple[float, float], frame: Floats, scale: float,
         line.set(color="#BBBBBB", linewidth=0.6)
     width, height = _PIXELS
     axes.text(8, height - 8, words, va="top", fontsize=8)
-    length = _round_length(0.22 * width / scale)
+    length = standard(0.22 * width / scale)
     end = width - 12
     axes.plot([end - length * scale, end], [14, 14], color="black", linewidth=1.6, solid_capstyle="butt")
     axes.text(end, 20, f"{length:g} mm", ha="right", va="bottom", fontsize=7)
@@ -214,12 +214,6 @@ def _window(sheet: Any, place: tuple[float, float], frame: Floats, scale: float,
     axes.set_xlim(0, width)
     axes.set_ylim(0, height)
     return axes
-
-
-def _round_length(most: float) -> float:
-    """The largest of 1, 2 and 5 times a power of ten that is no longer."""
-    power = 10.0 ** np.floor(np.log10(most))
-    return float(next(k for k in (5, 2, 1) if k * power <= most * (1 + 1e-9)) * power)
 
 
 def _words(sheet: Any, result: Judged, there: set[int], fixtures: bool) -> None:

@@ -4,6 +4,7 @@ Matplotlib is loaded here alone, and only when something is drawn. The package V
 depends on it: it is there wherever the kernel is.
 """
 
+import math
 import re
 import warnings
 from collections.abc import Sequence
@@ -53,15 +54,27 @@ def figure(width: float, height: float) -> Any:
 
 
 def printable(text: str, most: int = 200) -> str:
-    """A text from a file as it may stand on a sheet: no control characters, and its middle left out where it is long.
+    """A text from a file as it may stand on a sheet: on one line, no signs that steer, and its middle left out where it is long.
+
+    What no sheet can show, or what would turn the rest of it round, is U+FFFD.
 
     >>> printable("rim\\n2"), printable("abcdefgh", 5)
-    ('rim?2', 'ab…gh')
+    ('rim 2', 'ab…gh')
     """
-    text = "".join(letter if letter.isprintable() else "?" for letter in text)
+    text = "".join(letter if letter.isprintable() else "\ufffd" for letter in " ".join(text.split()))
     if len(text) <= most:
         return text
     return f"{text[: most // 2]}…{text[len(text) - (most - 1) // 2 :]}"
+
+
+def standard(most: float) -> float:
+    """The largest of 1, 2 and 5 times a power of ten that is no larger.
+
+    >>> standard(49.0), standard(0.5)
+    (20.0, 0.5)
+    """
+    power = 10.0 ** math.floor(math.log10(most))
+    return max(step * power for step in (0.5, 1.0, 2.0, 5.0, 10.0) if step * power <= most * (1.0 + 1e-9))
 
 
 def write(sheet: Any, lines: Sequence[str], place: tuple[float, float], size: float) -> None:
