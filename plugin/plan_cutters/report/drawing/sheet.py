@@ -26,7 +26,7 @@ _STYLE = {
 
 
 class Look(NamedTuple):
-    """What is drawn has a look: its words in the legend, a colour of matplotlib, a hatch, and the colour of hatch and edge."""
+    """A look is how something is drawn: its words in the legend, a colour of matplotlib, a hatch, and the colour of hatch and edge."""
 
     words: str
     colour: Any
