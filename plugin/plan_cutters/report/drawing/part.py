@@ -95,16 +95,10 @@ def _colours(verdict: Ints, own: list[tuple[float, float, float] | None]) -> Flo
 
 
 def _fixtures(result: Judged) -> list[Body]:
-    """All fixtures as one body with flat facets, or none."""
+    """All fixtures as one body, or none. Glass has no shade: they need no normals."""
     shown = [each.shown for each in result.scene.around.fixtures if len(each.shown)]
-    if not shown:
-        return []
-    corner = np.concatenate(shown)
-    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-    length = np.linalg.norm(normal, axis=1)
-    kept = length > 0.0
-    flat = np.repeat((normal[kept] / length[kept, None])[:, None], 3, axis=1)
-    return [Body(corner[kept], flat, np.zeros(int(kept.sum()), np.int32))]
+    corner = np.concatenate([np.empty((0, 3, 3)), *shown])
+    return [Body(corner, np.zeros_like(corner), np.zeros(len(corner), np.int32))] if shown else []
 
 
 def _near(part: Body, fixtures: list[Body]) -> Floats:

@@ -26,7 +26,7 @@ _STYLE = {
 
 
 class Look(NamedTuple):
-    """A look is how something is drawn: its words in the legend, a colour of matplotlib, a hatch, and the colour of hatch and edge."""
+    """A look is how something is drawn: words of the legend, a colour of matplotlib, a hatch, the colour of hatch and edge."""
 
     words: str
     colour: Any
