@@ -7,7 +7,7 @@ from PIL import Image
 from plan_cutters import plan
 from plan_cutters.document.palette import rgb
 from plan_cutters.kernels.linear.raster import draw
-from plan_cutters.report.views import FINER, Body, borders, fitted, frame_towards, view
+from plan_cutters.report.drawing.view import FINER, Body, borders, fitted, frame_towards, view
 from tests.support.cad_parts import CAD
 
 
@@ -69,7 +69,7 @@ def test_a_box_fills_its_view_and_its_silhouette_has_its_size():
     body = Body(box.triangles, np.repeat(box.face_normals[:, None], 3, axis=1), np.zeros(len(box.triangles), np.int32))
     frame = frame_towards(np.array([0.0, -1.0, 0.0]), np.array([0.0, 0.0, 1.0]))
     scale, middle = fitted(frame, box.vertices, 300, 200)
-    (found,) = view(frame, [body], scale, middle, 300, 200)
+    found = view(frame, body, scale, middle, 300, 200)
     size = (found.seen >= 0).sum() / (scale * FINER) ** 2
     assert size == pytest.approx(30.0 * 20.0, rel=0.01)
     assert not (found.seen[0] >= 0).any()

@@ -178,7 +178,7 @@ def _text(values: Any) -> str:
 
 def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: dict[str, Any]) -> list[str]:
     """Describe the map line by line: its contact, cutter and search; the first line is its title."""
-    from plan_cutters.report.sheet import printable
+    from plan_cutters.report.drawing.sheet import printable
     from plan_cutters.report.story.names import called
     from plan_cutters.report.story.numbers import capital
 
@@ -248,7 +248,7 @@ def _facts(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: 
 def _draw(found: "PostureMap", tilt: tuple[float, float], about: list[str], outs: Sequence[Path]) -> None:
     """Draw the files, each whole or not at all."""
     from plan_cutters.errors import PlanError
-    from plan_cutters.report.map_picture import draw_map
+    from plan_cutters.report.drawing.posture_map import draw_map
 
     asides = [out.with_name(f".{out.stem}.part{out.suffix}") for out in outs]
     for aside in asides:

@@ -244,7 +244,7 @@ def _draw(found: "Sequence[Library]", folder: Path) -> None:
     from plan_cutters.errors import PlanError
     from plan_cutters.report.story.names import called
 
-    draw = import_module("plan_cutters.library.drawing").draw
+    draw = import_module("plan_cutters.report.drawing.tool").draw
     drawn: dict[str, str] = {}
     for library in found:
         for cutter in library:

@@ -27,7 +27,7 @@ WRITERS = {
     "csv": ("axes.csv", "to_csv", "write_csv"),
     "vtk": ("axes.vtp", "to_vtk", "write_vtk"),
     "regions": ("axis_regions.json", "regions", "write_regions"),
-    "png": ("review.png", "picture", "write_png"),
+    "png": ("review.png", "drawing.part", "write_png"),
 }
 #: What is shown on faces that are split along the verdicts: the CAD kernel has a part in it.
 _MODELS = ("glb", "merged", "png", "step")
