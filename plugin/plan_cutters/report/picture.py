@@ -98,7 +98,7 @@ def _colours(verdict: Ints, own: list[tuple[float, float, float] | None]) -> Flo
 
 def _fixtures(result: Judged) -> list[Body]:
     """All fixtures as one body with flat facets, or none."""
-    shown = [each.shown for each in result.scene.around.fixtures if len(each.shown)]
+    shown = [each.shown for each in result.conditions.around.fixtures if len(each.shown)]
     if not shown:
         return []
     corner = np.concatenate(shown)

@@ -151,4 +151,4 @@ def held_at(axes: Floats, number: Ints, samples: SurfaceSamples) -> Verdicts:
         across = np.linalg.norm(np.cross(samples.normal[rows], axis), axis=1)
         found.tilt[rows] = np.arctan2(across, cosine)
         found.verdict[rows] = ACCESSIBLE
-    return found
+    return found.freeze()

@@ -27,11 +27,6 @@ _AROUND = 0.5
 CHORD_SHARE, CHORD_ASKED = 0.25, 0.2
 
 
-def kept_tolerance(asked: float, chord_error: float) -> float:
-    """The gouge tolerance, mm, that can be kept with obstacles of a chord error: what was asked, or more."""
-    return max(asked, chord_error / CHORD_SHARE)
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Obstacles(Record):
     """Triangles with their bounding tree.

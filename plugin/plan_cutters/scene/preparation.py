@@ -11,7 +11,6 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.options import Options
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.faces import Chosen
-from plan_cutters.scene.inside_material import voids
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.spacing import Spacing
 
@@ -34,6 +33,8 @@ class Prepared(Record):
         Connected samples of one class.
     buried : (n,) int32
         The body that each sample lies within, -1 for none.
+    inside_bodies : (n,) bool
+        Samples that lie inside another body of the part (`inside_material.inside_bodies`).
     conditions : Conditions
     cutters : tuple of Cutter
         From the most wanted down.
@@ -49,6 +50,7 @@ class Prepared(Record):
     surface_class: NDArray[np.uint8]
     region: Ints
     buried: Ints
+    inside_bodies: NDArray[np.bool_]
     conditions: Conditions
     cutters: tuple[Cutter, ...]
     coarser: float = 1.0
@@ -63,18 +65,6 @@ class Prepared(Record):
             across = None if place is None or place.x is None else np.array(place.x)
             found.append(replace(self.conditions, setup=np.array(axis), x=across))
         return tuple(found)
-
-    @property
-    def inside_bodies(self) -> NDArray[np.bool_]:
-        """Samples (n,) that lie inside another body of the part: they are no surface of the finished part.
-
-        The wall of a void is one, though no cutter gets there.
-        """
-        bodies = self.conditions.around.bodies
-        mine = (self.buried >= 0) & (self.buried < len(bodies))
-        if mine.any():
-            mine[mine] = ~voids(bodies, self.scene.orientation)[self.buried[mine]]
-        return mine
 
     @property
     def finished(self) -> NDArray[np.bool_]:

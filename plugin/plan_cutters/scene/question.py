@@ -67,7 +67,7 @@ def question(ready: Prepared, cutter: Cutter) -> dict[str, Any]:
             _fixture(each.fixture, None if each.source is None else each.source.sha256) for each in around.fixtures
         ],
         "tolerance": scene.asked,
-        "tolerance_kept": scene.tolerance,
+        "tolerance_kept": ready.conditions.tolerance,
         "chord_error": around.certain.triangles.chord_error,
         "tool": json.loads(json.dumps(dataclasses.asdict(cutter))),
         "allowance": options.allowance,

@@ -15,7 +15,7 @@ from cad_io.tessellate.stand_ins import StandIn, stand_ins
 from cad_io.tessellate.triangles import At
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.errors import UnjudgeableError
-from plan_cutters.scene.obstacles import Obstacles, weights
+from plan_cutters.scene.obstacles import CHORD_SHARE, Obstacles, weights
 
 #: Triangles of a loose face that are looked at to tell whether it lies on a body, about.
 _LOOKED_AT = 50
@@ -102,6 +102,10 @@ class Surroundings(Record):
     def enclosing(self) -> tuple[Body, ...]:
         """List the bodies that enclose a volume: those of the part, then those of fixtures."""
         return (*self.bodies, *(each.body for each in self.fixtures if each.body is not None))
+
+    def tolerance(self, asked: float) -> float:
+        """Give the gouge tolerance that is kept, mm: the one asked for or, where triangles cannot be that close, more."""
+        return max(asked, self.certain.triangles.chord_error / CHORD_SHARE)
 
     def called(self, face: int) -> str:
         """The name of a face number: `F12`, or `fixture:vise`."""

@@ -41,7 +41,6 @@ def in_setup(
     few = machine.turns and len(machine.rotary) < 2
     rows = rows[:0] if few else rows[machine.allows(verdicts.axis[rows], frame_of(axis, across))]
     known.verdict[rows] = ACCESSIBLE
-    for name in ("axis", "tilt_direction", "tilt", "rotation"):
-        getattr(known, name)[rows] = getattr(verdicts, name)[rows]
+    known.take_posture(rows, verdicts)
     other = replace(ready, conditions=replace(ready.conditions, setup=axis, x=across))
-    return judge(other, cutter, known=known, progress=progress)
+    return judge(other, cutter, known=known.freeze(), progress=progress)

@@ -237,9 +237,7 @@ class PostureMaps(Record):
         upright = self.verdict == INTERFERENCE_FREE
         if low <= _END and upright.any():
             upright[upright] = machine.allows(self.normal[upright], frame)
-            verdicts.verdict[upright] = INTERFERENCE_FREE
-            verdicts.axis[upright], verdicts.tilt_direction[upright] = self.normal[upright], self.direction_max[upright]
-            verdicts.tilt[upright], verdicts.rotation[upright] = 0.0, 0
+            verdicts.stand_upright(upright, self.normal, self.direction_max)
         axis_lost = judged & ~lost & np.isin(verdicts.verdict, (INACCESSIBLE, UNDECIDED))
         verdicts.reason[axis_lost] = REASONS.index("axis_limit")
         # What is in doubt without a machine is so with any that holds some posture there.
@@ -248,7 +246,7 @@ class PostureMaps(Record):
         any_axis(np.flatnonzero(doubt), self.normal, self.direction_max, few, low, high, held)
         doubt &= held
         verdicts.verdict[doubt], verdicts.reason[doubt] = UNDECIDED, self.reason[doubt]
-        return verdicts
+        return verdicts.freeze()
 
     def held(self, conditions: Conditions) -> "PostureMaps":
         """The maps of one machine and setup: of the free tilts those that it holds. The verdicts stay what they are."""

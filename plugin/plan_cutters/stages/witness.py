@@ -190,7 +190,7 @@ def _least_depth(
                 low = depth
             else:
                 break
-    return None if np.isnan(high) else (best, low, high)
+    return None if np.isnan(high) else (best.freeze(), low, high)
 
 
 def _covered(samples: SurfaceSamples, plain: Witness, body: int, conditions: Conditions) -> Witness:
