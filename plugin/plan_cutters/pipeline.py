@@ -136,11 +136,10 @@ def run(
             here[cutter] = judge(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell,
                                  work=searched)  # fmt: skip
             seconds[cutter] = time.perf_counter() - began
-    places = options.other_placements or (None,) * len(options.other_setups)
-    others = [
-        (axis, None if place is None else place.x) for axis, place in zip(options.other_setups, places, strict=True)
+    elsewhere = [
+        (axis, _elsewhere(ready, here, conditions, clock))
+        for axis, conditions in zip(options.other_setups, ready.setups[1:], strict=True)
     ]
-    elsewhere = [(axis, _elsewhere(ready, here, axis, x, clock)) for axis, x in others]
     judged = _judged(ready, here, elsewhere, seconds, clock)
     answers = ask(ready, {cutter: each.here for cutter, each in judged.items()}, clock.stage, elsewhere)
     result = assemble(ready, judged, clock, started, answers, elsewhere, searched, ahead)
@@ -168,13 +167,13 @@ def run(
 
 
 def _elsewhere(
-    ready: Prepared, here: Mapping[Cutter, Verdicts], axis: Vector, x: Vector | None, clock: Clock
+    ready: Prepared, here: Mapping[Cutter, Verdicts], conditions: Conditions, clock: Clock
 ) -> dict[str, Verdicts]:
     """Find the verdicts of each cutter in another setup."""
     found = {}
     for cutter, verdicts in here.items():
         with clock.stage("setups") as tell:
-            found[cutter.id] = in_setup(ready, cutter, axis, verdicts, x=x, progress=tell)
+            found[cutter.id] = in_setup(ready, cutter, conditions, verdicts, progress=tell)
     return found
 
 

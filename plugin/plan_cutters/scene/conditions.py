@@ -191,11 +191,11 @@ def search_postures(
     require_finite(contacts, rows)
     ranges, around = conditions.ranges._replace(strict=strict), conditions.around
     possible, certain = around.possible.solids, around.certain.solids
-    tools, found, looked = (tool_of(outer_tool), tool_of(inner_tool)), found_of(verdicts), list[int]()
+    tools, found = (tool_of(outer_tool), tool_of(inner_tool)), found_of(verdicts)
 
-    def searched(piece: NDArray[np.int64]) -> None:
-        looked.append(search(piece, contacts, ranges, *tools, possible, certain, found))
+    def searched(piece: NDArray[np.int64]) -> int:
+        return int(search(piece, contacts, ranges, *tools, possible, certain, found))
 
-    in_chunks(searched, rows, conditions.jobs, progress, fixed=fixed)
+    looked = in_chunks(searched, rows, conditions.jobs, progress, fixed=fixed)
     if work is not None:
-        work.add(sum(looked))
+        work.add(looked)

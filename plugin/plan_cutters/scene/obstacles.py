@@ -264,12 +264,18 @@ def divided(vertex: Floats, low: Floats, high: Floats, longest: float, most: int
         if most is not None and len(vertex) > most:
             small[:] = True
         done.append(vertex[small])
-        # At the middle of the longest side: long thin triangles come out compact.
-        v, first = vertex[~small], side[~small].argmax(axis=1)
-        a, b, c = (v[np.arange(len(v)), (first + k) % 3] for k in range(3))
-        middle = 0.5 * (a + b)
-        vertex = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+        vertex = halved(vertex[~small], side[~small])
     return np.ascontiguousarray(np.concatenate([np.zeros((0, 3, 3)), *done]))
+
+
+def halved(vertex: Floats, side: Floats) -> Floats:
+    """Halve triangles (n, 3, 3) at the middle of the longest of their sides (n, 3): long thin ones come out compact.
+
+    All first halves come before all second ones. A side goes from the corner of its number to the next one.
+    """
+    a, b, c = (vertex[np.arange(len(vertex)), (side.argmax(axis=1) + k) % 3] for k in range(3))
+    middle = 0.5 * (a + b)
+    return np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
 
 
 def weights(triangles: Triangles, found: Sequence[Body]) -> NDArray[np.int8]:

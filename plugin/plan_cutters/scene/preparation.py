@@ -14,6 +14,9 @@ from plan_cutters.scene.faces import Chosen
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.spacing import Spacing
 
+#: A unit direction of the part.
+Axis = tuple[float, float, float]
+
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Prepared(Record):
@@ -56,15 +59,20 @@ class Prepared(Record):
     coarser: float = 1.0
 
     @property
+    def axes(self) -> tuple[tuple[Axis, Axis | None], ...]:
+        """Give the setup axis and, where it is known, the direction along the machine's X, of each requested setup."""
+        options, given = self.options, (self.scene.setup, *self.options.other_setups)
+        places = (options.placement, *(options.other_placements or (None,) * len(options.other_setups)))
+        return tuple((axis, None if place is None else place.x) for axis, place in zip(given, places, strict=True))
+
+    @property
     def setups(self) -> tuple[Conditions, ...]:
         """Give the conditions for judging cutters in each requested setup, the first one first."""
-        options = self.options
-        places = options.other_placements or (None,) * len(options.other_setups)
-        found = [self.conditions]
-        for axis, place in zip(options.other_setups, places, strict=True):
-            across = None if place is None or place.x is None else np.array(place.x)
-            found.append(replace(self.conditions, setup=np.array(axis), x=across))
-        return tuple(found)
+        others = (
+            replace(self.conditions, setup=np.array(axis), x=None if x is None else np.array(x))
+            for axis, x in self.axes[1:]
+        )
+        return (self.conditions, *others)
 
     @property
     def finished(self) -> NDArray[np.bool_]:

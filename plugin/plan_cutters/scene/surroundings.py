@@ -96,7 +96,16 @@ class Surroundings(Record):
     @property
     def doubtful(self) -> bool:
         """Whether something that may be in the way is not known well enough to call any posture safe beyond doubt."""
-        return bool(self.missing or self.lost or any(each.missing for each in self.fixtures))
+        return bool(self.doubts)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Name the obstacles that are missing or only guessed, with the reasons."""
+        return (
+            *(f"F{number}: {why}" for number, why, _ in self.missing),
+            *map(str, self.lost),
+            *(f"{each.name} {face}: {why}" for each in self.fixtures for face, why, _ in each.missing),
+        )
 
     @property
     def enclosing(self) -> tuple[Body, ...]:
