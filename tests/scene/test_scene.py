@@ -27,12 +27,12 @@ SMALL = {"cutters": "R3L40", "grid": 9, "area_budget": 0}
 def made(monkeypatch):
     """Calls that tessellate, read fixtures or orient."""
     calls = []
+
+    def count(name, real):
+        monkeypatch.setattr(scenes, name, lambda *given, **more: calls.append(name) or real(*given, **more))
+
     for name in ("surroundings", "joined", "read", "orient"):
-        monkeypatch.setattr(
-            scenes,
-            name,
-            lambda *given, real=getattr(scenes, name), name=name, **more: calls.append(name) or real(*given, **more),
-        )
+        count(name, getattr(scenes, name))
     return calls
 
 
