@@ -167,12 +167,12 @@ class Witness(Record):
 
     sample: int
     reason: str
-    obstacle_face: int | None
-    obstacle_point: Floats | None
-    tilt: float | None
-    rotation: float | None
-    axis: Floats | None
-    depth: float | None
+    obstacle_face: int | None = None
+    obstacle_point: Floats | None = None
+    tilt: float | None = None
+    rotation: float | None = None
+    axis: Floats | None = None
+    depth: float | None = None
     samples: int = 1
     untried: bool = False
 

@@ -108,19 +108,9 @@ def deepest(
         return depth
 
     def met(depth: float) -> int:
-        hit = np.full(1, -1, np.int32)
+        hit, there = np.full(1, -1, np.int32), (contact[None], normal[None], posture.axis, posture.tilt_direction)
         tool = tool_of(assembly(cutter, depth, depth))
-        probe(
-            np.zeros(1, np.int64),
-            contact[None],
-            normal[None],
-            posture.axis,
-            posture.tilt_direction,
-            tool,
-            obstacles.tree,
-            hit,
-            hit.copy(),
-        )
+        probe(np.zeros(1, np.int64), *there, tool, obstacles.tree, hit, hit.copy())
         return int(hit[0])
 
     error = obstacles.triangles.chord_error

@@ -90,20 +90,27 @@ class Obstacles(Record):
     @cached_property
     def solids(self) -> "Solids":
         """The tree and what its triangles enclose, as the searches take it."""
-        from plan_cutters.kernels.material import Solids, moments, sheet
+        from plan_cutters.kernels.material import sheet
+
+        return self._filled(self._cells(), self._end) if self.weight.any() else sheet(self.tree)
+
+    def _filled(self, cells: tuple[NDArray[np.uint8], Floats, float, bool], end: Floats) -> "Solids":
+        from plan_cutters.kernels.material import Solids, moments
 
         weight = np.ascontiguousarray(self.weight[self._built[0]])
-        if not weight.any():
-            return sheet(self.tree)
-        return Solids(self.tree, weight, moments(self.tree.vertex, weight, self.tree.depth), *self._cells(),
-                      self._end)  # fmt: skip
+        return Solids(self.tree, weight, moments(self.tree.vertex, weight, self.tree.depth), *cells, end)
+
+    @property
+    def _extent(self) -> tuple[Floats, Floats, float]:
+        """Corners (3,) of the box around all triangles, and how far skins may be off and open, mm."""
+        vertex = self.triangles.vertex
+        low, high = vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))
+        return low, high, self.triangles.chord_error + self.gap + 1e-9 * float(np.abs([low, high]).max())
 
     @property
     def _end(self) -> Floats:
         """Corners (2, 3) of a box around all that may enclose something."""
-        vertex, grow = self.triangles.vertex, self.triangles.chord_error + self.gap
-        low, high = vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))
-        grow += 1e-9 * float(np.abs([low, high]).max())
+        low, high, grow = self._extent
         boxes = self.open_boxes.reshape(-1, 2, 3)
         return np.array([np.min([low - grow, *boxes[:, 0]], axis=0), np.max([high + grow, *boxes[:, 1]], axis=0)])
 
@@ -112,9 +119,7 @@ class Obstacles(Record):
         lies beyond the grid."""
         from plan_cutters.kernels.material import mark_skin
 
-        vertex, grow = self.tree.vertex, self.triangles.chord_error + self.gap
-        low, high = vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))
-        grow += 1e-9 * float(np.abs([low, high]).max())
+        vertex, (low, high, grow) = self.tree.vertex, self._extent
         extent = float((high - low).max())
         whole = True
         if self.near is not None:
@@ -164,12 +169,8 @@ class Obstacles(Record):
     @property
     def _everywhere(self) -> "Solids":
         """The tree and what its triangles enclose, with no cell that is surely outside."""
-        from plan_cutters.kernels.material import Solids, moments
-
-        weight = np.ascontiguousarray(self.weight[self._built[0]])
-        unknown, end = np.zeros((1, 1, 1), np.uint8), np.array([[-np.inf] * 3, [np.inf] * 3])
-        found = moments(self.tree.vertex, weight, self.tree.depth)
-        return Solids(self.tree, weight, found, unknown, np.zeros(3), 1.0, False, end)
+        unknown = (np.zeros((1, 1, 1), np.uint8), np.zeros(3), 1.0, False)
+        return self._filled(unknown, np.array([[-np.inf] * 3, [np.inf] * 3]))
 
     @cached_property
     def wide_tree(self) -> "WideTree":

@@ -86,18 +86,19 @@ def access(
     if conditions.around.alone is not None:
         searched = wanted | (buried >= len(conditions.around.bodies) if buried is not None else False)
         handed = judged & (verdicts.reason == FIXTURE)
-        _for_fixtures(contacts, np.flatnonzero((searched & verdicts.lost) | handed), cutter, conditions, verdicts)
+        bare = replace(conditions, around=conditions.around.alone)
+        _for_fixtures(contacts, np.flatnonzero((searched & verdicts.lost) | handed), cutter, bare, verdicts)
     return verdicts.freeze()
 
 
 def _for_fixtures(
-    contacts: Contacts, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, verdicts: VerdictBuffer
+    contacts: Contacts, rows: NDArray[np.int64], cutter: Cutter, bare: Conditions, verdicts: VerdictBuffer
 ) -> None:
     """Of lost samples, tell those that are lost to fixtures from those that would be lost without them, too."""
     rows = rows[~np.isin(verdicts.reason[rows], (AXIS_LIMIT, LOCAL_GOUGE))]
-    if conditions.around.alone is None or not len(rows):
+    if not len(rows):
         return
-    bare, found = replace(conditions, around=conditions.around.alone), blank(len(verdicts.verdict))
+    found = blank(len(verdicts.verdict))
     search_postures(contacts, rows, bare.outer_tool(cutter), bare.inner_tool(cutter), bare, found, fixed=True)
     verdicts.reason[rows] = np.where(found.reached[rows], FIXTURE, found.reason[rows])
 
