@@ -64,9 +64,9 @@ def main() -> None:
     scene = Scene.of(PART)
     held = vise_of(WANTED)
     began = time.process_time()
-    _ = scene.around.possible.solids
+    _ = scene.surround().possible.solids
     print(
-        f"part alone: {len(scene.around.possible.triangles)} triangles, "
+        f"part alone: {len(scene.surround().possible.triangles)} triangles, "
         f"{time.process_time() - began:.2f} s to tessellate and build"
     )
     cases: dict[str, list[Fixture | str]] = {

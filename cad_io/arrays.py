@@ -38,7 +38,7 @@ class Record:
 
 
 def _names(record: Any) -> list[str]:
-    return [field.name for field in fields(record)]
+    return [field.name for field in fields(record) if field.compare]
 
 
 def _same(one: Any, other: Any) -> bool:

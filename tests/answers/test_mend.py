@@ -276,8 +276,8 @@ def beside_a_post(away):
 def test_a_finer_tolerance_decides_what_the_triangles_leave_open():
     cutter = Cutter.ball(radius=3, length=25, holder="R15L20")
     options = {"faces": "F1", "tolerance": 0.5, "grid": 2} | UPRIGHT
-    error = Scene.of(beside_a_post(5.0), tolerance=0.5).around.certain.triangles.chord_error
-    finer = Scene.of(beside_a_post(5.0), tolerance=0.25).around.certain.triangles.chord_error
+    error = Scene.of(beside_a_post(5.0), tolerance=0.5).surround().certain.triangles.chord_error
+    finer = Scene.of(beside_a_post(5.0), tolerance=0.25).surround().certain.triangles.chord_error
     assert finer < 0.7 * error
     found, by, planned = asked(beside_a_post(0.5 * (error + finer)), cutter, **options)
     change = by["tolerance"]

@@ -226,7 +226,7 @@ def test_the_drawn_mesh_is_the_part_seen_from_outside(which, request):
         after += face["count"]
         assert 0.5 * np.linalg.norm(facet[mine], axis=1).sum() == pytest.approx(info.area, rel=0.03)
         assert (face["id"], face["target"]) == (info.id, True)
-    for standing, entry in zip(result.scene.around.fixtures, read.meta["fixtures"], strict=True):
+    for standing, entry in zip(result.scene.surround().fixtures, read.meta["fixtures"], strict=True):
         assert (entry["name"], entry["start"], entry["count"]) == (standing.name, after, len(standing.shown))
         after += entry["count"]
     assert after == len(triangle)

@@ -182,15 +182,15 @@ def test_other_fixtures_cost_no_tessellation(monkeypatch):
     two = plan(scene, fixtures="box:4,4,4@0,0,40", **options)
     three = plan(two.scene, fixtures=["box:4,4,4@0,0,40", "cylinder:4,4@0,0,50"], **options)
     assert len(calls) == 1
-    assert two.scene.around.possible is not one.scene.around.possible
-    assert (three.scene.around.alone, two.scene.around.alone) == (one.scene.around, one.scene.around)
+    assert two.scene.surround().possible is not one.scene.surround().possible
+    assert (three.scene.surround().alone, two.scene.surround().alone) == (one.scene.surround(), one.scene.surround())
     again = plan(three.scene, fixtures=[], **options)
     assert len(calls) == 1
     assert again.reaches == one.reaches
     # A fixture of the CAD kind is tessellated once, wherever it stands.
     jaw = box(10, 10, 10)
     first = scene.clamped([Fixture(jaw, (0, 0, 40))])
-    _ = first.around, first.clamped([Fixture(jaw, (5, 0, 50))]).around
+    _ = first.surround(), first.clamped([Fixture(jaw, (5, 0, 50))]).surround()
     assert len(calls) == 2
     # A scene has the fixtures that it was made with, and a plan of it, too.
     assert [e.name for e in plan(two.scene, **options).plan.fixtures] == ["fixture:box"]
@@ -228,7 +228,7 @@ def test_cells_that_are_outside_are_so(pocket):
     """The grid about the part against the winding numbers, among fixtures that reach far beyond it."""
     around = pocket.clamped(
         ["table:-3", "box:30,90,60@61,-20,-2", "cylinder:9,20@30,-10,1", "box:9,9,9@300,0,0,0,0,40"]
-    ).around
+    ).surround()
     obstacles = around.possible
     assert not obstacles.solids.whole
     assert 0.05 < obstacles.solids.cell.mean() < 0.95
@@ -272,13 +272,13 @@ def test_a_fixture_through_a_sheet_has_no_depth_but_one_around_it_has():
 
 
 def test_the_chord_error_is_the_larger_one(pocket):
-    own = pocket.around.certain.triangles.chord_error
-    rod = pocket.clamped("cylinder:8,30@30,-9,5").around.certain.triangles.chord_error
+    own = pocket.surround().certain.triangles.chord_error
+    rod = pocket.clamped("cylinder:8,30@30,-9,5").surround().certain.triangles.chord_error
     assert own <= rod <= 0.2 * 0.01 * (1 + 1e-9)
     block = trimesh.Trimesh(*_indexed(vises.block((61, 0, 0), (70, 9, 9))))
     scene = pocket.clamped(Fixture(block, chord_error=0.01))
-    assert scene.around.certain.triangles.chord_error == 0.01
-    assert scene.tolerance == pytest.approx(0.04)
+    assert scene.surround().certain.triangles.chord_error == 0.01
+    assert scene.surround().tolerance(scene.asked) == pytest.approx(0.04)
 
 
 def test_objects_of_the_kernel_and_hosts(pocket):

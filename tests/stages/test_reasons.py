@@ -175,8 +175,9 @@ def test_what_is_lost_in_all_setups_has_the_reason_of_one_that_may_serve():
     ready = prepare(box(20, 20, 6), Options.of(HOW | {"cutters": "R3L30", "machine": "tilt:20"}))
     reach = judge(ready, Cutter.parse("R3L30"))
     assert (reach.reason == AXIS_LIMIT).any()
-    other = replace(reach, reason=np.where(reach.lost, np.uint8(2), reach.reason), verdict=reach.verdict.copy())
-    other.verdict[np.flatnonzero(reach.lost)[0]] = UNDECIDED
+    verdict = reach.verdict.copy()
+    verdict[np.flatnonzero(reach.lost)[0]] = UNDECIDED
+    other = replace(reach, reason=np.where(reach.lost, np.uint8(2), reach.reason), verdict=verdict)
     found, which = over_setups([reach, other])
     assert (found.reached == reach.reached).all()
     assert (which[reach.lost] == -1).all()

@@ -79,7 +79,7 @@ class Judgements:
     ) -> "Judgements":
         """Those of a plan."""
         found, wanted = cls(), ready.finished
-        for (axis, x), each in zip(setups_of(ready), (None, *(verdicts for _, verdicts in elsewhere)), strict=False):
+        for (axis, x), each in zip(ready.axes, (None, *(verdicts for _, verdicts in elsewhere)), strict=False):
             for cutter, verdicts in reaches.items():
                 mine = verdicts if each is None else each[cutter.id]
                 name = key(ready, cutter, axis, x)
@@ -114,14 +114,3 @@ class Judgements:
             lost[new] = np.isin(rows[new], case.misses(rows[new])) if len(new) else False
             rows = rows[lost]
         return rows
-
-
-def setups_of(ready: Prepared) -> tuple[tuple[Axis, Axis | None], ...]:
-    """The setups of a plan: axis, and the direction along the machine's X where it is known."""
-    options = ready.options
-    places = options.other_placements or (None,) * len(options.other_setups)
-    first = (ready.scene.setup, None if options.placement is None else options.placement.x)
-    return (
-        first,
-        *((axis, None if place is None else place.x) for axis, place in zip(options.other_setups, places, strict=True)),
-    )

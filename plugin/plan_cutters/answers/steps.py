@@ -13,7 +13,7 @@ from plan_cutters.answers.areas import Finished, Rows, patches
 from plan_cutters.answers.means import candidates, joined
 from plan_cutters.answers.option import Axis, option
 from plan_cutters.answers.scan import Candidate, Scan
-from plan_cutters.answers.state import Judgements, State, setups_of
+from plan_cutters.answers.state import Judgements, State
 from plan_cutters.domain.area import Patch
 from plan_cutters.domain.change import MEANS, Mend, Move, Step
 from plan_cutters.domain.cutter import Cutter
@@ -70,7 +70,7 @@ def steps(
         With `share`, `steps` and `areas`.
     """
     finished, known = Finished.of(ready), Judgements.of(ready, reaches, elsewhere)
-    state = State(ready, (cutter,), setups_of(ready))
+    state = State(ready, (cutter,), ready.axes)
     left = known.left(state, np.flatnonzero(finished.wanted))
     if not len(left):
         return found

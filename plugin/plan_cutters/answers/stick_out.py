@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.stick_out import StickOut, floor_of, held, outline
-from plan_cutters.domain.verdicts import ACCESSIBLE, Verdicts, blank
+from plan_cutters.domain.verdicts import ACCESSIBLE, VerdictBuffer, Verdicts, blank
 from plan_cutters.kernels.rows import Contacts, Tool
 from plan_cutters.scene.conditions import contacts_of, found_of, rotations_of, tool_of
 from plan_cutters.scene.deepest import deepest_on
@@ -107,13 +107,12 @@ class _Search:
         self.outline = outline(conditions.outer_tool(cutter), cutter.length)
         self.whole = tool_of(conditions.outer_tool(cutter))
         self.found = blank(len(ready.samples))
-        for name in Verdicts.__slots__:
-            getattr(self.found, name)[:] = getattr(verdicts, name)
+        self.found.take(slice(None), verdicts)
 
     def tool(self, stick_out: float) -> Tool:
         return tool_of(self.conditions.outer_tool(held(self.cutter, stick_out)))
 
-    def needed(self, rows: NDArray[np.int64], posture: Verdicts) -> tuple[Floats, NDArray[np.int32]]:
+    def needed(self, rows: NDArray[np.int64], posture: VerdictBuffer) -> tuple[Floats, NDArray[np.int32]]:
         """The stick-outs (n,) that known postures of some samples ask for, and the triangles that are in the way."""
         from plan_cutters.kernels.search.stick_out import least_stick_outs
 
@@ -176,16 +175,11 @@ class _Search:
             lost = rows[~verdicts.reached[rows]]
             if len(lost):
                 limiting = int(lost[0])
-                self.keep(judge(self.ready, held(self.cutter, least)), limiting)
+                self.found.take_posture(limiting, judge(self.ready, held(self.cutter, least)))
                 break
             least = shorter.length
-            self.keep(verdicts, limiting)
+            self.found.take_posture(limiting, verdicts)
         return least, -1 if least <= self.floor else limiting
-
-    def keep(self, verdicts: Verdicts, row: int) -> None:
-        """Take over the posture of a sample."""
-        for name in ("axis", "tilt_direction", "tilt", "rotation"):
-            getattr(self.found, name)[row] = getattr(verdicts, name)[row]
 
     def one(self, row: int, lost: float) -> tuple[float, int]:
         """The least stick-out of one sample, and the sample; the one given and -1 where that is enough.
@@ -214,11 +208,10 @@ class _Search:
         turns, solids = len(ranges.rotation_cos), self.conditions.obstacles.solids
         if not posture(contact, ranges, self.tool(stick_out), _NARROWEST, start, turns, solids, found_of(best)):
             return False
-        for name in ("axis", "tilt_direction", "tilt", "rotation"):
-            getattr(self.found, name)[row] = getattr(best, name)[0]
+        self.found.take_posture(row, best, 0)
         return True
 
-    def with_room(self, rows: NDArray[np.int64], posture: Verdicts) -> Floats:
+    def with_room(self, rows: NDArray[np.int64], posture: VerdictBuffer) -> Floats:
         """Stick-outs (m,), mm, that known postures need, and `BEYOND` more.
 
         With no more than they need, no other tilt is left, and a search would miss the posture.
@@ -242,7 +235,7 @@ class _Search:
                 some, found = left[middle == level], blank(len(best))
                 tool = self.tool(min(self.cutter.length, self.floor + level * step))
 
-                def work(piece: NDArray[np.int64], tool: Tool = tool, found: Verdicts = found) -> None:
+                def work(piece: NDArray[np.int64], tool: Tool = tool, found: VerdictBuffer = found) -> None:
                     until_lost(piece, 0, self.contacts, ranges, tool, solids, True, found_of(found))
 
                 in_chunks(work, some, self.conditions.jobs)

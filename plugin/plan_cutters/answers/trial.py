@@ -61,7 +61,7 @@ class Case:
         ready, conditions, found = self.ready, self.ready.conditions, blank(len(rows))
         if not conditions.judges(self.cutter):
             found.verdict[:], found.reason[:] = UNDECIDED, TOLERANCE
-            return found
+            return found.freeze()
         contacts = Contacts(*(np.ascontiguousarray(column[rows]) for column in contacts_of(ready.samples)))
         outer_tool, inner_tool = conditions.outer_tool(self.cutter), conditions.inner_tool(self.cutter)
         free = np.zeros(len(rows), bool)
@@ -80,7 +80,7 @@ class Case:
         within = ready.buried[rows] >= 0
         search_postures(contacts, np.flatnonzero(~free & ~within), outer_tool, inner_tool, conditions, found)
         found.verdict[within], found.reason[within] = INACCESSIBLE, BURIED
-        return found
+        return found.freeze()
 
     def misses(self, rows: Rows) -> Rows:
         """Those of some samples that it does not reach."""

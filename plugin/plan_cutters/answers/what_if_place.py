@@ -17,7 +17,7 @@ from plan_cutters.answers.what_if import Way, WhatIf, none
 from plan_cutters.domain.change import Change
 from plan_cutters.domain.posture import unit
 from plan_cutters.options import LEAST_TOLERANCE
-from plan_cutters.scene.inside_material import buried
+from plan_cutters.scene.inside_material import buried, inside_bodies
 from plan_cutters.scene.preparation import Prepared
 
 #: Steps of the setup axis, deg.
@@ -171,9 +171,10 @@ def closer(case: Case, asked: float) -> Case:
     ready = case.ready
     scene = replace(ready.scene, asked=asked)
     around = scene.surround(jobs=ready.conditions.jobs)
-    conditions = replace(ready.conditions, around=around, tolerance=scene.tolerance)
-    within = buried(ready.samples, scene.orientation, around.enclosing, around.certain, scene.tolerance)
-    return replace(case, ready=replace(ready, scene=scene, conditions=conditions, buried=within))
+    conditions = replace(ready.conditions, around=around, tolerance=around.tolerance(asked))
+    within = buried(ready.samples, scene.orientation, around.enclosing, around.certain, conditions.tolerance)
+    inside = inside_bodies(within, around.bodies, scene.orientation)
+    return replace(case, ready=replace(ready, scene=scene, conditions=conditions, buried=within, inside_bodies=inside))
 
 
 def faces(case: Case, trials: Trials) -> Change:

@@ -136,9 +136,9 @@ def _witness_entry(
     )
 
 
-def part_info(scene: Scene) -> PartInfo:
+def part_info(scene: Scene, around: Surroundings) -> PartInfo:
     """The part, and what is odd about it."""
-    part, around, orientation = scene.part, scene.around, scene.orientation
+    part, orientation = scene.part, scene.orientation
     warnings = list(part.warnings)
     # Without the faces that are left out on purpose there are openings, too.
     for body in () if scene.ignored else (body for body in around.bodies if not body.closed):

@@ -54,11 +54,11 @@ def plan_of(
 ) -> Plan:  # fmt: skip
     """The plan of a part from the entries of its cutters, and what was answered after them."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
-    part, around = scene.part, scene.around
+    part, around = scene.part, ready.conditions.around
     faces, remarks = face_entries(part, samples, choice), notes_of(ready, entries)
     absent = {*(() if around.fixtures else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
     return Plan(
-        part=part_info(scene),
+        part=part_info(scene, around),
         effective=effective(ready),
         versions=versions(),
         samples=SampleCounts(
@@ -182,7 +182,9 @@ def completed(
             "singular": _singular(ready, entry.id, over),
             "travel": None if moved is None else travel_entry(ready.options.machine, moved, here, samples),
             "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
-            "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, ready.scene.around),
+            "least_stick_out": None
+            if stick_out is None
+            else stick_out_entry(stick_out, samples, ready.conditions.around),
             "mend": None if mend is None else mend_entry(mend),
         }
         found.append(entry.model_copy(update=more))

@@ -70,9 +70,8 @@ def handed(cutter: Cutter, judged: Mapping[Cutter, Verdicts], n: int) -> Verdict
         if inside(cutter, other):
             rows = verdicts.reached & (known.verdict == UNJUDGED)
             known.verdict[rows] = ACCESSIBLE
-            for name in ("axis", "tilt_direction", "tilt", "rotation"):
-                getattr(known, name)[rows] = getattr(verdicts, name)[rows]
+            known.take_posture(rows, verdicts)
         elif inside(other, cutter):
             rows = (verdicts.verdict == INACCESSIBLE) & (known.verdict == UNJUDGED)
             known.verdict[rows], known.reason[rows] = INACCESSIBLE, verdicts.reason[rows]
-    return known
+    return known.freeze()

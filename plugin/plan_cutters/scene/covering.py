@@ -60,7 +60,7 @@ def _how(ready: Prepared, body: Body, rows: NDArray[np.int64]) -> How:
     from plan_cutters.kernels.material import near_skin
 
     certain = ready.conditions.around.certain
-    _, deep = certain.depths(ready.scene.tolerance)
+    _, deep = certain.depths(ready.conditions.tolerance)
     point, skin = np.ascontiguousarray(ready.samples.point[rows]), certain.skin_of(body)
     on = np.zeros(len(rows), bool)
     # Where a body overlaps, a few of them tell.

@@ -31,16 +31,9 @@ def serves(
     low, high = conditions.postures.tilt
     free = np.zeros(len(samples), bool)
     if conditions.machine.allows(axis[None], frame_of(conditions.setup, conditions.x))[0]:
-        tool, solids, contacts = (
-            tool_of(conditions.outer_tool(cutter)),
-            conditions.obstacles.solids,
-            contacts_of(samples),
-        )
-        in_chunks(
-            lambda piece: served(piece, axis, contacts, low - _END, high + _END, tool, solids, free),
-            rows,
-            conditions.jobs,
-        )
+        tool, solids = tool_of(conditions.outer_tool(cutter)), conditions.obstacles.solids
+        given = (axis, contacts_of(samples), low - _END, high + _END, tool, solids, free)
+        in_chunks(lambda piece: served(piece, *given), rows, conditions.jobs)
         found = rows[free[rows]]
         free[found] &= _turned(found, axis, samples, conditions)
     return free[rows]
@@ -151,4 +144,4 @@ def held_at(axes: Floats, number: Ints, samples: SurfaceSamples) -> Verdicts:
         across = np.linalg.norm(np.cross(samples.normal[rows], axis), axis=1)
         found.tilt[rows] = np.arctan2(across, cosine)
         found.verdict[rows] = ACCESSIBLE
-    return found
+    return found.freeze()

@@ -120,6 +120,26 @@ def voids(bodies: Sequence[Body], orientation: Orientation) -> NDArray[np.bool_]
     )
 
 
+def inside_bodies(within: Ints, bodies: Sequence[Body], orientation: Orientation) -> NDArray[np.bool_]:
+    """Find the samples (n,) that lie inside another body of the part: they are no surface of the finished part.
+
+    The wall of a void is one, though no cutter gets there.
+
+    Parameters
+    ----------
+    within : (n,) int32
+        As `buried` gives it.
+    bodies : sequence of Body
+        Of the part, without fixtures.
+    orientation : Orientation
+    """
+    mine = (within >= 0) & (within < len(bodies))
+    if mine.any():
+        mine[mine] = ~voids(bodies, orientation)[within[mine]]
+    mine.setflags(write=False)
+    return mine
+
+
 def cover(point: Floats, normal: Floats, certain: Obstacles, body: Body | None = None) -> Cover | None:
     """Where the way out of a body along a normal (3,) leads from a contact (3,); None if it meets no skin.
 

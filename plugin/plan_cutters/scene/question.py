@@ -67,7 +67,7 @@ def question(ready: Prepared, cutter: Cutter) -> dict[str, Any]:
             _fixture(each.fixture, None if each.source is None else each.source.sha256) for each in around.fixtures
         ],
         "tolerance": scene.asked,
-        "tolerance_kept": scene.tolerance,
+        "tolerance_kept": ready.conditions.tolerance,
         "chord_error": around.certain.triangles.chord_error,
         "tool": json.loads(json.dumps(dataclasses.asdict(cutter))),
         "allowance": options.allowance,
@@ -78,7 +78,7 @@ def question(ready: Prepared, cutter: Cutter) -> dict[str, Any]:
         "rotation_step": options.postures.step,
         "grid": options.grid,
         "spacing": options.spacing,
-        "missing": _missing(ready),
+        "missing": list(around.doubts),
         "unjudged_faces": [f.id for f in part.faces if f.number in chosen.targets and f.unjudged],
     }
 
@@ -206,16 +206,6 @@ def _sides_follow(scene: Scene) -> bool:
         return False
     ways = [(sign * x, sign * y, sign * z) for sign in (1.0, -1.0) for x, y, z in np.eye(3).tolist()]
     return any((orient(scene.part, towards=way, flip=scene.flip).sign != scene.orientation.sign).any() for way in ways)
-
-
-def _missing(ready: Prepared) -> list[str]:
-    """Obstacles that are missing or only guessed."""
-    around = ready.conditions.around
-    return [
-        *(f"F{number}: {why}" for number, why, _ in around.missing),
-        *(str(each) for each in around.lost),
-        *(f"{each.name} {face}: {why}" for each in around.fixtures for face, why, _ in each.missing),
-    ]
 
 
 def _fixture(fixture: Fixture, bytes_of: str | None) -> dict[str, Any]:

@@ -43,23 +43,16 @@ def decompose(
         allowed &= buried < 0
     asked = np.flatnonzero(allowed) if rows is None else rows[allowed[rows]]
     outer_tool = conditions.outer_tool(cutter)
-    dummy, tool, solids, contacts = (
-        outer_tool.dummy,
-        tool_of(outer_tool),
-        conditions.obstacles.solids,
-        contacts_of(samples),
-    )
-    if not len(dummy):
+    if not len(outer_tool.dummy):
         return interference_free
+    shape, solids, contacts = (outer_tool.dummy, tool_of(outer_tool)), conditions.obstacles.solids, contacts_of(samples)
 
-    looked = list[int]()
+    def tested(piece: NDArray[np.int64]) -> int:
+        return int(dummy_clear(piece, contacts, *shape, solids, interference_free))
 
-    def tested(piece: NDArray[np.int64]) -> None:
-        looked.append(dummy_clear(piece, contacts, dummy, tool, solids, interference_free))
-
-    in_chunks(tested, asked, conditions.jobs)
+    looked = in_chunks(tested, asked, conditions.jobs)
     if work is not None:
-        work.add(sum(looked))
+        work.add(looked)
     return interference_free
 
 

@@ -142,14 +142,13 @@ class Reasons:
                 mine = rows[(earlier.verdict[rows] == INACCESSIBLE) & (found.verdict[rows] == UNJUDGED)]
             else:
                 continue
-            for name in Verdicts.__slots__:
-                getattr(found, name)[mine] = getattr(earlier, name)[mine]
+            found.take(mine, earlier)
         left = rows[found.verdict[rows] == UNJUDGED]
         if len(left):
             outer_tool, inner_tool = conditions.outer_tool(cutter), conditions.inner_tool(cutter)
             search_postures(contacts_of(self.samples), left, outer_tool, inner_tool, conditions, found, fixed=True)
-        known[cutter] = found
-        return found
+        known[cutter] = found.freeze()
+        return known[cutter]
 
 
 def _less(cutter: Cutter) -> Iterator[tuple[int, Cutter]]:

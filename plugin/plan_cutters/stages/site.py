@@ -240,13 +240,10 @@ def _cover(
     sweeping = Sweeping(tool_of(outer_tool), outer_tool.dummy, *outer_tool.noses(cutter.taper, cutter.shape), outer_tool.flutes,
                         conditions.tolerance - chord, chord)  # fmt: skip
 
-    looked = list[int]()
+    def covered(piece: NDArray[np.int64]) -> int:
+        return int(cover(piece, patches, nodes, field.number, sweeping, obstacles.tree, obstacles.faces, outlook))
 
-    def covered(piece: NDArray[np.int64]) -> None:
-        looked.append(cover(piece, patches, nodes, field.number, sweeping, obstacles.tree, obstacles.faces, outlook))
-
-    in_chunks(covered, rows, conditions.jobs)
-    site.work.add(sum(looked))
+    site.work.add(in_chunks(covered, rows, conditions.jobs))
     # A cell that is served touches no skin with any of its cutters: within a body are all of them or none.
     mine = rows[outlook[rows] == 0]
     axis, normal = axes[mine], contacts.normal[mine]

@@ -76,7 +76,7 @@ def witnesses(
             kept = _kept([looked[row] for row in picked[i]], samples.point)
         else:
             row = far_apart(samples.point, group.rows, 1)[0]
-            plain = Witness(row, REASONS[group.reason], None, None, None, None, None, None, untried=group.searched)
+            plain = Witness(row, REASONS[group.reason], untried=group.searched)
             within = group.body >= 0 or group.reason == BURIED
             kept = [_covered(samples, plain, group.body, conditions) if within else plain]
         found += [replace(each, samples=len(group.rows)) for each in kept]
@@ -135,10 +135,9 @@ def _witness(
 ) -> Witness:
     """Find the posture of least depth by halving the depth that is let pass, and measure it on the surface."""
     reason = REASONS[verdicts.reason[row]]
-    nothing = Witness(row, reason, None, None, None, None, None, None)
     found = _least_depth(samples, row, cutter, replace(conditions, around=conditions.around.skins))
     if found is None:
-        return nothing
+        return Witness(row, reason)
     obstacles, at, outer_tool = conditions.obstacles, slice(row, row + 1), conditions.outer_tool(cutter)
     best = found[0]
     if obstacles.holds(outer_tool, samples.point[at], samples.normal[at], best.tilt_direction, best.tilt)[0]:
@@ -190,7 +189,7 @@ def _least_depth(
                 low = depth
             else:
                 break
-    return None if np.isnan(high) else (best, low, high)
+    return None if np.isnan(high) else (best.freeze(), low, high)
 
 
 def _covered(samples: SurfaceSamples, plain: Witness, body: int, conditions: Conditions) -> Witness:

@@ -96,7 +96,7 @@ def _colours(verdict: Ints, own: list[tuple[float, float, float] | None]) -> Flo
 
 def _fixtures(result: Judged) -> list[Body]:
     """All fixtures as one body, or none. Glass has no shade: they need no normals."""
-    shown = [each.shown for each in result.scene.around.fixtures if len(each.shown)]
+    shown = [each.shown for each in result.conditions.around.fixtures if len(each.shown)]
     corner = np.concatenate([np.empty((0, 3, 3)), *shown])
     return [Body(corner, np.zeros_like(corner), np.zeros(len(corner), np.int32))] if shown else []
 

@@ -71,7 +71,7 @@ def meta_of(
         "faces": [_face(entry, surface) for entry in plan.faces],
         "fixtures": [
             {"name": standing.name, "start": surface.fixtures[i][0], "count": surface.fixtures[i][1]}
-            for i, standing in enumerate(result.scene.around.fixtures)
+            for i, standing in enumerate(result.conditions.around.fixtures)
         ],
         "cutters": [
             _cutter(names[entry.id], entry, result.judged(entry.id), counts(result.reaches[entry.id].verdict))

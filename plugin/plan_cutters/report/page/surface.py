@@ -52,7 +52,7 @@ def surface_of(result: Judged, drawn: Drawn, atlas: Atlas) -> Surface:
         start += len(mesh.triangle)
         meshes.append(mesh)
         places.append(place)
-    for i, standing in enumerate(result.scene.around.fixtures):
+    for i, standing in enumerate(result.conditions.around.fixtures):
         mesh = _facets(standing.shown)
         fixtures[i] = (start, len(mesh.triangle))
         start += len(mesh.triangle)
