@@ -36,37 +36,24 @@ _HALVINGS = 12
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Trim(Record):
-    """The border of a face in its parameter plane.
-
-    Attributes
-    ----------
-    face : TopoDS_Face
-    segments : (n, 2, 2) float
-        (u, v) of start and end, the face on the left if its surface is seen with `dS/du x dS/dv` towards the eye.
-    exact : (n,) bool
-        Segments that are the border itself, not chords of it.
-    box : tuple of float
-        u least, u most, v least, v most; tight.
-    scale : (2,) float
-        Typical mm per unit of u and of v.
-    deflection : float
-        Largest measured distance of the polygon from the border, mm.
-    tolerance : float
-        Distance from the border that counts as on it, mm.
-    closed : bool
-        False where the parameter curves do not close; then the kernel decides about every point.
-    rectangular : bool
-        The face uses the whole of `box`.
-    """
+    """The border of a face in its parameter plane."""
 
     face: TopoDS_Face
+    #: (n, 2, 2); (u, v) of start and end, the face on the left if its surface is seen with `dS/du x dS/dv` towards the eye.
     segments: Floats
+    #: (n,); segments that are the border itself, not chords of it.
     exact: Bools
+    #: u least, u most, v least, v most; tight.
     box: tuple[float, float, float, float]
+    #: (2,); typical mm per unit of u and of v.
     scale: Floats
+    #: Largest measured distance of the polygon from the border, mm.
     deflection: float
+    #: Distance from the border that counts as on it, mm.
     tolerance: float
+    #: False where the parameter curves do not close; then the kernel decides about every point.
     closed: bool
+    #: The face uses the whole of `box`.
     rectangular: bool
 
     def inside_grid(self, u: Floats, v: Floats, *, beside: bool = True) -> Bools:

@@ -35,29 +35,19 @@ _CHORD = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Sewn:
-    """Faces that stand in no solid, joined where their edges coincide.
+    """Faces that stand in no solid, joined where their edges coincide."""
 
-    Attributes
-    ----------
-    faces : dict
-        By number; faces that touch share their edges. Empty where all faces stand in solids.
-    tolerance : float, optional
-        Of the rung that was kept, mm; None where no rung joined anything.
-    tried : float, optional
-        Of the last rung, mm; None where there was nothing to join.
-    open_edges : int
-        Edges that still belong to one face alone.
-    open_length : float
-        Their length, mm.
-    stopped : str, optional
-        Why the ladder ended before its time; None where it did not.
-    """
-
+    #: By number; faces that touch share their edges. Empty where all faces stand in solids.
     faces: dict[int, TopoDS_Face]
+    #: Of the rung that was kept, mm; None where no rung joined anything.
     tolerance: float | None
+    #: Of the last rung, mm; None where there was nothing to join.
     tried: float | None
+    #: Edges that still belong to one face alone.
     open_edges: int
+    #: Their length, mm.
     open_length: float
+    #: Why the ladder ended before its time; None where it did not.
     stopped: str | None = None
 
 

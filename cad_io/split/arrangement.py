@@ -40,22 +40,14 @@ class Crossing:
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """A part of a drawn curve within the face.
+    """A part of a drawn curve within the face."""
 
-    Attributes
-    ----------
-    curve : int
-        Number of the curve.
-    t, xy : (n,), (n, 2) float
-        Parameters and places along it, both ends included.
-    crossing : tuple
-        Numbers of the crossings where it starts and ends; None within the face.
-    nodes : tuple of int
-    """
-
+    #: Number of the curve.
     curve: int
+    #: (n,); parameters and places along it, both ends included.
     t: Floats
     xy: Floats
+    #: Numbers of the crossings where it starts and ends; None within the face.
     crossing: tuple[int | None, int | None]
     nodes: tuple[int, int]
 

@@ -24,39 +24,26 @@ _AROUND = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Half:
-    """A directed side of a region, which lies left of it.
+    """A directed side of a region, which lies left of it."""
 
-    Attributes
-    ----------
-    start, stop : int
-        Nodes.
-    xy : (n, 2) float
-    side : tuple, optional
-        Number of the border's side, and the parameters between which it runs along it.
-    stretch : tuple, optional
-        Number of the stretch of a drawn curve, and 1 along it or -1 against it.
-    """
-
+    #: Nodes.
     start: int
     stop: int
+    #: (n, 2).
     xy: Floats
+    #: Number of the border's side, and the parameters between which it runs along it.
     side: tuple[int, float, float] | None = None
+    #: Number of the stretch of a drawn curve, and 1 along it or -1 against it.
     stretch: tuple[int, int] | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """A part of a face.
+    """A part of a face."""
 
-    Attributes
-    ----------
-    loops : list of list of Half
-        The outer one, then the holes.
-    ring : (n, 2, 2) float
-        All of them as one even-odd region, scaled.
-    """
-
+    #: The outer one, then the holes.
     loops: list[list[Half]]
+    #: (n, 2, 2); all of them as one even-odd region, scaled.
     ring: Floats
 
     @property

@@ -39,24 +39,16 @@ StandIn = Literal["triangles", "box", "edges", "none"]
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class StandIns(Record):
-    """Triangles in place of faces.
+    """Triangles in place of faces."""
 
-    Attributes
-    ----------
-    vertex : (t, 3, 3) float
-        Corners, mm.
-    face : (t,) int32
-        Face number, 0 for a face that is only in the file.
-    weight : (t,) int8
-        1 where the triangle is part of a skin that encloses something and its corners run counter-clockwise seen from
-        outside, -1 where they run clockwise, 0 where nothing is known to be enclosed.
-    how : dict
-        Face number -> `triangles`, `box`, `edges`, or `none` where its place is not known.
-    """
-
+    #: (t, 3, 3); corners, mm.
     vertex: Floats
+    #: (t,); face number, 0 for a face that is only in the file.
     face: Ints
+    #: (t,); 1 where the triangle is part of a skin that encloses something and its corners run counter-clockwise seen from
+    #: outside, -1 where they run clockwise, 0 where nothing is known to be enclosed.
     weight: NDArray[np.int8]
+    #: Face number -> `triangles`, `box`, `edges`, or `none` where its place is not known.
     how: dict[int, StandIn]
 
 

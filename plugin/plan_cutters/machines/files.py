@@ -18,20 +18,14 @@ class Content(content.Content):
 
 
 class Added(NamedTuple):
-    """The user adds these facts to a machine's file, where the file leaves them open.
+    """The user adds these facts to a machine's file, where the file leaves them open."""
 
-    Attributes
-    ----------
-    part, tool : tuple of str
-        Names of rotary axes: those that carry the part, the one next to the part first; those that carry the tool, the one next
-        to the tool last.
-    sign : str
-        `table`: positive angles of axes that carry the part are those of the table's own motion; `tool-relative`: of the tool
-        relative to the part, as in ISO 841; empty where nothing is said.
-    """
-
+    #: Names of rotary axes: those that carry the part, the one next to the part first; those that carry the tool, the one next
+    #: to the tool last.
     part: tuple[str, ...] = ()
     tool: tuple[str, ...] = ()
+    #: `table`: positive angles of axes that carry the part are those of the table's own motion; `tool-relative`: of the tool
+    #: relative to the part, as in ISO 841; empty where nothing is said.
     sign: str = ""
 
     @property
