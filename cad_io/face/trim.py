@@ -17,11 +17,11 @@ from OCP.BRepTools import BRepTools
 from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
 from OCP.GeomAbs import GeomAbs_C2, GeomAbs_Line
 from OCP.gp import gp_Pnt2d
-from OCP.TopAbs import TopAbs_FORWARD, TopAbs_IN, TopAbs_ON, TopAbs_REVERSED
-from OCP.TopoDS import TopoDS, TopoDS_Face
+from OCP.TopAbs import TopAbs_IN, TopAbs_ON
+from OCP.TopoDS import TopoDS_Face
 
 from cad_io.arrays import Floats, Record
-from cad_io.kernel import edges_of, interval_ends
+from cad_io.kernel import bounding, interval_ends
 from cad_io.surface import Surface
 
 Bools = NDArray[np.bool_]
@@ -55,6 +55,12 @@ class Trim(Record):
     closed: bool
     #: The face uses the whole of `box`.
     rectangular: bool
+
+    @property
+    def uv_area(self) -> float:
+        """Area of what the border encloses in the parameter plane."""
+        p, q = self.segments[:, 0], self.segments[:, 1]
+        return abs(0.5 * float((p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]).sum()))
 
     def inside_grid(self, u: Floats, v: Floats, *, beside: bool = True) -> Bools:
         """Which nodes of the grid of increasing lines u (nu,) and v (nv,) lie in the face: (nu, nv).
@@ -124,19 +130,17 @@ def trim_of(face: TopoDS_Face, surface: Surface) -> Trim | None:
     surface : Surface
         Of that face, not restricted to it.
     """
-    forward = TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
+    forward, edges = bounding(face)
     scale, size = _scale(forward, surface)
     if scale is None:
         return None
     pieces, exact, tolerance, deflection = [], [], ON_LEAST, 0.0
-    for edge in edges_of(forward):
-        if edge.Orientation() not in (TopAbs_FORWARD, TopAbs_REVERSED):
-            continue
+    for edge, way in edges:
         curve = BRepAdaptor_Curve2d(edge, forward)
         points, deviation = _polyline(curve, scale, DEFLECTION * size)
         if not np.isfinite(points).all():
             return None
-        pieces.append(points if edge.Orientation() == TopAbs_FORWARD else points[::-1])
+        pieces.append(points[::way])
         exact.append(len(points) == 2 and deviation == 0)
         tolerance, deflection = max(tolerance, BRep_Tool.Tolerance_s(edge)), max(deflection, deviation)
     if not pieces:

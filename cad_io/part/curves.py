@@ -11,11 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.GeomAbs import GeomAbs_C2, GeomAbs_Line
-from OCP.gp import gp_Pnt, gp_Vec
 from OCP.TopoDS import TopoDS_Edge
 
 from cad_io.arrays import Floats
-from cad_io.kernel import interval_ends, is_kernel_error
+from cad_io.kernel import along, interval_ends, may_refuse
 
 Indices = NDArray[np.intp]
 
@@ -169,7 +168,8 @@ class _Kernel(NamedTuple):
 
     @classmethod
     def of(cls, edge: TopoDS_Edge) -> "_Kernel | None":
-        try:
+        ends = np.zeros(0)
+        with may_refuse():
             curve = BRepAdaptor_Curve(edge)
             low, high = curve.FirstParameter(), curve.LastParameter()
             if not (low < high and max(-low, high) < _INFINITE):
@@ -180,29 +180,20 @@ class _Kernel(NamedTuple):
             if not 0 < count <= _MOST_INTERVALS:
                 return None
             ends = np.unique(np.clip(interval_ends(count, curve.Intervals, GeomAbs_C2), low, high))
-        except Exception as thrown:
-            if not is_kernel_error(thrown):
-                raise
+        if len(ends) < 2:
             return None
-        each = max(_FIRST // (len(ends) - 1), 1) if len(ends) > 1 else 1
+        each = max(_FIRST // (len(ends) - 1), 1)
         share = np.arange(each) / each
         t = (ends[:-1, None] + share * np.diff(ends)[:, None]).ravel()
-        return cls(curve, np.append(t, ends[-1])) if len(ends) > 1 else None
+        return cls(curve, np.append(t, ends[-1]))
 
     def at(self, t: Floats) -> tuple[Floats, Floats] | None:
         """Points and derivatives (k, 3); None where the kernel has none."""
-        point, along, flat = gp_Pnt(), gp_Vec(), []
-        evaluate = self.curve.D1
-        try:
-            for x in t.tolist():
-                evaluate(x, point, along)
-                flat.append((point.Coord(), along.Coord()))
-        except Exception as thrown:
-            if not is_kernel_error(thrown):
-                raise
-            return None
-        found = np.array(flat).reshape(-1, 2, 3)
-        return (found[:, 0], found[:, 1]) if np.isfinite(found).all() else None
+        with may_refuse():
+            found = along(self.curve, t, 3)
+            if np.isfinite(found).all():
+                return found[:, 0], found[:, 1]
+        return None
 
 
 def _followed(kernels: Sequence[_Kernel | None], chord: float) -> list[_Drawing | None]:

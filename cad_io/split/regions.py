@@ -8,11 +8,12 @@ import numpy as np
 from scipy.ndimage import maximum_filter, minimum_filter
 
 from cad_io.arrays import Floats, Ints
+from cad_io.face.clip import inside as holds
 from cad_io.face.uv_region import inside, interior_point
 from cad_io.split.arrangement import Arrangement
 from cad_io.split.border import CannotSplit
 from cad_io.split.contour import LabelGrid
-from cad_io.split.planar import bearing, chain, enclosed, extent, left_of, within
+from cad_io.split.planar import bearing, chain, enclosed, extent, left_of
 
 #: Share of the nodes off the boundary that may end up in a piece of another label.
 _ASTRAY = 0.01
@@ -230,7 +231,7 @@ def _nested(loops: list[list[Half]], size: float) -> list[Region]:
             continue
         probe = left_of(paths[i], 1e-3 * size)
         boxed = [o for o in holes if (lows[o] <= probe).all() and (probe <= highs[o]).all()]
-        around = [o for o in boxed if within(probe[None], rings[o])[0]]
+        around = [o for o in boxed if holds(rings[o], probe[None])[0]]
         if not around:
             raise CannotSplit("a hole lies in none of its regions")
         holes[min(around, key=lambda o: areas[o])].append(i)
