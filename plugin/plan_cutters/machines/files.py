@@ -1,6 +1,6 @@
 """Files that are machine files, or should be; and what whoever gives one adds where it leaves something open."""
 
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 from plan_cutters.domain.checks import shown
 from plan_cutters.errors import MachineError, PlanError
@@ -67,8 +67,3 @@ class Added(NamedTuple):
         if (order and self.order) or (sign and self.sign):
             what = "the order of its axes" if order and self.order else "how its angles are counted"
             raise MachineError(f"it says {what} itself: leave out #{self.text}", file=name)
-
-
-def fault(content: Content, why: Any) -> MachineError:
-    """An error of this file."""
-    return MachineError(str(why), file=content.name)
