@@ -50,7 +50,7 @@ class Curves:
     """
 
     def __init__(self, edges: Sequence[TopoDS_Edge], chord: float) -> None:
-        drawings = _followed([_Kernel.of(edge) for edge in edges], chord)
+        drawings = [_followed(edge, chord) for edge in edges]
         self.drawn = np.array([each is not None for each in drawings], bool)
         blank = _Drawing(np.array([0.0, 1.0]), np.zeros((2, 3)), np.zeros((2, 3)))
         each = [drawing or blank for drawing in drawings] or [blank]
@@ -97,7 +97,7 @@ class Curves:
         step = self._table_length[i + 1] - self._table_length[i]
         with np.errstate(all="ignore"):
             share = np.where(step > 0, (length - self._table_length[i]) / step, 0.0)
-        return self._between(i, np.clip(share, 0.0, 1.0))
+        return self.chord_parameter(i, np.clip(share, 0.0, 1.0))
 
     def near(self, which: Indices, t: Floats, low: Floats, high: Floats, point: Floats) -> tuple[Floats, Floats]:
         """Parameters (m,) between `low` and `high` next to points (m, 3), from a guess on, and the distances there.
@@ -122,7 +122,7 @@ class Curves:
 
     def chord_parameter(self, chord: Indices, share: Floats) -> Floats:
         """Parameters (m,) at shares of chords of the table."""
-        return self._between(chord, share)
+        return np.asarray(self._table_t[chord] + share * (self._table_t[chord + 1] - self._table_t[chord]))
 
     def breaks(self, which: int, low: float, high: float) -> Floats:
         """Parameters of a curve at which its pieces end, and the two given."""
@@ -138,9 +138,6 @@ class Curves:
         i = self._piece(self._table_t, self.table_first, which, t)
         step = self._table_t[i + 1] - self._table_t[i]
         return i, np.clip((t - self._table_t[i]) / step, 0.0, 1.0)
-
-    def _between(self, i: Indices, share: Floats) -> Floats:
-        return np.asarray(self._table_t[i] + share * (self._table_t[i + 1] - self._table_t[i]))
 
     def _piece(self, table: Floats, first: Indices, which: Indices, t: Floats) -> Indices:
         """Places (m,) in a table of the last entry of each curve that is not behind its parameter."""
@@ -196,12 +193,11 @@ class _Kernel(NamedTuple):
         return None
 
 
-def _followed(kernels: Sequence[_Kernel | None], chord: float) -> list[_Drawing | None]:
-    """The curves in pieces; None for those that cannot be followed."""
-    return [None if kernel is None else _follow(kernel, chord) for kernel in kernels]
-
-
-def _follow(kernel: _Kernel, chord: float) -> _Drawing | None:
+def _followed(edge: TopoDS_Edge, chord: float) -> _Drawing | None:
+    """The curve of an edge in pieces; None where it cannot be followed."""
+    kernel = _Kernel.of(edge)
+    if kernel is None:
+        return None
     t, found = kernel.ends, kernel.at(kernel.ends)
     if found is None:
         return None

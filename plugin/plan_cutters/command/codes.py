@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from plan_cutters.command import terminal
-from plan_cutters.command.supervise import Supervised
 from plan_cutters.command.worker import INTERRUPTED
+from plan_cutters.command.worker_errors import Supervised
 
 if TYPE_CHECKING:
     from plan_cutters.document.model import Plan
