@@ -359,7 +359,7 @@ def test_what_the_child_says_comes_through_whatever_it_holds():
     watch = _Watch(1.0, display)
     watch.pipe = here
     odd = "a\nsafe 0 /tmp\\x\udcff ü\u2028.step"
-    child = f"from plan_cutters.command.supervise import report as tell; odd = {odd!r}\n"
+    child = f"from plan_cutters.command.worker import report as tell; odd = {odd!r}\n"
     child += "tell('part', odd); tell('at', '3 9'); tell('say', odd)"
     subprocess.run(
         [sys.executable, "-c", child], env=ENV | {"PLAN_CUTTERS_REPORT": str(there)}, pass_fds=(there,), check=True

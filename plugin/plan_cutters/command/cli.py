@@ -20,10 +20,18 @@ from plan_cutters.command.supervise import (
     keep_interrupts,
     keep_output,
     limit_memory,
-    report,
 )
 from plan_cutters.command.values import File
-from plan_cutters.command.worker import GO, INTERRUPTED, began, can_supervise, follow_parent, is_child, wait_to_begin
+from plan_cutters.command.worker import (
+    GO,
+    INTERRUPTED,
+    began,
+    can_supervise,
+    follow_parent,
+    is_child,
+    report,
+    wait_to_begin,
+)
 from plan_cutters.command.worker_errors import Unfinished
 
 _SELF = "plan-cutters"

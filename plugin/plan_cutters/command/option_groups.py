@@ -9,6 +9,7 @@ from cad_io.units import UNITS
 from plan_cutters.command import values
 from plan_cutters.command.help_groups import heading
 from plan_cutters.command.values import File, Folder, Range, Setup, Words
+from plan_cutters.report.folder import DEFAULT_FORMATS, FORMATS
 
 EXAMPLES = (
     ("plan-cutters blade.step", "The sculptured faces and fillets, with the built-in cutters:"),
@@ -204,9 +205,9 @@ _OPTIONS = (
     _output("-o", "--out", type=Folder("DIR"), help="Folder for the files.  [default: <part>-plan]"),
     _output(
         "--formats",
-        type=Words("LIST", values.formats, listed=True),
-        help=f"Of {', '.join(values.formats())}; merged is a GLB of one mesh, for parts of thousands of faces.  "
-        f"[default: {','.join(values.default_formats())}]",
+        type=Words("LIST", lambda: FORMATS, listed=True),
+        help=f"Of {', '.join(FORMATS)}; merged is a GLB of one mesh, for parts of thousands of faces.  "
+        f"[default: {','.join(DEFAULT_FORMATS)}]",
     ),
     _output(
         "--step-schema",

@@ -79,17 +79,13 @@ def not_reached(plan: "Plan", *, verbose: bool = False) -> list[str]:
         near = sorted(larger, key=lambda c: (c.id != taken, c.lost))[:_OTHERS]
     lines = [capital(named(plan, left(plan, c))) for c in larger if c in near]
     if rest := [c for c in larger if c not in near]:
-        ends = [min(rest, key=_lost_share), max(rest, key=_lost_share)]
+        ends = [of(rest, key=lambda c: c.area_share.lost) for of in (min, max)]
         least, most = (lost(c, c.area_share) for c in ends)
         which = "larger cutter" if plan.selected else "cutter"
         much = least if least == most else f"{least} to {most}"
         leave = f"{len(rest)} more {which}{'s leave' if len(rest) > 1 else ' leaves'}"
         lines.insert(0, f"{leave} {much} of {area(plan)}: -v or plan.json say why.")
     return lines
-
-
-def _lost_share(c: "CutterEntry") -> float:
-    return c.area_share.inaccessible + c.area_share.undecided
 
 
 def _apart(lines: Sequence[Any]) -> list[Any]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from cad_io import Part, SurfaceSamples
 from cad_io.kernel.assembly import component_of
 from plan_cutters import __version__
-from plan_cutters.document.frozen import posture, vector
+from plan_cutters.document.frozen import filled, posture, vector
 from plan_cutters.document.listed import listed
 from plan_cutters.document.model import (
     CutterEntry,
@@ -76,24 +76,15 @@ def cutter_entry(
     feasible = False if blocked else None if mine["undecided"] or around.doubtful else True
     lost, unsure = reach.verdict == INACCESSIBLE, reach.verdict == UNDECIDED
     faces = face_verdicts(samples, reach, inside)
-    return CutterEntry(
-        id=cutter.id,
-        name=cutter.name,
-        radius=cutter.radius,
-        corner_radius=cutter.corner_radius,
-        length=cutter.length,
-        shape=cutter.shape,
+    return filled(
+        CutterEntry,
+        cutter,
         taper_deg=float(np.degrees(cutter.taper)),
         flutes_mm=flute_length(cutter),
         holder=cutter.holder.name if cutter.holder else "",
         stages=[
-            SegmentEntry(
-                part=part,
-                low_mm=low,
-                length_mm=stage.length,
-                radius_mm=stage.radius,
-                upper_radius_mm=stage.upper_radius,
-            )
+            SegmentEntry(part=part, low_mm=low, length_mm=stage.length, radius_mm=stage.radius,
+                         upper_radius_mm=stage.upper_radius)
             for part, low, stage in cutter.stages
         ],
         touches_deg=[degrees((mode.low, mode.high)) for mode in modes(cutter)],
@@ -112,7 +103,7 @@ def cutter_entry(
         witnesses=[_witness_entry(w, samples, around, reach, inside) for w in found],
         witnesses_untried=sum(w.untried for w in found),
         seconds=seconds,
-    )
+    )  # fmt: skip
 
 
 def _witness_entry(
@@ -121,18 +112,17 @@ def _witness_entry(
     best = None
     if witness.tilt is not None and witness.rotation is not None and witness.axis is not None:
         best = posture(witness.tilt, witness.rotation, witness.axis)
-    return WitnessEntry(
-        sample=witness.sample,
+    return filled(
+        WitnessEntry,
+        witness,
         point=vector(samples.point[witness.sample]),
         face=f"F{samples.face[witness.sample]}",
         verdict="undecided" if reach.verdict[witness.sample] == UNDECIDED else "inaccessible",
-        reason=witness.reason,
         obstacle_face=None if not witness.obstacle_face else around.called(witness.obstacle_face),
         obstacle_point=None if witness.obstacle_point is None else vector(witness.obstacle_point),
         best_posture=best,
         depth_mm=witness.depth,
         inside_bodies=bool(inside[witness.sample]),
-        samples=witness.samples,
     )
 
 
@@ -183,11 +173,9 @@ def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen) -> list[Fa
         if reason is None and len(bad):
             reason = f"{len(bad)} samples: " + "; ".join(samples.reasons[i] for i in np.unique(bad))
         result.append(
-            FaceEntry(
-                id=face.id,
-                name=face.name,
-                surface=face.surface,
-                shape=face.shape,
+            filled(
+                FaceEntry,
+                face,
                 kind="blend" if face.number in choice.blends else face.shape,
                 target=face.number in chosen,
                 ignored=face.number in ignored,

@@ -115,26 +115,17 @@ Elsewhere = tuple[Vector, Mapping[str, Verdicts]]
 
 @dataclass(frozen=True, slots=True)
 class OverSetups:
-    """The verdicts of each cutter over all setups and in each of them, by its id.
+    """The verdicts of each cutter over all setups and in each of them, by its id."""
 
-    Attributes
-    ----------
-    reaches : mapping
-        In one setup or another.
-    here : mapping
-        In the first one.
-    served_in : mapping
-        The setup that serves each sample, (n,) int32.
-    first : (float, float, float)
-        Its axis.
-    elsewhere : tuple of Elsewhere
-        In each other setup.
-    """
-
+    #: In one setup or another.
     reaches: Mapping[str, Verdicts]
+    #: In the first one.
     here: Mapping[str, Verdicts]
+    #: The setup that serves each sample, (n,) int32.
     served_in: Mapping[str, Ints]
+    #: (float, float, float); its axis.
     first: Vector
+    #: In each other setup.
     elsewhere: tuple[Elsewhere, ...] = ()
 
     def each(self) -> tuple[Elsewhere, ...]:

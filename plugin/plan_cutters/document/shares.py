@@ -54,6 +54,11 @@ class AreaShare(Frozen):
         default={}, description="of inaccessible and undecided together, by reason; reasons that there are"
     )
 
+    @property
+    def lost(self) -> float:
+        """Share that is not reached."""
+        return self.inaccessible + self.undecided
+
 
 class FaceVerdicts(VerdictCounts):
     """The verdicts of a cutter on a face are counted in samples and in shares of its area."""

@@ -107,7 +107,7 @@ def _faces(plan: Plan, shown: CutterEntry) -> list[tuple[FaceEntry, str, str]]:
     def rank(face: FaceEntry) -> tuple[bool, float]:
         share = shares.get(face.id)
         area = face.area_mm2 if math.isfinite(face.area_mm2) else 0.0
-        return not face.target, -area * (share.inaccessible + share.undecided) if share else 0.0
+        return not face.target, -area * share.lost if share else 0.0
 
     return [
         (face, reached(shown.faces[face.id], shares[face.id]), cutters.reason(cutters.main_reason(shares[face.id])))

@@ -204,7 +204,7 @@ def worst_faces(plan: Plan, c: CutterEntry, most: int = 5) -> tuple[list[WorstFa
     faces, failing = {face.id: face for face in plan.faces}, [name for name, each in c.faces.items() if each.lost]
 
     def share(name: str) -> float:
-        return c.faces[name].area_share.inaccessible + c.faces[name].area_share.undecided
+        return c.faces[name].area_share.lost
 
     def lot(name: str) -> float:
         return share(name) * (1.0 - c.faces[name].inside_share) * faces[name].area_mm2
