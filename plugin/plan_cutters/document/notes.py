@@ -48,7 +48,7 @@ def _of_sides(scene: Scene, options: Options, kept: float) -> Iterator[Note]:
         yield Note("no_machine", "No machine was given: any tool axis counts as possible.")
     if not scene.orientation.confident:
         yield Note("side_guessed", "Which side is material is a guess; --flip machines the other side.")
-        if other := scene.turned():
+        if other := scene.turned_faces():
             yield Note("side_by_setup", f"The setup axis decides the side of open faces: with 0,0,1 as setup {listed(other)} "
                        "would be machined on the other side.")  # fmt: skip
     if kept > 1.001 * scene.asked:

@@ -124,12 +124,17 @@ class Scene(Record):
         scene._memory.sources, scene._memory.alone = self._memory.sources, self._memory.alone
         return scene
 
-    def turned(self) -> tuple[str, ...]:
+    def turned_faces(self) -> tuple[str, ...]:
         """List the faces whose side is a guess towards the setup axis, and would be the other with the part's own Z as setup."""
         other = orient(self.part, towards=(0.0, 0.0, 1.0), flip=self.flip).sign
         return tuple(
             f.id for f, one, two in zip(self.part.faces, self.orientation.sign, other, strict=True) if one != two
         )
+
+    # The former names, for scripts: the program itself asks `surround` and `turned_faces`.
+    around = property(lambda self: self.surround())
+    tolerance = property(lambda self: self.surround().tolerance(self.asked))
+    turned = property(lambda self: self.turned_faces())
 
     @property
     def options(self) -> dict[str, Any]:
