@@ -40,7 +40,7 @@ def test_a_scene_computes_nothing_when_it_is_looked_at(made):
     scene = Scene.of(GROOVE, fixtures="box:4,4,4@0,0,40")
     del made[:]
     assert not [name for name, each in vars(Scene).items() if isinstance(each, cached_property)]
-    for name in {*dir(scene)}:
+    for name in {*dir(scene)} - {"around", "tolerance", "turned"}:  # its former names ask `surround`
         getattr(scene, name)
     repr(scene)
     assert scene == Scene.of(scene)
