@@ -138,8 +138,9 @@ def _reach(corner, lo, hi, middle, axes, workspace):
 
 
 class _Workspace(NamedTuple):
-    """Room to bound a node in: low, high (levels, 2, 3), the boxes along x, y and z of a node's two children by its level;
-    middle (3,), axes (3, 3), least, most (3,), and lows, highs (3, _LANES)."""
+    """This is a workspace for bounding a node: low, high (levels, 2, 3), the boxes along x, y and z of a node's two children by
+    its level; middle (3,), axes (3, 3), least, most (3,), and lows, highs (3, _LANES).
+    """
 
     low: Any
     high: Any
@@ -172,7 +173,7 @@ def _bound(corner, normal, lo, hi, low, high, box, node, workspace):
     axes[1, 0] = mean[1] * axes[0, 2] - mean[2] * axes[0, 1]
     axes[1, 1] = mean[2] * axes[0, 0] - mean[0] * axes[0, 2]
     axes[1, 2] = mean[0] * axes[0, 1] - mean[1] * axes[0, 0]
-    # Extents from the box's middle, so that far from the origin nothing is lost to rounding.
+    # Extents from the box's middle, so that far from the origin rounding takes nothing away.
     _reach(corner, lo, hi, middle, axes, workspace)
     square, scale = 0.0, abs(middle[0]) + abs(middle[1]) + abs(middle[2])
     for k in range(3):
@@ -273,7 +274,7 @@ def build_apart(vertex, own, away):
     _sort(order, centre, depth, lows, highs)
     corner = np.empty((9, n))
     _corners(vertex, order, corner)
-    # The centres have served: their room is that of the normals.
+    # The centres have served: the normals take their array.
     normal = centre
     _normals(corner, normal)
     box = np.empty(((2 << depth) - 1, 16))

@@ -4,13 +4,13 @@ A tool stands where a body puts it, a row of 14 numbers: the centre about which 
 the distance of that centre from the axis along x_T, and by how much all is drawn out along y_T to either side (0 for a tool).
 Its pieces are those of `pieces`, heights measured from that centre along a. For a flat end the centre is the contact.
 
-The clever part: a triangle cut off at the two heights of a piece is a convex polygon, and it meets a cylinder exactly when
-its shadow along the axis comes nearer to the axis than the radius. No subdivision, no trigonometry, no tolerance. One walk of
-the tree serves all pieces: a piece that is apart from a box is not asked for again below it.
+A triangle cut off at the two heights of a piece is a convex polygon, and it meets a cylinder exactly when its shadow along the
+axis comes nearer to the axis than the radius (`docs/at_a_sample.md`, lemma S3). No subdivision, no trigonometry, no tolerance.
+One walk of the tree serves all pieces: a piece that is apart from a box is not asked for again below it.
 
 `rate` widens all pieces, at a point Q, by `rate` times the distance of Q from the line through the centre along y_T. Tilting
 turns the tool about that line, and turning by at most `rate` moves Q by no more than that in the tool's frame: a miss with
-`rate` is a miss at every tilt within that turn.
+`rate` is a miss at every tilt within that turn (lemma S5).
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ P, A, X, Y, OFFSET, HALF, BODY = 0, 3, 6, 9, 12, 13, 14
 
 @entry
 def scratch():
-    """Room for walks of a tree."""
+    """Make a workspace for walks of a tree."""
     return Scratch(
         np.empty(64, np.int64), np.empty(64, np.int64), np.empty((3, 3)), np.empty((4, 3)), np.empty((8, 3)), np.empty((8, 3)),
         np.empty((64, 3, 3)), np.zeros(1, np.int64),
@@ -34,7 +34,7 @@ def scratch():
 
 @kernel
 def stand(body, frame, tilt_cos, tilt_sin, offset, rise):
-    """Write the body whose axis leans from the normal of a frame towards its tilt direction by a tilt.
+    """Write the body whose axis is tilted from the normal of a frame towards its tilt direction.
 
     Its centre stands `rise` over the contact, `offset` from the axis.
     """
