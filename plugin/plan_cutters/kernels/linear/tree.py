@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from plan_cutters.kernels.codes import BOX, CENTRE, DIAGONAL, HALVES, SIDES
 from plan_cutters.kernels.jit import entry, kernel
 
 LEAF = 4
@@ -177,17 +178,17 @@ def _bound(corner, normal, lo, hi, low, high, box, node, workspace):
     _reach(corner, lo, hi, middle, axes, workspace)
     square, scale = 0.0, abs(middle[0]) + abs(middle[1]) + abs(middle[2])
     for k in range(3):
-        box[node, k] = middle[k]
+        box[node, CENTRE + k] = middle[k]
     for k in range(3):
         # A hair wider, so that rounding cannot leave a corner outside.
         half = 0.5 * (workspace.most[k] - workspace.least[k]) * (1 + 1e-12) + 1e-14 * scale
         centre = 0.5 * (workspace.most[k] + workspace.least[k])
         for i in range(3):
-            box[node, i] += centre * axes[k, i]
-            box[node, 3 + 3 * k + i] = axes[k, i]
-        box[node, 12 + k] = half
+            box[node, CENTRE + i] += centre * axes[k, i]
+            box[node, SIDES + 3 * k + i] = axes[k, i]
+        box[node, HALVES + k] = half
         square += half * half
-    box[node, 15] = np.sqrt(square) * (1 + 1e-12)
+    box[node, DIAGONAL] = np.sqrt(square) * (1 + 1e-12)
 
 
 @kernel
@@ -277,7 +278,7 @@ def build_apart(vertex, own, away):
     # The centres have served: the normals take their array.
     normal = centre
     _normals(corner, normal)
-    box = np.empty(((2 << depth) - 1, 16))
+    box = np.empty(((2 << depth) - 1, BOX))
     workspace = _Workspace(
         np.empty((depth + 1, 2, 3)), np.empty((depth + 1, 2, 3)), np.empty(3), np.empty((3, 3)), np.empty(3), np.empty(3),
         np.empty((3, _LANES)), np.empty((3, _LANES)),

@@ -127,16 +127,16 @@ def take_point(x, y, z, interval, count, turning, k, arcs):
 
 @kernel
 def _fill(seen, corner):
-    """Write a triangle of rows (x, z, y) into all lanes."""
+    """Write a triangle of rows (x, y, z) into all lanes."""
     for k in range(3):
         for lane in range(LANES):
-            seen[3 * k, lane], seen[3 * k + 1, lane], seen[3 * k + 2, lane] = corner[k, 0], corner[k, 2], corner[k, 1]
+            seen[3 * k, lane], seen[3 * k + 1, lane], seen[3 * k + 2, lane] = corner[k, 0], corner[k, 1], corner[k, 2]
     distances(seen)
 
 
 @kernel
 def _out(corner, ca, sa, cb, sb, turning, k, workspace):
-    """Whether a triangle, rows (x, z, y) from the centre, is shown to stay out of piece k at all tilts of an interval."""
+    """Whether a triangle, rows (x, y, z) from the centre, is shown to stay out of piece k at all tilts of an interval."""
     workspace.spent[0] += 1
     if (turning.eight >> k) & 1:
         return _passes(corner, ca, sa, cb, sb, flutes(turning, k), workspace.first, workspace.second)
@@ -147,15 +147,15 @@ def _out(corner, ca, sa, cb, sb, turning, k, workspace):
 
 @kernel
 def _quarters(part, seen):
-    """Write the four quarters of a triangle (3, 3), rows (x, z, y), into lanes, the rest again."""
+    """Write the four quarters of a triangle (3, 3), rows (x, y, z), into lanes, the rest again."""
     for lane in range(LANES):
         for k in range(3):
             other = (k + 1) % 3
-            for column, row in ((0, 0), (2, 1), (1, 2)):
-                here = part[k, column]
+            for row in range(3):
+                here = part[k, row]
                 # The middle one has the middles of the sides, the others a corner each and the middles next to it.
                 to = other if lane % 4 == 3 else lane % 4
-                seen[3 * k + row, lane] = 0.5 * (here + part[to, column])
+                seen[3 * k + row, lane] = 0.5 * (here + part[to, row])
     distances(seen)
 
 
@@ -187,9 +187,8 @@ def _out_in_parts(corner, ca, sa, cb, sb, turning, k, workspace):
             if cut == _QUARTERED or top == len(parts):
                 return False
             for corner_of in range(3):
-                parts[top, corner_of, 0] = seen[3 * corner_of, lane]
-                parts[top, corner_of, 2] = seen[3 * corner_of + 1, lane]
-                parts[top, corner_of, 1] = seen[3 * corner_of + 2, lane]
+                for row in range(3):
+                    parts[top, corner_of, row] = seen[3 * corner_of + row, lane]
             times[top] = cut
             top += 1
     return True
@@ -309,12 +308,12 @@ def _shrink(corner, interval, g, sign, narrowest, turning, k, workspace):
 def cut_intervals(vertex, i, frame, interval, count, narrowest, turning, k, workspace):
     """Take the tilts at which a triangle is in the way of piece k out of the intervals; (their count, whether any was cut).
 
-    The triangle is in `workspace.corner` too, as rows (x, z, y) from the centre.
+    The triangle is in `workspace.corner` too, as rows (x, y, z) from the centre.
     """
     corner, cut = workspace.corner, False
     # What its corners alone forbid is known in closed form, and mostly all that it does.
     for j in range(3):
-        count, took = take_point(corner[j, 0], corner[j, 2], corner[j, 1], interval, count, turning, k, workspace.arcs)
+        count, took = take_point(corner[j, 0], corner[j, 1], corner[j, 2], interval, count, turning, k, workspace.arcs)
         cut = cut or took
     g = 0
     while g < count:

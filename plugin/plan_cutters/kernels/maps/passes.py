@@ -1,6 +1,6 @@
 """Does a triangle, or do eight boxes or triangles, stay out of the body of a plain cylinder at all tilts of an interval?
 
-The sides are those of lemmas M1 to M3 of `docs/posture_map_proof.md`. A triangle's polygon has rows (x, z, y) from the contact.
+The sides are those of lemmas M1 to M3 of `docs/posture_map_proof.md`. A triangle's polygon has rows (x, y, z) from the contact.
 Eight at a time go without a branch, so that the compiler uses the lanes of the processor.
 """
 
@@ -18,12 +18,12 @@ _SLABS = 8
 
 @kernel
 def _clip(source, count, target, a, b, level):
-    """Keep the part of a polygon of rows (x, z, y) with `a x + b z >= level`."""
+    """Keep the part of a polygon of rows (x, y, z) with `a x + b z >= level`."""
     kept = 0
     for i in range(count):
         j = i + 1 if i + 1 < count else 0
-        here = a * source[i, 0] + b * source[i, 1] - level
-        there = a * source[j, 0] + b * source[j, 1] - level
+        here = a * source[i, 0] + b * source[i, 2] - level
+        there = a * source[j, 0] + b * source[j, 2] - level
         if here >= 0.0:
             for k in range(3):
                 target[kept, k] = source[i, k]
@@ -38,13 +38,13 @@ def _clip(source, count, target, a, b, level):
 
 @kernel
 def _side(polygon, count, cosine, sine, radius, shrunk, turned):
-    """On which side of the cylinder at a tilt the shadow of a polygon of rows (x, z, y) lies: 1 front, -1 back, 0 neither.
+    """On which side of the cylinder at a tilt the shadow of a polygon of rows (x, y, z) lies: 1 front, -1 back, 0 neither.
 
     The front is where the contact is. 2: beside it, out of reach at every tilt. `turned` is scratch.
     """
     least, most = np.inf, -np.inf
     for i in range(count):
-        x, z, y = polygon[i, 0], polygon[i, 1], polygon[i, 2]
+        x, y, z = polygon[i, 0], polygon[i, 1], polygon[i, 2]
         turned[i, 0], turned[i, 1], turned[i, 2] = cosine * z + sine * x, cosine * x - sine * z + radius, y
         least, most = min(least, y), max(most, y)
     if least >= shrunk or most <= -shrunk:
@@ -89,9 +89,9 @@ def _from_plane(nx, nz, c, s, tool):
 @kernel
 def _plane_passes(corner, ca, sa, cb, sb, tool):
     """Tell whether a plane, nearly that of a triangle, parts it from the body at all tilts of an interval (lemma M1.5)."""
-    x0, z0, y0 = corner[0, 0], corner[0, 1], corner[0, 2]
-    x1, z1, y1 = corner[1, 0], corner[1, 1], corner[1, 2]
-    x2, z2, y2 = corner[2, 0], corner[2, 1], corner[2, 2]
+    x0, y0, z0 = corner[0, 0], corner[0, 1], corner[0, 2]
+    x1, y1, z1 = corner[1, 0], corner[1, 1], corner[1, 2]
+    x2, y2, z2 = corner[2, 0], corner[2, 1], corner[2, 2]
     slope, rim = _rim((y0 + y1 + y2) / 3.0, tool.radius, tool.shrunk)
     nx, nz = (y1 - y0) * (z2 - z0) - (z1 - z0) * (y2 - y0), (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0)
     nx, nz = _facing(nx, nz, ca, sa, cb, sb)
@@ -106,14 +106,14 @@ def _plane_passes(corner, ca, sa, cb, sb, tool):
 
 @kernel
 def _never(polygon, count, radius, shrunk):
-    """Tell whether a polygon of rows (x, z, y) is out of reach at every tilt (lemma M1.8).
+    """Tell whether a polygon of rows (x, y, z) is out of reach at every tilt (lemma M1.8).
 
     So near the line of turning that the disk, which touches that line at the contact, has curved away. Its distance grows with
     the square of y: its tangent bounds it from below, and what is left of it is least at a corner.
     """
     low, high, middle = np.inf, -np.inf, 0.0
     for i in range(count):
-        x, z, y = polygon[i, 0], polygon[i, 1], polygon[i, 2]
+        x, y, z = polygon[i, 0], polygon[i, 1], polygon[i, 2]
         low, high, middle = min(low, y), max(high, y), middle + y / count
         square = shrunk * shrunk - y * y
         if square > 0.0:
@@ -127,7 +127,7 @@ def _never(polygon, count, radius, shrunk):
         slope, rim = _rim(middle if pieces == 1 else at + 0.5 * wide, radius, shrunk)
         for i in range(count):
             j = i + 1 if i + 1 < count else 0
-            yi, yj = polygon[i, 2], polygon[j, 2]
+            yi, yj = polygon[i, 1], polygon[j, 1]
             if max(yi, yj) < at or min(yi, yj) > at + wide:
                 continue
             first, last = 0.0, 1.0
@@ -136,7 +136,7 @@ def _never(polygon, count, radius, shrunk):
                 first, last = max(0.0, min(u, v)), min(1.0, max(u, v))
             for part in (first, last):
                 x = polygon[i, 0] + part * (polygon[j, 0] - polygon[i, 0])
-                z = polygon[i, 1] + part * (polygon[j, 1] - polygon[i, 1])
+                z = polygon[i, 2] + part * (polygon[j, 2] - polygon[i, 2])
                 gone = slope * (yi + part * (yj - yi)) + rim
                 if gone < 0.0 or x * x + z * z > gone * gone:
                     return False
@@ -151,15 +151,15 @@ def _parts_pass(polygon, count, ca, sa, cb, sb, tool):
     radius, shrunk, low, high, _ = tool
     middle = 0.0
     for k in range(count):
-        middle += polygon[k, 2]
+        middle += polygon[k, 1]
     slope, rim = _rim(middle / count, radius, shrunk)
     upper, lower, under, never, behind, top = -np.inf, -np.inf, -np.inf, True, np.inf, True
     k = count - 1
-    x, z, y = polygon[k, 0], polygon[k, 1], polygon[k, 2]
+    x, y, z = polygon[k, 0], polygon[k, 1], polygon[k, 2]
     last, last_front = cb * z + sb * x, sb * z - cb * x - slope * y - rim
     for k in range(count):
-        before_x, before_z, before_y = x, z, y
-        x, z, y = polygon[k, 0], polygon[k, 1], polygon[k, 2]
+        before_x, before_y, before_z = x, y, z
+        x, y, z = polygon[k, 0], polygon[k, 1], polygon[k, 2]
         height, front = cb * z + sb * x, sb * z - cb * x - slope * y - rim
         below = max(z - sa * (slope * y + rim) - ca * low, z - sb * (slope * y + rim) - cb * low)
         behind = min(behind, sa * z - ca * x + slope * y)
@@ -188,7 +188,7 @@ def _parts_pass(polygon, count, ca, sa, cb, sb, tool):
 
 @kernel
 def _passes(corner, cf, sf, cl, sl, tool, first, second):
-    """Whether a triangle, rows (x, z, y) from the contact, stays out of the body at all tilts of an interval.
+    """Whether a triangle, rows (x, y, z) from the contact, stays out of the body at all tilts of an interval.
 
     With growing tilt a point of the part turns about the contact down and back in the tool's frame. So one that is
     below the bottom or behind the body where the interval begins stays so; one that is in front of it, and no lower than the
@@ -203,7 +203,7 @@ def _passes(corner, cf, sf, cl, sl, tool, first, second):
         return True
     least, most = np.inf, -np.inf
     for k in range(count):
-        least, most = min(least, first[k, 2]), max(most, first[k, 2])
+        least, most = min(least, first[k, 1]), max(most, first[k, 1])
     if most - least < _FLAT * radius:
         return False
     # Too large for one tangent to the rim.

@@ -90,89 +90,95 @@ def _under_rim(edge, y, wide, sine):
 
 
 @kernel
-def _across(edge, offset, x, y, z, ux, uy, uz, vx, vy, vz, cm, sm):
-    """Return the direction, of length 1 or 0, across u and v, away from a bound at the middle of an interval as seen from (x, y,
-    z).
-    """
-    gx, gy, gz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-    share = 1.0 / max(np.sqrt(gx * gx + gy * gy + gz * gz), 1e-200)
-    q0, f0, q1, f1, _, _, _ = edge
-    up = 0.5 * (f0 + min(f1, f0 + 20.0 * max(q0, q1)))
-    away = gx * (x + offset * cm - up * sm) + gy * y + gz * (z - offset * sm - up * cm)
-    share *= 1.0 if away >= 0.0 else -1.0
-    return share * gx, share * gy, share * gz
+def _least_of_box(gx, gy, gz, box, lane):
+    """Return the least that any point of a box has along a direction of the part."""
+    least = gx * box[AT, lane] + gy * box[AT + 1, lane] + gz * box[AT + 2, lane]
+    least -= abs(gx * box[ALONG_F, lane] + gy * box[ALONG_T, lane] + gz * box[ALONG_N, lane])
+    other = abs(gx * box[ALONG_F + 1, lane] + gy * box[ALONG_T + 1, lane] + gz * box[ALONG_N + 1, lane])
+    return least - (
+        other + abs(gx * box[ALONG_F + 2, lane] + gy * box[ALONG_T + 2, lane] + gz * box[ALONG_N + 2, lane])
+    )
 
 
 @kernel
-def _least(gx, gy, gz, x, y, z, sides):
-    """Return the least that any point of a box has along a direction of the part.
+def _least_of_triangle(gx, gy, gz, seen, lane):
+    """Return the least that any point of a triangle has along a direction of the part."""
+    first = gx * seen[0, lane] + gy * seen[1, lane] + gz * seen[2, lane]
+    other = gx * seen[3, lane] + gy * seen[4, lane] + gz * seen[5, lane]
+    return min(first, min(other, gx * seen[6, lane] + gy * seen[7, lane] + gz * seen[8, lane]))
 
-    It takes numbers, not rows: loops read these, so that the compiler takes lanes together.
+
+@kernel
+def _under(shape, boxes, end, bound, j, offset, clear):
+    """Mark boxes, or else triangles, that lie under a bound all over their interval, as seen along the normal tilted like the
+    rim (lemma M6).
     """
-    f0, f1, f2, t0, t1, t2, z0, z1, z2 = sides
-    least = gx * x + gy * y + gz * z - abs(gx * f0 + gy * t0 + gz * z0)
-    return least - (abs(gx * f1 + gy * t1 + gz * z1) + abs(gx * f2 + gy * t2 + gz * z2))
+    edge = edge_of(bound, j)
+    for lane in range(len(clear)):
+        ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
+        if boxes:
+            gy, gz = _under_rim(edge, shape[1, lane], shape[EXTENT, lane], sa)
+            least = _least_of_box(0.0, gy, gz, shape, lane)
+        else:
+            gy, gz = _under_rim(edge, (shape[1, lane] + shape[4, lane] + shape[7, lane]) / 3.0, 0.0, sa)
+            least = _least_of_triangle(0.0, gy, gz, shape, lane)
+        line = rim_line(edge, 0.0, gy, gz, ca, sa, cb, sb)
+        beyond = least - swept(edge, offset, line, 0.0, gz, ca, sa, cb, sb)
+        clear[lane] = 1.0 if beyond > HAIR else clear[lane]
+
+
+@kernel
+def _across(shape, boxes, end, bound, j, offset, clear):
+    """Mark boxes that a plane across their thin side, or else triangles that their own plane, parts from a bound.
+
+    Lemma M6.
+    """
+    edge = edge_of(bound, j)
+    q0, f0, q1, f1, _, _, _ = edge
+    up = 0.5 * (f0 + min(f1, f0 + 20.0 * max(q0, q1)))
+    for lane in range(len(clear)):
+        ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
+        cm, sm = end[CM, lane], end[SM, lane]
+        x, y, z = shape[0, lane], shape[1, lane], shape[2, lane]
+        if boxes:
+            ux, uy, uz = shape[ALONG_F, lane], shape[ALONG_T, lane], shape[ALONG_N, lane]
+            vx, vy, vz = shape[ALONG_F + 1, lane], shape[ALONG_T + 1, lane], shape[ALONG_N + 1, lane]
+        else:
+            ux, uy, uz = shape[3, lane] - x, shape[4, lane] - y, shape[5, lane] - z
+            vx, vy, vz = shape[6, lane] - x, shape[7, lane] - y, shape[8, lane] - z
+        gx, gy, gz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        # Away from the bound as it stands at the middle of the interval.
+        away = gx * (x + offset * cm - up * sm) + gy * y + gz * (z - offset * sm - up * cm)
+        share = (1.0 if away >= 0.0 else -1.0) / max(np.sqrt(gx * gx + gy * gy + gz * gz), 1e-200)
+        gx, gy, gz = share * gx, share * gy, share * gz
+        least = _least_of_box(gx, gy, gz, shape, lane) if boxes else _least_of_triangle(gx, gy, gz, shape, lane)
+        line = rim_line(edge, gx, gy, gz, ca, sa, cb, sb)
+        beyond = least - swept(edge, offset, line, gx, gz, ca, sa, cb, sb)
+        clear[lane] = 1.0 if beyond > HAIR else clear[lane]
 
 
 @kernel
 def _boxes_apart(box, end, bound, j, offset, which, clear):
     """Mark boxes that a plane, as it stands at one end of their interval (row `which` of `end` and the next), parts from a bound.
 
-    All over the interval, turning with the tool or not.
+    All over the interval, turning with the tool (lemma M5) or not (M6).
     """
     edge = edge_of(bound, j)
     for lane in range(len(clear)):
-        x, y, z, wide = box[0, lane], box[1, lane], box[2, lane], box[EXTENT, lane]
-        f0, f1, f2 = box[3, lane], box[4, lane], box[5, lane]
-        t0, t1, t2 = box[6, lane], box[7, lane], box[8, lane]
-        z0, z1, z2 = box[9, lane], box[10, lane], box[11, lane]
+        x, y, z, wide = box[AT, lane], box[AT + 1, lane], box[AT + 2, lane], box[EXTENT, lane]
         c, s = end[which, lane], end[which + 1, lane]
         mx, my, mw, across, _ = _towards(edge, offset + c * x - s * z, y, s * x + c * z)
         reach = _support(edge, offset, mx, mw, across)
-        sides = f0, f1, f2, t0, t1, t2, z0, z1, z2
         ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
         gx, gz = mx * c + mw * s, mw * c - mx * s
         line = rim_line(edge, gx, my, gz, ca, sa, cb, sb)
-        fixed = _least(gx, my, gz, x, y, z, sides) - swept(edge, offset, line, gx, gz, ca, sa, cb, sb)
-        first = _least(mx * ca + mw * sa, my, mw * ca - mx * sa, x, y, z, sides)
-        last = _least(mx * cb + mw * sb, my, mw * cb - mx * sb, x, y, z, sides)
+        fixed = _least_of_box(gx, my, gz, box, lane) - swept(edge, offset, line, gx, gz, ca, sa, cb, sb)
+        first = _least_of_box(mx * ca + mw * sa, my, mw * ca - mx * sa, box, lane)
+        last = _least_of_box(mx * cb + mw * sb, my, mw * cb - mx * sb, box, lane)
         good = _between(
             min(first, last), reach, my, my * y + abs(my) * wide, box[NEAREST, lane], box[FARTHEST, lane], end[CH, lane]
         )
         clear[lane] = 1.0 if good | (fixed > HAIR) else clear[lane]
-
-
-@kernel
-def _boxes_under(box, end, bound, j, offset, clear):
-    """Mark boxes that lie under a bound all over their interval, as seen along the normal tilted like the rim."""
-    edge = edge_of(bound, j)
-    for lane in range(len(clear)):
-        y, z, t0, t1, t2 = box[1, lane], box[2, lane], box[6, lane], box[7, lane], box[8, lane]
-        z0, z1, z2 = box[9, lane], box[10, lane], box[11, lane]
-        ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        gy, gz = _under_rim(edge, y, box[EXTENT, lane], sa)
-        over = gy * y + gz * z - abs(gy * t0 + gz * z0) - abs(gy * t1 + gz * z1) - abs(gy * t2 + gz * z2)
-        line = rim_line(edge, 0.0, gy, gz, ca, sa, cb, sb)
-        beyond = over - swept(edge, offset, line, 0.0, gz, ca, sa, cb, sb)
-        clear[lane] = 1.0 if beyond > HAIR else clear[lane]
-
-
-@kernel
-def _boxes_across(box, end, bound, j, offset, clear):
-    """Mark boxes that a plane across their thin side parts from a bound all over their interval."""
-    edge = edge_of(bound, j)
-    for lane in range(len(clear)):
-        x, y, z = box[0, lane], box[1, lane], box[2, lane]
-        f0, f1, f2 = box[3, lane], box[4, lane], box[5, lane]
-        t0, t1, t2 = box[6, lane], box[7, lane], box[8, lane]
-        z0, z1, z2 = box[9, lane], box[10, lane], box[11, lane]
-        cm, sm = end[CM, lane], end[SM, lane]
-        gx, gy, gz = _across(edge, offset, x, y, z, f0, t0, z0, f1, t1, z1, cm, sm)
-        ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        least = _least(gx, gy, gz, x, y, z, (f0, f1, f2, t0, t1, t2, z0, z1, z2))
-        line = rim_line(edge, gx, gy, gz, ca, sa, cb, sb)
-        beyond = least - swept(edge, offset, line, gx, gz, ca, sa, cb, sb)
-        clear[lane] = 1.0 if beyond > HAIR else clear[lane]
 
 
 @kernel
@@ -194,16 +200,16 @@ def boxes_clear(box, end, turning, k, clear):
     for lane in range(len(clear)):
         # No point is higher over the centre than far from the line of turning.
         aside = min(beside, base + slope * box[FARTHEST, lane])
-        out = max(abs(box[1, lane]) - box[EXTENT, lane] - aside, box[NEAREST, lane] - far)
+        out = max(abs(box[AT + 1, lane]) - box[EXTENT, lane] - aside, box[NEAREST, lane] - far)
         clear[lane] = 1.0 if max(out, near - box[FARTHEST, lane]) > HAIR else 0.0
     for j in range(2 * k, 2 * k + 2):
         if bound[j, THERE] > 0.0 and not _all(clear):
-            _boxes_under(box, end, bound, j, offset, clear)
+            _under(box, True, end, bound, j, offset, clear)
             for which in (CB, CA):
                 if not _all(clear):
                     _boxes_apart(box, end, bound, j, offset, which, clear)
             if not _all(clear):
-                _boxes_across(box, end, bound, j, offset, clear)
+                _across(box, True, end, bound, j, offset, clear)
     return _all(clear)
 
 
@@ -212,14 +218,22 @@ def turn_boxes(view, block, cosine, sine, box):
     """Turn a block of boxes, as `lanes._see` gives them, into the frame of a rotation."""
     for lane in range(LANES):
         x, y, square = view[block, 0, lane], view[block, 1, lane], 0.0
-        box[0, lane], box[1, lane], box[2, lane] = cosine * x + sine * y, cosine * y - sine * x, view[block, 2, lane]
+        box[AT, lane], box[AT + 1, lane], box[AT + 2, lane] = (
+            cosine * x + sine * y,
+            cosine * y - sine * x,
+            view[block, 2, lane],
+        )
         wide = 0.0
         for k in range(3):
             f, t, z = view[block, 3 + k, lane], view[block, 6 + k, lane], view[block, 9 + k, lane]
             square += f * f + t * t + z * z
-            box[3 + k, lane], box[6 + k, lane], box[9 + k, lane] = cosine * f + sine * t, cosine * t - sine * f, z
+            box[ALONG_F + k, lane], box[ALONG_T + k, lane], box[ALONG_N + k, lane] = (
+                cosine * f + sine * t,
+                cosine * t - sine * f,
+                z,
+            )
             wide += abs(cosine * t - sine * f)
-        away, half = np.sqrt(box[0, lane] * box[0, lane] + box[2, lane] * box[2, lane]), np.sqrt(square)
+        away, half = np.sqrt(box[AT, lane] * box[AT, lane] + box[AT + 2, lane] * box[AT + 2, lane]), np.sqrt(square)
         box[EXTENT, lane], box[NEAREST, lane], box[FARTHEST, lane] = wide, max(0.0, away - half), away + half
 
 
@@ -258,38 +272,6 @@ def _triangles_apart(seen, end, bound, j, offset, which, clear):
 
 
 @kernel
-def _triangles_under(seen, end, bound, j, offset, clear):
-    """`_boxes_under` for triangles."""
-    edge = edge_of(bound, j)
-    for lane in range(len(clear)):
-        y0, y1, y2 = seen[1, lane], seen[4, lane], seen[7, lane]
-        z0, z1, z2 = seen[2, lane], seen[5, lane], seen[8, lane]
-        ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        gy, gz = _under_rim(edge, (y0 + y1 + y2) / 3.0, 0.0, sa)
-        over = min(gy * y0 + gz * z0, min(gy * y1 + gz * z1, gy * y2 + gz * z2))
-        line = rim_line(edge, 0.0, gy, gz, ca, sa, cb, sb)
-        beyond = over - swept(edge, offset, line, 0.0, gz, ca, sa, cb, sb)
-        clear[lane] = 1.0 if beyond > HAIR else clear[lane]
-
-
-@kernel
-def _triangles_across(seen, end, bound, j, offset, clear):
-    """Mark triangles whose own plane parts them from a bound all over their interval."""
-    edge = edge_of(bound, j)
-    for lane in range(len(clear)):
-        x0, y0, z0 = seen[0, lane], seen[1, lane], seen[2, lane]
-        x1, y1, z1 = seen[3, lane], seen[4, lane], seen[5, lane]
-        x2, y2, z2 = seen[6, lane], seen[7, lane], seen[8, lane]
-        ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        cm, sm = end[CM, lane], end[SM, lane]
-        gx, gy, gz = _across(edge, offset, x0, y0, z0, x1 - x0, y1 - y0, z1 - z0, x2 - x0, y2 - y0, z2 - z0, cm, sm)
-        over = min(gx * x0 + gy * y0 + gz * z0, min(gx * x1 + gy * y1 + gz * z1, gx * x2 + gy * y2 + gz * z2))
-        line = rim_line(edge, gx, gy, gz, ca, sa, cb, sb)
-        beyond = over - swept(edge, offset, line, gx, gz, ca, sa, cb, sb)
-        clear[lane] = 1.0 if beyond > HAIR else clear[lane]
-
-
-@kernel
 def triangles_clear(seen, end, turning, k, clear):
     """`boxes_clear` for triangles as `turn_triangles` gives them."""
     known, bound, offset = turning.known, turning.bound, turning.offset
@@ -302,12 +284,12 @@ def triangles_clear(seen, end, turning, k, clear):
         clear[lane] = 1.0 if max(out, near - seen[10, lane]) > HAIR else 0.0
     for j in range(2 * k, 2 * k + 2):
         if bound[j, THERE] > 0.0 and not _all(clear):
-            _triangles_across(seen, end, bound, j, offset, clear)
+            _across(seen, False, end, bound, j, offset, clear)
             for which in (CB, CA):
                 if not _all(clear):
                     _triangles_apart(seen, end, bound, j, offset, which, clear)
             if not _all(clear):
-                _triangles_under(seen, end, bound, j, offset, clear)
+                _under(seen, False, end, bound, j, offset, clear)
     return _all(clear)
 
 
