@@ -20,7 +20,7 @@ STORED = {"deep_hit": 1780, "alive": 68770, "triangle_hit": 12880, "point_arc": 
 STORED_LOST = {"sweep": 156, "deep_hit": 725, "alive": 16650, "point_arc": 9200, "_deepest": 3950}
 #: The same of the posture maps.
 STORED_MAPS = {
-    "_boxes_pass": 721, "_triangles_pass": 573, "_see": 147, "cut_gaps": 558, "_shrink": 206, "_first_in_the_way": 137,
+    "_boxes_pass": 721, "_triangles_pass": 573, "_see": 147, "cut_intervals": 558, "_shrink": 206, "_first_in_the_way": 137,
 }  # fmt: skip
 #: One last digit of the input moves one search's counts by up to 2 %, and those of all together by less than 1 %.
 SLACK, NUDGES = 0.03, range(2)

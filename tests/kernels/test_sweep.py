@@ -151,7 +151,7 @@ def test_what_is_remembered_is_seen_from_the_contact_at_hand(given):
 
     def swept(past):
         return sweep.sweep(contact, 0, RANGES, tool, solids, 0.25, 1e-5, (0, -1.0), TURNS, past,
-                           place.room_to_search())  # fmt: skip
+                           place.search_workspace())  # fmt: skip
 
     full = sweep.memory(TURNS, 1, False)
     full.given[0], full.pool[:] = given, 1e4
