@@ -96,7 +96,7 @@ def main() -> None:
             more = 100 * (best[name] / best["part alone"] - 1)
             boxes, triangles = (100 * (counts[name][word] / none[word] - 1) for word in ("boxes", "triangles"))
             print(f"| {text} | {name} | {best[name]:.2f} | {more:+.0f} % | {boxes:+.1f} % | "
-                  f"{triangles:+.1f} % | {int(reach[name].lost.sum())} |", flush=True)  # fmt: skip
+                  f"{triangles:+.1f} % | {int(reach[name].not_reached.sum())} |", flush=True)  # fmt: skip
 
 
 if __name__ == "__main__":

@@ -36,7 +36,7 @@ from plan_cutters.options import Options, PlanOptions
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import Conditions, contacts_of, found_of, tool_of
 from plan_cutters.scene.faces import choose
-from plan_cutters.scene.inside_material import buried, inside_bodies
+from plan_cutters.scene.inside_material import inside_bodies, inside_material
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.question import question
 from plan_cutters.scene.scene import Scene
@@ -230,7 +230,7 @@ def prepare(
         ahead("search.search")
         warm(contacts_of(samples), cutters[0], conditions)
     with clock.stage("bodies"):
-        within = buried(
+        within = inside_material(
             samples, scene.orientation, around.enclosing, around.certain, conditions.tolerance, options.jobs
         )
         inside = inside_bodies(within, around.bodies, scene.orientation)
@@ -283,7 +283,7 @@ def _judged(
     """Combine the verdicts of each cutter over all setups, find the reasons, and make its line in the plan."""
     samples, convex, around = ready.samples, ready.surface_class == CONVEX, ready.conditions.around
     inside = ready.inside_bodies
-    reasons = Reasons(samples, ready.setups, ready.finished & (ready.buried < 0))
+    reasons = Reasons(samples, ready.setups, ready.finished & (ready.inside < 0))
     told = {}
     with clock.stage("reasons") as tell:
         for k, (cutter, mine) in enumerate(here.items()):
@@ -295,7 +295,7 @@ def _judged(
         verdicts = explained.verdicts
         with clock.stage(cutter.id, shown=False):
             slack, part = ready.conditions.outer_tool(cutter).slack, ready.scene.part
-            found = witnesses(samples, verdicts, cutter, ready.conditions, buried=ready.buried, part=part)
+            found = witnesses(samples, verdicts, cutter, ready.conditions, inside=ready.inside, part=part)
             marched = march_differs(samples, convex, ready.region, mine.interference_free)
             entry = cutter_entry(cutter, samples, verdicts, found, marched, seconds[cutter], part=part, around=around,
                                  slack=slack, inside=inside, besides=explained.besides)  # fmt: skip
@@ -318,13 +318,13 @@ def assemble(
     here = {cutter.id: each.here for cutter, each in judged.items()}
     served_in = {cutter.id: each.which for cutter, each in judged.items()}
     within = [within_limits(ready.samples, ready.cutters, conditions) & ready.finished for conditions in ready.setups]
-    beyond = ready.finished & ~np.logical_or.reduce(within) & (ready.buried < 0)
+    beyond = ready.finished & ~np.logical_or.reduce(within) & (ready.inside < 0)
     moved = travels(ready.options, ready.samples, {cutter: each.here for cutter, each in judged.items()})
     over = OverSetups(reaches, here, served_in, ready.scene.setup, tuple(elsewhere))
     entries = completed([judged[c].entry for c in ready.cutters], ready, answers, over, beyond, moved)
     selected, chosen = selection(entries)
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
-    best = selected or next((e.id for e in entries if not e.lost), None)
+    best = selected or next((e.id for e in entries if not e.not_reached), None)
     budget = ready.options.contacts_between(len(ready.samples))
     if best and budget:
         with clock.stage("area"):

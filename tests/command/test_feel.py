@@ -186,9 +186,11 @@ def test_where_none_is_feasible_the_worst_faces_are_listed(capsys, failing):
     rows = [line.split() for line in takewhile(str.strip, said.splitlines()[head + 2 :])]
     best = max(failing.cutters, key=lambda c: c.interference_free + c.accessible)
     areas = {face.id: face.area_mm2 for face in failing.faces}
-    lost = {name: areas[name] * (v.area_share.inaccessible + v.area_share.undecided) for name, v in best.faces.items()}
-    worst = sorted(lost.values(), reverse=True)[:5]
-    assert [lost[row[0]] for row in rows] == pytest.approx([each for each in worst if each])
+    not_reached = {
+        name: areas[name] * (v.area_share.inaccessible + v.area_share.undecided) for name, v in best.faces.items()
+    }
+    worst = sorted(not_reached.values(), reverse=True)[:5]
+    assert [not_reached[row[0]] for row in rows] == pytest.approx([each for each in worst if each])
     assert all(head in said for head in ("mm2 lost", "of the face"))
     assert "Over the 2 setups" in said
 

@@ -266,7 +266,7 @@ class TestTables:
         assert top("table:-5@0,0,0,0,0,30", along=(0, 0, 1)) == pytest.approx(-5)
         assert not Fixture.parse("table:-5@0,0,0,0,0,30").follows_setup
 
-    def test_what_looks_down_at_a_table_is_lost_to_it(self):
+    def test_what_looks_down_at_a_table_is_not_reached(self):
         """A block on its side: the face that stands on the table, and the one that looks up."""
         for axis in ("-y", "+y"):
             part = Scene.of(box(40, 30, 20), setup=axis).part
@@ -281,7 +281,7 @@ class TestTables:
             )
             (reach,) = found.reaches.values()
             bottom = found.samples.face == int(down[1:])
-            assert reach.lost[bottom].all()
+            assert reach.not_reached[bottom].all()
             assert reach.reached[~bottom].all()
             assert any("along the setup axis" in note for note in found.plan.notes)
 

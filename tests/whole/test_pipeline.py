@@ -130,7 +130,7 @@ def test_an_option_is_declared_once():
 
 
 def test_the_other_side_is_machined_with_flip():
-    """A dome is free from above and lost from below, where the cutters would have to stand in it."""
+    """A dome is free from above and not reached from below, where the cutters would have to stand in it."""
     part = read_part(SAMPLES / "peaks_and_valleys.step")
     up, down = (plan(part, flip=flip, **SMALL | {"grid": 17}) for flip in (False, True))
     assert down.plan.effective.flip

@@ -25,7 +25,7 @@ _OWN = 0.1
 _TURN = 5.0
 #: The most that machines tilt, deg: what asks for more is for another setup.
 _MOST = 120.0
-#: Share of the samples lost that must be undecided for a finer tolerance to be worth its triangles.
+#: Share of the samples not reached that must be undecided for a finer tolerance to be worth its triangles.
 _UNSURE = 0.1
 
 
@@ -116,8 +116,8 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
         return
     some = spread(kept)
     other = []
-    for lost, _, axis, _, missed in second:
-        if lost < len(gained) and flip_of(ready, axis) == ready.options.flip:
+    for not_reached, _, axis, _, missed in second:
+        if not_reached < len(gained) and flip_of(ready, axis) == ready.options.flip:
             made = replace(state, setups=((axis, None),))
             worse = known.glance(made, some)
             share = scan.finished.of_rows(kept) * len(worse) / max(1, len(some))

@@ -91,7 +91,7 @@ def left_out(areas: Sequence[Patch], area: float) -> str:
 
 
 def reasons(codes: NDArray[np.uint8], of: int | None = None) -> str:
-    """Say how many samples, of how many, are lost, and to what."""
+    """Say how many samples, of how many, are not reached, and why."""
     found = [(int((codes == code).sum()), REASONS[code]) for code in np.unique(codes).tolist()]
     ranked = sorted(found, key=lambda each: (-each[0], each[1]))
     if len(ranked) == 1:

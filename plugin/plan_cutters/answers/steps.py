@@ -30,7 +30,7 @@ Named = tuple[str, str]
 _SINGLES, _PAIRS, _BEST, _JOINED = 5, 1, 2, 2
 #: A second change is worth telling where it frees so much more, of the finished area.
 _WORTH = 0.0005
-#: Nor is a step worth telling that frees less than that, and less than this share of what is lost.
+#: Nor is a step worth telling that frees less than that, and less than this share of what is not reached.
 _LITTLE = 0.02
 #: Shares that differ by less are alike: what asks least comes first.
 _ALIKE = 4
@@ -47,7 +47,7 @@ def steps(
 ) -> Mend:  # fmt: skip
     """Find what to do next, and what it gains.
 
-    Values are compared on a few samples; each of those that may gain most is judged on all samples that are lost and,
+    Values are compared on a few samples; each of those that may gain most is judged on all samples that are not reached and,
     where it may lose others, on all. Then a second change is looked for after the best ones.
 
     Parameters
@@ -108,7 +108,7 @@ def effort(moves: Sequence[Move]) -> tuple[int, int]:
 
 
 def _rows(scan: Scan, candidate: Candidate) -> Rows:
-    """Samples to judge: those that are lost or, where others may be lost by the change, all."""
+    """Samples to judge: those that are not reached or, where the change may lose others, all."""
     return scan.left if candidate.nested else np.flatnonzero(scan.finished.wanted)
 
 
@@ -177,7 +177,7 @@ def _step(base: tuple[Prepared, Cutter, State], finished: Finished, left: Rows, 
 
 
 def _left_out(base: tuple[Prepared, Cutter, State], finished: Finished, left: Rows, areas: list[Patch]) -> Step:
-    """Nothing changed: what is lost is left to other means."""
+    """Nothing changed: what is not reached is left to other means."""
     ready, cutter, state = base
     face = ready.samples.face
     bad = np.unique(face[left])

@@ -1,4 +1,4 @@
-"""Values are tried on the samples that are lost now; what serves there is judged on all samples.
+"""Values are tried on the samples that are not reached now; what serves there is judged on all samples.
 
 A trial asks only whether samples have a posture, in any company; what is told of a change rests on `judge`: Lemma W1 of
 `docs/what_if_proof.md`.
@@ -15,9 +15,9 @@ from plan_cutters.domain.change import Change, Thing
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import (
     ACCESSIBLE,
-    BURIED,
     CONVEX,
     INACCESSIBLE,
+    INSIDE,
     TOLERANCE,
     UNDECIDED,
     Verdicts,
@@ -77,9 +77,9 @@ class Case:
             )
         found.verdict[free] = ACCESSIBLE
         # Of the finished surface these lie within a fixture.
-        within = ready.buried[rows] >= 0
+        within = ready.inside[rows] >= 0
         search_postures(contacts, np.flatnonzero(~free & ~within), outer_tool, inner_tool, conditions, found)
-        found.verdict[within], found.reason[within] = INACCESSIBLE, BURIED
+        found.verdict[within], found.reason[within] = INACCESSIBLE, INSIDE
         return found.freeze()
 
     def misses(self, rows: Rows) -> Rows:
@@ -102,17 +102,17 @@ class Trials:
 
     Attributes
     ----------
-    lost, kept : (n,) int64
+    not_reached, kept : (n,) int64
         Samples of the finished surface that the cutter does not reach now, and those that it reaches, ascending.
     hard : list of int
         Samples that stopped a value, the last one first.
     blocked : int
-        Samples of those lost that are inaccessible.
+        Samples of those not reached that are inaccessible.
     found : dict
         Changes that are known already, by their thing: one may spare another.
     """
 
-    lost: Rows
+    not_reached: Rows
     kept: Rows
     hard: list[int] = field(default_factory=list)
     blocked: int = 0
@@ -121,13 +121,13 @@ class Trials:
     @classmethod
     def of(cls, verdicts: Verdicts, finished: NDArray[np.bool_]) -> "Trials":
         """The samples of a reach that are of the finished surface (n,)."""
-        lost, kept = np.flatnonzero(verdicts.lost & finished), np.flatnonzero(verdicts.reached & finished)
-        return cls(lost, kept, blocked=int((verdicts.verdict[lost] == INACCESSIBLE).sum()))
+        not_reached, kept = np.flatnonzero(verdicts.not_reached & finished), np.flatnonzero(verdicts.reached & finished)
+        return cls(not_reached, kept, blocked=int((verdicts.verdict[not_reached] == INACCESSIBLE).sum()))
 
     @property
     def count(self) -> int:
         """Samples that are judged."""
-        return len(self.lost) + len(self.kept)
+        return len(self.not_reached) + len(self.kept)
 
     def remember(self, row: int) -> None:
         """A sample that stopped a value is the first that the next one is tried on."""
@@ -137,7 +137,7 @@ class Trials:
         del self.hard[_REMEMBERED:]
 
     def stopped(self, case: Case, *, everywhere: bool) -> bool:
-        """Whether a sample was found that a case does not reach, of those lost now or of all."""
+        """Whether a sample was found that a case does not reach, of those not reached now or of all."""
         for batch in self._batches(everywhere):
             missed = case.misses(batch)
             if len(missed):
@@ -148,14 +148,15 @@ class Trials:
     def _batches(self, everywhere: bool) -> Iterator[Rows]:
         hard = np.array(self.hard, np.int64)
         yield from np.split(hard, [1]) if len(hard) else ()
-        yield from batches(self.lost)
+        yield from batches(self.not_reached)
         if everywhere:
             yield from batches(self.kept)
 
     def closest(self, cases: list[Case]) -> Case:
-        """Of cases that all leave some, the one that leaves fewest of a few samples spread over those lost now; one that leaves
-        them undecided comes before one that is blocked at any of them."""
-        few = self.lost[:: 1 + len(self.lost) // _COMPARED]
+        """Of cases that all leave some, the one that leaves fewest of a few samples spread over those not reached now; one that
+        leaves them undecided comes before one that is blocked at any of them.
+        """
+        few = self.not_reached[:: 1 + len(self.not_reached) // _COMPARED]
 
         def leaves(case: Case) -> tuple[bool, int]:
             verdicts = case.look(few)
@@ -226,10 +227,10 @@ class Step:
 def least(steps: Steps, most: int, trials: Trials) -> Step | None:
     """The least number of steps that serves all samples, if each step allows all that those before it allow.
 
-    At `most` every sample that is lost now must have been reached. Each sample that a value does not serve takes it on, by
+    At `most` every sample that is not reached now must have been reached. Each sample that a value does not serve takes it on, by
     halving, to the least that serves this one; the others are asked from there.
     """
-    at = _onward(steps, 0, most, batches(trials.lost), trials)
+    at = _onward(steps, 0, most, batches(trials.not_reached), trials)
     for _ in range(_ROUNDS):
         if at is None or at > most:
             return None

@@ -39,18 +39,20 @@ class WhatIf:
 
 def search(thing: Thing, what: WhatIf, trials: Trials) -> Change:
     """Find the value that asks least, judged on all samples as is the one before it; or tell what the best one leaves."""
-    left = Left.by(what.ends[0], trials.lost) if what.nested else None
+    left = Left.by(what.ends[0], trials.not_reached) if what.nested else None
     found = None if left and left.count else _fewest(what, trials)
     if found:
         step, value = found
         asked, beyond = value(step.steps), None if step.beyond is None else value(step.beyond)
         words, options = what.serves(asked, step.case)
         (cutter,) = options.get("cutters", (None,))
-        return Change(thing, what.now, asked, True, 0, len(trials.lost), trials.count, beyond, cutter, words, options)
+        return Change(
+            thing, what.now, asked, True, 0, len(trials.not_reached), trials.count, beyond, cutter, words, options
+        )
     end = what.ends[0] if what.nested else trials.closest(what.ends)
-    left = left or Left.by(end, trials.lost)
+    left = left or Left.by(end, trials.not_reached)
     why = what.fails(end, left)
-    # Where all that are lost now are reached, others are not.
+    # Where all that are not reached now are reached, others are not.
     worst = left if left.count or not len(trials.kept) else Left.by(end, trials.kept)
     if worst.blocked or not worst.count:
         return none(thing, what.now, left.count, why, left.looked)

@@ -31,20 +31,22 @@ CORNERS = (0.2, 0.3, 0.4, 0.5, 0.8, 1.0, 1.2, 1.5, 1.6, 2.0, 2.5, 3.0, 4.0, 5.0,
 
 def stick_out(case: Case, trials: Trials) -> WhatIf | Change:
     """Try the least length from the tip to the holder's nose, the flutes as they are; to `GRAIN`."""
-    cutter, lost = case.cutter, len(trials.lost)
+    cutter, not_reached = case.cutter, len(trials.not_reached)
     now = cutter.length
     if cutter.holder is None:
-        return none("stick_out", now, lost, "no holder is stated, and a longer cutter only adds to what is in the way")
+        return none(
+            "stick_out", now, not_reached, "no holder is stated, and a longer cutter only adds to what is in the way"
+        )
     most = math.ceil((highest(case.ready, cutter) - now) / GRAIN)
     if most < 1:
-        return none("stick_out", now, lost, f"its {now:g} mm already hold the holder above all obstacles")
+        return none("stick_out", now, not_reached, f"its {now:g} mm already hold the holder above all obstacles")
 
     def make(length: float) -> Case | None:
         return _with(case, longer(cutter, length))
 
     way = Way(most, lambda at: round(now + at * GRAIN, 6))
     if (end := make(way.value(most))) is None:
-        return none("stick_out", now, lost, "no shank can go on above it")
+        return none("stick_out", now, not_reached, "no shank can go on above it")
     return WhatIf(
         now=now, ways=[way], make=make, ends=[end], nested=True, reads=lambda end: end.cutter.length,
         fails=lambda end, left: f"{left.words} at every stick-out" if left.count else
@@ -62,10 +64,10 @@ def highest(ready: Prepared, cutter: Cutter) -> float:
 
 def radius(case: Case, trials: Trials) -> WhatIf | Change:
     """Try smaller radii, the largest first, in steps of `SHARE`."""
-    cutter, conditions, lost = case.cutter, case.ready.conditions, len(trials.lost)
+    cutter, conditions, not_reached = case.cutter, case.ready.conditions, len(trials.not_reached)
     now = cutter.radius
     if cutter.shape == "form":
-        return none("radius", now, lost, "the outline of a form cutter has no radius to change alone")
+        return none("radius", now, not_reached, "the outline of a form cutter has no radius to change alone")
     least_radius = max(THINNEST * conditions.tolerance, SLIMMEST * cutter.length)
     most = max(0, math.floor(math.log(least_radius / now) / math.log(1.0 - SHARE)))
 
@@ -79,7 +81,7 @@ def radius(case: Case, trials: Trials) -> WhatIf | Change:
     while most and (end := make(value(most))) is None:
         most -= 1
     if not most:
-        return none("radius", now, lost, "there is no thinner cutter like it that could be judged")
+        return none("radius", now, not_reached, "there is no thinner cutter like it that could be judged")
     assert end is not None
     return WhatIf(
         now=now, ways=[Way(most, value)], make=make, ends=[end], reads=lambda end: end.cutter.radius,
@@ -94,7 +96,7 @@ def corner_radius(case: Case, trials: Trials) -> WhatIf | Change:
     cutter = case.cutter
     now, r = cutter.corner_radius, cutter.radius
     if cutter.shape != "end":
-        return none("corner_radius", now, len(trials.lost), f"a {cutter.shape} has no corner to change alone")
+        return none("corner_radius", now, len(trials.not_reached), f"a {cutter.shape} has no corner to change alone")
 
     def make(corner: float) -> Case | None:
         return _with(case, made_of(cutter, corner_radius=corner))
@@ -102,7 +104,7 @@ def corner_radius(case: Case, trials: Trials) -> WhatIf | Change:
     corners = sorted({0.0, r, *(c for c in CORNERS if c < r)} - {now}, key=lambda c: (abs(c - now), c))
     ends = [made for corner in corners if (made := make(corner)) is not None]
     if not ends:
-        return none("corner_radius", now, len(trials.lost), "its flutes are too short for any other corner")
+        return none("corner_radius", now, len(trials.not_reached), "its flutes are too short for any other corner")
     values = [now, *(end.cutter.corner_radius for end in ends)]
 
     return WhatIf(

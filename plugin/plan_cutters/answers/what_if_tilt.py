@@ -22,7 +22,7 @@ def tilt_limit(case: Case, trials: Trials) -> WhatIf | Change:
     """Try the least limit of the axis, to `GRAIN`; for a machine whose rotary axes limit it, one that tilts every way."""
     machine = case.ready.conditions.machine
     if not machine.limited:
-        return none("tilt_limit", None, len(trials.lost), "the machine has no limit")
+        return none("tilt_limit", None, len(trials.not_reached), "the machine has no limit")
     now = None if machine.turns or machine.tilt_limit is None else _degrees(machine.tilt_limit)
     base = math.floor((now or 0.0) / GRAIN + 1e-6)
     most = math.ceil(180.0 / GRAIN) - base
@@ -45,7 +45,7 @@ def tilt_range(case: Case, trials: Trials) -> WhatIf | Change:
     highest = max(high, min(180.0, round(math.ceil(_degrees(max(mode.high for mode in touching)) / GRAIN) * GRAIN, 6)))
     if (lowest, highest) == (low, high):
         why = "the cutter touches at no tilt beyond the range searched"
-        return none("tilt_range", (low, high), len(trials.lost), why)
+        return none("tilt_range", (low, high), len(trials.not_reached), why)
 
     def make(degrees: Range) -> Case:
         tilt = math.radians(degrees[0]), math.radians(degrees[1])
@@ -59,7 +59,7 @@ def tilt_range(case: Case, trials: Trials) -> WhatIf | Change:
                 return max(lowest, round(bottom - down * at * GRAIN, 6)), min(highest, round(high + up * at * GRAIN, 6))
 
             most = math.ceil(max(up * (highest - high), down * (low - lowest)) / GRAIN - 1e-6)
-            if most >= 1 and (both or not len(make(value(most)).misses(trials.lost))):
+            if most >= 1 and (both or not len(make(value(most)).misses(trials.not_reached))):
                 yield Way(most, value, last_resort=both)
 
     return WhatIf(

@@ -74,7 +74,7 @@ def cutter_entry(
     blocked = mine["inaccessible"] - mine["inside_bodies"]
     # What is missing from the obstacles can only be in the way of more.
     feasible = False if blocked else None if mine["undecided"] or around.doubtful else True
-    lost, unsure = reach.verdict == INACCESSIBLE, reach.verdict == UNDECIDED
+    not_reached, unsure = reach.verdict == INACCESSIBLE, reach.verdict == UNDECIDED
     faces = face_verdicts(samples, reach, inside)
     return filled(
         CutterEntry,
@@ -95,7 +95,7 @@ def cutter_entry(
         seen=samples.max_gap <= cutter.radius,
         march_differs=march_differs,
         **mine,
-        by_reason={name: int((lost & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
+        by_reason={name: int((not_reached & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
         undecided_by_reason={name: int((unsure & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
         axis_limit_with={name: int((besides == i).sum()) for i, name in enumerate(REASONS) if (besides == i).any()},
         faces=faces,

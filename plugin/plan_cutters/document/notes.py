@@ -116,9 +116,11 @@ def _of_area(entries: Sequence[CutterEntry], *, doubtful: bool) -> Iterator[Note
             what = "all of the target surface whose area is known" if area.left_out else "all of the target surface"
             yield Note("area_proved", f"{entry.id} serves {what}, {known}.")
         else:
-            lost = area.left - area.short - area.dropped
+            not_reached = area.left - area.short - area.dropped
             why = (
-                [f"no posture was found that serves the cells about {lost} contacts, or finer ones"] if lost > 0 else []
+                [f"no posture was found that serves the cells about {not_reached} contacts, or finer ones"]
+                if not_reached > 0
+                else []
             )
             if area.dropped:
                 why.append(f"{area.dropped} cells were not cut up, for too little of the surface was to be gained")

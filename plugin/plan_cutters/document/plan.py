@@ -142,7 +142,7 @@ def _of_setups(ready: Prepared, name: str, over: OverSetups) -> dict[str, Any]:
         SetupReach(axis=axis, serves=int((serves == k).sum()), **counts(found[name].verdict, inside))
         for k, (axis, found) in enumerate(over.each())
     ]
-    return {"setups": entries, "lost_in_all": int((over.reaches[name].lost & ready.finished).sum())}
+    return {"setups": entries, "lost_in_all": int((over.reaches[name].not_reached & ready.finished).sum())}
 
 
 def _singular(ready: Prepared, name: str, over: OverSetups) -> int | None:
@@ -162,14 +162,14 @@ def completed(
 ) -> list[CutterEntry]:  # fmt: skip
     """The entries of cutters with where they are listed, what the limits lose for all (n,), and what was answered about them."""
     found, sources, samples = [], ready.options.sources, ready.samples
-    lost_to_all = int(beyond.sum())
+    reached_by_none = int(beyond.sum())
     for entry in entries:
         moved = (travels or {}).get(entry.id)
         stick_out, mend = answers.stick_outs.get(entry.id), answers.mends.get(entry.id)
         here = over.here[entry.id]
         more = {
             **_of_setups(ready, entry.id, over),
-            "beyond_setup": lost_to_all,
+            "beyond_setup": reached_by_none,
             "singular": _singular(ready, entry.id, over),
             "travel": None if moved is None else travel_entry(ready.options.machine, moved, here, samples),
             "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
@@ -195,8 +195,8 @@ def selection(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:
     """Which cutter wins, of entries from the most wanted down, and why."""
     feasible = [e for e in entries if e.feasible]
     if not feasible:
-        best = min(entries, key=lambda e: e.lost)
-        left = best.lost
+        best = min(entries, key=lambda e: e.not_reached)
+        left = best.not_reached
         why = f"no cutter reaches every sample; {best.id} comes nearest, {left} not reached"
         if not left:
             why = f"{best.id} reaches every judged sample, but obstacles are missing: see the notes"

@@ -33,9 +33,14 @@ class VerdictCounts(Frozen):
         return self.inaccessible - self.inside_bodies
 
     @property
-    def lost(self) -> int:
+    def not_reached(self) -> int:
         """Samples of the finished part's surface that are not reached."""
         return self.blocked + self.undecided
+
+    @property
+    def lost(self) -> int:
+        """The former name of `not_reached`."""
+        return self.not_reached
 
     def of(self, verdict: str) -> int:
         """Samples of the finished part's surface with a verdict."""
@@ -55,7 +60,7 @@ class AreaShare(Frozen):
     )
 
     @property
-    def lost(self) -> float:
+    def not_reached(self) -> float:
         """Share that is not reached."""
         return self.inaccessible + self.undecided
 
@@ -112,10 +117,10 @@ def whole_share(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part
     weights = (seen / max(1e-300, seen.sum())).tolist()
     parts = [(weight, share) for weight, (_, share, _) in zip(weights, targets, strict=True)]
     sums = {word: min(1.0, sum(weight * getattr(share, word) for weight, share in parts)) for word in WORDS.values()}
-    lost = {
+    not_reached = {
         reason: min(1.0, sum(weight * share.lost_by.get(reason, 0.0) for weight, share in parts)) for reason in REASONS
     }
-    return AreaShare(**sums, lost_by={reason: share for reason, share in lost.items() if share})
+    return AreaShare(**sums, lost_by={reason: share for reason, share in not_reached.items() if share})
 
 
 def _areas(names: Sequence[str], part: Part) -> dict[str, float]:
@@ -130,10 +135,10 @@ def _share(verdict: NDArray[np.uint8], reason: NDArray[np.uint8], area: NDArray[
     area = weights(area)
     area = area / area.sum()
     shares = {name: min(1.0, float(area[verdict == code].sum())) for code, name in WORDS.items()}
-    lost = (verdict == INACCESSIBLE) | (verdict == UNDECIDED)
+    not_reached = (verdict == INACCESSIBLE) | (verdict == UNDECIDED)
     by = {
-        name: min(1.0, float(area[lost & (reason == i)].sum()))
+        name: min(1.0, float(area[not_reached & (reason == i)].sum()))
         for i, name in enumerate(REASONS)
-        if (reason[lost] == i).any()
+        if (reason[not_reached] == i).any()
     }
     return AreaShare(**shares, lost_by=by)

@@ -33,8 +33,8 @@ def over_setups(each: Sequence[Verdicts]) -> tuple[Verdicts, Ints]:
         which[rows] = k
         found.take(rows, verdicts)
     for verdicts in each:
-        rows = (which < 0) & verdicts.lost
-        first = rows & ~found.lost
+        rows = (which < 0) & verdicts.not_reached
+        first = rows & ~found.not_reached
         found.verdict[first], found.reason[first] = verdicts.verdict[first], verdicts.reason[first]
         unsure = rows & (verdicts.verdict == UNDECIDED) & (found.verdict == INACCESSIBLE)
         found.verdict[unsure], found.reason[unsure] = UNDECIDED, verdicts.reason[unsure]

@@ -10,9 +10,9 @@ from cad_io.arrays import Floats, Ints, Record
 from plan_cutters.kernels.codes import (
     ACCESSIBLE,
     AXIS_LIMIT,
-    BURIED,
     FIXTURE,
     INACCESSIBLE,
+    INSIDE,
     INTERFERENCE_FREE,
     LOCAL_GOUGE,
     NO_REASON,
@@ -24,7 +24,7 @@ from plan_cutters.kernels.codes import (
 
 # The codes of verdicts and reasons are this module's as well.
 __all__ = [
-    "ACCESSIBLE", "AXIS_LIMIT", "BURIED", "CONCAVE", "CONVEX", "FIXTURE", "INACCESSIBLE", "INTERFERENCE_FREE", "LOCAL_GOUGE",
+    "ACCESSIBLE", "AXIS_LIMIT", "CONCAVE", "CONVEX", "FIXTURE", "INACCESSIBLE", "INSIDE", "INTERFERENCE_FREE", "LOCAL_GOUGE",
     "NO_REASON", "REASONS", "SADDLE", "TOLERANCE", "UNDECIDED", "UNJUDGED", "WORDS", "Bytes", "VerdictBuffer", "Verdicts",
     "Witness", "blank",
 ]  # fmt: skip
@@ -62,9 +62,14 @@ class _Columns(Record):
         return self.interference_free | (self.verdict == ACCESSIBLE)
 
     @property
-    def lost(self) -> NDArray[np.bool_]:
+    def not_reached(self) -> NDArray[np.bool_]:
         """Samples (n,) that are inaccessible or undecided."""
         return np.asarray((self.verdict == INACCESSIBLE) | (self.verdict == UNDECIDED))
+
+    @property
+    def lost(self) -> NDArray[np.bool_]:
+        """The former name of `not_reached`."""
+        return self.not_reached
 
     @property
     def interference_free(self) -> NDArray[np.bool_]:
@@ -160,7 +165,7 @@ class Witness(Record):
     depth : float, optional
         How deep the part reaches into the cutter there, mm, to the resolution of the search; None where it was not searched for.
     samples : int
-        How many samples it stands for: those lost on its face for its reason, and within its body where it lies in one.
+        How many samples it stands for: those not reached on its face for its reason, and within its body where it lies in one.
     untried : bool
         No posture was looked for, though there may be a depth.
     """

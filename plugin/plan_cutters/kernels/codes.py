@@ -12,7 +12,7 @@ INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 2
 REASONS = (
     "axis_limit", "local_gouge", "rear_gouge", "collision", "buried", "tolerance", "neck", "shank", "holder", "fixture",
 )  # fmt: skip
-AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, COLLISION, BURIED, TOLERANCE, BY_NECK, BY_SHANK, BY_HOLDER, FIXTURE = range(10)
+AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, COLLISION, INSIDE, TOLERANCE, BY_NECK, BY_SHANK, BY_HOLDER, FIXTURE = range(10)
 NO_REASON = 255
 
 #: Kinds of a piece: below `radius + slope (w - low)` for the first two; the third has a cross section of an arc: what is

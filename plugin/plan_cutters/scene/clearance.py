@@ -70,17 +70,17 @@ def clearances(samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts, cond
     error = obstacles.triangles.chord_error + _ROUNDING
     triangle, which = np.full(n, -1, np.int32), np.full(n, -1, np.int32)
     postures = samples.point, samples.normal, verdicts.axis, verdicts.tilt_direction
-    free, lost = np.full(n, -1), np.full(n, len(steps))
+    free, not_reached = np.full(n, -1), np.full(n, len(steps))
     nearest, part = np.full(n, -1, np.int32), np.full(n, -1, np.int8)
-    while len(left := rows[lost[rows] - free[rows] > 1]):
-        middle = (free[left] + lost[left]) // 2
+    while len(left := rows[not_reached[rows] - free[rows] > 1]):
+        middle = (free[left] + not_reached[left]) // 2
         for rung in np.unique(middle).tolist():
             mine = left[middle == rung]
             made = grown(cutter, float(steps[rung]) + error)
             given = (*postures, tool_of(made), obstacles.tree, triangle, which)
             in_chunks(lambda piece, given=given: probe(piece, *given), mine, conditions.jobs)  # type: ignore[misc]
             clear = triangle[mine] == -1
-            free[mine[clear]], lost[mine[~clear]] = rung, rung
+            free[mine[clear]], not_reached[mine[~clear]] = rung, rung
             met = mine[triangle[mine] >= 0]
             nearest[met], part[met] = triangle[met], made.piece[0, which[met], PART]
     # Even the tool itself may be met, within the tolerance: a barrel touches with its flank.

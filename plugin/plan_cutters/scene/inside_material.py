@@ -38,7 +38,7 @@ class Cover(Record):
     point: Floats
 
 
-def buried(
+def inside_material(
     samples: SurfaceSamples, orientation: Orientation, bodies: Sequence[Body], certain: Obstacles, tolerance: float,
     jobs: int = 1,
 ) -> Ints:  # fmt: skip

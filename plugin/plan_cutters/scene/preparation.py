@@ -34,7 +34,7 @@ class Prepared(Record):
     surface_class : (n,) uint8
     region : (n,) int32
         Connected samples of one class.
-    buried : (n,) int32
+    inside : (n,) int32
         The body that each sample lies within, -1 for none.
     inside_bodies : (n,) bool
         Samples that lie inside another body of the part (`inside_material.inside_bodies`).
@@ -52,7 +52,7 @@ class Prepared(Record):
     samples: SurfaceSamples
     surface_class: NDArray[np.uint8]
     region: Ints
-    buried: Ints
+    inside: Ints
     inside_bodies: NDArray[np.bool_]
     conditions: Conditions
     cutters: tuple[Cutter, ...]

@@ -9,9 +9,9 @@ from cad_io.arrays import Ints, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import (
     AXIS_LIMIT,
-    BURIED,
     FIXTURE,
     INACCESSIBLE,
+    INSIDE,
     LOCAL_GOUGE,
     TOLERANCE,
     UNDECIDED,
@@ -32,7 +32,7 @@ def access(
     cutter: Cutter,
     conditions: Conditions,
     *,
-    buried: Ints | None = None,
+    inside: Ints | None = None,
     known: Verdicts | None = None,
     rows: NDArray[np.int64] | None = None,
     progress: Progress | None = None,
@@ -46,7 +46,7 @@ def access(
     interference_free : (n,) bool
         As `decompose` gives them.
     cutter, conditions
-    buried : (n,) int32, optional
+    inside : (n,) int32, optional
         The body that each sample lies within, -1 for none (default): none of those within is accessible.
     known : Verdicts, optional
         What follows from other cutters (`nesting.handed`): those samples are not searched again.
@@ -66,8 +66,8 @@ def access(
     if not conditions.judges(cutter):
         verdicts.verdict[judged], verdicts.reason[judged] = UNDECIDED, TOLERANCE
         return verdicts.freeze()
-    within = np.zeros(n, bool) if buried is None else judged & (buried >= 0)
-    verdicts.verdict[within], verdicts.reason[within] = INACCESSIBLE, BURIED
+    within = np.zeros(n, bool) if inside is None else judged & (inside >= 0)
+    verdicts.verdict[within], verdicts.reason[within] = INACCESSIBLE, INSIDE
     upright = judged & interference_free
     verdicts.stand_upright(upright, samples.normal, samples.direction_max)
     contacts = contacts_of(samples)
@@ -84,17 +84,17 @@ def access(
         contacts, np.flatnonzero(wanted), outer_tool, inner_tool, conditions, verdicts, progress, fixed=True, work=work
     )
     if conditions.around.alone is not None:
-        searched = wanted | (buried >= len(conditions.around.bodies) if buried is not None else False)
+        searched = wanted | (inside >= len(conditions.around.bodies) if inside is not None else False)
         handed = judged & (verdicts.reason == FIXTURE)
         bare = replace(conditions, around=conditions.around.alone)
-        _for_fixtures(contacts, np.flatnonzero((searched & verdicts.lost) | handed), cutter, bare, verdicts)
+        _for_fixtures(contacts, np.flatnonzero((searched & verdicts.not_reached) | handed), cutter, bare, verdicts)
     return verdicts.freeze()
 
 
 def _for_fixtures(
     contacts: Contacts, rows: NDArray[np.int64], cutter: Cutter, bare: Conditions, verdicts: VerdictBuffer
 ) -> None:
-    """Of lost samples, tell those that are lost to fixtures from those that would be lost without them, too."""
+    """Of samples not reached, tell those that fixtures keep off from those that would not be reached without them, either."""
     rows = rows[~np.isin(verdicts.reason[rows], (AXIS_LIMIT, LOCAL_GOUGE))]
     if not len(rows):
         return

@@ -213,19 +213,19 @@ class PostureMaps(Record):
         verdicts = blank(len(self.verdict))
         found = found_of(verdicts)
         judged = self.verdict != UNJUDGED
-        lost = judged & (self.verdict == INACCESSIBLE)
-        verdicts.verdict[lost], verdicts.reason[lost] = INACCESSIBLE, self.reason[lost]
-        rows = np.flatnonzero(judged & ~lost)
+        not_reached = judged & (self.verdict == INACCESSIBLE)
+        verdicts.verdict[not_reached], verdicts.reason[not_reached] = INACCESSIBLE, self.reason[not_reached]
+        rows = np.flatnonzero(judged & ~not_reached)
         maps = self.normal, self.direction_max, ranges, turns, self.offset, self.free, self.undecided
         in_chunks(lambda piece: mask(piece, *maps, found), rows, jobs)
         upright = self.verdict == INTERFERENCE_FREE
         if low <= _END and upright.any():
             upright[upright] = machine.allows(self.normal[upright], frame)
             verdicts.stand_upright(upright, self.normal, self.direction_max)
-        axis_lost = judged & ~lost & np.isin(verdicts.verdict, (INACCESSIBLE, UNDECIDED))
-        verdicts.reason[axis_lost] = REASONS.index("axis_limit")
+        axis_limited = judged & ~not_reached & np.isin(verdicts.verdict, (INACCESSIBLE, UNDECIDED))
+        verdicts.reason[axis_limited] = REASONS.index("axis_limit")
         # What is in doubt without a machine is so with any that holds some posture there.
-        doubt, held = axis_lost & (self.verdict == UNDECIDED), np.zeros(len(self.verdict), bool)
+        doubt, held = axis_limited & (self.verdict == UNDECIDED), np.zeros(len(self.verdict), bool)
         few = ranges._replace(rotation_cos=ranges.rotation_cos[turns], rotation_sin=ranges.rotation_sin[turns])
         any_axis(np.flatnonzero(doubt), self.normal, self.direction_max, few, low, high, held)
         doubt &= held

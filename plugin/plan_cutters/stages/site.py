@@ -210,7 +210,7 @@ def _served(contacts: CellContacts, site: Site, rooms: Sequence[float], upto: fl
         if site.work.looked >= upto:
             break
         # Where there is no posture there is none with more room.
-        open_rows = np.flatnonzero((outlook > 0) & _whole(contacts) & ~contacts.lost)
+        open_rows = np.flatnonzero((outlook > 0) & _whole(contacts) & ~contacts.not_reached)
         # A posture with room to the local gouging bound: the search is told that the surface is more concave.
         curved = contacts.curvature + room * bends
         at = Contacts(contacts.point, contacts.normal, contacts.direction_max, curved)

@@ -15,12 +15,12 @@ import numpy as np
 from plan_cutters.kernels.codes import (
     ACCESSIBLE,
     AXIS_LIMIT,
-    BURIED,
     BY_HOLDER,
     BY_NECK,
     BY_SHANK,
     COLLISION,
     INACCESSIBLE,
+    INSIDE,
     LOCAL_GOUGE,
     OFFSET_OF,
     REAR_GOUGE,
@@ -58,7 +58,7 @@ def _reason(tally, bent):
     if tally[LOCAL_GOUGE] == 0.0:
         reason, most = LOCAL_GOUGE, bent
     least = most[REAR_GOUGE]
-    for attribute in (COLLISION, BURIED, BY_NECK, BY_SHANK, BY_HOLDER):
+    for attribute in (COLLISION, INSIDE, BY_NECK, BY_SHANK, BY_HOLDER):
         if most[attribute] > least:
             reason, least = attribute, most[attribute]
     return reason
@@ -128,7 +128,7 @@ def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, fo
 
 
 @entry
-def until_lost(rows, at, contacts, ranges, tool, solids, patient, found):
+def until_not_reached(rows, at, contacts, ranges, tool, solids, patient, found):
     """Look for postures of the samples `rows` from the `at`-th on, at which a tool is in nothing's way; where it ended.
 
     Unless it is `patient`, behind the first sample that has none; such samples are written as UNDECIDED, for nothing was asked

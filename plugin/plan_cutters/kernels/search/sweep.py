@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.codes import ARC, BURIED, HIGH, KIND, LOW, OFFSET_OF, RADIUS, RISE, ROUND, SCALE, SLOPE
+from plan_cutters.kernels.codes import ARC, HIGH, INSIDE, KIND, LOW, OFFSET_OF, RADIUS, RISE, ROUND, SCALE, SLOPE
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.limits import turn_of
 from plan_cutters.kernels.linear.vectors import cross
@@ -170,7 +170,7 @@ def _rotation(
                     past.count[place] = kept
                     return tilt, pooled
                 half = max(turned(frame, tilt, tool, mode, solids.tree, body, workspace.scratch), 0.5 * narrowest)
-                count = forbid(intervals, count, tilt - half, tilt + half, narrowest, BURIED, tally)
+                count = forbid(intervals, count, tilt - half, tilt + half, narrowest, INSIDE, tally)
                 continue
         count, x, y, z = forbid_probed(which, height, px, py, tilt, tool, mode, narrowest, intervals, count, workspace)
         if kept < _KEPT:

@@ -119,7 +119,7 @@ def _viewers(part: Body, pieces: _Pieces, up: Floats) -> list[tuple[str, Floats]
     others = [each / np.linalg.norm(each) for each in corners if np.linalg.norm(each) > 0.5]
     taken = [each / np.linalg.norm(each) for each in (up, right - back + up, -right + back + up)]
     others = [each for each in others if max(float(each @ t) for t in taken) < 0.99]
-    seen = [_lost_seen(part, pieces, each, up) for each in others]
+    seen = [_not_reached_seen(part, pieces, each, up) for each in others]
     # The views that there are already show as much of the rest as can be seen: then look from below.
     front, words = (others[int(np.argmax(seen))], "where most of what is not reached is seen") if max(seen) > 0.0 else (
         right - back - 0.9 * up, "from below, from a corner")  # fmt: skip
@@ -131,16 +131,16 @@ def _viewers(part: Body, pieces: _Pieces, up: Floats) -> list[tuple[str, Floats]
     ]
 
 
-def _lost_seen(part: Body, pieces: _Pieces, viewer: Floats, up: Floats) -> float:
+def _not_reached_seen(part: Body, pieces: _Pieces, viewer: Floats, up: Floats) -> float:
     """How much of what is not reached a small view shows, mm2 on its sheet."""
-    lost = _codes(("undecided", "inaccessible"))
-    if not np.isin(pieces.verdict, lost).any():
+    not_reached = _codes(("undecided", "inaccessible"))
+    if not np.isin(pieces.verdict, not_reached).any():
         return 0.0
     frame = frame_towards(viewer, up)
     scale, middle = fitted(frame, part.corner.reshape(-1, 3), *_SMALL)
     drawn = view(frame, part, scale, middle, *_SMALL, finer=1)
     shown = pieces.verdict[drawn.seen[drawn.seen >= 0]]
-    return round(float(np.isin(shown, lost).sum()) / scale**2, 6)
+    return round(float(np.isin(shown, not_reached).sum()) / scale**2, 6)
 
 
 def _across(up: Floats) -> tuple[Floats, Floats]:

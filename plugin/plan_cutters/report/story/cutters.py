@@ -16,7 +16,6 @@ from plan_cutters.report.story.numbers import (
     angle,
     capital,
     figure,
-    lost,
     mm,
     part_of,
     percent,
@@ -94,7 +93,7 @@ def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
         hint=main.hint if main else "",
         besides=_besides(c),
         next=_next(plan, c),
-        left=capital(named(plan, left(plan, c))) if c.lost else "",
+        left=capital(named(plan, left(plan, c))) if c.not_reached else "",
         between=between(plan, c),
         faces=tuple(faces),
         failing=failing,
@@ -102,7 +101,7 @@ def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
 
 
 def main_reason(share: AreaShare) -> str:
-    """By which reason the most is lost; empty where nothing is."""
+    """By which reason the most is not reached; empty where all is reached."""
     return max(share.lost_by, key=lambda name: share.lost_by[name], default="")
 
 
@@ -145,7 +144,10 @@ def left(plan: Plan, c: CutterEntry) -> str:
     if c.undecided:
         why += f"; of it {percent(c.area_share.undecided, some=True, whole=False)} is undecided"
     failing = [
-        name for _, name in sorted(((-v.lost, name) for name, v in c.faces.items() if v.lost), key=lambda each: each[0])
+        name
+        for _, name in sorted(
+            ((-v.not_reached, name) for name, v in c.faces.items() if v.not_reached), key=lambda each: each[0]
+        )
     ]
     deep = [w for w in c.witnesses if w.depth_mm is not None and not w.inside_bodies]
     where = ""
@@ -156,7 +158,8 @@ def left(plan: Plan, c: CutterEntry) -> str:
             f"; the worst is on {worst.face} at ({place(worst.point)}), "
             f"where the best posture {sure} {mm(worst.depth_mm)} too deep"
         )
-    return (f"{c.id} does not reach {lost(c, c.area_share)} of {area(plan)} ({c.lost} of {plan.samples.finished} samples): "
+    return (f"{c.id} does not reach {unreached(c, c.area_share)} of {area(plan)} ({c.not_reached} of {plan.samples.finished} "
+            "samples): "
             f"{why or 'no reason'}. They lie on {listed(failing, _FACES)}{where}.")  # fmt: skip
 
 
@@ -201,10 +204,13 @@ def ranked_spots(witnesses: Sequence[WitnessEntry]) -> list[WitnessEntry]:
 
 def worst_faces(plan: Plan, c: CutterEntry, most: int = 5) -> tuple[list[WorstFace], int]:
     """The faces of which a cutter loses the largest area, and how many there are in all."""
-    faces, failing = {face.id: face for face in plan.faces}, [name for name, each in c.faces.items() if each.lost]
+    faces, failing = (
+        {face.id: face for face in plan.faces},
+        [name for name, each in c.faces.items() if each.not_reached],
+    )
 
     def share(name: str) -> float:
-        return c.faces[name].area_share.lost
+        return c.faces[name].area_share.not_reached
 
     def lot(name: str) -> float:
         return share(name) * (1.0 - c.faces[name].inside_share) * faces[name].area_mm2
@@ -225,6 +231,6 @@ def _worst(face: FaceEntry, c: CutterEntry, lot: float) -> WorstFace:
     deepest = max(mine, key=lambda w: (w.verdict == verdict, w.depth_mm or 0.0), default=None)
     depth = "" if deepest is None or deepest.depth_mm is None else f"{deepest.depth_mm:.3g}"
     return WorstFace(
-        face.id, face.name, figure(lot), lost(c.faces[face.id], share), f"{'undecided: ' * unsure}{main or '?'}", depth,
+        face.id, face.name, figure(lot), unreached(c.faces[face.id], share), f"{'undecided: ' * unsure}{main or '?'}", depth,
         "" if deepest is None else deepest.obstacle_face or "",
     )  # fmt: skip

@@ -65,7 +65,7 @@ def effect(step: StepEntry) -> str:
 
 
 def is_left_out(step: StepEntry) -> bool:
-    """Whether a step changes nothing but leaves what is lost to other means."""
+    """Whether a step changes nothing but leaves what is not reached to other means."""
     return any(change.thing == "area" for change in step.changes)
 
 

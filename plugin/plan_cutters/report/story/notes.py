@@ -105,11 +105,11 @@ def setups(plan: Plan, best: CutterEntry) -> Iterator[Line]:
                 plan, f"Over the {number} setups {best.id} {what} of {samples.finished:,} samples. It reaches {each}."
             )
         )
-    lost = max((c.beyond_setup for c in plan.cutters), default=0)
-    if not lost:
+    not_reached = max((c.beyond_setup for c in plan.cutters), default=0)
+    if not not_reached:
         return
     here = "this setup" if number == 1 else "these setups"
-    yield Line(f"Beyond {here}: the axis limit loses {lost} of {samples.finished} samples for every cutter.")
+    yield Line(f"Beyond {here}: the axis limit loses {not_reached} of {samples.finished} samples for every cutter.")
     if plan.selected_for_setup:
         yield Line(named(plan, f"For {here}: {plan.selected_for_setup}, which leaves nothing else."), minor=True)
     within = [(s, percent(s.share, some=bool(s.within), whole=s.within == samples.judged)) for s in plan.setups]

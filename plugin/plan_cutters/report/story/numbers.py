@@ -8,7 +8,7 @@ from plan_cutters.domain.verdicts import WORDS
 
 #: Verdicts, from best to worst.
 VERDICTS = tuple(WORDS.values())
-_REACHED, _LOST = ("interference_free", "accessible"), ("inaccessible", "undecided")
+_REACHED, _NOT_REACHED = ("interference_free", "accessible"), ("inaccessible", "undecided")
 
 
 def percent(share: float, *, some: bool, whole: bool) -> str:
@@ -54,9 +54,9 @@ def reached(counts: VerdictCounts, share: AreaShare) -> str:
     return part_of(counts, share, _REACHED)
 
 
-def lost(counts: VerdictCounts, share: AreaShare) -> str:
+def unreached(counts: VerdictCounts, share: AreaShare) -> str:
     """How much of an area is inaccessible or undecided, in percent."""
-    return part_of(counts, share, _LOST)
+    return part_of(counts, share, _NOT_REACHED)
 
 
 def some(share: float) -> str:
