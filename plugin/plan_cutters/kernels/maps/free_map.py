@@ -154,33 +154,12 @@ def _rotation(frame, e1, e2, turn, rotation, interval, count, turning, whole, lo
     for k in range(LANES):
         _see_triangle(leaves[_LEAVES + 2], k, vertex, known[rotation, k], p, e1, e2, n)
     count, _ = _leaf(
-        leaves[_LEAVES + 2],
-        known[rotation],
-        vertex,
-        frame,
-        turn,
-        interval,
-        count,
-        turning,
-        whole,
-        narrowest,
-        inside,
+        leaves[_LEAVES + 2], known[rotation], vertex, frame, turn, interval, count, turning, whole, narrowest, inside,
         workspace,
-    )
+    )  # fmt: skip
     count, _ = _leaf(
-        leaves[_LEAVES + 1],
-        known[-1],
-        vertex,
-        frame,
-        turn,
-        interval,
-        count,
-        turning,
-        whole,
-        narrowest,
-        inside,
-        workspace,
-    )
+        leaves[_LEAVES + 1], known[-1], vertex, frame, turn, interval, count, turning, whole, narrowest, inside, workspace,
+    )  # fmt: skip
     queue[0, 0], queue[0, 1], queue[0, 2] = 0, 0, whole
     waiting = 1
     for level in range(levels):
@@ -213,19 +192,9 @@ def _rotation(frame, e1, e2, turn, rotation, interval, count, turning, whole, lo
                     for k in range(LANES):
                         which[k] = begin + k
                     count, cut = _leaf(
-                        leaves[inner],
-                        which,
-                        vertex,
-                        frame,
-                        turn,
-                        interval,
-                        count,
-                        turning,
-                        left[lane],
-                        narrowest,
-                        inside,
+                        leaves[inner], which, vertex, frame, turn, interval, count, turning, left[lane], narrowest, inside,
                         workspace,
-                    )
+                    )  # fmt: skip
                     if cut >= 0:
                         known[-1, tally[2]] = begin + cut
                         for k in range(9):
