@@ -21,6 +21,7 @@ from plan_cutters.report.story.numbers import (
     percent,
     place,
     reached,
+    unreached,
 )
 
 #: Faces that are named on which a cutter leaves something.
