@@ -1,9 +1,9 @@
 """Is the first advice true? Parts are asked as a planner would, and the first step that comes back is followed by command.
 
-`python benchmarks/advice.py [PART ...]`: three cutters with a chuck on a trunnion machine over a table, `--answers mend`;
-then the same command with the option of the first step. It prints the share of the area that is lost at first, the share that
-the step promises, the share that a fresh plan finds, and the seconds of both commands. Without parts: real files where they
-are at hand.
+`python benchmarks/advice.py [PART ...]`: three cutters with a chuck on a trunnion machine over a table, `--answers mend`; then
+the same command with the option of the first step. It prints the share of the area that is not reached at first, the share that
+the step promises, the share that a fresh plan finds, and the seconds of both commands. Without parts: real files where they are
+at hand.
 """
 
 import argparse
@@ -34,7 +34,7 @@ def asked(part: Path, out: Path, words: list[str]) -> tuple[dict[str, Any], floa
     return json.loads((out / "plan.json").read_text()), time.monotonic() - began
 
 
-def lost(folder: Path, cutters: list[str]) -> float:
+def not_reached(folder: Path, cutters: list[str]) -> float:
     """The share of the finished area, by the areas of samples, that none of some cutters reaches."""
     with np.load(folder / "samples.npz") as found:
         wanted = (found["surface_class"] != UNJUDGED) & ~found["inside_bodies"]
@@ -55,7 +55,11 @@ def row(part: Path) -> str:
         typed = step["option"].split()
         kept = [w for k in range(0, len(WORDS), 2) if WORDS[k] not in typed for w in WORDS[k : k + 2]]
         _, again = asked(part, folder / "then", [*CUTTERS, *kept, *typed])
-        shares = (lost(folder / "now", [best["id"]]), step["lost_after"], lost(folder / "then", step["cutters"]))
+        shares = (
+            not_reached(folder / "now", [best["id"]]),
+            step["lost_after"],
+            not_reached(folder / "then", step["cutters"]),
+        )
     told = " | ".join(f"{100 * share:.2f} %" for share in shares)
     return f"| {part.name} | {step['why']} | {told} | {seconds:.0f} | {again:.0f} |"
 

@@ -56,7 +56,7 @@ def ready(what: Any, cutter: str) -> Any:
 
 def measured(prepared: Any, cutter: Any) -> dict[str, float]:
     """Processor seconds of one cutter, and what they were spent on."""
-    from plan_cutters.domain.verdicts import BURIED, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, blank
+    from plan_cutters.domain.verdicts import INACCESSIBLE, INSIDE, INTERFERENCE_FREE, UNDECIDED, blank
     from plan_cutters.scene.conditions import contacts_of, search_postures
     from plan_cutters.stages.judge import judge
     from plan_cutters.stages.witness import witnesses
@@ -65,24 +65,24 @@ def measured(prepared: Any, cutter: Any) -> dict[str, float]:
     began = time.process_time()
     reach = judge(prepared, cutter)
     judged = time.process_time() - began
-    lost = (reach.verdict == INACCESSIBLE) & ((reach.reason != BURIED) | (prepared.buried < 0))
+    not_reached = (reach.verdict == INACCESSIBLE) & ((reach.reason != INSIDE) | (prepared.inside < 0))
     contacts, seconds = contacts_of(samples), {}
     tools = conditions.outer_tool(cutter), conditions.inner_tool(cutter)
-    groups = {"no": lost, "yes": reach.reached & (reach.verdict != INTERFERENCE_FREE)}
+    groups = {"no": not_reached, "yes": reach.reached & (reach.verdict != INTERFERENCE_FREE)}
     for name, rows in groups.items():
         again = blank(len(samples))
         began = time.process_time()
         search_postures(contacts, np.flatnonzero(rows), *tools, conditions, again, fixed=True)
         seconds[name] = time.process_time() - began
     began = time.process_time()
-    found = witnesses(samples, reach, cutter, conditions, buried=prepared.buried)
+    found = witnesses(samples, reach, cutter, conditions, inside=prepared.inside)
     told = time.process_time() - began
     return {
         "samples": len(samples), "triangles": len(conditions.obstacles.triangles),
-        "reached": int(reach.reached.sum()), "inaccessible": int(lost.sum()),
-        "undecided": int((reach.verdict == UNDECIDED).sum()), "buried": int((prepared.buried >= 0).sum()),
+        "reached": int(reach.reached.sum()), "inaccessible": int(not_reached.sum()),
+        "undecided": int((reach.verdict == UNDECIDED).sum()), "buried": int((prepared.inside >= 0).sum()),
         "verdicts s": judged, "us a sample reached": 1e6 * seconds["yes"] / max(1, int(groups["yes"].sum())),
-        "us a sample not": 1e6 * seconds["no"] / max(1, int(lost.sum())), "witnesses": len(found), "witnesses s": told,
+        "us a sample not": 1e6 * seconds["no"] / max(1, int(not_reached.sum())), "witnesses": len(found), "witnesses s": told,
     }  # fmt: skip
 
 

@@ -80,8 +80,8 @@ def main() -> None:
             f"{entry.id:8} feasible {entry.feasible!s:5}  free {100 * entry.interference_free / convex:.1f} % of convex"
         )
         for name, obstacles in (("certified", triangles), ("point obstacles", points)):
-            wall, processor, lost = existence(result, obstacles, cutter)
-            print(f"         {name}: {wall:.3f} s (processor {processor:.3f}), {lost} not reached")
+            wall, processor, not_reached = existence(result, obstacles, cutter)
+            print(f"         {name}: {wall:.3f} s (processor {processor:.3f}), {not_reached} not reached")
     if "--maps" in sys.argv:
         all_maps(result, triangles, cutters[-1])
     with tempfile.TemporaryDirectory() as folder:

@@ -64,9 +64,9 @@ def main() -> None:
     scene = Scene.of(PART)
     held = vise_of(WANTED)
     began = time.process_time()
-    _ = scene.around.possible.solids
+    _ = scene.surround().possible.solids
     print(
-        f"part alone: {len(scene.around.possible.triangles)} triangles, "
+        f"part alone: {len(scene.surround().possible.triangles)} triangles, "
         f"{time.process_time() - began:.2f} s to tessellate and build"
     )
     cases: dict[str, list[Fixture | str]] = {
@@ -96,7 +96,7 @@ def main() -> None:
             more = 100 * (best[name] / best["part alone"] - 1)
             boxes, triangles = (100 * (counts[name][word] / none[word] - 1) for word in ("boxes", "triangles"))
             print(f"| {text} | {name} | {best[name]:.2f} | {more:+.0f} % | {boxes:+.1f} % | "
-                  f"{triangles:+.1f} % | {int(reach[name].lost.sum())} |", flush=True)  # fmt: skip
+                  f"{triangles:+.1f} % | {int(reach[name].not_reached.sum())} |", flush=True)  # fmt: skip
 
 
 if __name__ == "__main__":

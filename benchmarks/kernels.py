@@ -32,11 +32,11 @@ from plan_cutters.kernels.tool import arcs, hit
 sys.path.append(str(Path(__file__).parent.parent))
 from tests.support import waves
 
-RADIUS, LENGTH, SAFE, BLOCKED, TURNS = 6.0, 40.0, 0.04, 0.06, 24
-TOOL = waves.flat(RADIUS, LENGTH, SAFE)
-HEAVY, PIECE = waves.flat(RADIUS, LENGTH, BLOCKED), TOOL.piece[0]
-CYLINDER, FLAT = waves.cylinder(RADIUS, LENGTH, SAFE), waves.flat(RADIUS, LENGTH, SAFE)
-DUMMY = assembly(Cutter.flat(radius=RADIUS, length=LENGTH), SAFE, SAFE).dummy
+RADIUS, LENGTH, OUTER, INNER, TURNS = 6.0, 40.0, 0.04, 0.06, 24
+TOOL = waves.flat(RADIUS, LENGTH, OUTER)
+INNER_TOOL, PIECE = waves.flat(RADIUS, LENGTH, INNER), TOOL.piece[0]
+CYLINDER, FLAT = waves.cylinder(RADIUS, LENGTH, OUTER), waves.flat(RADIUS, LENGTH, OUTER)
+DUMMY = assembly(Cutter.flat(radius=RADIUS, length=LENGTH), OUTER, OUTER).dummy
 RIGHT, UP, NARROWEST = np.pi / 2, np.array([0.0, 0, 1]), np.radians(0.1)
 Driver = Callable[[int], object]
 #: Calls of a kernel under callgrind, at most: it takes fifty times as long.
@@ -108,20 +108,20 @@ def many_walks(n, built, bodies, piece, scratch):
 
 
 @kernel
-def many_blocks(n, view, gap, tool, margin):
+def many_blocks(n, view, interval, tool, margin):
     total = 0.0
     for i in range(n):
-        passes._boxes_pass(view, i % len(view), 0.8, 0.6, gap, 1, tool, margin)
+        passes._boxes_pass(view, i % len(view), 0.8, 0.6, interval, 1, tool, margin)
         total += margin[0]
     return total
 
 
 @kernel
-def many_leaves(n, leaves, gap, tool, margin):
+def many_leaves(n, leaves, interval, tool, margin):
     total = 0.0
     for i in range(n):
         seen = leaves[i % len(leaves)]
-        passes._triangles_pass(seen, 0.8, 0.6, gap, 1, tool, margin)
+        passes._triangles_pass(seen, 0.8, 0.6, interval, 1, tool, margin)
         total += margin[0]
     return total
 
@@ -194,7 +194,7 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
         lanes._see_leaf(
             leaves[i], vertex, 8 * i, 8 * i + 8, point[0], first[0], np.cross(normal[0], first[0]), normal[0]
         )
-    gap = np.array([[0.2, 1.4, np.cos(0.2), np.sin(0.2), np.cos(1.4), np.sin(1.4), 0, 0]])
+    interval = np.array([[0.2, 1.4, np.cos(0.2), np.sin(0.2), np.cos(1.4), np.sin(1.4), 0, 0]])
     part, filled, unsure = np.empty((n, TURNS, 8, 2)), np.empty((n, TURNS), np.int32), np.empty((n, TURNS))
     asked = contacts()
 
@@ -217,11 +217,11 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
         "dummy_clear": ("sample", 400, lambda k: search.dummy_clear(
             np.arange(k), cc_points, DUMMY, TOOL, solids, free)),
         "search": ("sample", 400, lambda k: search.search(
-            np.arange(k), cc_points, waves.ranges(rotations, 0.7), TOOL, HEAVY, solids, solids, out)),
+            np.arange(k), cc_points, waves.ranges(rotations, 0.7), TOOL, INNER_TOOL, solids, solids, out)),
         "free_tilts": ("rotation", 100, maps_of),
         "wide_tree": ("triangle", 7_200, lambda k: k and lanes.wide_tree(built)),
-        "_boxes_pass": ("eight boxes", 100_000, lambda k: many_blocks(k, view, gap, CYLINDER, margin)),
-        "_triangles_pass": ("eight triangles", 100_000, lambda k: many_leaves(k, leaves, gap, CYLINDER, margin)),
+        "_boxes_pass": ("eight boxes", 100_000, lambda k: many_blocks(k, view, interval, CYLINDER, margin)),
+        "_triangles_pass": ("eight triangles", 100_000, lambda k: many_leaves(k, leaves, interval, CYLINDER, margin)),
         "free_map": ("rotation", 400 * TURNS, all_maps),
         "cover": ("contact", len(asked[0]), lambda k: cover.cover(asked[0][:k], *asked[1:])),
     }  # fmt: skip

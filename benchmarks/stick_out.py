@@ -45,9 +45,9 @@ def main() -> None:
         least_stick_out(ready, cutter, reach, step=0.5)
         each = time.perf_counter() - start - min(clock)
         below = "" if found.sample < 0 else "undecided" if found.verdict == UNDECIDED else "inaccessible"
-        lost = int(reach.lost.sum())
+        not_reached = int(reach.not_reached.sum())
         name = cutter.id.split("H")[0] + (
-            f" ({lost} lost, {REASONS[int(reach.reason[reach.lost][0])]})" if lost else ""
+            f" ({not_reached} lost, {REASONS[int(reach.reason[reach.not_reached][0])]})" if not_reached else ""
         )
         print(f"| {name} | {min(judging):.2f} | {min(clock):.2f} | {min(processor):.2f} | {each:.1f} | "
               f"{found.least:.3f} | {found.why} {found.sample} | {below} |", flush=True)  # fmt: skip

@@ -107,8 +107,8 @@ def exact(path: Path, cutter: Cutter, count: int) -> str:
         close = (w > -1.0) & (w < tool.end + 1.0) & (q < tool.wide + 1.0)
         if close.any():
             worst = max(worst, float(tool.over(q[close], w[close], 0.0, 0.0).max()))
-    lost = entry.inaccessible + entry.undecided
-    return f"{path.name} {cutter.id}: {len(rows)} postures, {len(cloud)} points, {lost} lost, deepest {worst:.4f} mm"
+    not_reached = entry.inaccessible + entry.undecided
+    return f"{path.name} {cutter.id}: {len(rows)} postures, {len(cloud)} points, {not_reached} lost, deepest {worst:.4f} mm"
 
 
 def main() -> None:

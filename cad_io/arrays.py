@@ -38,7 +38,7 @@ class Record:
 
 
 def _names(record: Any) -> list[str]:
-    return [field.name for field in fields(record)]
+    return [field.name for field in fields(record) if field.compare]
 
 
 def _same(one: Any, other: Any) -> bool:
@@ -230,28 +230,19 @@ class SurfaceSamples(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Triangles(Record):
-    """A part's surface as triangles close to it.
+    """A part's surface as triangles close to it."""
 
-    Attributes
-    ----------
-    vertex : (t, 3, 3) float
-        Corners a, b, c, mm, ordered so that `(b - a) x (c - a)` has the side of `dS/du x dS/dv` of the face's surface
-        (counter-clockwise in the parameter plane). Where that area is zero, either order may be found.
-    face : (t,) int32
-        Face number.
-    chord_error : float
-        Bound of the distance between a triangle and the surface that it stands for, mm. Each point of the face, up
-        to its true border, has a triangle within it.
-    missing : tuple of (int, str)
-        Faces without triangles, with the reason.
-    measured : tuple of int
-        Faces whose surface or border only the kernel can evaluate: there the distance is measured, not proved.
-    """
-
+    #: (t, 3, 3); corners a, b, c, mm, ordered so that `(b - a) x (c - a)` has the side of `dS/du x dS/dv` of the face's surface
+    #: (counter-clockwise in the parameter plane). Where that area is zero, either order may be found.
     vertex: Floats
+    #: (t,); face number.
     face: Ints
+    #: Bound of the distance between a triangle and the surface that it stands for, mm. Each point of the face, up to its true
+    #: border, has a triangle within it.
     chord_error: float
+    #: Faces without triangles, with the reason.
     missing: tuple[tuple[int, str], ...]
+    #: Faces whose surface or border only the kernel can evaluate: there the distance is measured, not proved.
     measured: tuple[int, ...] = ()
 
     def __len__(self) -> int:
@@ -265,21 +256,14 @@ class Triangles(Record):
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class FaceLabels(Record):
-    """Labels on a face's parameter grid, along whose boundaries it is to be split.
-
-    Attributes
-    ----------
-    face : int
-    u, v : (nu,), (nv,) float
-        Strictly increasing grid lines.
-    label : (nu, nv) int32
-        0, 1, 2, ...; -1 where unknown (outside the trim). Labels are ordinal: of the labels that a face has, a middle one
-        lies between its neighbours, so boundaries never cross.
-    """
+    """Labels on a face's parameter grid, along whose boundaries it is to be split."""
 
     face: int
+    #: (nu,); strictly increasing grid lines.
     u: Floats
     v: Floats
+    #: (nu, nv); 0, 1, 2, ...; -1 where unknown (outside the trim). Labels are ordinal: of the labels that a face has, a middle
+    #: one lies between its neighbours, so boundaries never cross.
     label: Ints
 
 

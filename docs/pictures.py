@@ -47,6 +47,7 @@ def main() -> None:
         kept = said[said.index("\nTake ") + 1 : said.index("\nWritten")].splitlines()
         text = "\n".join(line for line in kept if " s  " not in line[:12])
         (PICTURES / "summary.txt").write_text(text.rstrip() + "\n", encoding="utf-8")
+        _readme(text.splitlines())
         run("plan-cutters-map", "samples/peaks_and_valleys.step", "--at", "-2.241,4.502,-22.43", "--cutter", "D16L90", "-o",
             str(PICTURES / "map.png"))  # fmt: skip
         run("plan-cutters-tools", "samples/shop.toml", "--draw", str(out / "drawings"))
@@ -55,6 +56,16 @@ def main() -> None:
             "table", "--formats", "png", "-o", str(out / "sheet"))  # fmt: skip
         shutil.copy(out / "sheet" / "review.png", PICTURES / "sheet.png")
         _page(out / "p" / "review.html", PICTURES / "review.png")
+
+
+def _readme(lines: list[str]) -> None:
+    """Write the headline and the table of the summary into the README."""
+    first = next(i for i, line in enumerate(lines) if i and not line.startswith("  "))
+    table = next(i for i, line in enumerate(lines) if line.startswith("  cutter "))
+    shown = "\n".join([*lines[:first], *lines[table : lines.index("", table)]])
+    page = ROOT / "README.md"
+    before, fence, rest = page.read_text(encoding="utf-8").partition("```text\n")
+    page.write_text(f"{before}{fence}{shown}\n{rest[rest.index('```') :]}", encoding="utf-8")
 
 
 def _page(page: Path, picture: Path) -> None:

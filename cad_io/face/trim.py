@@ -17,11 +17,11 @@ from OCP.BRepTools import BRepTools
 from OCP.BRepTopAdaptor import BRepTopAdaptor_FClass2d
 from OCP.GeomAbs import GeomAbs_C2, GeomAbs_Line
 from OCP.gp import gp_Pnt2d
-from OCP.TopAbs import TopAbs_FORWARD, TopAbs_IN, TopAbs_ON, TopAbs_REVERSED
-from OCP.TopoDS import TopoDS, TopoDS_Face
+from OCP.TopAbs import TopAbs_IN, TopAbs_ON
+from OCP.TopoDS import TopoDS_Face
 
 from cad_io.arrays import Floats, Record
-from cad_io.kernel import edges_of, interval_ends
+from cad_io.kernel import bounding, interval_ends
 from cad_io.surface import Surface
 
 Bools = NDArray[np.bool_]
@@ -36,38 +36,31 @@ _HALVINGS = 12
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Trim(Record):
-    """The border of a face in its parameter plane.
-
-    Attributes
-    ----------
-    face : TopoDS_Face
-    segments : (n, 2, 2) float
-        (u, v) of start and end, the face on the left if its surface is seen with `dS/du x dS/dv` towards the eye.
-    exact : (n,) bool
-        Segments that are the border itself, not chords of it.
-    box : tuple of float
-        u least, u most, v least, v most; tight.
-    scale : (2,) float
-        Typical mm per unit of u and of v.
-    deflection : float
-        Largest measured distance of the polygon from the border, mm.
-    tolerance : float
-        Distance from the border that counts as on it, mm.
-    closed : bool
-        False where the parameter curves do not close; then the kernel decides about every point.
-    rectangular : bool
-        The face uses the whole of `box`.
-    """
+    """The border of a face in its parameter plane."""
 
     face: TopoDS_Face
+    #: (n, 2, 2); (u, v) of start and end, the face on the left if its surface is seen with `dS/du x dS/dv` towards the eye.
     segments: Floats
+    #: (n,); segments that are the border itself, not chords of it.
     exact: Bools
+    #: u least, u most, v least, v most; tight.
     box: tuple[float, float, float, float]
+    #: (2,); typical mm per unit of u and of v.
     scale: Floats
+    #: Largest measured distance of the polygon from the border, mm.
     deflection: float
+    #: Distance from the border that counts as on it, mm.
     tolerance: float
+    #: False where the parameter curves do not close; then the kernel decides about every point.
     closed: bool
+    #: The face uses the whole of `box`.
     rectangular: bool
+
+    @property
+    def uv_area(self) -> float:
+        """Area of what the border encloses in the parameter plane."""
+        p, q = self.segments[:, 0], self.segments[:, 1]
+        return abs(0.5 * float((p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]).sum()))
 
     def inside_grid(self, u: Floats, v: Floats, *, beside: bool = True) -> Bools:
         """Which nodes of the grid of increasing lines u (nu,) and v (nv,) lie in the face: (nu, nv).
@@ -137,19 +130,17 @@ def trim_of(face: TopoDS_Face, surface: Surface) -> Trim | None:
     surface : Surface
         Of that face, not restricted to it.
     """
-    forward = TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
+    forward, edges = bounding(face)
     scale, size = _scale(forward, surface)
     if scale is None:
         return None
     pieces, exact, tolerance, deflection = [], [], ON_LEAST, 0.0
-    for edge in edges_of(forward):
-        if edge.Orientation() not in (TopAbs_FORWARD, TopAbs_REVERSED):
-            continue
+    for edge, way in edges:
         curve = BRepAdaptor_Curve2d(edge, forward)
         points, deviation = _polyline(curve, scale, DEFLECTION * size)
         if not np.isfinite(points).all():
             return None
-        pieces.append(points if edge.Orientation() == TopAbs_FORWARD else points[::-1])
+        pieces.append(points[::way])
         exact.append(len(points) == 2 and deviation == 0)
         tolerance, deflection = max(tolerance, BRep_Tool.Tolerance_s(edge)), max(deflection, deviation)
     if not pieces:

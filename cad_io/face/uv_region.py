@@ -12,14 +12,11 @@ from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from OCP.GeomAbs import GeomAbs_BezierCurve, GeomAbs_BSplineCurve, GeomAbs_CN, GeomAbs_Line
-from OCP.gp import gp_Pnt2d, gp_Vec2d
-from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
-from OCP.TopoDS import TopoDS
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cad_io.arrays import Floats
 from cad_io.face.trim import even_odd, joins
-from cad_io.kernel import edges_of, interval_ends
+from cad_io.kernel import along, bounding, interval_ends
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)  # exact for polynomial curves up to degree 6
 _CHORDS = 4  # of an interval, in an outline
@@ -56,23 +53,16 @@ def uv_areas(faces: Sequence[Any]) -> list[float]:
     integrals: dict[tuple[int, Any], float] = {}
     areas = []
     for face in faces:
-        total, forward = 0.0, TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
-        for edge in edges_of(forward):
-            way = edge.Orientation()
-            if way not in (TopAbs_FORWARD, TopAbs_REVERSED):
-                continue
+        total = 0.0
+        forward, edges = bounding(face)
+        for edge, way in edges:
             # A seam has two curves, by its orientation.
             mark = known.Add(edge), way if BRep_Tool.IsClosed_s(edge, forward) else None
             if mark not in integrals:
                 integrals[mark] = _integral(BRepAdaptor_Curve2d(edge, forward))
-            total += integrals[mark] if way == TopAbs_FORWARD else -integrals[mark]
+            total += way * integrals[mark]
         areas.append(total)
     return areas
-
-
-def uv_area(face: Any) -> float:
-    """Area of the region in (u, v), exact for polynomial boundaries."""
-    return uv_areas([face])[0]
 
 
 def _integral(curve: Any) -> float:
@@ -102,13 +92,8 @@ def _followed(curve: Any, t: Floats) -> tuple[Floats, Floats]:
 
             known = BSpline(knots, poles, spline.Degree())
             return known(t), known.derivative()(t)
-    point, tangent = gp_Pnt2d(), gp_Vec2d()
-    rows = []
-    for x in t.tolist():
-        curve.D1(x, point, tangent)
-        rows.append((point.X(), point.Y(), tangent.X(), tangent.Y()))
-    found = np.array(rows).reshape(-1, 4)
-    return found[:, :2], found[:, 2:]
+    found = along(curve, t)
+    return found[:, 0], found[:, 1]
 
 
 def inside(segments: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:
@@ -136,14 +121,9 @@ def interior_point(segments: Floats) -> tuple[float, float]:
 
 def boundary(face: Any) -> list[tuple[Any, Floats, float]]:
     """Boundary curves in (u, v), the ends (k + 1,) of their smooth intervals, +1 or -1 for their direction."""
-    forward = TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
-    out = []
-    for edge in edges_of(forward):
-        if edge.Orientation() not in (TopAbs_FORWARD, TopAbs_REVERSED):
-            continue
-        curve = BRepAdaptor_Curve2d(edge, forward)
-        out.append((curve, _ends(curve), 1.0 if edge.Orientation() == TopAbs_FORWARD else -1.0))
-    return out
+    forward, edges = bounding(face)
+    curves = [(BRepAdaptor_Curve2d(edge, forward), float(way)) for edge, way in edges]
+    return [(curve, _ends(curve), way) for curve, way in curves]
 
 
 def _ends(curve: Any) -> Floats:

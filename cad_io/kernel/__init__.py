@@ -4,12 +4,16 @@ May use: arrays and errors.
 """
 
 from cad_io.kernel.calls import (
+    along,
+    bounding,
+    domain,
     edges_of,
     explore,
     faces,
     first_derivatives,
     interval_ends,
     is_kernel_error,
+    may_refuse,
     second_derivatives,
     shape_map,
     silence,
@@ -18,12 +22,16 @@ from cad_io.kernel.calls import (
 )
 
 __all__ = [
+    "along",
+    "bounding",
+    "domain",
     "edges_of",
     "explore",
     "faces",
     "first_derivatives",
     "interval_ends",
     "is_kernel_error",
+    "may_refuse",
     "second_derivatives",
     "shape_map",
     "silence",

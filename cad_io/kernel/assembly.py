@@ -8,26 +8,17 @@ from OCP.TopLoc import TopLoc_Location
 
 @dataclass(frozen=True, slots=True)
 class Node:
-    """An instance of a product: an assembly of other instances, or a leaf with faces.
+    """An instance of a product: an assembly of other instances, or a leaf with faces."""
 
-    Attributes
-    ----------
-    name : str
-        Of the product; empty if it has none.
-    instance : str
-        Of this use of it; empty for a root.
-    place : TopLoc_Location
-        In the assembly around it.
-    children : tuple of Node
-        Of an assembly.
-    faces : tuple of int
-        Face numbers of a leaf, no number in two leaves.
-    """
-
+    #: Of the product; empty if it has none.
     name: str
+    #: Of this use of it; empty for a root.
     instance: str
+    #: In the assembly around it.
     place: TopLoc_Location
+    #: Of an assembly.
     children: tuple["Node", ...] = ()
+    #: Face numbers of a leaf, no number in two leaves.
     faces: tuple[int, ...] = ()
 
     def leaves(

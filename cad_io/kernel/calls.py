@@ -7,14 +7,15 @@ module that they come from. Values are taken out as arrays at once; `.Coord()` i
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from types import TracebackType
 from typing import Any
 
 import numpy as np
 from OCP.BRepAdaptor import BRepAdaptor_Surface
-from OCP.gp import gp_Pnt, gp_Vec
+from OCP.gp import gp_Pnt, gp_Pnt2d, gp_Vec, gp_Vec2d
 from OCP.Message import Message
 from OCP.TColStd import TColStd_Array1OfReal
-from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopExp import TopExp, TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
@@ -29,6 +30,17 @@ _ADDRESS = re.compile(r"0x[0-9a-f]+ : ")
 def is_kernel_error(error: BaseException) -> bool:
     """True if the exception was thrown by the kernel."""
     return type(error).__module__.split(".")[0] == "OCP"
+
+
+class may_refuse:
+    """Go on behind the block where the kernel throws in it; other errors pass."""
+
+    def __enter__(self) -> None: ...
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> bool:
+        return error is not None and is_kernel_error(error)
 
 
 @contextmanager
@@ -95,25 +107,25 @@ def edges_of(face: TopoDS_Face) -> list[TopoDS_Edge]:
     return [TopoDS.Edge_s(edge) for edge in explore(face, TopAbs_EDGE)]
 
 
+def bounding(face: TopoDS_Face) -> tuple[TopoDS_Face, list[tuple[TopoDS_Edge, int]]]:
+    """A face turned FORWARD, and the edges that bound it, each with +1 or -1 for its direction there; a seam occurs twice."""
+    forward, ways = TopoDS.Face_s(face.Oriented(TopAbs_FORWARD)), {TopAbs_FORWARD: 1, TopAbs_REVERSED: -1}
+    return forward, [(edge, ways[way]) for edge in edges_of(forward) if (way := edge.Orientation()) in ways]
+
+
 def values(adaptor: BRepAdaptor_Surface, u: Floats, v: Floats) -> Floats:
     """Surface points, (n, 3) mm, at parameters u, v of shape (n,); NaN where the kernel refuses."""
-    value = adaptor.Value
-    try:
-        rows = [value(a, b).Coord() for a, b in zip(u.tolist(), v.tolist(), strict=True)]
-    except Exception as thrown:
-        if not is_kernel_error(thrown):
-            raise
-        rows = [_value_or_nan(adaptor, a, b) for a, b in zip(u.tolist(), v.tolist(), strict=True)]
-    return np.array(rows, dtype=float).reshape(-1, 3)
+    value, places = adaptor.Value, list(zip(u.tolist(), v.tolist(), strict=True))
+    rows: list[tuple[float, float, float]] = []
+    with may_refuse():
+        rows = [value(a, b).Coord() for a, b in places]
+    return np.array(rows or [_value_or_nan(adaptor, a, b) for a, b in places], dtype=float).reshape(-1, 3)
 
 
 def _value_or_nan(adaptor: BRepAdaptor_Surface, u: float, v: float) -> tuple[float, float, float]:
-    try:
+    with may_refuse():
         return adaptor.Value(u, v).Coord()
-    except Exception as thrown:
-        if not is_kernel_error(thrown):
-            raise
-        return (np.nan, np.nan, np.nan)
+    return np.nan, np.nan, np.nan
 
 
 def first_derivatives(adaptor: BRepAdaptor_Surface, u: Floats, v: Floats) -> Floats:
@@ -142,6 +154,21 @@ def _derivatives(evaluate: Any, u: Floats, v: Floats, count: int) -> Floats:
         for out in outs:
             flat.extend(out.Coord())
     return np.array(flat, dtype=float).reshape(-1, count + 1, 3)
+
+
+def along(curve: Any, t: Floats, dimension: int = 2) -> Floats:
+    """Points and derivatives of a curve at parameters (n,), in a parameter plane or in space: (n, 2, dimension)."""
+    point, tangent = (gp_Pnt2d(), gp_Vec2d()) if dimension == 2 else (gp_Pnt(), gp_Vec())
+    evaluate, rows = curve.D1, []
+    for x in t.tolist():
+        evaluate(x, point, tangent)
+        rows.append((point.Coord(), tangent.Coord()))
+    return np.array(rows, dtype=float).reshape(-1, 2, dimension)
+
+
+def domain(adaptor: BRepAdaptor_Surface) -> tuple[float, float, float, float]:
+    """Ends of a surface's own parameters: u least, u most, v least, v most."""
+    return adaptor.FirstUParameter(), adaptor.LastUParameter(), adaptor.FirstVParameter(), adaptor.LastVParameter()
 
 
 def interval_ends(count: int, intervals: Any, continuity: Any) -> Floats:

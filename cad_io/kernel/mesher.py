@@ -12,7 +12,7 @@ from OCP.BRepTools import BRepTools
 from OCP.TopLoc import TopLoc_Location
 
 from cad_io.arrays import Floats
-from cad_io.kernel.calls import is_kernel_error
+from cad_io.kernel.calls import may_refuse
 from cad_io.kernel.each import Ended, each
 
 Taken = TypeVar("Taken")
@@ -93,12 +93,9 @@ def uv_triangles(mesh: Any) -> tuple[Floats, NDArray[np.int64]]:
 
 def _meshed(face: Any, deflection: float, angle: float) -> tuple[Meshed | None, float]:
     start = time.process_time()
-    try:
+    with may_refuse():
         return under_mesh(face, deflection, angle, _drawn)
-    except Exception as thrown:
-        if not is_kernel_error(thrown):
-            raise
-        return None, time.process_time() - start
+    return None, time.process_time() - start
 
 
 def _drawn(mesh: Any, location: TopLoc_Location) -> Meshed:

@@ -14,7 +14,7 @@ from cad_io.kernel.copies import answers, begin, ended, tell
 Done = TypeVar("Done")
 
 
-class Meanwhile(Generic[Done]):
+class SideProcess(Generic[Done]):
     """A call that may be under way in a copy of this process.
 
     The copy ends with the block of `with`, whatever ends that.
@@ -34,7 +34,7 @@ class Meanwhile(Generic[Done]):
         self._worth = worth and hasattr(os, "fork")
         self._copy: tuple[int, int] | None = None
 
-    def __enter__(self) -> "Meanwhile[Done]":
+    def __enter__(self) -> "SideProcess[Done]":
         if self._worth:
             try:
                 self._copy = begin(self._answer, self._seconds)

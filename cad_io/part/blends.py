@@ -12,7 +12,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
-from OCP.gp import gp_Pnt2d, gp_Vec2d
 from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
@@ -20,7 +19,7 @@ from scipy.sparse.csgraph import connected_components
 from cad_io.arrays import FaceInfo, Floats
 from cad_io.face.curvature import curvature
 from cad_io.face.trim import Trim
-from cad_io.kernel import is_kernel_error
+from cad_io.kernel import along, may_refuse
 from cad_io.part.sew import edge_uses
 from cad_io.surface import Surface
 
@@ -129,19 +128,17 @@ def _side(face: Bare, size: float, edges: list[TopoDS_Edge]) -> _Side | None:
     if face.trim is None or face.surface is None:
         return None
     points, (u0, u1, v0, v1) = len(_ALONG), face.trim.box
-    along = np.concatenate([_parameters(edge, face.shape) for edge in edges])
+    line = np.concatenate([_parameters(edge, face.shape) for edge in edges])
     share = np.linspace(0.0, 1.0, _LINES)
     u, v = (g.ravel() for g in np.meshgrid(u0 + share * (u1 - u0), v0 + share * (v1 - v0)))
-    uv, n = along[:, 0], len(along)
-    try:
+    uv, n, d = line[:, 0], len(line), None
+    with may_refuse():
         d = face.surface.second(np.concatenate([uv[:, 0], u]), np.concatenate([uv[:, 1], v]))
-    except Exception as thrown:
-        if not is_kernel_error(thrown):
-            raise
+    if d is None:
         return None
     with np.errstate(all="ignore"):
         geometry = curvature(d, 1.0, size)
-        tangent = d[:n, 1] * along[:, 1, :1] + d[:n, 2] * along[:, 1, 1:]
+        tangent = d[:n, 1] * line[:, 1, :1] + d[:n, 2] * line[:, 1, 1:]
         beside = np.cross(geometry.normal[:n], tangent)
         cosine = (beside * geometry.direction_max[:n]).sum(axis=1) / np.linalg.norm(beside, axis=1)
         high, low = geometry.curvature[:n].T
@@ -155,20 +152,12 @@ def _side(face: Bare, size: float, edges: list[TopoDS_Edge]) -> _Side | None:
 
 def _parameters(edge: TopoDS_Edge, face: TopoDS_Face) -> Floats:
     """Places (u, v) along an edge of a face, and the directions in which it goes there: (p, 2, 2), nan where it has none."""
-    try:
+    with may_refuse():
         curve = BRepAdaptor_Curve2d(edge, face)
         low, high = curve.FirstParameter(), curve.LastParameter()
-        if not max(-low, high) < 1e50:
-            return np.full((len(_ALONG), 2, 2), np.nan)
-        at, to, found = gp_Pnt2d(), gp_Vec2d(), []
-        for t in (low + (high - low) * _ALONG).tolist():
-            curve.D1(t, at, to)
-            found.append((at.Coord(), to.Coord()))
-    except Exception as thrown:
-        if not is_kernel_error(thrown):
-            raise
-        return np.full((len(_ALONG), 2, 2), np.nan)
-    return np.array(found)
+        if max(-low, high) < 1e50:
+            return along(curve, low + (high - low) * _ALONG)
+    return np.full((len(_ALONG), 2, 2), np.nan)
 
 
 def _turn(normal: Floats) -> float:

@@ -27,23 +27,15 @@ _SMALL_CAP = 0.5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Body:
-    """Faces that enclose something.
+    """Faces that enclose something."""
 
-    Attributes
-    ----------
-    faces : tuple of int
-        Face numbers.
-    sign : tuple of int
-        +1 for a face whose `dS/du x dS/dv` points out of the enclosed volume, else -1.
-    closed : bool
-        False where edges are open: the enclosed volume is then a guess.
-    cap : (t, 3, 3) float
-        Triangles that close open edges, corners counter-clockwise seen from outside; none where it is closed.
-    """
-
+    #: Face numbers.
     faces: tuple[int, ...]
+    #: +1 for a face whose `dS/du x dS/dv` points out of the enclosed volume, else -1.
     sign: tuple[int, ...]
+    #: False where edges are open: the enclosed volume is then a guess.
     closed: bool
+    #: (t, 3, 3); triangles that close open edges, corners counter-clockwise seen from outside; none where it is closed.
     cap: Floats
 
 

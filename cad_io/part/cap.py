@@ -15,7 +15,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats
-from cad_io.kernel import is_kernel_error
+from cad_io.kernel import may_refuse
 from cad_io.kernel.each import Ended, each
 from cad_io.part.sew import edge_uses
 
@@ -47,7 +47,7 @@ def cap_of(shapes: Sequence[TopoDS_Face], sign: Floats, diagonal: float) -> Floa
     nets = [(edge, sum(way * int(sign[i]) for i, way in users)) for edge, users in edge_uses(shapes)]
     border = [(edge, net) for edge, net in nets if net]
     lines, ways = [], []
-    drawn = each(partial(_polyline, diagonal=diagonal), [edge for edge, _ in border], seconds=SECONDS)
+    drawn = each(partial(polyline, chord=_CHORD * diagonal), [edge for edge, _ in border], seconds=SECONDS)
     for line, (_, net) in zip(drawn, border, strict=True):
         # An edge that cannot be drawn to an end is left out, as one without a curve is.
         if not isinstance(line, Ended) and len(line) > 1:
@@ -86,13 +86,11 @@ def coned(lines: Sequence[Floats], ways: Sequence[int], near: float) -> Floats:
     return np.concatenate(made)
 
 
-def _polyline(edge: TopoDS_Edge, diagonal: float) -> Floats:
-    """Points (k, 3) along an edge, the way its curve runs; none where it has none."""
-    try:
-        points = GCPnts_TangentialDeflection(BRepAdaptor_Curve(edge), _ANGLE, _CHORD * diagonal)
+def polyline(edge: TopoDS_Edge, chord: float) -> Floats:
+    """Points (k, 3) along an edge, chords at most so far from it, mm, the way its curve runs; none where it has none."""
+    with may_refuse():
+        points = GCPnts_TangentialDeflection(BRepAdaptor_Curve(edge), _ANGLE, chord)
         line = np.array([points.Value(i + 1).Coord() for i in range(points.NbPoints())]).reshape(-1, 3)
-    except Exception as thrown:
-        if not is_kernel_error(thrown):
-            raise
-        return np.zeros((0, 3))
-    return line if np.isfinite(line).all() else np.zeros((0, 3))
+        if np.isfinite(line).all():
+            return line
+    return np.zeros((0, 3))

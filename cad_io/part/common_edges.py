@@ -11,16 +11,14 @@ import numpy as np
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from OCP.Geom2d import Geom2d_BSplineCurve
-from OCP.gp import gp_Pnt2d, gp_Vec2d
-from OCP.TColgp import TColgp_Array1OfPnt2d
-from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from cad_io.arrays import Floats
-from cad_io.kernel import is_kernel_error
+from cad_io.kernel import along, may_refuse
 from cad_io.kernel.components import children
+from cad_io.kernel.splines import cubic
 from cad_io.part.coincide import Group, Piece
 from cad_io.part.curves import Curves
 
@@ -155,33 +153,18 @@ class _Fit(NamedTuple):
 
     def on(self, edge: TopoDS_Edge, face: TopoDS_Face) -> Geom2d_BSplineCurve | None:
         """The other edge's line in the parameter plane of a face, by the common parameter; None where it has none."""
-        at, to, flat = gp_Pnt2d(), gp_Vec2d(), []
-        try:
-            line = BRepAdaptor_Curve2d(edge, face)
-            for x in self.there.tolist():
-                line.D1(x, at, to)
-                flat.append((at.Coord(), to.Coord()))
-            p, d = np.moveaxis(np.array(flat), 1, 0)
+        with may_refuse():
+            p, d = np.moveaxis(along(BRepAdaptor_Curve2d(edge, face), self.there), 1, 0)
             return _hermite(self.t, p, d * self.speed[:, None])
-        except Exception as thrown:
-            if not is_kernel_error(thrown):
-                raise
-            return None
+        return None
 
 
 def _hermite(t: Floats, p: Floats, d: Floats) -> Geom2d_BSplineCurve:
     """The cubic spline with points and derivatives (k, 2) at parameters (k,)."""
     third = (np.diff(t) / 3)[:, None]
     after, before = p[:-1] + third * d[:-1], p[1:] - third * d[1:]
-    rows = np.concatenate([p[:1], np.stack([after, before], axis=1).reshape(-1, 2), p[-1:]]).tolist()
-    poles = TColgp_Array1OfPnt2d(1, len(rows))
-    for i, (u, v) in enumerate(rows, 1):
-        poles.SetValue(i, gp_Pnt2d(u, v))
-    knots, times = TColStd_Array1OfReal(1, len(t)), TColStd_Array1OfInteger(1, len(t))
-    for i, x in enumerate(t.tolist(), 1):
-        knots.SetValue(i, x)
-        times.SetValue(i, 4 if i in (1, len(t)) else 2)
-    return Geom2d_BSplineCurve(poles, knots, times, 3)
+    poles = np.concatenate([p[:1], np.stack([after, before], axis=1).reshape(-1, 2), p[-1:]])
+    return cubic(np.concatenate([t[:1], t[:1], np.repeat(t, 2), t[-1:], t[-1:]]), poles)
 
 
 def _rebuilt(face: TopoDS_Face, index: TopTools_IndexedMapOfShape, instead: dict[int, list[Part]]) -> TopoDS_Face:

@@ -11,11 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.GeomAbs import GeomAbs_C2, GeomAbs_Line
-from OCP.gp import gp_Pnt, gp_Vec
 from OCP.TopoDS import TopoDS_Edge
 
 from cad_io.arrays import Floats
-from cad_io.kernel import interval_ends, is_kernel_error
+from cad_io.kernel import along, interval_ends, may_refuse
 
 Indices = NDArray[np.intp]
 
@@ -51,7 +50,7 @@ class Curves:
     """
 
     def __init__(self, edges: Sequence[TopoDS_Edge], chord: float) -> None:
-        drawings = _followed([_Kernel.of(edge) for edge in edges], chord)
+        drawings = [_followed(edge, chord) for edge in edges]
         self.drawn = np.array([each is not None for each in drawings], bool)
         blank = _Drawing(np.array([0.0, 1.0]), np.zeros((2, 3)), np.zeros((2, 3)))
         each = [drawing or blank for drawing in drawings] or [blank]
@@ -98,7 +97,7 @@ class Curves:
         step = self._table_length[i + 1] - self._table_length[i]
         with np.errstate(all="ignore"):
             share = np.where(step > 0, (length - self._table_length[i]) / step, 0.0)
-        return self._between(i, np.clip(share, 0.0, 1.0))
+        return self.chord_parameter(i, np.clip(share, 0.0, 1.0))
 
     def near(self, which: Indices, t: Floats, low: Floats, high: Floats, point: Floats) -> tuple[Floats, Floats]:
         """Parameters (m,) between `low` and `high` next to points (m, 3), from a guess on, and the distances there.
@@ -123,7 +122,7 @@ class Curves:
 
     def chord_parameter(self, chord: Indices, share: Floats) -> Floats:
         """Parameters (m,) at shares of chords of the table."""
-        return self._between(chord, share)
+        return np.asarray(self._table_t[chord] + share * (self._table_t[chord + 1] - self._table_t[chord]))
 
     def breaks(self, which: int, low: float, high: float) -> Floats:
         """Parameters of a curve at which its pieces end, and the two given."""
@@ -139,9 +138,6 @@ class Curves:
         i = self._piece(self._table_t, self.table_first, which, t)
         step = self._table_t[i + 1] - self._table_t[i]
         return i, np.clip((t - self._table_t[i]) / step, 0.0, 1.0)
-
-    def _between(self, i: Indices, share: Floats) -> Floats:
-        return np.asarray(self._table_t[i] + share * (self._table_t[i + 1] - self._table_t[i]))
 
     def _piece(self, table: Floats, first: Indices, which: Indices, t: Floats) -> Indices:
         """Places (m,) in a table of the last entry of each curve that is not behind its parameter."""
@@ -169,7 +165,8 @@ class _Kernel(NamedTuple):
 
     @classmethod
     def of(cls, edge: TopoDS_Edge) -> "_Kernel | None":
-        try:
+        ends = np.zeros(0)
+        with may_refuse():
             curve = BRepAdaptor_Curve(edge)
             low, high = curve.FirstParameter(), curve.LastParameter()
             if not (low < high and max(-low, high) < _INFINITE):
@@ -180,37 +177,27 @@ class _Kernel(NamedTuple):
             if not 0 < count <= _MOST_INTERVALS:
                 return None
             ends = np.unique(np.clip(interval_ends(count, curve.Intervals, GeomAbs_C2), low, high))
-        except Exception as thrown:
-            if not is_kernel_error(thrown):
-                raise
+        if len(ends) < 2:
             return None
-        each = max(_FIRST // (len(ends) - 1), 1) if len(ends) > 1 else 1
+        each = max(_FIRST // (len(ends) - 1), 1)
         share = np.arange(each) / each
         t = (ends[:-1, None] + share * np.diff(ends)[:, None]).ravel()
-        return cls(curve, np.append(t, ends[-1])) if len(ends) > 1 else None
+        return cls(curve, np.append(t, ends[-1]))
 
     def at(self, t: Floats) -> tuple[Floats, Floats] | None:
         """Points and derivatives (k, 3); None where the kernel has none."""
-        point, along, flat = gp_Pnt(), gp_Vec(), []
-        evaluate = self.curve.D1
-        try:
-            for x in t.tolist():
-                evaluate(x, point, along)
-                flat.append((point.Coord(), along.Coord()))
-        except Exception as thrown:
-            if not is_kernel_error(thrown):
-                raise
-            return None
-        found = np.array(flat).reshape(-1, 2, 3)
-        return (found[:, 0], found[:, 1]) if np.isfinite(found).all() else None
+        with may_refuse():
+            found = along(self.curve, t, 3)
+            if np.isfinite(found).all():
+                return found[:, 0], found[:, 1]
+        return None
 
 
-def _followed(kernels: Sequence[_Kernel | None], chord: float) -> list[_Drawing | None]:
-    """The curves in pieces; None for those that cannot be followed."""
-    return [None if kernel is None else _follow(kernel, chord) for kernel in kernels]
-
-
-def _follow(kernel: _Kernel, chord: float) -> _Drawing | None:
+def _followed(edge: TopoDS_Edge, chord: float) -> _Drawing | None:
+    """The curve of an edge in pieces; None where it cannot be followed."""
+    kernel = _Kernel.of(edge)
+    if kernel is None:
+        return None
     t, found = kernel.ends, kernel.at(kernel.ends)
     if found is None:
         return None

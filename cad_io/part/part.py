@@ -22,7 +22,7 @@ from cad_io.errors import ReadError
 from cad_io.face.measure import Measure, measure
 from cad_io.face.recognise import recognise
 from cad_io.face.trim import Trim, trim_of
-from cad_io.kernel import edges_of, explore, faces, is_kernel_error, shape_map, translated
+from cad_io.kernel import edges_of, explore, faces, is_kernel_error, may_refuse, shape_map, translated
 from cad_io.kernel.assembly import Node
 from cad_io.part.blends import Bare, blends
 from cad_io.part.packing import Found, packed, unpacked
@@ -358,19 +358,15 @@ def _box(found: list[TopoDS_Face], aside: Container[int]) -> tuple[Floats, Float
 def face_box(face: TopoDS_Face, *, tight: bool) -> Floats:
     """Corners (2, 3) of the box around a face, nan where it has none; not `tight`: quick, and somewhat wider."""
     box = Bnd_Box()
-    try:
+    with may_refuse():
         if tight:
             BRepBndLib.AddOptimal_s(face, box, False, False)
         else:
             BRepBndLib.Add_s(face, box, False)
-    except Exception as thrown:
-        if not is_kernel_error(thrown):
-            raise
-        return np.full((2, 3), np.nan)
-    if box.IsVoid() or box.IsOpen():
-        return np.full((2, 3), np.nan)
-    box.SetGap(0.0)
-    return np.array([box.CornerMin().Coord(), box.CornerMax().Coord()])
+        if not (box.IsVoid() or box.IsOpen()):
+            box.SetGap(0.0)
+            return np.array([box.CornerMin().Coord(), box.CornerMax().Coord()])
+    return np.full((2, 3), np.nan)
 
 
 def _sewing_warnings(stopped: str | None) -> Iterator[str]:

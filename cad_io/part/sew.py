@@ -15,11 +15,11 @@ import numpy as np
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.GCPnts import GCPnts_AbscissaPoint
-from OCP.TopAbs import TopAbs_FACE, TopAbs_FORWARD, TopAbs_REVERSED, TopAbs_SOLID
+from OCP.TopAbs import TopAbs_FACE, TopAbs_SOLID
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
-from cad_io.kernel import edges_of, explore, is_kernel_error, shape_map
+from cad_io.kernel import bounding, explore, may_refuse, shape_map
 from cad_io.part.coincide import Group, Piece, TooMany, coinciding, points
 from cad_io.part.common_edges import on_common_edges
 from cad_io.part.curves import Curves
@@ -35,29 +35,19 @@ _CHORD = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Sewn:
-    """Faces that stand in no solid, joined where their edges coincide.
+    """Faces that stand in no solid, joined where their edges coincide."""
 
-    Attributes
-    ----------
-    faces : dict
-        By number; faces that touch share their edges. Empty where all faces stand in solids.
-    tolerance : float, optional
-        Of the rung that was kept, mm; None where no rung joined anything.
-    tried : float, optional
-        Of the last rung, mm; None where there was nothing to join.
-    open_edges : int
-        Edges that still belong to one face alone.
-    open_length : float
-        Their length, mm.
-    stopped : str, optional
-        Why the ladder ended before its time; None where it did not.
-    """
-
+    #: By number; faces that touch share their edges. Empty where all faces stand in solids.
     faces: dict[int, TopoDS_Face]
+    #: Of the rung that was kept, mm; None where no rung joined anything.
     tolerance: float | None
+    #: Of the last rung, mm; None where there was nothing to join.
     tried: float | None
+    #: Edges that still belong to one face alone.
     open_edges: int
+    #: Their length, mm.
     open_length: float
+    #: Why the ladder ended before its time; None where it did not.
     stopped: str | None = None
 
 
@@ -141,9 +131,9 @@ def edge_uses(shapes: Sequence[TopoDS_Face]) -> list[tuple[TopoDS_Edge, list[tup
     edges = TopTools_IndexedMapOfShape()
     uses: dict[int, list[tuple[int, int]]] = defaultdict(list)
     for i, face in enumerate(shapes):
-        for edge in edges_of(TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))):
-            if edge.Orientation() in (TopAbs_FORWARD, TopAbs_REVERSED) and not BRep_Tool.Degenerated_s(edge):
-                uses[edges.Add(edge)].append((i, 1 if edge.Orientation() == TopAbs_FORWARD else -1))
+        for edge, way in bounding(face)[1]:
+            if not BRep_Tool.Degenerated_s(edge):
+                uses[edges.Add(edge)].append((i, way))
     return [(TopoDS.Edge_s(edges.FindKey(index)), users) for index, users in uses.items()]
 
 
@@ -169,11 +159,9 @@ def _open(uses: Sequence[tuple[TopoDS_Edge, list[tuple[int, int]]]]) -> list[flo
 
 
 def _length(edge: TopoDS_Edge) -> float:
-    try:
+    with may_refuse():
         length = float(GCPnts_AbscissaPoint.Length_s(BRepAdaptor_Curve(edge)))
-        # A damaged curve: the face lives by the one in its parameter plane.
-        return length if math.isfinite(length) else 0.0
-    except Exception as thrown:
-        if not is_kernel_error(thrown):
-            raise
-        return 0.0
+        if math.isfinite(length):
+            return length
+    # A damaged curve: the face lives by the one in its parameter plane.
+    return 0.0

@@ -51,12 +51,46 @@ def each(labels: TDF_LabelSequence) -> Iterator[TDF_Label]:
         yield labels.Value(i)
 
 
-class _Walk:
+class FaceMarks:
+    """Names, colours and layers of faces, by the numbers that they have in the whole shape; `taken`: those with a component."""
+
+    def __init__(self, shape: TopoDS_Shape) -> None:
+        self.map = shape_map(shape, TopAbs_FACE)
+        self.names: dict[int, str] = {}
+        self.colours: dict[int, Colour] = {}
+        self.layers: dict[int, tuple[str, ...]] = {}
+        self.taken: set[int] = set()
+
+    def paint(
+        self, numbers: list[int], name: str = "", colour: Colour | None = None, layers: tuple[str, ...] = ()
+    ) -> None:
+        """Mark faces; what is empty leaves what they have."""
+        if name:
+            self.names.update(dict.fromkeys(numbers, name))
+        if colour:
+            self.colours.update(dict.fromkeys(numbers, colour))
+        if layers:
+            self.layers.update(dict.fromkeys(numbers, layers))
+
+    def numbers(self, shape: TopoDS_Shape, place: TopLoc_Location) -> list[int]:
+        """Numbers of the faces of a shape that stands in a place."""
+        moved = shape.Moved(place)
+        return list(dict.fromkeys(n for face in explore(moved, TopAbs_FACE) if (n := self.map.FindIndex(face))))
+
+    def take(self, numbers: list[int]) -> list[int]:
+        """Those that stand in no component yet: now they do."""
+        mine = [n for n in numbers if n not in self.taken]
+        self.taken.update(mine)
+        return mine
+
+
+class _Walk(FaceMarks):
     """Products, names, colours and layers of faces, gathered from the document: the innermost label that has one wins."""
 
     def __init__(self, result: Read) -> None:
-        self.result, self.map = result, shape_map(result.shape, TopAbs_FACE)
-        self.taken: set[int] = set()
+        super().__init__(result.shape)
+        self.result = result
+        self.names, self.colours, self.layers = result.names, result.colours, result.layers
 
     def roots(self, labels: TDF_LabelSequence) -> None:
         start = _Inherited(TopLoc_Location())
@@ -75,35 +109,21 @@ class _Walk:
             inner = TDF_LabelSequence()
             XCAFDoc_ShapeTool.GetComponents_s(label, inner, False)
             return Node(_name(label), instance, place, children=tuple(self.node(one, given) for one in each(inner)))
-        mine = [n for n in self.leaf(label, given) if n not in self.taken]
-        self.taken.update(mine)
-        return Node(_name(label), instance, place, faces=tuple(mine))
+        return Node(_name(label), instance, place, faces=tuple(self.take(self.leaf(label, given))))
 
     def leaf(self, label: TDF_Label, given: "_Inherited") -> list[int]:
         """Paint the faces of a product; their numbers."""
         shape, inner = XCAFDoc_ShapeTool.GetShape_s(label), TDF_LabelSequence()
         numbers = self.numbers(shape, given.place)
-        self.paint(numbers, given.colour, given.layers)
+        self.paint(numbers, "", given.colour, given.layers)
         XCAFDoc_ShapeTool.GetSubShapes_s(label, inner)
         parts = [(sub, XCAFDoc_ShapeTool.GetShape_s(sub)) for sub in each(inner)]
         parts = [(sub, part) for sub, part in parts if part.ShapeType().value <= TopAbs_FACE.value]
         # Solids before shells before faces, so that the innermost has the last word.
         for sub, part in sorted(parts, key=lambda pair: int(pair[1].ShapeType().value)):
-            covered = self.numbers(part, given.place)
-            self.paint(covered, _colour(sub), _layers(sub))
-            if part.ShapeType() == TopAbs_FACE and (name := _name(sub)):
-                self.result.names.update(dict.fromkeys(covered, name))
+            name = _name(sub) if part.ShapeType() == TopAbs_FACE else ""
+            self.paint(self.numbers(part, given.place), name, _colour(sub), _layers(sub))
         return numbers
-
-    def paint(self, numbers: list[int], colour: Colour | None, layers: tuple[str, ...]) -> None:
-        if colour:
-            self.result.colours.update(dict.fromkeys(numbers, colour))
-        if layers:
-            self.result.layers.update(dict.fromkeys(numbers, layers))
-
-    def numbers(self, shape: TopoDS_Shape, place: TopLoc_Location) -> list[int]:
-        moved = shape.Moved(place)
-        return list(dict.fromkeys(n for face in explore(moved, TopAbs_FACE) if (n := self.map.FindIndex(face))))
 
 
 class _Inherited(NamedTuple):

@@ -11,7 +11,7 @@ from OCP.TopExp import TopExp
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face
 
 from cad_io.arrays import Floats
-from cad_io.kernel import edges_of, explore, is_kernel_error, shape_map
+from cad_io.kernel import edges_of, explore, may_refuse, shape_map
 from cad_io.surface import Surface
 
 #: Borders this near to the surface, mm, or in shares of the face's size, lie on it.
@@ -54,13 +54,10 @@ def misfit(face: TopoDS_Face, others: Sequence[TopoDS_Face] = ()) -> str:
 
 def _gap(face: TopoDS_Face) -> tuple[float, float]:
     """Largest distance of a face's border curves and their ends from its surface, and their extent, mm."""
-    try:
+    with may_refuse():
         off, points = _measured(face)
-    except Exception as thrown:
-        if not is_kernel_error(thrown):
-            raise
-        return np.inf, np.inf
-    return off, float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else np.inf
+        return off, float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) else np.inf
+    return np.inf, np.inf
 
 
 def _measured(face: TopoDS_Face) -> tuple[float, Floats]:

@@ -26,27 +26,7 @@ _COUNTS = re.compile(rb"S\s*(\d+)G\s*(\d+)D\s*(\d+)P\s*(\d+)")
 class Loaded:
     """An IGES file whose entities are loaded, but not yet made into shapes.
 
-    Parameters
-    ----------
-    file : str
-    data : bytes
-        Its content, for the checks that the kernel does not make.
-    unit : str, optional
-        Length unit to take instead of the file's, one of `units.UNITS`.
-    names : bool
-        Look for names, colours and levels, too.
-    careful : bool
-        As for STEP; here there is nothing to leave out.
-
-    Attributes
-    ----------
-    risky : bool
-        The transfer may crash or hang: to be run in a copy of the process.
-
-    Raises
-    ------
-    ReadError
-        Cut off, or not IGES.
+    What it takes, has and raises is as of `step.Loaded`; there is nothing for `careful` to leave out.
     """
 
     def __init__(

@@ -26,24 +26,15 @@ _FARTHEST = 1e9
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Mesh(Record):
-    """Triangles as a file has them.
+    """Triangles as a file has them."""
 
-    Attributes
-    ----------
-    vertex : (n, 3, 3) float
-        Corners, mm.
-    skins : Skins
-        The triangles that enclose something.
-    unit : str
-        The unit that the file's lengths were taken to be in.
-    notes : tuple of str
-        The assumptions that were made.
-    file, sha256 : str, optional
-    """
-
+    #: (n, 3, 3); corners, mm.
     vertex: Floats
+    #: The triangles that enclose something.
     skins: Skins
+    #: The unit that the file's lengths were taken to be in.
     unit: str
+    #: The assumptions that were made.
     notes: tuple[str, ...]
     file: str | None = None
     sha256: str | None = None

@@ -13,6 +13,7 @@ from cad_io.kernel import explore, shape_map
 from cad_io.kernel.assembly import Node
 from cad_io.kernel.components import as_one, unwrapped
 from cad_io.part import Part
+from cad_io.read.document import FaceMarks
 from cad_io.read.host_objects import Colour, Held, Item, Mark, each_of, gather, same_place, shapes_of
 
 
@@ -92,15 +93,8 @@ def _in_same_place(known: TopTools_IndexedMapOfShape, face: TopoDS_Shape) -> Ite
             yield number
 
 
-class _Walk:
-    """The tree of components and what is said of faces, by the numbers that they have in the whole shape."""
-
-    def __init__(self, shape: TopoDS_Shape) -> None:
-        self.map = shape_map(shape, TopAbs_FACE)
-        self.names: dict[int, str] = {}
-        self.colours: dict[int, Colour] = {}
-        self.layers: dict[int, tuple[str, ...]] = {}
-        self.taken: set[int] = set()
+class _Walk(FaceMarks):
+    """The tree of components and what is said of faces."""
 
     def node(self, item: Item, around: TopLoc_Location, colour: Colour | None, *, root: bool = False) -> Node:
         place, colour = item.shape.Location(), item.colour or colour
@@ -108,23 +102,11 @@ class _Walk:
         if item.inner:
             inside = around.Multiplied(place)
             return Node(item.name, instance, place, children=tuple(self.node(i, inside, colour) for i in item.inner))
-        mine = [n for n in self.numbers(item.shape, around) if n not in self.taken]
-        self.taken.update(mine)
-        if colour:
-            self.colours.update(dict.fromkeys(mine, colour))
+        mine = self.take(self.numbers(item.shape, around))
+        self.paint(mine, "", colour)
         self.mark(item.marks, around.Multiplied(place))
         return Node(item.name, instance, place, faces=tuple(mine))
 
     def mark(self, marks: Sequence[Mark], around: TopLoc_Location) -> None:
         for mark in marks:
-            numbers = self.numbers(mark.shape, around)
-            if mark.name:
-                self.names.update(dict.fromkeys(numbers, mark.name))
-            if mark.colour:
-                self.colours.update(dict.fromkeys(numbers, mark.colour))
-            if mark.layer:
-                self.layers.update(dict.fromkeys(numbers, (mark.layer,)))
-
-    def numbers(self, shape: TopoDS_Shape, around: TopLoc_Location) -> list[int]:
-        moved = shape.Moved(around)
-        return list(dict.fromkeys(n for face in explore(moved, TopAbs_FACE) if (n := self.map.FindIndex(face))))
+            self.paint(self.numbers(mark.shape, around), mark.name, mark.colour, (mark.layer,) if mark.layer else ())

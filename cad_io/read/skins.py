@@ -21,22 +21,15 @@ _SAME = 1e-6
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Skins(Record):
-    """This record tells which triangles of a mesh enclose something.
+    """This record tells which triangles of a mesh enclose something."""
 
-    Attributes
-    ----------
-    weight : (n,) int8
-        Of each triangle: 1 where its normal points out of what its skin encloses, -1 where it points in, 0 where the skin is
-        open.
-    closed, open : int
-        Skins of each kind.
-    turned : int
-        Closed skins whose triangles run both ways, or all of them the wrong way.
-    """
-
+    #: (n,); of each triangle: 1 where its normal points out of what its skin encloses, -1 where it points in, 0 where the skin
+    #: is open.
     weight: NDArray[np.int8]
+    #: Skins of each kind.
     closed: int
     open: int
+    #: Closed skins whose triangles run both ways, or all of them the wrong way.
     turned: int
 
 

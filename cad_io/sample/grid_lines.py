@@ -7,6 +7,7 @@ from OCP.GeomAbs import GeomAbs_CN
 
 from cad_io.arrays import Floats
 from cad_io.face.trim import Trim
+from cad_io.kernel import domain
 from cad_io.surface import Surface
 
 #: How far lines stay from a border that is a single point, as a share of the range.
@@ -50,10 +51,7 @@ def uniform(surface: Surface, trim: Trim, count: int) -> Lines:
 
     A surface without end in some direction has no domain of its own; there the trim's box serves.
     """
-    adaptor = surface.adaptor
-    natural = (
-        adaptor.FirstUParameter(), adaptor.LastUParameter(), adaptor.FirstVParameter(), adaptor.LastVParameter(),
-    )  # fmt: skip
+    natural = domain(surface.adaptor)
     endless = max(abs(x) for x in natural) > _ENDLESS
     u, v = _ranges(surface, trim, trim.box if endless else natural)
     share = np.linspace(0.0, 1.0, count)
@@ -104,8 +102,9 @@ def _ranges(
         u0, u1 = _shifted(u0, u1, trim.box[0], trim.box[1], adaptor.UPeriod())
     if adaptor.IsVPeriodic():
         v0, v1 = _shifted(v0, v1, trim.box[2], trim.box[3], adaptor.VPeriod())
-    closed_u = adaptor.IsUClosed() and _whole(u1 - u0, adaptor.FirstUParameter(), adaptor.LastUParameter())
-    closed_v = adaptor.IsVClosed() and _whole(v1 - v0, adaptor.FirstVParameter(), adaptor.LastVParameter())
+    first_u, last_u, first_v, last_v = domain(adaptor)
+    closed_u = adaptor.IsUClosed() and _whole(u1 - u0, first_u, last_u)
+    closed_v = adaptor.IsVClosed() and _whole(v1 - v0, first_v, last_v)
     # A closed border may lie anywhere on its loop, so a few points on it tell whether it is a single point.
     share = np.array([0.0, 0.13, 0.37, 0.61, 0.89])
     u, v = u0 + share * (u1 - u0), v0 + share * (v1 - v0)

@@ -10,9 +10,10 @@ import numpy as np
 from OCP.gp import gp_Pnt2d, gp_Vec2d
 
 from cad_io.arrays import Floats
+from cad_io.face.clip import inside
 from cad_io.split.border import Border, CannotSplit, Side
 from cad_io.split.contour import Spline
-from cad_io.split.planar import chain, crossings, nearest, within
+from cad_io.split.planar import chain, crossings, nearest
 
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline
@@ -40,22 +41,14 @@ class Crossing:
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """A part of a drawn curve within the face.
+    """A part of a drawn curve within the face."""
 
-    Attributes
-    ----------
-    curve : int
-        Number of the curve.
-    t, xy : (n,), (n, 2) float
-        Parameters and places along it, both ends included.
-    crossing : tuple
-        Numbers of the crossings where it starts and ends; None within the face.
-    nodes : tuple of int
-    """
-
+    #: Number of the curve.
     curve: int
+    #: (n,); parameters and places along it, both ends included.
     t: Floats
     xy: Floats
+    #: Numbers of the crossings where it starts and ends; None within the face.
     crossing: tuple[int | None, int | None]
     nodes: tuple[int, int]
 
@@ -126,7 +119,7 @@ class Arrangement:
             a, b = bounds[k][0], bounds[k + 1][0]
             # Where it is longest from both ends; several points vote.
             probes = curve(a + (b - a) * np.array([0.5, 0.35, 0.65])) * scale
-            if b <= a or within(probes, self.border.segments).sum() < 2:
+            if b <= a or inside(self.border.segments, probes).sum() < 2:
                 continue
             ends: list[tuple[int | None, int, Floats]] = []
             for at in (k, k + 1):

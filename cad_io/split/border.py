@@ -35,33 +35,22 @@ class CannotSplit(Exception):
 
 @dataclass(slots=True)
 class Side:
-    """An edge as a face uses it.
+    """An edge as a face uses it."""
 
-    Attributes
-    ----------
-    edge : TopoDS_Edge
-        As it stands in the face.
-    key : int
-        Number of the edge in the part.
-    sign : int
-        1 if the face's border runs along it in the direction of its parameter, else -1.
-    curve : Geom2d_Curve
-        In surface parameters.
-    t, xy : (n,), (n, 2) float
-        Places along the curve; the ends of `xy` are moved to the nodes.
-    vertex : tuple of int
-        Numbers of its vertices in the part, by parameter.
-    node : list of int
-        Numbers of its ends in the plane, by parameter.
-    """
-
+    #: As it stands in the face.
     edge: Any
+    #: Number of the edge in the part.
     key: int
+    #: 1 if the face's border runs along it in the direction of its parameter, else -1.
     sign: int
+    #: In surface parameters.
     curve: Any
+    #: (n,); places along the curve; the ends of `xy` are moved to the nodes.
     t: Floats
     xy: Floats
+    #: Numbers of its vertices in the part, by parameter.
     vertex: tuple[int, int]
+    #: Numbers of its ends in the plane, by parameter.
     node: list[int] = field(default_factory=lambda: [-1, -1])
 
     def at(self, s: float, scale: Floats) -> Floats:

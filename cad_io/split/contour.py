@@ -26,24 +26,16 @@ REACH = 2
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class LabelGrid(Record):
-    """A filled label field ready to be contoured.
+    """A filled label field ready to be contoured."""
 
-    Attributes
-    ----------
-    u, v : (nu + closed,), (nv + closed,) float
-        Grid lines; a closed direction repeats its first line one period later.
-    field : (nu, nv) int32
-        Labels, known everywhere.
-    near : (nu, nv) bool
-        Nodes within REACH cells of a node on the face.
-    closed_u, closed_v : bool
-        The last line's neighbour is the first one.
-    """
-
+    #: (nu + closed,); grid lines; a closed direction repeats its first line one period later.
     u: Floats
     v: Floats
+    #: (nu, nv); labels, known everywhere.
     field: Ints
+    #: (nu, nv); nodes within REACH cells of a node on the face.
     near: NDArray[np.bool_]
+    #: The last line's neighbour is the first one.
     closed_u: bool
     closed_v: bool
 

@@ -40,23 +40,15 @@ _WHOLE, _EACH = 4, 0.2
 
 @dataclass(slots=True)
 class Found:
-    """This record holds the result of `cut_faces`.
+    """This record holds the result of `cut_faces`."""
 
-    Attributes
-    ----------
-    faces : dict
-        Number of a face that changed -> TopoDS_Face list.
-    labels : dict
-        Number of a face that is cut -> label of each piece, and how many of its known nodes have which label.
-    failed : dict
-        Number -> why a face was not cut.
-    missed, joined : dict
-        Number -> nodes that have no piece of their label; slivers that went to the label around them.
-    """
-
+    #: Number of a face that changed -> TopoDS_Face list.
     faces: dict[int, list[Any]] = field(default_factory=dict)
+    #: Number of a face that is cut -> label of each piece, and how many of its known nodes have which label.
     labels: dict[int, list[tuple[int, dict[int, int]]]] = field(default_factory=dict)
+    #: Number -> why a face was not cut.
     failed: dict[int, str] = field(default_factory=dict)
+    #: Number -> nodes that have no piece of their label; slivers that went to the label around them.
     missed: dict[int, int] = field(default_factory=dict)
     joined: dict[int, int] = field(default_factory=dict)
 

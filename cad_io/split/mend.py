@@ -13,11 +13,13 @@ from OCP.TopExp import TopExp
 from OCP.TopLoc import TopLoc_Location
 
 from cad_io.arrays import Floats
+from cad_io.kernel import domain
+from cad_io.kernel.splines import cubic
 from cad_io.split.border import parameter_curve
 from cad_io.split.check import valid
 from cad_io.split.contour import Spline
 from cad_io.split.net import LOOSER, Net, along, distance
-from cad_io.split.surface_edge import DEVIATION, curve_2d
+from cad_io.split.surface_edge import DEVIATION
 from cad_io.surface import Surface
 
 _SITES, _MOST_SITES = 257, 5000
@@ -51,7 +53,7 @@ def mend(net: Net, key: int) -> None:
         spline = _followed(edge.curve, old, surface, first, last)
         if spline is None:
             continue
-        new, sound = curve_2d(spline), valid(face)
+        new, sound = cubic(spline.knots, spline.poles), valid(face)
         off = float(distance(along(edge.curve, places), new, surface, places).max())
         if off > allowed + LOOSER:
             continue  # the edge itself is off the surface
@@ -94,11 +96,8 @@ def _nearest(curve: Any, old: Any, surface: Surface, t: Floats) -> Floats:
     """Parameters (n, 2) of the places of a surface nearest to those of a curve, by Gauss and Newton from an old curve."""
     space = np.array([curve.Value(x).Coord() for x in t.tolist()])
     uv = np.array([old.Value(x).Coord() for x in t.tolist()])
-    adaptor = surface.adaptor
-    ranges = (
-        (adaptor.IsUPeriodic(), adaptor.FirstUParameter(), adaptor.LastUParameter()),
-        (adaptor.IsVPeriodic(), adaptor.FirstVParameter(), adaptor.LastVParameter()),
-    )
+    adaptor, (low_u, high_u, low_v, high_v) = surface.adaptor, domain(surface.adaptor)
+    ranges = ((adaptor.IsUPeriodic(), low_u, high_u), (adaptor.IsVPeriodic(), low_v, high_v))
     for _ in range(_STEPS):
         found = surface.first(*uv.T)
         gap, slopes = space - found[:, 0], found[:, 1:]

@@ -21,52 +21,34 @@ UNKNOWN, MIXED = -1, -2
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A face of the result.
+    """A face of the result."""
 
-    Attributes
-    ----------
-    face : int
-        Number of the part's face that it is or is a piece of.
-    label : int
-        The most frequent known label inside; without a node inside, that of the nearest known node. UNKNOWN, MIXED.
-    shape : TopoDS_Face
-        As it stands in `Split.shape`, in part coordinates.
-    shares : dict
-        Label -> share of the known nodes inside, 0 to 1; empty if there are none.
-    """
-
+    #: Number of the part's face that it is or is a piece of.
     face: int
+    #: The most frequent known label inside; without a node inside, that of the nearest known node. UNKNOWN, MIXED.
     label: int
+    #: As it stands in `Split.shape`, in part coordinates.
     shape: Any
+    #: Label -> share of the known nodes inside, 0 to 1; empty if there are none.
     shares: dict[int, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
 class Split:
-    """A part with some faces split.
+    """A part with some faces split."""
 
-    Attributes
-    ----------
-    shape : TopoDS_Shape
-        What is to be written. The part's own shape if no face was split, else a copy.
-    pieces : tuple of Piece
-        Of every face of the part, by face number.
-    whole : dict
-        Face number -> why a face of several labels was left whole; its piece is MIXED.
-    dropped : dict
-        Face number -> how many known nodes got no piece of their label: islands of one node, and nodes so close to the
-        border that their boundary runs outside.
-    labels : dict
-        Face number -> the labels of a face left whole.
-    joined : dict
-        Face number -> how many slivers joined a worse label around them.
-    """
-
+    #: What is to be written. The part's own shape if no face was split, else a copy.
     shape: Any
+    #: Of every face of the part, by face number.
     pieces: tuple[Piece, ...]
+    #: Face number -> why a face of several labels was left whole; its piece is MIXED.
     whole: dict[int, str]
+    #: Face number -> how many known nodes got no piece of their label: islands of one node, and nodes so close to the border
+    #: that their boundary runs outside.
     dropped: dict[int, int]
+    #: Face number -> the labels of a face left whole.
     labels: dict[int, FaceLabels] = field(default_factory=dict)
+    #: Face number -> how many slivers joined a worse label around them.
     joined: dict[int, int] = field(default_factory=dict)
 
 

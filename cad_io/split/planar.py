@@ -61,16 +61,6 @@ def _side(a: Floats, b: Floats, p: Floats) -> Floats:
     return np.asarray((b[:, 0] - a[:, 0]) * (p[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (p[:, 0] - a[:, 0]))
 
 
-def within(points: Floats, segments: Floats) -> NDArray[np.bool_]:
-    """Which points (n, 2) lie in the even-odd region that segments (m, 2, 2) bound."""
-    (x0, y0), (x1, y1) = segments[:, 0].T, segments[:, 1].T
-    x, y = points[:, :1], points[:, 1:]
-    hit = (y0 <= y) != (y1 <= y)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        at = x0 + (y - y0) / (y1 - y0) * (x1 - x0)
-    return np.asarray((hit & (at > x)).sum(axis=1) % 2 == 1)
-
-
 def nearest(segments: Floats, point: Floats) -> tuple[int, float, float]:
     """The segment of (n, 2, 2) that is nearest to a point (2,): its number, the share of its length, the distance."""
     start, step = segments[:, 0], segments[:, 1] - segments[:, 0]

@@ -8,11 +8,12 @@ import numpy as np
 from scipy.ndimage import maximum_filter, minimum_filter
 
 from cad_io.arrays import Floats, Ints
+from cad_io.face.clip import inside as holds
 from cad_io.face.uv_region import inside, interior_point
 from cad_io.split.arrangement import Arrangement
 from cad_io.split.border import CannotSplit
 from cad_io.split.contour import LabelGrid
-from cad_io.split.planar import bearing, chain, enclosed, extent, left_of, within
+from cad_io.split.planar import bearing, chain, enclosed, extent, left_of
 
 #: Share of the nodes off the boundary that may end up in a piece of another label.
 _ASTRAY = 0.01
@@ -24,39 +25,26 @@ _AROUND = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Half:
-    """A directed side of a region, which lies left of it.
+    """A directed side of a region, which lies left of it."""
 
-    Attributes
-    ----------
-    start, stop : int
-        Nodes.
-    xy : (n, 2) float
-    side : tuple, optional
-        Number of the border's side, and the parameters between which it runs along it.
-    stretch : tuple, optional
-        Number of the stretch of a drawn curve, and 1 along it or -1 against it.
-    """
-
+    #: Nodes.
     start: int
     stop: int
+    #: (n, 2).
     xy: Floats
+    #: Number of the border's side, and the parameters between which it runs along it.
     side: tuple[int, float, float] | None = None
+    #: Number of the stretch of a drawn curve, and 1 along it or -1 against it.
     stretch: tuple[int, int] | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Region:
-    """A part of a face.
+    """A part of a face."""
 
-    Attributes
-    ----------
-    loops : list of list of Half
-        The outer one, then the holes.
-    ring : (n, 2, 2) float
-        All of them as one even-odd region, scaled.
-    """
-
+    #: The outer one, then the holes.
     loops: list[list[Half]]
+    #: (n, 2, 2); all of them as one even-odd region, scaled.
     ring: Floats
 
     @property
@@ -243,7 +231,7 @@ def _nested(loops: list[list[Half]], size: float) -> list[Region]:
             continue
         probe = left_of(paths[i], 1e-3 * size)
         boxed = [o for o in holes if (lows[o] <= probe).all() and (probe <= highs[o]).all()]
-        around = [o for o in boxed if within(probe[None], rings[o])[0]]
+        around = [o for o in boxed if holds(rings[o], probe[None])[0]]
         if not around:
             raise CannotSplit("a hole lies in none of its regions")
         holes[min(around, key=lambda o: areas[o])].append(i)

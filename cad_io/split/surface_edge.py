@@ -1,24 +1,18 @@
 """An edge that lies on a face, made from a curve in the face's parameter plane."""
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from OCP.BRep import BRep_Builder, BRep_Tool
-from OCP.Geom import Geom_BSplineCurve
-from OCP.Geom2d import Geom2d_BSplineCurve
-from OCP.gp import gp_Pnt, gp_Pnt2d
-from OCP.TColgp import TColgp_Array1OfPnt, TColgp_Array1OfPnt2d
-from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
+from OCP.gp import gp_Pnt
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Edge
 
 from cad_io.arrays import Floats
+from cad_io.kernel.splines import cubic
 from cad_io.split.contour import Spline
 from cad_io.surface import Surface
-
-if TYPE_CHECKING:
-    from scipy.interpolate import BSpline
 
 #: Most that an edge's curve in space may leave its curve on the surface, mm.
 DEVIATION = 1e-4
@@ -92,8 +86,8 @@ def followed(surface: Surface, spline: Spline) -> Followed:
         sites = np.union1d(sites, between[1][error >= DEVIATION])
 
     ends = gp_Pnt(*space(sites[0]).tolist()), gp_Pnt(*space(sites[-1]).tolist())
-    plane = curve_2d(spline)
-    return Followed(curve_3d(space), plane, float(sites[0]), float(sites[-1]), ends, max(1.2 * worst, 1e-7))
+    plane = cubic(spline.knots, spline.poles)
+    return Followed(cubic(space.t, space.c), plane, float(sites[0]), float(sites[-1]), ends, max(1.2 * worst, 1e-7))
 
 
 def surface_edge(face: Any, curve: Followed, start: Any, stop: Any) -> Any:
@@ -123,27 +117,3 @@ def surface_edge(face: Any, curve: Followed, start: Any, stop: Any) -> Any:
     builder.SameRange(edge, True)
     builder.SameParameter(edge, True)
     return edge
-
-
-def curve_2d(spline: Spline) -> Any:
-    poles = TColgp_Array1OfPnt2d(1, len(spline.poles))
-    for i, pole in enumerate(spline.poles.tolist(), 1):
-        poles.SetValue(i, gp_Pnt2d(*pole))
-    return Geom2d_BSplineCurve(poles, *_knots(spline.knots), 3)
-
-
-def curve_3d(curve: "BSpline") -> Any:
-    poles = TColgp_Array1OfPnt(1, len(curve.c))
-    for i, pole in enumerate(curve.c.tolist(), 1):
-        poles.SetValue(i, gp_Pnt(*pole))
-    return Geom_BSplineCurve(poles, *_knots(curve.t), 3)
-
-
-def _knots(flat: Floats) -> tuple[Any, Any]:
-    """Distinct knots and how often each occurs, as the kernel wants them."""
-    value, count = np.unique(flat, return_counts=True)
-    knots, multiplicities = TColStd_Array1OfReal(1, len(value)), TColStd_Array1OfInteger(1, len(value))
-    for i, (x, m) in enumerate(zip(value.tolist(), count.tolist(), strict=True), 1):
-        knots.SetValue(i, x)
-        multiplicities.SetValue(i, m)
-    return knots, multiplicities

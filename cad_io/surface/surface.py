@@ -5,7 +5,7 @@ from OCP.BRepAdaptor import BRepAdaptor_Surface
 from OCP.TopoDS import TopoDS_Face
 
 from cad_io.arrays import Floats
-from cad_io.kernel import first_derivatives, is_kernel_error, second_derivatives, values
+from cad_io.kernel import domain, first_derivatives, may_refuse, second_derivatives, values
 from cad_io.surface.forms import Evaluator, Form, form_of
 
 #: Where our evaluators are tried, in shares of the ranges; how far they may be off, in shares of what is found; parameters
@@ -63,18 +63,10 @@ class Surface:
 
 def _trusted(adaptor: BRepAdaptor_Surface) -> Form | None:
     """Our form where it agrees with the kernel's values at some points: triangles stand on it."""
-    try:
+    ours = None
+    with may_refuse():
+        ends = domain(adaptor)
         ours = form_of(adaptor)
-        ends = (
-            adaptor.FirstUParameter(),
-            adaptor.LastUParameter(),
-            adaptor.FirstVParameter(),
-            adaptor.LastVParameter(),
-        )
-    except Exception as thrown:
-        if not is_kernel_error(thrown):
-            raise
-        return None
     if ours is None:
         return None
     u0, u1, v0, v1 = np.clip(ends, -_FAR, _FAR)

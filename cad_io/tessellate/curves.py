@@ -10,11 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from OCP.GeomAbs import GeomAbs_Circle, GeomAbs_Ellipse, GeomAbs_Line
-from OCP.gp import gp_Pnt2d, gp_Vec2d
 
 from cad_io.arrays import Floats
 from cad_io.jit import decorators
-from cad_io.kernel import is_kernel_error
+from cad_io.kernel import along, may_refuse
 from cad_io.surface.bspline import DEGREE, Net, basis, span, wrapped
 from cad_io.surface.bspline import evaluate as evaluate_net
 from cad_io.surface.forms import curve_lines, curve_net
@@ -131,12 +130,9 @@ def _on_conic(conic: Floats, t: Floats) -> Floats:
 
 
 def _net(curve: BRepAdaptor_Curve2d) -> Net | None:
-    try:
+    with may_refuse():
         return curve_net(curve)
-    except Exception as thrown:
-        if not is_kernel_error(thrown):
-            raise
-        return None
+    return None
 
 
 def _on_net(net: Net, t: Floats) -> Floats:
@@ -154,11 +150,7 @@ def _agrees(curve: BRepAdaptor_Curve2d, ends: tuple[float, float], ours: Any) ->
 def _through_points(curve: BRepAdaptor_Curve2d, ends: tuple[float, float]) -> Net:
     """Cubics with a curve's points and derivatives."""
     t = np.linspace(*ends, _POINTS)
-    point, speed = np.empty((_POINTS, 2)), np.empty((_POINTS, 2))
-    for k, each in enumerate(t.tolist()):
-        at, along = gp_Pnt2d(), gp_Vec2d()
-        curve.D1(each, at, along)
-        point[k], speed[k] = at.Coord(), along.Coord()
+    point, speed = np.moveaxis(along(curve, t), 1, 0)
     step = (t[1] - t[0]) / 3.0
     pole = np.zeros((1, 2 * _POINTS, 4))
     pole[0, 0::2, :2], pole[0, 1::2, :2] = point - step * speed, point + step * speed

@@ -43,26 +43,17 @@ _FARTHEST = 1e6
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Meridian(Record):
-    """Lines that enclose a body.
+    """Lines that enclose a body."""
 
-    Attributes
-    ----------
-    line : (n, 4) float
-        Distance from the axis and height of both ends, mm, the lower end first.
-    exact : (n,) bool
-        The line is on the body; others lie outside of it by up to `off`.
-    off : float
-        mm.
-    foot : float
-        Height of the body's lowest point, or a little less where that is not known exactly; lines are made for this one.
-    loose : tuple of int
-        Numbers of the faces that do not turn about the axis.
-    """
-
+    #: (n, 4); distance from the axis and height of both ends, mm, the lower end first.
     line: Floats
+    #: (n,); the line is on the body; others lie outside of it by up to `off`.
     exact: NDArray[np.bool_]
+    #: mm.
     off: float
+    #: Height of the body's lowest point, or a little less where that is not known exactly; lines are made for this one.
     foot: float
+    #: Numbers of the faces that do not turn about the axis.
     loose: tuple[int, ...]
 
 

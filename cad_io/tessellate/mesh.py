@@ -15,12 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
-from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
 
 from cad_io.arrays import Floats, Ints
-from cad_io.kernel import edges_of
+from cad_io.kernel import bounding
 from cad_io.kernel.mesher import under_mesh, uv_triangles
 from cad_io.kernel.time_limit import ChildDied, limited
 from cad_io.part import Part
@@ -79,9 +78,9 @@ def kernel_start(
     if taken is None:
         return None, spent
     uv, corner, runs = taken
-    forward = TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
+    forward, edges = bounding(face)
     border, on_curve = [], []
-    for edge, (nodes, parameter) in zip(_used(forward), runs, strict=True):
+    for (edge, _), (nodes, parameter) in zip(edges, runs, strict=True):
         # A seam has two curves, and the mesher does not always give each its own polygon: take the one that fits.
         uses = (edge, TopoDS.Edge_s(edge.Reversed())) if BRep_Tool.IsClosed_s(edge, forward) else (edge,)
         curves = [BRepAdaptor_Curve2d(use, forward) for use in uses]
@@ -98,7 +97,7 @@ _Taken = tuple[Floats, Ints, list[tuple[Ints, Floats]]]
 def _taken(face: Any, mesh: Any, place: TopLoc_Location) -> _Taken | None:
     """Nodes and triangles of the mesher, and of each edge's use the nodes and their parameters."""
     runs = []
-    for edge in _used(TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))):
+    for edge, _ in bounding(face)[1]:
         polygon = BRep_Tool.PolygonOnTriangulation_s(edge, mesh, place)
         if polygon is None or not polygon.HasParameters():
             return None  # how far its triangles stay from this edge could not be told
@@ -108,10 +107,6 @@ def _taken(face: Any, mesh: Any, place: TopLoc_Location) -> _Taken | None:
         ))  # fmt: skip
     uv, corner = uv_triangles(mesh)
     return uv, corner.astype(np.int32), runs
-
-
-def _used(forward: Any) -> list[Any]:
-    return [edge for edge in edges_of(forward) if edge.Orientation() in (TopAbs_FORWARD, TopAbs_REVERSED)]
 
 
 def bordered(mesh: UVMesh, on_curve: Sequence[Floats], surface: Surface) -> UVMesh:

@@ -8,13 +8,12 @@ import shapely
 from numpy.typing import NDArray
 from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 from OCP.GeomAbs import GeomAbs_C2, GeomAbs_Line
-from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
-from OCP.TopoDS import TopoDS, TopoDS_Face
+from OCP.TopoDS import TopoDS_Face
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, Ints
 from cad_io.face.trim import continuing
-from cad_io.kernel import edges_of, interval_ends
+from cad_io.kernel import bounding, interval_ends
 from cad_io.tessellate.planar import places
 
 #: Chords of a bent border curve, at least; how often one is halved, at most.
@@ -79,13 +78,9 @@ class Steps(NamedTuple):
 
 def uses_of(face: TopoDS_Face) -> list[Use]:
     """The uses of a face's edges, those inside of it left out."""
-    forward, found = TopoDS.Face_s(face.Oriented(TopAbs_FORWARD)), []
-    for edge in edges_of(forward):
-        if edge.Orientation() not in (TopAbs_FORWARD, TopAbs_REVERSED):
-            continue
-        curve = BRepAdaptor_Curve2d(edge, forward)
-        found.append(Use(curve, curve.FirstParameter(), curve.LastParameter(), edge.Orientation() == TopAbs_FORWARD))
-    return found
+    forward, edges = bounding(face)
+    curves = [(BRepAdaptor_Curve2d(edge, forward), way) for edge, way in edges]
+    return [Use(curve, curve.FirstParameter(), curve.LastParameter(), way > 0) for curve, way in curves]
 
 
 def outline_of(uses: Sequence[Use], steps: Steps, most: int) -> Outline | None:

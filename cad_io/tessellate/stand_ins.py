@@ -11,16 +11,14 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 from OCP.BRep import BRep_Tool
-from OCP.BRepAdaptor import BRepAdaptor_Curve
-from OCP.GCPnts import GCPnts_TangentialDeflection
 from OCP.TopLoc import TopLoc_Location
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import breadth_first_order, connected_components
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, Ints, Record
-from cad_io.kernel import edges_of, is_kernel_error
-from cad_io.part.cap import coned
+from cad_io.kernel import edges_of
+from cad_io.part.cap import coned, polyline
 from cad_io.part.part import NO_AREA, Part, face_box
 
 _CORNERS = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)])
@@ -39,24 +37,16 @@ StandIn = Literal["triangles", "box", "edges", "none"]
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class StandIns(Record):
-    """Triangles in place of faces.
+    """Triangles in place of faces."""
 
-    Attributes
-    ----------
-    vertex : (t, 3, 3) float
-        Corners, mm.
-    face : (t,) int32
-        Face number, 0 for a face that is only in the file.
-    weight : (t,) int8
-        1 where the triangle is part of a skin that encloses something and its corners run counter-clockwise seen from
-        outside, -1 where they run clockwise, 0 where nothing is known to be enclosed.
-    how : dict
-        Face number -> `triangles`, `box`, `edges`, or `none` where its place is not known.
-    """
-
+    #: (t, 3, 3); corners, mm.
     vertex: Floats
+    #: (t,); face number, 0 for a face that is only in the file.
     face: Ints
+    #: (t,); 1 where the triangle is part of a skin that encloses something and its corners run counter-clockwise seen from
+    #: outside, -1 where they run clockwise, 0 where nothing is known to be enclosed.
     weight: NDArray[np.int8]
+    #: Face number -> `triangles`, `box`, `edges`, or `none` where its place is not known.
     how: dict[int, StandIn]
 
 
@@ -190,14 +180,8 @@ def _edges(part: Part, number: int, chord: float) -> Floats:
     for edge in edges_of(part.face(number)):
         if BRep_Tool.Degenerated_s(edge):
             continue
-        try:
-            points = GCPnts_TangentialDeflection(BRepAdaptor_Curve(edge), 0.2, chord)
-            line = np.array([points.Value(i + 1).Coord() for i in range(points.NbPoints())])
-        except Exception as thrown:
-            if not is_kernel_error(thrown):
-                raise
-            return pieces[0]
-        if not np.isfinite(line).all():
+        line = polyline(edge, chord)
+        if not len(line):
             return pieces[0]
         pieces.append(np.stack([line[:-1], line[1:], line[1:]], axis=1))
     return np.concatenate(pieces)

@@ -4,6 +4,7 @@ Ours are cells of a grid as fine as the surface bends, and between them and the 
 triangulation. Nothing in it can run for ever.
 """
 
+import contextlib
 from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
@@ -11,7 +12,7 @@ import shapely
 
 from cad_io.arrays import Floats, Ints
 from cad_io.face.trim import Trim
-from cad_io.kernel import is_kernel_error
+from cad_io.kernel import may_refuse
 from cad_io.kernel.time_limit import TimeLimit
 from cad_io.part import Part
 from cad_io.surface import Surface
@@ -101,10 +102,9 @@ def _fits(mesh: UVMesh, trim: Trim | None) -> bool:
     mesher may cover something else than what they enclose. Whether they have less is asked of the finished triangles."""
     if trim is None:
         return True
-    p, q = trim.segments[:, 0], trim.segments[:, 1]
     a, b, c = np.moveaxis(mesh.uv[mesh.corner], 1, 0)
-    (ab, ac), within = (b - a, c - a), abs(float((p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]).sum()))
-    return float(np.abs(ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]).sum()) <= _TOO_LARGE * within
+    ab, ac = b - a, c - a
+    return 0.5 * float(np.abs(ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]).sum()) <= _TOO_LARGE * trim.uv_area
 
 
 def expected(part: Part, numbers: Sequence[int], chord: float) -> float:
@@ -117,8 +117,7 @@ def expected(part: Part, numbers: Sequence[int], chord: float) -> float:
         total += 2.0
         if trim is not None and density is not None:
             wide = (trim.box[1] - trim.box[0], trim.box[3] - trim.box[2])
-            p, q = trim.segments[:, 0], trim.segments[:, 1]
-            share = abs(0.5 * float((p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]).sum())) / (wide[0] * wide[1])
+            share = trim.uv_area / (wide[0] * wide[1])
             steps = [_steps(each, width, chord).sum() for each, width in zip(density, wide, strict=True)]
             total += 2.0 * share * float(max(1.0, steps[0]) * max(1.0, steps[1]))
     return total
@@ -126,14 +125,9 @@ def expected(part: Part, numbers: Sequence[int], chord: float) -> float:
 
 def own_start(part: Part, number: int, chord: float) -> UVMesh | None:
     """Triangles of our own; None where there are none that cover the face. As in `starts`."""
-    try:
+    with contextlib.suppress(shapely.errors.ShapelyError), may_refuse():
         return _own_start(part, number, chord)
-    except shapely.errors.ShapelyError:
-        return None
-    except Exception as thrown:
-        if not is_kernel_error(thrown):
-            raise
-        return None
+    return None
 
 
 def _own_start(part: Part, number: int, chord: float) -> UVMesh | None:

@@ -188,8 +188,6 @@ def _uncovered(part: Part, number: int, area: float, chord: float) -> float:
     trim = part.trim(number)
     if trim is None or not trim.closed:
         return 0.0
-    p, q = trim.segments[:, 0], trim.segments[:, 1]
-    whole = abs(0.5 * float((p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]).sum()))
-    left = 1.0 - area / whole if whole > 0 else 0.0
-    border = float(np.linalg.norm((q - p) * trim.scale, axis=1).sum())
+    left = 1.0 - area / trim.uv_area if trim.uv_area > 0 else 0.0
+    border = float(np.linalg.norm((trim.segments[:, 1] - trim.segments[:, 0]) * trim.scale, axis=1).sum())
     return left if left > _UNCOVERED and left * part.faces[number - 1].area > 2 * chord * border else 0.0

@@ -35,24 +35,15 @@ _PARTS = {
 
 @dataclass(slots=True)
 class Net:
-    """A face's triangles.
-
-    Attributes
-    ----------
-    surface : Surface
-    uv, point : (n, 2), (n, 3) float
-        Surface parameters of the nodes, and where they are, mm.
-    corner : (t, 3) int64
-        Counter-clockwise in the parameter plane.
-    border : dict
-        Two nodes in order, that are neighbours on a border curve -> its number, and its parameters at them.
-    curves : sequence of BorderCurve
-    """
+    """A face's triangles."""
 
     surface: Surface
+    #: (n, 2); surface parameters of the nodes, and where they are, mm.
     uv: Floats
     point: Floats
+    #: (t, 3); counter-clockwise in the parameter plane.
     corner: Indices
+    #: Two nodes in order, that are neighbours on a border curve -> its number, and its parameters at them.
     border: dict[tuple[int, int], tuple[int, float, float]]
     curves: Sequence[BorderCurve]
 

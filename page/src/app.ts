@@ -10,9 +10,10 @@ import { Machine } from "./machine.ts";
 import type { Cutter, Meta, Spot, Vec } from "./meta.ts";
 import type { PartView } from "./part.ts";
 import type { Picker } from "./pick.ts";
-import type { Posture, Sample, Samples } from "./samples.ts";
+import { alike, type Posture, type Sample, type Samples } from "./samples.ts";
 import type { Stage } from "./stage.ts";
 import type { ToolView } from "./tool.ts";
+import { turned } from "./vectors.ts";
 
 export interface Judged {
   state: State;
@@ -91,6 +92,7 @@ export class App {
     this.emit("cutter");
     this.repaint();
     if (this.sample) this.select(this.sample.row);
+    this.say(`Cutter ${this.cutter.name || this.cutter.id} is shown`);
   }
 
   setMode(mode: string): void {
@@ -128,9 +130,12 @@ export class App {
   startPosture(row: number): Posture | null {
     const found = this.samples.posture(this.cutter.id, row);
     if (found) return found;
-    const { spot } = this;
-    if (!spot || spot.tilt_deg === null || spot.lean_deg === null) return null;
-    return { tilt: spot.tilt_deg, rotation: ((spot.lean_deg % 360) + 360) % 360 };
+    return this.witness();
+  }
+
+  private witness(): Posture | null {
+    const { tilt_deg: tilt = null, lean_deg: lean = null } = this.spot ?? {};
+    return tilt === null || lean === null ? null : { tilt, rotation: turned(lean) };
   }
 
   setPosture(posture: Posture | null): void {
@@ -160,10 +165,8 @@ export class App {
   }
 
   atWitness(): boolean {
-    const { spot, posture } = this;
-    if (!spot || !posture || spot.tilt_deg === null || spot.lean_deg === null) return false;
-    const turn = Math.abs(((posture.rotation - spot.lean_deg + 540) % 360) - 180);
-    return Math.abs(posture.tilt - spot.tilt_deg) < 0.02 && turn < 0.02;
+    const witness = this.witness();
+    return this.posture !== null && witness !== null && alike(this.posture, witness);
   }
 
   /** Told of the face under the pointer; from a list, it is lit up in the picture. */

@@ -7,7 +7,7 @@ import { colourOf } from "./colours.ts";
 import { button, el, figure } from "./dom.ts";
 import type { Vec } from "./meta.ts";
 import { capMaterial, countingMaterial, shared } from "./shading.ts";
-import { distance, mixed } from "./vectors.ts";
+import { axis, distance, mixed } from "./vectors.ts";
 
 export class Clip {
   readonly root = el("fieldset", { id: "clip" });
@@ -70,9 +70,7 @@ export class Clip {
     this.sign = point[k] < middle ? -1 : 1;
     this.own = true;
     this.update();
-    const way: Vec = [0, 0, 0];
-    way[k] = this.sign;
-    return way;
+    return axis(k, this.sign);
   }
 
   /** End a cut that was made to show a hidden place. */
@@ -99,8 +97,7 @@ export class Clip {
       if (!this.built) this.build();
       const k = Number(this.axis.value);
       const at = low[k] + ((high[k] - low[k]) * Number(this.slider.value)) / 1000;
-      const normal: Vec = [0, 0, 0];
-      normal[k] = this.sign;
+      const normal = axis(k, this.sign);
       plane.set(...normal, this.sign * at);
       this.text.value = `${"XYZ"[k]} ${figure(at, 4)} mm`;
       const middle = mixed(low, 0.5, high, 0.5);

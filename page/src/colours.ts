@@ -85,6 +85,8 @@ export function patternOf(verdict: string): Pattern {
   return verdict === "inaccessible" ? "hatch" : verdict === "undecided" ? "dots" : "plain";
 }
 
+const plain = (meta: Meta, word: string): Entry => ({ colour: colourOf(meta, word), pattern: "plain", label: spoken(meta, word) });
+
 function verdictLook(meta: Meta, samples: Samples, cutter: string): Look {
   const order = ["interference_free", "accessible", "undecided", "inaccessible", "unjudged", "inside_bodies"];
   const entries = order.map((word) => ({ colour: colourOf(meta, word), pattern: patternOf(word), label: spoken(meta, word) }));
@@ -100,8 +102,8 @@ function reasonLook(meta: Meta, samples: Samples, cutter: string): Look {
   const undecided = entries.map((each) => ({ ...each, pattern: "dots" as Pattern, label: `${each.label}, undecided` }));
   const rest: Entry[] = [
     { colour: "#d9e4dd", pattern: "plain", label: "reached" },
-    { colour: colourOf(meta, "unjudged"), pattern: "plain", label: spoken(meta, "unjudged") },
-    { colour: colourOf(meta, "inside_bodies"), pattern: "plain", label: spoken(meta, "inside_bodies") },
+    plain(meta, "unjudged"),
+    plain(meta, "inside_bodies"),
   ];
   const count = entries.length;
   return painted(meta, "Reason", [...entries, ...undecided, ...rest], samples, (i) => {
@@ -121,8 +123,8 @@ function setupLook(meta: Meta, samples: Samples, cutter: string): Look {
   });
   entries.push(
     { colour: colourOf(meta, "inaccessible"), pattern: "hatch", label: "no setup" },
-    { colour: colourOf(meta, "unjudged"), pattern: "plain", label: spoken(meta, "unjudged") },
-    { colour: colourOf(meta, "inside_bodies"), pattern: "plain", label: spoken(meta, "inside_bodies") },
+    plain(meta, "unjudged"),
+    plain(meta, "inside_bodies"),
   );
   return painted(meta, "Setup that serves", entries, samples, (i) => {
     const verdict = samples.verdict(cutter, i);
@@ -135,7 +137,7 @@ function setupLook(meta: Meta, samples: Samples, cutter: string): Look {
 function classLook(meta: Meta, samples: Samples): Look {
   const kind = samples.surfaceClass.values;
   const entries: Entry[] = CLASSES.map(([label, colour, pattern]) => ({ label, colour, pattern }));
-  entries.push({ colour: colourOf(meta, "unjudged"), pattern: "plain", label: spoken(meta, "unjudged") });
+  entries.push(plain(meta, "unjudged"));
   return painted(meta, "Surface class", entries, samples, (i) => Math.min(kind[i], 3));
 }
 

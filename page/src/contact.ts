@@ -92,6 +92,19 @@ export function heldTilts(
   return found;
 }
 
+/** The parts of ascending tilts that are held, each ending at tilts that are. */
+export function runs(tilts: number[], held: (tilt: number, row: number) => boolean): [number, number][] {
+  const found: [number, number][] = [];
+  let open = false;
+  tilts.forEach((tilt, row) => {
+    const now = held(tilt, row);
+    if (now && !open) found.push([tilt, tilt]);
+    else if (now) found[found.length - 1][1] = tilt;
+    open = now;
+  });
+  return found;
+}
+
 /** What two lists of intervals have in common. */
 export function common(a: [number, number][], b: [number, number][]): [number, number][] {
   const pairs = a.flatMap(([x, y]) => b.map(([u, v]): [number, number] => [Math.max(x, u), Math.min(y, v)]));

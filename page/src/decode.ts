@@ -1,5 +1,6 @@
 // How the arrays come out of the page: base64, raw deflate, then byte planes, zigzag and differences undone.
 
+import { DataUtils } from "three";
 import type { ArrayEntry, Meta } from "./meta.ts";
 
 export type Numbers = Uint8Array | Uint16Array | Uint32Array | Int16Array | Int32Array | Float32Array;
@@ -90,25 +91,6 @@ export function decode(bytes: Uint8Array, entry: ArrayEntry): Table {
   }
   if (entry.dtype === "i2") values = new Int16Array(values.buffer);
   if (entry.dtype === "i4") values = new Int32Array(values.buffer);
-  if (entry.dtype === "f2") values = halves(values as Uint16Array);
+  if (entry.dtype === "f2") values = Float32Array.from(values, (bits) => DataUtils.fromHalfFloat(bits));
   return { rows, columns, values };
-}
-
-function halves(values: Uint16Array): Float32Array {
-  const out = new Float32Array(values.length);
-  for (let i = 0; i < values.length; i++) {
-    const bits = values[i];
-    const exponent = (bits >> 10) & 31;
-    const mantissa = bits & 1023;
-    const size =
-      exponent === 0
-        ? mantissa * 2 ** -24
-        : exponent === 31
-          ? mantissa
-            ? NaN
-            : Infinity
-          : (1 + mantissa / 1024) * 2 ** (exponent - 15);
-    out[i] = bits & 0x8000 ? -size : size;
-  }
-  return out;
 }

@@ -120,5 +120,4 @@ function nextCutter(app: App, by: number): void {
   const { cutters } = app.meta;
   const at = cutters.indexOf(app.cutter);
   app.setCutter(cutters[(at + by + cutters.length) % cutters.length].id);
-  app.say(`Cutter ${app.cutter.name || app.cutter.id} is shown`);
 }

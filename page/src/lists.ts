@@ -29,10 +29,7 @@ export function enhanceCutters(app: App): void {
       });
     }
   }
-  const choose = (row: HTMLElement): void => {
-    app.setCutter(row.dataset.cutter!);
-    app.say(`Cutter ${app.cutter.name || app.cutter.id} is shown`);
-  };
+  const choose = (row: HTMLElement): void => app.setCutter(row.dataset.cutter!);
   const mark = (): void => {
     for (const row of rows) {
       const shown = row.dataset.cutter === app.cutter.id;

@@ -1,6 +1,6 @@
 // Whether the machine holds a tool axis: by its plain limit, and by its rotary axes within their limits.
 
-import { common, heldTilts } from "./contact.ts";
+import { common, heldTilts, runs } from "./contact.ts";
 import type { Kinematics, Meta, Vec } from "./meta.ts";
 import { type Sample, Samples } from "./samples.ts";
 import { cross, dot, minus, mixed, norm, plus, RAD, scaled } from "./vectors.ts";
@@ -47,23 +47,14 @@ export class Machine {
     const lean = Samples.lean(sample, rotation);
     const held = (tilt: number): boolean =>
       turnsTo(kinematics, mixed(sample.normal, Math.cos(tilt * RAD), lean, Math.sin(tilt * RAD)));
-    return left.flatMap(([low, high]) => runs(low, high, held));
+    return left.flatMap(([low, high]) => runs(stepped(low, high), held));
   }
 }
 
-/** The parts of an interval that are held, each ending at tilts that are. */
-function runs(low: number, high: number, held: (tilt: number) => boolean): [number, number][] {
-  const found: [number, number][] = [];
+/** Tilts of an interval in steps, both ends included. */
+function stepped(low: number, high: number): number[] {
   const steps = Math.max(1, Math.ceil((high - low) / STEP - 1e-9));
-  let open = false;
-  for (let i = 0; i <= steps; i++) {
-    const tilt = i === steps ? high : low + i * STEP;
-    const now = held(tilt);
-    if (now && !open) found.push([tilt, tilt]);
-    else if (now) found[found.length - 1][1] = tilt;
-    open = now;
-  }
-  return found;
+  return Array.from({ length: steps + 1 }, (_, i) => (i === steps ? high : low + i * STEP));
 }
 
 /** Whether rotary axes turn the tool to an axis: a = R(d1, angle1) R(d2, angle2) t, both solutions, by whole turns. */

@@ -123,11 +123,6 @@ export class Drawn {
     return fixture >= 0 ? -1 - fixture : null;
   }
 
-  /** Corner k of a vertex list. */
-  vertex(i: number): Vec {
-    return [this.position[3 * i], this.position[3 * i + 1], this.position[3 * i + 2]];
-  }
-
   /** The middle of what an owner covers, by its box. */
   middle(owner: Owner): { centre: Vec; radius: number } | null {
     const range = owner >= 0 ? this.meta.faces[owner] : this.meta.fixtures[-1 - owner];

@@ -1,12 +1,12 @@
 // What lies under the pointer: the point of the surface, its face or fixture, and the nearest sample.
 
-import { DoubleSide, Ray, Raycaster, Vector2, Vector3 } from "three";
+import { DoubleSide, Ray, Raycaster, Triangle, Vector2, Vector3 } from "three";
 import type { Drawn, Owner } from "./mesh.ts";
 import type { Vec } from "./meta.ts";
 import type { PartView } from "./part.ts";
 import { shared } from "./shading.ts";
 import type { Stage } from "./stage.ts";
-import { dot, minus, plus } from "./vectors.ts";
+import { plus } from "./vectors.ts";
 
 export interface Picked {
   point: Vec;
@@ -33,11 +33,12 @@ export class Picker {
       .sort((a, b) => a.distance - b.distance)[0];
     if (!found?.face) return null;
     const { a, b, c } = found.face;
-    const point: Vec = [found.point.x, found.point.y, found.point.z];
-    const [s, t, u] = this.shares(point, a, b, c);
-    const { texel } = this.drawn;
+    const { position, texel } = this.drawn;
+    const [A, B, C] = [a, b, c].map((i) => new Vector3().fromArray(position, 3 * i));
+    const share = Triangle.getBarycoord(found.point, A, B, C, new Vector3()) ?? new Vector3(1, 0, 0);
+    const [s, t, u] = share.toArray();
     const at = (k: number): number => s * texel[2 * a + k] + t * texel[2 * b + k] + u * texel[2 * c + k];
-    return { point, owner: this.drawn.owner[a], sample: texel[2 * a] < 0 ? null : this.part.sampleAt(at(0), at(1)) };
+    return { point: found.point.toArray(), owner: this.drawn.owner[a], sample: texel[2 * a] < 0 ? null : this.part.sampleAt(at(0), at(1)) };
   }
 
   /** Whether something lies between a point of the surface and an eye far away. */
@@ -45,17 +46,5 @@ export class Picker {
     const step = 1e-4 * this.stage.table.radius;
     const ray = new Ray(new Vector3(...plus(point, towards, step)), new Vector3(...towards));
     return this.drawn.tree.raycastFirst(ray, DoubleSide) !== null;
-  }
-
-  /** Barycentric coordinates of a point of a triangle. */
-  private shares(p: Vec, a: number, b: number, c: number): [number, number, number] {
-    const [A, B, C] = [a, b, c].map((i) => this.drawn.vertex(i));
-    const [e, f, g] = [minus(B, A), minus(C, A), minus(p, A)];
-    const [ee, ef, ff, ge, gf] = [dot(e, e), dot(e, f), dot(f, f), dot(g, e), dot(g, f)];
-    const det = ee * ff - ef * ef;
-    if (det <= 0) return [1, 0, 0];
-    const t = (ff * ge - ef * gf) / det;
-    const u = (ee * gf - ef * ge) / det;
-    return [1 - t - u, t, u];
   }
 }

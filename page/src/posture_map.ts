@@ -5,7 +5,8 @@ import { causeOf, OPEN, spoken } from "./colours.ts";
 import { button, el, figure, percent } from "./dom.ts";
 import { STATES, type State } from "./live_map.ts";
 import { swatch, tile } from "./patterns.ts";
-import { apart, SampleMap, wording } from "./posture_states.ts";
+import { SampleMap, wording } from "./posture_states.ts";
+import { alike } from "./samples.ts";
 import { StoredMaps } from "./stored_map.ts";
 import { turned } from "./vectors.ts";
 
@@ -141,8 +142,7 @@ export class PosturePanel {
     const { posture, met, state, sample } = this.app;
     if (posture && state && sample) {
       const found = this.app.samples.posture(this.app.cutter.id, sample.row);
-      const here = found && Math.abs(found.tilt - posture.tilt) < 0.02 && apart(found.rotation, posture.rotation) < 0.02;
-      const sure = state.state === "free" ? (here ? ", the posture found" : state.certified ? "" : "") : "";
+      const sure = state.state === "free" && found && alike(found, posture) ? ", the posture found" : "";
       this.line.textContent =
         `tilt ${degrees(posture.tilt)} deg, rotation ${degrees(posture.rotation)} deg: ` +
         (this.app.atWitness() ? this.witnessed() : wording(this.app, state, met) + sure);

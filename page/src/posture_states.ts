@@ -2,9 +2,11 @@
 
 import type { App, Judged } from "./app.ts";
 import { spoken } from "./colours.ts";
+import { runs } from "./contact.ts";
 import { emptyGrid, fillColumn, type Grid, type Met, STATES, type State } from "./live_map.ts";
-import type { Posture, Sample } from "./samples.ts";
+import { alike, type Posture, type Sample } from "./samples.ts";
 import type { Certified, StoredMaps } from "./stored_map.ts";
+import { apart } from "./vectors.ts";
 
 const SLICE_MS = 14;
 
@@ -58,15 +60,7 @@ export class SampleMap {
   /** Free intervals at a rotation: the stored ones, else those of the grid. */
   free(column: number): [number, number][] {
     if (this.certified) return this.certified.free[column];
-    const found: [number, number][] = [];
-    let open = false;
-    this.grid.tilts.forEach((tilt, row) => {
-      const free = this.cell(column, row) === "free";
-      if (free && !open) found.push([tilt, tilt]);
-      else if (free) found[found.length - 1][1] = tilt;
-      open = free;
-    });
-    return found;
+    return runs(this.grid.tilts, (_, row) => this.cell(column, row) === "free");
   }
 
   /** What stands in the way at a rotation, each with how many degrees. */
@@ -91,9 +85,7 @@ export class SampleMap {
   /** The state of a posture, and whether that is certified. */
   at(posture: Posture, met: Met): Judged {
     const found = this.app.samples.posture(this.app.cutter.id, this.sample.row);
-    if (found && Math.abs(found.tilt - posture.tilt) < 0.02 && apart(found.rotation, posture.rotation) < 0.02) {
-      return { state: "free", certified: true };
-    }
+    if (found && alike(found, posture)) return { state: "free", certified: true };
     const column = this.column(posture.rotation);
     const searched = apart(this.grid.rotations[column], posture.rotation) < 0.02;
     if (!this.certified || !searched) return { state: met.state, certified: false };
@@ -138,8 +130,6 @@ function lost(app: App, sample: Sample): Certified | null {
   const unsure = verdict === "undecided" ? 1 : 0;
   return { free: app.meta.rotation_deg.map(() => []), undecided: app.meta.rotation_deg.map(() => unsure) };
 }
-
-export const apart = (a: number, b: number): number => Math.abs(((a - b + 540) % 360) - 180);
 
 /** What is said of a posture: `free`, or what is in the way. */
 export function wording(app: App, { state, certified }: Judged, met: Met | null): string {

@@ -3,7 +3,7 @@
 import type { Arrays, Table } from "./decode.ts";
 import type { Meta, Vec } from "./meta.ts";
 import { NO_REASON, NO_SETUP } from "./meta.ts";
-import { across, cross, mixed, octahedral, RAD, turned } from "./vectors.ts";
+import { across, apart, cross, mixed, octahedral, RAD, turned } from "./vectors.ts";
 
 export interface Sample {
   row: number;
@@ -20,6 +20,10 @@ export interface Posture {
   tilt: number;
   rotation: number;
 }
+
+/** Whether two postures are one, but for the rounding of stored ones. */
+export const alike = (a: Posture, b: Posture): boolean =>
+  Math.abs(a.tilt - b.tilt) < 0.02 && apart(a.rotation, b.rotation) < 0.02;
 
 export class Samples {
   readonly count: number;

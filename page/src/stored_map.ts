@@ -1,6 +1,6 @@
 // The certified free tilts that the page stores, rotation by rotation.
 
-import type { Arrays } from "./decode.ts";
+import type { Arrays, Numbers } from "./decode.ts";
 import type { Meta } from "./meta.ts";
 
 export interface Certified {
@@ -11,7 +11,7 @@ export interface Certified {
 }
 
 export class StoredMaps {
-  private readonly row: ArrayLike<number>;
+  private readonly row: Numbers;
   private readonly start: Uint32Array;
   private readonly turns: number;
 
@@ -19,7 +19,7 @@ export class StoredMaps {
     private readonly meta: Meta,
     private readonly arrays: Arrays,
   ) {
-    this.row = meta.maps ? arrays.get("maps.row").values : [];
+    this.row = meta.maps ? arrays.get("maps.row").values : new Uint32Array();
     this.turns = meta.rotation_deg.length;
     this.start = new Uint32Array(this.row.length + 1);
     if (!meta.maps) return;
@@ -31,7 +31,7 @@ export class StoredMaps {
   /** The map of a sample and cutter; null where none is stored. */
   of(cutter: string, sample: number): Certified | null {
     if (this.meta.maps?.cutter !== cutter) return null;
-    const at = this.find(sample);
+    const at = this.row.indexOf(sample);
     if (at < 0) return null;
     const count = this.arrays.get("maps.count");
     const end = this.arrays.get("maps.end");
@@ -48,16 +48,5 @@ export class StoredMaps {
       undecided.push(unsure ? unsure.values[k * unsure.rows + at] / 2 : 0);
     }
     return { free, undecided };
-  }
-
-  private find(sample: number): number {
-    let [low, high] = [0, this.row.length - 1];
-    while (low <= high) {
-      const middle = (low + high) >> 1;
-      if (this.row[middle] === sample) return middle;
-      if (this.row[middle] < sample) low = middle + 1;
-      else high = middle - 1;
-    }
-    return -1;
   }
 }

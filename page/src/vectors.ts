@@ -15,6 +15,9 @@ export const cross = (a: Vec, b: Vec): Vec => [
 ];
 export const distance = (a: Vec, b: Vec): number => norm(minus(a, b));
 
+/** Along axis k. */
+export const axis = (k: number, size = 1): Vec => [0, 1, 2].map((i) => (i === k ? size : 0)) as Vec;
+
 export function unit(a: Vec): Vec {
   const length = norm(a);
   return length > 0 ? scaled(a, 1 / length) : [0, 0, 1];
@@ -24,9 +27,7 @@ export function unit(a: Vec): Vec {
 export function across(n: Vec): Vec {
   const size = n.map(Math.abs);
   const k = size.indexOf(Math.min(...size));
-  const a: Vec = [0, 0, 0];
-  a[k] = 1;
-  return unit(cross(a, n));
+  return unit(cross(axis(k), n));
 }
 
 /** The direction of two octahedral coordinates, each -1 to 1. */
@@ -43,3 +44,5 @@ export const RAD = Math.PI / 180;
 export const DEG = 180 / Math.PI;
 /** An angle in degrees, 0 up to 360. */
 export const turned = (deg: number): number => ((deg % 360) + 360) % 360;
+/** How far apart two angles in degrees are. */
+export const apart = (a: number, b: number): number => Math.abs(((a - b + 540) % 360) - 180);

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from cad_io import Part, read_part
 from cad_io.arrays import Ints
-from cad_io.kernel.side_process import Meanwhile
+from cad_io.kernel.side_process import SideProcess
 from cad_io.read.read import TIMEOUT
 from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
@@ -36,7 +36,7 @@ from plan_cutters.options import Options, PlanOptions
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import Conditions, contacts_of, found_of, tool_of
 from plan_cutters.scene.faces import choose
-from plan_cutters.scene.inside_material import buried
+from plan_cutters.scene.inside_material import inside_bodies, inside_material
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.question import question
 from plan_cutters.scene.scene import Scene
@@ -136,11 +136,10 @@ def run(
             here[cutter] = judge(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell,
                                  work=searched)  # fmt: skip
             seconds[cutter] = time.perf_counter() - began
-    places = options.other_placements or (None,) * len(options.other_setups)
-    others = [
-        (axis, None if place is None else place.x) for axis, place in zip(options.other_setups, places, strict=True)
+    elsewhere = [
+        (axis, _elsewhere(ready, here, conditions, clock))
+        for axis, conditions in zip(options.other_setups, ready.setups[1:], strict=True)
     ]
-    elsewhere = [(axis, _elsewhere(ready, here, axis, x, clock)) for axis, x in others]
     judged = _judged(ready, here, elsewhere, seconds, clock)
     answers = ask(ready, {cutter: each.here for cutter, each in judged.items()}, clock.stage, elsewhere)
     if options.operations is not None:
@@ -176,13 +175,13 @@ def run(
 
 
 def _elsewhere(
-    ready: Prepared, here: Mapping[Cutter, Verdicts], axis: Vector, x: Vector | None, clock: Clock
+    ready: Prepared, here: Mapping[Cutter, Verdicts], conditions: Conditions, clock: Clock
 ) -> dict[str, Verdicts]:
     """Find the verdicts of each cutter in another setup."""
     found = {}
     for cutter, verdicts in here.items():
         with clock.stage("setups") as tell:
-            found[cutter.id] = in_setup(ready, cutter, axis, verdicts, x=x, progress=tell)
+            found[cutter.id] = in_setup(ready, cutter, conditions, verdicts, progress=tell)
     return found
 
 
@@ -215,13 +214,12 @@ def prepare(
         affordable(whole, chosen.targets, options)
         job = partial(sampled, whole, scene.orientation, options, chosen.targets, cutters)
     # Sampling and meshing need nothing of each other.
-    with Meanwhile(job, _SAMPLING, worth=options.jobs > 1 and len(chosen.targets) >= _MANY_FACES) as copy:
-        if meshed := copy.works:
-            with clock.stage("tessellate"):
-                scene.surround(at, jobs=options.jobs)
-        with clock.stage("sample", shown=not meshed):
-            samples, spacing, coarser = copy.result(partial(job, at=partial(at, "kernel")))
-    with clock.stage("classify", shown=not meshed):
+    with SideProcess(job, _SAMPLING, worth=options.jobs > 1 and len(chosen.targets) >= _MANY_FACES) as side:
+        with clock.stage("tessellate"):
+            around = scene.surround(at, jobs=options.jobs)
+        with clock.stage("sample"):
+            samples, spacing, coarser = side.result(partial(job, at=partial(at, "kernel")))
+    with clock.stage("classify"):
         surface_class = classify(samples, float(np.linalg.norm(whole.size)))
         region = regions(samples, surface_class)
     if not (samples.unjudged < 0).any():
@@ -229,11 +227,9 @@ def prepare(
         raise UnjudgeableError(
             f"no target face can be judged: {'; '.join(sorted(causes)) or 'no samples'}", file=whole.file
         )
-    with clock.stage("tessellate", shown=not meshed):
-        around = scene.surround(at, jobs=options.jobs)
     along = None if options.placement is None else options.placement.x
     conditions = Conditions(
-        options.machine, np.array(scene.setup), options.postures, around, scene.tolerance, options.jobs,
+        options.machine, np.array(scene.setup), options.postures, around, around.tolerance(scene.asked), options.jobs,
         None if along is None else np.array(along),
     )  # fmt: skip
     with clock.stage("tree"):
@@ -242,9 +238,12 @@ def prepare(
         ahead("search.search")
         warm(contacts_of(samples), cutters[0], conditions)
     with clock.stage("bodies"):
-        within = buried(samples, scene.orientation, around.enclosing, around.certain, scene.tolerance, options.jobs)
+        within = inside_material(
+            samples, scene.orientation, around.enclosing, around.certain, conditions.tolerance, options.jobs
+        )
+        inside = inside_bodies(within, around.bodies, scene.orientation)
     ready = Prepared(
-        scene, options, chosen, spacing, samples, surface_class, region, within, conditions, cutters, coarser
+        scene, options, chosen, spacing, samples, surface_class, region, within, inside, conditions, cutters, coarser
     )
     if not ready.finished.any():
         raise UnjudgeableError(
@@ -292,7 +291,7 @@ def _judged(
     """Combine the verdicts of each cutter over all setups, find the reasons, and make its line in the plan."""
     samples, convex, around = ready.samples, ready.surface_class == CONVEX, ready.conditions.around
     inside = ready.inside_bodies
-    reasons = Reasons(samples, ready.setups, ready.finished & (ready.buried < 0))
+    reasons = Reasons(samples, ready.setups, ready.finished & (ready.inside < 0))
     told = {}
     with clock.stage("reasons") as tell:
         for k, (cutter, mine) in enumerate(here.items()):
@@ -304,7 +303,7 @@ def _judged(
         verdicts = explained.verdicts
         with clock.stage(cutter.id, shown=False):
             slack, part = ready.conditions.outer_tool(cutter).slack, ready.scene.part
-            found = witnesses(samples, verdicts, cutter, ready.conditions, buried=ready.buried, part=part)
+            found = witnesses(samples, verdicts, cutter, ready.conditions, inside=ready.inside, part=part)
             marched = march_differs(samples, convex, ready.region, mine.interference_free)
             entry = cutter_entry(cutter, samples, verdicts, found, marched, seconds[cutter], part=part, around=around,
                                  slack=slack, inside=inside, besides=explained.besides)  # fmt: skip
@@ -327,13 +326,13 @@ def assemble(
     here = {cutter.id: each.here for cutter, each in judged.items()}
     served_in = {cutter.id: each.which for cutter, each in judged.items()}
     within = [within_limits(ready.samples, ready.cutters, conditions) & ready.finished for conditions in ready.setups]
-    beyond = ready.finished & ~np.logical_or.reduce(within) & (ready.buried < 0)
+    beyond = ready.finished & ~np.logical_or.reduce(within) & (ready.inside < 0)
     moved = travels(ready.options, ready.samples, {cutter: each.here for cutter, each in judged.items()})
     over = OverSetups(reaches, here, served_in, ready.scene.setup, tuple(elsewhere))
     entries = completed([judged[c].entry for c in ready.cutters], ready, answers, over, beyond, moved)
     selected, chosen = selection(entries)
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
-    best = selected or next((e.id for e in entries if not e.lost), None)
+    best = selected or next((e.id for e in entries if not e.not_reached), None)
     budget = ready.options.contacts_between(len(ready.samples))
     if best and budget:
         with clock.stage("area"):

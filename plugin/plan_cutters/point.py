@@ -98,7 +98,8 @@ def posture_map(
         across = np.array(Placement(stage.setup, (first, second, third)).x)
     ask = Ask(contact, cutter, np.array(turns), (low, high), machine, np.array(stage.setup), across)
     if wanted > 0:
-        around, kept = stage.around, stage.tolerance
+        around = stage.surround()
+        kept = around.tolerance(wanted)
         found = posture_map_of(ask, around, tools(cutter, kept, around.certain.triangles.chord_error), _NARROWEST, kept)
         if cutter.large_enough(kept):
             return found

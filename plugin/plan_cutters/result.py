@@ -38,7 +38,7 @@ class Result:
     plan : Plan
         What is written as `plan.json`.
     scene : Scene
-        The part, its sides and what is in the way: `posture_map` takes it, and so does another `plan`.
+        The part, its sides and its fixtures: `posture_map` takes it, and so does another `plan`.
     samples : SurfaceSamples
         Of the target faces.
     surface_class : (n,) uint8
@@ -211,7 +211,7 @@ class Result:
             known = least_stick_out(
                 self.ready, tool, replace(verdicts, verdict=np.where(mine, verdicts.verdict, UNJUDGED).astype(np.uint8))
             )
-        doubtful = self.scene.around.doubtful
+        doubtful = self.conditions.around.doubtful
         return on_face(
             self.plan.faces[number - 1],
             entry,

@@ -17,7 +17,7 @@ from plan_cutters import Cutter, Machine
 from plan_cutters.answers.largest_radius import largest_radius
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.radius_map import PERCENTILES, RadiusMap
-from plan_cutters.domain.verdicts import BURIED, INACCESSIBLE, NO_REASON, REASONS, UNDECIDED, UNJUDGED
+from plan_cutters.domain.verdicts import INACCESSIBLE, INSIDE, NO_REASON, REASONS, UNDECIDED, UNJUDGED
 from plan_cutters.errors import OptionError
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
@@ -157,12 +157,12 @@ def test_a_sample_within_a_body_is_reached_by_no_radius():
     inner = BRepPrimAPI_MakeBox(gp_Pnt(-5, -5, -5), 10.0, 10.0, 10.0).Shape()
     both = ready([outer, inner], grid=5, faces=list(range(1, 13)))
     found = largest_radius(both, "flat", least=1.0, most=5.0)
-    within = both.buried >= 0
+    within = both.inside >= 0
     assert within.any()
     assert not within.all()
     assert found.less[within].all()
     assert (found.beyond[within] == INACCESSIBLE).all()
-    assert (found.reason[within] == BURIED).all()
+    assert (found.reason[within] == INSIDE).all()
     assert np.isnan(found.axis[within]).all()
     assert found.no_less[~within].all()
     assert within[found.bottleneck]

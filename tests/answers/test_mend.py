@@ -11,8 +11,10 @@ from cad_io import read_part
 from plan_cutters import Cutter, Options, Scene, plan
 from plan_cutters.answers import trial
 from plan_cutters.answers.mend import mend
-from plan_cutters.answers.trial import Case, batches
+from plan_cutters.answers.trial import Case, Trials, batches
+from plan_cutters.answers.what_if import none, search
 from plan_cutters.answers.what_if_cutter import GRAIN, thinner
+from plan_cutters.answers.what_if_place import setup
 from plan_cutters.domain.change import THINGS
 from plan_cutters.domain.machine import Machine
 from plan_cutters.pipeline import prepare
@@ -274,8 +276,8 @@ def beside_a_post(away):
 def test_a_finer_tolerance_decides_what_the_triangles_leave_open():
     cutter = Cutter.ball(radius=3, length=25, holder="R15L20")
     options = {"faces": "F1", "tolerance": 0.5, "grid": 2} | UPRIGHT
-    error = Scene.of(beside_a_post(5.0), tolerance=0.5).around.certain.triangles.chord_error
-    finer = Scene.of(beside_a_post(5.0), tolerance=0.25).around.certain.triangles.chord_error
+    error = Scene.of(beside_a_post(5.0), tolerance=0.5).surround().certain.triangles.chord_error
+    finer = Scene.of(beside_a_post(5.0), tolerance=0.25).surround().certain.triangles.chord_error
     assert finer < 0.7 * error
     found, by, planned = asked(beside_a_post(0.5 * (error + finer)), cutter, **options)
     change = by["tolerance"]
@@ -286,6 +288,26 @@ def test_a_finer_tolerance_decides_what_the_triangles_leave_open():
     _, by, _ = asked(beside_a_post(-1.0), cutter, **options)
     assert by["tolerance"].helps is False
     assert "blocked for certain" in by["tolerance"].why
+
+
+def test_a_setup_axis_that_leaves_samples_undecided_alone_is_undecided():
+    """From the side the limit of the axis blocks; from above only the triangles of the post are in doubt."""
+    options = {"faces": "F1", "tolerance": 0.5, "grid": 2, "area_budget": 0} | UPRIGHT
+    around = Scene.of(beside_a_post(5.0), tolerance=0.5).around
+    part = beside_a_post(0.5 * around.certain.triangles.chord_error)
+    cutter = Cutter.ball(radius=3, length=25, holder="R15L20")
+    ready = prepare(part, Options(cutters=(cutter,), setup=(1, 0, 0), machine="tilt:3", **options))
+    (cutter,) = ready.cutters
+    trials = Trials.of(judge(ready, cutter), ready.finished)
+    assert trials.blocked
+    # As if another rotation or tilt served without the limit.
+    trials.found["tilt_limit"] = none("tilt_limit", 3.0, 0, "")
+    found = search("setup", setup(Case(ready, cutter), trials), trials)
+    assert (found.helps, found.asked) == (None, (0.0, 0.0, 1.0))
+    assert found.why.startswith("is not decided: the best of ")
+    assert found.why.endswith(f" {found.left} of {found.looked} samples undecided")
+    above = plan(part, cutters=(cutter,), setup=found.asked, machine="tilt:3", **options).cutters[0]
+    assert (above.feasible, above.undecided) == (None, found.left)
 
 
 def test_a_cutter_that_finishes_has_nothing_to_mend():

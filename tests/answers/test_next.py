@@ -54,7 +54,7 @@ def answered(plan):
 def left(result, step):
     """The share of the finished area that the cutters and setups of a step leave in a plan."""
     finished = Finished.of(result.ready)
-    lost = finished.wanted.copy()
+    not_reached = finished.wanted.copy()
     here = {(0, result.ready.scene.setup): result.reaches}
     here |= {(k, axis): found for k, (axis, found) in enumerate(result.elsewhere, 1)}
     used = [
@@ -63,8 +63,8 @@ def left(result, step):
     assert len(used) == len(step.setups)
     for found in used:
         for name in step.cutters:
-            lost &= found[name].lost
-    return finished.of_rows(np.flatnonzero(lost))
+            not_reached &= found[name].not_reached
+    return finished.of_rows(np.flatnonzero(not_reached))
 
 
 def steps_of(result, cutter=None):
@@ -97,7 +97,7 @@ POCKET = ("--cutter", "R3L25F10S3", "--holder", "R15L200", "--faces", "F1,F3", "
 
 
 def test_a_longer_stick_out_is_a_step_also_where_it_does_not_cure_everything():
-    """The floor of 560 mm2 is freed by a nose above the wall, that of 160 mm2 stays lost."""
+    """The floor of 560 mm2 is freed by a nose above the wall, that of 160 mm2 is still not reached."""
     result = asked(pocket(), *POCKET)
     (entry,) = result.cutters
     assert not any(change.helps for change in entry.mend.changes if change.thing == "stick_out")
@@ -158,7 +158,7 @@ def test_turned_over_as_a_second_setup():
     assert again.plan.least_set.left == 0
     assert [run.setup for run in again.plan.least_set.runs] == [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0)]
     assert [run.samples for run in again.plan.least_set.runs] == [25, 25]
-    # All of the underside is lost: only whole faces can be left out by an option.
+    # All of the underside is not reached: only whole faces can be left out by an option.
     out = result.cutters[0].mend.steps[-1]
     assert is_left_out(out)
     assert not result.reaches["R3L40"].reached[result.samples.normal[:, 2] < 0].any()
@@ -180,7 +180,7 @@ def test_with_several_setups_steps_are_about_what_all_of_them_leave():
     assert (len(step.setups), step.gained, step.left) == (3, 16, entry.lost_in_all - 16)
     assert step.option.startswith("--setup 0,0,1 --setup 1,0,0 --setup ")
     assert left(followed(part, step, *words), step) == pytest.approx(step.lost_after, abs=1e-12)
-    # What one setup leaves and the other reaches is not lost: nothing is to be mended.
+    # What one setup leaves and the other reaches is reached: nothing is to be mended.
     assert asked(part, *words[:4], *words[6:8], "--grid", "4", *words[10:]).cutters[0].mend is None
 
 
@@ -207,7 +207,7 @@ def test_a_pocket_from_below_needs_a_setup_and_a_stick_out():
     assert left(followed(part, step, *words), step) == pytest.approx(step.lost_after, abs=1e-12)
 
 
-def test_steps_are_in_the_order_of_what_stays_lost_then_of_what_they_ask():
+def test_steps_are_in_the_order_of_what_they_leave_then_of_what_they_ask():
     for entry in asked(SAMPLES / "pocket_top.step", *TRIED["pocket_top.step"]).cutters:
         if entry.mend is None:
             continue
@@ -282,7 +282,7 @@ def test_samples_inside_another_body_are_out_of_the_question():
     assert finished.share[inside].sum() == 0.0
     assert finished.share.sum() == pytest.approx(1.0)
     assert entry.mend.lost_share == pytest.approx(
-        finished.share[result.reaches[entry.id].lost & result.ready.finished].sum()
+        finished.share[result.reaches[entry.id].not_reached & result.ready.finished].sum()
     )
     assert any(step.lost_after < 0.5 * step.lost_before for step in steps_of(result))
 
@@ -291,13 +291,13 @@ def test_the_nearest_three_are_asked_about_and_the_others_are_named():
     words = [word for r in (3, 4, 5, 6, 8) for word in ("--cutter", f"R{r}L60")]
     part = read_part(SAMPLES / "v_groove.step")
     few = asked(part, *words, "--machine", "tilt:3", "--grid", "5")
-    lost = {c.id: c.area_share.inaccessible + c.area_share.undecided for c in few.cutters}
-    failing = sorted((c.id for c in few.cutters if lost[c.id]), key=lambda name: lost[name])
+    not_reached = {c.id: c.area_share.inaccessible + c.area_share.undecided for c in few.cutters}
+    failing = sorted((c.id for c in few.cutters if not_reached[c.id]), key=lambda name: not_reached[name])
     assert len(failing) > 3
     mended = {c.id for c in few.cutters if c.mend}
     assert len(mended) == 3
     assert mended | set(few.plan.not_mended) == set(failing)
-    assert max(lost[name] for name in mended) <= min(lost[name] for name in few.plan.not_mended) + 1e-12
+    assert max(not_reached[name] for name in mended) <= min(not_reached[name] for name in few.plan.not_mended) + 1e-12
     assert any("not asked about: --answers mend-all" in line for line in answered(few.plan))
     every = run(
         part,
@@ -385,12 +385,13 @@ def test_where_nothing_is_shared_no_set_is_told():
 
 
 def test_a_set_is_a_sentence():
-    def of(runs, share, left=0, proven=True, doubtful=False):
+    def of(runs, share, left=0, proven=True, doubtful=False, unjudged=0):
         made = [SimpleNamespace(cutter=c, share=s, setup=axis) for c, s, axis in runs]
         found = SimpleNamespace(
             runs=made, share=share, left=left, left_share=1 - share, proven=proven, doubtful=doubtful
         )
-        return together(SimpleNamespace(least_set=found))
+        samples = SimpleNamespace(unjudged=unjudged)
+        return together(SimpleNamespace(least_set=found, samples=samples, faces=[]))
 
     up, down = (0, 0, 1), (0, 0, -1)
     assert of([("R6L60", 0.81, up), ("R1L12", 0.182, up)], 0.992, left=9) == (
@@ -402,12 +403,19 @@ def test_a_set_is_a_sentence():
     assert "before the proof" in of([("A", 0.6, up), ("B", 0.4, up)], 1.0, proven=False)
     assert "missing from the obstacles" in of([("A", 0.6, up), ("B", 0.4, up)], 1.0, doubtful=True)
     assert of([("A", 1.0, up)], 1.0) == ""
+    # What could not be judged is not reached.
+    assert of([("A", 0.6, up), ("B", 0.3, up)], 0.9, unjudged=3) == (
+        "A for 60 % of the area and B for the rest reach all of it that could be judged"
+    )
+    assert of([("A", 0.6, up), ("B", 0.3, up)], 0.9, left=2, unjudged=3).endswith(
+        "; nothing given reaches another 10 %"
+    )
 
 
 # --- areas ----------------------------------------------------------------------------------------------------------------
 
 
-def test_lost_samples_are_areas_with_place_and_extent():
+def test_samples_not_reached_are_areas_with_place_and_extent():
     """Two disks of a plane: their areas, middles and diameters, to the grid."""
     part = shapes.shell(shapes.plane((-20, 20), (-20, 20)))
     ready = prepare(part, Options(cutters=("R3L40",), grid=161, area_budget=0))

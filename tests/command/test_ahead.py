@@ -65,8 +65,10 @@ def test_one_that_does_not_end_is_not_waited_for_for_ever(monkeypatch):
 
 def test_machine_code_is_found_where_the_compiler_keeps_it(tmp_path):
     """In a process of its own: where the folder is, is asked once."""
-    look = "from plan_cutters.kernels.jit import at_hand; print(at_hand('rows.none'), at_hand('place.room_to_search'))"
-    make = "from plan_cutters.kernels.search.place import room_to_search; room_to_search()"
+    look = (
+        "from plan_cutters.kernels.jit import at_hand; print(at_hand('rows.none'), at_hand('place.search_workspace'))"
+    )
+    make = "from plan_cutters.kernels.search.place import search_workspace; search_workspace()"
     environment = {**ENV, "NUMBA_CACHE_DIR": str(tmp_path)}
 
     def run(text):

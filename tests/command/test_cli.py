@@ -146,7 +146,7 @@ def test_the_files_of_a_plan(tmp_path):
     assert "without a holder" in in_lines(done.stderr)
     assert done.stderr.index("Take flat end D6 x 60") < done.stderr.index("flat end D80 x 60 ")
     # The last lines say what is not reached, and why.
-    assert re.search(r"\nflat end D80 x 60 does not reach .*\n(  .*\n)*$", done.stderr)
+    assert re.search(r"\nFlat end D80 x 60 does not reach .*\n(  .*\n)*$", done.stderr)
 
 
 def test_two_runs_give_the_same_bytes(tmp_path):

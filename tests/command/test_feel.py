@@ -165,7 +165,7 @@ def test_the_first_line_says_which_cutter_to_take(capsys, planned):
     assert re.search(r"^> flat end D12 x 80 +yes ", said, re.MULTILINE)
     assert re.search(r"^  flat end D24 x 120 +no ", said, re.MULTILINE)
     # Last is what is not reached, and why.
-    assert re.search(r"\nflat end D24 x 120 does not reach (.*\n  )*.*(rear\s+gouge|collision)(.*\n  )*.*\n$", said)
+    assert re.search(r"\nFlat end D24 x 120 does not reach (.*\n  )*.*(rear\s+gouge|collision)(.*\n  )*.*\n$", said)
 
 
 def test_what_is_served_between_samples_is_put_in_words(capsys, planned):
@@ -186,9 +186,11 @@ def test_where_none_is_feasible_the_worst_faces_are_listed(capsys, failing):
     rows = [line.split() for line in takewhile(str.strip, said.splitlines()[head + 2 :])]
     best = max(failing.cutters, key=lambda c: c.interference_free + c.accessible)
     areas = {face.id: face.area_mm2 for face in failing.faces}
-    lost = {name: areas[name] * (v.area_share.inaccessible + v.area_share.undecided) for name, v in best.faces.items()}
-    worst = sorted(lost.values(), reverse=True)[:5]
-    assert [lost[row[0]] for row in rows] == pytest.approx([each for each in worst if each])
+    not_reached = {
+        name: areas[name] * (v.area_share.inaccessible + v.area_share.undecided) for name, v in best.faces.items()
+    }
+    worst = sorted(not_reached.values(), reverse=True)[:5]
+    assert [not_reached[row[0]] for row in rows] == pytest.approx([each for each in worst if each])
     assert all(head in said for head in ("mm2 lost", "of the face"))
     assert "Over the 2 setups" in said
 
@@ -359,7 +361,7 @@ def test_what_the_child_says_comes_through_whatever_it_holds():
     watch = _Watch(1.0, display)
     watch.pipe = here
     odd = "a\nsafe 0 /tmp\\x\udcff ü\u2028.step"
-    child = f"from plan_cutters.command.supervise import report as tell; odd = {odd!r}\n"
+    child = f"from plan_cutters.command.worker import report as tell; odd = {odd!r}\n"
     child += "tell('part', odd); tell('at', '3 9'); tell('say', odd)"
     subprocess.run(
         [sys.executable, "-c", child], env=ENV | {"PLAN_CUTTERS_REPORT": str(there)}, pass_fds=(there,), check=True

@@ -18,8 +18,8 @@ from cad_io.sample import nearest
 from plan_cutters import posture_map
 from plan_cutters.command import map as of_a_point
 from plan_cutters.domain.intervals import without
-from plan_cutters.report.map_picture import CAUSES, forbidden
-from plan_cutters.report.sheet import DPI, figure, fitting, write
+from plan_cutters.report.drawing.posture_map import CAUSES, forbidden
+from plan_cutters.report.drawing.sheet import DPI, figure, fitting, write
 from tests.support.forked import run as run_copied
 
 GROOVE = "samples/v_groove.step"
@@ -56,7 +56,7 @@ def test_the_table_and_both_pictures(capsys, tmp_path, monkeypatch):
     words = [part, "--at", "0,0,0.3", "--cutter", "R8L90", "--rotation", "0:90", "--rotation-step", "30"]
     code, out, err = run(capsys, *words)
     assert (code, err) == (0, "")
-    assert "flat end D16 x 90 (R8L90) at (0, 0, 0) on F2 of v_groove.step" in out
+    assert "Flat end D16 x 90 (R8L90) at (0, 0, 0) on F2 of v_groove.step" in out
     assert "0.3 mm off" in out
     assert max(map(len, [line for line in out.splitlines() if "│" in line])) <= 80
     row = next(line for line in out.splitlines() if line.startswith("│        0 │"))
@@ -96,7 +96,7 @@ def test_every_tilt_has_one_colour():
         machine="tilt:50",
     )
     shares = forbidden(found, 0.0, math.pi / 2)
-    assert set(shares) == {*(cause.name for cause in CAUSES), "undecided", "other"}
+    assert set(shares) == {*CAUSES, "undecided", "other"}
     rng = np.random.default_rng(0)
     causes = set()
     for i in range(len(found.rotations)):

@@ -16,3 +16,10 @@ def test_former_names_are_the_new_ones():
     assert found.lean is found.tilt_direction
     assert StickOut(1.0, 1.0, 2.0, "floor", tilt_direction=np.ones(3)).lean.tolist() == [1, 1, 1]
     assert isinstance(RadiusMap.lean, property)
+
+
+def test_a_scene_still_answers_to_its_former_names():
+    scene = plan_cutters.Scene.of("samples/v_groove.step", tolerance=0.02)
+    assert scene.around is scene.surround()
+    assert scene.tolerance == scene.surround().tolerance(0.02) == 0.02
+    assert scene.turned == scene.turned_faces()

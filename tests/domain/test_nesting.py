@@ -1,4 +1,4 @@
-"""Cutters inside one another hand postures down and lost samples up; and where that would be wrong."""
+"""Cutters inside one another hand postures down and what is not reached up; and where that would be wrong."""
 
 import numpy as np
 import pytest

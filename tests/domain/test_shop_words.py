@@ -248,7 +248,7 @@ class TestTables:
         low, high = np.array([1, 2, 3]), np.array([41, 32, 23])
         scene = Scene.of(box(40, 30, 20, (1, 2, 3)), setup=axis, fixtures=["table", "table@0,0,0"])
         lowest = sum(min(a * s, b * s) for a, b, s in zip(low, high, axis, strict=True))
-        for standing in scene.around.fixtures:
+        for standing in scene.surround().fixtures:
             heights = standing.obstacles.triangles.vertex @ np.array(axis)
             assert heights.max() == pytest.approx(lowest, abs=1e-9)
             # As far as any cutter goes, to all sides and down.
@@ -258,7 +258,7 @@ class TestTables:
     def test_it_is_moved_by_its_shift_and_kept_by_its_angles(self):
         def top(text, axis=(0, -1, 0), along=None):
             scene = Scene.of(box(40, 30, 20), setup=axis, fixtures=text)
-            return (scene.around.fixtures[0].obstacles.triangles.vertex @ np.array(along or axis)).max()
+            return (scene.surround().fixtures[0].obstacles.triangles.vertex @ np.array(along or axis)).max()
 
         assert top("table@0,3,0") == pytest.approx(-33)
         assert top("table:-40@0,2,0") == pytest.approx(-42)
@@ -266,7 +266,7 @@ class TestTables:
         assert top("table:-5@0,0,0,0,0,30", along=(0, 0, 1)) == pytest.approx(-5)
         assert not Fixture.parse("table:-5@0,0,0,0,0,30").follows_setup
 
-    def test_what_looks_down_at_a_table_is_lost_to_it(self):
+    def test_what_looks_down_at_a_table_is_not_reached(self):
         """A block on its side: the face that stands on the table, and the one that looks up."""
         for axis in ("-y", "+y"):
             part = Scene.of(box(40, 30, 20), setup=axis).part
@@ -281,7 +281,7 @@ class TestTables:
             )
             (reach,) = found.reaches.values()
             bottom = found.samples.face == int(down[1:])
-            assert reach.lost[bottom].all()
+            assert reach.not_reached[bottom].all()
             assert reach.reached[~bottom].all()
             assert any("along the setup axis" in note for note in found.plan.notes)
 

@@ -166,8 +166,8 @@ def test_the_tool_at_a_witness_is_in_the_obstacle(result):
     assert depth > 0.5
     point = cq.Vertex.makeVertex(*floor.worst.obstacle_point)
     assert min(each.obj.distance(point) for each in tool.children) < 1e-6
-    lost = int(np.flatnonzero(result.reaches[wide].lost)[0])
-    for at in (lost, len(result.samples), "here", True):
+    not_reached = int(np.flatnonzero(result.reaches[wide].not_reached)[0])
+    for at in (not_reached, len(result.samples), "here", True):
         with pytest.raises(OptionError):
             assembly(result, cutter=wide, at=at)
 
@@ -182,10 +182,12 @@ def test_values_of_a_face_are_those_of_its_samples(result):
             weight = result.samples.area[mine]
             assert each.reached == pytest.approx(weight[reach.reached[mine]].sum() / weight.sum())
             assert sum(each.shares.values()) == pytest.approx(1.0)
-            lost = reach.lost[mine]
-            assert (each.reason is None) == (not lost.any())
-            if lost.any():
-                most = max(set(reach.reason[mine][lost].tolist()), key=lambda r: weight[reach.reason[mine] == r].sum())
+            not_reached = reach.not_reached[mine]
+            assert (each.reason is None) == (not not_reached.any())
+            if not_reached.any():
+                most = max(
+                    set(reach.reason[mine][not_reached].tolist()), key=lambda r: weight[reach.reason[mine] == r].sum()
+                )
                 assert each.reason == REASONS[most]
                 assert sum(each.reasons.values()) == pytest.approx(1.0 - each.reached)
                 assert each.worst.face == each.id
@@ -231,7 +233,7 @@ def test_the_least_stick_out_of_a_face(result):
     held = {number: result.face(number, stick_out=True).least_stick_out for number in (floor, top)}
     # The slot is 10 mm deep and the holder wider than it: upright it ends at 10 mm; tilted along the slot it may be less.
     assert held[top] < held[floor] <= 10.0 + 2 * EXACT
-    # Independently: judged with it, the floor's reached samples are; a little less, one is lost.
+    # Independently: judged with it, the floor's reached samples are; a little less, one is not reached.
     tool, rows = result.judged(), np.flatnonzero(result.samples.face == floor)
     reached = rows[result.reaches[tool.id].reached[rows]]
     for length, all_of_them in ((held[floor], True), (held[floor] - 0.1, False)):

@@ -74,8 +74,8 @@ def test_verdicts_are_those_of_a_twin_that_probes_each_rotation(comb, radius):
                          waves.flat(radius, LENGTH, SAFE), solids.tree, triangle, triangle.copy())  # fmt: skip
             assert triangle[0] == -1
     # Each radius stands for a case: from mostly reached to hopeless.
-    lost = (reach.verdict == INACCESSIBLE).mean()
-    assert lost == 1.0 if radius == 3.0 else 0.1 < lost < 0.95
+    not_reached = (reach.verdict == INACCESSIBLE).mean()
+    assert not_reached == 1.0 if radius == 3.0 else 0.1 < not_reached < 0.95
 
 
 @pytest.mark.parametrize("radius", [1.45, 1.55, 1.7, 3.0])
@@ -100,9 +100,11 @@ def test_the_least_depth_is_that_of_a_grid(comb):
         Machine(), np.array([0, 0, 1.0]), postures, Surroundings.sheet(walls), SAFE + walls.triangles.chord_error, 1
     )
     assert np.cos(postures.rotations) == pytest.approx(RANGES.rotation_cos, abs=1e-12)
-    lost = np.flatnonzero(searched(contacts, solids, radius, np.arange(len(contacts.point))).verdict == INACCESSIBLE)
+    not_reached = np.flatnonzero(
+        searched(contacts, solids, radius, np.arange(len(contacts.point))).verdict == INACCESSIBLE
+    )
     short = []
-    for row in lost[:: max(1, len(lost) // 12)]:
+    for row in not_reached[:: max(1, len(not_reached) // 12)]:
         one = Contacts(*(column[row : row + 1].copy() for column in contacts))
         best, low, high = witness._least_depth(one, 0, cutter, conditions)
         assert low < high <= low * (1 + 2 * share)
@@ -151,7 +153,7 @@ def test_what_is_remembered_is_seen_from_the_contact_at_hand(given):
 
     def swept(past):
         return sweep.sweep(contact, 0, RANGES, tool, solids, 0.25, 1e-5, (0, -1.0), TURNS, past,
-                           place.room_to_search())  # fmt: skip
+                           place.search_workspace())  # fmt: skip
 
     full = sweep.memory(TURNS, 1, False)
     full.given[0], full.pool[:] = given, 1e4

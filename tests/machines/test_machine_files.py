@@ -474,7 +474,7 @@ BAD = [
     ("role.fcm", fcm(A={**fcm_axis("table_rotary", X), "role": "arm"}), "its role 'arm'"),
     ("unit.fcm", fcm("ells", A=fcm_axis("table_rotary", X)), "units 'ells' is not known"),
     ("none.fcm", {"machine": {"axes": {"X": fcm_axis("table_linear", X)}}}, "units is missing"),
-    ("nan.fcm", json.dumps(fcm(A=fcm_axis("table_rotary", X, math.nan))), "finite number"),
+    ("nan.fcm", json.dumps(fcm(A=fcm_axis("table_rotary", X, math.nan))), "must be a number, not nan"),
     ("joint.fcm", fcm(A=fcm_axis("table_rotary", X, joint={"origin": X})), "joint has no axis"),
     ("lathe.fcm", fcm(A=fcm_axis("table_rotary", X), B=fcm_axis("table_rotary", Y), C=fcm_axis("table_rotary", Z)), "3 rotary"),
     ("said.fcm#C,A", fcm(C=fcm_axis("table_rotary", Z), A=fcm_axis("table_rotary", X)), "leave out #C,A"),

@@ -70,7 +70,7 @@ def true_clearance(cutter, tip, axis, points):
 
 def dense(result, spacing):
     """Points all over the obstacles, with which the triangles are covered to half a spacing or so."""
-    triangles = result.scene.around.possible.triangles.vertex
+    triangles = result.scene.surround().possible.triangles.vertex
     mesh = trimesh.Trimesh(triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3), process=False)
     count = int(4.0 * mesh.area / spacing**2)
     points, _ = trimesh.sample.sample_surface(mesh, count, seed=1)

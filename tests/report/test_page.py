@@ -501,7 +501,7 @@ def test_the_page_knows_what_a_machine_holds(page, name):
 
 
 def test_stored_intervals_are_cut_to_what_rotary_axes_hold(page, planned):
-    """As if the part stood on a trunnion: every tilt shown free is held, and no held one is lost but at ends."""
+    """As if the part stood on a trunnion: every tilt shown free is held, and none that is held is missing but at ends."""
     axes = machines()["trunnion"]
     page.evaluate(
         "kinematics => Object.assign(review.meta, { kinematics, tilt_limit_deg: null })", meta._kinematics(axes)
@@ -510,7 +510,7 @@ def test_stored_intervals_are_cut_to_what_rotary_axes_hold(page, planned):
     choose(page, row)
     shown, _ = intervals(page)
     whole = np.degrees(planned.maps.free), planned.maps.offset.reshape(-1)
-    turns, lost = np.degrees(planned.postures.rotations).round(6), 0
+    turns, not_reached = np.degrees(planned.postures.rotations).round(6), 0
     for k, turn in enumerate(turns):
         first, last = whole[1][row * len(turns) + k : row * len(turns) + k + 2]
         stored = whole[0][first:last]
@@ -527,8 +527,8 @@ def test_stored_intervals_are_cut_to_what_rotary_axes_hold(page, planned):
         # The page's frames are rounded to about 0.01 deg.
         near = np.convolve(held, np.ones(3), "same") > 0
         assert not (mine & ~near).any(), turn
-        lost += int((held & ~mine).sum())
-    assert lost < 0.02 * len(turns) * len(tilts)
+        not_reached += int((held & ~mine).sum())
+    assert not_reached < 0.02 * len(turns) * len(tilts)
 
 
 def test_faces_are_filtered_and_sorted(page, planned):

@@ -226,7 +226,7 @@ def test_the_drawn_mesh_is_the_part_seen_from_outside(which, request):
         after += face["count"]
         assert 0.5 * np.linalg.norm(facet[mine], axis=1).sum() == pytest.approx(info.area, rel=0.03)
         assert (face["id"], face["target"]) == (info.id, True)
-    for standing, entry in zip(result.scene.around.fixtures, read.meta["fixtures"], strict=True):
+    for standing, entry in zip(result.scene.surround().fixtures, read.meta["fixtures"], strict=True):
         assert (entry["name"], entry["start"], entry["count"]) == (standing.name, after, len(standing.shown))
         after += entry["count"]
     assert after == len(triangle)
@@ -434,30 +434,33 @@ def test_the_page_says_first_which_cutter_to_take(valley):
     assert "It is the largest of 3 cutters that reaches every sample." in why
     by_name = {row[0]: row[1:] for row in told(read)}
     assert by_name["flat end D12 x 80"][:3] == ["yes", "100 %", "–"]
-    lost = result.plan.cutters[0].area_share
+    not_reached = result.plan.cutters[0].area_share
     assert by_name["flat end D24 x 60"][:2] == [
         "no",
-        f"{100 * (lost.interference_free + lost.accessible):.1f} %".replace(".0 %", " %"),
+        f"{100 * (not_reached.interference_free + not_reached.accessible):.1f} %".replace(".0 %", " %"),
     ]
 
 
 def test_only_all_is_told_as_all():
     from plan_cutters.document.shares import AreaShare, VerdictCounts
-    from plan_cutters.report.story.numbers import lost, reached
+    from plan_cutters.report.story.numbers import reached, unreached
 
     nearly = AreaShare(accessible=1.0 - 1e-9, inaccessible=1e-9)
     assert (
         reached(VerdictCounts(accessible=10**6, inaccessible=1), nearly),
-        lost(VerdictCounts(inaccessible=1), nearly),
+        unreached(VerdictCounts(inaccessible=1), nearly),
     ) == (
         ">99.9 %",
         "<0.1 %",
     )
     assert reached(VerdictCounts(accessible=3), AreaShare(accessible=1.0 - 1e-12)) == "100 %"
-    # A sample that stands for no area is lost all the same, and so is a face without samples.
+    # A sample that stands for no area is not reached all the same, and so is a face without samples.
     assert reached(VerdictCounts(accessible=3, inaccessible=1), AreaShare(accessible=1.0)) == ">99.9 %"
     assert reached(VerdictCounts(accessible=3), AreaShare(accessible=0.9, unjudged=0.1)) == "90 %"
-    assert (reached(VerdictCounts(), AreaShare()), lost(VerdictCounts(accessible=1), AreaShare(accessible=1.0))) == (
+    assert (
+        reached(VerdictCounts(), AreaShare()),
+        unreached(VerdictCounts(accessible=1), AreaShare(accessible=1.0)),
+    ) == (
         "0 %",
         "0 %",
     )
@@ -466,8 +469,10 @@ def test_only_all_is_told_as_all():
 def test_worst_faces_are_those_that_lose_the_most_area(rounded):
     result, read = rounded
     (entry,), reach, samples = result.plan.cutters, result.reaches["R2L30HR9L20"], result.samples
-    lost = {f.id: float(samples.area[(samples.face == int(f.id[1:])) & reach.lost].sum()) for f in result.plan.faces}
-    worst = sorted((name for name in lost if lost[name] > 0), key=lambda name: -lost[name])
+    not_reached = {
+        f.id: float(samples.area[(samples.face == int(f.id[1:])) & reach.not_reached].sum()) for f in result.plan.faces
+    }
+    worst = sorted((name for name in not_reached if not_reached[name] > 0), key=lambda name: -not_reached[name])
     assert worst
     tables = [text for tag, _, text in read.elements if tag == "details" and "fails" in text]
     names = re.findall(r"^(F\d+)", tables[0], re.MULTILINE)
@@ -477,7 +482,7 @@ def test_worst_faces_are_those_that_lose_the_most_area(rounded):
 
 def test_the_reader_in_the_docs_reads_it(valley):
     _, read = valley
-    text = (ROOT / "docs" / "review_page.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs" / "review_page_data.md").read_text(encoding="utf-8")
     (code,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     names: dict = {"np": np}
     exec(code, names)

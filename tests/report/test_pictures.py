@@ -7,7 +7,7 @@ from PIL import Image
 from plan_cutters import plan
 from plan_cutters.document.palette import rgb
 from plan_cutters.kernels.linear.raster import draw
-from plan_cutters.report.views import FINER, Body, borders, fitted, frame_towards, view
+from plan_cutters.report.drawing.view import FINER, Body, borders, fitted, frame_towards, view
 from tests.support.cad_parts import CAD
 
 
@@ -69,7 +69,7 @@ def test_a_box_fills_its_view_and_its_silhouette_has_its_size():
     body = Body(box.triangles, np.repeat(box.face_normals[:, None], 3, axis=1), np.zeros(len(box.triangles), np.int32))
     frame = frame_towards(np.array([0.0, -1.0, 0.0]), np.array([0.0, 0.0, 1.0]))
     scale, middle = fitted(frame, box.vertices, 300, 200)
-    (found,) = view(frame, [body], scale, middle, 300, 200)
+    found = view(frame, body, scale, middle, 300, 200)
     size = (found.seen >= 0).sum() / (scale * FINER) ** 2
     assert size == pytest.approx(30.0 * 20.0, rel=0.01)
     assert not (found.seen[0] >= 0).any()
@@ -91,7 +91,7 @@ def like(pixels, verdict):
     return (along > 0.997) & (length > 0.2)
 
 
-def test_verdicts_have_their_colours_and_what_is_lost_a_pattern_too(tmp_path):
+def test_verdicts_have_their_colours_and_what_is_not_reached_a_pattern_too(tmp_path):
     result = plan("samples/peaks_and_valleys.step", cutters="R10L100", grid=21, area_budget=0)
     assert result.selected is None
     result.write(tmp_path, ["json", "png"])
@@ -102,9 +102,11 @@ def test_verdicts_have_their_colours_and_what_is_lost_a_pattern_too(tmp_path):
     for verdict in ("interference_free", "accessible", "inaccessible"):
         assert like(views, verdict).sum() > 500, verdict
     assert not like(views, "unjudged").sum() > 50
-    # The pattern: of what is lost a part is far darker than the rest; of what is reached only lines between faces are.
-    lost, reached = (np.linalg.norm(views[like(views, verdict)], axis=1) for verdict in ("inaccessible", "accessible"))
-    assert 0.1 < (lost < 0.55 * lost.max()).mean() < 0.5
+    # The pattern: of what is not reached a part is far darker than the rest; of what is reached only lines between faces are.
+    not_reached, reached = (
+        np.linalg.norm(views[like(views, verdict)], axis=1) for verdict in ("inaccessible", "accessible")
+    )
+    assert 0.1 < (not_reached < 0.55 * not_reached.max()).mean() < 0.5
     assert (reached < 0.45 * reached.max()).mean() < 0.05
     result.write(tmp_path, ["json", "png"])
     assert (tmp_path / "review.png").read_bytes() == first

@@ -136,7 +136,7 @@ def test_witnesses_of_a_plan_have_the_rows_of_their_samples():
     for w in c.witnesses:
         assert result.samples.point[w.sample].tolist() == list(w.point)
         assert f"F{result.samples.face[w.sample]}" == w.face
-        assert result.reaches[c.id].lost[w.sample]
+        assert result.reaches[c.id].not_reached[w.sample]
     posed = next(w for w in c.witnesses if w.best_posture)
     _posture(result, result.judged(), posed)
     with pytest.raises(OptionError, match="of another plan"):

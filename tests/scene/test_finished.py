@@ -111,17 +111,17 @@ def test_a_part_inside_a_part_has_nothing_to_judge():
 def test_the_wall_of_a_void_is_surface_that_no_cutter_reaches():
     """It is no other body that lies there, though a body within the void is surrounded as well."""
     hollow = cut(box(100, 100, 100), box(80, 80, 80, at=(10, 10, 10)))
-    for shape, lost in ((hollow, 6 * 25), (compound(hollow, box(20, 20, 20, at=(40, 40, 40))), 12 * 25)):
+    for shape, not_reached in ((hollow, 6 * 25), (compound(hollow, box(20, 20, 20, at=(40, 40, 40))), 12 * 25)):
         result = plan(shape, grid=5, **HOW)
         assert result.plan.inside_other_bodies.samples == 0
-        assert (result.selected, result.cutters[0].lost) == (None, lost)
+        assert (result.selected, result.cutters[0].not_reached) == (None, not_reached)
     # A block that fills a part of the void covers what it lies against.
     filled = plan(compound(hollow, box(80, 80, 40, at=(10, 10, 10))), grid=5, **HOW)
     assert 0 < filled.plan.inside_other_bodies.samples < filled.cutters[0].by_reason["buried"]
     assert filled.selected is None
 
 
-def test_what_lies_in_a_fixture_stays_lost_to_it():
+def test_what_lies_in_a_fixture_is_not_reached():
     result = plan(box(40, 40, 20), grid=9, fixtures=["box:20,20,60@10,10,20"], **HOW)
     entry = result.cutters[0]
     assert entry.by_reason["fixture"] > 0

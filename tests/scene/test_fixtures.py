@@ -1,4 +1,4 @@
-"""Fixtures in the way: closed forms, the same obstacle as a face of the part, moved together, what is lost to them and why."""
+"""Fixtures in the way: closed forms, the same obstacle as a face of the part, moved together, what they keep off and why."""
 
 import math
 import pickle
@@ -84,27 +84,27 @@ def test_a_table_askew():
 
 
 @pytest.mark.parametrize(
-    ("cutter", "height", "tilts", "lost"),
+    ("cutter", "height", "tilts", "not_reached"),
     [("R5L20", -30, (0.5, 1.2), None), (HELD, -10, (0.9, 1.1), False), (HELD, -6, (0.9, 1.1), True)],
 )
-def test_a_fixture_and_a_face_of_the_part_give_the_same_verdicts(cutter, height, tilts, lost):
+def test_a_fixture_and_a_face_of_the_part_give_the_same_verdicts(cutter, height, tilts, not_reached):
     floor = shapes.plane((-300, 300), (-300, 300), (0, 0, height))
     wall = shapes.plane((0, 60), (-40, 40), (8, 0, -5), (-1, 0, 0), (0, 0, 1))
     options = {"cutters": cutter, "faces": "1", "grid": 9, "tilt": tilts, "rotation": (0, 0.5)} | FLAT
-    walled = lost is None
+    walled = not_reached is None
     faced = plan(plate(floor, *([wall] if walled else [])), **options)
     fixed = plan(plate(), fixtures=[f"table:{height}", *(["box:50,80,60@8,-40,-5"] if walled else [])], **options)
     (one,), (other,) = faced.reaches.values(), fixed.reaches.values()
     assert (one.verdict == other.verdict).all()
     if walled:
-        assert one.lost.any()
+        assert one.not_reached.any()
         assert one.reached.any()
     else:
-        assert one.lost.all() if lost else one.reached.all()
-    if not one.lost.any():
+        assert one.not_reached.all() if not_reached else one.reached.all()
+    if not one.not_reached.any():
         return
     # What the fixture stops is the holder: a longer stick-out would do, and is asked for before another place of the fixture.
-    assert {REASONS[r] for r in other.reason[other.lost]} == {"fixture" if walled else "holder"}
+    assert {REASONS[r] for r in other.reason[other.not_reached]} == {"fixture" if walled else "holder"}
     assert set(fixed.cutters[0].by_reason) == set(REASONS)
     assert {w.obstacle_face for w in fixed.cutters[0].witnesses} & {"fixture:table", "fixture:box"}
 
@@ -142,14 +142,14 @@ def pocket():
     return Scene.of(SAMPLES / "pocket_top.step")
 
 
-def test_what_is_lost_to_fixtures_is_what_is_reached_without_them(pocket):
+def test_what_fixtures_keep_is_what_is_reached_without_them(pocket):
     options = {"cutters": ["R3L25", "R9L30"], "spacing": 3.0} | FLAT
     without, held = plan(pocket, **options), plan(pocket, fixtures=["box:20,50,60@60.5,-5,0"], **options)
     for name, reach in held.reaches.items():
-        before, lost = without.reaches[name], reach.lost
-        assert lost[before.lost].all(), "a fixture opens nothing"
-        assert (reach.reason[lost & before.reached] == FIXTURE).all()
-        assert (reach.reason[lost & before.lost] == before.reason[lost & before.lost]).all()
+        before, not_reached = without.reaches[name], reach.not_reached
+        assert not_reached[before.not_reached].all(), "a fixture opens nothing"
+        assert (reach.reason[not_reached & before.reached] == FIXTURE).all()
+        assert (reach.reason[not_reached & before.not_reached] == before.reason[not_reached & before.not_reached]).all()
     entry = held.cutters[0]
     assert entry.by_reason["fixture"] + entry.undecided_by_reason["fixture"] > 0
     found = [w for w in entry.witnesses if w.reason == "fixture"]
@@ -182,15 +182,15 @@ def test_other_fixtures_cost_no_tessellation(monkeypatch):
     two = plan(scene, fixtures="box:4,4,4@0,0,40", **options)
     three = plan(two.scene, fixtures=["box:4,4,4@0,0,40", "cylinder:4,4@0,0,50"], **options)
     assert len(calls) == 1
-    assert two.scene.around.possible is not one.scene.around.possible
-    assert (three.scene.around.alone, two.scene.around.alone) == (one.scene.around, one.scene.around)
+    assert two.scene.surround().possible is not one.scene.surround().possible
+    assert (three.scene.surround().alone, two.scene.surround().alone) == (one.scene.surround(), one.scene.surround())
     again = plan(three.scene, fixtures=[], **options)
     assert len(calls) == 1
     assert again.reaches == one.reaches
     # A fixture of the CAD kind is tessellated once, wherever it stands.
     jaw = box(10, 10, 10)
     first = scene.clamped([Fixture(jaw, (0, 0, 40))])
-    _ = first.around, first.clamped([Fixture(jaw, (5, 0, 50))]).around
+    _ = first.surround(), first.clamped([Fixture(jaw, (5, 0, 50))]).surround()
     assert len(calls) == 2
     # A scene has the fixtures that it was made with, and a plan of it, too.
     assert [e.name for e in plan(two.scene, **options).plan.fixtures] == ["fixture:box"]
@@ -207,7 +207,7 @@ def test_nothing_lies_safe_within_a_fixture(pocket):
     (reach,) = held.reaches.values()
     z = held.samples.normal[:, 2]
     for rows, name in ((z < -0.9, "fixture:table"), (z > 0.9, "fixture:box")):
-        assert reach.lost[rows].all()
+        assert reach.not_reached[rows].all()
         assert (reach.reason[rows] == FIXTURE).all()
         assert name in {w.obstacle_face for w in held.cutters[0].witnesses}
     # The same as triangles with the inside out, or that run both ways.
@@ -216,7 +216,7 @@ def test_nothing_lies_safe_within_a_fixture(pocket):
     mixed[::3] = mixed[::3, ::-1]
     for vertex in (mesh, mesh[:, ::-1], mixed):
         other = plan(part, fixtures=["table:0", trimesh.Trimesh(*_indexed(vertex), process=False)], **options)
-        assert (next(iter(other.reaches.values())).lost == reach.lost).all()
+        assert (next(iter(other.reaches.values())).not_reached == reach.not_reached).all()
         assert other.plan.fixtures[1].watertight
     # An open one: only its surface is in the way.
     sheet = plan(part, fixtures=[trimesh.Trimesh(*_indexed(mesh[:-1]), process=False)], **options).plan.fixtures[0]
@@ -228,7 +228,7 @@ def test_cells_that_are_outside_are_so(pocket):
     """The grid about the part against the winding numbers, among fixtures that reach far beyond it."""
     around = pocket.clamped(
         ["table:-3", "box:30,90,60@61,-20,-2", "cylinder:9,20@30,-10,1", "box:9,9,9@300,0,0,0,0,40"]
-    ).around
+    ).surround()
     obstacles = around.possible
     assert not obstacles.solids.whole
     assert 0.05 < obstacles.solids.cell.mean() < 0.95
@@ -272,13 +272,13 @@ def test_a_fixture_through_a_sheet_has_no_depth_but_one_around_it_has():
 
 
 def test_the_chord_error_is_the_larger_one(pocket):
-    own = pocket.around.certain.triangles.chord_error
-    rod = pocket.clamped("cylinder:8,30@30,-9,5").around.certain.triangles.chord_error
+    own = pocket.surround().certain.triangles.chord_error
+    rod = pocket.clamped("cylinder:8,30@30,-9,5").surround().certain.triangles.chord_error
     assert own <= rod <= 0.2 * 0.01 * (1 + 1e-9)
     block = trimesh.Trimesh(*_indexed(vises.block((61, 0, 0), (70, 9, 9))))
     scene = pocket.clamped(Fixture(block, chord_error=0.01))
-    assert scene.around.certain.triangles.chord_error == 0.01
-    assert scene.tolerance == pytest.approx(0.04)
+    assert scene.surround().certain.triangles.chord_error == 0.01
+    assert scene.surround().tolerance(scene.asked) == pytest.approx(0.04)
 
 
 def test_objects_of_the_kernel_and_hosts(pocket):

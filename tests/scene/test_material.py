@@ -139,9 +139,9 @@ def test_maps_leave_bodies_out():
     result = judged(stacked(), grid=9, posture_maps=True, rotation_step=math.pi / 6)
     k = len(result.maps.rotations)
     found = np.add.reduceat(np.append(np.diff(result.maps.offset), 0), np.arange(0, k * len(result.samples), k))
-    lost = result.reaches[SMALL.id].verdict == 0
-    assert lost.any()
-    assert (found[lost] == 0).all()
+    not_reached = result.reaches[SMALL.id].verdict == 0
+    assert not_reached.any()
+    assert (found[not_reached] == 0).all()
     assert (found[reached(result)] > 0).all()
     part = read_part(stacked())
     turns = np.radians([0.0, 40.0, 200.0])

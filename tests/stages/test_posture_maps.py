@@ -203,7 +203,7 @@ def test_maps_keep_to_an_amount_of_work(monkeypatch):
 
 
 def test_what_is_missing_leaves_doubt_in_stored_maps():
-    """Where obstacles are only guessed, nothing is called lost that a fresh plan leaves undecided."""
+    """Where obstacles are only guessed, nothing is called not reached that a fresh plan leaves undecided."""
     from dataclasses import replace
 
     from tests.support.cad_parts import box, compound, triangulated

@@ -1,4 +1,4 @@
-"""Why a sample is lost, by what would free it; and several setups as one."""
+"""Why a sample is not reached, by what would free it; and several setups as one."""
 
 import csv
 from dataclasses import replace
@@ -34,7 +34,7 @@ def words(reason):
     return {REASONS[code] for code in np.unique(reason).tolist()}
 
 
-def test_what_turning_the_part_frees_is_lost_to_the_axis_limit(plate):
+def test_what_turning_the_part_frees_is_kept_by_the_axis_limit(plate):
     """On a plate with features on both sides; told by plans without the limit, and turned over."""
     held = plan(plate, cutters=["R2L30"], machine="tilt:30", **HOW)
     free = plan(plate, cutters=["R2L30"], **HOW).reaches["R2L30"]
@@ -43,11 +43,11 @@ def test_what_turning_the_part_frees_is_lost_to_the_axis_limit(plate):
     # Verdicts and postures are those of the search.
     assert (reach.verdict == found.verdict).all()
     assert np.array_equal(reach.axis, found.axis, equal_nan=True)
-    misled = found.lost & free.reached & (found.reason != AXIS_LIMIT)
+    misled = found.not_reached & free.reached & (found.reason != AXIS_LIMIT)
     assert misled.sum() > 20, "the search books these on rear gouge or collision"
     assert (reach.reason[misled] == AXIS_LIMIT).all()
     # Each is true, both ways.
-    assert (reach.reason[reach.lost & free.reached] == AXIS_LIMIT).all()
+    assert (reach.reason[reach.not_reached & free.reached] == AXIS_LIMIT).all()
     assert free.reached[reach.reason == AXIS_LIMIT].all()
     entry = held.cutters[0]
     assert sum(entry.axis_limit_with.values()) == misled.sum()
@@ -65,7 +65,7 @@ def test_a_holder_is_the_reason_where_bare_flutes_serve():
     bare = plan(part, cutters=["R4L20"], machine="tilt:50", **HOW).reaches["R4L20"]
     loose = plan(part, cutters=[cutter], **HOW).reaches[cutter.id]
     both = plan(part, cutters=["R4L20"], **HOW).reaches["R4L20"]
-    why = np.where(reach.lost, reach.reason, 255)
+    why = np.where(reach.not_reached, reach.reason, 255)
     told = {word: why == REASONS.index(word) for word in ("axis_limit", "holder", "rear_gouge", "collision")}
     assert told["holder"].sum() > 10
     assert bare.reached[told["holder"]].all()
@@ -85,7 +85,7 @@ def test_neck_and_shank_are_told_from_the_holder():
     bare = plan(part, cutters=["R3L10"], **how).reaches["R3L10"]
     for cutter, word in ((thin, "shank"), (replace(thin, holder=held), "shank"), (slim, "holder")):
         (reach,) = plan(part, cutters=[cutter], **how).reaches.values()
-        told = reach.lost & (reach.reason == REASONS.index(word))
+        told = reach.not_reached & (reach.reason == REASONS.index(word))
         assert told.any(), word
         assert bare.reached[told].all()
         # Of two parts that are in the way the one that has to be away for there to be a posture.
@@ -101,11 +101,11 @@ def test_a_fixture_that_an_axis_limit_could_avoid_comes_second():
         for machine in ("tilt:75", "unlimited") for fixtures in (wall, ())
     }  # fmt: skip
     reach = found["tilt:75", True]
-    told = {word: reach.lost & (reach.reason == REASONS.index(word)) for word in ("axis_limit", "fixture")}
+    told = {word: reach.not_reached & (reach.reason == REASONS.index(word)) for word in ("axis_limit", "fixture")}
     assert told["fixture"].any()
     assert found["tilt:75", False].reached[told["fixture"]].all()
     assert not found["unlimited", True].reached[told["fixture"]].any()
-    assert (reach.reason[reach.lost & found["unlimited", True].reached] == AXIS_LIMIT).all()
+    assert (reach.reason[reach.not_reached & found["unlimited", True].reached] == AXIS_LIMIT).all()
 
 
 def test_nothing_is_searched_where_nothing_could_be_taken_away(plate, monkeypatch):
@@ -114,12 +114,12 @@ def test_nothing_is_searched_where_nothing_could_be_taken_away(plate, monkeypatc
         finding, "search_postures", lambda *given, **more: calls.append(len(given[1])) or real(*given, **more)
     )
     bare = plan(plate, cutters=["R13L40", "R2L30"], **HOW)
-    assert bare.reaches["R13L40"].lost.any()
+    assert bare.reaches["R13L40"].not_reached.any()
     assert not calls
-    # With a limit one search of what is lost, but for what another cutter's tells.
+    # With a limit one search of what is not reached, but for what another cutter's tells.
     held = plan(plate, cutters=["R13L40", "R5L30", "R2L30"], machine="tilt:30", **HOW)
-    lost = [reach.lost.sum() for reach in held.reaches.values()]
-    assert 0 < sum(calls) < sum(lost)
+    not_reached = [reach.not_reached.sum() for reach in held.reaches.values()]
+    assert 0 < sum(calls) < sum(not_reached)
 
 
 def test_reasons_are_the_same_whatever_other_cutters_there_are(plate):
@@ -143,7 +143,7 @@ def test_several_setups_are_one_answer(plate, machine, tmp_path):
     assert together.sum() > max(each.reached.sum() for each in alone)
     assert (reach.reached == together).all()
     assert entry.interference_free + entry.accessible == together.sum()
-    assert entry.lost_in_all == entry.lost == (~together).sum()
+    assert entry.lost_in_all == entry.not_reached == (~together).sum()
     assert both.selected == both.plan.selected_over_setups
     assert entry.feasible is bool(together.all())
     share = entry.area_share.interference_free + entry.area_share.accessible
@@ -171,16 +171,17 @@ def test_several_setups_are_one_answer(plate, machine, tmp_path):
                 assert np.abs(machine_axes.axis(angles) - arrays["axis_R2L30"][rows]).max() < 1e-6
 
 
-def test_what_is_lost_in_all_setups_has_the_reason_of_one_that_may_serve():
+def test_what_no_setup_reaches_has_the_reason_of_one_that_may_serve():
     ready = prepare(box(20, 20, 6), Options.of(HOW | {"cutters": "R3L30", "machine": "tilt:20"}))
     reach = judge(ready, Cutter.parse("R3L30"))
     assert (reach.reason == AXIS_LIMIT).any()
-    other = replace(reach, reason=np.where(reach.lost, np.uint8(2), reach.reason), verdict=reach.verdict.copy())
-    other.verdict[np.flatnonzero(reach.lost)[0]] = UNDECIDED
+    verdict = reach.verdict.copy()
+    verdict[np.flatnonzero(reach.not_reached)[0]] = UNDECIDED
+    other = replace(reach, reason=np.where(reach.not_reached, np.uint8(2), reach.reason), verdict=verdict)
     found, which = over_setups([reach, other])
     assert (found.reached == reach.reached).all()
-    assert (which[reach.lost] == -1).all()
-    assert (found.reason[reach.lost] == 2).all()
+    assert (which[reach.not_reached] == -1).all()
+    assert (found.reason[reach.not_reached] == 2).all()
     assert (found.verdict == UNDECIDED).sum() == 1
 
 

@@ -164,7 +164,7 @@ def test_default_spacing_follows_cutter_curvature_and_budget():
 
 
 def test_reasons_are_handed_up_but_for_what_the_larger_cutter_has_of_its_own():
-    """A smaller cutter is lost to what stands in the way; where the larger has no posture at all, that is its reason."""
+    """A smaller cutter is kept off by what stands in the way; where the larger has no posture at all, that is its reason."""
     curvature = [(0.0, 0.0), (0.2, 0.2), (0.0, 0.0)]
     grid = samples(curvature)
     far = Obstacles(Triangles(np.array([[[0, 0, -50.0], [1, 0, -50], [0, 1, -50]]]), np.ones(1, np.int32), 0.0, ()))

@@ -6,8 +6,8 @@ Each range is tested as a whole: nothing is handed on from one to the next, and 
 import numba
 import numpy as np
 
-from plan_cutters.kernels.linear.vectors import cross, lean_frame
-from plan_cutters.kernels.maps.free_tilts import OPEN, UNSURE, divide, room_for_parts
+from plan_cutters.kernels.linear.vectors import cross, tilt_frame
+from plan_cutters.kernels.maps.free_tilts import OPEN, UNSURE, divide, parts_workspace
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import permitted
 
@@ -68,13 +68,13 @@ def tool_map(rows, contacts, ranges, tool, narrowest, tree, part, count_out, und
     count_out : (m, k) int32, written
     undecided : (m, k) float64, written
     """
-    f, t, e2, intervals, work = np.empty(3), np.empty(3), np.empty(3), np.empty((8, 2)), room_for_parts(_PARTS)
+    f, t, e2, intervals, work = np.empty(3), np.empty(3), np.empty(3), np.empty((8, 2)), parts_workspace(_PARTS)
     for place in range(len(rows)):
         row = rows[place]
         p, n, e1 = contacts.point[row], contacts.normal[row], contacts.direction_max[row]
         cross(n, e1, e2)
         for rotation in range(len(ranges.rotation_cos)):
-            lean_frame(e1, e2, ranges.rotation_cos[rotation], ranges.rotation_sin[rotation], f, t)
+            tilt_frame(e1, e2, ranges.rotation_cos[rotation], ranges.rotation_sin[rotation], f, t)
             count, unsure, mine = 0, 0.0, part[place, rotation]
             for mode in range(len(tool.mode)):
                 _, left = permitted(contacts, row, ranges, tool, mode, f, intervals)

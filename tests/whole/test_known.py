@@ -40,22 +40,22 @@ def reach(ready):
     return judge(ready, SMALL)
 
 
-def test_no_search_and_no_witness_search_for_what_is_buried(ready, reach, monkeypatch):
+def test_no_search_and_no_witness_search_for_what_is_inside(ready, reach, monkeypatch):
     inside = np.flatnonzero(ready.inside_bodies)
     assert len(inside) > 100
     work, none = Work(), np.zeros(len(ready.samples), bool)
-    access(ready.samples, none, SMALL, ready.conditions, buried=ready.buried, rows=inside, work=work)
+    access(ready.samples, none, SMALL, ready.conditions, inside=ready.inside, rows=inside, work=work)
     assert work.looked == 0
     some = Work()
-    access(ready.samples, none, SMALL, ready.conditions, buried=ready.buried, work=some)
+    access(ready.samples, none, SMALL, ready.conditions, inside=ready.inside, work=some)
     assert some.looked > 0
     searched, real = [], witness._witness
     monkeypatch.setattr(witness, "_witness", lambda s, row, *more: searched.append(row) or real(s, row, *more))
-    found = witness.witnesses(ready.samples, reach, SMALL, ready.conditions, buried=ready.buried)
+    found = witness.witnesses(ready.samples, reach, SMALL, ready.conditions, inside=ready.inside)
     assert not ready.inside_bodies[searched].any()
     mine = [w for w in found if ready.inside_bodies[w.sample]]
     # One a body and face, and together they stand for all.
-    pairs = {(int(ready.samples.face[row]), int(ready.buried[row])) for row in inside.tolist()}
+    pairs = {(int(ready.samples.face[row]), int(ready.inside[row])) for row in inside.tolist()}
     assert len(mine) == len(pairs)
     assert sum(w.samples for w in mine) == len(inside)
     assert all(w.obstacle_face is not None and w.depth is None for w in mine)
@@ -162,14 +162,14 @@ def test_no_work_serves_nothing_and_threads_do_not_matter(valley):
     assert (one.share, one.contacts, one.left, one.short) == (two.share, two.contacts, two.left, two.short)
 
 
-def test_what_the_search_lost_is_not_searched_again(valley):
+def test_what_the_search_did_not_reach_is_not_searched_again(valley):
     """A sample without a posture costs the area no search of its own."""
     from dataclasses import replace
 
     ready, cutter, reach = valley
-    assert reach.lost.any()
+    assert reach.not_reached.any()
     found = area(valley, np.inf)[1]
-    blank = replace(reach, verdict=np.where(reach.lost, 255, reach.verdict).astype(np.uint8))
+    blank = replace(reach, verdict=np.where(reach.not_reached, 255, reach.verdict).astype(np.uint8))
     forgetful = area((ready, cutter, blank), np.inf)[1]
     assert found < forgetful
 

@@ -62,7 +62,7 @@ def asked(part, cutter, **options):
 
 
 def reasons(reach):
-    return {REASONS[k] for k in reach.reason[reach.lost]}
+    return {REASONS[k] for k in reach.reason[reach.not_reached]}
 
 
 def too_deep(radius, ball=0.5):

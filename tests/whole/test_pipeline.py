@@ -112,7 +112,7 @@ def test_parts_and_results_can_be_kept(tmp_path):
 def test_records_print_their_shapes_and_compare_by_their_numbers():
     result = plan(SAMPLES / "v_groove.step", **SMALL)
     assert "float64 (3267, 3)" in repr(result.samples)
-    for record in (result, result.samples, result.reaches["R3L40"], result.scene, result.scene.around.possible):
+    for record in (result, result.samples, result.reaches["R3L40"], result.scene, result.scene.surround().possible):
         assert len(repr(record)) < 1200
     reach = result.reaches["R3L40"]
     assert reach == pickle.loads(pickle.dumps(reach))
@@ -130,7 +130,7 @@ def test_an_option_is_declared_once():
 
 
 def test_the_other_side_is_machined_with_flip():
-    """A dome is free from above and lost from below, where the cutters would have to stand in it."""
+    """A dome is free from above and not reached from below, where the cutters would have to stand in it."""
     part = read_part(SAMPLES / "peaks_and_valleys.step")
     up, down = (plan(part, flip=flip, **SMALL | {"grid": 17}) for flip in (False, True))
     assert down.plan.effective.flip

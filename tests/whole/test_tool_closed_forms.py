@@ -215,9 +215,9 @@ def test_a_pocket_is_finished_by_the_balls_that_are_no_larger():
     round_ = result.samples.curvature[:, 1] > 0.1
     assert round_.sum() > 30
     assert result.reaches[small.id].reached[round_].all()
-    lost = result.reaches[large.id]
-    assert (lost.verdict[round_] == INACCESSIBLE).all()
-    assert {REASONS[r] for r in lost.reason[round_]} == {"local_gouge"}
+    not_reached = result.reaches[large.id]
+    assert (not_reached.verdict[round_] == INACCESSIBLE).all()
+    assert {REASONS[r] for r in not_reached.reason[round_]} == {"local_gouge"}
     # A flat end leans with its edge; it need not stand upright.
     assert result.reaches[flat.id].reached[round_].mean() > 0.5
 

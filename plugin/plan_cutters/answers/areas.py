@@ -8,7 +8,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from cad_io.arrays import Floats, Record, SurfaceSamples
-from plan_cutters.domain.area import Patch
+from plan_cutters.domain.area import Patch, weights
 from plan_cutters.scene.preparation import Prepared
 
 Rows = NDArray[np.int64]
@@ -39,10 +39,9 @@ class Finished(Record):
     def of(cls, ready: Prepared) -> "Finished":
         """Of the samples of a part: those of a face share its area as they do by their own."""
         samples, faces = ready.samples, ready.scene.part.faces
-        known = np.array([face.area if np.isfinite(face.area) else 0.0 for face in faces]).clip(min=0.0)
         judged = sorted({*np.unique(samples.face).tolist(), *(number for number, _ in samples.empty)})
-        if not known[[number - 1 for number in judged]].sum() > 0.0:
-            known[:] = 1.0
+        known = np.zeros(len(faces))
+        known[[number - 1 for number in judged]] = weights(np.array([faces[number - 1].area for number in judged]))
         own = np.where(np.isfinite(samples.area), samples.area, 0.0).clip(min=0.0)
         whole = np.bincount(samples.face, own, len(faces) + 1)
         own = np.where(whole[samples.face] > 0.0, own, 1.0)
@@ -77,7 +76,7 @@ def patches(samples: SurfaceSamples, finished: Finished, rows: Rows) -> list[Pat
 
 def _patch(samples: SurfaceSamples, finished: Finished, rows: Rows) -> Patch:
     point, area = samples.point[rows], finished.area[rows]
-    weight = area if area.sum() > 0.0 else np.ones(len(rows))
+    weight = weights(area)
     middle = weight @ point / weight.sum()
     x, y, z = point[int(((point - middle) ** 2).sum(axis=1).argmin())].tolist()
     numbers, inverse = np.unique(samples.face[rows], return_inverse=True)

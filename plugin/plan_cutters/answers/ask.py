@@ -86,7 +86,7 @@ def nearest(ready: Prepared, reaches: Mapping[Cutter, Verdicts], elsewhere: Else
     left = {}
     for cutter in ready.cutters:
         each = [reaches[cutter], *(found[cutter.id] for _, found in elsewhere)]
-        lost = np.logical_and.reduce([verdicts.lost for verdicts in each]) & finished.wanted
-        if lost.any() or missing:
-            left[cutter] = finished.of_rows(np.flatnonzero(lost))
+        not_reached = np.logical_and.reduce([verdicts.not_reached for verdicts in each]) & finished.wanted
+        if not_reached.any() or missing:
+            left[cutter] = finished.of_rows(np.flatnonzero(not_reached))
     return sorted(left, key=lambda cutter: round(left[cutter], 9))

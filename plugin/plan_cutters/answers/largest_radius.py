@@ -1,4 +1,7 @@
-"""Which is the largest flat or ball end that reaches each sample, whatever cutters there are? `docs/largest_radius.md`."""
+"""Find the largest flat or ball end that reaches each sample, whatever cutters there are.
+
+Lemmas N3 and N4 of `docs/nested_cutters_proof.md`.
+"""
 
 import math
 from typing import TYPE_CHECKING
@@ -10,7 +13,7 @@ from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.checks import number, shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.radius_map import RadiusMap, Shape
-from plan_cutters.domain.verdicts import BURIED, INACCESSIBLE, UNJUDGED, blank
+from plan_cutters.domain.verdicts import INACCESSIBLE, INSIDE, UNJUDGED, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.scene.conditions import contacts_of, found_of, require_finite
 from plan_cutters.scene.preparation import Prepared
@@ -60,7 +63,7 @@ def largest_radius(
     cutters = _cutters(ready, shape, ratio, step, least, most)
     radii = np.array([cutter.radius for cutter in cutters])
     samples, conditions = ready.samples, ready.conditions
-    judged, within = samples.unjudged < 0, ready.buried >= 0
+    judged, within = samples.unjudged < 0, ready.inside >= 0
     level, beyond, reach = np.full(len(samples), -1), np.full(len(samples), UNJUDGED, np.uint8), blank(len(samples))
     outer_tool = _ladder([conditions.outer_tool(cutter) for cutter in cutters])
     inner_tool = _ladder([conditions.inner_tool(cutter) for cutter in cutters])
@@ -72,7 +75,7 @@ def largest_radius(
         largest(piece, contacts, conditions.ranges, outer_tool, inner_tool, possible, certain, found, level, beyond)
 
     in_chunks(work, rows, conditions.jobs, progress, fixed=True)
-    beyond[judged & within], reach.reason[judged & within] = INACCESSIBLE, BURIED
+    beyond[judged & within], reach.reason[judged & within] = INACCESSIBLE, INSIDE
     radius = np.where(judged, np.where(level >= 0, radii[level], 0.0), np.nan)
     return RadiusMap(shape, float(ratio), float(step), float(radii[0]), float(radii[-1]), radius, beyond, reach.reason,
                      reach.axis, reach.tilt_direction, reach.tilt, reach.rotation)  # fmt: skip

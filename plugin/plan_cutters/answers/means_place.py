@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from cad_io.arrays import Floats
+from plan_cutters.answers import sentences
 from plan_cutters.answers.option import Axis
 from plan_cutters.answers.scan import Candidate, Rows, Scan, spread, under
 from plan_cutters.answers.state import State
@@ -24,9 +25,8 @@ _OWN = 0.1
 _TURN = 5.0
 #: The most that machines tilt, deg: what asks for more is for another setup.
 _MOST = 120.0
-#: Share of the samples lost that must be undecided for a finer tolerance to be worth its triangles.
+#: Share of the samples not reached that must be undecided for a finer tolerance to be worth its triangles.
 _UNSURE = 0.1
-_ORDER = {2: "second", 3: "third", 4: "fourth"}
 
 
 def tolerance(scan: Scan) -> Iterator[Candidate]:
@@ -42,8 +42,7 @@ def tolerance(scan: Scan) -> Iterator[Candidate]:
     state = replace(scan.state, ready=closer(Case(ready, cutter), asked).ready)
     missed = scan.known.glance(state, scan.few)
     if len(missed) < len(scan.few):
-        words = f"a tolerance of {asked:g} mm instead of {now:g} mm"
-        yield scan.found(Move("tolerance", now, asked, words), state, missed, nested=False)
+        yield scan.found(Move("tolerance", now, asked, sentences.tolerance(asked, now)), state, missed, nested=False)
 
 
 def tilt_range(scan: Scan) -> Iterator[Candidate]:
@@ -60,8 +59,8 @@ def tilt_range(scan: Scan) -> Iterator[Candidate]:
     state = under(scan.state, replace(ready.conditions, postures=postures))
     missed = scan.known.glance(state, scan.few)
     if len(missed) < len(scan.few):
-        words = f"tilts from {lowest:g} to {highest_tilt:g} deg in the search instead of {low:g} to {high:g} deg"
-        yield scan.found(Move("tilt_range", (low, high), asked, words), state, missed, nested=True)
+        move = Move("tilt_range", (low, high), asked, sentences.tilt_range(asked, (low, high)))
+        yield scan.found(move, state, missed, nested=True)
 
 
 def axis(scan: Scan, *, plain: bool = False) -> Iterator[Candidate]:
@@ -87,8 +86,7 @@ def axis(scan: Scan, *, plain: bool = False) -> Iterator[Candidate]:
 
     for at, made, missed in scan.least(limit, most):
         asked = (first + at) * _TURN
-        instead = f"every way instead of {machine.name}" if now is None else f"instead of {now:g} deg"
-        move = Move("tilt_limit", now, asked, f"a machine that tilts by {asked:g} deg {instead}")
+        move = Move("tilt_limit", now, asked, sentences.tilt_limit(asked, now, machine.name))
         yield scan.found(move, made, missed, nested=now is not None)
     yield from _setups(scan, gained, plain=plain)
 
@@ -112,16 +110,14 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
     best = _plain(second, len(gained))
     if best is not None:
         _, _, axis, made, missed = best
-        move = Move(
-            "second_setup", now, axis, f"{_clamped(now, axis)} as a {_ORDER.get(len(made.setups), 'further')} setup"
-        )
+        move = Move("second_setup", now, axis, sentences.more_setup(axis, angle(now, axis), len(made.setups)))
         yield scan.found(move, made, np.union1d(blocked, missed), nested=True)
     if plain or len(state.setups) > 1:
         return
     some = spread(kept)
     other = []
-    for lost, _, axis, _, missed in second:
-        if lost < len(gained) and flip_of(ready, axis) == ready.options.flip:
+    for not_reached, _, axis, _, missed in second:
+        if not_reached < len(gained) and flip_of(ready, axis) == ready.options.flip:
             made = replace(state, setups=((axis, None),))
             worse = known.glance(made, some)
             share = scan.finished.of_rows(kept) * len(worse) / max(1, len(some))
@@ -129,7 +125,7 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
     if other:
         estimate, _, axis, made = min(other, key=lambda each: (round(each[0], 3), each[1]))
         if estimate < scan.finished.of_rows(scan.left):
-            move = Move("setup", now, axis, f"{_clamped(now, axis)} instead")
+            move = Move("setup", now, axis, f"{sentences.clamped(axis, angle(now, axis))} instead")
             yield Candidate((move,), made, estimate, nested=False)
 
 
@@ -158,8 +154,3 @@ def towards(vector: Floats, otherwise: Axis) -> Axis:
 def _own(axis: Axis) -> bool:
     """Whether it is one of the part's own."""
     return sorted(map(abs, axis)) == [0.0, 0.0, 1.0]
-
-
-def _clamped(now: Axis, axis: Axis) -> str:
-    words = ",".join(f"{each:.4g}" for each in axis)
-    return f"turned over (setup {words})" if angle(now, axis) > 179.0 else f"clamped with {words} along the spindle"

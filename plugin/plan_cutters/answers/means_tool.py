@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
+from plan_cutters.answers import sentences
 from plan_cutters.answers.scan import HALF, NEARLY, Candidate, Scan
 from plan_cutters.answers.state import State
 from plan_cutters.answers.what_if_cutter import CORNERS, THINNEST, highest, longer, made_of, thinner
@@ -41,7 +42,7 @@ def stick_out(scan: Scan) -> Iterator[Candidate]:
         return _with_first(scan.state, longer(cutter, value(at)))
 
     for at, state, missed in scan.least(make, most, (NEARLY, HALF)):
-        words = f"a stick-out of {value(at):g} mm instead of {cutter.length:g} mm"
+        words = sentences.stick_out(value(at), cutter.length)
         yield scan.found(Move("stick_out", cutter.length, value(at), words), state, missed, nested=False)
 
 
@@ -67,7 +68,7 @@ def holder(scan: Scan) -> Iterator[Candidate]:
     for at, state, missed in scan.least(make, len(_SLIM) - 1):
         asked = max(max(s.radius, s.upper_radius) for s in slimmed(at).stages)
         if asked < now:
-            words = f"a slimmer holder, {slimmed(at).id} instead of {cutter.holder.id}"
+            words = sentences.holder(slimmed(at).id, cutter.holder.id)
             yield scan.found(Move("holder", cutter.holder.id, slimmed(at).id, words), state, missed, nested=True)
 
 
@@ -94,7 +95,7 @@ def given(scan: Scan) -> Iterator[Candidate]:
     best = next(each for each in tried if each[0] == least)
     nearly = next(each for each in tried if each[0] <= content)
     for _, cutter, state, missed in {id(each): each for each in (nearly, best)}.values():
-        move = Move("cutter", None, cutter.id, f"{cutter.id} for the rest")
+        move = Move("cutter", None, cutter.id, sentences.rest(cutter.id))
         yield scan.found(move, state, missed, nested=True)
 
 
@@ -114,7 +115,7 @@ def radius(scan: Scan) -> Iterator[Candidate]:
     for _, state, missed in scan.least(make, len(radii) - 1):
         made = state.cutters[-1]
         if made not in scan.given:
-            move = Move("radius", cutter.radius, made.radius, f"{head(made)} for the rest")
+            move = Move("radius", cutter.radius, made.radius, sentences.rest(sentences.head(made)))
             yield scan.found(move, state, missed, nested=True)
 
 
@@ -135,17 +136,12 @@ def corner(scan: Scan) -> Iterator[Candidate]:
     if tried:
         _, _, state = min(tried, key=lambda each: each[:2])
         made = state.cutters[-1]
-        move = Move("corner_radius", cutter.corner_radius, made.corner_radius, f"{head(made)} for the rest")
+        move = Move("corner_radius", cutter.corner_radius, made.corner_radius, sentences.rest(sentences.head(made)))
         yield scan.found(move, state, scan.known.glance(state, scan.few), nested=True)
 
 
 def _with_first(state: State, cutter: Cutter | None) -> State | None:
     return None if cutter is None else replace(state, cutters=(cutter, *state.cutters[1:]))
-
-
-def head(cutter: Cutter) -> str:
-    """A cutter without its holder, which is that of the present one."""
-    return cutter.id.partition("H")[0]
 
 
 def _round_down(length: float) -> float:

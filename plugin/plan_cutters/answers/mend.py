@@ -5,7 +5,8 @@ from dataclasses import replace
 
 from plan_cutters.answers.areas import Finished
 from plan_cutters.answers.option import option
-from plan_cutters.answers.trial import Case, Trials, samples
+from plan_cutters.answers.sentences import samples
+from plan_cutters.answers.trial import Case, Trials
 from plan_cutters.answers.what_if import WhatIf, search
 from plan_cutters.answers.what_if_cutter import corner_radius, radius, stick_out
 from plan_cutters.answers.what_if_place import faces, setup, tolerance
@@ -27,8 +28,8 @@ def mend(
 ) -> Mend:  # fmt: skip
     """Find for each thing that could be changed alone the change that asks least and lets a cutter finish the part.
 
-    Values are tried on the samples that are lost now; one that serves there is judged on all samples (`judge`), and so is the
-    value a step before it, which must fail. Nothing is told to help that was not judged so.
+    Values are tried on the samples that are not reached now; one that serves there is judged on all samples (`judge`), and so is
+    the value a step before it, which must fail. Nothing is told to help that was not judged so.
 
     Parameters
     ----------
@@ -59,8 +60,8 @@ def mend(
     tell = progress or (lambda done, total: None)
     trials = Trials.of(verdicts, ready.finished)
     around = ready.conditions.around
-    within = int((ready.inside_bodies & verdicts.lost).sum())
-    if not len(trials.lost):
+    within = int((ready.inside_bodies & verdicts.not_reached).sum())
+    if not len(trials.not_reached):
         inside = f"{samples(within)} within another body, which is no surface of the finished part" if within else ""
         missing = (
             f"no {'other ' * bool(within)}sample is lost, but faces are missing from what is in the way: no change of the cutter "
@@ -69,7 +70,7 @@ def mend(
         why = "; ".join(filter(None, (inside, missing if around.doubtful else inside and "nothing else is lost")))
         return Mend(cutter.id, within, within, (), why)
     case = Case(ready, cutter)
-    share = Finished.of(ready).of_rows(trials.lost)
+    share = Finished.of(ready).of_rows(trials.not_reached)
     for done, (thing, what_if) in enumerate(_WHAT_IFS.items()):
         tell(done, len(_WHAT_IFS))
         what = what_if(case, trials)
@@ -81,11 +82,11 @@ def mend(
     rank = {True: 0, None: 1, False: 2}
     changes = sorted(found, key=lambda change: (rank[change.helps], THINGS.index(change.thing)))
     why = "" if any(change.helps for change in changes) else "no change of one thing is known to help"
-    return Mend(cutter.id, len(trials.lost) + within, within, tuple(changes), why)
+    return Mend(cutter.id, len(trials.not_reached) + within, within, tuple(changes), why)
 
 
 def _told(case: Case, change: Change, share: float) -> Change:
-    """With the share of the finished area that is lost now and with it, and how it is said on the command line."""
+    """With the share of the finished area that is not reached now and with it, and how it is said on the command line."""
     if not change.helps:
         return replace(change, before=share)
     words = dict(change.options)

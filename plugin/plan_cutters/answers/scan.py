@@ -1,4 +1,4 @@
-"""Some of the samples that are lost, on which values of a step are compared before any is judged."""
+"""Some of the samples that are not reached, on which values of a step are compared before any is judged."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -99,9 +99,9 @@ class Scan:
             while high - low > 1:
                 middle = (low + high) // 2
                 state = make(middle)
-                lost = gained if state is None else self.known.glance(state, gained)
-                if len(lost) <= (1.0 - share) * len(gained):
-                    high, still = middle, lost
+                not_reached = gained if state is None else self.known.glance(state, gained)
+                if len(not_reached) <= (1.0 - share) * len(gained):
+                    high, still = middle, not_reached
                 else:
                     low = middle
             made = make(high)

@@ -18,7 +18,7 @@ Axis = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class State:
-    """Cutters that share a part: what none of them reaches in any of its setups is lost.
+    """Cutters that share a part: what counts is what none of them reaches in any of its setups.
 
     Attributes
     ----------
@@ -79,11 +79,11 @@ class Judgements:
     ) -> "Judgements":
         """Those of a plan."""
         found, wanted = cls(), ready.finished
-        for (axis, x), each in zip(setups_of(ready), (None, *(verdicts for _, verdicts in elsewhere)), strict=False):
+        for (axis, x), each in zip(ready.axes, (None, *(verdicts for _, verdicts in elsewhere)), strict=False):
             for cutter, verdicts in reaches.items():
                 mine = verdicts if each is None else each[cutter.id]
                 name = key(ready, cutter, axis, x)
-                found.looked[name], found.missed[name] = wanted.copy(), mine.lost & wanted
+                found.looked[name], found.missed[name] = wanted.copy(), mine.not_reached & wanted
         return found
 
     def left(self, state: State, rows: Rows) -> Rows:
@@ -108,20 +108,9 @@ class Judgements:
                 break
             looked = self.looked.get(name)
             known = np.zeros(len(rows), bool) if looked is None else looked[rows]
-            lost = np.zeros(len(rows), bool)
-            lost[known] = self.missed[name][rows[known]] if known.any() else False
+            not_reached = np.zeros(len(rows), bool)
+            not_reached[known] = self.missed[name][rows[known]] if known.any() else False
             new = np.flatnonzero(~known)
-            lost[new] = np.isin(rows[new], case.misses(rows[new])) if len(new) else False
-            rows = rows[lost]
+            not_reached[new] = np.isin(rows[new], case.misses(rows[new])) if len(new) else False
+            rows = rows[not_reached]
         return rows
-
-
-def setups_of(ready: Prepared) -> tuple[tuple[Axis, Axis | None], ...]:
-    """The setups of a plan: axis, and the direction along the machine's X where it is known."""
-    options = ready.options
-    places = options.other_placements or (None,) * len(options.other_setups)
-    first = (ready.scene.setup, None if options.placement is None else options.placement.x)
-    return (
-        first,
-        *((axis, None if place is None else place.x) for axis, place in zip(options.other_setups, places, strict=True)),
-    )

@@ -8,12 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from plan_cutters.answers import sentences
 from plan_cutters.answers.areas import Finished, Rows, patches
 from plan_cutters.answers.means import candidates, joined
 from plan_cutters.answers.option import Axis, option
 from plan_cutters.answers.scan import Candidate, Scan
-from plan_cutters.answers.state import Judgements, State, setups_of
-from plan_cutters.domain.area import Patch, size
+from plan_cutters.answers.state import Judgements, State
+from plan_cutters.domain.area import Patch
 from plan_cutters.domain.change import MEANS, Mend, Move, Step
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
@@ -29,7 +30,7 @@ Named = tuple[str, str]
 _SINGLES, _PAIRS, _BEST, _JOINED = 5, 1, 2, 2
 #: A second change is worth telling where it frees so much more, of the finished area.
 _WORTH = 0.0005
-#: Nor is a step worth telling that frees less than that, and less than this share of what is lost.
+#: Nor is a step worth telling that frees less than that, and less than this share of what is not reached.
 _LITTLE = 0.02
 #: Shares that differ by less are alike: what asks least comes first.
 _ALIKE = 4
@@ -46,7 +47,7 @@ def steps(
 ) -> Mend:  # fmt: skip
     """Find what to do next, and what it gains.
 
-    Values are compared on a few samples; each of those that may gain most is judged on all samples that are lost and,
+    Values are compared on a few samples; each of those that may gain most is judged on all samples that are not reached and,
     where it may lose others, on all. Then a second change is looked for after the best ones.
 
     Parameters
@@ -69,7 +70,7 @@ def steps(
         With `share`, `steps` and `areas`.
     """
     finished, known = Finished.of(ready), Judgements.of(ready, reaches, elsewhere)
-    state = State(ready, (cutter,), setups_of(ready))
+    state = State(ready, (cutter,), ready.axes)
     left = known.left(state, np.flatnonzero(finished.wanted))
     if not len(left):
         return found
@@ -107,7 +108,7 @@ def effort(moves: Sequence[Move]) -> tuple[int, int]:
 
 
 def _rows(scan: Scan, candidate: Candidate) -> Rows:
-    """Samples to judge: those that are lost or, where others may be lost by the change, all."""
+    """Samples to judge: those that are not reached or, where the change may lose others, all."""
     return scan.left if candidate.nested else np.flatnonzero(scan.finished.wanted)
 
 
@@ -176,7 +177,7 @@ def _step(base: tuple[Prepared, Cutter, State], finished: Finished, left: Rows, 
 
 
 def _left_out(base: tuple[Prepared, Cutter, State], finished: Finished, left: Rows, areas: list[Patch]) -> Step:
-    """Nothing changed: what is lost is left to other means."""
+    """Nothing changed: what is not reached is left to other means."""
     ready, cutter, state = base
     face = ready.samples.face
     bad = np.unique(face[left])
@@ -185,9 +186,8 @@ def _left_out(base: tuple[Prepared, Cutter, State], finished: Finished, left: Ro
     whole = len(rest) and len(left) == int((finished.wanted & np.isin(face, bad)).sum())
     said = option(ready, cutter, cutters=(cutter,), faces=rest.tolist()) if whole else None
     area, share = float(finished.area[left].sum()), finished.of_rows(left)
-    words = f"{areas[0].words} left to other means" if len(areas) == 1 else (
-        f"{size(area)} in {len(areas):,} places left to other means, the largest {areas[0].words}")  # fmt: skip
+    move = Move("area", None, round(area, 6), sentences.left_out(areas, area))
     return Step(
-        (Move("area", None, round(area, 6), words),), share, 0.0, 0, len(left), (cutter,), state.axes, said,
+        (move,), share, 0.0, 0, len(left), (cutter,), state.axes, said,
         tuple(areas[:_REMAINS]),
     )  # fmt: skip

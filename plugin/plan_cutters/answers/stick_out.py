@@ -1,7 +1,8 @@
 """Least stick-out: how short a cutter can be held and still reach what it reaches.
 
-A stick-out is tried by the search that judges every cutter. Where a sample is lost, the postures that it has with a longer one
-say exactly how far each lets the holder come down, so that few searches find the least. The result is judged as a plan judges.
+A stick-out is tried by the search that judges every cutter. Where a sample is not reached, the postures that it has with a longer
+one say exactly how far each lets the holder come down, so that few searches find the least. The result is judged as a plan judges
+(Lemma H3 of `docs/stick_out_proof.md`).
 """
 
 from collections.abc import Callable
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.stick_out import StickOut, floor_of, held, outline
-from plan_cutters.domain.verdicts import ACCESSIBLE, Verdicts, blank
+from plan_cutters.domain.verdicts import ACCESSIBLE, VerdictBuffer, Verdicts, blank
 from plan_cutters.kernels.rows import Contacts, Tool
 from plan_cutters.scene.conditions import contacts_of, found_of, rotations_of, tool_of
 from plan_cutters.scene.deepest import deepest_on
@@ -59,9 +60,9 @@ def least_stick_out(
         return StickOut(np.nan, np.nan, longest, why)
     search = _Search(ready, cutter, verdicts, progress or (lambda done, total: None))
     least, limiting = search.all(rows)
-    while len(lost := rows[~judge(ready, held(cutter, least), rows).reached]) and least < longest:
-        # A holder that is not convex, or an interval of tilts as fine as the search: what is lost there needs more.
-        longer, row = max((search.one(row, least)[0], row) for row in lost.tolist())
+    while len(not_reached := rows[~judge(ready, held(cutter, least), rows).reached]) and least < longest:
+        # A holder that is not convex, or an interval of tilts as fine as the search: what is not reached there needs more.
+        longer, row = max((search.one(row, least)[0], row) for row in not_reached.tolist())
         least, limiting = min(longest, max(longer, least + EXACT)), row
     least, limiting = search.lowered(rows, least, limiting)
     each = None if step is None else search.each(rows, step)
@@ -106,13 +107,12 @@ class _Search:
         self.outline = outline(conditions.outer_tool(cutter), cutter.length)
         self.whole = tool_of(conditions.outer_tool(cutter))
         self.found = blank(len(ready.samples))
-        for name in Verdicts.__slots__:
-            getattr(self.found, name)[:] = getattr(verdicts, name)
+        self.found.take(slice(None), verdicts)
 
     def tool(self, stick_out: float) -> Tool:
         return tool_of(self.conditions.outer_tool(held(self.cutter, stick_out)))
 
-    def needed(self, rows: NDArray[np.int64], posture: Verdicts) -> tuple[Floats, NDArray[np.int32]]:
+    def needed(self, rows: NDArray[np.int64], posture: VerdictBuffer) -> tuple[Floats, NDArray[np.int32]]:
         """The stick-outs (n,) that known postures of some samples ask for, and the triangles that are in the way."""
         from plan_cutters.kernels.search.stick_out import least_stick_outs
 
@@ -134,8 +134,8 @@ class _Search:
             pieces = [company[i : i + CHUNK] for i in range(0, len(company), CHUNK)]
             at = np.zeros(len(pieces), np.int64)
             while len(left := np.flatnonzero(at < [len(piece) for piece in pieces])):
-                lost = self._round(pieces, at, left, least)
-                for row in lost:
+                not_reached = self._round(pieces, at, left, least)
+                for row in not_reached:
                     # What an earlier one of this round asked for may be enough.
                     longer, found = self.one(row, least)
                     if found >= 0:
@@ -147,23 +147,25 @@ class _Search:
     def _round(
         self, pieces: list[NDArray[np.int64]], at: NDArray[np.int64], left: NDArray[np.int64], stick_out: float
     ) -> list[int]:
-        """Search each piece that is left up to the first sample that is lost; move `at` on, and return those samples."""
-        from plan_cutters.kernels.search.search import until_lost
+        """Search each piece that is left up to the first sample that is not reached; move `at` on, and return those samples."""
+        from plan_cutters.kernels.search.search import until_not_reached
 
         tool, ranges, solids = self.tool(stick_out), self.conditions.ranges, self.conditions.obstacles.solids
         found = blank(len(self.ready.samples))
-        lost: dict[int, int] = {}
+        not_reached: dict[int, int] = {}
 
         def work(which: NDArray[np.int64]) -> None:
             for k in which.tolist():
                 piece = pieces[k]
-                at[k] = until_lost(piece, int(at[k]), self.contacts, ranges, tool, solids, False, found_of(found))
+                at[k] = until_not_reached(
+                    piece, int(at[k]), self.contacts, ranges, tool, solids, False, found_of(found)
+                )
                 row = int(piece[at[k] - 1])
                 if found.verdict[row] != ACCESSIBLE:
-                    lost[k] = row
+                    not_reached[k] = row
 
         in_chunks(work, left, self.conditions.jobs, chunk=1)
-        return [lost[k] for k in sorted(lost)]
+        return [not_reached[k] for k in sorted(not_reached)]
 
     def lowered(self, rows: NDArray[np.int64], least: float, limiting: int) -> tuple[float, int]:
         """The same, or less as long as a judgement `BEYOND` below it still finds postures everywhere, as it starts elsewhere."""
@@ -172,36 +174,31 @@ class _Search:
             if not judge(self.ready, shorter, np.array([limiting])).reached[0]:
                 break
             verdicts = judge(self.ready, shorter)
-            lost = rows[~verdicts.reached[rows]]
-            if len(lost):
-                limiting = int(lost[0])
-                self.keep(judge(self.ready, held(self.cutter, least)), limiting)
+            not_reached = rows[~verdicts.reached[rows]]
+            if len(not_reached):
+                limiting = int(not_reached[0])
+                self.found.take_posture(limiting, judge(self.ready, held(self.cutter, least)))
                 break
             least = shorter.length
-            self.keep(verdicts, limiting)
+            self.found.take_posture(limiting, verdicts)
         return least, -1 if least <= self.floor else limiting
 
-    def keep(self, verdicts: Verdicts, row: int) -> None:
-        """Take over the posture of a sample."""
-        for name in ("axis", "tilt_direction", "tilt", "rotation"):
-            getattr(self.found, name)[row] = getattr(verdicts, name)[row]
-
-    def one(self, row: int, lost: float) -> tuple[float, int]:
+    def one(self, row: int, not_reached: float) -> tuple[float, int]:
         """The least stick-out of one sample, and the sample; the one given and -1 where that is enough.
 
-        Halving between one at which it is lost and one at which it has a posture, which then comes down as far as it lets.
+        Halving between one at which it is not reached and one at which it has a posture, which then comes down as far as it lets.
         """
-        if self._posture(row, lost):
-            return lost, -1
+        if self._posture(row, not_reached):
+            return not_reached, -1
         rows = np.array([row])
         best = min(self.cutter.length, float(self.needed(rows, self.found)[0][row]))
-        while best - lost > EXACT:
-            middle = 0.5 * (best + lost)
+        while best - not_reached > EXACT:
+            middle = 0.5 * (best + not_reached)
             if self._posture(row, middle):
                 best = min(middle, float(self.needed(rows, self.found)[0][row]))
             else:
-                lost = middle
-        return max(best, lost), row
+                not_reached = middle
+        return max(best, not_reached), row
 
     def _posture(self, row: int, stick_out: float) -> bool:
         """Whether a sample has a posture with a stick-out; it is kept."""
@@ -213,11 +210,10 @@ class _Search:
         turns, solids = len(ranges.rotation_cos), self.conditions.obstacles.solids
         if not posture(contact, ranges, self.tool(stick_out), _NARROWEST, start, turns, solids, found_of(best)):
             return False
-        for name in ("axis", "tilt_direction", "tilt", "rotation"):
-            getattr(self.found, name)[row] = getattr(best, name)[0]
+        self.found.take_posture(row, best, 0)
         return True
 
-    def with_room(self, rows: NDArray[np.int64], posture: Verdicts) -> Floats:
+    def with_room(self, rows: NDArray[np.int64], posture: VerdictBuffer) -> Floats:
         """Stick-outs (m,), mm, that known postures need, and `BEYOND` more.
 
         With no more than they need, no other tilt is left, and a search would miss the posture.
@@ -227,7 +223,7 @@ class _Search:
 
     def each(self, rows: NDArray[np.int64], step: float) -> Floats:
         """The least stick-out (n,) of each of some samples to a step, nan for the others."""
-        from plan_cutters.kernels.search.search import until_lost
+        from plan_cutters.kernels.search.search import until_not_reached
 
         ranges, solids = self.conditions.ranges, self.conditions.obstacles.solids
         best = np.full(len(self.ready.samples), np.nan)
@@ -241,8 +237,8 @@ class _Search:
                 some, found = left[middle == level], blank(len(best))
                 tool = self.tool(min(self.cutter.length, self.floor + level * step))
 
-                def work(piece: NDArray[np.int64], tool: Tool = tool, found: Verdicts = found) -> None:
-                    until_lost(piece, 0, self.contacts, ranges, tool, solids, True, found_of(found))
+                def work(piece: NDArray[np.int64], tool: Tool = tool, found: VerdictBuffer = found) -> None:
+                    until_not_reached(piece, 0, self.contacts, ranges, tool, solids, True, found_of(found))
 
                 in_chunks(work, some, self.conditions.jobs)
                 reached = some[found.verdict[some] == ACCESSIBLE]

@@ -1,6 +1,7 @@
-"""Values are tried on the samples that are lost now; what serves there is judged on all samples.
+"""Values are tried on the samples that are not reached now; what serves there is judged on all samples.
 
-A trial asks only whether samples have a posture, in any company; what is told of a change rests on `judge`.
+A trial asks only whether samples have a posture, in any company; what is told of a change rests on `judge`: Lemma W1 of
+`docs/what_if_proof.md`.
 """
 
 from collections.abc import Callable, Iterator
@@ -9,15 +10,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from plan_cutters.answers.sentences import reasons, samples
 from plan_cutters.domain.change import Change, Thing
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.reasons import REASONS as WORDS
 from plan_cutters.domain.verdicts import (
     ACCESSIBLE,
-    BURIED,
     CONVEX,
     INACCESSIBLE,
-    REASONS,
+    INSIDE,
     TOLERANCE,
     UNDECIDED,
     Verdicts,
@@ -61,7 +61,7 @@ class Case:
         ready, conditions, found = self.ready, self.ready.conditions, blank(len(rows))
         if not conditions.judges(self.cutter):
             found.verdict[:], found.reason[:] = UNDECIDED, TOLERANCE
-            return found
+            return found.freeze()
         contacts = Contacts(*(np.ascontiguousarray(column[rows]) for column in contacts_of(ready.samples)))
         outer_tool, inner_tool = conditions.outer_tool(self.cutter), conditions.inner_tool(self.cutter)
         free = np.zeros(len(rows), bool)
@@ -77,10 +77,10 @@ class Case:
             )
         found.verdict[free] = ACCESSIBLE
         # Of the finished surface these lie within a fixture.
-        within = ready.buried[rows] >= 0
+        within = ready.inside[rows] >= 0
         search_postures(contacts, np.flatnonzero(~free & ~within), outer_tool, inner_tool, conditions, found)
-        found.verdict[within], found.reason[within] = INACCESSIBLE, BURIED
-        return found
+        found.verdict[within], found.reason[within] = INACCESSIBLE, INSIDE
+        return found.freeze()
 
     def misses(self, rows: Rows) -> Rows:
         """Those of some samples that it does not reach."""
@@ -102,17 +102,17 @@ class Trials:
 
     Attributes
     ----------
-    lost, kept : (n,) int64
+    not_reached, kept : (n,) int64
         Samples of the finished surface that the cutter does not reach now, and those that it reaches, ascending.
     hard : list of int
         Samples that stopped a value, the last one first.
     blocked : int
-        Samples of those lost that are inaccessible.
+        Samples of those not reached that are inaccessible.
     found : dict
         Changes that are known already, by their thing: one may spare another.
     """
 
-    lost: Rows
+    not_reached: Rows
     kept: Rows
     hard: list[int] = field(default_factory=list)
     blocked: int = 0
@@ -121,13 +121,13 @@ class Trials:
     @classmethod
     def of(cls, verdicts: Verdicts, finished: NDArray[np.bool_]) -> "Trials":
         """The samples of a reach that are of the finished surface (n,)."""
-        lost, kept = np.flatnonzero(verdicts.lost & finished), np.flatnonzero(verdicts.reached & finished)
-        return cls(lost, kept, blocked=int((verdicts.verdict[lost] == INACCESSIBLE).sum()))
+        not_reached, kept = np.flatnonzero(verdicts.not_reached & finished), np.flatnonzero(verdicts.reached & finished)
+        return cls(not_reached, kept, blocked=int((verdicts.verdict[not_reached] == INACCESSIBLE).sum()))
 
     @property
     def count(self) -> int:
         """Samples that are judged."""
-        return len(self.lost) + len(self.kept)
+        return len(self.not_reached) + len(self.kept)
 
     def remember(self, row: int) -> None:
         """A sample that stopped a value is the first that the next one is tried on."""
@@ -137,7 +137,7 @@ class Trials:
         del self.hard[_REMEMBERED:]
 
     def stopped(self, case: Case, *, everywhere: bool) -> bool:
-        """Whether a sample was found that a case does not reach, of those lost now or of all."""
+        """Whether a sample was found that a case does not reach, of those not reached now or of all."""
         for batch in self._batches(everywhere):
             missed = case.misses(batch)
             if len(missed):
@@ -148,14 +148,21 @@ class Trials:
     def _batches(self, everywhere: bool) -> Iterator[Rows]:
         hard = np.array(self.hard, np.int64)
         yield from np.split(hard, [1]) if len(hard) else ()
-        yield from batches(self.lost)
+        yield from batches(self.not_reached)
         if everywhere:
             yield from batches(self.kept)
 
     def closest(self, cases: list[Case]) -> Case:
-        """Of cases that all leave some, the one that leaves fewest of a few samples spread over those lost now."""
-        few = self.lost[:: 1 + len(self.lost) // _COMPARED]
-        return min(cases, key=lambda case: len(case.misses(few)))
+        """Of cases that all leave some, the one that leaves fewest of a few samples spread over those not reached now; one that
+        leaves them undecided comes before one that is blocked at any of them.
+        """
+        few = self.not_reached[:: 1 + len(self.not_reached) // _COMPARED]
+
+        def leaves(case: Case) -> tuple[bool, int]:
+            verdicts = case.look(few)
+            return bool((verdicts.verdict == INACCESSIBLE).any()), int((~verdicts.reached).sum())
+
+        return min(cases, key=leaves)
 
 
 def batches(rows: Rows) -> Iterator[Rows]:
@@ -201,23 +208,6 @@ class Left:
         return cls(count, blocked, len(few), words)
 
 
-def reasons(codes: NDArray[np.uint8], of: int | None = None) -> str:
-    """How many samples, of how many, are lost, and to what."""
-    found = [(int((codes == code).sum()), REASONS[code]) for code in np.unique(codes).tolist()]
-    ranked = sorted(found, key=lambda each: (-each[0], each[1]))
-    if len(ranked) == 1:
-        return f"{samples(len(codes), of)} lost to {WORDS[ranked[0][1]].noun}"
-    whole = ", ".join(f"{count:,} to {WORDS[reason].noun}" for count, reason in ranked)
-    return f"{samples(len(codes), of)} lost ({whole})"
-
-
-def samples(count: int, of: int | None = None) -> str:
-    """A number of samples, of those looked at if these are not all, as the subject of a sentence and its verb."""
-    if of is not None:
-        return f"{count:,} of {of:,} samples looked at are"
-    return "1 sample is" if count == 1 else f"{count:,} samples are"
-
-
 @dataclass(frozen=True, slots=True)
 class Step:
     """A value that serves all samples, and what is known of the one before.
@@ -237,10 +227,10 @@ class Step:
 def least(steps: Steps, most: int, trials: Trials) -> Step | None:
     """The least number of steps that serves all samples, if each step allows all that those before it allow.
 
-    At `most` every sample that is lost now must have been reached. Each sample that a value does not serve takes it on, by
+    At `most` every sample that is not reached now must have been reached. Each sample that a value does not serve takes it on, by
     halving, to the least that serves this one; the others are asked from there.
     """
-    at = _onward(steps, 0, most, batches(trials.lost), trials)
+    at = _onward(steps, 0, most, batches(trials.not_reached), trials)
     for _ in range(_ROUNDS):
         if at is None or at > most:
             return None

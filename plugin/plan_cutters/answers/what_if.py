@@ -24,7 +24,7 @@ class WhatIf:
     `make` gives the case with a value, None where there can be none. Of `ways` the one that serves with the fewest steps is
     taken, of equals the first; where each value allows all that those before it allow (`nested`), steps are halved. A value that
     serves has its sentence, and the options of a plan that differ with it (`serves`). Where nothing serves, the best case of
-    `ends` is told (`fails`), with its value (`reads`) if samples stay undecided; without `reads` that is told as no help.
+    `ends` is told (`fails`): as no help if it leaves a sample blocked, else as undecided, with its value (`reads`).
     """
 
     now: Value
@@ -32,28 +32,32 @@ class WhatIf:
     make: Callable[[Any], Case | None]
     ends: list[Case]
     nested: bool = False
-    reads: Callable[[Case], Value] | None = None
+    reads: Callable[[Case], Value]
     fails: Callable[[Case, Left], str]
     serves: Callable[[Any, Case], tuple[str, dict[str, Any]]]
 
 
 def search(thing: Thing, what: WhatIf, trials: Trials) -> Change:
     """Find the value that asks least, judged on all samples as is the one before it; or tell what the best one leaves."""
-    left = Left.by(what.ends[0], trials.lost) if what.nested else None
+    left = Left.by(what.ends[0], trials.not_reached) if what.nested else None
     found = None if left and left.count else _fewest(what, trials)
     if found:
         step, value = found
         asked, beyond = value(step.steps), None if step.beyond is None else value(step.beyond)
         words, options = what.serves(asked, step.case)
         (cutter,) = options.get("cutters", (None,))
-        return Change(thing, what.now, asked, True, 0, len(trials.lost), trials.count, beyond, cutter, words, options)
+        return Change(
+            thing, what.now, asked, True, 0, len(trials.not_reached), trials.count, beyond, cutter, words, options
+        )
     end = what.ends[0] if what.nested else trials.closest(what.ends)
-    left = left or Left.by(end, trials.lost)
+    left = left or Left.by(end, trials.not_reached)
     why = what.fails(end, left)
-    if what.reads is None or left.blocked or not left.count:
+    # Where all that are not reached now are reached, others are not.
+    worst = left if left.count or not len(trials.kept) else Left.by(end, trials.kept)
+    if worst.blocked or not worst.count:
         return none(thing, what.now, left.count, why, left.looked)
     why = f"is not decided: {why}"
-    return Change(thing, what.now, what.reads(end), None, left.count, left.looked, 0, None, None, why)
+    return Change(thing, what.now, what.reads(end), None, worst.count, worst.looked, 0, None, None, why)
 
 
 def _fewest(what: WhatIf, trials: Trials) -> tuple[Step, Callable[[int], Any]] | None:

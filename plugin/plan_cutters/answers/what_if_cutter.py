@@ -1,10 +1,14 @@
-"""Another cutter may serve: held further out, of a smaller radius, with another corner."""
+"""Another cutter may serve: held further out, of a smaller radius, with another corner.
+
+Lemmas W3 and W4 of `docs/what_if_proof.md`.
+"""
 
 import math
 from dataclasses import replace
 
 import numpy as np
 
+from plan_cutters.answers import sentences
 from plan_cutters.answers.trial import Case, Trials
 from plan_cutters.answers.what_if import Way, WhatIf, none
 from plan_cutters.domain.change import Change
@@ -27,25 +31,27 @@ CORNERS = (0.2, 0.3, 0.4, 0.5, 0.8, 1.0, 1.2, 1.5, 1.6, 2.0, 2.5, 3.0, 4.0, 5.0,
 
 def stick_out(case: Case, trials: Trials) -> WhatIf | Change:
     """Try the least length from the tip to the holder's nose, the flutes as they are; to `GRAIN`."""
-    cutter, lost = case.cutter, len(trials.lost)
+    cutter, not_reached = case.cutter, len(trials.not_reached)
     now = cutter.length
     if cutter.holder is None:
-        return none("stick_out", now, lost, "no holder is stated, and a longer cutter only adds to what is in the way")
+        return none(
+            "stick_out", now, not_reached, "no holder is stated, and a longer cutter only adds to what is in the way"
+        )
     most = math.ceil((highest(case.ready, cutter) - now) / GRAIN)
     if most < 1:
-        return none("stick_out", now, lost, f"its {now:g} mm already hold the holder above all obstacles")
+        return none("stick_out", now, not_reached, f"its {now:g} mm already hold the holder above all obstacles")
 
     def make(length: float) -> Case | None:
         return _with(case, longer(cutter, length))
 
     way = Way(most, lambda at: round(now + at * GRAIN, 6))
     if (end := make(way.value(most))) is None:
-        return none("stick_out", now, lost, "no shank can go on above it")
+        return none("stick_out", now, not_reached, "no shank can go on above it")
     return WhatIf(
         now=now, ways=[way], make=make, ends=[end], nested=True, reads=lambda end: end.cutter.length,
         fails=lambda end, left: f"{left.words} at every stick-out" if left.count else
         "where the holder is out of the way, something else is",
-        serves=lambda asked, made: (f"a stick-out of {asked:g} mm instead of {now:g} mm", {"cutters": (made.cutter,)}),
+        serves=lambda asked, made: (sentences.stick_out(asked, now), {"cutters": (made.cutter,)}),
     )  # fmt: skip
 
 
@@ -58,10 +64,10 @@ def highest(ready: Prepared, cutter: Cutter) -> float:
 
 def radius(case: Case, trials: Trials) -> WhatIf | Change:
     """Try smaller radii, the largest first, in steps of `SHARE`."""
-    cutter, conditions, lost = case.cutter, case.ready.conditions, len(trials.lost)
+    cutter, conditions, not_reached = case.cutter, case.ready.conditions, len(trials.not_reached)
     now = cutter.radius
     if cutter.shape == "form":
-        return none("radius", now, lost, "the outline of a form cutter has no radius to change alone")
+        return none("radius", now, not_reached, "the outline of a form cutter has no radius to change alone")
     least_radius = max(THINNEST * conditions.tolerance, SLIMMEST * cutter.length)
     most = max(0, math.floor(math.log(least_radius / now) / math.log(1.0 - SHARE)))
 
@@ -75,13 +81,13 @@ def radius(case: Case, trials: Trials) -> WhatIf | Change:
     while most and (end := make(value(most))) is None:
         most -= 1
     if not most:
-        return none("radius", now, lost, "there is no thinner cutter like it that could be judged")
+        return none("radius", now, not_reached, "there is no thinner cutter like it that could be judged")
     assert end is not None
     return WhatIf(
         now=now, ways=[Way(most, value)], make=make, ends=[end], reads=lambda end: end.cutter.radius,
         fails=lambda end, left: f"with {end.cutter.radius:g} mm, the least tried, {left.words}" if left.count else
         f"none of {most} radii down to {end.cutter.radius:g} mm serves all samples",
-        serves=lambda asked, made: (f"a radius of {asked:g} mm instead of {now:g} mm", {"cutters": (made.cutter,)}),
+        serves=lambda asked, made: (sentences.radius(asked, now), {"cutters": (made.cutter,)}),
     )  # fmt: skip
 
 
@@ -90,7 +96,7 @@ def corner_radius(case: Case, trials: Trials) -> WhatIf | Change:
     cutter = case.cutter
     now, r = cutter.corner_radius, cutter.radius
     if cutter.shape != "end":
-        return none("corner_radius", now, len(trials.lost), f"a {cutter.shape} has no corner to change alone")
+        return none("corner_radius", now, len(trials.not_reached), f"a {cutter.shape} has no corner to change alone")
 
     def make(corner: float) -> Case | None:
         return _with(case, made_of(cutter, corner_radius=corner))
@@ -98,18 +104,14 @@ def corner_radius(case: Case, trials: Trials) -> WhatIf | Change:
     corners = sorted({0.0, r, *(c for c in CORNERS if c < r)} - {now}, key=lambda c: (abs(c - now), c))
     ends = [made for corner in corners if (made := make(corner)) is not None]
     if not ends:
-        return none("corner_radius", now, len(trials.lost), "its flutes are too short for any other corner")
+        return none("corner_radius", now, len(trials.not_reached), "its flutes are too short for any other corner")
     values = [now, *(end.cutter.corner_radius for end in ends)]
-
-    def words(corner: float, other: str) -> str:
-        return "a flat end" if not corner else "a ball end" if corner == r else f"{other}{corner:g} mm"
 
     return WhatIf(
         now=now, ways=[Way(len(ends), values.__getitem__)], make=make, ends=ends, reads=lambda end: end.cutter.corner_radius,
         fails=lambda end, left: f"with {end.cutter.corner_radius:g} mm, the best of {len(ends)} tried, {left.words}" if left.count
         else f"each of {len(ends)} corner radii tried loses some samples",
-        serves=lambda asked, made: (
-            f"{words(asked, 'a corner radius of ')} instead of {words(now, '')}", {"cutters": (made.cutter,)}),
+        serves=lambda asked, made: (sentences.corner_radius(asked, now, r), {"cutters": (made.cutter,)}),
     )  # fmt: skip
 
 

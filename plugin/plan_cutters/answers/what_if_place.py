@@ -10,12 +10,14 @@ import numpy as np
 
 from cad_io.arrays import Floats
 from cad_io.part.orient import orient
-from plan_cutters.answers.trial import Case, Left, Trials, samples
+from plan_cutters.answers import sentences
+from plan_cutters.answers.sentences import samples
+from plan_cutters.answers.trial import Case, Left, Trials
 from plan_cutters.answers.what_if import Way, WhatIf, none
 from plan_cutters.domain.change import Change
 from plan_cutters.domain.posture import unit
 from plan_cutters.options import LEAST_TOLERANCE
-from plan_cutters.scene.inside_material import buried
+from plan_cutters.scene.inside_material import inside_bodies, inside_material
 from plan_cutters.scene.preparation import Prepared
 
 #: Steps of the setup axis, deg.
@@ -35,13 +37,13 @@ def setup(case: Case, trials: Trials) -> WhatIf | Change:
 
     What a machine of another limit changes is known already. The side of the material stays as it is.
     """
-    ready, lost = case.ready, len(trials.lost)
+    ready, not_reached = case.ready, len(trials.not_reached)
     now: Axis = ready.scene.setup
     if not ready.conditions.machine.limited:
-        return none("setup", now, lost, "the machine has no limit, so it turns to any axis")
+        return none("setup", now, not_reached, "the machine has no limit, so it turns to any axis")
     if any(each.follows_setup for each in ready.scene.fixtures):
         why = "is not decided: a table lies across the setup axis, so it would lie elsewhere; ask with another --setup"
-        return replace(none("setup", now, lost, why), helps=None, why=why)
+        return replace(none("setup", now, not_reached, why), helps=None, why=why)
     unlimited = trials.found["tilt_limit"]
     if unlimited.left:
         # An axis within a limit is one without.
@@ -50,34 +52,40 @@ def setup(case: Case, trials: Trials) -> WhatIf | Change:
         return change if unlimited.helps is False else replace(change, helps=None, why=f"is not decided: {why}")
     tried = {axis: made for axis in directions(ready, trials) if (made := _turned(case, axis)) is not None}
     if not tried:
-        return none("setup", now, lost, "under every other axis a plan would work on other sides of open faces")
+        return none("setup", now, not_reached, "under every other axis a plan would work on other sides of open faces")
     ends = (axis for axis, made in tried.items() if not trials.stopped(made, everywhere=True))
     ways = (
         Way(math.ceil(angle(now, end) / TURN - 1e-9), partial(_towards, now, end)) for end in islice(ends, _APPROACHED)
     )
 
     def fails(_: Case, left: Left) -> str:
+        if left.count and not left.blocked:
+            return (
+                f"the best of {len(tried)} directions tried leaves {left.count:,} of {left.looked:,} samples undecided"
+            )
         why = f"the best leaves {left.count:,} of {left.looked:,} samples" if left.count else "each loses some samples"
         return f"none of {len(tried)} directions tried serves, {why}"
 
     def serves(asked: Axis, _: Case) -> tuple[str, dict[str, Any]]:
-        axis = ",".join(f"{each:.4g}" for each in asked)
-        words = f"the part clamped with {axis} along the spindle, {angle(now, asked):.4g} deg from now"
-        if (flip := flip_of(ready, asked)) == ready.options.flip:
-            return words, {"setup": asked}
-        return f"{words}, {'with' if flip else 'without'} --flip", {"setup": asked, "flip": flip}
+        flip = flip_of(ready, asked)
+        changes = {} if flip == ready.options.flip else {"flip": flip}
+        return sentences.setup(asked, angle(now, asked), changes.get("flip")), {"setup": asked, **changes}
 
     return WhatIf(
         now=now, ways=ways, make=lambda axis: _turned(case, axis), ends=[*tried.values()],
-        fails=fails, serves=serves,
+        reads=lambda end: _axis(end.ready.conditions.setup), fails=fails, serves=serves,
     )  # fmt: skip
 
 
 def directions(ready: Prepared, trials: Trials) -> list[Axis]:
-    """Give directions to try: faces, edges and corners of a cube, and the mean normals of what is lost and of all; the nearest to
-    the present axis first."""
+    """Give directions to try: faces, edges and corners of a cube, and the mean normals of what is not reached and of all; the
+    nearest to the present axis first.
+    """
     now = ready.scene.setup
-    means = [ready.samples.normal[rows].mean(axis=0) for rows in (trials.lost, np.sort([*trials.lost, *trials.kept]))]
+    means = [
+        ready.samples.normal[rows].mean(axis=0)
+        for rows in (trials.not_reached, np.sort([*trials.not_reached, *trials.kept]))
+    ]
     cube = [np.array(each, float) for each in product((-1, 0, 1), repeat=3) if any(each)]
     found: list[Axis] = []
     for vector in [*means, *cube]:
@@ -140,16 +148,16 @@ def tolerance(case: Case, trials: Trials) -> Change:
     if trials.blocked:
         why = f"{samples(trials.blocked)} blocked for certain, which no finer tolerance mends"
         return none("tolerance", now, trials.blocked, why)
-    left, best, before = len(trials.lost), now, now
+    left, best, before = len(trials.not_reached), now, now
     for share in FINER:
         finer = float(f"{now * share:.6g}")
         if finer < LEAST_TOLERANCE:
             break
         finely = closer(case, finer)
         if not trials.stopped(finely, everywhere=True) and not len(finely.judged()):
-            return Change("tolerance", now, finer, True, 0, len(trials.lost), trials.count, before, None,
-                          f"a tolerance of {finer:g} mm instead of {now:g} mm", {"tolerance": finer})  # fmt: skip
-        still = Left.by(finely, trials.lost)
+            return Change("tolerance", now, finer, True, 0, len(trials.not_reached), trials.count, before, None,
+                          sentences.tolerance(finer, now), {"tolerance": finer})  # fmt: skip
+        still = Left.by(finely, trials.not_reached)
         if still.blocked:
             why = f"with {finer:g} mm {samples(still.blocked)} blocked for certain"
             return none("tolerance", now, still.count, why, still.looked)
@@ -158,7 +166,7 @@ def tolerance(case: Case, trials: Trials) -> Change:
             # Nothing was gained.
             break
         left, best = still.count, finer
-    return Change("tolerance", now, None if best == now else best, None, left, len(trials.lost), 0, None, None,
+    return Change("tolerance", now, None if best == now else best, None, left, len(trials.not_reached), 0, None, None,
                   f"is not decided: with {before:g} mm, the finest tried, {samples(left)} undecided")  # fmt: skip
 
 
@@ -167,27 +175,24 @@ def closer(case: Case, asked: float) -> Case:
     ready = case.ready
     scene = replace(ready.scene, asked=asked)
     around = scene.surround(jobs=ready.conditions.jobs)
-    conditions = replace(ready.conditions, around=around, tolerance=scene.tolerance)
-    within = buried(ready.samples, scene.orientation, around.enclosing, around.certain, scene.tolerance)
-    return replace(case, ready=replace(ready, scene=scene, conditions=conditions, buried=within))
+    conditions = replace(ready.conditions, around=around, tolerance=around.tolerance(asked))
+    within = inside_material(ready.samples, scene.orientation, around.enclosing, around.certain, conditions.tolerance)
+    inside = inside_bodies(within, around.bodies, scene.orientation)
+    return replace(case, ready=replace(ready, scene=scene, conditions=conditions, inside=within, inside_bodies=inside))
 
 
 def faces(case: Case, trials: Trials) -> Change:
-    """Leave out the faces with samples that are lost: they stay in the way, but need not be finished."""
+    """Leave out the faces with samples that are not reached: they stay in the way, but need not be finished."""
     ready = case.ready
     face, infos = ready.samples.face, ready.scene.part.faces
-    bad = np.unique(face[trials.lost]).tolist()
+    bad = np.unique(face[trials.not_reached]).tolist()
     ids = tuple(f"F{n}" for n in bad)
     rest = [n for n in ready.chosen.targets if n not in set(bad)]
     judged = np.unique(face[trials.kept])
     if not np.isin(judged, rest).any():
-        return none("faces", ids, len(trials.lost), "every target face has samples that are lost")
+        return none("faces", ids, len(trials.not_reached), "every target face has samples that are lost")
     area = sum(infos[n - 1].area for n in bad)
     whole = sum(infos[n - 1].area for n in ready.chosen.targets)
-    out = np.isin(np.concatenate([trials.lost, trials.kept]), np.flatnonzero(np.isin(face, bad)))
-    much = f"{area:,.0f}" if area >= 100.0 else f"{area:.3g}"
-    some = ", ".join(ids[:5]) + " and others" * (len(ids) > 5)
-    which = ids[0] if len(ids) == 1 else f"{len(ids)} faces ({some})"
-    return Change("faces", ids, ids, True, 0, len(trials.lost), int((~out).sum()), None, None,
-                  f"{which} left out of what is to be finished: {much} mm2, {100.0 * area / whole:.3g} % of the target area",
-                  {"faces": ",".join(f"F{n}" for n in rest)})  # fmt: skip
+    out = np.isin(np.concatenate([trials.not_reached, trials.kept]), np.flatnonzero(np.isin(face, bad)))
+    return Change("faces", ids, ids, True, 0, len(trials.not_reached), int((~out).sum()), None, None,
+                  sentences.faces(ids, area, area / whole), {"faces": ",".join(f"F{n}" for n in rest)})  # fmt: skip

@@ -1,10 +1,11 @@
-"""Wider ranges of tilt may serve: those that are searched, and those of the machine."""
+"""Wider ranges of tilt may serve: those that are searched, and those of the machine (Lemma W2 of `docs/what_if_proof.md`)."""
 
 import math
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
+from plan_cutters.answers import sentences
 from plan_cutters.answers.trial import Case, Trials
 from plan_cutters.answers.what_if import Way, WhatIf, none
 from plan_cutters.domain.change import Change
@@ -21,10 +22,9 @@ def tilt_limit(case: Case, trials: Trials) -> WhatIf | Change:
     """Try the least limit of the axis, to `GRAIN`; for a machine whose rotary axes limit it, one that tilts every way."""
     machine = case.ready.conditions.machine
     if not machine.limited:
-        return none("tilt_limit", None, len(trials.lost), "the machine has no limit")
+        return none("tilt_limit", None, len(trials.not_reached), "the machine has no limit")
     now = None if machine.turns or machine.tilt_limit is None else _degrees(machine.tilt_limit)
     base = math.floor((now or 0.0) / GRAIN + 1e-6)
-    instead = f"every way instead of {machine.name}" if now is None else f"instead of {now:g} deg"
     most = math.ceil(180.0 / GRAIN) - base
     way = Way(most, lambda at: min(180.0, round((base + at) * GRAIN, 6)) if at else now or 0.0)
     return WhatIf(
@@ -33,7 +33,7 @@ def tilt_limit(case: Case, trials: Trials) -> WhatIf | Change:
         fails=lambda _, left: f"without any limit {left.words}" if left.count else
         "no limit was found that serves all samples",
         serves=lambda asked, made: (
-            f"a machine that tilts by {asked:g} deg {instead}", {"machine": made.ready.conditions.machine}),
+            sentences.tilt_limit(asked, now, machine.name), {"machine": made.ready.conditions.machine}),
     )  # fmt: skip
 
 
@@ -45,7 +45,7 @@ def tilt_range(case: Case, trials: Trials) -> WhatIf | Change:
     highest = max(high, min(180.0, round(math.ceil(_degrees(max(mode.high for mode in touching)) / GRAIN) * GRAIN, 6)))
     if (lowest, highest) == (low, high):
         why = "the cutter touches at no tilt beyond the range searched"
-        return none("tilt_range", (low, high), len(trials.lost), why)
+        return none("tilt_range", (low, high), len(trials.not_reached), why)
 
     def make(degrees: Range) -> Case:
         tilt = math.radians(degrees[0]), math.radians(degrees[1])
@@ -59,7 +59,7 @@ def tilt_range(case: Case, trials: Trials) -> WhatIf | Change:
                 return max(lowest, round(bottom - down * at * GRAIN, 6)), min(highest, round(high + up * at * GRAIN, 6))
 
             most = math.ceil(max(up * (highest - high), down * (low - lowest)) / GRAIN - 1e-6)
-            if most >= 1 and (both or not len(make(value(most)).misses(trials.lost))):
+            if most >= 1 and (both or not len(make(value(most)).misses(trials.not_reached))):
                 yield Way(most, value, last_resort=both)
 
     return WhatIf(
@@ -68,8 +68,7 @@ def tilt_range(case: Case, trials: Trials) -> WhatIf | Change:
         fails=lambda _, left: f"at all tilts from {lowest:g} to {highest:g} deg {left.words}" if left.count else
         "no range was found that serves all samples",
         serves=lambda asked, made: (
-            f"tilts from {asked[0]:g} to {asked[1]:g} deg in the search instead of {low:g} to {high:g} deg",
-            {"tilt": made.ready.conditions.postures.tilt}),
+            sentences.tilt_range(asked, (low, high)), {"tilt": made.ready.conditions.postures.tilt}),
     )  # fmt: skip
 
 

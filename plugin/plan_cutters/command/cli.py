@@ -20,10 +20,18 @@ from plan_cutters.command.supervise import (
     keep_interrupts,
     keep_output,
     limit_memory,
-    report,
 )
 from plan_cutters.command.values import File
-from plan_cutters.command.worker import GO, INTERRUPTED, began, can_supervise, follow_parent, is_child, wait_to_begin
+from plan_cutters.command.worker import (
+    GO,
+    INTERRUPTED,
+    began,
+    can_supervise,
+    follow_parent,
+    is_child,
+    report,
+    wait_to_begin,
+)
 from plan_cutters.command.worker_errors import Unfinished
 
 _SELF = "plan-cutters"
@@ -38,10 +46,10 @@ _SELF = "plan-cutters"
 @click.argument("parts", nargs=-1, required=True, metavar="PART...", type=File("PART"))
 @options()
 def command(parts: tuple[str, ...], **given: Any) -> int:
-    """Which cutters can finish the sculptured faces of PART (STEP, IGES, BREP) without gouging or collision?
+    """Find the cutters that can finish the sculptured faces of PART (STEP, IGES, BREP) without gouging or collision.
 
-    Each is judged at samples of the surface: interference-free, accessible, undecided or inaccessible, and why. The plan,
-    models coloured by verdict and the samples are written into a folder.
+    Each cutter is judged at samples of the surface: a sample is interference-free, accessible, undecided or inaccessible, for a
+    reason. The plan, models coloured by verdict and the samples are written into a folder.
     """
     from plan_cutters.command.one_part import one_part
     from plan_cutters.command.retry import set_aside

@@ -6,13 +6,14 @@ import signal
 import sys
 import traceback
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
 from plan_cutters.command import terminal
-from plan_cutters.command.supervise import Supervised
 from plan_cutters.command.worker import INTERRUPTED
+from plan_cutters.command.worker_errors import Supervised
 
 if TYPE_CHECKING:
     from plan_cutters.document.model import Plan
@@ -68,6 +69,18 @@ def guarded(work: Any, debug: bool) -> tuple[int, str]:
                     UNREADABLE,
                     f"plan-cutters: internal error ({type(error).__name__}: {error}); --debug shows where",
                 )
+
+
+def faults(names: Sequence[str], work: Callable[[str], None], debug: bool) -> list[str]:
+    """Work on each of some names; a line, under the command's name, about each at which that fails."""
+
+    def one(name: str) -> tuple[int, str]:
+        work(name)
+        return FEASIBLE, ""
+
+    found = [guarded(partial(one, name), debug) for name in names]
+    command = click.get_current_context().info_name
+    return [line.replace("plan-cutters:", f"{command}:", 1) for code, line in found if code]
 
 
 def invoked(command: click.Command, name: str, words: Sequence[str]) -> int:

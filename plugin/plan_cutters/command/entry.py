@@ -10,13 +10,13 @@ if TYPE_CHECKING:
     from typing import Any
 
 _SELF = "plan-cutters"
-#: The subcommands: the module of each, and what it answers. The first is meant where none is named.
+#: The subcommands: the module of each, and its sentence in the help. The first is meant where none is named.
 SUBCOMMANDS = {
-    "plan": ("cli", "Which cutters finish a part: below, and meant where no command is named."),
-    "map": ("map", "All postures of one cutter at one point, drawn."),
-    "stored": ("stored_maps", "Another machine or setup, from the posture maps of a plan."),
-    "tools": ("tools", "What is understood of a tool library."),
-    "machines": ("machines", "The built-in machines, and what is understood of a machine file."),
+    "plan": ("cli", "Find the cutters that finish a part: see below. It is meant where no command is named."),
+    "map": ("map", "Draw all postures of one cutter at one point."),
+    "stored": ("stored_maps", "Judge another machine or setup by the posture maps of a plan."),
+    "tools": ("tools", "List the tools of a library as they are understood."),
+    "machines": ("machines", "List the built-in machines, or show how a machine file is understood."),
 }
 
 

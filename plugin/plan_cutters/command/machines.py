@@ -3,17 +3,18 @@
 import json
 import math
 from collections.abc import Sequence
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from plan_cutters.command.codes import USAGE, guarded, run
+from plan_cutters.command.codes import USAGE, faults, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.terminal import clean, error, hand_out, paper
 from plan_cutters.command.values import File, Words, machine_names
-from plan_cutters.files.whole import whole
+from plan_cutters.files.whole import write
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -31,7 +32,7 @@ _questions, _output = heading("Questions"), heading("Output")
     examples=(
         (_SELF, "The machines that are built in:"),
         (f"{_SELF} trunnion-ac --angles 0.3,0,1", "The angles that hold a tool axis:"),
-        (f"{_SELF} shop.fcm --to-toml shop.toml", "What is understood of a machine file, and the same as TOML:"),
+        (f"{_SELF} shop.fcm --to-toml shop.toml", "A machine file as it is understood, and the same as TOML:"),
     ),
     codes=(("0", "each machine is understood"), ("2", "one is not, or the command line is wrong"), ENDED),
 )
@@ -44,9 +45,9 @@ _questions, _output = heading("Questions"), heading("Output")
 @_output("--to-toml", type=File("FILE"), help="Write the machine in our own format.")
 @options("debug")
 def command(machines: tuple[str, ...], **given: Any) -> int:
-    """What is understood of each machine: a built-in one by its name, or a file.
+    """Show how each machine is understood: a built-in one by its name, or a file.
 
-    Reads our own TOML and JSON, FreeCAD .fcm, LinuxCNC .ini, Fusion .mch, and MTConnect probes. Where a file does not say how
+    It reads our own TOML and JSON, FreeCAD .fcm, LinuxCNC .ini, Fusion .mch, and MTConnect probes. Where a file does not say how
     rotary axes stand on each other, add it: FILE#C,A (from the part to the tool), FILE#C/B (C carries the part, B the tool).
     Without an argument, the machines that are built in are listed.
     """
@@ -62,20 +63,15 @@ def command(machines: tuple[str, ...], **given: Any) -> int:
     turned = None if given["axis"] is None else _angles(given["axis"])
     found: list[dict[str, Any]] = []
     read: list[Machine] = []
-    lines = []
-    for name in machines or tuple(builtin_machines()):
 
-        def one(name: str = name) -> tuple[int, str]:
-            machine, form = source_of(name)
-            found.append(_facts(name, form, machine, axis, turned))
-            read.append(machine)
-            return 0, ""
+    def one(name: str) -> None:
+        machine, form = source_of(name)
+        found.append(_facts(name, form, machine, axis, turned))
+        read.append(machine)
 
-        code, line = guarded(one, given["debug"])
-        if code:
-            lines.append(line.replace("plan-cutters:", f"{click.get_current_context().info_name}:", 1))
+    lines = faults(machines or tuple(builtin_machines()), one, given["debug"])
     if read and not lines and given["to_toml"] is not None:
-        _write(read[0], Path(given["to_toml"]))
+        write(Path(given["to_toml"]), import_module("plan_cutters.machines").to_toml(read[0]))
     if given["as_json"]:
         hand_out(json.dumps({"machines": found}, indent=2, ensure_ascii=False) + "\n")
     else:
@@ -224,13 +220,6 @@ def _solutions(told: dict[str, Any], say: Any) -> None:
         angles = ", ".join(f"{name} {angle + 0.0:.6f} deg" for name, angle in each["deg"].items())
         taken = " (taken: the smaller turns)" if each["taken"] and len(told["solutions"]) > 1 else ""
         say(f"  The tool axis {axis} is held{f' at {angles}' if angles else ''}{taken}.")
-
-
-def _write(machine: "Machine", path: Path) -> None:
-    from plan_cutters.machines import to_toml
-
-    with whole(path) as aside:
-        aside.write_text(to_toml(machine), encoding="utf-8")
 
 
 def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:

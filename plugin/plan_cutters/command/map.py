@@ -13,10 +13,10 @@ from plan_cutters.command.codes import ended, invoked
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.progress import Display
-from plan_cutters.command.supervise import report, supervise
+from plan_cutters.command.supervise import supervise
 from plan_cutters.command.terminal import clean, hand_out, paper
 from plan_cutters.command.values import File, Setup, Words, cutter_ids
-from plan_cutters.command.worker import began, can_supervise, follow_parent, is_child
+from plan_cutters.command.worker import began, can_supervise, follow_parent, is_child, report
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -37,7 +37,10 @@ _point = heading("Point")
     cls=Command,
     examples=(
         (f"{_SELF} samples/v_groove.step --at 0,0,0 --cutter R8L90 --tilt 0:60", "A cutter at the bottom of a groove:"),
-        (f"{_SELF} blade.step --at 12,3,4 --cutter R6L80 --machine trunnion-ac", "What a machine can hold there:"),
+        (
+            f"{_SELF} blade.step --at 12,3,4 --cutter R6L80 --machine trunnion-ac",
+            "The tilts that a machine holds there:",
+        ),
     ),
     codes=(
         ("0", "some tilt is free"),
@@ -72,10 +75,10 @@ _point = heading("Point")
     quiet={"help": "No table."},
 )  # fmt: skip
 def command(part: str, **given: Any) -> int:
-    """Which tilts of one cutter are free at one point of PART, rotation by rotation, and what forbids the others?
+    """Find the free tilts of one cutter at one point of PART, rotation by rotation, and the causes that forbid the others.
 
-    Prints the free intervals and draws the map: tilt against rotation, forbidden tilts coloured by cause, undecided ones
-    apart.
+    The free intervals are printed, and the map is drawn: tilt against rotation, forbidden tilts coloured by cause, undecided
+    ones apart.
     """
     from cad_io.read.sniff import kind
     from plan_cutters.errors import OptionError
@@ -175,8 +178,9 @@ def _text(values: Any) -> str:
 
 def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: dict[str, Any]) -> list[str]:
     """Describe the map line by line: its contact, cutter and search; the first line is its title."""
-    from plan_cutters.report.sheet import printable
+    from plan_cutters.report.drawing.sheet import printable
     from plan_cutters.report.story.names import called
+    from plan_cutters.report.story.numbers import capital
 
     curvature = ", ".join(f"{x + 0.0:.4g}" for x in found.curvature)
     apart = "one rotation: nothing is said of others"
@@ -185,7 +189,7 @@ def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: 
         apart = f"rotations {step:.4g} deg apart: nothing is said between them"
     proved = f"gouge tolerance {found.tolerance:g} mm" if found.tolerance else "nominal, not certified"
     held = f", {cutter.holder.name or cutter.holder.id}" if cutter.holder else ""
-    title = f"{called(cutter)}{held} ({cutter.id.partition('H')[0]})"
+    title = f"{capital(called(cutter))}{held} ({cutter.id.partition('H')[0]})"
     moved = f"; the point asked for is {off:.3g} mm off" if off > 1e-3 else ""
     lines = [
         f"{title} at ({_text(_round(found.point))}) on {face} of {printable(Path(given['part']).name, 80)}",
@@ -244,7 +248,7 @@ def _facts(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: 
 def _draw(found: "PostureMap", tilt: tuple[float, float], about: list[str], outs: Sequence[Path]) -> None:
     """Draw the files, each whole or not at all."""
     from plan_cutters.errors import PlanError
-    from plan_cutters.report.map_picture import draw_map
+    from plan_cutters.report.drawing.posture_map import draw_map
 
     asides = [out.with_name(f".{out.stem}.part{out.suffix}") for out in outs]
     for aside in asides:

@@ -11,8 +11,7 @@ from plan_cutters.command import terminal
 from plan_cutters.command.codes import code_of
 from plan_cutters.command.progress import Display, Teller
 from plan_cutters.command.summary import not_reached, summary, written
-from plan_cutters.command.supervise import report, report_work
-from plan_cutters.command.worker import INTERRUPTED, is_child
+from plan_cutters.command.worker import INTERRUPTED, is_child, report, report_work
 from plan_cutters.report.story.names import called
 
 if TYPE_CHECKING:

@@ -9,6 +9,7 @@ from cad_io.units import UNITS
 from plan_cutters.command import values
 from plan_cutters.command.help_groups import heading
 from plan_cutters.command.values import File, Folder, Range, Setup, Words
+from plan_cutters.report.folder import DEFAULT_FORMATS, FORMATS
 
 EXAMPLES = (
     ("plan-cutters blade.step", "The sculptured faces and fillets, with the built-in cutters:"),
@@ -85,7 +86,7 @@ _OPTIONS = (
         type=File("FILE"),
         multiple=True,
         help="Tool library: Fusion .json, .tools or CSV, HSMWorks .hsmlib, FreeCAD .fctl or .fctb, or TOML; "
-        "the command `tools` shows what is understood of it. Repeatable.",
+        "the command `tools` shows how it is understood. Repeatable.",
     ),
     _cutters(
         "--holder",
@@ -132,9 +133,9 @@ _OPTIONS = (
         "--faces",
         default="sculptured,blends",
         type=Words("SELECT", values.face_words),
-        help="`sculptured` (what is no plane, cylinder, cone, sphere or torus in shape; all faces where none is), `blends` "
-        "(fillets and rounds: they join two faces smoothly), `all`, `F3,7-12`, a list of these, `component:NAME`, `name:REGEX` "
-        "or `color:#RRGGBB`, after a `!` all but these; the others are not judged, only obstacles.  "
+        help="`sculptured` (faces that are no plane, cylinder, cone, sphere or torus in shape; all faces where none is), "
+        "`blends` (fillets and rounds: they join two faces smoothly), `all`, `F3,7-12`, a list of these, `component:NAME`, "
+        "`name:REGEX` or `color:#RRGGBB`, after a `!` all but these; the others are not judged, only obstacles.  "
         "[default: sculptured,blends]",
     ),
     _faces(
@@ -195,7 +196,7 @@ _OPTIONS = (
         "--map-budget",
         type=int,
         metavar="N",
-        help="Samples to map, at most, evenly spread; the others are undecided there.  [default: what some minutes allow]",
+        help="Samples to map, at most, evenly spread; the others are undecided there.  [default: as many as some minutes allow]",
     ),
     _postures(
         "--postures",
@@ -205,9 +206,9 @@ _OPTIONS = (
     _output("-o", "--out", type=Folder("DIR"), help="Folder for the files.  [default: <part>-plan]"),
     _output(
         "--formats",
-        type=Words("LIST", values.formats, listed=True),
-        help=f"Of {', '.join(values.formats())}; merged is a GLB of one mesh, for parts of thousands of faces.  "
-        f"[default: {','.join(values.default_formats())}]",
+        type=Words("LIST", lambda: FORMATS, listed=True),
+        help=f"Of {', '.join(FORMATS)}; merged is a GLB of one mesh, for parts of thousands of faces.  "
+        f"[default: {','.join(DEFAULT_FORMATS)}]",
     ),
     _output(
         "--step-schema",
@@ -228,8 +229,8 @@ _OPTIONS = (
         default="",
         type=Words("LIST", values.answers, listed=True),
         help="More questions to answer: stick-out (how short each cutter can be held), stick-out-map (that for every sample, "
-        "too), radius (the largest flat and ball end that reaches each sample), mend (what to do next where no cutter finishes, "
-        "and what it gains, for the three that come nearest), mend-all (that for every cutter), or all (without the map and "
+        "too), radius (the largest flat and ball end that reaches each sample), mend (the next steps where no cutter finishes, "
+        "and their gain, for the three that come nearest), mend-all (that for every cutter), or all (without the map and "
         "mend-all).",
     ),
     _answers(

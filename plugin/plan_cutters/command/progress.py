@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from plan_cutters.command import terminal
-from plan_cutters.command.supervise import report
+from plan_cutters.command.worker import report
 
 #: What stages are called; several may be one to the user. A stage that is none of these is the judging of a cutter.
 _WORDS = {

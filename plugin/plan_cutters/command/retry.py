@@ -5,7 +5,8 @@ import os
 from collections.abc import Sequence
 
 from plan_cutters.command import terminal
-from plan_cutters.command.supervise import Display, supervise
+from plan_cutters.command.progress import Display
+from plan_cutters.command.supervise import supervise
 from plan_cutters.command.worker_errors import Stuck, Unfinished
 
 #: Environment variable by which the child knows which parts are done and which faces of the next one are set aside.

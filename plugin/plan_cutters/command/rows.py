@@ -39,8 +39,8 @@ def cutter_rows(plan: "Plan", story: "Story", *, verbose: bool) -> list[Any]:
     """A row for each cutter, of many the best alone, and how many more there are."""
     rows = list(story.cutters)
     if not verbose and len(rows) > MOST_ROWS:
-        lost = {c.id: c.area_share.inaccessible + c.area_share.undecided for c in plan.cutters}
-        kept = sorted(rows, key=lambda c: (c.id != story.taken, lost[c.id]))[:MOST_ROWS]
+        not_reached = {c.id: c.area_share.not_reached for c in plan.cutters}
+        kept = sorted(rows, key=lambda c: (c.id != story.taken, not_reached[c.id]))[:MOST_ROWS]
         rows = [c for c in rows if c in kept]
     here = f", over {1 + len(plan.effective.other_setups)} setups" if plan.effective.other_setups else ""
     found: list[Any] = [f"Share of the area to machine, by the verdict of its samples{here}:"]

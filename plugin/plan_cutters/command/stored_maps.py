@@ -51,10 +51,10 @@ _LISTED = 3
     "debug", json={"help": "The answer on standard output."}, defaults=False,
 )  # fmt: skip
 def command(file: str, part: str | None, **given: Any) -> int:
-    """What the cutter of FILE reaches on this machine, in this setup, within these tilts and rotations.
+    """Judge the cutter of FILE on another machine, in another setup, or within fewer tilts and rotations.
 
-    FILE is the postures.npz that a plan writes with --posture-maps; with PART, it must be of this part. What is not given means
-    what the maps were made with; what they cannot answer is refused.
+    FILE is the postures.npz that a plan writes with --posture-maps; with PART, it must be of this part. Options that are not
+    given stay as the maps were made; a question that the maps cannot answer is refused.
     """
     from cad_io.read.sniff import kind
     from plan_cutters.command.validation import look_at, options_of
@@ -98,6 +98,7 @@ def stored(part: str | None, postures: str, options: "Options", given: dict[str,
     """
     import numpy as np
 
+    from plan_cutters.domain.placement import axis_words
     from plan_cutters.domain.verdicts import WORDS
     from plan_cutters.errors import OptionError
     from plan_cutters.scene.question import setup_of, words_of
@@ -125,11 +126,9 @@ def stored(part: str | None, postures: str, options: "Options", given: dict[str,
                   "missing": list(missing), "unjudged_faces": list(unjudged), "asked": dict(maps.about)}  # fmt: skip
         terminal.hand_out(json.dumps(answer, indent=2) + "\n")
     if not given["quiet"]:
-        axis = ",".join(f"{x:.4g}" for x in setup)
         said = ", ".join(f"{count} {word.replace('_', ' ')}" for word, count in counts.items() if count)
-        lines = [
-            f"{Path(part).name if part else name}: {maps.cutter} on {options.machine.name}, setup {axis}, by {name}: {said}"
-        ]
+        on = f"{maps.cutter} on {options.machine.name}, setup {axis_words(setup)}"
+        lines = [f"{Path(part).name if part else name}: {on}, by {name}: {said}"]
         if inside:
             lines.append(f"{inside} more samples lie inside another body of the part: they are no surface of it.")
         if counts["undecided"]:

@@ -12,7 +12,7 @@ from plan_cutters.report.story.cutters import left
 from plan_cutters.report.story.headline import area
 from plan_cutters.report.story.names import named
 from plan_cutters.report.story.notes import machine
-from plan_cutters.report.story.numbers import count, lost, percent
+from plan_cutters.report.story.numbers import capital, count, percent, unreached
 from plan_cutters.report.story.story import Story, story_of
 
 if TYPE_CHECKING:
@@ -72,25 +72,21 @@ def not_reached(plan: "Plan", *, verbose: bool = False) -> list[str]:
     for c in plan.cutters:
         if c.id == plan.selected:
             break
-        if c.lost:
+        if c.not_reached:
             larger.append(c)
     near = larger
     if not verbose and len(larger) > _OTHERS:
         taken = plan.selected_over_setups or plan.selected_for_setup
-        near = sorted(larger, key=lambda c: (c.id != taken, c.lost))[:_OTHERS]
-    lines = [named(plan, left(plan, c)) for c in larger if c in near]
+        near = sorted(larger, key=lambda c: (c.id != taken, c.not_reached))[:_OTHERS]
+    lines = [capital(named(plan, left(plan, c))) for c in larger if c in near]
     if rest := [c for c in larger if c not in near]:
-        ends = [min(rest, key=_lost_share), max(rest, key=_lost_share)]
-        least, most = (lost(c, c.area_share) for c in ends)
+        ends = [of(rest, key=lambda c: c.area_share.not_reached) for of in (min, max)]
+        least, most = (unreached(c, c.area_share) for c in ends)
         which = "larger cutter" if plan.selected else "cutter"
         much = least if least == most else f"{least} to {most}"
         leave = f"{len(rest)} more {which}{'s leave' if len(rest) > 1 else ' leaves'}"
         lines.insert(0, f"{leave} {much} of {area(plan)}: -v or plan.json say why.")
     return lines
-
-
-def _lost_share(c: "CutterEntry") -> float:
-    return c.area_share.inaccessible + c.area_share.undecided
 
 
 def _apart(lines: Sequence[Any]) -> list[Any]:

@@ -18,13 +18,14 @@ import time
 import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING
 
-from plan_cutters.command.worker import INTERRUPTED, MEMORY, REPORT, Worker, early, is_child
+from plan_cutters.command.worker import INTERRUPTED, MEMORY, Worker, early
 from plan_cutters.command.worker_errors import Stuck, Supervised, Unfinished
 
-#: One line at a time: stages tell from their threads.
-_TELLING = threading.Lock()
+if TYPE_CHECKING:
+    from plan_cutters.command.progress import Display
+
 #: Seconds that an interrupted child has to end in order; it has not if the kernel does not come back to it.
 GRACE = 0.25
 #: Stages in which the kernel works on what the file says, and how many times the limit of reading each may take.
@@ -73,59 +74,13 @@ def keep_output() -> None:
     sys.stdout = os.fdopen(ours, "w", encoding="utf-8")
 
 
-def report(word: str, text: str) -> None:
-    """Tell the parent, if there is one: `part FILE`, `staging FOLDER`, `stage NAME`, `detail TEXT`, `at DONE TOTAL`,
-    `work WHOSE FACE`, `say TEXT`, `safe CODE FOLDER`, `done CODE`.
-
-    `say`: for people; `safe`: the plan of this part is in the folder, models follow; `done`: so are they.
-    """
-    if not is_child():
-        return
-    # Names of files may hold line ends, and bytes that are no text.
-    line = f"{word} ".encode() + text.encode("unicode_escape") + b"\n"
-    try:
-        with _TELLING:
-            while line:
-                line = line[os.write(int(os.environ[REPORT]), line) :]
-    except BrokenPipeError:
-        # Who asked for the plan is gone, killed in a way that could not be passed on.
-        raise KeyboardInterrupt from None
-
-
-def report_work(whose: str, face: int) -> None:
-    """Tell the parent whose work goes on in this stage, `kernel` or `own`, and at which face (0: all)."""
-    report("work", f"{whose} F{face}" if face else whose)
-
-
 def default_memory() -> int:
     """Three quarters of the machine's memory, bytes."""
     return int(0.75 * os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
 
 
-class Display(Protocol):
-    """A display shows the user how far the child is."""
-
-    def begins(self, part: str) -> None:
-        """Another part is begun."""
-
-    def stage(self, name: str) -> None:
-        """Another stage is begun."""
-
-    def detail(self, text: str) -> None:
-        """Another piece of work of the stage is begun."""
-
-    def at(self, done: int, total: int) -> None:
-        """So much of the stage is done."""
-
-    def say(self, text: str) -> None:
-        """A text for people, ready to be written."""
-
-    def tick(self) -> None:
-        """A little time has passed."""
-
-
 def supervise(
-    words: Sequence[str], *, read_timeout: float = math.inf, memory: int | None = None, display: Display | None = None,
+    words: Sequence[str], *, read_timeout: float = math.inf, memory: int | None = None, display: "Display | None" = None,
     name: str = "plan-cutters", more: Mapping[str, str] | None = None,
 ) -> int:  # fmt: skip
     """Run a command in a child.
@@ -233,7 +188,7 @@ def _processor(child: int | None) -> float:
 class _Watch:
     """Keep all that the child has reported so far."""
 
-    def __init__(self, read_timeout: float, display: Display | None = None) -> None:
+    def __init__(self, read_timeout: float, display: "Display | None" = None) -> None:
         self.pipe, self.read_timeout, self.display = -1, read_timeout, display
         self.part, self.stage, self.since = "part", "start", time.monotonic()
         self.work, self.spent, self.why = "", 0.0, ""
@@ -271,18 +226,11 @@ class _Watch:
     def _show(self, word: str, text: str) -> None:
         if self.display is None:
             return
-        match word:
-            case "part":
-                self.display.begins(text)
-            case "stage":
-                self.display.stage(text)
-            case "detail":
-                self.display.detail(text)
-            case "at":
-                done, _, total = text.partition(" ")
-                self.display.at(int(done), int(total))
-            case "say":
-                self.display.say(text)
+        if word in ("part", "stage", "detail", "say"):
+            getattr(self.display, "begins" if word == "part" else word)(text)
+        elif word == "at":
+            done, total = map(int, text.split())
+            self.display.at(done, total)
 
     @property
     def limit(self) -> float:

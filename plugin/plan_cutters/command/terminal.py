@@ -10,8 +10,7 @@ from collections.abc import Callable, Iterator
 from io import StringIO
 from typing import IO, TYPE_CHECKING, Any
 
-from plan_cutters.command.supervise import report
-from plan_cutters.command.worker import is_child
+from plan_cutters.command.worker import is_child, report
 from plan_cutters.errors import PlanError
 
 if TYPE_CHECKING:

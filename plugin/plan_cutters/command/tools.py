@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from plan_cutters.command.codes import USAGE, guarded, run
+from plan_cutters.command.codes import USAGE, faults, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.terminal import clean, error, hand_out, paper
 from plan_cutters.command.values import File, Folder
-from plan_cutters.files.whole import whole
+from plan_cutters.files.whole import write
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -34,7 +34,7 @@ _cutters, _output = heading("Cutters"), heading("Output")
 @click.command(
     cls=Command,
     examples=(
-        (f"{_SELF} shop.tools", "What of a library can be judged, and why the rest cannot:"),
+        (f"{_SELF} shop.tools", "The tools of a library that can be judged, and why the rest cannot:"),
         (f"{_SELF} shop.tools --assume-stickout 35 --holder R15L40", "With what the library leaves out:"),
         (
             f"{_SELF} --cutter D12L80 --holder hsk63a-er32 --draw drawings",
@@ -63,9 +63,9 @@ _cutters, _output = heading("Cutters"), heading("Output")
 @_output("--draw", type=Folder("DIR"), help="Draw each assembly to scale (SVG) into a folder.")
 @options("debug")
 def command(files: tuple[str, ...], **given: Any) -> int:
-    """What is understood of the tools in FILE, and why some cannot be judged.
+    """List the tools in FILE as they are understood, and say why some cannot be judged.
 
-    Reads Fusion .tools, .json and CSV, HSMWorks .hsmlib, FreeCAD .fctl, .fctb and .fcholder, LinuxCNC .tbl, and TOML.
+    It reads Fusion .tools, .json and CSV, HSMWorks .hsmlib, FreeCAD .fctl, .fctb and .fcholder, LinuxCNC .tbl, and TOML.
     """
     from plan_cutters.library.read import holder_of, listing, nothing
     from plan_cutters.library.words import of_words
@@ -76,21 +76,16 @@ def command(files: tuple[str, ...], **given: Any) -> int:
         raise click.UsageError("Missing argument 'FILE...'.")
     holder = None if given["holder"] is None else holder_of(given["holder"])
     found: list[Library] = []
-    lines = []
     if given["cutter"]:
         found.append(of_words(given["cutter"], None if isinstance(holder, str) else holder))
-    for file in files:
 
-        def one(file: str = file) -> tuple[int, str]:
-            library = listing(file, assume_stickout=given["assume_stickout"], holder=holder, skip_bad=given["skip_bad"])
-            found.append(library)
-            if not library and not (library.holders and not library.entries):
-                raise nothing(library)
-            return 0, ""
+    def one(file: str) -> None:
+        library = listing(file, assume_stickout=given["assume_stickout"], holder=holder, skip_bad=given["skip_bad"])
+        found.append(library)
+        if not library and not (library.holders and not library.entries):
+            raise nothing(library)
 
-        code, line = guarded(one, given["debug"])
-        if code:
-            lines.append(line.replace("plan-cutters:", f"{click.get_current_context().info_name}:", 1))
+    lines = faults(files, one, given["debug"])
     if not lines:
         # Nothing is written if anything was wrong.
         if given["to_toml"] is not None:
@@ -235,8 +230,7 @@ def _to_toml(found: "Sequence[Library]", path: Path) -> None:
     texts = [to_toml(library) for library in found]
     # Every part says the unit; the file says it once.
     text = "".join([texts[0], *(part.replace('unit = "mm"\n', "", 1) for part in texts[1:])])
-    with whole(path) as aside:
-        aside.write_text(text, encoding="utf-8")
+    write(path, text)
 
 
 def _draw(found: "Sequence[Library]", folder: Path) -> None:
@@ -244,7 +238,7 @@ def _draw(found: "Sequence[Library]", folder: Path) -> None:
     from plan_cutters.errors import PlanError
     from plan_cutters.report.story.names import called
 
-    draw = import_module("plan_cutters.library.drawing").draw
+    draw = import_module("plan_cutters.report.drawing.tool").draw
     drawn: dict[str, str] = {}
     for library in found:
         for cutter in library:
@@ -261,8 +255,7 @@ def _draw(found: "Sequence[Library]", folder: Path) -> None:
     except OSError as error:
         raise PlanError(f"cannot be made: {error.strerror}", file=str(folder)) from None
     for name, text in drawn.items():
-        with whole(folder / f"{name}.svg") as aside:
-            aside.write_text(text, encoding="utf-8")
+        write(folder / f"{name}.svg", text)
 
 
 def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:

@@ -110,18 +110,6 @@ def holder_words() -> Sequence[str]:
     return [*words(), "none"]
 
 
-def formats() -> Sequence[str]:
-    from plan_cutters.report.folder import FORMATS
-
-    return FORMATS
-
-
-def default_formats() -> Sequence[str]:
-    from plan_cutters.report.folder import DEFAULT_FORMATS
-
-    return DEFAULT_FORMATS
-
-
 def answers() -> Sequence[str]:
     from plan_cutters.domain.answers import ANSWERS
 

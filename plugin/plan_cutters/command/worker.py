@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -16,6 +17,8 @@ REPORT, MEMORY = "PLAN_CUTTERS_REPORT", "PLAN_CUTTERS_MEMORY"
 BEGAN, PARENT = "PLAN_CUTTERS_BEGAN", "PLAN_CUTTERS_PARENT"
 #: And the number of the pipe on which it is told that its words are in order, where it began before they were looked at.
 GO = "PLAN_CUTTERS_GO"
+#: One line at a time: stages tell from their threads.
+_TELLING = threading.Lock()
 #: Exit code of an interrupted run.
 INTERRUPTED = 130
 
@@ -28,6 +31,30 @@ def can_supervise() -> bool:
 def is_child() -> bool:
     """Whether this process was started by `supervise`."""
     return REPORT in os.environ
+
+
+def report(word: str, text: str) -> None:
+    """Tell the parent, if there is one: `part FILE`, `staging FOLDER`, `stage NAME`, `detail TEXT`, `at DONE TOTAL`,
+    `work WHOSE FACE`, `say TEXT`, `safe CODE FOLDER`, `done CODE`.
+
+    `say`: for people; `safe`: the plan of this part is in the folder, models follow; `done`: so are they.
+    """
+    if not is_child():
+        return
+    # Names of files may hold line ends, and bytes that are no text.
+    line = f"{word} ".encode() + text.encode("unicode_escape") + b"\n"
+    try:
+        with _TELLING:
+            while line:
+                line = line[os.write(int(os.environ[REPORT]), line) :]
+    except BrokenPipeError:
+        # Who asked for the plan is gone, killed in a way that could not be passed on.
+        raise KeyboardInterrupt from None
+
+
+def report_work(whose: str, face: int) -> None:
+    """Tell the parent whose work goes on in this stage, `kernel` or `own`, and at which face (0: all)."""
+    report("work", f"{whose} F{face}" if face else whose)
 
 
 def began() -> float:

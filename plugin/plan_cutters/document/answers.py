@@ -99,7 +99,7 @@ class MoveEntry(Frozen):
 
 
 class LostAreaEntry(Frozen):
-    """Connected samples that are lost."""
+    """Connected samples that are not reached."""
 
     area_mm2: float
     share: float = Field(description="of the finished area, 0 to 1")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from cad_io import Part, SurfaceSamples
 from cad_io.kernel.assembly import component_of
 from plan_cutters import __version__
-from plan_cutters.document.frozen import posture, vector
+from plan_cutters.document.frozen import filled, posture, vector
 from plan_cutters.document.listed import listed
 from plan_cutters.document.model import (
     CutterEntry,
@@ -74,26 +74,17 @@ def cutter_entry(
     blocked = mine["inaccessible"] - mine["inside_bodies"]
     # What is missing from the obstacles can only be in the way of more.
     feasible = False if blocked else None if mine["undecided"] or around.doubtful else True
-    lost, unsure = reach.verdict == INACCESSIBLE, reach.verdict == UNDECIDED
+    not_reached, unsure = reach.verdict == INACCESSIBLE, reach.verdict == UNDECIDED
     faces = face_verdicts(samples, reach, inside)
-    return CutterEntry(
-        id=cutter.id,
-        name=cutter.name,
-        radius=cutter.radius,
-        corner_radius=cutter.corner_radius,
-        length=cutter.length,
-        shape=cutter.shape,
+    return filled(
+        CutterEntry,
+        cutter,
         taper_deg=float(np.degrees(cutter.taper)),
         flutes_mm=flute_length(cutter),
         holder=cutter.holder.name if cutter.holder else "",
         stages=[
-            SegmentEntry(
-                part=part,
-                low_mm=low,
-                length_mm=stage.length,
-                radius_mm=stage.radius,
-                upper_radius_mm=stage.upper_radius,
-            )
+            SegmentEntry(part=part, low_mm=low, length_mm=stage.length, radius_mm=stage.radius,
+                         upper_radius_mm=stage.upper_radius)
             for part, low, stage in cutter.stages
         ],
         touches_deg=[degrees((mode.low, mode.high)) for mode in modes(cutter)],
@@ -104,7 +95,7 @@ def cutter_entry(
         seen=samples.max_gap <= cutter.radius,
         march_differs=march_differs,
         **mine,
-        by_reason={name: int((lost & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
+        by_reason={name: int((not_reached & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
         undecided_by_reason={name: int((unsure & (reach.reason == i)).sum()) for i, name in enumerate(REASONS)},
         axis_limit_with={name: int((besides == i).sum()) for i, name in enumerate(REASONS) if (besides == i).any()},
         faces=faces,
@@ -112,7 +103,7 @@ def cutter_entry(
         witnesses=[_witness_entry(w, samples, around, reach, inside) for w in found],
         witnesses_untried=sum(w.untried for w in found),
         seconds=seconds,
-    )
+    )  # fmt: skip
 
 
 def _witness_entry(
@@ -121,24 +112,23 @@ def _witness_entry(
     best = None
     if witness.tilt is not None and witness.rotation is not None and witness.axis is not None:
         best = posture(witness.tilt, witness.rotation, witness.axis)
-    return WitnessEntry(
-        sample=witness.sample,
+    return filled(
+        WitnessEntry,
+        witness,
         point=vector(samples.point[witness.sample]),
         face=f"F{samples.face[witness.sample]}",
         verdict="undecided" if reach.verdict[witness.sample] == UNDECIDED else "inaccessible",
-        reason=witness.reason,
         obstacle_face=None if not witness.obstacle_face else around.called(witness.obstacle_face),
         obstacle_point=None if witness.obstacle_point is None else vector(witness.obstacle_point),
         best_posture=best,
         depth_mm=witness.depth,
         inside_bodies=bool(inside[witness.sample]),
-        samples=witness.samples,
     )
 
 
-def part_info(scene: Scene) -> PartInfo:
+def part_info(scene: Scene, around: Surroundings) -> PartInfo:
     """The part, and what is odd about it."""
-    part, around, orientation = scene.part, scene.around, scene.orientation
+    part, orientation = scene.part, scene.orientation
     warnings = list(part.warnings)
     # Without the faces that are left out on purpose there are openings, too.
     for body in () if scene.ignored else (body for body in around.bodies if not body.closed):
@@ -183,11 +173,9 @@ def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen) -> list[Fa
         if reason is None and len(bad):
             reason = f"{len(bad)} samples: " + "; ".join(samples.reasons[i] for i in np.unique(bad))
         result.append(
-            FaceEntry(
-                id=face.id,
-                name=face.name,
-                surface=face.surface,
-                shape=face.shape,
+            filled(
+                FaceEntry,
+                face,
                 kind="blend" if face.number in choice.blends else face.shape,
                 target=face.number in chosen,
                 ignored=face.number in ignored,

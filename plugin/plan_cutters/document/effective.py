@@ -14,7 +14,7 @@ from plan_cutters.scene.preparation import Prepared
 
 def effective(ready: Prepared) -> Effective:
     """Every option after defaults: as `Options` keeps it where nothing more is said here, angles in degrees."""
-    scene, options, choice, around = ready.scene, ready.options, ready.chosen, ready.scene.around
+    scene, options, choice, around = ready.scene, ready.options, ready.chosen, ready.conditions.around
     made: dict[str, Any] = {
         "cutters": [c.id for c in ready.cutters],
         "cutter_source": " and ".join(_sources(options)) or "built-in",
@@ -29,7 +29,7 @@ def effective(ready: Prepared) -> Effective:
         "target_faces": [f"F{n}" for n in choice.targets],
         "spacing_mm": max(ready.spacing.values()) if isinstance(ready.spacing, dict) else ready.spacing,
         "sampled_by": "grid" if options.grid is not None else "default" if options.spacing is None else "spacing",
-        "tolerance_mm": scene.tolerance,
+        "tolerance_mm": ready.conditions.tolerance,
         "chord_error_mm": around.certain.triangles.chord_error,
         "chord_measured_share": around.certain.triangles.measured_share,
         "obstacle_triangles": len(around.possible.triangles),

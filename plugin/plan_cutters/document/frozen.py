@@ -19,9 +19,13 @@ class Frozen(BaseModel):
 _Entry = TypeVar("_Entry", bound=Frozen)
 
 
-def filled(kind: type[_Entry], record: object, **other: Any) -> _Entry:
-    """Make an entry of a record: each field is the record's attribute of its name, unless it is one of `other`."""
-    return kind(**{name: other[name] if name in other else getattr(record, name) for name in kind.model_fields})
+def filled(kind: type[_Entry], record: object, /, **other: Any) -> _Entry:
+    """Make an entry of a record: each field is the record's attribute of its name, unless it is one of `other`.
+
+    A field that neither has keeps its default.
+    """
+    here = (name for name in kind.model_fields if name not in other and hasattr(record, name))
+    return kind(**{name: getattr(record, name) for name in here}, **other)
 
 
 class Posture(Frozen):

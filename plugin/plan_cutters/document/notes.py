@@ -20,11 +20,11 @@ from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
 
 def notes_of(ready: Prepared, entries: Sequence[CutterEntry]) -> list[Note]:
     """All notes, in the order in which people read them."""
-    scene, options, around = ready.scene, ready.options, ready.scene.around
+    scene, options, around = ready.scene, ready.options, ready.conditions.around
     return [
         *_of_cutters(options, ready.cutters),
         *_of_samples(ready),
-        *_of_sides(scene, options),
+        *_of_sides(scene, options, ready.conditions.tolerance),
         *_of_obstacles(scene.part, around),
         *_of_fixtures(around.fixtures, several=bool(options.other_setups)),
         *ready.chosen.notes,
@@ -43,16 +43,16 @@ def _of_samples(ready: Prepared) -> Iterator[Note]:
         yield Note("not_sampled", f"No verdict is about {names}: no sample could be taken there.")
 
 
-def _of_sides(scene: Scene, options: Options) -> Iterator[Note]:
+def _of_sides(scene: Scene, options: Options, kept: float) -> Iterator[Note]:
     if not options.machine.limited:
         yield Note("no_machine", "No machine was given: any tool axis counts as possible.")
     if not scene.orientation.confident:
         yield Note("side_guessed", "Which side is material is a guess; --flip machines the other side.")
-        if other := scene.turned:
+        if other := scene.turned_faces():
             yield Note("side_by_setup", f"The setup axis decides the side of open faces: with 0,0,1 as setup {listed(other)} "
                        "would be machined on the other side.")  # fmt: skip
-    if scene.tolerance > 1.001 * scene.asked:
-        yield Note("tolerance_raised", f"The tolerance was raised from {scene.asked:g} to {scene.tolerance:.3g} mm: the obstacle "
+    if kept > 1.001 * scene.asked:
+        yield Note("tolerance_raised", f"The tolerance was raised from {scene.asked:g} to {kept:.3g} mm: the obstacle "
                    "triangles could not be made to follow the surface more closely.")  # fmt: skip
 
 
@@ -116,9 +116,11 @@ def _of_area(entries: Sequence[CutterEntry], *, doubtful: bool) -> Iterator[Note
             what = "all of the target surface whose area is known" if area.left_out else "all of the target surface"
             yield Note("area_proved", f"{entry.id} serves {what}, {known}.")
         else:
-            lost = area.left - area.short - area.dropped
+            not_reached = area.left - area.short - area.dropped
             why = (
-                [f"no posture was found that serves the cells about {lost} contacts, or finer ones"] if lost > 0 else []
+                [f"no posture was found that serves the cells about {not_reached} contacts, or finer ones"]
+                if not_reached > 0
+                else []
             )
             if area.dropped:
                 why.append(f"{area.dropped} cells were not cut up, for too little of the surface was to be gained")

@@ -32,9 +32,10 @@ class OnFace:
         Verdict -> share of the face's area, 0 to 1; those that occur. Each sample stands for its own share of the area; what
         lies inside other bodies of the part does not count.
     reasons : dict
-        Reason -> share of the face's area that is lost for it, the largest first.
+        Reason -> share of the face's area that is not reached for it, the largest first.
     worst : WitnessEntry, optional
-        Of the lost samples that the plan looked at more closely, the one with the deepest collision; None where nothing is lost.
+        Of the samples not reached that the plan looked at more closely, the one with the deepest collision; None where all is
+        reached.
     least_stick_out : float, optional
         With which the cutter in its holder still reaches all that it reaches of this face, mm; None: `why_no_stick_out`.
     why_no_stick_out : str
@@ -76,7 +77,7 @@ class OnFace:
 
     @property
     def reason(self) -> str | None:
-        """Why most of what is lost is lost; None where nothing is."""
+        """The reason for most of what is not reached; None where all is reached."""
         return next(iter(self.reasons), None)
 
 
@@ -98,8 +99,10 @@ def on_face(
         for code, word in _words(verdict):
             shares[word] = float(area[verdict == code].sum()) / whole
         why = reach.reason[mine]
-        lost = {REASONS[code]: float(area[why == code].sum()) / whole for code in np.unique(why[why != NO_REASON])}
-        reasons = dict(sorted(lost.items(), key=lambda each: (-each[1], each[0])))
+        not_reached = {
+            REASONS[code]: float(area[why == code].sum()) / whole for code in np.unique(why[why != NO_REASON])
+        }
+        reasons = dict(sorted(not_reached.items(), key=lambda each: (-each[1], each[0])))
     deepest = [w for w in cutter.witnesses if w.face == entry.id and not w.inside_bodies]
     least, unknown = _least(entry, mine, reach, stick_out)
     return OnFace(

@@ -55,11 +55,11 @@ def plan_of(
 ) -> Plan:  # fmt: skip
     """The plan of a part from the entries of its cutters, and what was answered after them."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
-    part, around = scene.part, scene.around
+    part, around = scene.part, ready.conditions.around
     faces, remarks = face_entries(part, samples, choice), notes_of(ready, entries)
     absent = {*(() if around.fixtures else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
     return Plan(
-        part=part_info(scene),
+        part=part_info(scene, around),
         effective=effective(ready),
         versions=versions(),
         samples=SampleCounts(
@@ -125,26 +125,17 @@ Elsewhere = tuple[Vector, Mapping[str, Verdicts]]
 
 @dataclass(frozen=True, slots=True)
 class OverSetups:
-    """The verdicts of each cutter over all setups and in each of them, by its id.
+    """The verdicts of each cutter over all setups and in each of them, by its id."""
 
-    Attributes
-    ----------
-    reaches : mapping
-        In one setup or another.
-    here : mapping
-        In the first one.
-    served_in : mapping
-        The setup that serves each sample, (n,) int32.
-    first : (float, float, float)
-        Its axis.
-    elsewhere : tuple of Elsewhere
-        In each other setup.
-    """
-
+    #: In one setup or another.
     reaches: Mapping[str, Verdicts]
+    #: In the first one.
     here: Mapping[str, Verdicts]
+    #: The setup that serves each sample, (n,) int32.
     served_in: Mapping[str, Ints]
+    #: (float, float, float); its axis.
     first: Vector
+    #: In each other setup.
     elsewhere: tuple[Elsewhere, ...] = ()
 
     def each(self) -> tuple[Elsewhere, ...]:
@@ -161,7 +152,7 @@ def _of_setups(ready: Prepared, name: str, over: OverSetups) -> dict[str, Any]:
         SetupReach(axis=axis, serves=int((serves == k).sum()), **counts(found[name].verdict, inside))
         for k, (axis, found) in enumerate(over.each())
     ]
-    return {"setups": entries, "lost_in_all": int((over.reaches[name].lost & ready.finished).sum())}
+    return {"setups": entries, "lost_in_all": int((over.reaches[name].not_reached & ready.finished).sum())}
 
 
 def _singular(ready: Prepared, name: str, over: OverSetups) -> int | None:
@@ -181,18 +172,20 @@ def completed(
 ) -> list[CutterEntry]:  # fmt: skip
     """The entries of cutters with where they are listed, what the limits lose for all (n,), and what was answered about them."""
     found, sources, samples = [], ready.options.sources, ready.samples
-    lost_to_all = int(beyond.sum())
+    reached_by_none = int(beyond.sum())
     for entry in entries:
         moved = (travels or {}).get(entry.id)
         stick_out, mend = answers.stick_outs.get(entry.id), answers.mends.get(entry.id)
         here = over.here[entry.id]
         more = {
             **_of_setups(ready, entry.id, over),
-            "beyond_setup": lost_to_all,
+            "beyond_setup": reached_by_none,
             "singular": _singular(ready, entry.id, over),
             "travel": None if moved is None else travel_entry(ready.options.machine, moved, here, samples),
             "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
-            "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, ready.scene.around),
+            "least_stick_out": None
+            if stick_out is None
+            else stick_out_entry(stick_out, samples, ready.conditions.around),
             "mend": None if mend is None else mend_entry(mend),
         }
         found.append(entry.model_copy(update=more))
@@ -212,8 +205,8 @@ def selection(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:
     """Which cutter wins, of entries from the most wanted down, and why."""
     feasible = [e for e in entries if e.feasible]
     if not feasible:
-        best = min(entries, key=lambda e: e.lost)
-        left = best.lost
+        best = min(entries, key=lambda e: e.not_reached)
+        left = best.not_reached
         why = f"no cutter reaches every sample; {best.id} comes nearest, {left} not reached"
         if not left:
             why = f"{best.id} reaches every judged sample, but obstacles are missing: see the notes"

@@ -9,6 +9,7 @@ from pydantic import Field
 
 from cad_io import Part, SurfaceSamples
 from plan_cutters.document.frozen import Frozen
+from plan_cutters.domain.area import weights
 from plan_cutters.domain.verdicts import INACCESSIBLE, REASONS, UNDECIDED, WORDS, Verdicts
 
 
@@ -32,9 +33,14 @@ class VerdictCounts(Frozen):
         return self.inaccessible - self.inside_bodies
 
     @property
-    def lost(self) -> int:
+    def not_reached(self) -> int:
         """Samples of the finished part's surface that are not reached."""
         return self.blocked + self.undecided
+
+    @property
+    def lost(self) -> int:
+        """The former name of `not_reached`."""
+        return self.not_reached
 
     def of(self, verdict: str) -> int:
         """Samples of the finished part's surface with a verdict."""
@@ -52,6 +58,11 @@ class AreaShare(Frozen):
     lost_by: dict[str, float] = Field(
         default={}, description="of inaccessible and undecided together, by reason; reasons that there are"
     )
+
+    @property
+    def not_reached(self) -> float:
+        """Share that is not reached."""
+        return self.inaccessible + self.undecided
 
 
 class FaceVerdicts(VerdictCounts):
@@ -78,10 +89,7 @@ def face_verdicts(
     numbers, first = np.unique(np.sort(samples.face), return_index=True)
     groups = np.split(np.argsort(samples.face, kind="stable"), first[1:])
     for number, mine in zip(numbers.tolist(), groups, strict=False):
-        area = samples.area[mine]
-        if not area.sum() > 0.0:
-            # How large the face is, is not known: each of its samples stands for as much of it.
-            area = np.ones(len(mine))
+        area = weights(samples.area[mine])
         within, seen = inside[mine], mine[~inside[mine]]
         share = _share(reach.verdict[seen], reach.reason[seen], area[~within])
         part = min(1.0, float(area[within].sum() / area.sum())) if len(seen) else 1.0
@@ -109,30 +117,28 @@ def whole_share(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part
     weights = (seen / max(1e-300, seen.sum())).tolist()
     parts = [(weight, share) for weight, (_, share, _) in zip(weights, targets, strict=True)]
     sums = {word: min(1.0, sum(weight * getattr(share, word) for weight, share in parts)) for word in WORDS.values()}
-    lost = {
+    not_reached = {
         reason: min(1.0, sum(weight * share.lost_by.get(reason, 0.0) for weight, share in parts)) for reason in REASONS
     }
-    return AreaShare(**sums, lost_by={reason: share for reason, share in lost.items() if share})
+    return AreaShare(**sums, lost_by={reason: share for reason, share in not_reached.items() if share})
 
 
 def _areas(names: Sequence[str], part: Part) -> dict[str, float]:
     """Areas of faces by their ids, mm2; 1 each where none is known."""
-    areas = np.array([part.faces[int(name[1:]) - 1].area for name in names])
-    areas = np.where(np.isfinite(areas), np.maximum(areas, 0.0), 0.0)
-    areas = areas if areas.sum() > 0.0 else np.ones(len(names))
+    areas = weights(np.array([part.faces[int(name[1:]) - 1].area for name in names]))
     return dict(zip(names, areas.tolist(), strict=True))
 
 
 def _share(verdict: NDArray[np.uint8], reason: NDArray[np.uint8], area: NDArray[np.float64]) -> AreaShare:
     if not len(area):
         return AreaShare()
-    # Where the rest stands for no area, each of its samples stands for as much.
-    area = area / area.sum() if area.sum() > 0.0 else np.full(len(area), 1.0 / len(area))
+    area = weights(area)
+    area = area / area.sum()
     shares = {name: min(1.0, float(area[verdict == code].sum())) for code, name in WORDS.items()}
-    lost = (verdict == INACCESSIBLE) | (verdict == UNDECIDED)
+    not_reached = (verdict == INACCESSIBLE) | (verdict == UNDECIDED)
     by = {
-        name: min(1.0, float(area[lost & (reason == i)].sum()))
+        name: min(1.0, float(area[not_reached & (reason == i)].sum()))
         for i, name in enumerate(REASONS)
-        if (reason[lost] == i).any()
+        if (reason[not_reached] == i).any()
     }
     return AreaShare(**shares, lost_by=by)

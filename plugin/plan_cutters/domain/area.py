@@ -2,6 +2,10 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from cad_io.arrays import Floats
+
 #: Faces that are named of an area.
 _FACES = 5
 
@@ -53,3 +57,13 @@ def size(area: float) -> str:
     ('12,346 mm2', '5.8 mm2')
     """
     return f"{area:,.0f} mm2" if area >= 20.0 else f"{area:.2g} mm2"
+
+
+def weights(area: Floats) -> Floats:
+    """Take areas as weights: an area that is not known weighs nothing, and where none is known each weighs as much.
+
+    >>> weights(np.array([2.0, np.nan])).tolist(), weights(np.zeros(2)).tolist()
+    ([2.0, 0.0], [1.0, 1.0])
+    """
+    known = np.where(np.isfinite(area), area, 0.0).clip(min=0.0)
+    return known if known.sum() > 0.0 else np.ones(len(area))

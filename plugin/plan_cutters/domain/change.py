@@ -28,7 +28,7 @@ class Change:
     thing : str
         One of THINGS.
     now : float or tuple, optional
-        Its value now: mm, deg, a range of deg, or a unit vector; of faces, the ids of those with samples that are lost.
+        Its value now: mm, deg, a range of deg, or a unit vector; of faces, the ids of those with samples that are not reached.
     asked : float or tuple, optional
         The change that asks least of those with which the cutter finishes; of faces, the ids of those to leave out. None
         where there is none.
@@ -49,7 +49,7 @@ class Change:
     options : mapping
         The options of a plan, by name, that differ with it; none where nothing is asked.
     before, after : float, optional
-        Share of the finished area that is lost now, and with `asked`; `after` is None where nothing is asked or known.
+        Share of the finished area that is not reached now, and with `asked`; `after` is None where nothing is asked or known.
     option : str, optional
         What to say on the command line; None where nothing is asked, or where no option says it.
     doubted : bool
@@ -104,9 +104,9 @@ class Step:
     moves : tuple of Move
         One change, or two.
     before, after : float
-        Share of the finished area, 0 to 1, that is lost now, and that stays lost: every sample was judged.
+        Share of the finished area, 0 to 1, that is not reached now, and that is still not reached: every sample was judged.
     gained, left : int
-        Samples that it frees, and that stay lost.
+        Samples that it frees, and that are still not reached.
     cutters : tuple of Cutter
         That do it together, the one that is mended, or what becomes of it, first.
     setups : tuple of (float, float, float)
@@ -115,7 +115,7 @@ class Step:
         The options for the command line: `--cutter` is added to those of now, each other option replaces the same option. None
         where no option says it.
     remains : tuple of Patch
-        The largest areas that stay lost.
+        The largest areas that are still not reached.
     """
 
     moves: tuple[Move, ...]
@@ -145,11 +145,11 @@ class Mend:
     why : str
         A remark that comes before all of them; may be empty.
     share : float
-        Of the finished area that is lost now, in all setups of the plan.
+        Of the finished area that is not reached now, in all setups of the plan.
     steps : tuple of Step
         The next steps: first the one that leaves least, last an area to leave out. Empty where they were not looked for.
     areas : tuple of Patch
-        Connected areas that are lost now, the largest first, and how many more there are.
+        Connected areas that are not reached now, the largest first, and how many more there are.
     unsure : bool
         Faces are missing from what is in the way, so that no gain is sure.
     """

@@ -6,7 +6,7 @@
 import math
 import re
 import reprlib
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Callable, Iterable, Mapping, Set
 from numbers import Integral, Real
 from typing import Any
 
@@ -19,7 +19,7 @@ _RADIANS = re.compile(r"\s*(\S+)\s*rad\s*")
 _ROUNDING = 1e-6
 
 
-def number(value: Any, what: str, *, error: type[OptionError] = OptionError) -> float:
+def number(value: Any, what: str, *, error: Callable[[str], Exception] = OptionError) -> float:
     """A real number, infinite ones too; `error` for anything else and for NaN."""
     if not isinstance(value, Real) or isinstance(value, bool):
         raise error(f"{what} must be a number, not {shown(value)}")
@@ -29,6 +29,14 @@ def number(value: Any, what: str, *, error: type[OptionError] = OptionError) -> 
         found = math.inf
     if math.isnan(found):
         raise error(f"{what} must be a number, not nan")
+    return found
+
+
+def finite(value: Any, what: str, *, error: Callable[[str], Exception] = OptionError) -> float:
+    """A finite real number, as files of tools and machines state it."""
+    found = number(value, what, error=error)
+    if math.isinf(found):
+        raise error(f"{what} must be a finite number, not {shown(value)}")
     return found
 
 

@@ -18,7 +18,8 @@ def order(cutters: Sequence[Cutter]) -> list[Cutter]:
 def inside(cutter: Cutter, other: Cutter) -> bool:
     """True if, touching the same contact with the same axis at any tilt, one cutter lies within another.
 
-    Of straight end mills alone (`docs/nested_cutters.md`). The disk of the one's corner lies in the other's, its corner radius is
+    Of straight end mills alone: Lemma N2 of `docs/nested_cutters_proof.md`.
+    The disk of the one's corner lies in the other's, its corner radius is
     no larger; what stands above may be shifted against the other by as much as these differ, and what does not cut lies in
     what does not cut either and has no less clearance.
     """
@@ -69,9 +70,8 @@ def handed(cutter: Cutter, judged: Mapping[Cutter, Verdicts], n: int) -> Verdict
         if inside(cutter, other):
             rows = verdicts.reached & (known.verdict == UNJUDGED)
             known.verdict[rows] = ACCESSIBLE
-            for name in ("axis", "tilt_direction", "tilt", "rotation"):
-                getattr(known, name)[rows] = getattr(verdicts, name)[rows]
+            known.take_posture(rows, verdicts)
         elif inside(other, cutter):
             rows = (verdicts.verdict == INACCESSIBLE) & (known.verdict == UNJUDGED)
             known.verdict[rows], known.reason[rows] = INACCESSIBLE, verdicts.reason[rows]
-    return known
+    return known.freeze()

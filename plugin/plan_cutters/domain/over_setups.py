@@ -31,18 +31,17 @@ def over_setups(each: Sequence[Verdicts]) -> tuple[Verdicts, Ints]:
     for k, verdicts in enumerate(each):
         rows = verdicts.reached & (which < 0)
         which[rows] = k
-        for name in Verdicts.__slots__:
-            getattr(found, name)[rows] = getattr(verdicts, name)[rows]
+        found.take(rows, verdicts)
     for verdicts in each:
-        rows = (which < 0) & verdicts.lost
-        first = rows & ~found.lost
+        rows = (which < 0) & verdicts.not_reached
+        first = rows & ~found.not_reached
         found.verdict[first], found.reason[first] = verdicts.verdict[first], verdicts.reason[first]
         unsure = rows & (verdicts.verdict == UNDECIDED) & (found.verdict == INACCESSIBLE)
         found.verdict[unsure], found.reason[unsure] = UNDECIDED, verdicts.reason[unsure]
         more = rows & ~first & (found.reason == AXIS_LIMIT) & (verdicts.verdict == found.verdict)
         found.reason[more] = verdicts.reason[more]
         found.reason[rows & (verdicts.reason == FIXTURE)] = FIXTURE
-    return found, which
+    return found.freeze(), which
 
 
 def positions(

@@ -1,6 +1,7 @@
 """Where a part stands in a machine: its directions along the machine's, its point at the machine's zero, and what holds it."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -95,6 +96,15 @@ class Placement:
     def where(self) -> str:
         """How errors name its clamped faces."""
         return f"{self.file}: clamped" if self.file else "clamped"
+
+
+def axis_words(axis: Sequence[float]) -> str:
+    """Write a setup axis for a text.
+
+    >>> axis_words((0.0, -0.0, 0.70710678))
+    '0,0,0.7071'
+    """
+    return ",".join(f"{each + 0.0:.4g}" for each in axis)
 
 
 def frame_of(setup: Floats, x: Floats | None = None) -> Floats:

@@ -49,6 +49,6 @@ _ROWS = (
            "another place for the fixture", "#117733", "lines", "--"),
 )  # fmt: skip
 REASONS = {each.code: each for each in _ROWS}
-#: Why a posture map has nothing at a tilt where nothing is in the way: no sample is lost to it.
+#: Why a posture map has nothing at a tilt where nothing is in the way: that is no reason for a sample.
 NO_CONTACT = Reason("no_contact", "no contact", "no contact", "The cutter does not touch at this tilt.", "another tilt",
                     "#E5E5E5", "plain", ".")  # fmt: skip

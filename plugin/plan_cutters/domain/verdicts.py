@@ -1,6 +1,7 @@
 """Verdicts: the words and arrays that say what a cutter reaches, and why not where it does not."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,9 +10,9 @@ from cad_io.arrays import Floats, Ints, Record
 from plan_cutters.kernels.codes import (
     ACCESSIBLE,
     AXIS_LIMIT,
-    BURIED,
     FIXTURE,
     INACCESSIBLE,
+    INSIDE,
     INTERFERENCE_FREE,
     LOCAL_GOUGE,
     NO_REASON,
@@ -23,8 +24,9 @@ from plan_cutters.kernels.codes import (
 
 # The codes of verdicts and reasons are this module's as well.
 __all__ = [
-    "ACCESSIBLE", "AXIS_LIMIT", "BURIED", "CONCAVE", "CONVEX", "FIXTURE", "INACCESSIBLE", "INTERFERENCE_FREE", "LOCAL_GOUGE",
-    "NO_REASON", "REASONS", "SADDLE", "TOLERANCE", "UNDECIDED", "UNJUDGED", "WORDS", "Bytes", "Verdicts", "Witness", "blank",
+    "ACCESSIBLE", "AXIS_LIMIT", "CONCAVE", "CONVEX", "FIXTURE", "INACCESSIBLE", "INSIDE", "INTERFERENCE_FREE", "LOCAL_GOUGE",
+    "NO_REASON", "REASONS", "SADDLE", "TOLERANCE", "UNDECIDED", "UNJUDGED", "WORDS", "Bytes", "VerdictBuffer", "Verdicts",
+    "Witness", "blank",
 ]  # fmt: skip
 
 #: Words of verdicts, from best to worst.
@@ -34,25 +36,13 @@ WORDS = {INTERFERENCE_FREE: "interference_free", ACCESSIBLE: "accessible", UNDEC
 CONVEX, CONCAVE, SADDLE = 0, 1, 2
 
 Bytes = NDArray[np.uint8]
+_POSTURE = ("axis", "tilt_direction", "tilt", "rotation")
+_COLUMNS = ("verdict", *_POSTURE, "reason")
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Verdicts(Record):
-    """The verdicts of one cutter, sample by sample, with the posture found or the reason.
-
-    Attributes
-    ----------
-    verdict : (n,) uint8
-        INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED or UNJUDGED.
-    axis, tilt_direction : (n, 3) float
-        Unit tool axis and tilt direction of the posture found; nan where there is none.
-    tilt : (n,) float
-        rad, nan where there is none.
-    rotation : (n,) int32
-        Index into the posture range's rotations, -1 where there is none.
-    reason : (n,) uint8
-        Index into REASONS where inaccessible or undecided, else NO_REASON.
-    """
+class _Columns(Record):
+    """Verdicts of n samples, finished or not: the columns are those of `Verdicts`."""
 
     verdict: Bytes
     axis: Floats
@@ -72,22 +62,88 @@ class Verdicts(Record):
         return self.interference_free | (self.verdict == ACCESSIBLE)
 
     @property
-    def lost(self) -> NDArray[np.bool_]:
+    def not_reached(self) -> NDArray[np.bool_]:
         """Samples (n,) that are inaccessible or undecided."""
         return np.asarray((self.verdict == INACCESSIBLE) | (self.verdict == UNDECIDED))
+
+    @property
+    def lost(self) -> NDArray[np.bool_]:
+        """The former name of `not_reached`."""
+        return self.not_reached
 
     @property
     def interference_free(self) -> NDArray[np.bool_]:
         """Samples (n,) at which every rotation serves at tilt 0."""
         return np.asarray(self.verdict == INTERFERENCE_FREE)
 
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Verdicts(_Columns):
+    """The verdicts of one cutter, sample by sample, with the posture found or the reason. Its arrays are read-only.
+
+    Attributes
+    ----------
+    verdict : (n,) uint8
+        INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED or UNJUDGED.
+    axis, tilt_direction : (n, 3) float
+        Unit tool axis and tilt direction of the posture found; nan where there is none.
+    tilt : (n,) float
+        rad, nan where there is none.
+    rotation : (n,) int32
+        Index into the posture range's rotations, -1 where there is none.
+    reason : (n,) uint8
+        Index into REASONS where inaccessible or undecided, else NO_REASON.
+    """
+
+    def __post_init__(self) -> None:
+        for name in _COLUMNS:
+            getattr(self, name).setflags(write=False)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Unpacked arrays can be written: they are made read-only again.
+        return Verdicts, tuple(getattr(self, name) for name in _COLUMNS)
+
     def of(self, rows: NDArray[np.int64]) -> "Verdicts":
         """Take the verdicts of some samples."""
-        return Verdicts(*(getattr(self, name)[rows] for name in Verdicts.__slots__))
+        return Verdicts(*(getattr(self, name)[rows] for name in _COLUMNS))
 
 
 #: The former name.
 Reach = Verdicts
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class VerdictBuffer(_Columns):
+    """Verdicts that a search or a stage is writing; `freeze` ends that.
+
+    >>> buffer = blank(2)
+    >>> buffer.verdict[0] = ACCESSIBLE
+    >>> buffer.freeze().reached
+    array([ True, False])
+    >>> buffer.verdict[1] = ACCESSIBLE
+    Traceback (most recent call last):
+    ValueError: assignment destination is read-only
+    """
+
+    def freeze(self) -> Verdicts:
+        """Give what was written as a result, of the same arrays: nothing can be written into this buffer any more."""
+        return Verdicts(*(getattr(self, name) for name in _COLUMNS))
+
+    def take(self, rows: Any, other: _Columns) -> None:
+        """Take over all that is known of some samples: an index or a mask."""
+        for name in _COLUMNS:
+            getattr(self, name)[rows] = getattr(other, name)[rows]
+
+    def take_posture(self, rows: Any, other: _Columns, at: Any = None) -> None:
+        """Take over the postures of some samples, which in `other` stand `at` other places if that is given."""
+        for name in _POSTURE:
+            getattr(self, name)[rows] = getattr(other, name)[rows if at is None else at]
+
+    def stand_upright(self, rows: NDArray[np.bool_], normal: Floats, tilt_direction: Floats) -> None:
+        """Call some samples (n,) interference-free, with the normal (n, 3) as tool axis."""
+        self.verdict[rows] = INTERFERENCE_FREE
+        self.axis[rows], self.tilt_direction[rows] = normal[rows], tilt_direction[rows]
+        self.tilt[rows], self.rotation[rows] = 0.0, 0
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -109,26 +165,26 @@ class Witness(Record):
     depth : float, optional
         How deep the part reaches into the cutter there, mm, to the resolution of the search; None where it was not searched for.
     samples : int
-        How many samples it stands for: those lost on its face for its reason, and within its body where it lies in one.
+        How many samples it stands for: those not reached on its face for its reason, and within its body where it lies in one.
     untried : bool
         No posture was looked for, though there may be a depth.
     """
 
     sample: int
     reason: str
-    obstacle_face: int | None
-    obstacle_point: Floats | None
-    tilt: float | None
-    rotation: float | None
-    axis: Floats | None
-    depth: float | None
+    obstacle_face: int | None = None
+    obstacle_point: Floats | None = None
+    tilt: float | None = None
+    rotation: float | None = None
+    axis: Floats | None = None
+    depth: float | None = None
     samples: int = 1
     untried: bool = False
 
 
-def blank(n: int) -> Verdicts:
-    """A reach over n samples on which nothing is known yet, for a search to fill."""
-    return Verdicts(
+def blank(n: int) -> VerdictBuffer:
+    """Make a buffer for n samples of which nothing is known yet."""
+    return VerdictBuffer(
         verdict=np.full(n, UNJUDGED, np.uint8),
         axis=np.full((n, 3), np.nan),
         tilt_direction=np.full((n, 3), np.nan),

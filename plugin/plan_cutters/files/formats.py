@@ -1,10 +1,9 @@
 """A table of formats lists those that are read, and those that are only recognised, with advice on the file to give instead."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-from plan_cutters.errors import PlanError
 from plan_cutters.files.content import Content
 
 Asked = TypeVar("Asked")
@@ -30,25 +29,40 @@ class Foreign:
     instead: str
 
 
-def refused(content: Content, foreign: Iterable[Foreign]) -> None:
-    """Refuse by name what is known and not read.
+def recognised(
+    content: Content, formats: Sequence[Format[Asked, Read]], foreign: Iterable[Foreign], *, xml: str, json: str,
+    archive: str = "", first: Iterable[Foreign] = (),
+) -> Format[Asked, Read]:  # fmt: skip
+    """The format of a file; what is known and not read is refused by name, some of it `first`.
+
+    `xml`, `json`, `archive`: what to say of a file of these that is of no format.
 
     Raises
     ------
     PlanError
         The content's own error.
     """
+    # But perhaps a byte-order mark.
+    if not content.data.strip(b" \t\r\n\0\xef\xbb\xbf\xff\xfe"):
+        raise content.error("is empty", file=content.name)
+    _refuse(content, first)
+    for form in formats:
+        if form.recognises(content):
+            return form
+    _refuse(content, foreign)
+    if archive and content.members is not None:
+        raise content.error(f"is a zip archive {archive}", file=content.name)
+    if content.head[:1] in ("{", "[") and content.json is None:
+        raise content.broken_json()
+    if content.head.startswith("<"):
+        raise content.error(f"is XML, but {xml}", file=content.name)
+    if content.json is not None:
+        raise content.error(f"is JSON, but {json}", file=content.name)
+    names = dict.fromkeys(f"{form.name} ({' '.join(form.suffixes)})" for form in formats)
+    raise content.error(f"is no {content.noun} that is known; read are {', '.join(names)}", file=content.name)
+
+
+def _refuse(content: Content, foreign: Iterable[Foreign]) -> None:
     for each in foreign:
         if each.recognises(content):
             raise content.error(f"is {each.name}, which is not read: {each.instead}", file=content.name)
-
-
-def is_blank(content: Content) -> bool:
-    """Whether a file holds nothing, but perhaps a byte-order mark."""
-    return not content.data.strip(b" \t\r\n\0\xef\xbb\xbf\xff\xfe")
-
-
-def unknown(content: Content, formats: Iterable[Format[Any, Any]]) -> PlanError:
-    """Why a file is none of those that are read: all of them by name."""
-    names = dict.fromkeys(f"{form.name} ({' '.join(form.suffixes)})" for form in formats)
-    return content.error(f"is no {content.noun} that is known; read are {', '.join(names)}", file=content.name)

@@ -19,3 +19,9 @@ def whole(path: Path) -> Iterator[Path]:
         with contextlib.suppress(OSError):
             aside.unlink(missing_ok=True)
         raise PlanError(f"cannot be written: {error.strerror}", file=str(path)) from None
+
+
+def write(path: Path, text: str) -> None:
+    """Write a text file, whole or not at all."""
+    with whole(path) as aside:
+        aside.write_text(text, encoding="utf-8")

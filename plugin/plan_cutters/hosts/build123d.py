@@ -10,25 +10,7 @@ if TYPE_CHECKING:
 def compound(result: "Result", *, at: "int | WitnessEntry | None" = None, cutter: str | None = None) -> Any:
     """A result as a build123d compound, for ocp_vscode and export.
 
-    What is in it is what `hosts.cadquery.assembly` holds, with the same names as labels.
-
-    Parameters
-    ----------
-    result : Result
-    at : int or WitnessEntry, optional
-        The row of a sample, or a witness such as `result.face("F3").worst`: there the tool assembly is put.
-    cutter : str, optional
-        Id of the one whose verdicts and tool are shown; default `result.shown`.
-
-    Returns
-    -------
-    build123d.Compound
-        Its children are compounds `targets`, `check faces`, `ignored faces`, `fixtures`, `tool <id>`, as far as there are any.
-
-    Raises
-    ------
-    OptionError
-        No posture is known at that sample.
+    What it takes, holds and raises is as of `hosts.cadquery.assembly`, with the same names as labels.
     """
     import build123d
 

@@ -15,7 +15,7 @@ from plan_cutters.domain.checks import shown as written
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.outline import outline
 from plan_cutters.domain.travel import tips
-from plan_cutters.domain.verdicts import UNDECIDED, Verdicts, blank
+from plan_cutters.domain.verdicts import UNDECIDED, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.report.models import product, split_result, styles, verdict_of
 from plan_cutters.report.witness import row_of
@@ -68,7 +68,7 @@ def shown(
         group = {"check": "check faces", "ignored": "ignored faces"}.get(verdict_of(piece), "targets")
         groups[group].append(Shown(piece.shape, names.of(title), colour))
     groups["fixtures"] += [
-        Shown(_fixture(each), names.of(each.name), rgb("fixture")) for each in result.scene.around.fixtures
+        Shown(_fixture(each), names.of(each.name), rgb("fixture")) for each in result.conditions.around.fixtures
     ]
     found = {word: tuple(each) for word, each in groups.items() if each}
     if at is not None:
@@ -124,9 +124,9 @@ def _posture(result: Result, cutter: Cutter, at: int | WitnessEntry) -> tuple[Fl
     tilt_direction = axis - (axis @ normal) * normal
     if np.linalg.norm(tilt_direction) < 1e-9:
         tilt_direction = samples.direction_max[row]
-    one: Verdicts = blank(1)
+    one = blank(1)
     one.axis[0], one.tilt_direction[0], one.tilt[0] = axis, tilt_direction / np.linalg.norm(tilt_direction), tilt
-    tip = tips(cutter, samples.point[row : row + 1], normal[None], one)[0]
+    tip = tips(cutter, samples.point[row : row + 1], normal[None], one.freeze())[0]
     if not np.isfinite(tip).all():
         raise OptionError(f"{cutter.id} cannot touch at a tilt of {np.degrees(tilt):.3g} deg: there is nothing to show")
     return tip, axis

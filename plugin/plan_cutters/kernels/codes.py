@@ -12,7 +12,7 @@ INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 2
 REASONS = (
     "axis_limit", "local_gouge", "rear_gouge", "collision", "buried", "tolerance", "neck", "shank", "holder", "fixture",
 )  # fmt: skip
-AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, COLLISION, BURIED, TOLERANCE, BY_NECK, BY_SHANK, BY_HOLDER, FIXTURE = range(10)
+AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, COLLISION, INSIDE, TOLERANCE, BY_NECK, BY_SHANK, BY_HOLDER, FIXTURE = range(10)
 NO_REASON = 255
 
 #: Kinds of a piece: below `radius + slope (w - low)` for the first two; the third has a cross section of an arc: what is
@@ -21,6 +21,8 @@ CYLINDER, CONE, ARC = 0.0, 1.0, 2.0
 #: Columns of a piece: its kind, its heights, and for an arc, in place of slope: the height of its centre. Then the numbers made
 #: of these: 1 / sqrt(1 + slope^2); its lowest and highest point; its radius at the upper height (arcs: the largest); its part.
 KIND, LOW, HIGH, RADIUS, SLOPE, ROUND, SCALE, BOTTOM, TOP, WIDE, PART, COLUMNS = range(12)
+#: Columns of a node's box: centre, three unit sides (the last along the mean normal), three half sides, half diagonal.
+CENTRE, SIDES, HALVES, DIAGONAL, BOX = 0, 3, 12, 15, 16
 #: Parts of an assembly.
 FLUTES, NECK, SHANK, HOLDER = 0, 1, 2, 3
 #: Columns of the modes in which a tool touches: offset of the centre of curvature from the axis, radius of curvature, the tilts

@@ -1,7 +1,7 @@
-"""Sorted intervals of tilt, rows (first, last) of an array with room at its end: what is taken out, put in and joined.
+"""Sorted intervals of tilt, rows (first, last) of an array with spare ones at its end: what is taken out, put in and joined.
 
 `domain.intervals` does the same with arrays of their own; a test holds the two against each other. Intervals whose ends are
-known only to a band are in `maps.gaps`.
+known only to a band are in `maps.intervals`.
 """
 
 from plan_cutters.kernels.jit import kernel

@@ -9,10 +9,10 @@ import numpy as np
 
 from plan_cutters.kernels.codes import ON_LIMIT, PARALLEL
 from plan_cutters.kernels.jit import entry, kernel
-from plan_cutters.kernels.linear.vectors import cross, dot, lean_frame
+from plan_cutters.kernels.linear.vectors import cross, dot, tilt_frame
 from plan_cutters.kernels.tool.arcs import axis_arcs
 
-#: Crossings that are kept, at the end of the room for intervals: two for each of at most six circles, and the ends.
+#: Crossings that are kept, at the end of the array of intervals: two for each of at most six circles, and the ends.
 CROSSINGS = 16
 _TURN = 2.0 * np.pi
 
@@ -136,7 +136,7 @@ def hold(n, f, rotary, intervals, count):
         Normal and tilt direction.
     rotary : Rotary
     intervals : (m, 2) float64, read and written
-        With room at the end: `CROSSINGS` rows, and three for each crossing and interval.
+        With spare rows at the end: `CROSSINGS`, and three for each crossing and interval.
     count : int
     """
     kept, base = 0, len(intervals) - CROSSINGS
@@ -192,7 +192,7 @@ def any_axis(rows, normal, direction_max, ranges, low, high, held):
         held[row] = False
         for rotation in range(len(ranges.rotation_cos)):
             cosine, sine = turn_of(n, e1, ranges, rotation)
-            lean_frame(e1, e2, cosine, sine, f, t)
+            tilt_frame(e1, e2, cosine, sine, f, t)
             if held_tilts(n, f, ranges, low, high, intervals) > 0:
                 held[row] = True
                 break

@@ -3,7 +3,7 @@
 Two looks: a grid of cells, some of which are surely outside because a way leads from them past every triangle to where
 there is nothing (whatever is open, turned or doubled); and for points elsewhere the winding number of the bodies' skins,
 summed over the tree. Bodies may touch, overlap, repeat each other or hold voids: each skin counts as enclosing all that
-is within it, so a void is as little to be got into as material.
+is within it, so a void is as little to be got into as material. Lemmas F1 and F5 of `docs/material_proof.md`.
 
 Source of the hierarchical sum: Barill, Dickson, Schmidt, Levin, Jacobson, *Fast winding numbers for soups and clouds* (2018).
 """
@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from plan_cutters.kernels.codes import CENTRE, HALVES, SIDES
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.rows import Tree
 
@@ -225,11 +226,12 @@ def _touches(x, y, z, clear, solids, stack):
         if moment[node, _AREA] <= 0.0:
             continue
         # Distance from the node's oriented box.
-        dx, dy, dz = x - box[node, 0], y - box[node, 1], z - box[node, 2]
+        dx, dy, dz = x - box[node, CENTRE], y - box[node, CENTRE + 1], z - box[node, CENTRE + 2]
         square = 0.0
         for k in range(3):
-            along = dx * box[node, 3 + 3 * k] + dy * box[node, 4 + 3 * k] + dz * box[node, 5 + 3 * k]
-            square += max(0.0, abs(along) - box[node, 12 + k]) ** 2
+            side = SIDES + 3 * k
+            along = dx * box[node, side] + dy * box[node, side + 1] + dz * box[node, side + 2]
+            square += max(0.0, abs(along) - box[node, HALVES + k]) ** 2
         if square > clear * clear:
             continue
         if node < first:

@@ -25,7 +25,7 @@ class Rotary(NamedTuple):
     """Rotary axes of a machine, in the part's frame: circle (m, 4), direction (k, 3), limit (k, 2) and tool (3,), as in
     `domain.kinematics.Kinematics`; `tool` is zero where there is no machine. swing: how the second axis moves the tool towards
     the first, the angle at which it is nearest, the amplitude and the middle of the cosine between the two. aim (a, 3): tool axes
-    towards which each sample's rotations lean, in place of those asked for, where fewer than two axes turn the tool."""
+    towards which each sample's rotations tilt, in place of those requested, where fewer than two axes turn the tool."""
 
     circle: Any
     direction: Any
@@ -85,8 +85,8 @@ class Frame(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Room to work in: stack and masks (64,) int64, corner (3, 3), drawn (4, 3), polygon and spare (8, 3), pieces (k, 3, 3).
-    looked (1,) int64: boxes looked at since there is this room, and what else takes as long."""
+    """This is a workspace: stack and masks (64,) int64, corner (3, 3), drawn (4, 3), polygon and spare (8, 3), pieces (k, 3, 3).
+    looked (1,) int64: boxes looked at since it was made, and what else takes as long."""
 
     stack: Any
     masks: Any

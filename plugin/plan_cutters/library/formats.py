@@ -8,8 +8,8 @@ import binascii
 import re
 from collections.abc import Callable
 
-from plan_cutters.errors import LibraryError
-from plan_cutters.files.formats import Foreign, Format, is_blank, refused, unknown
+from plan_cutters.files import formats
+from plan_cutters.files.formats import Foreign, Format
 from plan_cutters.library import freecad, fusion_csv, fusion_json, hsmworks, linuxcnc, toml_in
 from plan_cutters.library.files import Content
 from plan_cutters.library.milling import Ask
@@ -100,23 +100,8 @@ def recognised(content: Content) -> Format[Ask, Found]:
     LibraryError
         It is none that is read; by name, where it is known.
     """
-    if is_blank(content):
-        raise LibraryError("is empty", file=content.name)
-    for form in FORMATS:
-        if form.recognises(content):
-            return form
-    refused(content, FOREIGN)
-    if content.members is not None:
-        raise LibraryError(
-            "is a zip archive without tools.json, no Fusion tool library; give what is in it", file=content.name
-        )
-    if content.head[:1] in ("{", "[") and content.json is None:
-        raise content.broken_json()
-    if content.head.startswith("<"):
-        raise LibraryError("is XML, but no HSMWorks tool library (tool-library); export it anew", file=content.name)
-    if isinstance(content.json, dict | list):
-        raise LibraryError(
-            'is JSON, but neither a Fusion library ({"data": [tools]}) nor of FreeCAD (tools, parameter, profile)',
-            file=content.name,
-        )
-    raise unknown(content, FORMATS)
+    return formats.recognised(
+        content, FORMATS, FOREIGN, xml="no HSMWorks tool library (tool-library); export it anew",
+        archive="without tools.json, no Fusion tool library; give what is in it",
+        json='neither a Fusion library ({"data": [tools]}) nor of FreeCAD (tools, parameter, profile)',
+    )  # fmt: skip

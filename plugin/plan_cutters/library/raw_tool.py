@@ -1,12 +1,12 @@
 """All formats hand on raw tools: a tool as the file lists it, its numbers in mm and degrees, and the faults found in them."""
 
-import math
 import unicodedata
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, Literal
 
-from plan_cutters.domain.checks import shown
+from plan_cutters.domain.checks import finite, shown
 from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError
 from plan_cutters.library.records import Entry
@@ -54,17 +54,8 @@ def whole_of(value: Any, field: str) -> int | None:
     return int(found)
 
 
-def number_of(value: Any, field: str) -> float:
-    """A number written as one: no text, no truth value."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise FaultError(f"{field} is {shown(value)}, not a number")
-    try:
-        found = float(value)
-    except OverflowError:
-        found = math.inf
-    if not math.isfinite(found):
-        raise FaultError(f"{field} is {found:g}, which no dimension is")
-    return found
+#: A number written as one: no text, no truth value.
+number_of = partial(finite, error=FaultError)
 
 
 def number_in(text: str, field: str) -> tuple[float, bool]:
@@ -81,7 +72,7 @@ def number_in(text: str, field: str) -> tuple[float, bool]:
             raise ValueError
         return number_of(float(word), field), comma
     except ValueError:
-        raise FaultError(f"{field} is {shown(text)}, not a number") from None
+        raise FaultError(f"{field} must be a number, not {shown(text)}") from None
 
 
 def mm(value: float, scale: float, field: str, *, exact: bool = False) -> float:

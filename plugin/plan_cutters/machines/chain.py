@@ -2,10 +2,11 @@
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 from plan_cutters.domain.axis import Axis, Carried, Kind
-from plan_cutters.domain.checks import shown
+from plan_cutters.domain.checks import finite, shown
 from plan_cutters.domain.machine import Machine
 from plan_cutters.errors import MachineError
 
@@ -47,17 +48,8 @@ def scaled(value: float, size: float) -> float:
     return math.radians(value) if size == math.pi / 180.0 else value * size
 
 
-def real(given: Any, what: str) -> float:
-    """A finite number of a file; a text is none."""
-    if isinstance(given, bool) or not isinstance(given, int | float):
-        raise MachineError(f"{what} must be a number, not {shown(given)}")
-    try:
-        found = float(given)
-    except OverflowError:
-        found = math.inf
-    if not math.isfinite(found):
-        raise MachineError(f"{what} must be a finite number, not {shown(given)}")
-    return found
+#: A finite number of a file; a text is none.
+real = partial(finite, error=MachineError)
 
 
 def vector(given: Any, what: str) -> Vector:

@@ -1,6 +1,6 @@
 """Files that are machine files, or should be; and what whoever gives one adds where it leaves something open."""
 
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
 from plan_cutters.domain.checks import shown
 from plan_cutters.errors import MachineError, PlanError
@@ -18,20 +18,14 @@ class Content(content.Content):
 
 
 class Added(NamedTuple):
-    """The user adds these facts to a machine's file, where the file leaves them open.
+    """The user adds these facts to a machine's file, where the file leaves them open."""
 
-    Attributes
-    ----------
-    part, tool : tuple of str
-        Names of rotary axes: those that carry the part, the one next to the part first; those that carry the tool, the one next
-        to the tool last.
-    sign : str
-        `table`: positive angles of axes that carry the part are those of the table's own motion; `tool-relative`: of the tool
-        relative to the part, as in ISO 841; empty where nothing is said.
-    """
-
+    #: Names of rotary axes: those that carry the part, the one next to the part first; those that carry the tool, the one next
+    #: to the tool last.
     part: tuple[str, ...] = ()
     tool: tuple[str, ...] = ()
+    #: `table`: positive angles of axes that carry the part are those of the table's own motion; `tool-relative`: of the tool
+    #: relative to the part, as in ISO 841; empty where nothing is said.
     sign: str = ""
 
     @property
@@ -73,8 +67,3 @@ class Added(NamedTuple):
         if (order and self.order) or (sign and self.sign):
             what = "the order of its axes" if order and self.order else "how its angles are counted"
             raise MachineError(f"it says {what} itself: leave out #{self.text}", file=name)
-
-
-def fault(content: Content, why: Any) -> MachineError:
-    """An error of this file."""
-    return MachineError(str(why), file=content.name)

@@ -7,9 +7,10 @@ import re
 from collections.abc import Callable
 
 from plan_cutters.domain.machine import Machine
-from plan_cutters.files.formats import Foreign, Format, is_blank, refused, unknown
+from plan_cutters.files import formats
+from plan_cutters.files.formats import Foreign, Format
 from plan_cutters.machines import freecad, fusion, linuxcnc, mtconnect, toml_in
-from plan_cutters.machines.files import Added, Content, fault
+from plan_cutters.machines.files import Added, Content
 
 FORMATS: tuple[Format[Added, Machine], ...] = (
     Format("plan-cutters TOML", (".toml",), toml_in.is_toml, toml_in.read_toml),
@@ -64,19 +65,7 @@ def recognised(content: Content) -> Format[Added, Machine]:
     MachineError
         It is none that is read; by name, where it is known.
     """
-    if is_blank(content):
-        raise fault(content, "is empty")
-    refused(content, FOREIGN[:1])
-    for form in FORMATS:
-        if form.recognises(content):
-            return form
-    refused(content, FOREIGN[1:])
-    if content.head[:1] in ("{", "[") and content.json is None:
-        raise content.broken_json()
-    if content.head.startswith("<"):
-        raise fault(content, "is XML, but no MTConnect probe (MTConnectDevices)")
-    if content.json is not None:
-        raise fault(
-            content, "is JSON, but no machine of Fusion (kinematics), FreeCAD (machine.axes) or ours (part_chain)"
-        )
-    raise unknown(content, FORMATS)
+    return formats.recognised(
+        content, FORMATS, FOREIGN[1:], first=FOREIGN[:1], xml="no MTConnect probe (MTConnectDevices)",
+        json="no machine of Fusion (kinematics), FreeCAD (machine.axes) or ours (part_chain)",
+    )  # fmt: skip

@@ -22,25 +22,17 @@ _LETTERS = "XYZABCUVW"
 
 
 class Kins(NamedTuple):
-    """Kinematics by their formulas.
+    """Kinematics by their formulas."""
 
-    Attributes
-    ----------
-    joints : str
-        Letters of the joints from 0 up, where the file does not say.
-    part, tool : str
-        Letters of the rotary axes: those that carry the part, the one next to it first; those that carry the tool, the one next
-        to it last.
-    against : str
-        Letters that are counted against ISO 841.
-    pin : bool
-        Whether `conventional-directions` turns these.
-    """
-
+    #: Letters of the joints from 0 up, where the file does not say.
     joints: str
+    #: Letters of the rotary axes: those that carry the part, the one next to it first; those that carry the tool, the one next
+    #: to it last.
     part: str
     tool: str
+    #: Letters that are counted against ISO 841.
     against: str
+    #: Whether `conventional-directions` turns these.
     pin: bool
 
 

@@ -70,13 +70,16 @@ class Search:
         first = rng.choice(rows, min(_FIRST, len(rows)), replace=False) if len(rows) else rows
         self._add_rows(np.sort(first))
 
-    def solve(self) -> Cover:
-        """Return the smallest cover of the candidates that serves all samples but those that none serves."""
+    def solve(self, *, prove: bool = True) -> Cover:
+        """Return a small cover of the candidates that serves all samples but those that none serves.
+
+        With `prove` the smallest, or at least a bound of it; else what is found soon.
+        """
         known: Rows | None = None
         for _ in range(_ROUNDS):
             found = self._cover(known, prove=False)
             missed = self._missed(found.chosen)
-            if not len(missed) and not found.closed:
+            if prove and not len(missed) and not found.closed:
                 known = found.chosen
                 found = self._cover(known, prove=True)
                 missed = self._missed(found.chosen) if len(found.chosen) < len(known) else missed
@@ -197,14 +200,14 @@ def search_fewest(
         Told the number of levels done and of all.
     """
     levels = max(0, math.ceil(math.log2(spacing / finest) - 0.5))
-    best = search.solve()
+    best = search.solve(prove=not levels)
     for level in range(levels):
         tell(level, levels)
         if len(best.chosen) <= 1:
             break
         spacing *= (finest / spacing) ** (1.0 / (levels - level))
         search.refine(best, spacing, orientations)
-        best = search.solve()
+        best = search.solve(prove=level == levels - 1)
     return Fewest(search.columns, best.chosen, search.rows, best.weight, best.at_least, best.bound, best.relaxed, spacing,
                   search.alone)  # fmt: skip
 

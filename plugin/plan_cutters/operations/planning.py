@@ -57,7 +57,7 @@ def plan_operations(
     with stage("operations") as tell:
         search = Search(task.probes, _first(task), task.rows, lambda bare: _stored(task, bare))
         fewest = search_fewest(search, task.orientations, options.index_step or STEP, finest, tell)
-        open_ = ready.finished & (ready.buried < 0)
+        open_ = ready.finished & (ready.inside < 0)
         steps = curve(task.probes, fewest, task.rows, ready.samples.area, float(np.nansum(ready.samples.area[open_])))
         plans, timed = [], None
         if options.operations in ("fewest", "both"):
@@ -72,7 +72,7 @@ def plan_operations(
 def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], least: LeastSet | None) -> Task:
     options = ready.options
     cutters = considered(ready.cutters, [run.cutter for run in least.runs] if least else [], _CUTTERS)
-    open_ = ready.finished & (ready.buried < 0)
+    open_ = ready.finished & (ready.inside < 0)
     reached = open_ & np.logical_or.reduce([found[cutter].reached for found in everywhere for cutter in cutters])
     probes = Probes(ready.samples, cutters, ready.setups, [open_] * len(everywhere))
     paths = Paths(options.scallop, options.stepover, feeds(options, cutters))

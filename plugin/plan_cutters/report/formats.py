@@ -12,7 +12,7 @@ from plan_cutters.report.protocol import Judged
 
 if TYPE_CHECKING:
     # What formats there are is asked before anything heavy is loaded.
-    from cad_io.kernel.side_process import Meanwhile
+    from cad_io.kernel.side_process import SideProcess
     from plan_cutters.document.clock import Clock
     from plan_cutters.document.model import FileEntry
 
@@ -29,7 +29,7 @@ WRITERS = {
     "csv": ("axes.csv", "to_csv", "write_csv"),
     "vtk": ("axes.vtp", "to_vtk", "write_vtk"),
     "regions": ("axis_regions.json", "regions", "write_regions"),
-    "png": ("review.png", "picture", "write_png"),
+    "png": ("review.png", "drawing.part", "write_png"),
 }
 #: What is shown on faces that are split along the verdicts: the CAD kernel has a part in it.
 _MODELS = ("glb", "merged", "png", "step")
@@ -80,14 +80,14 @@ class Making:
 
         The page is made while the faces are split, the GLB while the STEP file is written.
         """
-        from cad_io.kernel.side_process import Meanwhile
+        from cad_io.kernel.side_process import SideProcess
 
         models = [name for name in formats if name in _MODELS]
         with ExitStack() as copies:
 
-            def begun(make: Callable[[str], "FileEntry"], name: str, beside: bool) -> "Meanwhile[FileEntry]":
+            def begun(make: Callable[[str], "FileEntry"], name: str, beside: bool) -> "SideProcess[FileEntry]":
                 worth = beside and name in formats and self._several
-                return copies.enter_context(Meanwhile(partial(make, name), _COPY, worth=worth))
+                return copies.enter_context(SideProcess(partial(make, name), _COPY, worth=worth))
 
             page = begun(self.file, "html", bool(models))
             if page.works:

@@ -116,7 +116,7 @@ def write_step(result: Judged, split: Any, path: Path, *, schema: str = "ap242")
         Product(
             each.name, each.source.shape, np.column_stack([each.fixture.rotation, each.fixture.shift]), rgb("fixture")
         )
-        for each in result.scene.around.fixtures
+        for each in result.conditions.around.fixtures
         if isinstance(each.source, Part)
     ]
     write_cad(split, path, styles(result), product=product(result), tree=part.tree, layers=part.layers,
@@ -162,7 +162,7 @@ def write_glb(result: Judged, split: Any, path: Path, *, merged: bool = False) -
         merged=merged,
         others=[
             Drawn(each.name, each.shown, rgb("fixture"), entry.model_dump(mode="json"))
-            for each, entry in zip(result.scene.around.fixtures, result.plan.fixtures, strict=True)
+            for each, entry in zip(result.conditions.around.fixtures, result.plan.fixtures, strict=True)
         ],
     )
 

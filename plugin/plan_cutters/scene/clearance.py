@@ -69,31 +69,18 @@ def clearances(samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts, cond
         return found
     error = obstacles.triangles.chord_error + _ROUNDING
     triangle, which = np.full(n, -1, np.int32), np.full(n, -1, np.int32)
-    free, lost = np.full(n, -1), np.full(n, len(steps))
+    postures = samples.point, samples.normal, verdicts.axis, verdicts.tilt_direction
+    free, not_reached = np.full(n, -1), np.full(n, len(steps))
     nearest, part = np.full(n, -1, np.int32), np.full(n, -1, np.int8)
-    while len(left := rows[lost[rows] - free[rows] > 1]):
-        middle = (free[left] + lost[left]) // 2
+    while len(left := rows[not_reached[rows] - free[rows] > 1]):
+        middle = (free[left] + not_reached[left]) // 2
         for rung in np.unique(middle).tolist():
             mine = left[middle == rung]
             made = grown(cutter, float(steps[rung]) + error)
-            tool = tool_of(made)
-            in_chunks(
-                lambda piece, tool=tool: probe(  # type: ignore[misc]
-                    piece,
-                    samples.point,
-                    samples.normal,
-                    verdicts.axis,
-                    verdicts.tilt_direction,
-                    tool,
-                    obstacles.tree,
-                    triangle,
-                    which,
-                ),
-                mine,
-                conditions.jobs,
-            )
+            given = (*postures, tool_of(made), obstacles.tree, triangle, which)
+            in_chunks(lambda piece, given=given: probe(piece, *given), mine, conditions.jobs)  # type: ignore[misc]
             clear = triangle[mine] == -1
-            free[mine[clear]], lost[mine[~clear]] = rung, rung
+            free[mine[clear]], not_reached[mine[~clear]] = rung, rung
             met = mine[triangle[mine] >= 0]
             nearest[met], part[met] = triangle[met], made.piece[0, which[met], PART]
     # Even the tool itself may be met, within the tolerance: a barrel touches with its flank.

@@ -12,7 +12,7 @@ from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.posture import PostureRange
-from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.domain.verdicts import VerdictBuffer
 from plan_cutters.kernels.rows import Contacts, Found, Ranges, Rotary, Tool
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
@@ -138,7 +138,7 @@ def tool_of(made: Assembly) -> Tool:
     return Tool(made.piece, made.mode, made.reach, made.inner, made.end)
 
 
-def found_of(verdicts: Verdicts) -> Found:
+def found_of(verdicts: VerdictBuffer) -> Found:
     """Where kernels write what they find."""
     return Found(
         verdicts.verdict, verdicts.axis, verdicts.tilt_direction, verdicts.tilt, verdicts.rotation, verdicts.reason
@@ -158,7 +158,8 @@ def require_finite(contacts: Contacts, rows: NDArray[np.int64]) -> None:
 
 def search_postures(
     contacts: Contacts, rows: NDArray[np.int64], outer_tool: Assembly, inner_tool: Assembly, conditions: Conditions,
-    verdicts: Verdicts, progress: Progress | None = None, *, fixed: bool = False, strict: bool = False, work: Work | None = None,
+    verdicts: VerdictBuffer, progress: Progress | None = None, *, fixed: bool = False, strict: bool = False,
+    work: Work | None = None,
 ) -> None:  # fmt: skip
     """Search a posture for contacts, neighbours in sequence, and write what is found into `verdicts`.
 
@@ -170,7 +171,7 @@ def search_postures(
     outer_tool, inner_tool : Assembly
         As `Conditions.outer_tool` and `Conditions.inner_tool` make them of a cutter.
     conditions : Conditions
-    verdicts : Verdicts
+    verdicts : VerdictBuffer
     fixed : bool
         As for `in_chunks`: each contact starts from what was found at the one before it in its piece.
     strict : bool
@@ -190,11 +191,11 @@ def search_postures(
     require_finite(contacts, rows)
     ranges, around = conditions.ranges._replace(strict=strict), conditions.around
     possible, certain = around.possible.solids, around.certain.solids
-    tools, found, looked = (tool_of(outer_tool), tool_of(inner_tool)), found_of(verdicts), list[int]()
+    tools, found = (tool_of(outer_tool), tool_of(inner_tool)), found_of(verdicts)
 
-    def searched(piece: NDArray[np.int64]) -> None:
-        looked.append(search(piece, contacts, ranges, *tools, possible, certain, found))
+    def searched(piece: NDArray[np.int64]) -> int:
+        return int(search(piece, contacts, ranges, *tools, possible, certain, found))
 
-    in_chunks(searched, rows, conditions.jobs, progress, fixed=fixed)
+    looked = in_chunks(searched, rows, conditions.jobs, progress, fixed=fixed)
     if work is not None:
-        work.add(sum(looked))
+        work.add(looked)

@@ -44,8 +44,8 @@ def coverings(ready: Prepared) -> tuple[Covering, ...]:
     inside, around, samples = ready.inside_bodies, ready.conditions.around, ready.samples
     rows = np.flatnonzero(inside & ~np.isin(samples.face, around.on_bodies))
     found = []
-    for index in np.unique(ready.buried[rows]).tolist():
-        mine = rows[ready.buried[rows] == index]
+    for index in np.unique(ready.inside[rows]).tolist():
+        mine = rows[ready.inside[rows] == index]
         found.append(Covering(index, mine, _how(ready, around.bodies[index], mine)))
     return tuple(sorted(found, key=lambda each: (-float(samples.area[each.rows].sum()), each.index)))
 
@@ -60,7 +60,7 @@ def _how(ready: Prepared, body: Body, rows: NDArray[np.int64]) -> How:
     from plan_cutters.kernels.material import near_skin
 
     certain = ready.conditions.around.certain
-    _, deep = certain.depths(ready.scene.tolerance)
+    _, deep = certain.depths(ready.conditions.tolerance)
     point, skin = np.ascontiguousarray(ready.samples.point[rows]), certain.skin_of(body)
     on = np.zeros(len(rows), bool)
     # Where a body overlaps, a few of them tell.

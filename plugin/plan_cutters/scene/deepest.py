@@ -108,19 +108,9 @@ def deepest(
         return depth
 
     def met(depth: float) -> int:
-        hit = np.full(1, -1, np.int32)
+        hit, there = np.full(1, -1, np.int32), (contact[None], normal[None], posture.axis, posture.tilt_direction)
         tool = tool_of(assembly(cutter, depth, depth))
-        probe(
-            np.zeros(1, np.int64),
-            contact[None],
-            normal[None],
-            posture.axis,
-            posture.tilt_direction,
-            tool,
-            obstacles.tree,
-            hit,
-            hit.copy(),
-        )
+        probe(np.zeros(1, np.int64), *there, tool, obstacles.tree, hit, hit.copy())
         return int(hit[0])
 
     error = obstacles.triangles.chord_error
@@ -138,14 +128,13 @@ def deepest(
         found = met(depth * (1.0 + _EXACT) + 1e-9) if depth < most else -1
         depth = depth * (1.0 + _EXACT) + 1e-9 if found >= 0 else depth
     face = obstacles.face(triangle)
-    if part is None or not 0 < face <= len(part.faces):
-        return Deepest(face, triangle, point, depth_of(point, depth))
-    side = np.linalg.norm(
-        obstacles.tree.vertex[triangle] - np.roll(obstacles.tree.vertex[triangle], 1, axis=0), axis=1
-    ).max()
-    shallow = max(depth - 2.0 * error, 0.5 * depth)
-    foot = _foot(part, face, point, float(side), 4.0 * error + 1e-6, partial(beyond, depth=shallow))
-    return Deepest(face, triangle, point if foot is None else foot, depth_of(point if foot is None else foot, depth))
+    if part is not None and 0 < face <= len(part.faces):
+        corner = obstacles.tree.vertex[triangle]
+        side = float(np.linalg.norm(corner - np.roll(corner, 1, axis=0), axis=1).max())
+        shallow = max(depth - 2.0 * error, 0.5 * depth)
+        foot = _foot(part, face, point, side, 4.0 * error + 1e-6, partial(beyond, depth=shallow))
+        point = point if foot is None else foot
+    return Deepest(face, triangle, point, depth_of(point, depth))
 
 
 def _foot(

@@ -50,22 +50,24 @@ def served_by(
     if not len(held) or not len(rows):
         return free, 0
     tool, solids, contacts = tool_of(conditions.outer_tool(cutter)), conditions.obstacles.solids, contacts_of(samples)
-    made = list[int]()
 
-    def tested(piece: NDArray[np.int64]) -> None:
+    def tested(piece: NDArray[np.int64]) -> int:
         """Test a piece of a table of axes by blocks of rows."""
         which, block = np.divmod(piece, blocks)
+        count = 0
         for k, part in zip(held[which].tolist(), block.tolist(), strict=True):
             ends = slice(part * _BLOCK, (part + 1) * _BLOCK)
-            made.append(served(rows[ends], axes[k], contacts, low - _END, high + _END, tool, solids, free[k, ends]))
+            count += served(rows[ends], axes[k], contacts, low - _END, high + _END, tool, solids, free[k, ends])
+        return count
 
     blocks = -(-len(rows) // _BLOCK)
-    in_chunks(tested, np.arange(len(held) * blocks), conditions.jobs, chunk=max(1, _AT_ONCE // min(_BLOCK, len(rows))))
+    most = max(1, _AT_ONCE // min(_BLOCK, len(rows)))
+    made = in_chunks(tested, np.arange(len(held) * blocks), conditions.jobs, chunk=most)
     if conditions.postures.rotation[1] - conditions.postures.rotation[0] <= 2.0 * np.pi - _END:
         for k in held.tolist():
             found = np.flatnonzero(free[k])
             free[k, found] &= _turned(rows[found], axes[k], samples, conditions)
-    return free, sum(made)
+    return free, made
 
 
 def _turned(
@@ -171,4 +173,4 @@ def held_at(axes: Floats, number: Ints, samples: SurfaceSamples) -> Verdicts:
         across = np.linalg.norm(np.cross(samples.normal[rows], axis), axis=1)
         found.tilt[rows] = np.arctan2(across, cosine)
         found.verdict[rows] = ACCESSIBLE
-    return found
+    return found.freeze()

@@ -2,7 +2,8 @@
 
 At every tilt from 0 to 90 deg the point at a small distance `d` from the contact along the normal lies in the cutter, at its
 edge: `P + d n = P - d sin(tilt) x_T + d cos(tilt) a`. If a ball of radius r about it is all material, the cutter holds points
-of that ball which are deeper in it than r / sqrt(2). So one test a contact settles all its postures.
+of that ball which are deeper in it than r / sqrt(2). So one test a contact settles all its postures
+(Lemma F3 of `docs/material_proof.md`).
 """
 
 from collections.abc import Sequence
@@ -37,7 +38,7 @@ class Cover(Record):
     point: Floats
 
 
-def buried(
+def inside_material(
     samples: SurfaceSamples, orientation: Orientation, bodies: Sequence[Body], certain: Obstacles, tolerance: float,
     jobs: int = 1,
 ) -> Ints:  # fmt: skip
@@ -117,6 +118,26 @@ def voids(bodies: Sequence[Body], orientation: Orientation) -> NDArray[np.bool_]
         ],
         bool,
     )
+
+
+def inside_bodies(within: Ints, bodies: Sequence[Body], orientation: Orientation) -> NDArray[np.bool_]:
+    """Find the samples (n,) that lie inside another body of the part: they are no surface of the finished part.
+
+    The wall of a void is one, though no cutter gets there.
+
+    Parameters
+    ----------
+    within : (n,) int32
+        As `buried` gives it.
+    bodies : sequence of Body
+        Of the part, without fixtures.
+    orientation : Orientation
+    """
+    mine = (within >= 0) & (within < len(bodies))
+    if mine.any():
+        mine[mine] = ~voids(bodies, orientation)[within[mine]]
+    mine.setflags(write=False)
+    return mine
 
 
 def cover(point: Floats, normal: Floats, certain: Obstacles, body: Body | None = None) -> Cover | None:

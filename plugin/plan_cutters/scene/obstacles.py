@@ -27,11 +27,6 @@ _AROUND = 0.5
 CHORD_SHARE, CHORD_ASKED = 0.25, 0.2
 
 
-def kept_tolerance(asked: float, chord_error: float) -> float:
-    """The gouge tolerance, mm, that can be kept with obstacles of a chord error: what was asked, or more."""
-    return max(asked, chord_error / CHORD_SHARE)
-
-
 @dataclass(frozen=True, eq=False, repr=False)
 class Obstacles(Record):
     """Triangles with their bounding tree.
@@ -95,20 +90,27 @@ class Obstacles(Record):
     @cached_property
     def solids(self) -> "Solids":
         """The tree and what its triangles enclose, as the searches take it."""
-        from plan_cutters.kernels.material import Solids, moments, sheet
+        from plan_cutters.kernels.material import sheet
+
+        return self._filled(self._cells(), self._end) if self.weight.any() else sheet(self.tree)
+
+    def _filled(self, cells: tuple[NDArray[np.uint8], Floats, float, bool], end: Floats) -> "Solids":
+        from plan_cutters.kernels.material import Solids, moments
 
         weight = np.ascontiguousarray(self.weight[self._built[0]])
-        if not weight.any():
-            return sheet(self.tree)
-        return Solids(self.tree, weight, moments(self.tree.vertex, weight, self.tree.depth), *self._cells(),
-                      self._end)  # fmt: skip
+        return Solids(self.tree, weight, moments(self.tree.vertex, weight, self.tree.depth), *cells, end)
+
+    @property
+    def _extent(self) -> tuple[Floats, Floats, float]:
+        """Corners (3,) of the box around all triangles, and how far skins may be off and open, mm."""
+        vertex = self.triangles.vertex
+        low, high = vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))
+        return low, high, self.triangles.chord_error + self.gap + 1e-9 * float(np.abs([low, high]).max())
 
     @property
     def _end(self) -> Floats:
         """Corners (2, 3) of a box around all that may enclose something."""
-        vertex, grow = self.triangles.vertex, self.triangles.chord_error + self.gap
-        low, high = vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))
-        grow += 1e-9 * float(np.abs([low, high]).max())
+        low, high, grow = self._extent
         boxes = self.open_boxes.reshape(-1, 2, 3)
         return np.array([np.min([low - grow, *boxes[:, 0]], axis=0), np.max([high + grow, *boxes[:, 1]], axis=0)])
 
@@ -117,9 +119,7 @@ class Obstacles(Record):
         lies beyond the grid."""
         from plan_cutters.kernels.material import mark_skin
 
-        vertex, grow = self.tree.vertex, self.triangles.chord_error + self.gap
-        low, high = vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))
-        grow += 1e-9 * float(np.abs([low, high]).max())
+        vertex, (low, high, grow) = self.tree.vertex, self._extent
         extent = float((high - low).max())
         whole = True
         if self.near is not None:
@@ -169,12 +169,8 @@ class Obstacles(Record):
     @property
     def _everywhere(self) -> "Solids":
         """The tree and what its triangles enclose, with no cell that is surely outside."""
-        from plan_cutters.kernels.material import Solids, moments
-
-        weight = np.ascontiguousarray(self.weight[self._built[0]])
-        unknown, end = np.zeros((1, 1, 1), np.uint8), np.array([[-np.inf] * 3, [np.inf] * 3])
-        found = moments(self.tree.vertex, weight, self.tree.depth)
-        return Solids(self.tree, weight, found, unknown, np.zeros(3), 1.0, False, end)
+        unknown = (np.zeros((1, 1, 1), np.uint8), np.zeros(3), 1.0, False)
+        return self._filled(unknown, np.array([[-np.inf] * 3, [np.inf] * 3]))
 
     @cached_property
     def wide_tree(self) -> "WideTree":
@@ -269,12 +265,18 @@ def divided(vertex: Floats, low: Floats, high: Floats, longest: float, most: int
         if most is not None and len(vertex) > most:
             small[:] = True
         done.append(vertex[small])
-        # At the middle of the longest side: long thin triangles come out compact.
-        v, first = vertex[~small], side[~small].argmax(axis=1)
-        a, b, c = (v[np.arange(len(v)), (first + k) % 3] for k in range(3))
-        middle = 0.5 * (a + b)
-        vertex = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+        vertex = halved(vertex[~small], side[~small])
     return np.ascontiguousarray(np.concatenate([np.zeros((0, 3, 3)), *done]))
+
+
+def halved(vertex: Floats, side: Floats) -> Floats:
+    """Halve triangles (n, 3, 3) at the middle of the longest of their sides (n, 3): long thin ones come out compact.
+
+    All first halves come before all second ones. A side goes from the corner of its number to the next one.
+    """
+    a, b, c = (vertex[np.arange(len(vertex)), (side.argmax(axis=1) + k) % 3] for k in range(3))
+    middle = 0.5 * (a + b)
+    return np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
 
 
 def weights(triangles: Triangles, found: Sequence[Body]) -> NDArray[np.int8]:

@@ -11,9 +11,11 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.options import Options
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.faces import Chosen
-from plan_cutters.scene.inside_material import voids
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.spacing import Spacing
+
+#: A unit direction of the part.
+Axis = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -32,8 +34,10 @@ class Prepared(Record):
     surface_class : (n,) uint8
     region : (n,) int32
         Connected samples of one class.
-    buried : (n,) int32
+    inside : (n,) int32
         The body that each sample lies within, -1 for none.
+    inside_bodies : (n,) bool
+        Samples that lie inside another body of the part (`inside_material.inside_bodies`).
     conditions : Conditions
     cutters : tuple of Cutter
         From the most wanted down.
@@ -48,33 +52,27 @@ class Prepared(Record):
     samples: SurfaceSamples
     surface_class: NDArray[np.uint8]
     region: Ints
-    buried: Ints
+    inside: Ints
+    inside_bodies: NDArray[np.bool_]
     conditions: Conditions
     cutters: tuple[Cutter, ...]
     coarser: float = 1.0
 
     @property
-    def setups(self) -> tuple[Conditions, ...]:
-        """Give the conditions for judging cutters in each requested setup, the first one first."""
-        options = self.options
-        places = options.other_placements or (None,) * len(options.other_setups)
-        found = [self.conditions]
-        for axis, place in zip(options.other_setups, places, strict=True):
-            across = None if place is None or place.x is None else np.array(place.x)
-            found.append(replace(self.conditions, setup=np.array(axis), x=across))
-        return tuple(found)
+    def axes(self) -> tuple[tuple[Axis, Axis | None], ...]:
+        """Give the setup axis and, where it is known, the direction along the machine's X, of each requested setup."""
+        options, given = self.options, (self.scene.setup, *self.options.other_setups)
+        places = (options.placement, *(options.other_placements or (None,) * len(options.other_setups)))
+        return tuple((axis, None if place is None else place.x) for axis, place in zip(given, places, strict=True))
 
     @property
-    def inside_bodies(self) -> NDArray[np.bool_]:
-        """Samples (n,) that lie inside another body of the part: they are no surface of the finished part.
-
-        The wall of a void is one, though no cutter gets there.
-        """
-        bodies = self.conditions.around.bodies
-        mine = (self.buried >= 0) & (self.buried < len(bodies))
-        if mine.any():
-            mine[mine] = ~voids(bodies, self.scene.orientation)[self.buried[mine]]
-        return mine
+    def setups(self) -> tuple[Conditions, ...]:
+        """Give the conditions for judging cutters in each requested setup, the first one first."""
+        others = (
+            replace(self.conditions, setup=np.array(axis), x=None if x is None else np.array(x))
+            for axis, x in self.axes[1:]
+        )
+        return (self.conditions, *others)
 
     @property
     def finished(self) -> NDArray[np.bool_]:

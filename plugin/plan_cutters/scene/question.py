@@ -18,7 +18,7 @@ from cad_io.part.orient import orient
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
-from plan_cutters.domain.placement import Placement
+from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import OptionError
 from plan_cutters.options import Options
@@ -68,7 +68,7 @@ def question(ready: Prepared, cutter: Cutter) -> dict[str, Any]:
             _fixture(each.fixture, None if each.source is None else each.source.sha256) for each in around.fixtures
         ],
         "tolerance": scene.asked,
-        "tolerance_kept": scene.tolerance,
+        "tolerance_kept": ready.conditions.tolerance,
         "chord_error": around.certain.triangles.chord_error,
         "tool": json.loads(json.dumps(dataclasses.asdict(cutter))),
         "allowance": options.allowance,
@@ -79,7 +79,7 @@ def question(ready: Prepared, cutter: Cutter) -> dict[str, Any]:
         "rotation_step": options.postures.step,
         "grid": options.grid,
         "spacing": options.spacing,
-        "missing": _missing(ready),
+        "missing": list(around.doubts),
         "unjudged_faces": [f.id for f in part.faces if f.number in chosen.targets and f.unjudged],
     }
 
@@ -160,9 +160,8 @@ def require_side(about: Mapping[str, Any], setup: Any) -> None:
         return
     own = setup_of(about).z
     if math.dist(own, setup) > _TOLERATED:
-        axis = ",".join(f"{x:.4g}" for x in own)
-        raise OptionError(f"these maps are of a part with open faces, whose sides follow from the setup {axis}: give that "
-                          "as the setup, or plan again")  # fmt: skip
+        raise OptionError("these maps are of a part with open faces, whose sides follow from the setup "
+                          f"{axis_words(own)}: give that as the setup, or plan again")  # fmt: skip
 
 
 def setup_of(about: Mapping[str, Any]) -> Placement:
@@ -208,16 +207,6 @@ def _sides_follow(scene: Scene) -> bool:
         return False
     ways = [(sign * x, sign * y, sign * z) for sign in (1.0, -1.0) for x, y, z in np.eye(3).tolist()]
     return any((orient(scene.part, towards=way, flip=scene.flip).sign != scene.orientation.sign).any() for way in ways)
-
-
-def _missing(ready: Prepared) -> list[str]:
-    """Obstacles that are missing or only guessed."""
-    around = ready.conditions.around
-    return [
-        *(f"F{number}: {why}" for number, why, _ in around.missing),
-        *(str(each) for each in around.lost),
-        *(f"{each.name} {face}: {why}" for each in around.fixtures for face, why, _ in each.missing),
-    ]
 
 
 def _fixture(fixture: Fixture, bytes_of: str | None) -> dict[str, Any]:

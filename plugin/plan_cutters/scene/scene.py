@@ -1,6 +1,6 @@
 """A part as it stands to be judged: its faces' sides, what is in the way, and the tolerance that can be kept."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Unpack, get_type_hints
 
 import numpy as np
@@ -16,7 +16,7 @@ from plan_cutters.errors import OptionError
 from plan_cutters.options import MOST_TOLERANCE, Options, SceneOptions
 from plan_cutters.scene.faces import ignored_faces, ignored_words
 from plan_cutters.scene.fixtures import Kept, joined, packable, read
-from plan_cutters.scene.obstacles import CHORD_ASKED, kept_tolerance
+from plan_cutters.scene.obstacles import CHORD_ASKED
 from plan_cutters.scene.overlap import refuse_overlaps
 from plan_cutters.scene.surroundings import Surroundings, surroundings
 
@@ -24,9 +24,18 @@ from plan_cutters.scene.surroundings import Surroundings, surroundings
 _DEFAULTS = {word: getattr(Options(), word) for word in get_type_hints(SceneOptions)}
 
 
+@dataclass(slots=True)
+class _Memory:
+    """A scene has read and made this: it is not done twice. `alone` are the surroundings without fixtures."""
+
+    sources: Kept = field(default_factory=dict)
+    alone: Surroundings | None = None
+    around: Surroundings | None = None
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Scene(Record):
-    """One part under one setup, which any number of answers may share: it is tessellated once, when first needed.
+    """One part under one setup, which any number of answers may share: `surround` gathers what is in the way, once.
 
     Attributes
     ----------
@@ -55,6 +64,7 @@ class Scene(Record):
     ignored: tuple[int, ...]
     asked: float
     fixtures: tuple[Fixture, ...] = ()
+    _memory: _Memory = field(default_factory=_Memory, init=False, compare=False)
 
     @classmethod
     def of(cls, part: Any, **options: Unpack[SceneOptions]) -> "Scene":
@@ -77,7 +87,7 @@ class Scene(Record):
         Examples
         --------
         >>> scene = Scene.of("samples/v_groove.step", tolerance=0.02)
-        >>> scene.tolerance, Scene.of(scene) is scene
+        >>> scene.surround().tolerance(scene.asked), Scene.of(scene) is scene
         (0.02, True)
         >>> Scene.of(scene, tolerance=0.01)
         Traceback (most recent call last):
@@ -111,19 +121,20 @@ class Scene(Record):
         if others == self.fixtures:
             return self
         scene = replace(self, fixtures=others)
-        shared: dict[str, Any] = {word: self.__dict__[word] for word in ("_alone", "_kept") if word in self.__dict__}
-        if "_around" in self.__dict__:
-            shared.setdefault("_alone", self.around.alone or self.around)
-        scene.__dict__.update(shared)
+        scene._memory.sources, scene._memory.alone = self._memory.sources, self._memory.alone
         return scene
 
-    @property
-    def turned(self) -> tuple[str, ...]:
-        """Faces whose side is a guess towards the setup axis, and would be the other one with the part's own Z as setup."""
+    def turned_faces(self) -> tuple[str, ...]:
+        """List the faces whose side is a guess towards the setup axis, and would be the other with the part's own Z as setup."""
         other = orient(self.part, towards=(0.0, 0.0, 1.0), flip=self.flip).sign
         return tuple(
             f.id for f, one, two in zip(self.part.faces, self.orientation.sign, other, strict=True) if one != two
         )
+
+    # The former names, for scripts: the program itself asks `surround` and `turned_faces`.
+    around = property(lambda self: self.surround())
+    tolerance = property(lambda self: self.surround().tolerance(self.asked))
+    turned = property(lambda self: self.turned_faces())
 
     @property
     def options(self) -> dict[str, Any]:
@@ -131,21 +142,15 @@ class Scene(Record):
         return {"setup": self.setup, "flip": self.flip, "ignore": self.ignore, "tolerance": self.asked,
                 "fixtures": self.fixtures}  # fmt: skip
 
-    @property
-    def _sources(self) -> Kept:
-        """Keep the fixtures that were read, so that none is read twice."""
-        kept: Kept = self.__dict__.setdefault("_kept", {})
-        return kept
-
     def __getstate__(self) -> dict[str, Any]:
         # Files of fixtures are read again where they are needed.
-        state = {word: value for word, value in self.__dict__.items() if word != "_kept"}
-        return state | {"fixtures": tuple(packable(each, self._sources) for each in self.fixtures)}
+        fixtures = tuple(packable(each, self._memory.sources) for each in self.fixtures)
+        return self.__dict__ | {"fixtures": fixtures, "_memory": replace(self._memory, sources={})}
 
     def read_fixtures(self, timeout: float) -> None:
         """Read the fixtures' files, before any work is done; `timeout`: the most seconds that a faulty one may take."""
         for each in self.fixtures:
-            read(each, self._sources, timeout=timeout)
+            read(each, self._memory.sources, timeout=timeout)
 
     def surround(self, at: At = lambda whose, face: None, *, jobs: int = 1) -> Surroundings:
         """Gather the possible and the certain obstacles, unless that was done before.
@@ -157,29 +162,16 @@ class Scene(Record):
         FixtureError
             A fixture stands in the part.
         """
-        if "_around" not in self.__dict__:
-            chord = CHORD_ASKED * self.asked
-            if "_alone" not in self.__dict__:
-                self.__dict__["_alone"] = surroundings(self.part, chord, ignored=self.ignored, jobs=jobs, at=at)
-            around = joined(self.__dict__["_alone"], self.fixtures, chord, self._sources, self.setup)
-            kept = kept_tolerance(self.asked, around.certain.triangles.chord_error)
-            refuse_overlaps(around, kept)
-            self.__dict__["_around"] = around
-        found: Surroundings = self.__dict__["_around"]
-        return found
+        memory, chord = self._memory, CHORD_ASKED * self.asked
+        if memory.around is None:
+            if memory.alone is None:
+                memory.alone = surroundings(self.part, chord, ignored=self.ignored, jobs=jobs, at=at)
+            around = joined(memory.alone, self.fixtures, chord, memory.sources, self.setup)
+            refuse_overlaps(around, around.tolerance(self.asked))
+            memory.around = around
+        return memory.around
 
     def surround_closer(self, chord: float) -> Surroundings:
         """The same, with triangles for another chord error, mm, which are not kept."""
-        return joined(
-            surroundings(self.part, chord, ignored=self.ignored), self.fixtures, chord, self._sources, self.setup
-        )
-
-    @property
-    def around(self) -> Surroundings:
-        """Give the possible and the certain obstacles."""
-        return self.surround()
-
-    @property
-    def tolerance(self) -> float:
-        """The gouge tolerance that is kept, mm: what was asked for or, where the triangles cannot be that close, more."""
-        return kept_tolerance(self.asked, self.around.certain.triangles.chord_error)
+        alone = surroundings(self.part, chord, ignored=self.ignored)
+        return joined(alone, self.fixtures, chord, self._memory.sources, self.setup)

@@ -15,7 +15,7 @@ from cad_io.tessellate.stand_ins import StandIn, stand_ins
 from cad_io.tessellate.triangles import At
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.errors import UnjudgeableError
-from plan_cutters.scene.obstacles import Obstacles, weights
+from plan_cutters.scene.obstacles import CHORD_SHARE, Obstacles, weights
 
 #: Triangles of a loose face that are looked at to tell whether it lies on a body, about.
 _LOOKED_AT = 50
@@ -96,12 +96,25 @@ class Surroundings(Record):
     @property
     def doubtful(self) -> bool:
         """Whether something that may be in the way is not known well enough to call any posture safe beyond doubt."""
-        return bool(self.missing or self.lost or any(each.missing for each in self.fixtures))
+        return bool(self.doubts)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Name the obstacles that are missing or only guessed, with the reasons."""
+        return (
+            *(f"F{number}: {why}" for number, why, _ in self.missing),
+            *map(str, self.lost),
+            *(f"{each.name} {face}: {why}" for each in self.fixtures for face, why, _ in each.missing),
+        )
 
     @property
     def enclosing(self) -> tuple[Body, ...]:
         """List the bodies that enclose a volume: those of the part, then those of fixtures."""
         return (*self.bodies, *(each.body for each in self.fixtures if each.body is not None))
+
+    def tolerance(self, asked: float) -> float:
+        """Give the gouge tolerance that is kept, mm: the one asked for or, where triangles cannot be that close, more."""
+        return max(asked, self.certain.triangles.chord_error / CHORD_SHARE)
 
     def called(self, face: int) -> str:
         """The name of a face number: `F12`, or `fixture:vise`."""

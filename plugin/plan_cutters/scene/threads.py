@@ -30,15 +30,15 @@ def part_of(tell: Progress, part: int, parts: int) -> Progress:
 
 
 def in_chunks(
-    work: Callable[[NDArray[np.int64]], None],
+    work: Callable[[NDArray[np.int64]], int | None],
     rows: NDArray[np.int64],
     jobs: int,
     progress: Progress | None = None,
     chunk: int = CHUNK,
     *,
     fixed: bool = False,
-) -> None:
-    """Call `work` on consecutive pieces of `rows`, `chunk` rows each, `jobs` at a time.
+) -> int:
+    """Call `work` on consecutive pieces of `rows`, `chunk` rows each, `jobs` at a time; the sum of what it returns.
 
     `fixed`: where pieces end follows from the rows' own numbers, so that a row is in the company of the same ones whatever
     others are asked for (`with_company`).
@@ -47,16 +47,18 @@ def in_chunks(
     """
     ends = np.flatnonzero(np.diff(rows // chunk)) + 1 if fixed else np.arange(chunk, len(rows), chunk)
     pieces = [piece for piece in np.split(rows, ends) if len(piece)]
+    total = 0
     with ThreadPoolExecutor(jobs) as pool:
         futures = [pool.submit(work, piece) for piece in pieces]
         try:
             for done, future in enumerate(as_completed(futures), 1):
-                future.result()
+                total += future.result() or 0
                 if progress:
                     progress(done, len(pieces))
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
+    return total
 
 
 def with_company(rows: NDArray[np.int64], n: int) -> NDArray[np.int64]:

@@ -9,14 +9,14 @@ from cad_io.arrays import Ints, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import (
     AXIS_LIMIT,
-    BURIED,
     FIXTURE,
     INACCESSIBLE,
-    INTERFERENCE_FREE,
+    INSIDE,
     LOCAL_GOUGE,
     TOLERANCE,
     UNDECIDED,
     UNJUDGED,
+    VerdictBuffer,
     Verdicts,
     blank,
 )
@@ -32,7 +32,7 @@ def access(
     cutter: Cutter,
     conditions: Conditions,
     *,
-    buried: Ints | None = None,
+    inside: Ints | None = None,
     known: Verdicts | None = None,
     rows: NDArray[np.int64] | None = None,
     progress: Progress | None = None,
@@ -46,7 +46,7 @@ def access(
     interference_free : (n,) bool
         As `decompose` gives them.
     cutter, conditions
-    buried : (n,) int32, optional
+    inside : (n,) int32, optional
         The body that each sample lies within, -1 for none (default): none of those within is accessible.
     known : Verdicts, optional
         What follows from other cutters (`nesting.handed`): those samples are not searched again.
@@ -65,21 +65,16 @@ def access(
         judged &= np.isin(np.arange(n), rows)
     if not conditions.judges(cutter):
         verdicts.verdict[judged], verdicts.reason[judged] = UNDECIDED, TOLERANCE
-        return verdicts
-    within = np.zeros(n, bool) if buried is None else judged & (buried >= 0)
-    verdicts.verdict[within], verdicts.reason[within] = INACCESSIBLE, BURIED
+        return verdicts.freeze()
+    within = np.zeros(n, bool) if inside is None else judged & (inside >= 0)
+    verdicts.verdict[within], verdicts.reason[within] = INACCESSIBLE, INSIDE
     upright = judged & interference_free
-    verdicts.verdict[upright] = INTERFERENCE_FREE
-    verdicts.axis[upright] = samples.normal[upright]
-    verdicts.tilt_direction[upright] = samples.direction_max[upright]
-    verdicts.tilt[upright] = 0.0
-    verdicts.rotation[upright] = 0
+    verdicts.stand_upright(upright, samples.normal, samples.direction_max)
     contacts = contacts_of(samples)
     wanted = judged & ~upright & ~within
     if known is not None:
         follows = wanted & (known.verdict != UNJUDGED)
-        for name in Verdicts.__slots__:
-            getattr(verdicts, name)[follows] = getattr(known, name)[follows]
+        verdicts.take(follows, known)
         _first_reasons(
             contacts, np.flatnonzero(follows & (known.verdict == INACCESSIBLE)), cutter, conditions, verdicts.reason
         )
@@ -89,20 +84,21 @@ def access(
         contacts, np.flatnonzero(wanted), outer_tool, inner_tool, conditions, verdicts, progress, fixed=True, work=work
     )
     if conditions.around.alone is not None:
-        searched = wanted | (buried >= len(conditions.around.bodies) if buried is not None else False)
+        searched = wanted | (inside >= len(conditions.around.bodies) if inside is not None else False)
         handed = judged & (verdicts.reason == FIXTURE)
-        _for_fixtures(contacts, np.flatnonzero((searched & verdicts.lost) | handed), cutter, conditions, verdicts)
-    return verdicts
+        bare = replace(conditions, around=conditions.around.alone)
+        _for_fixtures(contacts, np.flatnonzero((searched & verdicts.not_reached) | handed), cutter, bare, verdicts)
+    return verdicts.freeze()
 
 
 def _for_fixtures(
-    contacts: Contacts, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, verdicts: Verdicts
+    contacts: Contacts, rows: NDArray[np.int64], cutter: Cutter, bare: Conditions, verdicts: VerdictBuffer
 ) -> None:
-    """Of lost samples, tell those that are lost to fixtures from those that would be lost without them, too."""
+    """Of samples not reached, tell those that fixtures keep off from those that would not be reached without them, either."""
     rows = rows[~np.isin(verdicts.reason[rows], (AXIS_LIMIT, LOCAL_GOUGE))]
-    if conditions.around.alone is None or not len(rows):
+    if not len(rows):
         return
-    bare, found = replace(conditions, around=conditions.around.alone), blank(len(verdicts.verdict))
+    found = blank(len(verdicts.verdict))
     search_postures(contacts, rows, bare.outer_tool(cutter), bare.inner_tool(cutter), bare, found, fixed=True)
     verdicts.reason[rows] = np.where(found.reached[rows], FIXTURE, found.reason[rows])
 

@@ -35,7 +35,7 @@ class CellContacts:
     lies. home (n, 2): the grid's tile, of which the cell is a part. tile (n, 2): among the lines of its level. middle,
     span (n, 2): rectangle in parameters. whole (n,): it lies in the trim altogether. size (n,): largest distance from its
     middle, mm, nan where that is not known. area (n,): mm2 of what lies in the trim.
-    lost (n,): a posture was searched for, and there is none.
+    not_reached (n,): a posture was searched for, and there is none.
     """
 
     point: Floats
@@ -52,7 +52,7 @@ class CellContacts:
     whole: NDArray[np.bool_]
     size: Floats
     area: Floats
-    lost: NDArray[np.bool_]
+    not_reached: NDArray[np.bool_]
 
     def of(self, rows: NDArray[Any]) -> "CellContacts":
         return CellContacts(*(getattr(self, name)[rows] for name in self.__slots__))
@@ -172,7 +172,7 @@ def laid(
     contacts = CellContacts(
         samples.point[mine], samples.normal[mine], samples.direction_max[mine], samples.curvature[mine],
         reach.axis[mine], reach.verdict[mine] == INTERFERENCE_FREE, size[judged], tile[judged].astype(np.int32), tile[judged],
-        middle[judged], span[judged], clip.whole[judged], size[judged], area[judged], reach.lost[mine],
+        middle[judged], span[judged], clip.whole[judged], size[judged], area[judged], reach.not_reached[mine],
     )  # fmt: skip
     bare = node < 0
     geometry = field.at(clip.middle[bare])

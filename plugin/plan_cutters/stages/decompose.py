@@ -14,7 +14,7 @@ from plan_cutters.scene.work import Work
 
 def decompose(
     samples: SurfaceSamples, convex: NDArray[np.bool_], cutter: Cutter, conditions: Conditions,
-    *, buried: Ints | None = None, rows: NDArray[np.int64] | None = None, work: Work | None = None,
+    *, inside: Ints | None = None, rows: NDArray[np.int64] | None = None, work: Work | None = None,
 ) -> NDArray[np.bool_]:  # fmt: skip
     """Test convex samples with the dummy cutter: which need no posture search?
 
@@ -23,7 +23,7 @@ def decompose(
     samples : SurfaceSamples
     convex : (n,) bool
     cutter, conditions
-    buried : (n,) int32, optional
+    inside : (n,) int32, optional
         The body that each sample lies within, -1 for none (default): none of those within is free.
     rows : (m,) int64, optional
         The samples to test, all by default.
@@ -39,27 +39,20 @@ def decompose(
 
     interference_free = np.zeros(len(samples), bool)
     allowed = convex & conditions.upright(samples.normal)
-    if buried is not None:
-        allowed &= buried < 0
+    if inside is not None:
+        allowed &= inside < 0
     asked = np.flatnonzero(allowed) if rows is None else rows[allowed[rows]]
     outer_tool = conditions.outer_tool(cutter)
-    dummy, tool, solids, contacts = (
-        outer_tool.dummy,
-        tool_of(outer_tool),
-        conditions.obstacles.solids,
-        contacts_of(samples),
-    )
-    if not len(dummy):
+    if not len(outer_tool.dummy):
         return interference_free
+    shape, solids, contacts = (outer_tool.dummy, tool_of(outer_tool)), conditions.obstacles.solids, contacts_of(samples)
 
-    looked = list[int]()
+    def tested(piece: NDArray[np.int64]) -> int:
+        return int(dummy_clear(piece, contacts, *shape, solids, interference_free))
 
-    def tested(piece: NDArray[np.int64]) -> None:
-        looked.append(dummy_clear(piece, contacts, dummy, tool, solids, interference_free))
-
-    in_chunks(tested, asked, conditions.jobs)
+    looked = in_chunks(tested, asked, conditions.jobs)
     if work is not None:
-        work.add(sum(looked))
+        work.add(looked)
     return interference_free
 
 

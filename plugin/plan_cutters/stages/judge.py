@@ -47,9 +47,9 @@ def judge(
     samples, conditions = ready.samples, ready.conditions
     whole = None if rows is None else with_company(rows, len(samples))
     free = decompose(
-        samples, ready.surface_class == CONVEX, cutter, conditions, buried=ready.buried, rows=whole, work=work
+        samples, ready.surface_class == CONVEX, cutter, conditions, inside=ready.inside, rows=whole, work=work
     )
     verdicts = access(
-        samples, free, cutter, conditions, buried=ready.buried, known=known, rows=whole, progress=progress, work=work
+        samples, free, cutter, conditions, inside=ready.inside, known=known, rows=whole, progress=progress, work=work
     )
     return verdicts if rows is None else verdicts.of(rows)

@@ -32,9 +32,8 @@ def chosen(judged: Rows, most: int | None, looked: Callable[[Rows], int], jobs: 
     if most is None:
         if len(judged) <= PROBED:
             return judged
-        tried, spent = spread(judged, PROBED), []
-        in_chunks(lambda piece: spent.append(looked(piece)), tried, jobs, chunk=_AT_A_TIME)
-        most = int(WORK * len(tried) / max(1, sum(spent)))
+        tried = spread(judged, PROBED)
+        most = int(WORK * len(tried) / max(1, in_chunks(looked, tried, jobs, chunk=_AT_A_TIME)))
     return spread(judged, most)
 
 

@@ -17,7 +17,7 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange, tilt_direction
 from plan_cutters.kernels.codes import FLUTES, HOLDER, NECK, SHANK, TILT_FROM, TILT_TO
 from plan_cutters.scene.conditions import ranges_of, tool_of
-from plan_cutters.scene.obstacles import Obstacles
+from plan_cutters.scene.obstacles import Obstacles, halved
 from plan_cutters.scene.surroundings import Surroundings
 
 #: Ends that move by no more, rad, have settled.
@@ -173,7 +173,7 @@ def posture_map_of(
         normal=n,
         **{word: tuple(each) for word, each in apart.items()},
         direction_max=e1, curvature=contact.curvature[0], tolerance=tolerance,
-        certified=tolerance > 0 and not around.doubtful, missing=_named(around),
+        certified=tolerance > 0 and not around.doubtful, missing=around.doubts,
         chord_error=whole.triangles.chord_error, settled=tolerance > 0,
     )  # fmt: skip
 
@@ -216,15 +216,6 @@ def _parts(
     return np.concatenate(found)
 
 
-def _named(around: Surroundings) -> tuple[str, ...]:
-    fixtures = (f"{each.name} {face}: {why}" for each in around.fixtures for face, why, _ in each.missing)
-    return (
-        *(f"F{number}: {why}" for number, why, _ in around.missing),
-        *(str(each) for each in around.lost),
-        *fixtures,
-    )
-
-
 def _merged(parts: Floats, kind: int) -> Floats:
     """Intervals of one kind, those that touch joined, ascending."""
     return join(parts[parts[:, 2] == kind][:, :2])
@@ -256,7 +247,8 @@ def _rear(
         offset = vertex - p
         distance = np.linalg.norm(offset, axis=2)
         height = offset @ n
-        side = np.linalg.norm(vertex - np.roll(vertex, 1, axis=1), axis=2).max(axis=1)
+        sides = np.linalg.norm(vertex - np.roll(vertex, -1, axis=1), axis=2)
+        side = sides.max(axis=1)
         # The nearest point of a triangle is no nearer than its nearest corner less its longest side.
         outside = (distance.min(axis=1) - side > within) | (height.max(axis=1) <= 0)
         inside = (distance.max(axis=1) <= within) & (height.min(axis=1) > 0)
@@ -267,12 +259,7 @@ def _rear(
         near.append((vertex[inside], face[inside]))
         far.append((vertex[outside], face[outside]))
         rest = ~inside & ~outside
-        # Halve the longest side: long thin triangles come out compact.
-        v, face = vertex[rest], np.tile(face[rest], 2)
-        longest = np.linalg.norm(v - np.roll(v, -1, axis=1), axis=2).argmax(axis=1)
-        a, b, c = (v[np.arange(len(v)), (longest + k) % 3] for k in range(3))
-        middle = (a + b) / 2
-        vertex = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
+        vertex, face = halved(vertex[rest], sides[rest]), np.tile(face[rest], 2)
 
     def gather(parts: list[tuple[Floats, Any]]) -> Obstacles | None:
         mine = Triangles(np.concatenate([x for x, _ in parts]), np.concatenate([x for _, x in parts]),

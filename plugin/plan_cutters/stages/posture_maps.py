@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, Unpack
 
@@ -20,14 +20,7 @@ from plan_cutters.domain.verdicts import INACCESSIBLE, INTERFERENCE_FREE, REASON
 from plan_cutters.errors import OptionError
 from plan_cutters.kernels.rows import Ranges
 from plan_cutters.options import Options, PlanOptions, machine_given
-from plan_cutters.scene.conditions import (
-    Conditions,
-    contacts_of,
-    found_of,
-    require_finite,
-    rotary_of,
-    tool_of,
-)
+from plan_cutters.scene.conditions import Conditions, contacts_of, found_of, require_finite, rotary_of, tool_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.question import checksum, refuse_others, require_side, setup_of, turns_of, words_of
 from plan_cutters.scene.threads import Progress, in_chunks
@@ -101,21 +94,12 @@ class PostureMaps(Record):
             object.__setattr__(self, "inside", np.zeros(np.shape(self.verdict)[:1], bool))
         require(self)
         # Compiled code believes what was checked: nobody is to change it afterwards.
-        for word in (
-            "rotations",
-            "offset",
-            "free",
-            "undecided",
-            "normal",
-            "direction_max",
-            "verdict",
-            "reason",
-            "inside",
-        ):
-            if getattr(self, word).flags.writeable:
-                kept = getattr(self, word).copy()
+        for each in fields(self):
+            column = getattr(self, each.name)
+            if isinstance(column, np.ndarray) and column.flags.writeable:
+                kept = column.copy()
                 kept.flags.writeable = False
-                object.__setattr__(self, word, kept)
+                object.__setattr__(self, each.name, kept)
 
     def within(
         self, machine: Any = None, setup: Any = (0.0, 0.0, 1.0), *, tilt: tuple[float, float] | None = None,
@@ -229,26 +213,24 @@ class PostureMaps(Record):
         verdicts = blank(len(self.verdict))
         found = found_of(verdicts)
         judged = self.verdict != UNJUDGED
-        lost = judged & (self.verdict == INACCESSIBLE)
-        verdicts.verdict[lost], verdicts.reason[lost] = INACCESSIBLE, self.reason[lost]
-        rows = np.flatnonzero(judged & ~lost)
+        not_reached = judged & (self.verdict == INACCESSIBLE)
+        verdicts.verdict[not_reached], verdicts.reason[not_reached] = INACCESSIBLE, self.reason[not_reached]
+        rows = np.flatnonzero(judged & ~not_reached)
         maps = self.normal, self.direction_max, ranges, turns, self.offset, self.free, self.undecided
         in_chunks(lambda piece: mask(piece, *maps, found), rows, jobs)
         upright = self.verdict == INTERFERENCE_FREE
         if low <= _END and upright.any():
             upright[upright] = machine.allows(self.normal[upright], frame)
-            verdicts.verdict[upright] = INTERFERENCE_FREE
-            verdicts.axis[upright], verdicts.tilt_direction[upright] = self.normal[upright], self.direction_max[upright]
-            verdicts.tilt[upright], verdicts.rotation[upright] = 0.0, 0
-        axis_lost = judged & ~lost & np.isin(verdicts.verdict, (INACCESSIBLE, UNDECIDED))
-        verdicts.reason[axis_lost] = REASONS.index("axis_limit")
+            verdicts.stand_upright(upright, self.normal, self.direction_max)
+        axis_limited = judged & ~not_reached & np.isin(verdicts.verdict, (INACCESSIBLE, UNDECIDED))
+        verdicts.reason[axis_limited] = REASONS.index("axis_limit")
         # What is in doubt without a machine is so with any that holds some posture there.
-        doubt, held = axis_lost & (self.verdict == UNDECIDED), np.zeros(len(self.verdict), bool)
+        doubt, held = axis_limited & (self.verdict == UNDECIDED), np.zeros(len(self.verdict), bool)
         few = ranges._replace(rotation_cos=ranges.rotation_cos[turns], rotation_sin=ranges.rotation_sin[turns])
         any_axis(np.flatnonzero(doubt), self.normal, self.direction_max, few, low, high, held)
         doubt &= held
         verdicts.verdict[doubt], verdicts.reason[doubt] = UNDECIDED, self.reason[doubt]
-        return verdicts
+        return verdicts.freeze()
 
     def held(self, conditions: Conditions) -> "PostureMaps":
         """The maps of one machine and setup: of the free tilts those that it holds. The verdicts stay what they are."""
@@ -335,7 +317,9 @@ def posture_maps(
         tree, wide = obstacles.tree, obstacles.wide_tree
         looked = free_map(rows, contacts, ranges, tool, NARROWEST, tree, wide, _ROOM, part, mine, unsure)
         if obstacles.solids.cell.size:
-            _leave_bodies(samples, rows, outer_tool, conditions, part, mine, certain=obstacles is not possible)
+            _leave_bodies(
+                samples, rows, outer_tool, rotations, obstacles, part, mine, certain=obstacles is not possible
+            )
         return part, mine, unsure, looked
 
     def work(rows: NDArray[np.int64]) -> None:
@@ -370,26 +354,19 @@ def _width(part: Floats, count: NDArray[np.int32]) -> Floats:
 
 
 def _leave_bodies(
-    samples: SurfaceSamples, rows: NDArray[np.int64], outer_tool: Assembly, conditions: Conditions, part: Floats,
-    count: NDArray[np.int32], *, certain: bool = False,
+    samples: SurfaceSamples, rows: NDArray[np.int64], outer_tool: Assembly, rotations: Floats, obstacles: Obstacles, part: Floats,
+    count: NDArray[np.int32], *, certain: bool,
 ) -> None:  # fmt: skip
     """Take out intervals (m, k, room, 2) in which the cutter lies within a body, or may; or only where it surely does.
 
     Between the ends of an interval the cutter touches no skin, so it lies within a body all along or nowhere.
     """
-    rotations = conditions.postures.rotations
     at = np.argwhere(np.arange(_ROOM) < count[..., None])
     row, turn = rows[at[:, 0]], rotations[at[:, 1]]
     tilt = part[at[:, 0], at[:, 1], at[:, 2]].mean(axis=1)
-    obstacles = conditions.around.certain if certain else conditions.obstacles
-    inside = obstacles.holds(
-        outer_tool,
-        samples.point[row],
-        samples.normal[row],
-        tilt_direction(samples.normal[row], samples.direction_max[row], turn),
-        tilt,
-        certain=certain,
-    )
+    normal = samples.normal[row]
+    leans = tilt_direction(normal, samples.direction_max[row], turn)
+    inside = obstacles.holds(outer_tool, samples.point[row], normal, leans, tilt, certain=certain)
     for i, j in np.unique(at[inside, :2], axis=0).tolist():
         mine = (at[:, 0] == i) & (at[:, 1] == j)
         kept = part[i, j, : count[i, j]][~inside[mine]]

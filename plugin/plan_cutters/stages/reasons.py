@@ -1,4 +1,4 @@
-"""Why a sample is lost, by what would free it: the first of these without which there is a posture is the reason.
+"""Why a sample is not reached, by what would free it: the first of these without which there is a posture is the reason.
 
 The axis limit (another setup or machine); the holder, the shank, the neck (a longer stick-out, a slimmer holder); the fixtures.
 Where none of them alone frees it, it is what forbids most tilts to the flutes, whatever limits, holders and fixtures there are:
@@ -17,8 +17,8 @@ from plan_cutters.domain.nesting import inside
 from plan_cutters.domain.shapes import flute_length
 from plan_cutters.domain.verdicts import (
     AXIS_LIMIT,
-    BURIED,
     INACCESSIBLE,
+    INSIDE,
     LOCAL_GOUGE,
     NO_REASON,
     REASONS,
@@ -81,7 +81,7 @@ class Reasons:
         tell = progress or (lambda done, total: None)
         first, n = self.conditions[0], len(verdicts.verdict)
         before, reason, besides = verdicts.reason, verdicts.reason.copy(), np.full(n, NO_REASON, np.uint8)
-        rows = np.flatnonzero(verdicts.lost & self.asked & ~np.isin(before, (BURIED, TOLERANCE)))
+        rows = np.flatnonzero(verdicts.not_reached & self.asked & ~np.isin(before, (INSIDE, TOLERANCE)))
         limited, less, alone = first.machine.limited, list(_less(cutter)), first.around.alone
         if not len(rows) or not (limited or less or alone is not None):
             return Explained(verdicts, besides)
@@ -142,14 +142,13 @@ class Reasons:
                 mine = rows[(earlier.verdict[rows] == INACCESSIBLE) & (found.verdict[rows] == UNJUDGED)]
             else:
                 continue
-            for name in Verdicts.__slots__:
-                getattr(found, name)[mine] = getattr(earlier, name)[mine]
+            found.take(mine, earlier)
         left = rows[found.verdict[rows] == UNJUDGED]
         if len(left):
             outer_tool, inner_tool = conditions.outer_tool(cutter), conditions.inner_tool(cutter)
             search_postures(contacts_of(self.samples), left, outer_tool, inner_tool, conditions, found, fixed=True)
-        known[cutter] = found
-        return found
+        known[cutter] = found.freeze()
+        return known[cutter]
 
 
 def _less(cutter: Cutter) -> Iterator[tuple[int, Cutter]]:

@@ -210,7 +210,7 @@ def _served(contacts: CellContacts, site: Site, rooms: Sequence[float], upto: fl
         if site.work.looked >= upto:
             break
         # Where there is no posture there is none with more room.
-        open_rows = np.flatnonzero((outlook > 0) & _whole(contacts) & ~contacts.lost)
+        open_rows = np.flatnonzero((outlook > 0) & _whole(contacts) & ~contacts.not_reached)
         # A posture with room to the local gouging bound: the search is told that the surface is more concave.
         curved = contacts.curvature + room * bends
         at = Contacts(contacts.point, contacts.normal, contacts.direction_max, curved)
@@ -240,13 +240,10 @@ def _cover(
     sweeping = Sweeping(tool_of(outer_tool), outer_tool.dummy, *outer_tool.noses(cutter.taper, cutter.shape), outer_tool.flutes,
                         conditions.tolerance - chord, chord)  # fmt: skip
 
-    looked = list[int]()
+    def covered(piece: NDArray[np.int64]) -> int:
+        return int(cover(piece, patches, nodes, field.number, sweeping, obstacles.tree, obstacles.faces, outlook))
 
-    def covered(piece: NDArray[np.int64]) -> None:
-        looked.append(cover(piece, patches, nodes, field.number, sweeping, obstacles.tree, obstacles.faces, outlook))
-
-    in_chunks(covered, rows, conditions.jobs)
-    site.work.add(sum(looked))
+    site.work.add(in_chunks(covered, rows, conditions.jobs))
     # A cell that is served touches no skin with any of its cutters: within a body are all of them or none.
     mine = rows[outlook[rows] == 0]
     axis, normal = axes[mine], contacts.normal[mine]

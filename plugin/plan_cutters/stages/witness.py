@@ -1,8 +1,8 @@
 """Witnesses: samples that are not reached, for people to look at, and the posture that comes nearest to reaching each.
 
-What is lost on a face for one reason is a group, as is what of it lies within one body. Each has a witness, with how many
+What is not reached on a face for one reason is a group, as is what of it lies within one body. Each has a witness, with how many
 samples it stands for. Depths are searched for in the groups of the largest area, at samples far apart: so much for each cutter,
-however many samples are lost. Nothing is searched for what lies within material: no posture helps there.
+however many samples are not reached. Nothing is searched for what lies within material: no posture helps there.
 """
 
 from collections.abc import Iterator, Sequence
@@ -15,7 +15,7 @@ from cad_io.arrays import Floats, Ints, SurfaceSamples
 from cad_io.part import Part
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.verdicts import BURIED, REASONS, TOLERANCE, Verdicts, Witness, blank
+from plan_cutters.domain.verdicts import INSIDE, REASONS, TOLERANCE, Verdicts, Witness, blank
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Conditions, found_of, rotations_of, tool_of
 from plan_cutters.scene.deepest import deepest, deepest_of
@@ -34,7 +34,7 @@ _COARSE, _FINE = 0.05, 1.7e-4
 
 @dataclass(frozen=True, slots=True)
 class _Group:
-    """Samples `rows` that are lost on a face for one reason, an index into REASONS, and within one body, -1 for none."""
+    """Samples `rows` that are not reached on a face for one reason, an index into REASONS, and within one body, -1 for none."""
 
     face: int
     reason: int
@@ -45,20 +45,20 @@ class _Group:
     @property
     def searched(self) -> bool:
         """Whether there may be a depth to search for."""
-        return self.body < 0 and self.reason not in (BURIED, TOLERANCE)
+        return self.body < 0 and self.reason not in (INSIDE, TOLERANCE)
 
 
 def witnesses(
-    samples: SurfaceSamples, verdicts: Verdicts, cutter: Cutter, conditions: Conditions, *, buried: Ints | None = None,
+    samples: SurfaceSamples, verdicts: Verdicts, cutter: Cutter, conditions: Conditions, *, inside: Ints | None = None,
     part: Part | None = None,
 ) -> tuple[Witness, ...]:  # fmt: skip
-    """Samples that are not reached, for each face and reason; `buried` as in `access`.
+    """Samples that are not reached, for each face and reason; `inside` as in `access`.
 
     The deepest one that was tried comes first, then the one farthest from it. Depths are measured on the surface of `part`;
     without it, on the triangles. Where there are too many groups to try a sample in each, those of less area have a witness
     without a depth; the largest of each face comes before the second of any.
     """
-    groups = list(_groups(samples, verdicts, buried))
+    groups = list(_groups(samples, verdicts, inside))
     tried = _measured(groups)
     most = max(1, min(_TRIED, _TRIED_IN_ALL // max(1, len(tried))))
     picked = {i: far_apart(samples.point, groups[i].rows, most) for i in tried}
@@ -76,22 +76,24 @@ def witnesses(
             kept = _kept([looked[row] for row in picked[i]], samples.point)
         else:
             row = far_apart(samples.point, group.rows, 1)[0]
-            plain = Witness(row, REASONS[group.reason], None, None, None, None, None, None, untried=group.searched)
-            within = group.body >= 0 or group.reason == BURIED
+            plain = Witness(row, REASONS[group.reason], untried=group.searched)
+            within = group.body >= 0 or group.reason == INSIDE
             kept = [_covered(samples, plain, group.body, conditions) if within else plain]
         found += [replace(each, samples=len(group.rows)) for each in kept]
     return tuple(found)
 
 
-def _groups(samples: SurfaceSamples, verdicts: Verdicts, buried: Ints | None) -> Iterator[_Group]:
+def _groups(samples: SurfaceSamples, verdicts: Verdicts, inside: Ints | None) -> Iterator[_Group]:
     """Group the samples that are not reached by face, reason and body, in the order in which samples come."""
-    lost = np.flatnonzero(verdicts.lost)
-    body = np.full(len(lost), -1) if buried is None else buried[lost]
-    key = np.stack([samples.face[lost], verdicts.reason[lost], body], axis=1)
+    not_reached = np.flatnonzero(verdicts.not_reached)
+    body = np.full(len(not_reached), -1) if inside is None else inside[not_reached]
+    key = np.stack([samples.face[not_reached], verdicts.reason[not_reached], body], axis=1)
     each, first, which = np.unique(key, axis=0, return_index=True, return_inverse=True)
     order = np.argsort(which.reshape(-1), kind="stable")
     pieces = (
-        np.split(lost[order], np.cumsum(np.bincount(which.reshape(-1), minlength=len(each)))[:-1]) if len(lost) else []
+        np.split(not_reached[order], np.cumsum(np.bincount(which.reshape(-1), minlength=len(each)))[:-1])
+        if len(not_reached)
+        else []
     )
     for i in np.argsort(first).tolist():
         face, reason, within = map(int, each[i])
@@ -135,10 +137,9 @@ def _witness(
 ) -> Witness:
     """Find the posture of least depth by halving the depth that is let pass, and measure it on the surface."""
     reason = REASONS[verdicts.reason[row]]
-    nothing = Witness(row, reason, None, None, None, None, None, None)
     found = _least_depth(samples, row, cutter, replace(conditions, around=conditions.around.skins))
     if found is None:
-        return nothing
+        return Witness(row, reason)
     obstacles, at, outer_tool = conditions.obstacles, slice(row, row + 1), conditions.outer_tool(cutter)
     best = found[0]
     if obstacles.holds(outer_tool, samples.point[at], samples.normal[at], best.tilt_direction, best.tilt)[0]:
@@ -190,7 +191,7 @@ def _least_depth(
                 low = depth
             else:
                 break
-    return None if np.isnan(high) else (best, low, high)
+    return None if np.isnan(high) else (best.freeze(), low, high)
 
 
 def _covered(samples: SurfaceSamples, plain: Witness, body: int, conditions: Conditions) -> Witness:

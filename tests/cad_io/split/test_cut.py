@@ -22,14 +22,14 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
 from scipy.interpolate import make_interp_spline
 
-from cad_io.face.uv_region import uv_area
+from cad_io.face.uv_region import uv_areas
 from cad_io.kernel import edges_of, explore, faces
 from cad_io.kernel.components import children
+from cad_io.kernel.splines import cubic
 from cad_io.part import Part
 from cad_io.split.border import parameter_curve
-from cad_io.split.contour import LabelGrid, Spline, smoothed
+from cad_io.split.contour import LabelGrid, smoothed
 from cad_io.split.pieces import split
-from cad_io.split.surface_edge import curve_2d, curve_3d
 from tests.support.split_parts import labels, patch, waves
 
 
@@ -74,8 +74,9 @@ def sound(part, found, fields):
     assert (after.solids, after.closed) == (part.solids, part.closed)
     for f in fields:
         mine = [p for p in found.pieces if p.face == f.face]
-        assert all(uv_area(p.shape) > 0 for p in mine)
-        assert sum(uv_area(p.shape) for p in mine) == pytest.approx(uv_area(part.face(f.face)), rel=1e-6)
+        whole, *areas = uv_areas([part.face(f.face), *(p.shape for p in mine)])
+        assert all(area > 0 for area in areas)
+        assert sum(areas) == pytest.approx(whole, rel=1e-6)
 
 
 @pytest.mark.parametrize("name", SOLIDS)
@@ -173,7 +174,7 @@ def hurried():
     spline = make_interp_spline(t, np.array([curve.Value(x).Coord() for x in t + ahead]), k=3)
     place = TopLoc_Location()
     surface = BRep_Tool.Surface_s(face, place)
-    BRep_Builder().UpdateEdge(edge, curve_2d(Spline(spline.t, spline.c, False)), surface, place, 1e-7)
+    BRep_Builder().UpdateEdge(edge, cubic(spline.t, spline.c), surface, place, 1e-7)
     return face
 
 
@@ -194,7 +195,7 @@ def test_an_edge_that_lies_off_its_face_is_said():
     xyz = np.array([curve.Value(x).Coord() for x in t])
     xyz[:, 2] += 2 * np.sin(np.pi * (t - first) / (last - first))
     spline = make_interp_spline(t, xyz, k=3)
-    BRep_Builder().UpdateEdge(edge, curve_3d(spline), TopLoc_Location(), 1e-7)
+    BRep_Builder().UpdateEdge(edge, cubic(spline.t, spline.c), TopLoc_Location(), 1e-7)
     part = Part(face)
     found = split(part, [labels(part, 1, lambda x, y: np.hypot(x - 0.5, y - 0.5) > 0.55)])
     assert found.whole == {1: "an edge of it lies 2 mm off the face"}

@@ -26,7 +26,7 @@ from plan_cutters.kernels.tool.hit import BODY, HALF, OFFSET, A, P, X, Y
 _SMALLEST = 1.0 / 4.0
 #: Row of a distance within which a sixth of the nodes lie.
 _HALF_WAY = 8
-#: Bodies of a patch: the whole, and pieces of it along the lean, 2, 6 and 18.
+#: Bodies of a patch: the whole, and pieces of it along the tilt direction, 2, 6 and 18.
 _BODIES = 27
 #: Boxes in whose time a triangle is looked at, and nodes looked at in that of a box, about.
 _TRIANGLE, _NODES = 2, 6
@@ -36,7 +36,7 @@ class Patches(NamedTuple):
     """Contacts on one face, each with the patch about it that its axis may serve.
 
     point, normal, axis (n, 3). tensor (n, 3, 3): second fundamental form in part coordinates, 1/mm, concave positive.
-    flat (n,) bool: interference-free, the axis is the normal and any lean counts. patch (n,): its radius, mm; nan: not decided.
+    flat (n,) bool: interference-free, the axis is the normal in any tilt direction. patch (n,): its radius, mm; nan: not decided.
     home (n, 2) int32: the grid node in whose cell the contact lies.
     """
 
@@ -54,7 +54,7 @@ class Sweeping(NamedTuple):
 
     tool : Tool, the outer one; dummy (k, COLUMNS), as `search.dummy_clear` takes it; nose (m,) int64: of each mode a mask of the
     pieces that lie in the volume that its nose sweeps when it goes on along the axis, widening by `widening` (m,), rad; flutes, a
-    mask of the pieces that cut; safe, chord: the depth up to which a triangle does not matter, and the chord error, mm.
+    mask of the pieces that cut; depth, chord: the depth up to which a triangle does not matter, and the chord error, mm.
     """
 
     tool: Any
@@ -62,13 +62,14 @@ class Sweeping(NamedTuple):
     nose: Any
     widening: Any
     flutes: int
-    safe: float
+    depth: float
     chord: float
 
 
 class _Workspace(NamedTuple):
-    """Where a contact is worked out: directions along and across the lean, bodies and their pieces, bounds of curvature, what
-    counts as near."""
+    """This is a workspace for a contact: tilt direction f and t = n x f, bodies and their pieces, bounds of curvature, what
+    counts as near.
+    """
 
     f: Any
     t: Any
@@ -102,8 +103,9 @@ def _grown(piece, out, radial, axial):
 
 @kernel
 def _bodies(body, piece, frame, h, pose, slides, grow, workspace, finest):
-    """Write the bodies of a contact that wanders by no more than h: the whole, then in 2, 6 and 18 parts along the lean.
+    """Write the bodies of a contact that wanders by no more than h: the whole, then 2, 6 and 18 parts along f.
 
+    Each holds all moved cutters of its part (lemma B10).
     Each holds those that it is cut into. `pose` is (sine, cosine) of the tilt. `slides` says how far the tool
     moves along the tilt direction for a step along it and for a step across it; then the same across that direction; then how
     much farther it may move across it. `grow` is the bound of any other motion. `body` is the body without wandering.
@@ -210,7 +212,7 @@ def _motion(row, patches, nodes, frame, sine, h, turn, offset, rise):
 @kernel
 def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace):
     """Return the `outlook` of `cover` for a contact, and the triangle in the way, -1 if none; `blocker` is tested first."""
-    tool, safe, chord = sweeping.tool, sweeping.safe, sweeping.chord
+    tool, depth, chord = sweeping.tool, sweeping.depth, sweeping.chord
     f, t, near = workspace.f, workspace.t, workspace.near
     p, n, a = patches.point[row], patches.normal[row], patches.axis[row]
     h, flat, home = patches.patch[row], patches.flat[row], patches.home[row]
@@ -238,7 +240,7 @@ def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, 
     if not begin(frame, h, home, nodes, workspace.seen):
         return NEVER, -1
     # In the smallest patch there remain the home node's own curvature and what it may differ in its cell.
-    least = spared(chord + distance_of(0) * _SMALLEST * h, safe, chord)
+    least = spared(chord + distance_of(0) * _SMALLEST * h, depth, chord)
     if not flat and not held_below(pose, 0.0, most[0, 0] - least, most[0, 2], most[0, 1] - least, 0.0, nose):
         return NEVER, -1
     full, turn, lift, k_ff, k_tt, k_ft, psi, beside, rest = np.inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -251,12 +253,12 @@ def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, 
         # How far the normal turns within the patch, and how far the surface leaves the tangent plane.
         turn, lift = STRETCH * most[0, 3] * h, LIFT * most[0, 3] * h * h
         if not turn <= MOST_TURN or too_steep(pose, turn, flat, nose):
-            return halvings(most, h, pose, flat, nose, safe, chord, near), -1
+            return halvings(most, h, pose, flat, nose, depth, chord, near), -1
         if not flat:
             k_ff, k_tt, k_ft, psi, beside, rest = _motion(row, patches, nodes, frame, sine, h, turn, offset, rise)
-        held = extent(most, last, full, h, pose, flat, psi, turn, nose, safe, chord, near)
+        held = extent(most, last, full, h, pose, flat, psi, turn, nose, depth, chord, near)
         if held < 0:
-            return halvings(most, h, pose, flat, nose, safe, chord, near), -1
+            return halvings(most, h, pose, flat, nose, depth, chord, near), -1
         if held < last:
             break
     if not near[0] > 0.0:

@@ -25,14 +25,19 @@ _HIGH = 0.6
 
 
 @kernel
-def spared(distance, safe, chord):
-    """By how much a paraboloid may curve more than the nose within a distance and gouge no deeper than is allowed, 1/mm."""
-    return 2.0 * max(0.0, safe - chord) / max(distance * distance, 1e-12)
+def spared(distance, depth, chord):
+    """Return by how much a paraboloid may curve more than the nose within a distance and gouge no deeper than is allowed, 1/mm.
+
+    Lemma B4.
+    """
+    return 2.0 * max(0.0, depth - chord) / max(distance * distance, 1e-12)
 
 
 @kernel
-def extent(most, last, full, h, pose, flat, psi, turn, nose, safe, chord, near):
-    """The largest of the distances up to row `last` within which curvature alone keeps the surface from going too deep.
+def extent(most, last, full, h, pose, flat, psi, turn, nose, depth, chord, near):
+    """Find the largest distance up to row `last` within which curvature alone keeps the surface from going too deep.
+
+    Lemmas B3 and B4; B8 where `flat`. B7 bounds what the frames' turns add to curvature.
 
     Returns its row, -1 if there is none. Writes what `near_by` takes.
     """
@@ -52,12 +57,12 @@ def extent(most, last, full, h, pose, flat, psi, turn, nose, safe, chord, near):
             break
         tangent = np.tan(steep)
         extra = _SECANT * whole * more * (_SLOPES * tangent + _TURNS * more)
-        less = spared(distance, safe, chord)
+        less = spared(distance, depth, chord)
         if flat or not nose.offset > 0.0:
-            # In whatever direction it leans.
+            # In whatever direction it is tilted.
             top = 0.5 * (ff + tt) + 0.5 * spread + extra
             if flat:
-                if not 0.5 * max(0.0, top) * distance * distance <= safe:
+                if not 0.5 * max(0.0, top) * distance * distance <= depth:
                     break
             elif not held_below(pose, turn, top - less, 0.0, top - less, distance, nose):
                 break
@@ -74,7 +79,7 @@ def extent(most, last, full, h, pose, flat, psi, turn, nose, safe, chord, near):
 
 
 @kernel
-def halvings(most, h, pose, flat, nose, safe, chord, near):
+def halvings(most, h, pose, flat, nose, depth, chord, near):
     """How often a patch must be halved until curvature holds right at its contact, as far as the nodes about it now tell."""
     halved = h
     for count in range(1, MOST_HALVINGS):
@@ -82,15 +87,15 @@ def halvings(most, h, pose, flat, nose, safe, chord, near):
         turn = STRETCH * most[0, 3] * halved
         if turn <= MOST_TURN and not too_steep(pose, turn, flat, nose):
             psi = 0.0 if flat or nose.offset == 0.0 else turn / (pose[0] - turn)
-            if extent(most, 0, np.inf, halved, pose, flat, psi, turn, nose, safe, chord, near) == 0:
+            if extent(most, 0, np.inf, halved, pose, flat, psi, turn, nose, depth, chord, near) == 0:
                 return count
     return MOST_HALVINGS
 
 
 @kernel
 def too_steep(pose, turn, flat, nose):
-    """Whether the normal turns too much within a patch for the tilt: the cutter must lean, and touch with the same mode, all over
-    it.
+    """Whether the normal turns too much within a patch for the tilt: the cutter must be tilted, and touch with the same mode, all
+    over it.
     """
     if flat:
         return False

@@ -71,13 +71,13 @@ def near_by(vertex, triangle_face, i, frame, face, near):
 def held_below(pose, turn, k_ff, k_ft, k_tt, extent, nose):
     """Whether the paraboloid with these curvatures stays below the nose of a cutter within `extent` of the contact.
 
-    At every tilt within `turn` of that of `pose`, its sine and cosine. The surface offset by the nose's radius stays below the
-    same nose of no radius (`docs/between_samples.md`).
+    At every tilt within `turn` of that of `pose`, its sine and cosine: lemma B3 of `docs/between_samples.md`. The surface offset
+    by the nose's radius stays below the same nose of no radius (B9).
     """
     sine, cosine = pose
     offset, radius, widen_cos, widen_sin = max(0.0, nose.offset), nose.radius, nose.widen_cos, nose.widen_sin
     least, extent = sine - turn, extent + radius
-    # How far a line of the side leans from the normal at most.
+    # How far a line of the side is tilted from the normal at most.
     side_sin, side_cos = sine * widen_cos + cosine * widen_sin + turn, cosine * widen_cos - sine * widen_sin - turn
     margin = np.inf
     if offset > 0.0:
@@ -124,7 +124,7 @@ class Seen(NamedTuple):
 
 @entry
 def seen():
-    """Room for it."""
+    """Make a record for it."""
     return Seen(
         np.empty((EXTENTS, 7)), np.empty(4, np.int64), np.empty(4), np.empty(4, np.bool_), np.zeros(1, np.int64)
     )

@@ -4,6 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from plan_cutters.kernels.codes import CENTRE, HALVES, SIDES
 from plan_cutters.kernels.jit import entry, kernel
 
 #: Boxes and triangles looked at together.
@@ -54,10 +55,10 @@ def wide_tree(tree):
             block, lane, node = offset[i] + (j >> 3 if i > 0 else 0), j & 7, (1 << level) - 1 + j
             point = (len(vertex) * (2 * j + 1)) >> (level + 1)
             for k in range(3):
-                blocks[block, k, lane] = box[node, k]
+                blocks[block, k, lane] = box[node, CENTRE + k]
                 blocks[block, 12 + k, lane] = vertex[point, 0, k]
                 for side in range(3):
-                    blocks[block, 3 + 3 * side + k, lane] = box[node, 12 + side] * box[node, 3 + 3 * side + k]
+                    blocks[block, 3 + 3 * side + k, lane] = box[node, HALVES + side] * box[node, SIDES + 3 * side + k]
     return vertex, blocks, offset, bottom
 
 
@@ -123,7 +124,7 @@ def _see_leaf(seen, vertex, begin, end, p, e1, e2, n):
 
 @kernel
 def _turn(seen, lane, cosine, sine, corner):
-    """Write a triangle of a leaf as rows (x, z, y) at a rotation."""
+    """Write a triangle of a leaf as rows (x, y, z) at a rotation."""
     for k in range(3):
         x, y = seen[3 * k, lane], seen[3 * k + 1, lane]
-        corner[k, 0], corner[k, 1], corner[k, 2] = cosine * x + sine * y, seen[3 * k + 2, lane], cosine * y - sine * x
+        corner[k, 0], corner[k, 1], corner[k, 2] = cosine * x + sine * y, cosine * y - sine * x, seen[3 * k + 2, lane]

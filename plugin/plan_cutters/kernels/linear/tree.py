@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from plan_cutters.kernels.codes import BOX, CENTRE, DIAGONAL, HALVES, SIDES
 from plan_cutters.kernels.jit import entry, kernel
 
 LEAF = 4
@@ -138,8 +139,9 @@ def _reach(corner, lo, hi, middle, axes, workspace):
 
 
 class _Workspace(NamedTuple):
-    """Room to bound a node in: low, high (levels, 2, 3), the boxes along x, y and z of a node's two children by its level;
-    middle (3,), axes (3, 3), least, most (3,), and lows, highs (3, _LANES)."""
+    """This is a workspace for bounding a node: low, high (levels, 2, 3), the boxes along x, y and z of a node's two children by
+    its level; middle (3,), axes (3, 3), least, most (3,), and lows, highs (3, _LANES).
+    """
 
     low: Any
     high: Any
@@ -172,21 +174,21 @@ def _bound(corner, normal, lo, hi, low, high, box, node, workspace):
     axes[1, 0] = mean[1] * axes[0, 2] - mean[2] * axes[0, 1]
     axes[1, 1] = mean[2] * axes[0, 0] - mean[0] * axes[0, 2]
     axes[1, 2] = mean[0] * axes[0, 1] - mean[1] * axes[0, 0]
-    # Extents from the box's middle, so that far from the origin nothing is lost to rounding.
+    # Extents from the box's middle, so that far from the origin rounding takes nothing away.
     _reach(corner, lo, hi, middle, axes, workspace)
     square, scale = 0.0, abs(middle[0]) + abs(middle[1]) + abs(middle[2])
     for k in range(3):
-        box[node, k] = middle[k]
+        box[node, CENTRE + k] = middle[k]
     for k in range(3):
         # A hair wider, so that rounding cannot leave a corner outside.
         half = 0.5 * (workspace.most[k] - workspace.least[k]) * (1 + 1e-12) + 1e-14 * scale
         centre = 0.5 * (workspace.most[k] + workspace.least[k])
         for i in range(3):
-            box[node, i] += centre * axes[k, i]
-            box[node, 3 + 3 * k + i] = axes[k, i]
-        box[node, 12 + k] = half
+            box[node, CENTRE + i] += centre * axes[k, i]
+            box[node, SIDES + 3 * k + i] = axes[k, i]
+        box[node, HALVES + k] = half
         square += half * half
-    box[node, 15] = np.sqrt(square) * (1 + 1e-12)
+    box[node, DIAGONAL] = np.sqrt(square) * (1 + 1e-12)
 
 
 @kernel
@@ -273,10 +275,10 @@ def build_apart(vertex, own, away):
     _sort(order, centre, depth, lows, highs)
     corner = np.empty((9, n))
     _corners(vertex, order, corner)
-    # The centres have served: their room is that of the normals.
+    # The centres have served: the normals take their array.
     normal = centre
     _normals(corner, normal)
-    box = np.empty(((2 << depth) - 1, 16))
+    box = np.empty(((2 << depth) - 1, BOX))
     workspace = _Workspace(
         np.empty((depth + 1, 2, 3)), np.empty((depth + 1, 2, 3)), np.empty(3), np.empty((3, 3)), np.empty(3), np.empty(3),
         np.empty((3, _LANES)), np.empty((3, _LANES)),

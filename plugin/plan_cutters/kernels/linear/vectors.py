@@ -1,4 +1,4 @@
-"""Vectors of three numbers, and the frame in which a cutter leans."""
+"""Vectors of three numbers, and the frame in which a cutter is tilted."""
 
 import numpy as np
 
@@ -29,7 +29,7 @@ def perpendicular(n, out):
 
 
 @kernel
-def lean_frame(e1, e2, cosine, sine, f, t):
+def tilt_frame(e1, e2, cosine, sine, f, t):
     """Write the tilt direction f at a rotation, and t = n x f."""
     for k in range(3):
         f[k] = cosine * e1[k] + sine * e2[k]

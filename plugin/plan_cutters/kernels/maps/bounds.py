@@ -1,4 +1,7 @@
-"""Bound the pieces of a tool that tilts, and their extent along a direction over an interval of tilts."""
+"""Bound the pieces of a tool that tilts, and their extent along a direction over an interval of tilts.
+
+Lemmas are those of `docs/posture_map_proof.md`.
+"""
 
 from typing import Any, NamedTuple
 
@@ -10,9 +13,9 @@ from plan_cutters.kernels.jit import entry, kernel
 #: A bound of a piece: two rims, each a radius and a height, and by how much what lies between them is grown all round; the slope
 #: of its side; whether there is such a bound.
 Q0, F0, Q1, F1, GROWN, SIDE, THERE, BOUNDS = 0, 1, 2, 3, 4, 5, 6, 7
-#: What is known of a piece: nothing nearer to the line of turning or farther from it is ever in it, nothing so far beside it
-#: along that line, nothing as low over the centre's tangent plane; its radius at height 0, were it to go on, and its slope if it
-#: widens.
+#: What is known of a piece (lemma M4): nothing nearer to the line of turning or farther from it is ever in it, nothing so far
+#: beside it along that line, nothing as low over the centre's tangent plane; its radius at height 0, were it to go on, and its
+#: slope if it widens.
 NEAR, FAR, BESIDE, FLOOR, AXIS, WIDENS, KNOWN = 0, 1, 2, 3, 4, 5, 6
 #: A plane must part by more than this, mm: rounding is far less.
 HAIR = 1e-9
@@ -36,7 +39,7 @@ class Turning(NamedTuple):
 
 @kernel
 def _span(p, q, ca, sa, cb, sb):
-    """Least and most of p cos T + q sin T over a gap shorter than 180 deg."""
+    """Return the least and the most of p cos T + q sin T over an interval shorter than 180 deg."""
     u, v, du, dv = p * ca + q * sa, p * cb + q * sb, q * ca - p * sa, q * cb - p * sb
     size = np.sqrt(p * p + q * q)
     least = -size if (du < 0.0) & (dv > 0.0) else min(u, v)
@@ -45,7 +48,7 @@ def _span(p, q, ca, sa, cb, sb):
 
 @kernel
 def most(p, q, ca, sa, cb, sb):
-    """The most of p cos T + q sin T over a gap shorter than 180 deg."""
+    """Return the most of p cos T + q sin T over an interval shorter than 180 deg."""
     within = (q * ca - p * sa > 0.0) & (q * cb - p * sb < 0.0)
     return np.sqrt(p * p + q * q) if within else max(p * ca + q * sa, p * cb + q * sb)
 
@@ -59,7 +62,8 @@ def edge_of(bound, j):
 
 @kernel
 def rim_line(edge, gx, gy, gz, ca, sa, cb, sb):
-    """A line (slope, value at 0) that bounds how far a rim of radius 1 goes along a direction of the part over a gap.
+    """Return a line (slope, value at 0) that bounds how far a rim of radius 1 goes along a direction of the part over an
+    interval.
 
     It goes hypot(x, g_y), x what the direction has along x_T: convex in x, so below its chord. Where the radius is negative the
     bound is from below: a tangent.
@@ -75,8 +79,10 @@ def rim_line(edge, gx, gy, gz, ca, sa, cb, sb):
 
 @kernel
 def swept(edge, offset, line, gx, gz, ca, sa, cb, sb):
-    """How far a bound goes at most, at any tilt of a gap, along a direction of the part of length 1, from the centre; `line` as
-    `_line` gives it.
+    """Return how far a bound goes at most, at any tilt of an interval, along a unit direction of the part, from the centre.
+
+    Lemma M6; `line` as `rim_line` gives it. In one function with it, the two would be too long for the compiler to put into
+    loops, which then run one lane at a time.
     """
     q0, f0, q1, f1, grown, _, _ = edge
     slope, base = line

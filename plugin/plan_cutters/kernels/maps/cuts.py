@@ -8,7 +8,22 @@ from plan_cutters.kernels.codes import HIGH, LOW, RADIUS
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.linear.lanes import LANES
 from plan_cutters.kernels.maps.bounds import BESIDE, FAR, FLOOR, NEAR
-from plan_cutters.kernels.maps.gaps import CF, CL, FIRST, GAPS, LAST, SF, SL, UF, UL, _begin, _cuts, _end, _part, _take
+from plan_cutters.kernels.maps.intervals import (
+    CF,
+    CL,
+    FIRST,
+    INTERVALS,
+    LAST,
+    SF,
+    SL,
+    UF,
+    UL,
+    _begin,
+    _cuts,
+    _end,
+    _part,
+    _take,
+)
 from plan_cutters.kernels.maps.passes import _passes
 from plan_cutters.kernels.maps.planes import BOXES, ENDS, all_ends, distances, put_ends, triangles_clear
 from plan_cutters.kernels.rows import Cylinder, Scratch
@@ -46,8 +61,8 @@ class Workspace(NamedTuple):
 
 
 @entry
-def room_to_cut():
-    """Room to cut gaps in."""
+def cut_workspace():
+    """Make a workspace for cutting intervals."""
     return Workspace(
         np.empty((3, 3)), np.empty((8, 3)), np.empty((8, 3)), np.empty(BODY), np.empty((64, 2)), np.empty((ARCS, 2)),
         np.empty((11, LANES)), np.empty((BOXES, LANES)), np.empty((ENDS, LANES)), np.empty(LANES), np.empty(LANES),
@@ -63,47 +78,47 @@ def flutes(turning, k):
 
 
 @kernel
-def _meets(gap, count, first, last):
-    """Whether an arc has tilts of any gap."""
+def _meets(interval, count, first, last):
+    """Whether an arc has tilts of any interval."""
     meets = False
     for g in range(count):
-        meets = meets or (first < gap[g, LAST] and last > gap[g, FIRST])
+        meets = meets or (first < interval[g, LAST] and last > interval[g, FIRST])
     return meets
 
 
 @kernel
-def take_point(x, y, z, gap, count, turning, k, arcs):
-    """Take the tilts at which a point, along f, t and n from the centre, is in piece k out of the gaps, or some of them.
+def take_point(x, y, z, interval, count, turning, k, arcs):
+    """Take the tilts at which a point, along f, t and n from the centre, is in piece k out of the intervals, or some of them.
 
-    (The count of gaps, whether any was cut.)
+    Lemma M4 tells which points never are. (The count of intervals, whether any was cut.)
     """
     offset, piece, known = turning.offset, turning.piece, turning.known
     if (turning.eight >> k) & 1:
-        if not _cuts(x, y, z, gap, count, flutes(turning, k)):
+        if not _cuts(x, y, z, interval, count, flutes(turning, k)):
             return count, False
         left, right = point_arc(
             z, x + offset, y, 0.0, offset, piece[k, RADIUS], piece[k, LOW], piece[k, HIGH]
         )  # fmt: skip
-        return _take(gap, count, left, right), True
+        return _take(interval, count, left, right), True
     away = x * x + z * z
     if abs(y) >= known[k, BESIDE] or z <= known[k, FLOOR] or away >= known[k, FAR] ** 2 or away <= known[k, NEAR] ** 2:
         return count, False
     cut = False
     for i in range(forbidden(z, x + offset, y, 0.0, offset, piece, k, arcs)):
-        if _meets(gap, count, arcs[i, 0], arcs[i, 1]):
-            count, cut = _take(gap, count, arcs[i, 0], arcs[i, 1]), True
+        if _meets(interval, count, arcs[i, 0], arcs[i, 1]):
+            count, cut = _take(interval, count, arcs[i, 0], arcs[i, 1]), True
     if closed(offset, piece, k):
         return count, cut
     g = 0
     while g < count:
-        a, b, before = gap[g, FIRST], gap[g, LAST], count
+        a, b, before = interval[g, FIRST], interval[g, LAST], count
         for tilt in (a, b, 0.5 * (a + b)):
             c, s = np.cos(tilt), np.sin(tilt)
             height, px = s * x + c * z, offset + c * x - s * z
             if inset(piece, k, height, px * px + y * y) > 0.0:
                 left, right = arc_about(height, px, y, tilt, offset, piece, k)
-                if right > left and _meets(gap, count, left, right):
-                    count, cut = _take(gap, count, left, right), True
+                if right > left and _meets(interval, count, left, right):
+                    count, cut = _take(interval, count, left, right), True
                     break
         if count >= before:
             g += 1
@@ -112,16 +127,16 @@ def take_point(x, y, z, gap, count, turning, k, arcs):
 
 @kernel
 def _fill(seen, corner):
-    """Write a triangle of rows (x, z, y) into all lanes."""
+    """Write a triangle of rows (x, y, z) into all lanes."""
     for k in range(3):
         for lane in range(LANES):
-            seen[3 * k, lane], seen[3 * k + 1, lane], seen[3 * k + 2, lane] = corner[k, 0], corner[k, 2], corner[k, 1]
+            seen[3 * k, lane], seen[3 * k + 1, lane], seen[3 * k + 2, lane] = corner[k, 0], corner[k, 1], corner[k, 2]
     distances(seen)
 
 
 @kernel
 def _out(corner, ca, sa, cb, sb, turning, k, workspace):
-    """Whether a triangle, rows (x, z, y) from the centre, is shown to stay out of piece k at all tilts of a gap."""
+    """Whether a triangle, rows (x, y, z) from the centre, is shown to stay out of piece k at all tilts of an interval."""
     workspace.spent[0] += 1
     if (turning.eight >> k) & 1:
         return _passes(corner, ca, sa, cb, sb, flutes(turning, k), workspace.first, workspace.second)
@@ -132,15 +147,15 @@ def _out(corner, ca, sa, cb, sb, turning, k, workspace):
 
 @kernel
 def _quarters(part, seen):
-    """Write the four quarters of a triangle (3, 3), rows (x, z, y), into lanes, the rest again."""
+    """Write the four quarters of a triangle (3, 3), rows (x, y, z), into lanes, the rest again."""
     for lane in range(LANES):
         for k in range(3):
             other = (k + 1) % 3
-            for column, row in ((0, 0), (2, 1), (1, 2)):
-                here = part[k, column]
+            for row in range(3):
+                here = part[k, row]
                 # The middle one has the middles of the sides, the others a corner each and the middles next to it.
                 to = other if lane % 4 == 3 else lane % 4
-                seen[3 * k + row, lane] = 0.5 * (here + part[to, column])
+                seen[3 * k + row, lane] = 0.5 * (here + part[to, row])
     distances(seen)
 
 
@@ -172,9 +187,8 @@ def _out_in_parts(corner, ca, sa, cb, sb, turning, k, workspace):
             if cut == _QUARTERED or top == len(parts):
                 return False
             for corner_of in range(3):
-                parts[top, corner_of, 0] = seen[3 * corner_of, lane]
-                parts[top, corner_of, 2] = seen[3 * corner_of + 1, lane]
-                parts[top, corner_of, 1] = seen[3 * corner_of + 2, lane]
+                for row in range(3):
+                    parts[top, corner_of, row] = seen[3 * corner_of + row, lane]
             times[top] = cut
             top += 1
     return True
@@ -193,7 +207,7 @@ def _first_in_the_way(vertex, i, frame, a, b, sign, narrowest, turning, k, works
     """The first tilt, from a up or from b down (`sign`), at which a triangle is not shown to be clear of piece k; nan if none.
 
     A range is clear if planes part the triangle from the piece, or if it misses the piece widened by what tilting within the
-    range can do. Others are halved.
+    range can do (lemma S5). Others are halved.
     """
     body, ranges, scratch, eight = workspace.body, workspace.ranges, workspace.scratch, (turning.eight >> k) & 1
     ranges[0, 0], ranges[0, 1] = a, b
@@ -223,12 +237,12 @@ def _first_in_the_way(vertex, i, frame, a, b, sign, narrowest, turning, k, works
 
 
 @kernel
-def _shrink_in_lanes(corner, gap, g, sign, narrowest, turning, k, workspace):
+def _shrink_in_lanes(corner, interval, g, sign, narrowest, turning, k, workspace):
     """`_shrink`, eight ends at a time: first farther and farther, then evenly between the last that failed and the first that
     passed.
     """
-    ca, sa, cb, sb = gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL]
-    width, passed, failed, step = gap[g, LAST] - gap[g, FIRST], np.inf, 0.0, narrowest
+    ca, sa, cb, sb = interval[g, CF], interval[g, SF], interval[g, CL], interval[g, SL]
+    width, passed, failed, step = interval[g, LAST] - interval[g, FIRST], np.inf, 0.0, narrowest
     _fill(workspace.seen, corner)
     while passed - failed > narrowest:
         if passed == np.inf and failed >= width - narrowest:
@@ -241,9 +255,9 @@ def _shrink_in_lanes(corner, gap, g, sign, narrowest, turning, k, workspace):
             else:
                 move = min(failed + step * 2.0**lane, width - narrowest)
             workspace.moves[lane] = move
-            c, s = np.cos(gap[g, FIRST] + move), np.sin(gap[g, FIRST] + move)
+            c, s = np.cos(interval[g, FIRST] + move), np.sin(interval[g, FIRST] + move)
             if sign < 0.0:
-                c, s = np.cos(gap[g, LAST] - move), np.sin(gap[g, LAST] - move)
+                c, s = np.cos(interval[g, LAST] - move), np.sin(interval[g, LAST] - move)
                 put_ends(workspace.end, lane, ca, sa, c, s)
             else:
                 put_ends(workspace.end, lane, c, s, cb, sb)
@@ -258,16 +272,16 @@ def _shrink_in_lanes(corner, gap, g, sign, narrowest, turning, k, workspace):
 
 
 @kernel
-def _shrink(corner, gap, g, sign, narrowest, turning, k, workspace):
-    """By how much a gap must shrink from its first tilt up (`sign` 1) or its last down for a triangle to pass.
+def _shrink(corner, interval, g, sign, narrowest, turning, k, workspace):
+    """By how much an interval must shrink from its first tilt up (`sign` 1) or its last down for a triangle to pass.
 
     To `narrowest`; (by how much, a little less by which it did not pass); infinity if nothing wider is left.
     """
     if not (turning.eight >> k) & 1:
-        return _shrink_in_lanes(corner, gap, g, sign, narrowest, turning, k, workspace)
+        return _shrink_in_lanes(corner, interval, g, sign, narrowest, turning, k, workspace)
     tool, first, second = flutes(turning, k), workspace.first, workspace.second
-    ca, sa, cb, sb = gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL]
-    width = gap[g, LAST] - gap[g, FIRST]
+    ca, sa, cb, sb = interval[g, CF], interval[g, SF], interval[g, CL], interval[g, SL]
+    width = interval[g, LAST] - interval[g, FIRST]
     passed, failed, move = np.inf, 0.0, narrowest
     while passed - failed > narrowest:
         if passed < np.inf:
@@ -277,7 +291,7 @@ def _shrink(corner, gap, g, sign, narrowest, turning, k, workspace):
         if move <= failed or move >= width:
             return np.inf, width
         workspace.spent[0] += 1
-        end = gap[g, FIRST] + move if sign > 0.0 else gap[g, LAST] - move
+        end = interval[g, FIRST] + move if sign > 0.0 else interval[g, LAST] - move
         c, s = np.cos(end), np.sin(end)
         if sign > 0.0:
             good = _passes(corner, c, s, cb, sb, tool, first, second)
@@ -291,19 +305,26 @@ def _shrink(corner, gap, g, sign, narrowest, turning, k, workspace):
 
 
 @kernel
-def cut_gaps(vertex, i, frame, gap, count, narrowest, turning, k, workspace):
-    """Take the tilts at which a triangle is in the way of piece k out of the gaps; (count of gaps, whether any was cut).
+def cut_intervals(vertex, i, frame, interval, count, narrowest, turning, k, workspace):
+    """Take the tilts at which a triangle is in the way of piece k out of the intervals; (their count, whether any was cut).
 
-    The triangle is in `workspace.corner` too, as rows (x, z, y) from the centre.
+    The triangle is in `workspace.corner` too, as rows (x, y, z) from the centre.
     """
     corner, cut = workspace.corner, False
     # What its corners alone forbid is known in closed form, and mostly all that it does.
     for j in range(3):
-        count, took = take_point(corner[j, 0], corner[j, 2], corner[j, 1], gap, count, turning, k, workspace.arcs)
+        count, took = take_point(corner[j, 0], corner[j, 1], corner[j, 2], interval, count, turning, k, workspace.arcs)
         cut = cut or took
     g = 0
     while g < count:
-        a, b, ca, sa, cb, sb = gap[g, FIRST], gap[g, LAST], gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL]
+        a, b, ca, sa, cb, sb = (
+            interval[g, FIRST],
+            interval[g, LAST],
+            interval[g, CF],
+            interval[g, SF],
+            interval[g, CL],
+            interval[g, SL],
+        )
         if _out(corner, ca, sa, cb, sb, turning, k, workspace):
             g += 1
             continue
@@ -313,22 +334,30 @@ def cut_gaps(vertex, i, frame, gap, count, narrowest, turning, k, workspace):
             _in_the_way(vertex, i, frame, b, turning, k, workspace),
         )
         # What was undecided at its ends no longer is where this triangle is in the way.
-        if at_first and gap[g, UF] > 0.0 and _in_the_way(vertex, i, frame, a - gap[g, UF], turning, k, workspace):
-            gap[g, UF] = 0.0
-        if at_last and gap[g, UL] > 0.0 and _in_the_way(vertex, i, frame, b + gap[g, UL], turning, k, workspace):
-            gap[g, UL] = 0.0
+        if (
+            at_first
+            and interval[g, UF] > 0.0
+            and _in_the_way(vertex, i, frame, a - interval[g, UF], turning, k, workspace)
+        ):
+            interval[g, UF] = 0.0
+        if (
+            at_last
+            and interval[g, UL] > 0.0
+            and _in_the_way(vertex, i, frame, b + interval[g, UL], turning, k, workspace)
+        ):
+            interval[g, UL] = 0.0
         # From an end at which it is not in the way nothing is gained if it is at the other.
         up, up_failed, down, down_failed = np.inf, b - a, np.inf, b - a
         if not at_last:
-            up, up_failed = _shrink(corner, gap, g, 1.0, narrowest, turning, k, workspace)
-        if up <= 2.0 * narrowest and gap[g, UF] + up <= 3.0 * narrowest:
-            _begin(gap, g, a + up, gap[g, UF] + up)
+            up, up_failed = _shrink(corner, interval, g, 1.0, narrowest, turning, k, workspace)
+        if up <= 2.0 * narrowest and interval[g, UF] + up <= 3.0 * narrowest:
+            _begin(interval, g, a + up, interval[g, UF] + up)
             cut = True
             continue
         if not at_first:
-            down, down_failed = _shrink(corner, gap, g, -1.0, narrowest, turning, k, workspace)
-        if down <= 2.0 * narrowest and gap[g, UL] + down <= 3.0 * narrowest:
-            _end(gap, g, b - down, gap[g, UL] + down)
+            down, down_failed = _shrink(corner, interval, g, -1.0, narrowest, turning, k, workspace)
+        if down <= 2.0 * narrowest and interval[g, UL] + down <= 3.0 * narrowest:
+            _end(interval, g, b - down, interval[g, UL] + down)
             cut = True
             continue
         left, right, unsure = max(a, b - down), min(b, a + up), narrowest
@@ -352,10 +381,10 @@ def cut_gaps(vertex, i, frame, gap, count, narrowest, turning, k, workspace):
                 and _in_the_way(vertex, i, frame, max(right - unsure, middle), turning, k, workspace)
             ):
                 # Where nothing shows the triangle clear it need not be in the way.
-                gap[GAPS, UF] += right - left
+                interval[INTERVALS, UF] += right - left
         cut = True
         before = count
-        count = _part(gap, g, count, left, right, unsure)
+        count = _part(interval, g, count, left, right, unsure)
         if count >= before:
             g += 1
     return count, cut

@@ -1,8 +1,8 @@
 """Free tilts of samples at all rotations, with certified ends, in one walk of the tree a rotation.
 
-A gap of tilts is taken through the tree and only shrinks. Boxes are kept as seen from the contact: what rises nowhere above
+An interval of tilts is taken through the tree and only shrinks. Boxes are kept as seen from the contact: what rises nowhere above
 the tangent plane is out of reach at every posture and left out for all rotations. A box in the way is first asked for one
-of its points, whose arc is known in closed form: so gaps are nearly what they will be before any triangle is looked at.
+of its points, whose arc is known in closed form: so intervals are nearly what they will be before any triangle is looked at.
 """
 
 from typing import Any, NamedTuple
@@ -15,10 +15,10 @@ from plan_cutters.kernels.intervals import insert, join
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.limits import turn_of
 from plan_cutters.kernels.linear.lanes import LANES, _see, _see_leaf, _see_triangle, _turn
-from plan_cutters.kernels.linear.vectors import cross, lean_frame
+from plan_cutters.kernels.linear.vectors import cross, tilt_frame
 from plan_cutters.kernels.maps.bounds import FAR, FLOOR, NEAR, Turning, turning_of
-from plan_cutters.kernels.maps.cuts import cut_gaps, flutes, room_to_cut, take_point
-from plan_cutters.kernels.maps.gaps import CF, CL, COLUMNS, FIRST, GAPS, LAST, SF, SL, UF, UL, _begin, _end
+from plan_cutters.kernels.maps.cuts import cut_intervals, cut_workspace, flutes, take_point
+from plan_cutters.kernels.maps.intervals import CF, CL, COLUMNS, FIRST, INTERVALS, LAST, SF, SL, UF, UL, _begin, _end
 from plan_cutters.kernels.maps.passes import _boxes_pass, _triangles_pass
 from plan_cutters.kernels.maps.planes import all_ends, boxes_clear, triangles_clear, turn_boxes, turn_triangles
 from plan_cutters.kernels.rows import Frame
@@ -58,21 +58,22 @@ def _rising(view, below, block, lanes, low):
 
 
 @kernel
-def _leaf(leaf, which, vertex, frame, turn, gap, count, turning, mask, narrowest, margin, workspace):
-    """Take what the triangles of a leaf forbid to the pieces of a mask out of the gaps; (gaps, the lane that cut last or -1)."""
+def _leaf(leaf, which, vertex, frame, turn, interval, count, turning, mask, narrowest, margin, workspace):
+    """Take what the triangles of a leaf forbid to the pieces of a mask out of the intervals; (their count, the lane that cut last
+    or -1)."""
     cosine, sine = turn
     last = -1
     for k in range(len(turning.piece)):
         if not (mask >> k) & 1 or count == 0:
             continue
         if (turning.eight >> k) & 1:
-            _triangles_pass(leaf, cosine, sine, gap, count, flutes(turning, k), margin)
+            _triangles_pass(leaf, cosine, sine, interval, count, flutes(turning, k), margin)
         else:
             turn_triangles(leaf, cosine, sine, workspace.turned)
             for lane in range(LANES):
                 margin[lane] = 1.0
             for g in range(count):
-                all_ends(workspace.end, gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL])
+                all_ends(workspace.end, interval[g, CF], interval[g, SF], interval[g, CL], interval[g, SL])
                 triangles_clear(workspace.turned, workspace.end, turning, k, workspace.clear)
                 for lane in range(LANES):
                     margin[lane] = min(margin[lane], workspace.clear[lane] - 0.5)
@@ -80,15 +81,15 @@ def _leaf(leaf, which, vertex, frame, turn, gap, count, turning, mask, narrowest
             if margin[lane] >= 0.0 or count == 0:
                 continue
             _turn(leaf, lane, cosine, sine, workspace.corner)
-            count, cut = cut_gaps(vertex, which[lane], frame, gap, count, narrowest, turning, k, workspace)
+            count, cut = cut_intervals(vertex, which[lane], frame, interval, count, narrowest, turning, k, workspace)
             if cut:
                 last = lane
     return count, last
 
 
 @kernel
-def _reaching(view, block, cosine, sine, gap, count, turning, mask, margin, left, workspace):
-    """Write for each box of a block the pieces of a mask that it may reach into in some gap."""
+def _reaching(view, block, cosine, sine, interval, count, turning, mask, margin, left, workspace):
+    """Write for each box of a block the pieces of a mask that it may reach into in some interval."""
     for lane in range(LANES):
         left[lane] = 0
     turned = False
@@ -96,7 +97,7 @@ def _reaching(view, block, cosine, sine, gap, count, turning, mask, margin, left
         if not (mask >> k) & 1:
             continue
         if (turning.eight >> k) & 1:
-            _boxes_pass(view, block, cosine, sine, gap, count, flutes(turning, k), margin)
+            _boxes_pass(view, block, cosine, sine, interval, count, flutes(turning, k), margin)
             for lane in range(LANES):
                 left[lane] |= 0 if margin[lane] >= 0.0 else 1 << k
             continue
@@ -104,7 +105,7 @@ def _reaching(view, block, cosine, sine, gap, count, turning, mask, margin, left
             turn_boxes(view, block, cosine, sine, workspace.turned)
             turned = True
         for g in range(count):
-            all_ends(workspace.end, gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL])
+            all_ends(workspace.end, interval[g, CF], interval[g, SF], interval[g, CL], interval[g, SL])
             if not boxes_clear(workspace.turned, workspace.end, turning, k, workspace.clear):
                 for lane in range(LANES):
                     left[lane] |= 0 if workspace.clear[lane] > 0.0 else 1 << k
@@ -137,8 +138,8 @@ class _View(NamedTuple):
 
 
 @kernel
-def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, narrowest, wide, seen, workspace):
-    """Take the gaps of one rotation, its cosine and sine `turn`, through the tree, level by level; how many are left.
+def _rotation(frame, e1, e2, turn, rotation, interval, count, turning, whole, low, narrowest, wide, seen, workspace):
+    """Take the intervals of one rotation, its cosine and sine `turn`, through the tree, level by level; how many are left.
 
     `whole` is the mask of the pieces that anything can reach from this contact, `low` what is out of reach of them all.
     """
@@ -153,22 +154,12 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, na
     for k in range(LANES):
         _see_triangle(leaves[_LEAVES + 2], k, vertex, known[rotation, k], p, e1, e2, n)
     count, _ = _leaf(
-        leaves[_LEAVES + 2],
-        known[rotation],
-        vertex,
-        frame,
-        turn,
-        gap,
-        count,
-        turning,
-        whole,
-        narrowest,
-        inside,
+        leaves[_LEAVES + 2], known[rotation], vertex, frame, turn, interval, count, turning, whole, narrowest, inside,
         workspace,
-    )
+    )  # fmt: skip
     count, _ = _leaf(
-        leaves[_LEAVES + 1], known[-1], vertex, frame, turn, gap, count, turning, whole, narrowest, inside, workspace
-    )
+        leaves[_LEAVES + 1], known[-1], vertex, frame, turn, interval, count, turning, whole, narrowest, inside, workspace,
+    )  # fmt: skip
     queue[0, 0], queue[0, 1], queue[0, 2] = 0, 0, whole
     waiting = 1
     for level in range(levels):
@@ -182,7 +173,7 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, na
                 slot = _SEEN
                 _see(view, slot, blocks, offset[level] + block, p, e1, e2, n, seen.reach)
                 _rising(view, below, slot, LANES, low)
-            _reaching(view, slot, cosine, sine, gap, count, turning, mask, margin, left, workspace)
+            _reaching(view, slot, cosine, sine, interval, count, turning, mask, margin, left, workspace)
             for lane in range(LANES):
                 inner = below[slot, lane]
                 if left[lane] == 0 or inner == _NONE or count == 0:
@@ -201,19 +192,9 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, na
                     for k in range(LANES):
                         which[k] = begin + k
                     count, cut = _leaf(
-                        leaves[inner],
-                        which,
-                        vertex,
-                        frame,
-                        turn,
-                        gap,
-                        count,
-                        turning,
-                        left[lane],
-                        narrowest,
-                        inside,
+                        leaves[inner], which, vertex, frame, turn, interval, count, turning, left[lane], narrowest, inside,
                         workspace,
-                    )
+                    )  # fmt: skip
                     if cut >= 0:
                         known[-1, tally[2]] = begin + cut
                         for k in range(9):
@@ -226,7 +207,7 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, na
                 x, y = cosine * x + sine * y, cosine * y - sine * x
                 for k in range(len(turning.piece)):
                     if (left[lane] >> k) & 1:
-                        count, _ = take_point(x, y, z, gap, count, turning, k, workspace.arcs)
+                        count, _ = take_point(x, y, z, interval, count, turning, k, workspace.arcs)
                 if inner == _UNSEEN and tally[0] < _SEEN:
                     inner = tally[0]
                     _see(view, inner, blocks, offset[level + 1] + box, p, e1, e2, n, seen.reach)
@@ -238,7 +219,9 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, na
                 if coming == _QUEUE:
                     # Too much in the way to be told apart: nothing here is called free.
                     for g in range(count):
-                        gap[GAPS, UF] += gap[g, LAST] - gap[g, FIRST] + gap[g, UF] + gap[g, UL]
+                        interval[INTERVALS, UF] += (
+                            interval[g, LAST] - interval[g, FIRST] + interval[g, UF] + interval[g, UL]
+                        )
                     return 0
                 ahead[coming, 0], ahead[coming, 1], ahead[coming, 2] = inner, box, left[lane]
                 coming += 1
@@ -248,17 +231,17 @@ def _rotation(frame, e1, e2, turn, rotation, gap, count, turning, whole, low, na
 
 
 @kernel
-def _write(gap, count, written, most, part):
-    """Write the gaps as intervals among others, ascending; (how many, how much is undecided at their ends and beyond `most`)."""
-    unsure = gap[GAPS, UF] + gap[GAPS, UL]
+def _write(interval, count, written, most, part):
+    """Write the intervals among others, ascending; (how many, how much is undecided at their ends and beyond `most`)."""
+    unsure = interval[INTERVALS, UF] + interval[INTERVALS, UL]
     for g in range(count):
-        unsure += gap[g, UF] + gap[g, UL]
-        if gap[g, LAST] <= gap[g, FIRST]:
+        unsure += interval[g, UF] + interval[g, UL]
+        if interval[g, LAST] <= interval[g, FIRST]:
             continue
         if written == most:
-            unsure += gap[g, LAST] - gap[g, FIRST]
+            unsure += interval[g, LAST] - interval[g, FIRST]
             continue
-        written = insert(part, written, gap[g, FIRST], gap[g, LAST])
+        written = insert(part, written, interval[g, FIRST], interval[g, LAST])
     return written, unsure
 
 
@@ -323,9 +306,9 @@ def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, most, part, co
     int
         Blocks of the tree and triangles that were looked at: the same for the same rows, whatever the machine's speed.
     """
-    turns, looked, work = len(ranges.rotation_cos), 0, room_to_cut()
+    turns, looked, work = len(ranges.rotation_cos), 0, cut_workspace()
     c, t, f, e2 = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
-    gap, arcs, alone = np.empty((GAPS + 1, COLUMNS)), np.empty((8, 2)), np.empty((1, PIECE))
+    interval, arcs, alone = np.empty((INTERVALS + 1, COLUMNS)), np.empty((8, 2)), np.empty((1, PIECE))
     count_out[:, :], undecided[:, :] = 0, 0.0
     for mode in range(len(tool.mode)):
         offset, rise, piece = tool.mode[mode, codes.OFFSET_OF], tool.mode[mode, codes.RISE], tool.piece[mode]
@@ -380,20 +363,20 @@ def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, most, part, co
                 _see_triangle(view.leaves[_LEAVES + 1], lane, wide.vertex, view.known[-1, lane], c, e1, e2, n)
             for rotation in range(turns):
                 cosine, sine = turn_of(n, e1, ranges, rotation)
-                lean_frame(e1, e2, cosine, sine, f, t)
+                tilt_frame(e1, e2, cosine, sine, f, t)
                 _, count = permitted(contacts, row, ranges, tool, mode, f, arcs)
                 if count == 0:
                     continue
-                gap[GAPS, UF], gap[GAPS, UL] = 0.0, 0.0
+                interval[INTERVALS, UF], interval[INTERVALS, UL] = 0.0, 0.0
                 for g in range(count):
-                    _begin(gap, g, arcs[g, 0], 0.0)
-                    _end(gap, g, arcs[g, 1], 0.0)
+                    _begin(interval, g, arcs[g, 0], 0.0)
+                    _end(interval, g, arcs[g, 1], 0.0)
                 if some:
                     count = _rotation(
-                        frame, e1, e2, (cosine, sine), rotation, gap, count, turning, whole, floor, narrowest, wide, view,
+                        frame, e1, e2, (cosine, sine), rotation, interval, count, turning, whole, floor, narrowest, wide, view,
                         work,
                     )  # fmt: skip
-                count, unsure = _write(gap, count, count_out[place, rotation], most, part[place, rotation])
+                count, unsure = _write(interval, count, count_out[place, rotation], most, part[place, rotation])
                 count_out[place, rotation] = join(part[place, rotation], count)
                 undecided[place, rotation] += unsure
         looked += view.tally[3]

@@ -1,8 +1,8 @@
 """All free tilts at one point and rotation, with certified ends; `free_map` finds those of many samples.
 
-A range of tilts is free if the body, widened by half the range times the distance from the contact, is missed at the
-middle. Where the middle itself is blocked, the point in the way forbids an arc; where only the widened body is, the
-range is halved. Ranges narrower than `narrowest` stay undecided.
+A range of tilts is free if the body, widened by half the range times the distance from the contact, is missed at the middle
+(`docs/at_a_sample.md`, lemma S5). Where it is hit at the middle without widening, the point in the way forbids an arc; where only
+the widened body is, the range is halved. Ranges narrower than `narrowest` stay undecided.
 """
 
 from typing import Any, NamedTuple
@@ -21,7 +21,7 @@ OPEN, FORBIDDEN, UNSURE = 0, 1, 2
 
 
 class Parts(NamedTuple):
-    """Room to work in: parts (k, 3) as `free_tilts` gives them, pending (k, 2), arcs (ARCS, 2), a body, lists to walk with."""
+    """This is a workspace: parts (k, 3) as `free_tilts` gives them, pending (k, 2), arcs (ARCS, 2), a body, lists for walks."""
 
     parts: Any
     pending: Any
@@ -31,8 +31,8 @@ class Parts(NamedTuple):
 
 
 @entry
-def room_for_parts(most):
-    """Room for so many parts."""
+def parts_workspace(most):
+    """Make a workspace for so many parts."""
     return Parts(np.empty((most + 4, 3)), np.empty((most + 4, 2)), np.empty((ARCS, 2)), np.empty(BODY), scratch())
 
 
@@ -101,7 +101,7 @@ def free_tilts(p, n, f, low, high, tool, mode, narrowest, tree, most):
     parts : (k, 3) float64
         first, last, kind (OPEN, FORBIDDEN, UNSURE); together the range asked for, in no order.
     """
-    t, work = np.empty(3), room_for_parts(most)
+    t, work = np.empty(3), parts_workspace(most)
     cross(n, f, t)
     count = divide(Frame(p, n, f, t), low, high, tool, mode, narrowest, tree, work)
     return work.parts[:count]

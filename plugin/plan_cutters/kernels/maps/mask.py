@@ -5,7 +5,7 @@ import numpy as np
 from plan_cutters.kernels.codes import ACCESSIBLE, INACCESSIBLE, UNDECIDED
 from plan_cutters.kernels.jit import entry
 from plan_cutters.kernels.limits import held_tilts
-from plan_cutters.kernels.linear.vectors import cross, lean_frame
+from plan_cutters.kernels.linear.vectors import cross, tilt_frame
 
 
 @entry
@@ -37,7 +37,7 @@ def mask(rows, normal, direction_max, ranges, turns, offset, free, undecided, fo
             unsure = undecided[row, rotation] > 0.0
             if offset[place] == offset[place + 1] and not unsure:
                 continue
-            lean_frame(e1, e2, ranges.rotation_cos[rotation], ranges.rotation_sin[rotation], f, t)
+            tilt_frame(e1, e2, ranges.rotation_cos[rotation], ranges.rotation_sin[rotation], f, t)
             held = held_tilts(n, f, ranges, ranges.tilt_low, ranges.tilt_high, intervals)
             if held == 0:
                 continue
@@ -69,7 +69,7 @@ def held_free(rows, normal, direction_max, ranges, offset, free, place, kept):
     rows, normal, direction_max, ranges, offset, free
         As for `mask`.
     place : (n * k,) int64
-        How many intervals each sample has at each rotation, written; where they begin in `kept`, read if that has room.
+        How many intervals each sample has at each rotation, written; where they begin in `kept`, read if that has rows.
     kept : (m, 2) float64, written
         Without rows: nothing but `place` is written.
     """
@@ -85,7 +85,7 @@ def held_free(rows, normal, direction_max, ranges, offset, free, place, kept):
                 place[cell] = at = 0
             if offset[cell] == offset[cell + 1]:
                 continue
-            lean_frame(e1, e2, ranges.rotation_cos[rotation], ranges.rotation_sin[rotation], f, t)
+            tilt_frame(e1, e2, ranges.rotation_cos[rotation], ranges.rotation_sin[rotation], f, t)
             held = held_tilts(n, f, ranges, ranges.tilt_low, ranges.tilt_high, intervals)
             for i in range(offset[cell], offset[cell + 1]):
                 for k in range(held):

@@ -1,13 +1,13 @@
-"""Does a triangle, or do eight boxes or triangles, stay out of the body of a plain cylinder at all tilts of a gap?
+"""Does a triangle, or do eight boxes or triangles, stay out of the body of a plain cylinder at all tilts of an interval?
 
-A triangle's polygon has rows (x, z, y) from the contact. Eight at a time go without a branch, so that the compiler uses the
-lanes of the processor.
+The sides are those of lemmas M1 to M3 of `docs/posture_map_proof.md`. A triangle's polygon has rows (x, y, z) from the contact.
+Eight at a time go without a branch, so that the compiler uses the lanes of the processor.
 """
 
 import numpy as np
 
 from plan_cutters.kernels.jit import kernel
-from plan_cutters.kernels.maps.gaps import CF, CL, SF, SL
+from plan_cutters.kernels.maps.intervals import CF, CL, SF, SL
 from plan_cutters.kernels.tool.pieces import nearest
 
 #: Triangles that reach no farther along the line of turning, in radii, see the rim as one line.
@@ -18,12 +18,12 @@ _SLABS = 8
 
 @kernel
 def _clip(source, count, target, a, b, level):
-    """Keep the part of a polygon of rows (x, z, y) with `a x + b z >= level`."""
+    """Keep the part of a polygon of rows (x, y, z) with `a x + b z >= level`."""
     kept = 0
     for i in range(count):
         j = i + 1 if i + 1 < count else 0
-        here = a * source[i, 0] + b * source[i, 1] - level
-        there = a * source[j, 0] + b * source[j, 1] - level
+        here = a * source[i, 0] + b * source[i, 2] - level
+        there = a * source[j, 0] + b * source[j, 2] - level
         if here >= 0.0:
             for k in range(3):
                 target[kept, k] = source[i, k]
@@ -38,13 +38,13 @@ def _clip(source, count, target, a, b, level):
 
 @kernel
 def _side(polygon, count, cosine, sine, radius, shrunk, turned):
-    """On which side of the cylinder at a tilt the shadow of a polygon of rows (x, z, y) lies: 1 front, -1 back, 0 neither.
+    """On which side of the cylinder at a tilt the shadow of a polygon of rows (x, y, z) lies: 1 front, -1 back, 0 neither.
 
     The front is where the contact is. 2: beside it, out of reach at every tilt. `turned` is scratch.
     """
     least, most = np.inf, -np.inf
     for i in range(count):
-        x, z, y = polygon[i, 0], polygon[i, 1], polygon[i, 2]
+        x, y, z = polygon[i, 0], polygon[i, 1], polygon[i, 2]
         turned[i, 0], turned[i, 1], turned[i, 2] = cosine * z + sine * x, cosine * x - sine * z + radius, y
         least, most = min(least, y), max(most, y)
     if least >= shrunk or most <= -shrunk:
@@ -66,7 +66,7 @@ def _rim(y, radius, shrunk):
 
 @kernel
 def _facing(nx, nz, ca, sa, cb, sb):
-    """A direction (x, z), up or down as it may be, turned to where the body is at all tilts of a gap.
+    """A direction (x, z), up or down as it may be, turned to where the body is at all tilts of an interval.
 
     It then leans from the axis to the front or to the back by no more than 90 deg at any of them.
     """
@@ -81,53 +81,53 @@ def _facing(nx, nz, ca, sa, cb, sb):
 
 @kernel
 def _from_plane(nx, nz, c, s, tool):
-    """How far along a direction (x, z) the body begins at a tilt: (distance, and to be added for each mm of room at the rim)."""
+    """How far along a direction (x, z) the body begins at a tilt: (distance, and what each mm of the rim's distance adds)."""
     up, out = nx * s + nz * c, nz * s - nx * c
     return tool.low * up + 2.0 * tool.radius * min(0.0, out), abs(out)
 
 
 @kernel
 def _plane_passes(corner, ca, sa, cb, sb, tool):
-    """Whether a plane, nearly that of the triangle, has it on one side and the body on the other at all tilts of a gap."""
-    x0, z0, y0 = corner[0, 0], corner[0, 1], corner[0, 2]
-    x1, z1, y1 = corner[1, 0], corner[1, 1], corner[1, 2]
-    x2, z2, y2 = corner[2, 0], corner[2, 1], corner[2, 2]
-    slope, workspace = _rim((y0 + y1 + y2) / 3.0, tool.radius, tool.shrunk)
+    """Tell whether a plane, nearly that of a triangle, parts it from the body at all tilts of an interval (lemma M1.5)."""
+    x0, y0, z0 = corner[0, 0], corner[0, 1], corner[0, 2]
+    x1, y1, z1 = corner[1, 0], corner[1, 1], corner[1, 2]
+    x2, y2, z2 = corner[2, 0], corner[2, 1], corner[2, 2]
+    slope, rim = _rim((y0 + y1 + y2) / 3.0, tool.radius, tool.shrunk)
     nx, nz = (y1 - y0) * (z2 - z0) - (z1 - z0) * (y2 - y0), (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0)
     nx, nz = _facing(nx, nz, ca, sa, cb, sb)
     h0, h1, h2 = nx * x0 + nz * z0, nx * x1 + nz * z1, nx * x2 + nz * z2
     for c, s in ((ca, sa), (cb, sb)):
         begins, share = _from_plane(nx, nz, c, s, tool)
         d = share * slope
-        if max(h0 - d * y0, max(h1 - d * y1, h2 - d * y2)) > begins + share * workspace:
+        if max(h0 - d * y0, max(h1 - d * y1, h2 - d * y2)) > begins + share * rim:
             return False
     return True
 
 
 @kernel
 def _never(polygon, count, radius, shrunk):
-    """Whether a polygon of rows (x, z, y) is out of reach at every tilt.
+    """Tell whether a polygon of rows (x, y, z) is out of reach at every tilt (lemma M1.8).
 
-    So near the line of turning that the disk, which touches that line at the contact, has curved away. The room grows with
+    So near the line of turning that the disk, which touches that line at the contact, has curved away. Its distance grows with
     the square of y: its tangent bounds it from below, and what is left of it is least at a corner.
     """
     low, high, middle = np.inf, -np.inf, 0.0
     for i in range(count):
-        x, z, y = polygon[i, 0], polygon[i, 1], polygon[i, 2]
+        x, y, z = polygon[i, 0], polygon[i, 1], polygon[i, 2]
         low, high, middle = min(low, y), max(high, y), middle + y / count
         square = shrunk * shrunk - y * y
         if square > 0.0:
-            workspace = radius - np.sqrt(square)
-            if x * x + z * z > workspace * workspace:
+            rim = radius - np.sqrt(square)
+            if x * x + z * z > rim * rim:
                 return False
     pieces = 1 if high - low < 0.1 * shrunk else _SLABS
     wide = (high - low) / pieces
     for piece in range(pieces):
         at = low + piece * wide
-        slope, workspace = _rim(middle if pieces == 1 else at + 0.5 * wide, radius, shrunk)
+        slope, rim = _rim(middle if pieces == 1 else at + 0.5 * wide, radius, shrunk)
         for i in range(count):
             j = i + 1 if i + 1 < count else 0
-            yi, yj = polygon[i, 2], polygon[j, 2]
+            yi, yj = polygon[i, 1], polygon[j, 1]
             if max(yi, yj) < at or min(yi, yj) > at + wide:
                 continue
             first, last = 0.0, 1.0
@@ -136,8 +136,8 @@ def _never(polygon, count, radius, shrunk):
                 first, last = max(0.0, min(u, v)), min(1.0, max(u, v))
             for part in (first, last):
                 x = polygon[i, 0] + part * (polygon[j, 0] - polygon[i, 0])
-                z = polygon[i, 1] + part * (polygon[j, 1] - polygon[i, 1])
-                gone = slope * (yi + part * (yj - yi)) + workspace
+                z = polygon[i, 2] + part * (polygon[j, 2] - polygon[i, 2])
+                gone = slope * (yi + part * (yj - yi)) + rim
                 if gone < 0.0 or x * x + z * z > gone * gone:
                     return False
     return True
@@ -145,28 +145,30 @@ def _never(polygon, count, radius, shrunk):
 
 @kernel
 def _parts_pass(polygon, count, ca, sa, cb, sb, tool):
-    """Test a polygon like `_boxes_pass`, if necessary in two parts: one that the bottom sweeps over, one that stays below it."""
+    """Test a polygon like `_boxes_pass`, if necessary in two parts (lemma M3): one that the bottom sweeps over, one that stays
+    below it.
+    """
     radius, shrunk, low, high, _ = tool
     middle = 0.0
     for k in range(count):
-        middle += polygon[k, 2]
-    slope, workspace = _rim(middle / count, radius, shrunk)
+        middle += polygon[k, 1]
+    slope, rim = _rim(middle / count, radius, shrunk)
     upper, lower, under, never, behind, top = -np.inf, -np.inf, -np.inf, True, np.inf, True
     k = count - 1
-    x, z, y = polygon[k, 0], polygon[k, 1], polygon[k, 2]
-    last, last_front = cb * z + sb * x, sb * z - cb * x - slope * y - workspace
+    x, y, z = polygon[k, 0], polygon[k, 1], polygon[k, 2]
+    last, last_front = cb * z + sb * x, sb * z - cb * x - slope * y - rim
     for k in range(count):
-        before_x, before_z, before_y = x, z, y
-        x, z, y = polygon[k, 0], polygon[k, 1], polygon[k, 2]
-        height, front = cb * z + sb * x, sb * z - cb * x - slope * y - workspace
-        below = max(z - sa * (slope * y + workspace) - ca * low, z - sb * (slope * y + workspace) - cb * low)
+        before_x, before_y, before_z = x, y, z
+        x, y, z = polygon[k, 0], polygon[k, 1], polygon[k, 2]
+        height, front = cb * z + sb * x, sb * z - cb * x - slope * y - rim
+        below = max(z - sa * (slope * y + rim) - ca * low, z - sb * (slope * y + rim) - cb * low)
         behind = min(behind, sa * z - ca * x + slope * y)
         top = top and height >= high
         if height >= 0.0:
             upper = max(upper, front)
         if height <= 0.0:
             lower = max(lower, below)
-            gone = slope * y + workspace
+            gone = slope * y + rim
             never = never and gone >= 0.0 and x * x + z * z <= gone * gone
         if (height > 0.0 and last < 0.0) or (height < 0.0 and last > 0.0):
             # Where the side of the polygon crosses from one part to the other.
@@ -174,23 +176,23 @@ def _parts_pass(polygon, count, ca, sa, cb, sb, tool):
             cx, cz = before_x + part * (x - before_x), before_z + part * (z - before_z)
             cy = before_y + part * (y - before_y)
             upper = max(upper, last_front + part * (front - last_front))
-            gone = slope * cy + workspace
+            gone = slope * cy + rim
             lower = max(lower, max(cz - sa * gone - ca * low, cz - sb * gone - cb * low))
             never = never and gone >= 0.0 and cx * cx + cz * cz <= gone * gone
         under = max(under, below)
         last, last_front = height, front
-    if top or under <= 0.0 or behind >= 2.0 * radius - workspace:
+    if top or under <= 0.0 or behind >= 2.0 * radius - rim:
         return True
     return upper <= 0.0 and (lower <= 0.0 or never)
 
 
 @kernel
 def _passes(corner, cf, sf, cl, sl, tool, first, second):
-    """Whether a triangle, rows (x, z, y) from the contact, stays out of the body at all tilts of a gap.
+    """Whether a triangle, rows (x, y, z) from the contact, stays out of the body at all tilts of an interval.
 
     With growing tilt a point of the part turns about the contact down and back in the tool's frame. So one that is
-    below the bottom or behind the body where the gap begins stays so; one that is in front of it, and no lower than the
-    contact, or above its top where the gap ends was so before. Each point must be one of these; the rest of the triangle
+    below the bottom or behind the body where the interval begins stays so; one that is in front of it, and no lower than the
+    contact, or above its top where the interval ends was so before. Each point must be one of these; the rest of the triangle
     is cut off in turn.
     """
     radius, shrunk, low, high, _ = tool
@@ -201,7 +203,7 @@ def _passes(corner, cf, sf, cl, sl, tool, first, second):
         return True
     least, most = np.inf, -np.inf
     for k in range(count):
-        least, most = min(least, first[k, 2]), max(most, first[k, 2])
+        least, most = min(least, first[k, 1]), max(most, first[k, 1])
     if most - least < _FLAT * radius:
         return False
     # Too large for one tangent to the rim.
@@ -215,19 +217,19 @@ def _passes(corner, cf, sf, cl, sl, tool, first, second):
 
 
 @kernel
-def _boxes_pass(view, block, cosine, sine, gap, count, tool, margin):
-    """Write a margin for each box of a block: 0 or more only if none of its points enters the body in any gap.
+def _boxes_pass(view, block, cosine, sine, interval, count, tool, margin):
+    """Write a margin for each box of a block: 0 or more only if none of its points enters the body in any interval.
 
-    What parts a box from the body is, as for a point: beside the cylinder; below its bottom where the gap begins; in front
-    of the rim where it ends; below the rim at both, seen along the normal or across the box's thin side; above the top where
-    it ends; behind where it begins. The rim is seen as a line, its tangent half way from the box's middle to its side next to
-    the axis.
+    What parts a box from the body is, as for a point (lemmas M1 and M2): beside the cylinder; below its bottom where the interval
+    begins; in front of the rim where it ends; below the rim at both, seen along the normal or across the box's thin side; above
+    the top where it ends; behind where it begins. The rim is seen as a line, its tangent half way from the box's middle to its
+    side next to the axis.
     """
     radius, shrunk, low, high, _ = tool
     for lane in range(len(margin)):
         margin[lane] = np.inf
     for g in range(count):
-        ca, sa, cb, sb = gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL]
+        ca, sa, cb, sb = interval[g, CF], interval[g, SF], interval[g, CL], interval[g, SL]
         level = low * min(1.0, ca * min(ca + sa, cb + sb))
         for lane in range(len(margin)):
             x = cosine * view[block, 0, lane] + sine * view[block, 1, lane]
@@ -241,8 +243,8 @@ def _boxes_pass(view, block, cosine, sine, gap, count, tool, margin):
             t2 = cosine * view[block, 8, lane] - sine * view[block, 5, lane]
             z0, z1, z2 = view[block, 9, lane], view[block, 10, lane], view[block, 11, lane]
             wide = abs(t0) + abs(t1) + abs(t2)
-            slope, workspace = _rim(y - max(-0.5 * wide, min(0.5 * wide, y)), radius, shrunk)
-            workspace += slope * y
+            slope, rim = _rim(y - max(-0.5 * wide, min(0.5 * wide, y)), radius, shrunk)
+            rim += slope * y
             top = ca * z + sa * x + abs(ca * z0 + sa * f0) + abs(ca * z1 + sa * f1) + abs(ca * z2 + sa * f2)
             bottom = cb * z + sb * x - abs(cb * z0 + sb * f0) - abs(cb * z1 + sb * f1) - abs(cb * z2 + sb * f2)
             front = sb * z - cb * x + abs(sb * z0 - cb * f0 - slope * t0)
@@ -250,38 +252,38 @@ def _boxes_pass(view, block, cosine, sine, gap, count, tool, margin):
             behind = sa * z - ca * x - abs(sa * z0 - ca * f0 + slope * t0)
             behind -= abs(sa * z1 - ca * f1 + slope * t1) + abs(sa * z2 - ca * f2 + slope * t2)
             d = sa * slope
-            under = ca * low + sa * workspace - z - abs(z0 - d * t0) - abs(z1 - d * t1) - abs(z2 - d * t2)
+            under = ca * low + sa * rim - z - abs(z0 - d * t0) - abs(z1 - d * t1) - abs(z2 - d * t2)
             d = sb * slope
-            under = min(under, cb * low + sb * workspace - z - abs(z0 - d * t0) - abs(z1 - d * t1) - abs(z2 - d * t2))
+            under = min(under, cb * low + sb * rim - z - abs(z0 - d * t0) - abs(z1 - d * t1) - abs(z2 - d * t2))
             nx, nz = _facing(t0 * z1 - z0 * t1, f0 * t1 - t0 * f1, ca, sa, cb, sb)
             over = nx * x + nz * z
             begins, share = _from_plane(nx, nz, ca, sa, tool)
             d = share * slope
-            own = begins + share * workspace - over - abs(nx * f0 + nz * z0 - d * t0)
+            own = begins + share * rim - over - abs(nx * f0 + nz * z0 - d * t0)
             own -= abs(nx * f1 + nz * z1 - d * t1) + abs(nx * f2 + nz * z2 - d * t2)
             begins, share = _from_plane(nx, nz, cb, sb, tool)
             d = share * slope
-            other = begins + share * workspace - over - abs(nx * f0 + nz * z0 - d * t0)
+            other = begins + share * rim - over - abs(nx * f0 + nz * z0 - d * t0)
             other -= abs(nx * f1 + nz * z1 - d * t1) + abs(nx * f2 + nz * z2 - d * t2)
             under = max(under, min(own, other))
             ahead = x - abs(f0) - abs(f1) - abs(f2)
             beside = abs(y) - wide
             best = max(beside - shrunk, level - top)
-            best = max(best, min(workspace - front, max(ahead, max(low - top, bottom))))
+            best = max(best, min(rim - front, max(ahead, max(low - top, bottom))))
             best = max(best, under)
             best = max(best, bottom - high)
-            best = max(best, behind - 2.0 * radius + workspace)
+            best = max(best, behind - 2.0 * radius + rim)
             margin[lane] = min(margin[lane], best)
 
 
 @kernel
-def _triangles_pass(seen, cosine, sine, gap, count, tool, margin):
+def _triangles_pass(seen, cosine, sine, interval, count, tool, margin):
     """`_boxes_pass` for the triangles of a leaf."""
     radius, shrunk, low, high, _ = tool
     for lane in range(len(margin)):
         margin[lane] = np.inf
     for g in range(count):
-        ca, sa, cb, sb = gap[g, CF], gap[g, SF], gap[g, CL], gap[g, SL]
+        ca, sa, cb, sb = interval[g, CF], interval[g, SF], interval[g, CL], interval[g, SL]
         level = low * min(1.0, ca * min(ca + sa, cb + sb))
         for lane in range(len(margin)):
             x0 = cosine * seen[0, lane] + sine * seen[1, lane]
@@ -293,7 +295,7 @@ def _triangles_pass(seen, cosine, sine, gap, count, tool, margin):
             x2 = cosine * seen[6, lane] + sine * seen[7, lane]
             y2 = cosine * seen[7, lane] - sine * seen[6, lane]
             z2 = seen[8, lane]
-            slope, workspace = _rim((y0 + y1 + y2) / 3.0, radius, shrunk)
+            slope, rim = _rim((y0 + y1 + y2) / 3.0, radius, shrunk)
             highest = max(z0, max(z1, z2))
             top = max(ca * z0 + sa * x0, max(ca * z1 + sa * x1, ca * z2 + sa * x2))
             bottom = min(cb * z0 + sb * x0, min(cb * z1 + sb * x1, cb * z2 + sb * x2))
@@ -302,24 +304,24 @@ def _triangles_pass(seen, cosine, sine, gap, count, tool, margin):
             behind = min(sa * z0 - ca * x0 + slope * y0,
                          min(sa * z1 - ca * x1 + slope * y1, sa * z2 - ca * x2 + slope * y2))  # fmt: skip
             d = sa * slope
-            under = ca * low + sa * workspace - max(z0 - d * y0, max(z1 - d * y1, z2 - d * y2))
+            under = ca * low + sa * rim - max(z0 - d * y0, max(z1 - d * y1, z2 - d * y2))
             d = sb * slope
-            under = min(under, cb * low + sb * workspace - max(z0 - d * y0, max(z1 - d * y1, z2 - d * y2)))
+            under = min(under, cb * low + sb * rim - max(z0 - d * y0, max(z1 - d * y1, z2 - d * y2)))
             nx, nz = (y1 - y0) * (z2 - z0) - (z1 - z0) * (y2 - y0), (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0)
             nx, nz = _facing(nx, nz, ca, sa, cb, sb)
             h0, h1, h2 = nx * x0 + nz * z0, nx * x1 + nz * z1, nx * x2 + nz * z2
             begins, share = _from_plane(nx, nz, ca, sa, tool)
             d = share * slope
-            own = begins + share * workspace - max(h0 - d * y0, max(h1 - d * y1, h2 - d * y2))
+            own = begins + share * rim - max(h0 - d * y0, max(h1 - d * y1, h2 - d * y2))
             begins, share = _from_plane(nx, nz, cb, sb, tool)
             d = share * slope
-            own = min(own, begins + share * workspace - max(h0 - d * y0, max(h1 - d * y1, h2 - d * y2)))
+            own = min(own, begins + share * rim - max(h0 - d * y0, max(h1 - d * y1, h2 - d * y2)))
             under = max(under, own)
             beside = max(min(y0, min(y1, y2)), -max(y0, max(y1, y2)))
             best = max(beside - shrunk, low - highest)
             best = max(best, level - top)
-            best = max(best, min(workspace - front, max(min(x0, min(x1, x2)), max(low - top, bottom))))
+            best = max(best, min(rim - front, max(min(x0, min(x1, x2)), max(low - top, bottom))))
             best = max(best, under)
             best = max(best, bottom - high)
-            best = max(best, behind - 2.0 * radius + workspace)
+            best = max(best, behind - 2.0 * radius + rim)
             margin[lane] = min(margin[lane], best)

@@ -1,9 +1,9 @@
-"""Does a convex piece of a tool stay clear of boxes or triangles at all tilts of a gap? Eight at a time, parted by planes.
+"""Does a convex piece of a tool stay clear of boxes or triangles at all tilts of an interval? Eight at a time, parted by planes.
 
 Two lemmas carry all of it, M5 and M6 of `docs/posture_map_proof.md`. Points count from the centre about which the tool tilts.
-*One plane at both ends*: a plane that is fixed to the tool and touches the piece parts it from a point at both ends of a gap;
-then it does so in between, if the tilts at which it does not could not all lie between the ends. *A plane fixed in the part*:
-along a direction of the part the piece goes no farther, at any tilt of a gap, than a closed form says.
+*One plane at both ends* (M5): a plane that is fixed to the tool and touches the piece parts it from a point at both ends of an
+interval; then it does so in between, if the tilts at which it does not could not all lie between the ends. *A plane fixed in the
+part* (M6): along a direction of the part the piece goes no farther, at any tilt of an interval, than a closed form says.
 
 Loops run over `len(clear)`: where they are known to be short, the compiler does not take lanes together.
 """
@@ -26,7 +26,7 @@ from plan_cutters.kernels.maps.bounds import (
     swept,
 )  # fmt: skip
 
-#: Rows of ends: cosine and sine of the first tilt, of the last, of the middle, cosine of half the gap.
+#: Rows of ends: cosine and sine of the first tilt, of the last, of the middle, cosine of half the interval.
 CA, SA, CB, SB, CM, SM, CH, ENDS = 0, 1, 2, 3, 4, 5, 6, 7
 #: Rows of boxes turned into a rotation's frame: centre, three half sides along f, along t, along n, extent along t, least and
 #: largest distance from the line of turning.
@@ -58,16 +58,17 @@ def _towards(edge, x, y, height):
 
 @kernel
 def _support(edge, offset, mx, mw, across):
-    """How far a bound goes along a unit direction of the tool, from the centre."""
+    """Return how far a bound goes along a unit direction of the tool, from the centre."""
     q0, f0, q1, f1, grown, _, _ = edge
     return max(q0 * across + f0 * mw, q1 * across + f1 * mw) + grown - offset * mx
 
 
 @kernel
 def _between(least, reach, my, y_most, nearest, farthest, cosine):
-    """Whether what lies beyond a plane by `least` at both ends of a gap does so in between: (the three reasons of the lemma).
+    """Tell whether what lies beyond a plane by `least` at both ends of an interval does so in between (lemma M5, its three
+    reasons).
 
-    y_most is the largest of `my y`; `cosine` that of half the gap.
+    y_most is the largest of `my y`; `cosine` that of half the interval.
     """
     level, arm = reach - y_most, np.sqrt(max(0.0, 1.0 - my * my))
     return (least > reach + HAIR) & (
@@ -78,93 +79,106 @@ def _between(least, reach, my, y_most, nearest, farthest, cosine):
 
 
 @kernel
-def _lean(edge, y, wide, sine):
-    """The direction (y, z), of length 1, of a plane under a rim where something stands beside the contact."""
+def _under_rim(edge, y, wide, sine):
+    """Return the direction (y, z), of length 1, of a plane under a rim where something stands beside the contact."""
     radius = max(edge[0], HAIR)
     y = y - max(-0.5 * wide, min(0.5 * wide, y))
     y = max(-_STEEP * radius, min(_STEEP * radius, y))
-    tilt_direction = sine * y / np.sqrt(radius * radius - y * y)
-    share = 1.0 / np.sqrt(1.0 + tilt_direction * tilt_direction)
-    return share * tilt_direction, -share
+    slope = sine * y / np.sqrt(radius * radius - y * y)
+    share = 1.0 / np.sqrt(1.0 + slope * slope)
+    return share * slope, -share
 
 
 @kernel
-def _away(edge, offset, gx, gy, gz, x, y, z, cm, sm):
-    """1 or -1: which way along a direction of the part something lies from a bound at the middle of a gap."""
+def _least_of_box(gx, gy, gz, box, lane):
+    """Return the least that any point of a box has along a direction of the part."""
+    least = gx * box[AT, lane] + gy * box[AT + 1, lane] + gz * box[AT + 2, lane]
+    least -= abs(gx * box[ALONG_F, lane] + gy * box[ALONG_T, lane] + gz * box[ALONG_N, lane])
+    other = abs(gx * box[ALONG_F + 1, lane] + gy * box[ALONG_T + 1, lane] + gz * box[ALONG_N + 1, lane])
+    return least - (
+        other + abs(gx * box[ALONG_F + 2, lane] + gy * box[ALONG_T + 2, lane] + gz * box[ALONG_N + 2, lane])
+    )
+
+
+@kernel
+def _least_of_triangle(gx, gy, gz, seen, lane):
+    """Return the least that any point of a triangle has along a direction of the part."""
+    first = gx * seen[0, lane] + gy * seen[1, lane] + gz * seen[2, lane]
+    other = gx * seen[3, lane] + gy * seen[4, lane] + gz * seen[5, lane]
+    return min(first, min(other, gx * seen[6, lane] + gy * seen[7, lane] + gz * seen[8, lane]))
+
+
+@kernel
+def _under(shape, boxes, end, bound, j, offset, clear):
+    """Mark boxes, or else triangles, that lie under a bound all over their interval, as seen along the normal tilted like the
+    rim (lemma M6).
+    """
+    edge = edge_of(bound, j)
+    for lane in range(len(clear)):
+        ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
+        if boxes:
+            gy, gz = _under_rim(edge, shape[1, lane], shape[EXTENT, lane], sa)
+            least = _least_of_box(0.0, gy, gz, shape, lane)
+        else:
+            gy, gz = _under_rim(edge, (shape[1, lane] + shape[4, lane] + shape[7, lane]) / 3.0, 0.0, sa)
+            least = _least_of_triangle(0.0, gy, gz, shape, lane)
+        line = rim_line(edge, 0.0, gy, gz, ca, sa, cb, sb)
+        beyond = least - swept(edge, offset, line, 0.0, gz, ca, sa, cb, sb)
+        clear[lane] = 1.0 if beyond > HAIR else clear[lane]
+
+
+@kernel
+def _across(shape, boxes, end, bound, j, offset, clear):
+    """Mark boxes that a plane across their thin side, or else triangles that their own plane, parts from a bound.
+
+    Lemma M6.
+    """
+    edge = edge_of(bound, j)
     q0, f0, q1, f1, _, _, _ = edge
     up = 0.5 * (f0 + min(f1, f0 + 20.0 * max(q0, q1)))
-    return 1.0 if gx * (x + offset * cm - up * sm) + gy * y + gz * (z - offset * sm - up * cm) >= 0.0 else -1.0
+    for lane in range(len(clear)):
+        ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
+        cm, sm = end[CM, lane], end[SM, lane]
+        x, y, z = shape[0, lane], shape[1, lane], shape[2, lane]
+        if boxes:
+            ux, uy, uz = shape[ALONG_F, lane], shape[ALONG_T, lane], shape[ALONG_N, lane]
+            vx, vy, vz = shape[ALONG_F + 1, lane], shape[ALONG_T + 1, lane], shape[ALONG_N + 1, lane]
+        else:
+            ux, uy, uz = shape[3, lane] - x, shape[4, lane] - y, shape[5, lane] - z
+            vx, vy, vz = shape[6, lane] - x, shape[7, lane] - y, shape[8, lane] - z
+        gx, gy, gz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        # Away from the bound as it stands at the middle of the interval.
+        away = gx * (x + offset * cm - up * sm) + gy * y + gz * (z - offset * sm - up * cm)
+        share = (1.0 if away >= 0.0 else -1.0) / max(np.sqrt(gx * gx + gy * gy + gz * gz), 1e-200)
+        gx, gy, gz = share * gx, share * gy, share * gz
+        least = _least_of_box(gx, gy, gz, shape, lane) if boxes else _least_of_triangle(gx, gy, gz, shape, lane)
+        line = rim_line(edge, gx, gy, gz, ca, sa, cb, sb)
+        beyond = least - swept(edge, offset, line, gx, gz, ca, sa, cb, sb)
+        clear[lane] = 1.0 if beyond > HAIR else clear[lane]
 
 
 @kernel
 def _boxes_apart(box, end, bound, j, offset, which, clear):
-    """Mark boxes that a plane, as it stands at one end of their gap (row `which` of `end` and the next), parts from a bound.
+    """Mark boxes that a plane, as it stands at one end of their interval (row `which` of `end` and the next), parts from a bound.
 
-    All over the gap, turning with the tool or not.
+    All over the interval, turning with the tool (lemma M5) or not (M6).
     """
     edge = edge_of(bound, j)
     for lane in range(len(clear)):
-        x, y, z, wide = box[0, lane], box[1, lane], box[2, lane], box[EXTENT, lane]
-        f0, f1, f2 = box[3, lane], box[4, lane], box[5, lane]
-        t0, t1, t2 = box[6, lane], box[7, lane], box[8, lane]
-        z0, z1, z2 = box[9, lane], box[10, lane], box[11, lane]
+        x, y, z, wide = box[AT, lane], box[AT + 1, lane], box[AT + 2, lane], box[EXTENT, lane]
         c, s = end[which, lane], end[which + 1, lane]
         mx, my, mw, across, _ = _towards(edge, offset + c * x - s * z, y, s * x + c * z)
         reach = _support(edge, offset, mx, mw, across)
-        gx, gz = mx * c + mw * s, mw * c - mx * s
-        over = gx * x + my * y + gz * z - abs(gx * f0 + my * t0 + gz * z0)
-        over -= abs(gx * f1 + my * t1 + gz * z1) + abs(gx * f2 + my * t2 + gz * z2)
         ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        fixed = over - swept(edge, offset, rim_line(edge, gx, my, gz, ca, sa, cb, sb), gx, gz, ca, sa, cb, sb)
-        c, s = end[CA, lane], end[SA, lane]
         gx, gz = mx * c + mw * s, mw * c - mx * s
-        first = gx * x + my * y + gz * z - abs(gx * f0 + my * t0 + gz * z0)
-        first -= abs(gx * f1 + my * t1 + gz * z1) + abs(gx * f2 + my * t2 + gz * z2)
-        c, s = end[CB, lane], end[SB, lane]
-        gx, gz = mx * c + mw * s, mw * c - mx * s
-        last = gx * x + my * y + gz * z - abs(gx * f0 + my * t0 + gz * z0)
-        last -= abs(gx * f1 + my * t1 + gz * z1) + abs(gx * f2 + my * t2 + gz * z2)
+        line = rim_line(edge, gx, my, gz, ca, sa, cb, sb)
+        fixed = _least_of_box(gx, my, gz, box, lane) - swept(edge, offset, line, gx, gz, ca, sa, cb, sb)
+        first = _least_of_box(mx * ca + mw * sa, my, mw * ca - mx * sa, box, lane)
+        last = _least_of_box(mx * cb + mw * sb, my, mw * cb - mx * sb, box, lane)
         good = _between(
             min(first, last), reach, my, my * y + abs(my) * wide, box[NEAREST, lane], box[FARTHEST, lane], end[CH, lane]
         )
         clear[lane] = 1.0 if good | (fixed > HAIR) else clear[lane]
-
-
-@kernel
-def _boxes_under(box, end, bound, j, offset, tilted, clear):
-    """Mark boxes that lie under a bound all over their gap, as seen along the normal, straight (`tilted` 0) or leaning along the
-    rim (1).
-    """
-    edge = edge_of(bound, j)
-    for lane in range(len(clear)):
-        y, z, t0, t1, t2 = box[1, lane], box[2, lane], box[6, lane], box[7, lane], box[8, lane]
-        z0, z1, z2 = box[9, lane], box[10, lane], box[11, lane]
-        ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        gy, gz = _lean(edge, y, box[EXTENT, lane], tilted * sa)
-        over = gy * y + gz * z - abs(gy * t0 + gz * z0) - abs(gy * t1 + gz * z1) - abs(gy * t2 + gz * z2)
-        line = rim_line(edge, 0.0, gy, gz, ca, sa, cb, sb)
-        beyond = over - swept(edge, offset, line, 0.0, gz, ca, sa, cb, sb)
-        clear[lane] = 1.0 if beyond > HAIR else clear[lane]
-
-
-@kernel
-def _boxes_across(box, end, bound, j, offset, clear):
-    """Mark boxes that a plane across their thin side parts from a bound all over their gap."""
-    edge = edge_of(bound, j)
-    for lane in range(len(clear)):
-        x, y, z = box[0, lane], box[1, lane], box[2, lane]
-        f0, f1, f2 = box[3, lane], box[4, lane], box[5, lane]
-        t0, t1, t2 = box[6, lane], box[7, lane], box[8, lane]
-        z0, z1, z2 = box[9, lane], box[10, lane], box[11, lane]
-        gx, gy, gz = t0 * z1 - z0 * t1, z0 * f1 - f0 * z1, f0 * t1 - t0 * f1
-        share = 1.0 / max(np.sqrt(gx * gx + gy * gy + gz * gz), 1e-200)
-        share *= _away(edge, offset, gx, gy, gz, x, y, z, end[CM, lane], end[SM, lane])
-        gx, gy, gz = share * gx, share * gy, share * gz
-        over = gx * x + gy * y + gz * z - abs(gx * f0 + gy * t0 + gz * z0)
-        over -= abs(gx * f1 + gy * t1 + gz * z1) + abs(gx * f2 + gy * t2 + gz * z2)
-        ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        beyond = over - swept(edge, offset, rim_line(edge, gx, gy, gz, ca, sa, cb, sb), gx, gz, ca, sa, cb, sb)
-        clear[lane] = 1.0 if beyond > HAIR else clear[lane]
 
 
 @kernel
@@ -178,22 +192,24 @@ def _all(clear):
 
 @kernel
 def boxes_clear(box, end, turning, k, clear):
-    """Mark the boxes, as `turn_boxes` gives them, no point of which is in piece k at any tilt of their gap; whether all are."""
+    """Mark the boxes, as `turn_boxes` gives them, no point of which is in piece k at any tilt of their interval; whether all are
+    so.
+    """
     known, bound, offset = turning.known, turning.bound, turning.offset
     beside, base, slope, near, far = known[k, BESIDE], known[k, AXIS], known[k, WIDENS], known[k, NEAR], known[k, FAR]
     for lane in range(len(clear)):
         # No point is higher over the centre than far from the line of turning.
         aside = min(beside, base + slope * box[FARTHEST, lane])
-        out = max(abs(box[1, lane]) - box[EXTENT, lane] - aside, box[NEAREST, lane] - far)
+        out = max(abs(box[AT + 1, lane]) - box[EXTENT, lane] - aside, box[NEAREST, lane] - far)
         clear[lane] = 1.0 if max(out, near - box[FARTHEST, lane]) > HAIR else 0.0
     for j in range(2 * k, 2 * k + 2):
         if bound[j, THERE] > 0.0 and not _all(clear):
-            _boxes_under(box, end, bound, j, offset, 1.0, clear)
+            _under(box, True, end, bound, j, offset, clear)
             for which in (CB, CA):
                 if not _all(clear):
                     _boxes_apart(box, end, bound, j, offset, which, clear)
             if not _all(clear):
-                _boxes_across(box, end, bound, j, offset, clear)
+                _across(box, True, end, bound, j, offset, clear)
     return _all(clear)
 
 
@@ -202,14 +218,22 @@ def turn_boxes(view, block, cosine, sine, box):
     """Turn a block of boxes, as `lanes._see` gives them, into the frame of a rotation."""
     for lane in range(LANES):
         x, y, square = view[block, 0, lane], view[block, 1, lane], 0.0
-        box[0, lane], box[1, lane], box[2, lane] = cosine * x + sine * y, cosine * y - sine * x, view[block, 2, lane]
+        box[AT, lane], box[AT + 1, lane], box[AT + 2, lane] = (
+            cosine * x + sine * y,
+            cosine * y - sine * x,
+            view[block, 2, lane],
+        )
         wide = 0.0
         for k in range(3):
             f, t, z = view[block, 3 + k, lane], view[block, 6 + k, lane], view[block, 9 + k, lane]
             square += f * f + t * t + z * z
-            box[3 + k, lane], box[6 + k, lane], box[9 + k, lane] = cosine * f + sine * t, cosine * t - sine * f, z
+            box[ALONG_F + k, lane], box[ALONG_T + k, lane], box[ALONG_N + k, lane] = (
+                cosine * f + sine * t,
+                cosine * t - sine * f,
+                z,
+            )
             wide += abs(cosine * t - sine * f)
-        away, half = np.sqrt(box[0, lane] * box[0, lane] + box[2, lane] * box[2, lane]), np.sqrt(square)
+        away, half = np.sqrt(box[AT, lane] * box[AT, lane] + box[AT + 2, lane] * box[AT + 2, lane]), np.sqrt(square)
         box[EXTENT, lane], box[NEAREST, lane], box[FARTHEST, lane] = wide, max(0.0, away - half), away + half
 
 
@@ -222,7 +246,7 @@ def _triangles_apart(seen, end, bound, j, offset, which, clear):
         x1, y1, z1 = seen[3, lane], seen[4, lane], seen[5, lane]
         x2, y2, z2 = seen[6, lane], seen[7, lane], seen[8, lane]
         c, s = end[which, lane], end[which + 1, lane]
-        # Where a gap ends, a corner touches the piece: the plane must be the one there.
+        # Where an interval ends, a corner touches the piece: the plane must be the one there.
         mx, my, mw, across, away = _towards(edge, offset + c * x0 - s * z0, y0, s * x0 + c * z0)
         nx, ny, nw, part, other = _towards(edge, offset + c * x1 - s * z1, y1, s * x1 + c * z1)
         near = other < away
@@ -236,7 +260,8 @@ def _triangles_apart(seen, end, bound, j, offset, which, clear):
         gx, gz, d0, d1, d2 = mx * c + mw * s, mw * c - mx * s, my * y0, my * y1, my * y2
         over = min(gx * x0 + gz * z0 + d0, min(gx * x1 + gz * z1 + d1, gx * x2 + gz * z2 + d2))
         ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        fixed = over - swept(edge, offset, rim_line(edge, gx, my, gz, ca, sa, cb, sb), gx, gz, ca, sa, cb, sb)
+        line = rim_line(edge, gx, my, gz, ca, sa, cb, sb)
+        fixed = over - swept(edge, offset, line, gx, gz, ca, sa, cb, sb)
         p, q = mx * x0 + mw * z0, mw * x0 - mx * z0
         least = d0 - most(-p, -q, ca, sa, cb, sb)
         p, q = mx * x1 + mw * z1, mw * x1 - mx * z1
@@ -244,47 +269,6 @@ def _triangles_apart(seen, end, bound, j, offset, which, clear):
         p, q = mx * x2 + mw * z2, mw * x2 - mx * z2
         least = min(least, d2 - most(-p, -q, ca, sa, cb, sb))
         clear[lane] = 1.0 if max(least - reach, fixed) > HAIR else clear[lane]
-
-
-@kernel
-def _triangles_under(seen, end, bound, j, offset, tilted, clear):
-    """`_boxes_under` for triangles."""
-    edge = edge_of(bound, j)
-    for lane in range(len(clear)):
-        y0, z0, y1, z1, y2, z2 = (
-            seen[1, lane],
-            seen[2, lane],
-            seen[4, lane],
-            seen[5, lane],
-            seen[7, lane],
-            seen[8, lane],
-        )
-        ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        gy, gz = _lean(edge, (y0 + y1 + y2) / 3.0, 0.0, tilted * sa)
-        over = min(gy * y0 + gz * z0, min(gy * y1 + gz * z1, gy * y2 + gz * z2))
-        line = rim_line(edge, 0.0, gy, gz, ca, sa, cb, sb)
-        beyond = over - swept(edge, offset, line, 0.0, gz, ca, sa, cb, sb)
-        clear[lane] = 1.0 if beyond > HAIR else clear[lane]
-
-
-@kernel
-def _triangles_across(seen, end, bound, j, offset, clear):
-    """Mark triangles whose own plane parts them from a bound all over their gap."""
-    edge = edge_of(bound, j)
-    for lane in range(len(clear)):
-        x0, y0, z0 = seen[0, lane], seen[1, lane], seen[2, lane]
-        x1, y1, z1 = seen[3, lane], seen[4, lane], seen[5, lane]
-        x2, y2, z2 = seen[6, lane], seen[7, lane], seen[8, lane]
-        ca, sa, cb, sb = end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane]
-        ux, uy, uz, vx, vy, vz = x1 - x0, y1 - y0, z1 - z0, x2 - x0, y2 - y0, z2 - z0
-        gx, gy, gz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
-        share = 1.0 / max(np.sqrt(gx * gx + gy * gy + gz * gz), 1e-200)
-        share *= _away(edge, offset, gx, gy, gz, x0, y0, z0, end[CM, lane], end[SM, lane])
-        gx, gy, gz = share * gx, share * gy, share * gz
-        over = min(gx * x0 + gy * y0 + gz * z0, min(gx * x1 + gy * y1 + gz * z1, gx * x2 + gy * y2 + gz * z2))
-        line = rim_line(edge, gx, gy, gz, ca, sa, cb, sb)
-        beyond = over - swept(edge, offset, line, gx, gz, ca, sa, cb, sb)
-        clear[lane] = 1.0 if beyond > HAIR else clear[lane]
 
 
 @kernel
@@ -300,12 +284,12 @@ def triangles_clear(seen, end, turning, k, clear):
         clear[lane] = 1.0 if max(out, near - seen[10, lane]) > HAIR else 0.0
     for j in range(2 * k, 2 * k + 2):
         if bound[j, THERE] > 0.0 and not _all(clear):
-            _triangles_across(seen, end, bound, j, offset, clear)
+            _across(seen, False, end, bound, j, offset, clear)
             for which in (CB, CA):
                 if not _all(clear):
                     _triangles_apart(seen, end, bound, j, offset, which, clear)
             if not _all(clear):
-                _triangles_under(seen, end, bound, j, offset, 1.0, clear)
+                _under(seen, False, end, bound, j, offset, clear)
     return _all(clear)
 
 
@@ -335,7 +319,7 @@ def turn_triangles(leaf, cosine, sine, seen):
 
 @kernel
 def put_ends(end, lane, ca, sa, cb, sb):
-    """Write a gap shorter than 180 deg into a lane."""
+    """Write an interval shorter than 180 deg into a lane."""
     half = np.sqrt(max(0.0, 0.5 + 0.5 * (ca * cb + sa * sb)))
     share = 0.5 / max(half, 1e-9)
     end[CA, lane], end[SA, lane], end[CB, lane], end[SB, lane] = ca, sa, cb, sb
@@ -344,7 +328,7 @@ def put_ends(end, lane, ca, sa, cb, sb):
 
 @kernel
 def all_ends(end, ca, sa, cb, sb):
-    """Write a gap into all lanes."""
+    """Write an interval into all lanes."""
     put_ends(end, 0, ca, sa, cb, sb)
     for k in range(ENDS):
         for lane in range(1, LANES):

@@ -25,7 +25,7 @@ from plan_cutters.kernels.codes import (
 from plan_cutters.kernels.intervals import remove
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.limits import held_tilts, turn_of
-from plan_cutters.kernels.linear.vectors import lean_frame
+from plan_cutters.kernels.linear.vectors import tilt_frame
 from plan_cutters.kernels.material import outside, winding
 from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.tool.arcs import local_gouge
@@ -35,7 +35,7 @@ from plan_cutters.kernels.tool.tool_arcs import ARCS, arc_about, closed, forbidd
 #: A posture stands for the tilts that are so near, rad: no machine holds a tilt to 0.01 deg.
 NARROWEST = 1.7e-4
 #: Intervals that one rotation may fall into; widest first, a search has not been seen to need ten.
-_ROOM = 256
+_INTERVALS = 256
 #: A point of a tool's axis is surely among the cells, and mostly past those of the skin at its tip, so many of them up.
 _LOW = 8.0
 #: By how much a posture within a body is turned to find the others there, at first, rad.
@@ -113,7 +113,10 @@ def put(body, frame, tilt, tool, mode):
 
 @kernel
 def turned(frame, tilt, tool, mode, tree, body, scratch):
-    """How far a posture that touches nothing can be tilted either way and still surely touch nothing, rad."""
+    """Return how far a posture that touches nothing can be tilted either way and still touch nothing, rad.
+
+    Lemma S5 of `docs/at_a_sample.md`.
+    """
     half = _TURN
     while half > 0.5 * NARROWEST:
         put(body, frame, tilt, tool, mode)
@@ -140,10 +143,10 @@ class Workspace(NamedTuple):
 
 
 @entry
-def room_to_search():
-    """Room for searches."""
+def search_workspace():
+    """Make a workspace for searches."""
     return Workspace(
-        np.empty((_ROOM, 2)), np.empty((ARCS, 2)), np.empty(3), np.empty(3), np.empty(3), np.empty(BODY), np.empty(FIXTURE),
+        np.empty((_INTERVALS, 2)), np.empty((ARCS, 2)), np.empty(3), np.empty(3), np.empty(3), np.empty(BODY), np.empty(FIXTURE),
         scratch(),
     )  # fmt: skip
 
@@ -196,7 +199,7 @@ def allowed(contacts, row, ranges, rotation, tool, mode, bent, workspace):
     least, most = straight(contacts, row, cosine, sine, tool, mode)
     if bent and least <= 0.0 and most >= np.pi:
         return 0
-    lean_frame(contacts.direction_max[row], workspace.e2, cosine, sine, workspace.f, workspace.t)
+    tilt_frame(contacts.direction_max[row], workspace.e2, cosine, sine, workspace.f, workspace.t)
     width, before = permitted(contacts, row, ranges, tool, mode, workspace.f, intervals)
     tally[AXIS_LIMIT] += width + before * NARROWEST
     if not bent:

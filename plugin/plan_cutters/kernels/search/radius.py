@@ -3,7 +3,7 @@
 The search starts from the answer at the sample before, goes up or down by 1, 2, 4 ... tools until the answer lies between two of
 them, and halves what is between. A tool is asked for a posture at the rotation found last; where that has none, what is
 surely in the way is asked next, for it answers for all rotations and mostly ends the search: an inaccessible tool costs one
-search without success, not two.
+search without success, not two. Lemma N4 of `docs/nested_cutters_proof.md`.
 """
 
 from typing import Any, NamedTuple
@@ -12,8 +12,8 @@ from plan_cutters.kernels.codes import INACCESSIBLE, UNDECIDED
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, Solids
 from plan_cutters.kernels.rows import Tool
-from plan_cutters.kernels.search.search import _FINEST, _NO_GAP, START, _reason, _write
-from plan_cutters.kernels.search.sweep import both, sweep_both
+from plan_cutters.kernels.search.search import _FINEST, _NO_INTERVAL, START, _reason, _write
+from plan_cutters.kernels.search.sweep import Side, both, sweep_both
 
 
 class Ladder(NamedTuple):
@@ -27,12 +27,8 @@ class Ladder(NamedTuple):
     end: Any
 
 
-class _Side(NamedTuple):
-    """This record is one side of a search: the outer tools with the possible obstacles, or the inner with the certain ones.
-
-    It holds the tools; `piece` and `mode`, a workspace for one tool; the obstacles; the winding number from which a posture
-    lies within a body; the angular resolution, rad: narrower intervals of tilts are passed over; and the obstacle caches.
-    """
+class _Sides(NamedTuple):
+    """This record is a `Side` of many tools: the tools; `piece` and `mode`, a workspace for one of them; the rest as there."""
 
     tools: Ladder
     piece: Any
@@ -45,7 +41,7 @@ class _Side(NamedTuple):
 
 @kernel
 def _look(contacts, row, ranges, side, level, starts, turns, workspaces):
-    """`sweep_both` with one tool of a row."""
+    """Search as `sweep_both` with one tool of a row."""
     tools, piece, mode = side.tools, side.piece, side.mode
     for m in range(len(mode)):
         for column in range(mode.shape[1]):
@@ -54,31 +50,30 @@ def _look(contacts, row, ranges, side, level, starts, turns, workspaces):
             for column in range(piece.shape[2]):
                 piece[m, k, column] = tools.piece[level, m, k, column]
     tool = Tool(piece, mode, tools.reach[level], tools.inner[level], tools.end[level])
-    return sweep_both(
-        contacts, row, ranges, tool, side.solids, side.within, side.narrowest, starts, turns, side.pasts, workspaces
-    )
+    one = Side(tool, side.solids, side.within, side.narrowest, side.pasts)
+    return sweep_both(contacts, row, ranges, one, starts, turns, workspaces)
 
 
 @kernel
-def _largest(contacts, row, ranges, outer_tool, inner_tool, guess, last, freed, workspaces, found):
+def _largest(contacts, row, ranges, outer, inner, guess, last, freed, workspaces, found):
     """The number of the largest tool that finds a posture, -1 for none, and the verdict on the next; then where the searches
     of both sides ended.
     """
-    count, turns = len(outer_tool.tools.reach), len(ranges.rotation_cos)
-    # Reached, not reached; at most so far not surely blocked, surely blocked.
-    low, high, free, blocked = -1, count, -1, count
+    count, turns = len(outer.tools.reach), len(ranges.rotation_cos)
+    # Reached, not reached; not known to be inaccessible, known to be so.
+    low, high, free, beyond = -1, count, -1, count
     level, stride = guess, 1
     while high - low > 1:
-        rotation, tilt, last = _look(contacts, row, ranges, outer_tool, level, last, 1, workspaces)
+        rotation, tilt, last = _look(contacts, row, ranges, outer, level, last, 1, workspaces)
         if rotation < 0 and level > free:
-            turn, _, freed = _look(contacts, row, ranges, inner_tool, level, freed, turns, workspaces)
+            turn, _, freed = _look(contacts, row, ranges, inner, level, freed, turns, workspaces)
             if turn < 0:
-                blocked = level
+                beyond = level
                 found.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
             else:
                 free = level
-        if rotation < 0 and level < blocked:
-            rotation, tilt, last = _look(contacts, row, ranges, outer_tool, level, last, turns, workspaces)
+        if rotation < 0 and level < beyond:
+            rotation, tilt, last = _look(contacts, row, ranges, outer, level, last, turns, workspaces)
             if rotation < 0:
                 found.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
         if rotation < 0:
@@ -93,7 +88,7 @@ def _largest(contacts, row, ranges, outer_tool, inner_tool, guess, last, freed, 
         else:
             level = (low + high) // 2
         stride *= 2
-    return low, INACCESSIBLE if blocked == high else UNDECIDED, last, freed
+    return low, INACCESSIBLE if beyond == high else UNDECIDED, last, freed
 
 
 @entry
@@ -120,15 +115,15 @@ def largest(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, f
     rotations = len(ranges.rotation_cos)
     pasts, workspaces = both(rotations, outer_tool.mode.shape[1])
     met, _ = both(rotations, inner_tool.mode.shape[1])
-    safe = _Side(
+    outer = _Sides(
         outer_tool, outer_tool.piece[0].copy(), outer_tool.mode[0].copy(), possible, MAYBE_INSIDE, _FINEST, pasts
     )
-    sure = _Side(
-        inner_tool, inner_tool.piece[0].copy(), inner_tool.mode[0].copy(), certain, SURELY_INSIDE, _NO_GAP, met
+    inner = _Sides(
+        inner_tool, inner_tool.piece[0].copy(), inner_tool.mode[0].copy(), certain, SURELY_INSIDE, _NO_INTERVAL, met
     )
     guess, last, freed = len(outer_tool.reach) // 2, START, START
     for row in rows:
-        low, verdict, last, freed = _largest(contacts, row, ranges, safe, sure, guess, last, freed, workspaces, found)
+        low, verdict, last, freed = _largest(contacts, row, ranges, outer, inner, guess, last, freed, workspaces, found)
         level[row], guess = low, max(low, 0)
         if low + 1 < len(outer_tool.reach):
             beyond[row] = verdict

@@ -1,9 +1,9 @@
 """Is there a posture? Probe a tilt; whatever is in the way forbids a whole arc; probe what is left.
 
-A found posture is safe: no triangle reaches deeper into the cutter than `safe`. Where none is found, the same search
-at the depth `blocked` decides whether the sample is inaccessible (everything is forbidden by what certainly lies too
-deep) or undecided. What is forbidden at `blocked` is so at `safe`: after a sample without a posture that is asked first,
-and one answer is all that an inaccessible sample takes. A cutter that touches nothing may still lie within a body: then
+A found posture is safe: no possible obstacle reaches into the outer tool (`docs/at_a_sample.md`, lemma S2). Where none is found,
+the same search with the inner tool and the certain obstacles decides whether the sample is inaccessible (they forbid everything)
+or undecided. What is forbidden to the inner tool is so to the outer one: after a sample without a posture the inner tool is asked
+first, and one answer is all that an inaccessible sample takes. A cutter that touches nothing may still lie within a body: then
 so does every posture that it can be turned to without touching a skin.
 
 Curvature at the contact only tells where to look first: a posture that it forbids is one as well if the triangles prove that
@@ -15,12 +15,12 @@ import numpy as np
 from plan_cutters.kernels.codes import (
     ACCESSIBLE,
     AXIS_LIMIT,
-    BURIED,
     BY_HOLDER,
     BY_NECK,
     BY_SHANK,
     COLLISION,
     INACCESSIBLE,
+    INSIDE,
     LOCAL_GOUGE,
     OFFSET_OF,
     REAR_GOUGE,
@@ -29,16 +29,16 @@ from plan_cutters.kernels.codes import (
 )
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.limits import turn_of
-from plan_cutters.kernels.linear.vectors import cross, dot, lean_frame, perpendicular
+from plan_cutters.kernels.linear.vectors import cross, dot, perpendicular, tilt_frame
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
 from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.search.place import inside, kept_straight, mode_at, permitted, room_to_search, straight
-from plan_cutters.kernels.search.sweep import both, memory, sweep, sweep_both
+from plan_cutters.kernels.search.place import inside, kept_straight, mode_at, permitted, search_workspace, straight
+from plan_cutters.kernels.search.sweep import Side, both, memory, sweep, sweep_both
 from plan_cutters.kernels.tool.hit import BODY, scratch, stand, tree_hit
 
-#: Between arcs of what is certainly in the way, gaps narrower than this are none: no machine holds a tilt to 0.01 deg. rad.
-_NO_GAP = 1.7e-4
-#: A posture is searched in gaps down to this, rad: it may stand where arcs leave more than they seem to.
+#: Between arcs of what is certainly in the way, intervals narrower than this are none: no machine holds a tilt to 0.01 deg. rad.
+_NO_INTERVAL = 1.7e-4
+#: A posture is searched in intervals down to this, rad: it may stand where arcs leave more than they seem to.
 _FINEST = 1e-5
 #: Where searches begin, among the tilts that curvature allows and among the others: rotation, and the tilt tried first.
 START = ((0, -1.0), (0, -1.0))
@@ -58,7 +58,7 @@ def _reason(tally, bent):
     if tally[LOCAL_GOUGE] == 0.0:
         reason, most = LOCAL_GOUGE, bent
     least = most[REAR_GOUGE]
-    for attribute in (COLLISION, BURIED, BY_NECK, BY_SHANK, BY_HOLDER):
+    for attribute in (COLLISION, INSIDE, BY_NECK, BY_SHANK, BY_HOLDER):
         if most[attribute] > least:
             reason, least = attribute, most[attribute]
     return reason
@@ -90,7 +90,7 @@ def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, fo
     outer_tool, inner_tool : Tool
         The outer and the inner tool.
     possible, certain : Solids
-        The possible obstacles, to call a posture safe; the certain ones, to call it blocked.
+        The possible obstacles, to call a posture safe; the certain ones, to call a sample inaccessible.
     found : Found, written
 
     Returns
@@ -99,70 +99,36 @@ def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, fo
         How many boxes were looked at, and what else takes as long (`sweep.ROTATION`).
     """
     rotations = len(ranges.rotation_cos)
-    # What is only perhaps in the way must not count as surely in it: the two are remembered apart.
-    outer_pasts, workspaces = both(rotations, len(outer_tool.mode))
-    inner_pasts, _ = both(rotations, len(inner_tool.mode))
-    last, freed, lost = START, START, False
+    # What is only perhaps in the way must not count as surely in it: each side has obstacle caches of its own.
+    pasts, workspaces = both(rotations, len(outer_tool.mode))
+    outer = Side(outer_tool, possible, MAYBE_INSIDE, _FINEST, pasts)
+    pasts, _ = both(rotations, len(inner_tool.mode))
+    inner = Side(inner_tool, certain, SURELY_INSIDE, _NO_INTERVAL, pasts)
+    last, freed, missed, tilt = START, START, False, 0.0
     for row in rows:
-        asked, sure = lost, False
-        if asked:
-            turn, _, freed = sweep_both(
-                contacts,
-                row,
-                ranges,
-                inner_tool,
-                certain,
-                SURELY_INSIDE,
-                _NO_GAP,
-                freed,
-                rotations,
-                inner_pasts,
-                workspaces,
-            )
-            sure = turn < 0
-        if not sure:
-            rotation, tilt, last = sweep_both(
-                contacts,
-                row,
-                ranges,
-                outer_tool,
-                possible,
-                MAYBE_INSIDE,
-                _FINEST,
-                last,
-                rotations,
-                outer_pasts,
-                workspaces,
-            )
-            lost = rotation < 0
-            if not lost:
-                found.verdict[row] = ACCESSIBLE
-                _write(found, row, contacts, ranges, rotation, tilt)
-                continue
-        found.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
-        if not asked:
-            turn, _, freed = sweep_both(
-                contacts,
-                row,
-                ranges,
-                inner_tool,
-                certain,
-                SURELY_INSIDE,
-                _NO_GAP,
-                freed,
-                rotations,
-                inner_pasts,
-                workspaces,
-            )
-            sure = turn < 0
-            if sure:
+        sure = False
+        # The sides in turn: the inner one first where the sample before has no posture.
+        for of_inner in (missed, not missed):
+            if of_inner:
+                rotation, _, freed = sweep_both(contacts, row, ranges, inner, freed, rotations, workspaces)
+                sure = rotation < 0
+            else:
+                rotation, tilt, last = sweep_both(contacts, row, ranges, outer, last, rotations, workspaces)
+                missed = rotation < 0
+            if rotation < 0:
                 found.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
-        found.verdict[row] = INACCESSIBLE if sure else UNDECIDED
+            if sure or not missed:
+                break
+        if missed:
+            found.verdict[row] = INACCESSIBLE if sure else UNDECIDED
+        else:
+            found.verdict[row] = ACCESSIBLE
+            _write(found, row, contacts, ranges, rotation, tilt)
     return workspaces[0].scratch.looked[0] + workspaces[1].scratch.looked[0]
 
 
 @entry
-def until_lost(rows, at, contacts, ranges, tool, solids, patient, found):
+def until_not_reached(rows, at, contacts, ranges, tool, solids, patient, found):
     """Look for postures of the samples `rows` from the `at`-th on, at which a tool is in nothing's way; where it ended.
 
     Unless it is `patient`, behind the first sample that has none; such samples are written as UNDECIDED, for nothing was asked
@@ -171,12 +137,11 @@ def until_lost(rows, at, contacts, ranges, tool, solids, patient, found):
     """
     rotations = len(ranges.rotation_cos)
     (pasts, workspaces), last = both(rotations, len(tool.mode)), START
+    side = Side(tool, solids, MAYBE_INSIDE, _NO_INTERVAL, pasts)
     while at < len(rows):
         row = rows[at]
         at += 1
-        rotation, tilt, last = sweep_both(
-            contacts, row, ranges, tool, solids, MAYBE_INSIDE, _NO_GAP, last, rotations, pasts, workspaces
-        )
+        rotation, tilt, last = sweep_both(contacts, row, ranges, side, last, rotations, workspaces)
         if rotation >= 0:
             found.verdict[row] = ACCESSIBLE
             _write(found, row, contacts, ranges, rotation, tilt)
@@ -208,9 +173,8 @@ def posture(contacts, ranges, tool, narrowest, start, turns, solids, found):
         The posture.
     """
     pasts, workspaces = both(len(ranges.rotation_cos), len(tool.mode))
-    rotation, tilt, _ = sweep_both(
-        contacts, 0, ranges, tool, solids, MAYBE_INSIDE, narrowest, (start, start), turns, pasts, workspaces
-    )
+    side = Side(tool, solids, MAYBE_INSIDE, narrowest, pasts)
+    rotation, tilt, _ = sweep_both(contacts, 0, ranges, side, (start, start), turns, workspaces)
     if rotation >= 0:
         _write(found, 0, contacts, ranges, rotation, tilt)
     return rotation >= 0
@@ -225,14 +189,14 @@ def first_reason(rows, contacts, ranges, inner_tool, certain, reason):
     rotations, modes = len(ranges.rotation_cos), len(inner_tool.mode)
     intervals = np.empty((64, 2))
     f, t, e2 = np.empty(3), np.empty(3), np.empty(3)
-    past, (workspace, other) = memory(rotations, modes, True), (room_to_search(), room_to_search())
+    past, (workspace, other) = memory(rotations, modes, True), (search_workspace(), search_workspace())
     for row in rows:
         n, e1 = contacts.normal[row], contacts.direction_max[row]
         cross(n, e1, e2)
         axis_left, curvature_left = False, False
         for rotation in range(rotations):
             cosine, sine = turn_of(n, e1, ranges, rotation)
-            lean_frame(e1, e2, cosine, sine, f, t)
+            tilt_frame(e1, e2, cosine, sine, f, t)
             for mode in range(modes):
                 _, count = permitted(contacts, row, ranges, inner_tool, mode, f, intervals)
                 axis_left = axis_left or count > 0
@@ -245,19 +209,10 @@ def first_reason(rows, contacts, ranges, inner_tool, certain, reason):
             reason[row] = AXIS_LIMIT
         elif not curvature_left:
             # As `search` would have told it.
+            start = START[1]
             sweep(
-                contacts,
-                row,
-                ranges,
-                inner_tool,
-                certain,
-                SURELY_INSIDE,
-                _NO_GAP,
-                (0, -1.0),
-                rotations,
-                past,
-                workspace,
-            )
+                contacts, row, ranges, inner_tool, certain, SURELY_INSIDE, _NO_INTERVAL, start, rotations, past, workspace
+            )  # fmt: skip
             other.tally[:] = 0.0
             other.tally[AXIS_LIMIT] = 1.0
             reason[row] = _reason(other.tally, workspace.tally)

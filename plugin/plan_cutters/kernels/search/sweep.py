@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.codes import ARC, BURIED, HIGH, KIND, LOW, OFFSET_OF, RADIUS, RISE, ROUND, SCALE, SLOPE
+from plan_cutters.kernels.codes import ARC, HIGH, INSIDE, KIND, LOW, OFFSET_OF, RADIUS, RISE, ROUND, SCALE, SLOPE
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.limits import turn_of
 from plan_cutters.kernels.linear.vectors import cross
@@ -25,7 +25,7 @@ from plan_cutters.kernels.search.place import (
     inside,
     next_tilt,
     put,
-    room_to_search,
+    search_workspace,
     turned,
 )
 from plan_cutters.kernels.tool.hit import deep_hit
@@ -55,9 +55,23 @@ class Memory(NamedTuple):
     bent: bool
 
 
+class Side(NamedTuple):
+    """This record is one side of a search: the outer tool with the possible obstacles, or the inner with the certain ones.
+
+    It holds the tool; the obstacles; the winding number from which a posture lies within a body; the angular resolution, rad:
+    narrower intervals of tilts are passed over; and the obstacle caches, one for each kind of sweep.
+    """
+
+    tool: Any
+    solids: Any
+    within: float
+    narrowest: float
+    pasts: Any
+
+
 @entry
 def memory(rotations, modes, bent):
-    """Nothing remembered yet."""
+    """Make an empty obstacle cache."""
     return Memory(
         np.empty((rotations * modes, _KEPT, 3)), np.zeros(rotations * modes, np.int64), np.full((3, _POOL), np.inf),
         np.empty((3, _POOL)), np.empty(_POOL), np.empty(_POOL, np.int64), np.zeros(1, np.int64), bent,
@@ -156,7 +170,7 @@ def _rotation(
                     past.count[place] = kept
                     return tilt, pooled
                 half = max(turned(frame, tilt, tool, mode, solids.tree, body, workspace.scratch), 0.5 * narrowest)
-                count = forbid(intervals, count, tilt - half, tilt + half, narrowest, BURIED, tally)
+                count = forbid(intervals, count, tilt - half, tilt + half, narrowest, INSIDE, tally)
                 continue
         count, x, y, z = forbid_probed(which, height, px, py, tilt, tool, mode, narrowest, intervals, count, workspace)
         if kept < _KEPT:
@@ -246,17 +260,19 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, 
 
 @entry
 def both(rotations, modes):
-    """Nothing remembered yet of either kind of sweep, and room for each."""
-    return (memory(rotations, modes, False), memory(rotations, modes, True)), (room_to_search(), room_to_search())
+    """Make empty obstacle caches for both kinds of sweep, and a workspace for each."""
+    return (memory(rotations, modes, False), memory(rotations, modes, True)), (search_workspace(), search_workspace())
 
 
 @kernel
-def sweep_both(contacts, row, ranges, tool, solids, within, narrowest, starts, turns, pasts, workspaces):
-    """`sweep` among the tilts that curvature allows at the contact, and, where these hold no posture, among the others.
+def sweep_both(contacts, row, ranges, side, starts, turns, workspaces):
+    """Search as `sweep` among the tilts that curvature allows at the contact, and, where these hold no posture, among the others.
 
-    The parameters are those of `sweep`, one of each kind; the two remember nothing of each other, so that a sample that needs the
-    others moves no posture of the samples after it. Returns rotation and tilt, and the starts for the next sample.
+    `side` is a `Side`, `starts` and `workspaces` are one for each kind of sweep, as `sweep` takes them. The two remember nothing
+    of each other, so that a sample that needs the others moves no posture of the samples after it. Returns rotation and tilt, and
+    the starts for the next sample.
     """
+    tool, solids, within, narrowest, pasts = side
     rotation, tilt = sweep(
         contacts, row, ranges, tool, solids, within, narrowest, starts[0], turns, pasts[0], workspaces[0]
     )

@@ -64,9 +64,9 @@ def local_gouge(kappa_max, kappa_min, cosine, sine, offset, radius):
     """Tilts without local gouging at a rotation, from and to, rad; nan if there are none.
 
     A tool that touches with a centre of curvature `offset` from its axis and a radius of curvature there, mm, curves by 1 /
-    radius along the lean and by sin(tilt) / (offset + radius sin(tilt)) across it; the surface may nowhere curve more. With a
-    negative offset, a barrel, that is an upper bound of the tilt; the tilts beyond 90 deg that it would leave again are not
-    given.
+    radius along the tilt direction and by sin(tilt) / (offset + radius sin(tilt)) across it; the surface may nowhere curve more.
+    With a negative offset, a barrel, that is an upper bound of the tilt; the tilts beyond 90 deg that it would leave again are
+    not given.
     """
     across = kappa_max * sine * sine + kappa_min * cosine * cosine
     if radius > 0.0:
@@ -74,10 +74,10 @@ def local_gouge(kappa_max, kappa_min, cosine, sine, offset, radius):
         if offset == 0.0:
             return (0.0, np.pi) if radius * kappa_max <= 1.0 + ROUNDING else (np.nan, np.nan)
         mixed = (kappa_max - kappa_min) * sine * cosine
-        workspace = 1.0 - radius * along
-        if workspace <= 0.0:
+        margin = 1.0 - radius * along
+        if margin <= 0.0:
             return np.nan, np.nan
-        across += mixed * mixed * radius / workspace
+        across += mixed * mixed * radius / margin
         left = 1.0 - radius * across
         if offset < 0.0:
             if left >= 0.0:

@@ -4,18 +4,34 @@ A tool stands where a body puts it, a row of 14 numbers: the centre about which 
 the distance of that centre from the axis along x_T, and by how much all is drawn out along y_T to either side (0 for a tool).
 Its pieces are those of `pieces`, heights measured from that centre along a. For a flat end the centre is the contact.
 
-The clever part: a triangle cut off at the two heights of a piece is a convex polygon, and it meets a cylinder exactly when
-its shadow along the axis comes nearer to the axis than the radius. No subdivision, no trigonometry, no tolerance. One walk of
-the tree serves all pieces: a piece that is apart from a box is not asked for again below it.
+A triangle cut off at the two heights of a piece is a convex polygon, and it meets a cylinder exactly when its shadow along the
+axis comes nearer to the axis than the radius (`docs/at_a_sample.md`, lemma S3). No subdivision, no trigonometry, no tolerance.
+One walk of the tree serves all pieces: a piece that is apart from a box is not asked for again below it.
 
 `rate` widens all pieces, at a point Q, by `rate` times the distance of Q from the line through the centre along y_T. Tilting
 turns the tool about that line, and turning by at most `rate` moves Q by no more than that in the tool's frame: a miss with
-`rate` is a miss at every tilt within that turn.
+`rate` is a miss at every tilt within that turn (lemma S5).
 """
 
 import numpy as np
 
-from plan_cutters.kernels.codes import ARC, BOTTOM, CYLINDER, HIGH, KIND, LOW, RADIUS, ROUND, SCALE, SLOPE, TOP
+from plan_cutters.kernels.codes import (
+    ARC,
+    BOTTOM,
+    CENTRE,
+    CYLINDER,
+    DIAGONAL,
+    HALVES,
+    HIGH,
+    KIND,
+    LOW,
+    RADIUS,
+    ROUND,
+    SCALE,
+    SIDES,
+    SLOPE,
+    TOP,
+)  # fmt: skip
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.tool.pieces import clipped, inset, polygon_hit, support
@@ -25,7 +41,7 @@ P, A, X, Y, OFFSET, HALF, BODY = 0, 3, 6, 9, 12, 13, 14
 
 @entry
 def scratch():
-    """Room for walks of a tree."""
+    """Make a workspace for walks of a tree."""
     return Scratch(
         np.empty(64, np.int64), np.empty(64, np.int64), np.empty((3, 3)), np.empty((4, 3)), np.empty((8, 3)), np.empty((8, 3)),
         np.empty((64, 3, 3)), np.zeros(1, np.int64),
@@ -34,7 +50,7 @@ def scratch():
 
 @kernel
 def stand(body, frame, tilt_cos, tilt_sin, offset, rise):
-    """Write the body whose axis leans from the normal of a frame towards its tilt direction by a tilt.
+    """Write the body whose axis is tilted from the normal of a frame towards its tilt direction.
 
     Its centre stands `rise` over the contact, `offset` from the axis.
     """
@@ -51,31 +67,31 @@ def stand(body, frame, tilt_cos, tilt_sin, offset, rise):
 def half_width(box, i, x, y, z):
     """Half the extent of box i along a unit direction."""
     return (
-        box[i, 12] * abs(x * box[i, 3] + y * box[i, 4] + z * box[i, 5])
-        + box[i, 13] * abs(x * box[i, 6] + y * box[i, 7] + z * box[i, 8])
-        + box[i, 14] * abs(x * box[i, 9] + y * box[i, 10] + z * box[i, 11])
+        box[i, HALVES] * abs(x * box[i, SIDES] + y * box[i, SIDES + 1] + z * box[i, SIDES + 2])
+        + box[i, HALVES + 1] * abs(x * box[i, SIDES + 3] + y * box[i, SIDES + 4] + z * box[i, SIDES + 5])
+        + box[i, HALVES + 2] * abs(x * box[i, SIDES + 6] + y * box[i, SIDES + 7] + z * box[i, SIDES + 8])
     )
 
 
 @kernel
 def _thin_apart(box, i, body, piece, k, grow, dx, dy, dz):
     """Whether a plane across the box's third side, the thin one, parts it from piece k."""
-    mx, my, mz = box[i, 9], box[i, 10], box[i, 11]
-    along = mx * body[3] + my * body[4] + mz * body[5]
-    side = mx * body[6] + my * body[7] + mz * body[8]
-    aside = mx * body[9] + my * body[10] + mz * body[11]
+    mx, my, mz = box[i, SIDES + 6], box[i, SIDES + 7], box[i, SIDES + 8]
+    along = mx * body[A] + my * body[A + 1] + mz * body[A + 2]
+    side = mx * body[X] + my * body[X + 1] + mz * body[X + 2]
+    aside = mx * body[Y] + my * body[Y + 1] + mz * body[Y + 2]
     apart = mx * dx + my * dy + mz * dz + body[OFFSET] * side
     across = np.sqrt(max(0.0, 1.0 - along * along))
     if piece[k, KIND] == CYLINDER:
         low, high = piece[k, LOW] - grow, piece[k, HIGH] + grow
         apart = abs(apart - 0.5 * (low + high) * along)
         extent = 0.5 * (high - low) * abs(along) + (piece[k, RADIUS] + grow) * across + body[HALF] * abs(aside)
-        return apart > extent + box[i, 14] + 1e-9
+        return apart > extent + box[i, HALVES + 2] + 1e-9
     if apart < 0.5 * (piece[k, BOTTOM] + piece[k, TOP]) * along:
         apart, along = -apart, -along
     # Widened, a piece with square edges goes as far as in any direction along the axis and across it together.
     extent = support(piece, k, along, across) + grow * (abs(along) + across) + body[HALF] * abs(aside)
-    return apart > extent + box[i, 14] + 1e-9
+    return apart > extent + box[i, HALVES + 2] + 1e-9
 
 
 @kernel
@@ -94,15 +110,15 @@ def _stays(body, piece, k):
 @kernel
 def alive(box, i, body, piece, mask, rate):
     """Those of the pieces of a mask into which a point of box i may reach: the others are parted from it by a slab or a plane."""
-    dx, dy, dz = box[i, 0] - body[0], box[i, 1] - body[1], box[i, 2] - body[2]
-    diagonal = box[i, 15]
+    dx, dy, dz = box[i, CENTRE] - body[P], box[i, CENTRE + 1] - body[P + 1], box[i, CENTRE + 2] - body[P + 2]
+    diagonal = box[i, DIAGONAL]
     widening = 0.0
-    height = dx * body[3] + dy * body[4] + dz * body[5]
-    across = dx * body[6] + dy * body[7] + dz * body[8]
+    height = dx * body[A] + dy * body[A + 1] + dz * body[A + 2]
+    across = dx * body[X] + dy * body[X + 1] + dz * body[X + 2]
     if rate > 0.0:
         widening = rate * (np.sqrt(height * height + across * across) + diagonal)
     across += body[OFFSET]
-    aside = dx * body[9] + dy * body[10] + dz * body[11]
+    aside = dx * body[Y] + dy * body[Y + 1] + dz * body[Y + 2]
     aside -= min(body[HALF], max(-body[HALF], aside))
     square = across * across + aside * aside
     extent = -1.0
@@ -117,7 +133,7 @@ def alive(box, i, body, piece, mask, rate):
             continue
         if height < low or height > high:
             if extent < 0.0:
-                extent = half_width(box, i, body[3], body[4], body[5])
+                extent = half_width(box, i, body[A], body[A + 1], body[A + 2])
             if height + extent < low or height - extent > high:
                 mask ^= gone
                 continue
@@ -130,7 +146,7 @@ def alive(box, i, body, piece, mask, rate):
                 distance = np.sqrt(square)
                 ux, uy = across / distance, aside / distance
                 wide = half_width(
-                    box, i, ux * body[6] + uy * body[9], ux * body[7] + uy * body[10], ux * body[8] + uy * body[11]
+                    box, i, ux * body[X] + uy * body[Y], ux * body[X + 1] + uy * body[Y + 1], ux * body[X + 2] + uy * body[Y + 2]
                 )  # fmt: skip
                 if distance - wide > radius:
                     mask ^= gone
@@ -159,7 +175,7 @@ def _beyond(box, i, body, piece, k, grow, height, across, aside, square):
         if over <= 0.0:
             return False
         out, up = piece[k, SCALE], -piece[k, SLOPE] * piece[k, SCALE]
-    if over > box[i, 15]:
+    if over > box[i, DIAGONAL]:
         return True
     ux, uy = 1.0, 0.0
     if q > 0.0:
@@ -168,8 +184,8 @@ def _beyond(box, i, body, piece, k, grow, height, across, aside, square):
         # On the axis a cone has no tangent but its own height's.
         return False
     wide = half_width(
-        box, i, up * body[3] + ux * body[6] + uy * body[9], up * body[4] + ux * body[7] + uy * body[10],
-        up * body[5] + ux * body[8] + uy * body[11],
+        box, i, up * body[A] + ux * body[X] + uy * body[Y], up * body[A + 1] + ux * body[X + 1] + uy * body[Y + 1],
+        up * body[A + 2] + ux * body[X + 2] + uy * body[Y + 2],
     )  # fmt: skip
     return over > wide
 
@@ -181,14 +197,14 @@ def into_frame(vertex, i, body, rate, corner):
     """
     widening, least, most, total = 0.0, np.inf, -np.inf, 0.0
     for c in range(3):
-        dx = vertex[i, c, 0] - body[0]
-        dy = vertex[i, c, 1] - body[1]
-        dz = vertex[i, c, 2] - body[2]
-        height = dx * body[3] + dy * body[4] + dz * body[5]
-        across = dx * body[6] + dy * body[7] + dz * body[8]
+        dx = vertex[i, c, 0] - body[P]
+        dy = vertex[i, c, 1] - body[P + 1]
+        dz = vertex[i, c, 2] - body[P + 2]
+        height = dx * body[A] + dy * body[A + 1] + dz * body[A + 2]
+        across = dx * body[X] + dy * body[X + 1] + dz * body[X + 2]
         corner[c, 0] = height
         corner[c, 1] = across + body[OFFSET]
-        corner[c, 2] = dx * body[9] + dy * body[10] + dz * body[11]
+        corner[c, 2] = dx * body[Y] + dy * body[Y + 1] + dz * body[Y + 2]
         if rate > 0.0:
             widening = max(widening, rate * np.sqrt(height * height + across * across))
         least, most = min(least, height), max(most, height)
@@ -260,8 +276,8 @@ def _swept_hit(vertex, i, body, piece, mask, rate, scratch):
         for corner in range(3):
             height, across = 0.0, 0.0
             for k in range(3):
-                height += (pieces[top, corner, k] - body[k]) * body[3 + k]
-                across += (pieces[top, corner, k] - body[k]) * body[6 + k]
+                height += (pieces[top, corner, k] - body[P + k]) * body[A + k]
+                across += (pieces[top, corner, k] - body[P + k]) * body[X + k]
             spare[corner, 0], spare[corner, 1] = height, across
             farthest = max(farthest, height * height + across * across)
         for corner in range(3):
@@ -342,10 +358,10 @@ def tree_hit(tree, body, piece, rate, hint, scratch):
 @kernel
 def _depth_of(box, i, body, piece, mask):
     """How deep at least the centre of box i lies in the pieces of a mask; negative outside."""
-    dx, dy, dz = box[i, 0] - body[0], box[i, 1] - body[1], box[i, 2] - body[2]
-    height = dx * body[3] + dy * body[4] + dz * body[5]
-    across = dx * body[6] + dy * body[7] + dz * body[8] + body[OFFSET]
-    aside = dx * body[9] + dy * body[10] + dz * body[11]
+    dx, dy, dz = box[i, CENTRE] - body[P], box[i, CENTRE + 1] - body[P + 1], box[i, CENTRE + 2] - body[P + 2]
+    height = dx * body[A] + dy * body[A + 1] + dz * body[A + 2]
+    across = dx * body[X] + dy * body[X + 1] + dz * body[X + 2] + body[OFFSET]
+    aside = dx * body[Y] + dy * body[Y + 1] + dz * body[Y + 2]
     square, best = across * across + aside * aside, -np.inf
     for k in range(len(piece)):
         if (mask >> k) & 1:

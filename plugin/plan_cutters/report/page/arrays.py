@@ -1,4 +1,4 @@
-"""The arrays of the review page, each under its name; `docs/review_page.md` says what is in them."""
+"""The arrays of the review page, each under its name; `docs/review_page_data.md` says what is in them."""
 
 from typing import Any
 

@@ -38,20 +38,13 @@ class Sheet:
 
 @dataclass(frozen=True, slots=True)
 class Atlas:
-    """All sheets side by side.
+    """All sheets side by side."""
 
-    Attributes
-    ----------
-    index : (height, width) int32
-        Row of the sample; -1 where no sheet lies.
-    corner : dict
-        Face number -> row and column at which its sheet begins.
-    sheets : dict
-        Face number -> Sheet.
-    """
-
+    #: (height, width); row of the sample; -1 where no sheet lies.
     index: Ints
+    #: Face number -> row and column at which its sheet begins.
     corner: Mapping[int, tuple[int, int]]
+    #: Face number -> Sheet.
     sheets: Mapping[int, Sheet]
 
 

@@ -1,6 +1,6 @@
 """Arrays as the page reads them: whole numbers, differences, planes of bytes, one deflate stream.
 
-`docs/review_page.md` has the layout for people who want to read it.
+`docs/review_page_data.md` has the layout for people who want to read it.
 """
 
 import base64
@@ -72,13 +72,8 @@ def joined(arrays: Mapping[str, Stored]) -> tuple[dict[str, dict[str, Any]], str
     """Describe arrays for the page, and join all of them in one raw deflate stream (RFC 1951), as base64."""
     entries, offset = {}, 0
     for name, each in arrays.items():
-        entries[name] = {
-            "dtype": each.dtype,
-            "shape": list(each.shape),
-            "filter": each.filter,
-            "offset": offset,
-            "bytes": each.size,
-        }
+        entries[name] = {"dtype": each.dtype, "shape": list(each.shape), "filter": each.filter, "offset": offset,
+                         "bytes": each.size}  # fmt: skip
         offset += each.size
     end = zlib.compressobj(9, zlib.DEFLATED, -15).flush()
     return entries, base64.b64encode(b"".join(each.piece for each in arrays.values()) + end).decode("ascii")

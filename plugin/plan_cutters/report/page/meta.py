@@ -1,4 +1,4 @@
-"""Make the `meta` object of `docs/review_page.md`: all that the page needs beside arrays."""
+"""Make the `meta` object of `docs/review_page_data.md`: all that the page needs beside arrays."""
 
 import math
 from typing import Any
@@ -37,14 +37,8 @@ def meta_of(
     low, high = box
     return {
         "format": FORMAT,
-        "part": {
-            "file": plan.part.file,
-            "sha256": plan.part.sha256,
-            "size_mm": list(plan.part.size_mm),
-            "low": low.tolist(),
-            "high": high.tolist(),
-        },
-        "setup": {"z": list(effective.setup), "x": effective.placement and effective.placement.x},
+        "part": {**_of(plan.part, "file", "sha256", "size_mm"), "low": low.tolist(), "high": high.tolist()},
+        "setup": {"z": effective.setup, "x": effective.placement and effective.placement.x},
         "machine": plan.machine.name,
         "tolerance_mm": effective.tolerance_mm,
         "shown": result.shown,
@@ -53,8 +47,7 @@ def meta_of(
         "verdicts": {str(code): word for code, word in WORDS.items()},
         "words": {word: {"name": label(word), "colour": PALETTE[word]} for word in MEANING},
         "causes": {
-            each.code: {"name": each.name, "sentence": each.sentence, "colour": each.colour, "pattern": each.pattern}
-            for each in (*REASONS.values(), NO_CONTACT)
+            each.code: _of(each, "name", "sentence", "colour", "pattern") for each in (*REASONS.values(), NO_CONTACT)
         },
         "rotation_deg": np.degrees(result.postures.rotations).round(6).tolist(),
         "tilt_deg": list(degrees(result.postures.tilt)),
@@ -71,7 +64,7 @@ def meta_of(
         "faces": [_face(entry, surface) for entry in plan.faces],
         "fixtures": [
             {"name": standing.name, "start": surface.fixtures[i][0], "count": surface.fixtures[i][1]}
-            for i, standing in enumerate(result.scene.around.fixtures)
+            for i, standing in enumerate(result.conditions.around.fixtures)
         ],
         "cutters": [
             _cutter(names[entry.id], entry, result.judged(entry.id), counts(result.reaches[entry.id].verdict))
@@ -90,30 +83,19 @@ def _kinematics(axes: Kinematics) -> dict[str, Any]:
 def _face(entry: Any, surface: Surface) -> dict[str, Any]:
     number = int(entry.id[1:])
     start, count = surface.faces.get(number, (0, 0))
-    return {
-        "number": number,
-        "id": entry.id,
-        "name": entry.name,
-        "component": entry.component,
-        "surface": entry.surface,
-        "target": entry.target,
-        "ignored": entry.ignored,
-        "area_mm2": entry.area_mm2,
-        "start": start,
-        "count": count,
-    }
+    told = ("id", "name", "component", "surface", "target", "ignored", "area_mm2")
+    return {"number": number, **_of(entry, *told), "start": start, "count": count}
+
+
+def _of(record: Any, *words: str) -> dict[str, Any]:
+    """Attributes of a record by their names."""
+    return {word: getattr(record, word) for word in words}
 
 
 def _cutter(name: str, entry: CutterEntry, cutter: Cutter, found: dict[str, Any]) -> dict[str, Any]:
     return {
-        "id": entry.id,
         "name": name,
-        "feasible": entry.feasible,
-        "radius": entry.radius,
-        "corner_radius": entry.corner_radius,
-        "allowance_mm": entry.allowance_mm,
-        "clearance_mm": entry.clearance_mm,
-        "touches_deg": [list(each) for each in entry.touches_deg],
+        **_of(entry, "id", "feasible", "radius", "corner_radius", "allowance_mm", "clearance_mm", "touches_deg"),
         "modes": [_mode(mode) for mode in modes(cutter)],
         "outline": _outline(cutter),
         "shares": {word: getattr(entry.area_share, word) for word in VERDICTS},
@@ -125,13 +107,7 @@ def _cutter(name: str, entry: CutterEntry, cutter: Cutter, found: dict[str, Any]
 
 def _mode(mode: Any) -> dict[str, float]:
     low, high = degrees((mode.low, mode.high))
-    return {
-        "offset": mode.offset,
-        "radius": mode.radius,
-        "height": mode.height,
-        "tilt_low_deg": low,
-        "tilt_high_deg": high,
-    }
+    return {**_of(mode, "offset", "radius", "height"), "tilt_low_deg": low, "tilt_high_deg": high}
 
 
 def _outline(cutter: Cutter) -> list[dict[str, Any]]:
@@ -148,16 +124,10 @@ def _outline(cutter: Cutter) -> list[dict[str, Any]]:
 def _spot(spot: Spot) -> dict[str, Any]:
     w, best = spot.witness, spot.witness.best_posture
     return {
-        "cutter": spot.cutter,
-        "sample": spot.sample,
-        "face": w.face,
-        "reason": w.reason,
-        "point": list(w.point),
-        "obstacle_face": w.obstacle_face,
-        "obstacle_point": w.obstacle_point and list(w.obstacle_point),
-        "depth_mm": w.depth_mm,
+        **_of(spot, "cutter", "sample"),
+        **_of(w, "face", "reason", "point", "obstacle_face", "obstacle_point", "depth_mm"),
         "tilt_deg": best and best.tilt,
         "lean_deg": best and best.rotation,
-        "axis": best and list(best.axis),
+        "axis": best and best.axis,
         "text": sentence(w),
     }

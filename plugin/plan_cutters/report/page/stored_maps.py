@@ -14,23 +14,15 @@ _ROUNDING = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class StoredMaps:
-    """Maps of c samples at k rotations.
+    """Maps of c samples at k rotations."""
 
-    Attributes
-    ----------
-    row : (c,) uint32
-        Samples, ascending.
-    count : (c, k) uint8
-        Free intervals.
-    end : (sum of count, 2) uint16
-        From (rounded up) and to (rounded down), in tenths of degrees; sample by sample, rotation by rotation.
-    undecided : (c, k) uint8
-        Tilts left undecided, in half degrees, rounded up; 255 is that or more.
-    """
-
+    #: (c,); samples, ascending.
     row: NDArray[np.uint32]
+    #: (c, k); free intervals.
     count: NDArray[np.uint8]
+    #: (sum of count, 2); from (rounded up) and to (rounded down), in tenths of degrees; sample by sample, rotation by rotation.
     end: NDArray[np.uint16]
+    #: (c, k); tilts left undecided, in half degrees, rounded up; 255 is that or more.
     undecided: NDArray[np.uint8]
 
 

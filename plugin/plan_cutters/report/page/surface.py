@@ -17,24 +17,16 @@ Range = tuple[int, int]
 
 @dataclass(frozen=True, slots=True)
 class Surface:
-    """Vertices and triangles.
+    """Vertices and triangles."""
 
-    Attributes
-    ----------
-    point, normal : (v, 3) float
-        mm, part coordinates; unit, out of the material.
-    triangle : (m, 3) uint32
-        Counter-clockwise from outside.
-    place : (v, 2) uint16
-        In the atlas.
-    faces, fixtures : dict
-        Face number, or place among the fixtures, -> Range.
-    """
-
+    #: (v, 3), mm, part coordinates; unit, out of the material.
     point: Floats
     normal: Floats
+    #: (m, 3); counter-clockwise from outside.
     triangle: NDArray[np.uint32]
+    #: (v, 2); in the atlas.
     place: NDArray[np.uint16]
+    #: Face number, or place among the fixtures, -> Range.
     faces: dict[int, Range]
     fixtures: dict[int, Range]
 
@@ -52,7 +44,7 @@ def surface_of(result: Judged, drawn: Drawn, atlas: Atlas) -> Surface:
         start += len(mesh.triangle)
         meshes.append(mesh)
         places.append(place)
-    for i, standing in enumerate(result.scene.around.fixtures):
+    for i, standing in enumerate(result.conditions.around.fixtures):
         mesh = _facets(standing.shown)
         fixtures[i] = (start, len(mesh.triangle))
         start += len(mesh.triangle)

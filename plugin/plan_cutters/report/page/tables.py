@@ -86,7 +86,7 @@ def _why(plan: Plan, story: Story, shown: CutterEntry) -> str:
         short = taken.length - least < answers.SAME
         held = "It cannot be held shorter." if short else f"It can be held as short as {numbers.up(least)}."
     return " ".join(filter(None, (numbers.sentence(about.strip()) if about else "", why, *story.scope, held,
-                                  story.cutter(taken.id).next if taken.lost else "")))  # fmt: skip
+                                  story.cutter(taken.id).next if taken.not_reached else "")))  # fmt: skip
 
 
 def _bars(plan: Plan, entry: CutterEntry) -> list[tuple[str, float, float, str]]:
@@ -107,7 +107,7 @@ def _faces(plan: Plan, shown: CutterEntry) -> list[tuple[FaceEntry, str, str]]:
     def rank(face: FaceEntry) -> tuple[bool, float]:
         share = shares.get(face.id)
         area = face.area_mm2 if math.isfinite(face.area_mm2) else 0.0
-        return not face.target, -area * (share.inaccessible + share.undecided) if share else 0.0
+        return not face.target, -area * share.not_reached if share else 0.0
 
     return [
         (face, reached(shown.faces[face.id], shares[face.id]), cutters.reason(cutters.main_reason(shares[face.id])))

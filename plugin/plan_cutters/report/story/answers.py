@@ -9,7 +9,7 @@ from plan_cutters.report.story.headline import every
 from plan_cutters.report.story.line import Line
 from plan_cutters.report.story.names import named
 from plan_cutters.report.story.next_steps import cures, is_left_out, remaining, step_told
-from plan_cutters.report.story.numbers import down, place, some, up
+from plan_cutters.report.story.numbers import capital, down, place, some, up
 
 #: Steps that are said of a cutter.
 _STEPS = 5
@@ -31,7 +31,7 @@ _THINGS = {
 def answers(plan: Plan) -> list[Line]:
     """A line or two for each answer, cutters called as everywhere; what is to be typed is as it must be typed."""
     found = (*_stick_outs(plan), *_radii(plan), *_mends(plan))
-    return [line._replace(text=named(plan, line.text)) for line in found]
+    return [line._replace(text=capital(named(plan, line.text))) for line in found]
 
 
 def limit(found: StickOutEntry) -> str:

@@ -11,7 +11,18 @@ from plan_cutters.domain.reasons import REASONS
 from plan_cutters.report.story.headline import area, between
 from plan_cutters.report.story.names import described, named
 from plan_cutters.report.story.next_steps import cures, first_step, step_told
-from plan_cutters.report.story.numbers import VERDICTS, angle, figure, lost, mm, part_of, percent, place, reached
+from plan_cutters.report.story.numbers import (
+    VERDICTS,
+    angle,
+    capital,
+    figure,
+    mm,
+    part_of,
+    percent,
+    place,
+    reached,
+    unreached,
+)
 
 #: Faces that are named on which a cutter leaves something.
 _FACES = 3
@@ -83,7 +94,7 @@ def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
         hint=main.hint if main else "",
         besides=_besides(c),
         next=_next(plan, c),
-        left=named(plan, left(plan, c)) if c.lost else "",
+        left=capital(named(plan, left(plan, c))) if c.not_reached else "",
         between=between(plan, c),
         faces=tuple(faces),
         failing=failing,
@@ -91,7 +102,7 @@ def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
 
 
 def main_reason(share: AreaShare) -> str:
-    """By which reason the most is lost; empty where nothing is."""
+    """By which reason the most is not reached; empty where all is reached."""
     return max(share.lost_by, key=lambda name: share.lost_by[name], default="")
 
 
@@ -134,7 +145,10 @@ def left(plan: Plan, c: CutterEntry) -> str:
     if c.undecided:
         why += f"; of it {percent(c.area_share.undecided, some=True, whole=False)} is undecided"
     failing = [
-        name for _, name in sorted(((-v.lost, name) for name, v in c.faces.items() if v.lost), key=lambda each: each[0])
+        name
+        for _, name in sorted(
+            ((-v.not_reached, name) for name, v in c.faces.items() if v.not_reached), key=lambda each: each[0]
+        )
     ]
     deep = [w for w in c.witnesses if w.depth_mm is not None and not w.inside_bodies]
     where = ""
@@ -145,7 +159,8 @@ def left(plan: Plan, c: CutterEntry) -> str:
             f"; the worst is on {worst.face} at ({place(worst.point)}), "
             f"where the best posture {sure} {mm(worst.depth_mm)} too deep"
         )
-    return (f"{c.id} does not reach {lost(c, c.area_share)} of {area(plan)} ({c.lost} of {plan.samples.finished} samples): "
+    return (f"{c.id} does not reach {unreached(c, c.area_share)} of {area(plan)} ({c.not_reached} of {plan.samples.finished} "
+            "samples): "
             f"{why or 'no reason'}. They lie on {listed(failing, _FACES)}{where}.")  # fmt: skip
 
 
@@ -162,8 +177,7 @@ def spot(witness: WitnessEntry) -> str:
     """A witness in a sentence."""
     if witness.reason == "tolerance":
         return "The tolerance is too coarse to say anything about this cutter."
-    said, best, obstacle = reason(witness.reason), witness.best_posture, called(witness.obstacle_face)
-    said = said[0].upper() + said[1:]
+    said, best, obstacle = capital(reason(witness.reason)), witness.best_posture, called(witness.obstacle_face)
     unsure = witness.verdict == "undecided"
     said += ", undecided" * unsure
     if witness.depth_mm is not None and best is not None:
@@ -174,7 +188,7 @@ def spot(witness: WitnessEntry) -> str:
         where = f" in {obstacle}" if obstacle else ""
         return f"{said}. The best posture found ({there}) is still {mm(witness.depth_mm)} too deep{where}."
     if obstacle:
-        return f"{said}. {obstacle[0].upper() + obstacle[1:]} {'may be' if unsure else 'is'} in the way."
+        return f"{said}. {capital(obstacle)} {'may be' if unsure else 'is'} in the way."
     return f"{said}. No posture is {'sure' if unsure else 'left'}."
 
 
@@ -191,10 +205,13 @@ def ranked_spots(witnesses: Sequence[WitnessEntry]) -> list[WitnessEntry]:
 
 def worst_faces(plan: Plan, c: CutterEntry, most: int = 5) -> tuple[list[WorstFace], int]:
     """The faces of which a cutter loses the largest area, and how many there are in all."""
-    faces, failing = {face.id: face for face in plan.faces}, [name for name, each in c.faces.items() if each.lost]
+    faces, failing = (
+        {face.id: face for face in plan.faces},
+        [name for name, each in c.faces.items() if each.not_reached],
+    )
 
     def share(name: str) -> float:
-        return c.faces[name].area_share.inaccessible + c.faces[name].area_share.undecided
+        return c.faces[name].area_share.not_reached
 
     def lot(name: str) -> float:
         return share(name) * (1.0 - c.faces[name].inside_share) * faces[name].area_mm2
@@ -215,6 +232,6 @@ def _worst(face: FaceEntry, c: CutterEntry, lot: float) -> WorstFace:
     deepest = max(mine, key=lambda w: (w.verdict == verdict, w.depth_mm or 0.0), default=None)
     depth = "" if deepest is None or deepest.depth_mm is None else f"{deepest.depth_mm:.3g}"
     return WorstFace(
-        face.id, face.name, figure(lot), lost(c.faces[face.id], share), f"{'undecided: ' * unsure}{main or '?'}", depth,
+        face.id, face.name, figure(lot), unreached(c.faces[face.id], share), f"{'undecided: ' * unsure}{main or '?'}", depth,
         "" if deepest is None else deepest.obstacle_face or "",
     )  # fmt: skip

@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 from plan_cutters.document.listed import listed
 from plan_cutters.document.model import AreaEntry, CutterEntry, Plan
+from plan_cutters.domain.placement import axis_words
 from plan_cutters.report.story.names import described
-from plan_cutters.report.story.numbers import axis, count, lost, some
+from plan_cutters.report.story.numbers import capital, count, some, unreached
 from plan_cutters.report.story.scope import judged, nearest
 
 
@@ -31,10 +32,10 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
 
     if plan.selected:
         # Of several setups one may do by itself.
-        alone = next((s.axis for s in entries[plan.selected].setups if not s.lost), None)
+        alone = next((s.axis for s in entries[plan.selected].setups if not s.not_reached), None)
         if alone not in (None, plan.effective.setup):
             why = f"It reaches {every(plan)} there, and needs no other setup."
-            return take(plan.selected, True, why, where=f", in setup {axis(alone or ())}")
+            return take(plan.selected, True, why, where=f", in setup {axis_words(alone or ())}")
         if setups == 1 or alone:
             which = "" if len(entries) == 1 else f"is the largest of {len(entries)} cutters that "
             return take(plan.selected, True, f"It {which}reaches {every(plan)}.")
@@ -43,17 +44,22 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
         return take(plan.selected_over_setups, True, why, where=f", in {setups} setups")
     if plan.selected_for_setup:
         c = entries[plan.selected_for_setup]
-        why = (f"It leaves only what the axis limit keeps from every cutter, {lost(c, c.area_share)} of {area(plan)}: that needs "
+        why = (f"It leaves only what the axis limit keeps from every cutter, {unreached(c, c.area_share)} of {area(plan)}: "
+               "that needs "
                "another setup.")  # fmt: skip
         return take(c.id, None, why, to=f" in {here}")
     best = nearest(plan)
     name = f"{names[best.id]} ({described(best, names[best.id])})"
     unsure = f"No cutter is sure for {part}"
-    if not best.lost:
-        why = f"{name} reaches {every(plan)}, but obstacles are missing (see below) that may be in its way."
+    if not best.not_reached:
+        why = f"{capital(name)} reaches {every(plan)}, but obstacles are missing (see below) that may be in its way."
         return Headline(unsure, None, "", why + could_not(plan))
-    which = f"{name} was judged: it" if len(entries) == 1 else f"Of {len(entries)} cutters, {name} comes nearest: it"
-    much = f"{lost(best, best.area_share)} of {area(plan)} ({best.lost} of {plan.samples.finished} samples)"
+    which = (
+        f"{capital(name)} was judged: it"
+        if len(entries) == 1
+        else f"Of {len(entries)} cutters, {name} comes nearest: it"
+    )
+    much = f"{unreached(best, best.area_share)} of {area(plan)} ({best.not_reached} of {plan.samples.finished} samples)"
     ask = "" if "mend" in plan.effective.answers else " Ask what would help: --answers mend."
     if best.blocked == 0:
         why = f"{which} leaves {much} undecided: neither safe nor blocked to the tolerance."

@@ -2,7 +2,9 @@
 
 from plan_cutters.document.answers import ChangeEntry, MendEntry, RunEntry, StepEntry
 from plan_cutters.document.model import CutterEntry, Plan
-from plan_cutters.report.story.numbers import axis, percent
+from plan_cutters.domain.placement import axis_words
+from plan_cutters.report.story.headline import not_sampled
+from plan_cutters.report.story.numbers import percent
 
 #: Runs that are named one by one.
 _RUNS = 6
@@ -19,7 +21,8 @@ def together(plan: Plan) -> str:
     if not found.runs:
         return "No cutter given reaches any of the area"
     several = len({run.setup for run in found.runs}) > 1
-    whole = percent(found.share, some=True, whole=not found.left)
+    judged = not plan.samples.unjudged and not not_sampled(plan)
+    whole = percent(found.share, some=True, whole=judged and not found.left)
     if len(found.runs) == 1:
         said = f"{_run(found.runs[0], several)} alone reaches all that any cutter given reaches, {whole} of the area"
     else:
@@ -31,11 +34,11 @@ def together(plan: Plan) -> str:
             each.append(
                 f"{more} more cutters for {percent(sum(r.share for r in found.runs[_RUNS:-1]), some=True, whole=False)}"
             )
-        said = (
-            f"{', '.join(each)} and {_run(last, several)} for the rest reach {'all of it' if not found.left else whole}"
-        )
+        every = "all of it" if judged else "all of it that could be judged"
+        said = f"{', '.join(each)} and {_run(last, several)} for the rest reach {whole if found.left else every}"
     if found.left:
-        said += f"; nothing given reaches the other {percent(found.left_share, some=True, whole=False)}"
+        other = "the other" if judged else "another"
+        said += f"; nothing given reaches {other} {percent(found.left_share, some=True, whole=False)}"
     if not found.proven:
         said += " (a smaller set may do: the search ended before the proof)"
     if found.doubtful:
@@ -44,7 +47,7 @@ def together(plan: Plan) -> str:
 
 
 def _run(run: RunEntry, several: bool) -> str:
-    return f"{run.cutter} in setup {axis(run.setup)}" if several else run.cutter
+    return f"{run.cutter} in setup {axis_words(run.setup)}" if several else run.cutter
 
 
 def effect(step: StepEntry) -> str:
@@ -62,7 +65,7 @@ def effect(step: StepEntry) -> str:
 
 
 def is_left_out(step: StepEntry) -> bool:
-    """Whether a step changes nothing but leaves what is lost to other means."""
+    """Whether a step changes nothing but leaves what is not reached to other means."""
     return any(change.thing == "area" for change in step.changes)
 
 

@@ -5,9 +5,10 @@ from itertools import zip_longest
 
 from plan_cutters.document.model import CutterEntry, LibraryEntry, Plan
 from plan_cutters.domain.notes import NoteCode
+from plan_cutters.domain.placement import axis_words
 from plan_cutters.report.story.line import Line
 from plan_cutters.report.story.names import named
-from plan_cutters.report.story.numbers import axis, count, percent, place
+from plan_cutters.report.story.numbers import count, percent, place
 
 #: Notes that say what the first lines say in other words; those of the area between samples, where it was looked at.
 _SAID_ABOVE: frozenset[NoteCode | None] = frozenset({"samples_apart", "area_proved", "area_left"})
@@ -85,9 +86,9 @@ def library_lines(library: LibraryEntry) -> Iterator[Line]:
 
 def machine(plan: Plan) -> str:
     """Say which machine limits the tool axis, and how the part stands."""
-    along = f"spindle points along {axis(plan.effective.setup)} of the part"
+    along = f"spindle points along {axis_words(plan.effective.setup)} of the part"
     if plan.effective.other_setups:
-        along += f", in other setups along {'; '.join(map(axis, plan.effective.other_setups))}"
+        along += f", in other setups along {'; '.join(map(axis_words, plan.effective.other_setups))}"
     if plan.machine.name == "unlimited":
         return f"No machine limits the tool axis; the {along}."
     return f"The machine is {plan.machine.name}; its {along}."
@@ -97,23 +98,23 @@ def setups(plan: Plan, best: CutterEntry) -> Iterator[Line]:
     """Say how much no cutter can reach in this setup, which cutter does the rest, and the area within the limit in others."""
     number, samples = 1 + len(plan.effective.other_setups), plan.samples
     if number > 1:
-        each = "; ".join(f"{s.interference_free + s.accessible:,} with {axis(s.axis)}" for s in best.setups)
+        each = "; ".join(f"{s.interference_free + s.accessible:,} with {axis_words(s.axis)}" for s in best.setups)
         what = f"leaves {best.lost_in_all:,}" if best.lost_in_all else "reaches all"
         yield Line(
             named(
                 plan, f"Over the {number} setups {best.id} {what} of {samples.finished:,} samples. It reaches {each}."
             )
         )
-    lost = max((c.beyond_setup for c in plan.cutters), default=0)
-    if not lost:
+    not_reached = max((c.beyond_setup for c in plan.cutters), default=0)
+    if not not_reached:
         return
     here = "this setup" if number == 1 else "these setups"
-    yield Line(f"Beyond {here}: the axis limit loses {lost} of {samples.finished} samples for every cutter.")
+    yield Line(f"Beyond {here}: the axis limit loses {not_reached} of {samples.finished} samples for every cutter.")
     if plan.selected_for_setup:
         yield Line(named(plan, f"For {here}: {plan.selected_for_setup}, which leaves nothing else."), minor=True)
     within = [(s, percent(s.share, some=bool(s.within), whole=s.within == samples.judged)) for s in plan.setups]
-    now = [f"{axis(s.axis)} {share}" for s, share in within if s.reached is not None]
-    others = ", ".join(f"{axis(s.axis)} {share}" for s, share in within if s.reached is None)
+    now = [f"{axis_words(s.axis)} {share}" for s, share in within if s.reached is not None]
+    others = ", ".join(f"{axis_words(s.axis)} {share}" for s, share in within if s.reached is None)
     yield Line(f"Area within the limit by setup axis: {within[0][1] if number == 1 else ', '.join(now)} now; {others}.")
 
 

@@ -8,7 +8,7 @@ from plan_cutters.domain.verdicts import WORDS
 
 #: Verdicts, from best to worst.
 VERDICTS = tuple(WORDS.values())
-_REACHED, _LOST = ("interference_free", "accessible"), ("inaccessible", "undecided")
+_REACHED, _NOT_REACHED = ("interference_free", "accessible"), ("inaccessible", "undecided")
 
 
 def percent(share: float, *, some: bool, whole: bool) -> str:
@@ -54,9 +54,9 @@ def reached(counts: VerdictCounts, share: AreaShare) -> str:
     return part_of(counts, share, _REACHED)
 
 
-def lost(counts: VerdictCounts, share: AreaShare) -> str:
+def unreached(counts: VerdictCounts, share: AreaShare) -> str:
     """How much of an area is inaccessible or undecided, in percent."""
-    return part_of(counts, share, _LOST)
+    return part_of(counts, share, _NOT_REACHED)
 
 
 def some(share: float) -> str:
@@ -88,11 +88,6 @@ def place(point: Sequence[float] | None) -> str:
     return "" if point is None else ", ".join(f"{x + 0.0:.4g}" for x in point)
 
 
-def axis(direction: Sequence[float]) -> str:
-    """A setup axis, as options have it."""
-    return place(direction).replace(" ", "")
-
-
 def up(length: float | None) -> str:
     """A length that must not be less, rounded up."""
     return "" if length is None else f"{math.ceil(100.0 * length - 1e-9) / 100.0:.2f} mm"
@@ -119,10 +114,15 @@ def count(number: int, word: str) -> str:
     return f"{number:,} {word}{'' if number == 1 else 's'}"
 
 
+def capital(text: str) -> str:
+    """A text that begins a sentence; names of cutters may begin small."""
+    return text[:1].upper() + text[1:]
+
+
 def sentence(text: str) -> str:
     """A clause as a sentence of its own.
 
     >>> sentence("nothing helps")
     'Nothing helps.'
     """
-    return f"{text[:1].upper()}{text[1:]}."
+    return f"{capital(text)}."

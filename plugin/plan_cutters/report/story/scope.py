@@ -77,4 +77,4 @@ def not_seen(plan: Plan, names: Mapping[str, str]) -> list[str]:
 
 def nearest(plan: Plan) -> CutterEntry:
     """The cutter that leaves fewest samples."""
-    return min(plan.cutters, key=lambda c: c.lost)
+    return min(plan.cutters, key=lambda c: c.not_reached)

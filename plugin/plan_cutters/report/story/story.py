@@ -12,6 +12,7 @@ from plan_cutters.report.story.inside import inside
 from plan_cutters.report.story.line import Line
 from plan_cutters.report.story.names import named, short_names
 from plan_cutters.report.story.next_steps import together
+from plan_cutters.report.story.numbers import sentence
 from plan_cutters.report.story.operations import operations
 from plan_cutters.report.story.scope import not_judged, not_seen
 
@@ -65,7 +66,7 @@ def story_of(plan: Plan) -> Story:
         shown=best.id,
         inside=tuple(named(plan, line) for line in inside(plan)),
         headline=headline(plan, names),
-        scope=(*not_judged(plan), *not_seen(plan, names), *([f"{named(plan, pair)}."] if pair else [])),
+        scope=(*not_judged(plan), *not_seen(plan, names), *([sentence(named(plan, pair))] if pair else [])),
         between=tuple(each.between for each in cutters if each.between),
         cutters=cutters,
         setups=(*notes.setups(plan, best), *notes.travel(plan, best)),

@@ -6,7 +6,8 @@ from typing import NamedTuple
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.outline import Outline, Point
 from plan_cutters.domain.shapes import SAME, flank, flute_length, stages, top_radius
-from plan_cutters.library.sheet import legible, length
+from plan_cutters.report.drawing.sheet import printable
+from plan_cutters.report.drawing.tool_sheet import length
 
 #: Most points of a form that stand beside its picture.
 _POINTS = 12
@@ -98,7 +99,7 @@ def facts_of(cutter: Cutter) -> list[str]:
     """List the facts of the whole assembly: its holder, allowance and clearance."""
     holder = "no holder"
     if cutter.holder:
-        holder = f"holder: {legible(cutter.holder.name)}" if cutter.holder.name else "a holder without a name"
+        holder = f"holder: {printable(cutter.holder.name)}" if cutter.holder.name else "a holder without a name"
     found = [holder]
     if cutter.allowance:
         found.append(f"allowance {length(cutter.allowance)} on the surface, not drawn")

@@ -6,8 +6,9 @@ from typing import NamedTuple
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.outline import AnyPart, Outline, Segment, outline
 from plan_cutters.domain.shapes import flute_length
-from plan_cutters.library.notes import Note, Span, across, description, facts_of, notes_of, spans_of
-from plan_cutters.library.sheet import ARROW, FONT, LINE, Point, Sheet, at, legible, length, width_of, wrapped
+from plan_cutters.report.drawing.sheet import printable, standard
+from plan_cutters.report.drawing.tool_notes import Note, Span, across, description, facts_of, notes_of, spans_of
+from plan_cutters.report.drawing.tool_sheet import ARROW, FONT, LINE, Point, Sheet, at, length, width_of, wrapped
 
 #: A4 upright, its margin, and what stands around the view: room for arrows below the tip and for the axis above the end.
 _PAGE, _MARGIN, _BELOW, _ABOVE = (210.0, 297.0), 9.0, 15.0, 6.0
@@ -59,7 +60,7 @@ def draw(cutter: Cutter, *, name: str = "") -> str:
     True
     """
     line = outline(cutter)
-    title = legible(name or cutter.name or cutter.id)
+    title = printable(name or cutter.name or cutter.id)
     notes, spans = notes_of(cutter, line), spans_of(cutter)
     facts = facts_of(cutter)
     sheet = Sheet(title, description(cutter, notes, spans, facts))
@@ -93,16 +94,10 @@ def draw(cutter: Cutter, *, name: str = "") -> str:
 
 def _scale(line: Outline, spans: list[Span], wide: float, high: float) -> float:
     """The largest standard scale, 1:1 at most, in which the view fits a width with its dimension lines, and a height."""
-    scale = min(1.0, _standard(min(wide / (2.0 * line.widest), high / line.height)))
+    scale = min(1.0, standard(min(wide / (2.0 * line.widest), high / line.height)))
     while 2.0 * scale * line.widest + len(_columns(spans, scale)) * _COLUMN > wide:
-        scale = _standard(0.9 * scale)
+        scale = standard(0.9 * scale)
     return scale
-
-
-def _standard(most: float) -> float:
-    """The largest standard scale that is no larger: 1, 2 or 5 times a power of ten."""
-    power = 10.0 ** math.floor(math.log10(most))
-    return max(step * power for step in (0.5, 1.0, 2.0, 5.0, 10.0) if step * power <= most * (1.0 + 1e-9))
 
 
 def _words(scale: float) -> str:
@@ -228,7 +223,7 @@ def _zoom(cutter: Cutter, line: Outline, scale: float) -> float:
         return 0.0
     least = min(features, key=lambda s: s.length)
     high = flute_length(cutter) if cutter.shape == "form" else least.end[1]
-    found = _standard(min(_DETAIL[0] / cutter.radius, (_DETAIL[1] - _LABELS) / high))
+    found = standard(min(_DETAIL[0] / cutter.radius, (_DETAIL[1] - _LABELS) / high))
     return found if scale * min(2.0 * cutter.radius, least.length) < _SMALL and found > scale else 0.0
 
 

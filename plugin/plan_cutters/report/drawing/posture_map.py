@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from cad_io.arrays import Floats
 from plan_cutters.document.palette import PALETTE
 from plan_cutters.domain.intervals import complement, without
 from plan_cutters.domain.reasons import NO_CONTACT, REASONS
-from plan_cutters.report.sheet import figure, fitting, save, write
+from plan_cutters.report.drawing.sheet import Look, figure, fitting, legend, save, write
 
 #: Inches: the sheet's width, the room left at its sides, and the plot, from its left and with its size.
 _WIDTH, _SIDE, _PLOT = 9.0, 0.3, (0.675, 6.3, 3.45)
@@ -18,31 +18,21 @@ _WIDTH, _SIDE, _PLOT = 9.0, 0.3, (0.675, 6.3, 3.45)
 _TITLE, _NOTE, _TITLE_LINE, _NOTE_LINE = 11, 8, 0.23, 0.168
 
 
-class Cause(NamedTuple):
-    """A map shows a cause with these: its name in the map, its words, its colour and its hatch."""
-
-    name: str
-    words: str
-    colour: str
-    hatch: str
-
-
-def _cause(code: str) -> Cause:
+def _look(code: str) -> Look:
     found = REASONS.get(code, NO_CONTACT)
-    return Cause(code, found.name, found.colour, found.hatch)
+    return Look(found.name, found.colour, found.hatch)
 
 
 #: In this order each counts for what is forbidden: the first one that does is drawn.
-CAUSES = tuple(
-    _cause(code)
-    for code in (
-        "no_contact", "axis_limit", "local_gouge", "rear_gouge", "collision", "neck", "shank", "holder", "buried",
-    )
-)  # fmt: skip
-FREE = Cause("free", "free", PALETTE["interference_free"], "")
-UNDECIDED = Cause("undecided", "undecided", PALETTE["undecided"], "..")
-#: What is neither free nor undecided, and nothing alone forbids: within the bounds of the search.
-OTHER = Cause("other", "not free", "#555555", "")
+CAUSES = ("no_contact", "axis_limit", "local_gouge", "rear_gouge", "collision", "neck", "shank", "holder", "buried")
+#: All that is drawn, in the legend's order. "Other" is neither free nor undecided, and nothing alone forbids it: within the
+#: bounds of the search.
+_LOOKS = {
+    "free": Look("free", PALETTE["interference_free"]),
+    "undecided": Look("undecided", PALETTE["undecided"], ".."),
+    **{code: _look(code) for code in CAUSES},
+    "other": Look("not free", "#555555"),
+}
 
 
 def forbidden(found: Any, low: float, high: float) -> dict[str, list[Floats]]:
@@ -56,15 +46,15 @@ def forbidden(found: Any, low: float, high: float) -> dict[str, list[Floats]]:
     low, high : float
         The tilts that were asked for, rad.
     """
-    shares: dict[str, list[Floats]] = {each.name: [] for each in (*CAUSES, UNDECIDED, OTHER)}
+    shares: dict[str, list[Floats]] = {code: [] for code in (*CAUSES, "undecided", "other")}
     whole = np.array([[low, high]])
     for i in range(len(found.rotations)):
         left = without(without(whole, found.free[i]), found.undecided[i])
         shares["undecided"].append(found.undecided[i])
         for cause in CAUSES:
-            mine = _gouged(found, i, low, high) if cause.name == "local_gouge" else getattr(found, cause.name)[i]
+            mine = _gouged(found, i, low, high) if cause == "local_gouge" else getattr(found, cause)[i]
             rest = without(left, mine)
-            shares[cause.name].append(without(left, rest))
+            shares[cause].append(without(left, rest))
             left = rest
         shares["other"].append(left)
     return shares
@@ -95,7 +85,6 @@ def draw_map(found: Any, tilt: tuple[float, float], title: str, notes: Sequence[
     The same map gives the same bytes. Each rotation that was searched is a column; nothing is known between.
     """
     from matplotlib.collections import PolyCollection
-    from matplotlib.patches import Patch
 
     low, high = np.degrees(tilt)
     turns = np.degrees(found.rotations)
@@ -113,26 +102,31 @@ def draw_map(found: Any, tilt: tuple[float, float], title: str, notes: Sequence[
     high_sheet = foot + _PLOT[2] + top
     sheet = figure(_WIDTH, high_sheet)
     plot = sheet.add_axes((_PLOT[0] / _WIDTH, foot / high_sheet, _PLOT[1] / _WIDTH, _PLOT[2] / high_sheet))
-    legend = []
-    for cause in (FREE, UNDECIDED, *CAUSES, OTHER):
+    used = []
+    for code, look in _LOOKS.items():
         boxes = [
             [(at - 0.5 * step, a), (at + 0.5 * step, a), (at + 0.5 * step, b), (at - 0.5 * step, b)]
             for i, at in places
-            for a, b in np.degrees(shares[cause.name][i]).tolist()
+            for a, b in np.degrees(shares[code][i]).tolist()
         ]
-        if not boxes and cause is not FREE:
+        if not boxes and code != "free":
             continue
-        style: dict[str, Any] = {"facecolor": cause.colour, "edgecolor": "#00000066", "hatch": cause.hatch or None}
-        plot.add_collection(PolyCollection(boxes, linewidth=0.0, **style))
-        legend.append(Patch(label=cause.words, linewidth=0.5, **style))
+        plot.add_collection(PolyCollection(boxes, linewidth=0.0, **look.style))
+        used.append(look)
     plot.set_xlabel("rotation θ from the direction of largest curvature (deg)")
     plot.set_ylabel("tilt λ from the surface normal (deg)")
     plot.set_xticks(_ticks(left, right))
     plot.set_yticks(_ticks(low, high))
     plot.set_xlim(left, right)
     plot.set_ylim(low, high if high > low else low + 1.0)
-    sheet.legend(handles=legend, loc="upper left", bbox_to_anchor=(0.785, (foot + _PLOT[2]) / high_sheet), frameon=False,
-                 fontsize=9, title="tilts", alignment="left", handleheight=1.4, handlelength=2.2)  # fmt: skip
+    legend(
+        sheet,
+        used,
+        loc="upper left",
+        bbox_to_anchor=(0.785, (foot + _PLOT[2]) / high_sheet),
+        title="tilts",
+        alignment="left",
+    )
     write(sheet, head, (_SIDE, high_sheet - 0.12), _TITLE)
     write(sheet, below, (_SIDE, foot - 0.55), _NOTE)
     for path in paths:

@@ -1,13 +1,11 @@
 """Views of a part drawn into images: where one looks from, which triangle each pixel shows, and how bright it is."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, Ints, Record
+from cad_io.arrays import Floats, Ints
 
 #: Pixels drawn for each pixel of an image, along either side: they are averaged, so that edges are smooth.
 FINER = 2
@@ -25,26 +23,9 @@ class Body(NamedTuple):
     owner: Ints
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
-class View(Record):
-    """One image.
+class View(NamedTuple):
+    """A body is seen so: of each fine pixel (h, w) the owner, -1 for nothing; the brightness, 0 to 1; the nearness, mm."""
 
-    Attributes
-    ----------
-    frame : (3, 3) float
-        Unit rows: to the right, upwards, towards the viewer.
-    scale : float
-        Pixels of the finished image a mm.
-    seen : (h, w) int32
-        What each fine pixel shows; -1 for nothing.
-    shade : (h, w) float
-        How bright, 0 to 1.
-    depth : (h, w) float
-        Nearness, mm; -inf for nothing.
-    """
-
-    frame: Floats
-    scale: float
     seen: Ints
     shade: Floats
     depth: Floats
@@ -71,15 +52,13 @@ def fitted(frame: Floats, points: Floats, width: int, height: int) -> tuple[floa
     return float((room / size).min()), 0.5 * (low + high)
 
 
-def view(
-    frame: Floats, bodies: Sequence[Body], scale: float, middle: Floats, width: int, height: int, finer: int = FINER
-) -> list[View]:
-    """Draw each body by itself from one side; the images have finer pixels, `finer` along each side of one.
+def view(frame: Floats, body: Body, scale: float, middle: Floats, width: int, height: int, finer: int = FINER) -> View:
+    """Draw a body from one side; the image has finer pixels, `finer` along each side of one.
 
     Parameters
     ----------
     frame : (3, 3) float
-    bodies : sequence of Body
+    body : Body
     scale, middle
         As `fitted` gives them.
     width, height : int
@@ -87,25 +66,18 @@ def view(
     """
     from plan_cutters.kernels.linear.raster import draw
 
-    wide, high, fine = width * finer, height * finer, scale * finer
-    light = _LIGHT / np.linalg.norm(_LIGHT)
-    views = []
-    for body in bodies:
-        placed = body.corner @ frame.T
-        corner = np.empty_like(placed)
-        corner[:, :, 0] = (placed[:, :, 0] - middle[0]) * fine + 0.5 * (wide - 1)
-        corner[:, :, 1] = 0.5 * (high - 1) - (placed[:, :, 1] - middle[1]) * fine
-        corner[:, :, 2] = placed[:, :, 2]
-        # Open shells are looked at from both sides: a side that is turned away is lit as if it were turned.
-        turned = body.normal @ frame.T
-        turned = np.where(turned[:, :, 2:] < 0.0, -turned, turned)
-        bright = _DARKEST + (1.0 - _DARKEST) * np.clip(turned @ light, 0.0, 1.0)
-        depth = np.full((high, wide), -np.inf)
-        seen, shade = np.full((high, wide), -1, np.int32), np.zeros((high, wide))
-        draw(np.ascontiguousarray(corner), np.ascontiguousarray(bright), np.ascontiguousarray(body.owner, np.int32), depth, seen,
-             shade)  # fmt: skip
-        views.append(View(frame, scale, seen, shade, depth))
-    return views
+    size, fine = np.array([width, height]) * finer, scale * finer
+    corner = body.corner @ frame.T
+    corner[:, :, :2] = (corner[:, :, :2] - middle) * [fine, -fine] + 0.5 * (size - 1)
+    # Open shells are looked at from both sides: a side that is turned away is lit as if it were turned.
+    turned = body.normal @ frame.T
+    turned = np.where(turned[:, :, 2:] < 0.0, -turned, turned)
+    bright = _DARKEST + (1.0 - _DARKEST) * np.clip(turned @ (_LIGHT / np.linalg.norm(_LIGHT)), 0.0, 1.0)
+    shape = size[1], size[0]
+    found = View(np.full(shape, -1, np.int32), np.zeros(shape), np.full(shape, -np.inf))
+    draw(np.ascontiguousarray(corner), np.ascontiguousarray(bright), np.ascontiguousarray(body.owner, np.int32), found.depth,
+         found.seen, found.shade)  # fmt: skip
+    return found
 
 
 def borders(codes: Ints) -> NDArray[np.bool_]:
@@ -116,7 +88,7 @@ def borders(codes: Ints) -> NDArray[np.bool_]:
     return found
 
 
-def averaged(image: Floats) -> Floats:
-    """A fine image (h, w, 3) as the finished one."""
-    h, w, _ = image.shape
-    return np.asarray(image.reshape(h // FINER, FINER, w // FINER, FINER, 3).mean(axis=(1, 3)))
+def averaged(image: NDArray[Any]) -> Floats:
+    """A fine image (h, w) or (h, w, 3) as the finished one."""
+    h, w, *deep = image.shape
+    return np.asarray(image.reshape(h // FINER, FINER, w // FINER, FINER, *deep).mean(axis=(1, 3)))

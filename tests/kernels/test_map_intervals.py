@@ -1,4 +1,4 @@
-"""What posture maps call clear of a gap of tilts: no point of a box or triangle that passes is ever in the cutter.
+"""What posture maps call clear of an interval of tilts: no point of a box or triangle that passes is ever in the cutter.
 
 The reference is containment of points, tilt by tilt, in the frame of the tool; it shares no code with the kernels.
 """
@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from plan_cutters.kernels.linear import lanes
-from plan_cutters.kernels.maps import gaps, passes
+from plan_cutters.kernels.maps import intervals, passes
 from tests.support import waves
 
 TILTS = 181
 
 
-def gap_of(first, last):
+def interval_of(first, last):
     ends = [first, last, np.cos(first), np.sin(first), np.cos(last), np.sin(last), 0.0, 0.0]
     return np.array([ends] * 16)
 
@@ -29,7 +29,7 @@ def deepest(points, first, last, radius, shrunk, low, high):
 
 
 def cases(seed, count):
-    """Cutters, gaps, and a size and a place at which something may or may not be in the way."""
+    """Cutters, intervals, and a size and a place at which something may or may not be in the way."""
     rng = np.random.default_rng(seed)
     for _ in range(count):
         radius = 10 ** rng.uniform(-0.5, 1)
@@ -62,7 +62,7 @@ def test_boxes_that_pass_never_enter():
             view[0, 3 + k], view[0, 6 + k], view[0, 9 + k] = axes[0, k], axes[1, k], axes[2, k]
         view[0, 12] = place[2] + np.abs(sides[2]).sum()
         passes._boxes_pass(
-            view, 0, cosine, sine, gap_of(first, last), 1, waves.cylinder(radius, high + low, low), margin
+            view, 0, cosine, sine, interval_of(first, last), 1, waves.cylinder(radius, high + low, low), margin
         )
         assert (margin == margin[0]).all()
         if margin[0] >= 0:
@@ -79,11 +79,12 @@ def test_triangles_that_pass_never_enter():
     for rng, radius, low, high, first, last, place, size in cases(2, 8000):
         triangle = place + size * rng.standard_normal((3, 3)) * 10 ** rng.uniform(-1.5, 0, 3)
         seen = np.repeat(triangle.reshape(9, 1), lanes.LANES, 1)
-        passes._triangles_pass(seen, 1.0, 0.0, gap_of(first, last), 1, waves.cylinder(radius, high + low, low), margin)
+        passes._triangles_pass(
+            seen, 1.0, 0.0, interval_of(first, last), 1, waves.cylinder(radius, high + low, low), margin
+        )
         assert (margin == margin[0]).all()
-        corner = np.ascontiguousarray(triangle[:, [0, 2, 1]])
         ends = np.cos(first), np.sin(first), np.cos(last), np.sin(last)
-        close = passes._passes(corner, *ends, waves.cylinder(radius, high + low, low), first_part, second_part)
+        close = passes._passes(triangle, *ends, waves.cylinder(radius, high + low, low), first_part, second_part)
         passed, closely = passed + (margin[0] >= 0), closely + close
         if margin[0] >= 0 or close:
             assert deepest(weights @ triangle, first, last, radius, radius - low, low, high) <= 1e-9 * radius
@@ -95,7 +96,7 @@ def test_points_that_cut_are_in_the_cutter_and_others_are_not():
     cutting = 0
     for _, radius, low, high, first, last, place, _ in cases(3, 4000):
         x, y, z = place
-        cuts = gaps._cuts(x, y, z, gap_of(first, last), 1, waves.cylinder(radius, high + low, low))
+        cuts = intervals._cuts(x, y, z, interval_of(first, last), 1, waves.cylinder(radius, high + low, low))
         depth = deepest(place[None], first, last, radius, radius - low, low, high)
         cutting += cuts
         # Between the tilts looked at, a point may come a little deeper.

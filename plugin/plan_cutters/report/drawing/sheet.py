@@ -4,11 +4,12 @@ Matplotlib is loaded here alone, and only when something is drawn. The package V
 depends on it: it is there wherever the kernel is.
 """
 
+import math
 import re
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 #: Dots an inch of PNG files.
 DPI = 150
@@ -24,6 +25,27 @@ _STYLE = {
 }
 
 
+class Look(NamedTuple):
+    """A look is how something is drawn: words of the legend, a colour of matplotlib, a hatch, the colour of hatch and edge."""
+
+    words: str
+    colour: Any
+    hatch: str = ""
+    edge: Any = "#00000066"
+
+    @property
+    def style(self) -> dict[str, Any]:
+        return {"facecolor": self.colour, "edgecolor": self.edge, "hatch": self.hatch or None}
+
+
+def legend(sheet: Any, looks: Sequence[Look], **place: Any) -> None:
+    """Put a legend on a sheet, at a place as matplotlib has it."""
+    from matplotlib.patches import Patch
+
+    handles = [Patch(label=look.words, linewidth=0.5, **look.style) for look in looks]
+    sheet.legend(handles=handles, frameon=False, fontsize=9, handlelength=2.6, handleheight=1.5, **place)
+
+
 def figure(width: float, height: float) -> Any:
     """An empty white sheet, inches."""
     from matplotlib.figure import Figure
@@ -32,15 +54,27 @@ def figure(width: float, height: float) -> Any:
 
 
 def printable(text: str, most: int = 200) -> str:
-    """A text from a file as it may stand on a sheet: no control characters, and its middle left out where it is long.
+    """A text from a file as it may stand on a sheet: on one line, no signs that steer, and its middle left out where it is long.
+
+    What no sheet can show, or what would turn the rest of it round, is U+FFFD.
 
     >>> printable("rim\\n2"), printable("abcdefgh", 5)
-    ('rim?2', 'ab…gh')
+    ('rim 2', 'ab…gh')
     """
-    text = "".join(letter if letter.isprintable() else "?" for letter in text)
+    text = "".join(letter if letter.isprintable() else "\ufffd" for letter in " ".join(text.split()))
     if len(text) <= most:
         return text
     return f"{text[: most // 2]}…{text[len(text) - (most - 1) // 2 :]}"
+
+
+def standard(most: float) -> float:
+    """The largest of 1, 2 and 5 times a power of ten that is no larger.
+
+    >>> standard(49.0), standard(0.5)
+    (20.0, 0.5)
+    """
+    power = 10.0 ** math.floor(math.log10(most))
+    return max(step * power for step in (0.5, 1.0, 2.0, 5.0, 10.0) if step * power <= most * (1.0 + 1e-9))
 
 
 def write(sheet: Any, lines: Sequence[str], place: tuple[float, float], size: float) -> None:

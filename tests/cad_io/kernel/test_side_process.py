@@ -14,7 +14,7 @@ import pytest
 
 from cad_io.kernel import copies
 from cad_io.kernel.each import each
-from cad_io.kernel.side_process import Meanwhile
+from cad_io.kernel.side_process import SideProcess
 from cad_io.kernel.time_limit import TimeLimit, limited
 from plan_cutters import pipeline, plan
 from plan_cutters.report import formats, models
@@ -30,7 +30,7 @@ def children():
 
 
 def test_a_long_answer_comes_whole_and_the_copy_made_it():
-    with Meanwhile(lambda: (os.getpid(), np.arange(2_000_000)), 20.0) as copy:
+    with SideProcess(lambda: (os.getpid(), np.arange(2_000_000)), 20.0) as copy:
         assert copy.works
         number, long = copy.result()
     assert number != os.getpid()
@@ -64,15 +64,15 @@ def no_words():
 
 @pytest.mark.parametrize("fault", [spin, crash, fail, no_words])
 def test_whatever_becomes_of_the_copy_the_result_is_made_here(fault):
-    with Meanwhile(fault, 0.4) as copy:
+    with SideProcess(fault, 0.4) as copy:
         assert copy.result() == "here"
         assert not copy.works
 
 
 @pytest.mark.parametrize("part", [b"", b"\0", struct.pack("<q", 9) + b"half"])
 def test_half_an_answer_is_none(monkeypatch, part):
-    monkeypatch.setattr(Meanwhile, "_answer", lambda self, pipe: pipe.write(part))
-    with Meanwhile(lambda: "here", 5.0) as copy:
+    monkeypatch.setattr(SideProcess, "_answer", lambda self, pipe: pipe.write(part))
+    with SideProcess(lambda: "here", 5.0) as copy:
         assert copy.result() == "here"
 
 
@@ -80,7 +80,7 @@ def test_what_is_raised_here_is_raised():
     def wrong():
         raise ValueError("so it is")
 
-    with Meanwhile(wrong, 5.0) as copy, pytest.raises(ValueError, match="so it is"):
+    with SideProcess(wrong, 5.0) as copy, pytest.raises(ValueError, match="so it is"):
         copy.result()
 
 
@@ -89,7 +89,7 @@ def test_nothing_is_left_of_a_copy_that_nobody_asked():
         time.sleep(60)
 
     def interrupted():
-        with Meanwhile(asleep, 60.0):
+        with SideProcess(asleep, 60.0):
             assert len(children()) == len(before) + 1
             raise KeyboardInterrupt
 
@@ -100,20 +100,20 @@ def test_nothing_is_left_of_a_copy_that_nobody_asked():
 
 
 def test_without_a_copy_the_work_is_done_here(monkeypatch):
-    with Meanwhile(os.getpid, 5.0, worth=False) as copy:
+    with SideProcess(os.getpid, 5.0, worth=False) as copy:
         assert not copy.works
         assert copy.result() == os.getpid()
     monkeypatch.setattr(
         "cad_io.kernel.side_process.begin", lambda *_: (_ for _ in ()).throw(OSError("no more processes"))
     )
-    with Meanwhile(os.getpid, 5.0) as copy:
+    with SideProcess(os.getpid, 5.0) as copy:
         assert copy.result() == os.getpid()
 
 
 def test_a_copy_whose_words_are_taken_slowly_is_not_stuck(monkeypatch):
     # It sleeps whenever the pipe is full, and is looked at once a second however often its words come.
     monkeypatch.setattr(copies, "_ASLEEP", 3)
-    with Meanwhile(lambda: b"x" * 30_000_000, 20.0) as copy:
+    with SideProcess(lambda: b"x" * 30_000_000, 20.0) as copy:
         assert copy.result(lambda: b"") == b"x" * 30_000_000
 
 
@@ -197,7 +197,7 @@ def test_a_program_may_wait_for_the_copies_itself(host):
         host()
         assert limited(lambda: b"done", 20.0) == b"done"
         assert list(each(str, [1, 2], seconds=20.0)) == ["1", "2"]
-        with Meanwhile(os.getpid, 20.0) as copy:
+        with SideProcess(os.getpid, 20.0) as copy:
             time.sleep(0.2)
             assert copy.result() != os.getpid()
         with pytest.raises(TimeLimit):
@@ -222,6 +222,6 @@ def test_no_pipe_is_left_where_there_is_no_room_for_a_copy(monkeypatch):
 
     before = os.listdir("/proc/self/fd")
     monkeypatch.setattr(os, "fork", no_room)
-    with Meanwhile(os.getpid, 5.0) as copy:
+    with SideProcess(os.getpid, 5.0) as copy:
         assert copy.result() == os.getpid()
     assert os.listdir("/proc/self/fd") == before

@@ -14,8 +14,9 @@ from hypothesis import strategies as st
 from plan_cutters import Cutter, Holder, Stage
 from plan_cutters.domain.default_tools import builtin
 from plan_cutters.domain.outline import outline
-from plan_cutters.library.drawing import draw
-from plan_cutters.library.sheet import legible, length, width_of, wrapped
+from plan_cutters.report.drawing.sheet import printable
+from plan_cutters.report.drawing.tool import draw
+from plan_cutters.report.drawing.tool_sheet import length, width_of, wrapped
 from tests.support.places import DATA
 from tests.support.tool_reference import KINDS, Reference, random_cutter
 
@@ -208,13 +209,13 @@ def test_names_from_files_are_words_and_no_more(name):
     assert not [key for each in root.iter() for key in each.attrib if key.startswith("on") or "href" in key]
     assert not re.search("[\x00-\x09\x0b-\x1f\u202a-\u202e\u2066-\u2069\ufffe]", svg)
     # A lone surrogate is none of a cutter's name any more.
-    assert root.find(f"{SVG}title").text == legible(cutter.name)
+    assert root.find(f"{SVG}title").text == printable(cutter.name)
     check_words_apart(root)
 
 
 def test_a_name_that_can_be_read_is_kept():
-    assert legible("Fräser Ø12 – 刀具") == "Fräser Ø12 – 刀具"
-    assert legible("a\x00b\u202ec  d\n") == "a\ufffdb\ufffdc d"
+    assert printable("Fräser Ø12 – 刀具") == "Fräser Ø12 – 刀具"
+    assert printable("a\x00b\u202ec  d\n") == "a\ufffdb\ufffdc d"
 
 
 def test_lines_break_after_blanks_and_say_what_they_leave_out():

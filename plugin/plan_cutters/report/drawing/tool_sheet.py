@@ -1,4 +1,4 @@
-"""A drawing sheet as SVG: lines, arrows, texts and fills that can be told apart without colour. All lengths are mm on paper."""
+"""The sheet of a tool drawing as SVG: lines, arrows, texts, and fills that differ without colour. All lengths are mm on paper."""
 
 import math
 import unicodedata
@@ -15,8 +15,6 @@ _LETTER, _BOLD = 0.6, 0.68
 _FAMILY = "Arial, Helvetica, 'Liberation Sans', 'DejaVu Sans', sans-serif"
 #: Length and half width of arrow heads.
 ARROW, _HALF = 2.4, 0.4
-#: Marks that turn the direction of what is written after them.
-_TURNING = frozenset("\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
 
 #: Fills: the ground; colour, angle, deg, and distance of the strokes on it, and how long each of them is (distance: a line).
 FILLS: dict[str, tuple[str, str, float, float, float]] = {
@@ -32,16 +30,6 @@ _PENS = {
     "axis": {"stroke": "#000", "stroke-width": "0.18", "stroke-dasharray": "6 1.2 0.6 1.2"},
     "mark": {"stroke": "#000", "stroke-width": "0.18", "stroke-dasharray": "1.2 0.8"},
 }
-
-
-def legible(text: str) -> str:
-    """A text on one line, as XML can hold it: what no page can show, or what would turn the rest of it round, is U+FFFD."""
-
-    def kept(letter: str) -> str:
-        bad = unicodedata.category(letter) in ("Cc", "Cs", "Co", "Cn") or letter in _TURNING
-        return "\ufffd" if bad else letter
-
-    return "".join(map(kept, " ".join(text.split())))
 
 
 def width_of(text: str, size: float = FONT, *, bold: bool = False) -> float:
@@ -72,8 +60,8 @@ def length(value: float) -> str:
     """A length for people: mm with up to four decimals, as few as it has; tiny and huge ones with six digits."""
     if abs(value) >= 1e7:
         return f"{value:.6g}"
-    text = f"{value:.4f}".rstrip("0").rstrip(".")
-    return f"{value:.6g}" if text in ("0", "-0") and value else text
+    text = _mm(value)
+    return f"{value:.6g}" if text == "0" and value else text
 
 
 def _mm(value: float) -> str:

@@ -1,0 +1,107 @@
+"""Put changes into words: what-if answers and next steps say the same change in the same words."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plan_cutters.domain.area import Patch, size
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.placement import axis_words
+from plan_cutters.domain.reasons import REASONS as WORDS
+from plan_cutters.domain.verdicts import REASONS
+
+Range = tuple[float, float]
+
+#: Faces that are named one by one.
+_FACES = 5
+_ORDER = {2: "second", 3: "third", 4: "fourth"}
+
+
+def tolerance(asked: float, now: float) -> str:
+    return f"a tolerance of {asked:g} mm instead of {now:g} mm"
+
+
+def tilt_range(asked: Range, now: Range) -> str:
+    return f"tilts from {asked[0]:g} to {asked[1]:g} deg in the search instead of {now[0]:g} to {now[1]:g} deg"
+
+
+def tilt_limit(asked: float, now: float | None, machine: str) -> str:
+    """Name a machine that tilts further; `now` is None where rotary axes limit it, not an angle."""
+    instead = f"every way instead of {machine}" if now is None else f"instead of {now:g} deg"
+    return f"a machine that tilts by {asked:g} deg {instead}"
+
+
+def stick_out(asked: float, now: float) -> str:
+    return f"a stick-out of {asked:g} mm instead of {now:g} mm"
+
+
+def radius(asked: float, now: float) -> str:
+    return f"a radius of {asked:g} mm instead of {now:g} mm"
+
+
+def corner_radius(asked: float, now: float, whole: float) -> str:
+    """Name a corner radius; that of 0 is a flat end, and that of the `whole` radius a ball end."""
+    ends = {whole: "a ball end", 0.0: "a flat end"}
+    return f"{ends.get(asked, f'a corner radius of {asked:g} mm')} instead of {ends.get(now, f'{now:g} mm')}"
+
+
+def holder(asked: str, now: str) -> str:
+    return f"a slimmer holder, {asked} instead of {now}"
+
+
+def rest(cutter: str) -> str:
+    return f"{cutter} for the rest"
+
+
+def head(cutter: Cutter) -> str:
+    """Name a cutter without its holder, which is that of the present one."""
+    return cutter.id.partition("H")[0]
+
+
+def clamped(axis: Sequence[float], degrees: float) -> str:
+    """Say how the part is clamped for a setup axis that is so many degrees from the present one."""
+    words = axis_words(axis)
+    return f"turned over (setup {words})" if degrees > 179.0 else f"clamped with {words} along the spindle"
+
+
+def setup(axis: Sequence[float], degrees: float, flip: bool | None) -> str:
+    """Name another setup axis; `flip` is None where that option stays."""
+    words = f"the part clamped with {axis_words(axis)} along the spindle, {degrees:.4g} deg from now"
+    return words if flip is None else f"{words}, {'with' if flip else 'without'} --flip"
+
+
+def more_setup(axis: Sequence[float], degrees: float, number: int) -> str:
+    return f"{clamped(axis, degrees)} as a {_ORDER.get(number, 'further')} setup"
+
+
+def faces(ids: Sequence[str], area: float, share: float) -> str:
+    """Name faces to leave out, with their area, mm2, and its share of the target area."""
+    much = f"{area:,.0f}" if area >= 100.0 else f"{area:.3g}"
+    some = ", ".join(ids[:_FACES]) + " and others" * (len(ids) > _FACES)
+    which = ids[0] if len(ids) == 1 else f"{len(ids)} faces ({some})"
+    return f"{which} left out of what is to be finished: {much} mm2, {100.0 * share:.3g} % of the target area"
+
+
+def left_out(areas: Sequence[Patch], area: float) -> str:
+    """Say which connected areas are left to other means, and how much they are in all, mm2."""
+    if len(areas) == 1:
+        return f"{areas[0].words} left to other means"
+    return f"{size(area)} in {len(areas):,} places left to other means, the largest {areas[0].words}"
+
+
+def reasons(codes: NDArray[np.uint8], of: int | None = None) -> str:
+    """Say how many samples, of how many, are not reached, and why."""
+    found = [(int((codes == code).sum()), REASONS[code]) for code in np.unique(codes).tolist()]
+    ranked = sorted(found, key=lambda each: (-each[0], each[1]))
+    if len(ranked) == 1:
+        return f"{samples(len(codes), of)} lost to {WORDS[ranked[0][1]].noun}"
+    whole = ", ".join(f"{count:,} to {WORDS[reason].noun}" for count, reason in ranked)
+    return f"{samples(len(codes), of)} lost ({whole})"
+
+
+def samples(count: int, of: int | None = None) -> str:
+    """Give a number of samples, of those looked at if these are not all, as the subject of a sentence and its verb."""
+    if of is not None:
+        return f"{count:,} of {of:,} samples looked at are"
+    return "1 sample is" if count == 1 else f"{count:,} samples are"
