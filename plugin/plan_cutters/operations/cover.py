@@ -94,7 +94,10 @@ def relax(table: Table) -> Relaxed:
     from scipy.optimize import linprog
     from scipy.sparse import csr_array
 
-    rows, weight = _essential(table), np.zeros(len(table), np.int64)
+    weight = np.zeros(len(table), np.int64)
+    if not len(table):
+        return Relaxed(np.zeros(0, np.int64), np.zeros(table.shape[1]), np.zeros(0), weight, 0.0)
+    rows = _essential(table)
     small = table[rows]
     # The weights' own problem: most weight of which no column carries more than 1.
     found = linprog(-np.ones(len(small)), A_ub=csr_array(small.T.astype(float)), b_ub=np.ones(table.shape[1]), bounds=(0.0, None),

@@ -125,7 +125,7 @@ class Search:
             # The weights' bound holds for all. Branch and bound has seen those alone that are in the table whole.
             by_weights = math.ceil(found.bound - 1e-9)
             if not prove or by_weights >= len(found.chosen):
-                return replace(found, at_least=max(1, by_weights))
+                return replace(found, at_least=max(min(1, len(found.chosen)), by_weights))
             if not self._enter(relaxed.weight, found.bound + 2.0 - len(found.chosen) - _MARGIN):
                 return found
 

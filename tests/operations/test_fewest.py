@@ -1,0 +1,102 @@
+"""The fewest orientations with rows and candidates that are made only when they are asked for, against the whole table."""
+
+from types import SimpleNamespace
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from plan_cutters.domain.columns import columns_of
+from plan_cutters.operations.cover import fewest
+from plan_cutters.operations.fewest import Search
+
+UNIT = 1_000_000
+
+
+class Table:
+    """Probes that look into a table: a candidate is known by its first angle, its number."""
+
+    def __init__(self, table):
+        self.whole, self.made = table, 0
+        self.samples = SimpleNamespace(point=np.column_stack([np.arange(len(table)), *np.zeros((2, len(table)))]))
+
+    def table(self, rows, columns):
+        self.made += len(rows) * len(columns)
+        return self.whole[np.ix_(rows, np.rint(columns.angle[:, 0]).astype(int))]
+
+    def one(self, rows, columns, which):
+        return self.table(rows, columns.of(np.array([which])))[:, 0]
+
+
+def columns(numbers):
+    numbers = np.asarray(numbers)
+    return columns_of(np.zeros((len(numbers), 3)), np.column_stack([numbers, np.zeros(len(numbers))]).astype(float))
+
+
+def caps(seed, n, m, reach):
+    """Which of m directions lie near which of n: tables as parts have them."""
+    rng = np.random.default_rng(seed)
+    a, b = (rng.normal(size=(k, 3)) for k in (n, m))
+    a, b = (each / np.linalg.norm(each, axis=1)[:, None] for each in (a, b))
+    return a @ b.T > np.cos(reach)
+
+
+@given(st.integers(0, 2**31), st.floats(0.5, 1.2))
+@settings(max_examples=8, deadline=None)
+def test_few_rows_give_what_the_whole_table_gives(seed, reach):
+    table = caps(seed, 900, 60, reach)
+    wanted = np.flatnonzero(table.any(axis=1))
+    probes = Table(table)
+    search = Search(probes, columns(range(60)), wanted, lambda bare: columns([]))
+    found, whole = search.solve(), fewest(table[wanted])
+    assert table[np.ix_(wanted, found.chosen)].any(axis=1).all()
+    assert len(found.chosen) == found.at_least == len(whole.chosen) == whole.at_least
+    load = found.weight @ table[search.rows]
+    assert load.max() <= UNIT
+
+
+@given(st.integers(0, 2**31))
+@settings(max_examples=10, deadline=None)
+def test_candidates_that_wait_change_neither_the_minimum_nor_what_the_weights_prove(seed):
+    table = caps(seed, 500, 60, 0.9)
+    wanted = np.flatnonzero(table[:, :25].any(axis=1))
+    search = Search(Table(table), columns(range(25)), wanted, lambda bare: columns([]))
+    search.solve(prove=False)
+    search._add_columns(columns(range(25, 60)))
+    found = search.solve()
+    whole = fewest(table[wanted])
+    assert len(found.chosen) == len(whole.chosen)
+    assert found.at_least == whole.at_least
+    every = table[search.rows][:, np.rint(search.columns.angle[:, 0]).astype(int)]
+    assert (found.weight @ every).max() <= UNIT
+
+
+def test_few_of_all_tests_are_made():
+    table = caps(3, 20_000, 400, 1.2)
+    probes = Table(table)
+    found = Search(probes, columns(range(400)), np.flatnonzero(table.any(axis=1)), lambda bare: columns([])).solve()
+    assert found.closed
+    assert probes.made < 0.1 * table.size
+
+
+def test_a_sample_that_no_candidate_serves_brings_its_own_posture_or_is_told():
+    table = np.zeros((6, 5), bool)
+    table[:4, 0] = True
+    table[4, 3] = True
+    asked = []
+
+    def stored(bare):
+        asked.extend(bare.tolist())
+        return columns([3])
+
+    search = Search(Table(table), columns([0, 1]), np.arange(6), stored)
+    found = search.solve()
+    assert sorted(asked) == [4, 5]
+    assert search.alone.tolist() == [5]
+    assert np.rint(search.columns.angle[found.chosen, 0]).tolist() == [0, 3]
+
+
+def test_nothing_to_serve_needs_nothing():
+    search = Search(Table(np.zeros((3, 2), bool)), columns([0, 1]), np.zeros(0, np.int64), lambda bare: columns([]))
+    found = search.solve()
+    assert len(found.chosen) == found.at_least == 0
