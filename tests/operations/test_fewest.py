@@ -72,10 +72,15 @@ def test_candidates_that_wait_change_neither_the_minimum_nor_what_the_weights_pr
 
 
 def test_few_of_all_tests_are_made():
-    table = caps(3, 20_000, 400, 1.2)
+    """Of 400 candidates five serve a fifth each, and all others less of it."""
+    rng = np.random.default_rng(3)
+    fifth = np.arange(20_000) % 5
+    table = (fifth[:, None] == np.arange(400) % 5) & (rng.random((20_000, 400)) < 0.7)
+    table[:, :5] = fifth[:, None] == np.arange(5)
     probes = Table(table)
-    found = Search(probes, columns(range(400)), np.flatnonzero(table.any(axis=1)), lambda bare: columns([])).solve()
+    found = Search(probes, columns(range(400)), np.arange(20_000), lambda bare: columns([])).solve()
     assert found.closed
+    assert len(found.chosen) == 5
     assert probes.made < 0.1 * table.size
 
 

@@ -22,8 +22,8 @@ UNIT = 1_000_000
 _TRIES, _SPREAD = 24, 0.5
 #: Nodes of branch and bound: for a cover of some rows only, and for the proof.
 _FEW_NODES, _NODES = 40, 20_000
-#: Seconds that a proof may take, whatever its nodes.
-SECONDS = 60.0
+#: Seconds that a proof may take unless another number is asked for, whatever its nodes.
+SECONDS = 30.0
 #: Rows that are compared with each other, at most: those that hold another one follow from it.
 _COMPARED = 3000
 _ROUNDING = 1e-6
@@ -109,7 +109,10 @@ def relax(table: Table) -> Relaxed:
     return Relaxed(rows, np.maximum(0.0, -found.ineqlin.marginals), dual, weight, float(-found.fun))
 
 
-def fewest(table: Table, known: Which | None = None, *, relaxed: Relaxed | None = None, prove: bool = True) -> Cover:
+def fewest(
+    table: Table, known: Which | None = None, *, relaxed: Relaxed | None = None, prove: bool = True,
+    seconds: float = SECONDS,
+) -> Cover:  # fmt: skip
     """Find few columns that cover every row, each row of which some column covers.
 
     Parameters
@@ -121,6 +124,8 @@ def fewest(table: Table, known: Which | None = None, *, relaxed: Relaxed | None 
         Of this table, where it is known.
     prove : bool
         Search until no smaller cover is possible; else stop early.
+    seconds : float
+        That the search may take; behind it `at_least` is what is known by then.
 
     Examples
     --------
@@ -140,7 +145,7 @@ def fewest(table: Table, known: Which | None = None, *, relaxed: Relaxed | None 
         # A cover with one column less has none whose price, by the weights, passes what is left over.
         price = 1.0 - relaxed.dual @ small
         kept = np.flatnonzero(price <= len(best) - 1 - relaxed.dual.sum() + _ROUNDING)
-        smaller, proven = _smaller(small[:, kept], len(best) - 1, _NODES if prove else _FEW_NODES)
+        smaller, proven = _smaller(small[:, kept], len(best) - 1, _NODES if prove else _FEW_NODES, seconds)
         best = best if smaller is None else kept[smaller]
         if proven is not None:
             at_least = max(at_least, min(proven, len(best)))
@@ -206,7 +211,7 @@ def _without_spare(table: Table, chosen: Which) -> Which:
     return chosen[kept]
 
 
-def _smaller(table: Table, most: int, nodes: int) -> tuple[Which | None, int | None]:
+def _smaller(table: Table, most: int, nodes: int, seconds: float) -> tuple[Which | None, int | None]:
     """A cover of at most so many columns; else None, and how many every cover needs, where that is known."""
     from scipy.optimize import Bounds, LinearConstraint, milp
     from scipy.sparse import csr_array
@@ -218,7 +223,7 @@ def _smaller(table: Table, most: int, nodes: int) -> tuple[Which | None, int | N
     found = milp(
         np.ones(table.shape[1]), integrality=np.ones(table.shape[1]), bounds=Bounds(0, 1),
         constraints=[LinearConstraint(held, 1.0, np.inf), LinearConstraint(few, 0.0, most)],
-        options={"time_limit": SECONDS, "mip_rel_gap": 0.99 / (most + 1), "node_limit": nodes},
+        options={"time_limit": max(0.1, seconds), "mip_rel_gap": 0.99 / (most + 1), "node_limit": nodes},
     )  # fmt: skip
     if found.status == 2:
         return None, most + 1

@@ -5,6 +5,7 @@ weights of rows lie.
 """
 
 import math
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -15,7 +16,7 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.operations import Fewest
 from plan_cutters.operations.candidates import Orientations, apart, beside
-from plan_cutters.operations.cover import UNIT, Cover, fewest, relax
+from plan_cutters.operations.cover import SECONDS, UNIT, Cover, fewest, relax
 from plan_cutters.operations.probes import Probes
 
 Rows = NDArray[np.int64]
@@ -66,6 +67,8 @@ class Search:
         self.alone: Rows = np.zeros(0, np.int64)
         self._table = np.zeros((0, len(columns)), np.int8)
         self._active = np.ones(len(columns), bool)
+        #: What is left of the time for proofs, s.
+        self._seconds = SECONDS
         rng = np.random.default_rng(0)
         first = rng.choice(rows, min(_FIRST, len(rows)), replace=False) if len(rows) else rows
         self._add_rows(np.sort(first))
@@ -120,7 +123,9 @@ class Search:
             if self._enter(relaxed.weight, 1.0):
                 continue
             own = None if known is None else np.searchsorted(active, known)
-            found = fewest(table, own, relaxed=relaxed, prove=prove)
+            prove, began = prove and self._seconds > 0.0, time.monotonic()
+            found = fewest(table, own, relaxed=relaxed, prove=prove, seconds=self._seconds)
+            self._seconds -= time.monotonic() - began if prove else 0.0
             found = replace(found, chosen=active[found.chosen])
             # The weights' bound holds for all. Branch and bound has seen those alone that are in the table whole.
             by_weights = math.ceil(found.bound - 1e-9)
