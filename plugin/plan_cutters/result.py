@@ -16,6 +16,7 @@ from plan_cutters.document.on_face import OnFace, on_face
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.kinematics import Kinematics
+from plan_cutters.domain.operations import Operations
 from plan_cutters.domain.over_setups import positions
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.travel import Travel
@@ -135,6 +136,11 @@ class Result:
         if cutter in self.travels:
             taken = np.where(which > 0, taken, self.travels[cutter].taken)
         return angles, taken
+
+    @property
+    def operations(self) -> Operations | None:
+        """The plan of operations; None where none was asked for."""
+        return self.answers.operations
 
     @property
     def conditions(self) -> Conditions:

@@ -9,6 +9,8 @@ from pydantic import Field
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.document.frozen import Frozen, Vector, vector
 from plan_cutters.domain.operations import Fewest, Operation, OperationPlan, Operations
+from plan_cutters.domain.verdicts import NO_REASON, REASONS
+from plan_cutters.options import Options
 
 
 class OperationFace(Frozen):
@@ -49,6 +51,19 @@ class RestEntry(Frozen):
     samples: int
     area_mm2: float
     share: float
+    reason_counts: dict[str, int] = Field(description="why the first cutter of the plan does not reach them")
+
+
+class AssumedEntry(Frozen):
+    """What times and widths are reckoned with."""
+
+    feed_mm_min: dict[str, float] | None = Field(description="by cutter; null: lengths stand for times")
+    scallop_mm: float
+    stepover: float = Field(description="widest distance of passes, in diameters")
+    overlap_mm: float
+    index_s: float
+    change_s: float
+    setup_s: float
 
 
 class OperationPlanEntry(Frozen):
@@ -76,7 +91,8 @@ class FewestEntry(Frozen):
     proof: Literal["weights", "branch and bound", "not closed"]
     weights: list[tuple[int, int]] = Field(description="row of samples.npz, and its weight")
     bound: float = Field(description="sum of the weights over 1,000,000")
-    relaxed: float = Field(description="the bound of the best weights, before they are rounded")
+    lp: float = Field(description="the bound of the best weights, before they are rounded")
+    samples: int = Field(description="that are reached, so that orientations must serve them")
     candidates: int = Field(description="their angles are in operations.npz")
     spacing_deg: float = Field(description="between candidates where the weights lie")
     alone: int = Field(description="reached samples that no candidate serves: they need simultaneous motion")
@@ -114,12 +130,13 @@ class OperationsEntry(Frozen):
     fewest: FewestEntry
     fastest: FastestEntry | None = Field(description="null unless the fastest were asked for")
     curve: list[StepEntry]
+    assumed: AssumedEntry
     probes: int = Field(description="how many times a tool was put down")
     notes: list[str]
 
 
 def operations_entry(
-    found: Operations, samples: SurfaceSamples, wanted: NDArray[np.bool_], times: tuple[float, float, float]
+    found: Operations, samples: SurfaceSamples, wanted: NDArray[np.bool_], options: Options
 ) -> OperationsEntry:
     """Make the entry of what was found.
 
@@ -129,16 +146,20 @@ def operations_entry(
     samples : SurfaceSamples
     wanted : (n,) bool
         Judged samples of the finished surface.
-    times : (float, float, float)
-        Seconds of another orientation, cutter and setup.
+    options : Options
     """
     area = np.where(wanted, np.nan_to_num(samples.area), 0.0)
-    plans = [_plan(each, found.names, samples, area, wanted, times) for each in found.plans]
+    assumed = AssumedEntry(
+        feed_mm_min=None if found.feed is None else {cutter.id: feed for cutter, feed in found.feed.items()},
+        scallop_mm=options.scallop, stepover=options.stepover, overlap_mm=options.overlap, index_s=options.index_time,
+        change_s=options.change_time, setup_s=options.setup_time,
+    )  # fmt: skip
+    plans = [_plan(each, found, samples, area, wanted, assumed) for each in found.plans]
     steps = [StepEntry(orientations=s.orientations, share=s.share, at_most=s.at_most) for s in found.curve]
     return OperationsEntry(
         asked=found.which,  # type: ignore[arg-type]
-        rotary=found.names, plans=plans, fewest=_fewest(found.fewest), curve=steps, fastest=_fastest(found), probes=found.probes,
-        notes=list(found.notes),
+        rotary=found.names, plans=plans, fewest=_fewest(found.fewest), curve=steps, fastest=_fastest(found), assumed=assumed,
+        probes=found.probes, notes=list(found.notes),
     )  # fmt: skip
 
 
@@ -146,7 +167,7 @@ def _fewest(found: Fewest) -> FewestEntry:
     weights = [(row, weight) for row, weight in zip(found.rows.tolist(), found.weight.tolist(), strict=True) if weight]
     return FewestEntry(
         found=len(found.chosen), at_least=found.at_least, proof=found.proof, weights=sorted(weights), bound=found.bound,
-        relaxed=found.relaxed, candidates=len(found.columns), spacing_deg=float(np.degrees(found.spacing)),
+        lp=found.relaxed, samples=found.samples, candidates=len(found.columns), spacing_deg=float(np.degrees(found.spacing)),
         alone=len(found.alone),
     )  # fmt: skip
 
@@ -160,23 +181,31 @@ def _fastest(found: Operations) -> FastestEntry | None:
 
 
 def _plan(
-    found: OperationPlan, names: tuple[str, str], samples: SurfaceSamples, area: Floats, wanted: NDArray[np.bool_],
-    times: tuple[float, float, float],
+    plan: OperationPlan, found: Operations, samples: SurfaceSamples, area: Floats, wanted: NDArray[np.bool_],
+    assumed: AssumedEntry,
 ) -> OperationPlanEntry:  # fmt: skip
     whole = float(area.sum())
-    operations = [_operation(each, found, names, samples, area, whole) for each in found.operations]
-    rest = wanted & (found.label < 0)
+    operations = [_operation(each, plan, found.names, samples, area, whole) for each in plan.operations]
+    rest = wanted & (plan.label < 0)
     left = float(area[rest].sum())
-    index, change, setup = times
     seconds = None
     if all(each.seconds is not None for each in operations):
-        seconds = sum(each.seconds or 0.0 for each in operations) + index * len(operations)
-        seconds += change * len({each.cutter for each in operations}) + setup * len({each.setup for each in operations})
+        seconds = sum(each.seconds or 0.0 for each in operations) + assumed.index_s * len(operations)
+        seconds += assumed.change_s * len({each.cutter for each in operations}) + assumed.setup_s * len(
+            {each.setup for each in operations}
+        )
     return OperationPlanEntry(
-        name=found.name, orientations=sum(each.mode == "fixed" for each in operations),  # type: ignore[arg-type]
+        name=plan.name, orientations=sum(each.mode == "fixed" for each in operations),  # type: ignore[arg-type]
         cut_length_mm=sum(each.cut_length_mm or 0.0 for each in operations), seconds=seconds, operations=operations,
-        rest=RestEntry(samples=int(rest.sum()), area_mm2=left, share=left / whole if whole > 0.0 else 0.0),
+        rest=RestEntry(samples=int(rest.sum()), area_mm2=left, share=left / whole if whole > 0.0 else 0.0,
+                       reason_counts=_reasons(found.reason[rest])),
     )  # fmt: skip
+
+
+def _reasons(reason: NDArray[np.uint8]) -> dict[str, int]:
+    """How many samples have each reason."""
+    codes, counts = np.unique(reason[reason != NO_REASON], return_counts=True)
+    return {REASONS[code]: count for code, count in zip(codes.tolist(), counts.tolist(), strict=True)}
 
 
 def _operation(

@@ -99,11 +99,9 @@ def plan_of(
 
 
 def _operations(ready: Prepared, answers: Answers) -> OperationsEntry | None:
-    options = ready.options
     if answers.operations is None:
         return None
-    times = options.index_time, options.change_time, options.setup_time
-    return operations_entry(answers.operations, ready.samples, ready.finished, times)
+    return operations_entry(answers.operations, ready.samples, ready.finished, ready.options)
 
 
 def machine_entry(machine: Machine, kinematics: Kinematics | None) -> MachineEntry:

@@ -2,6 +2,7 @@
 what proves that there are no fewer.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -63,6 +64,8 @@ class Fewest(Record):
         Between candidates where the weights lie, rad.
     alone : (s,) int64
         Samples that no candidate serves.
+    samples : int
+        How many are reached.
     """
 
     columns: Columns
@@ -74,6 +77,7 @@ class Fewest(Record):
     relaxed: float
     spacing: float
     alone: NDArray[np.int64]
+    samples: int
 
     @property
     def proof(self) -> Literal["weights", "branch and bound", "not closed"]:
@@ -182,6 +186,10 @@ class Operations:
         Of the two rotary axes, or `azimuth` and `tilt`.
     probes : int
         How many times a tool was put down.
+    feed : mapping, optional
+        mm/min; None: times are not known.
+    reason : (n,) uint8
+        Why the most wanted cutter does not reach a sample in the first setup, an index into REASONS, or NO_REASON.
     fastest : Fastest, optional
         Where the fastest were asked for.
     """
@@ -193,6 +201,8 @@ class Operations:
     curve: tuple[Step, ...]
     names: tuple[str, str]
     probes: int
+    feed: Mapping[Cutter, float] | None
+    reason: NDArray[np.uint8]
     fastest: Fastest | None = None
     notes: tuple[str, ...] = field(default_factory=tuple)
 

@@ -52,8 +52,9 @@ def check_operations(ready: Prepared, document: Mapping[str, Any], arrays: Mappi
     cutters = {cutter.id: cutter for cutter in ready.cutters}
     orientations = [Orientations.of(conditions) for conditions in ready.setups]
     findings = [_weights(ready, entry, arrays, orientations)]
-    for plan in entry["plans"]:
-        findings += _plan(ready, plan, entry["rotary"], arrays, cutters, orientations)
+    for k, plan in enumerate(entry["plans"]):
+        label = arrays[f"operation_{plan['name'].replace(' ', '_')}" if k else "operation"]
+        findings += _plan(ready, plan, entry["rotary"], label, cutters, orientations)
     return findings
 
 
@@ -71,7 +72,7 @@ def _fits(ready: Prepared, document: Mapping[str, Any], arrays: Mapping[str, NDA
     for what, was, now in pairs:
         if was != now:
             raise OptionError(f"the plan of operations was made with another {what}: {_short(was)}, not {_short(now)}")
-    if any(len(array) != len(ready.samples) for name, array in arrays.items() if name.startswith("operation_")):
+    if any(len(array) != len(ready.samples) for name, array in arrays.items() if name.startswith("operation")):
         raise OptionError("operations.npz is of other samples than the plan")
 
 
@@ -105,11 +106,10 @@ def _weights(
 
 
 def _plan(
-    ready: Prepared, plan: Mapping[str, Any], names: list[str], arrays: Mapping[str, NDArray[Any]],
+    ready: Prepared, plan: Mapping[str, Any], names: list[str], label: NDArray[Any],
     cutters: Mapping[str, Cutter], orientations: list[Orientations],
 ) -> list[Finding]:  # fmt: skip
     """Each operation at its own samples, with the axis that its angles give."""
-    label = arrays[f"operation_{plan['name'].replace(' ', '_')}"]
     wrong, tested = 0, 0
     for k, operation in enumerate(plan["operations"]):
         rows = np.flatnonzero(label == k)

@@ -92,6 +92,11 @@ class Search:
         return self._patched()
 
     @property
+    def wanted(self) -> int:
+        """How many samples there are to serve."""
+        return len(self._wanted)
+
+    @property
     def whole(self) -> tuple[Rows, NDArray[np.bool_]]:
         """The candidates of which it is known where each serves, and the table (rows, candidates) of these."""
         active = np.flatnonzero(self._active)
@@ -214,7 +219,7 @@ def search_fewest(
         search.refine(best, spacing, orientations)
         best = search.solve(prove=level == levels - 1)
     return Fewest(search.columns, best.chosen, search.rows, best.weight, best.at_least, best.bound, best.relaxed, spacing,
-                  search.alone)  # fmt: skip
+                  search.alone, search.wanted)  # fmt: skip
 
 
 def _spread(rows: Rows, point: Floats, most: int) -> Rows:

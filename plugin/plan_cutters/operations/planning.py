@@ -66,7 +66,7 @@ def plan_operations(
             columns, timed = _fastest(task, search, fewest.columns.of(fewest.chosen))
             plans.append(_capped(task, "fastest", columns))
     return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
-                      task.probes.made, timed)  # fmt: skip
+                      task.probes.made, task.paths.feed, everywhere[0][task.cutters[0]].reason, timed)  # fmt: skip
 
 
 def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], least: LeastSet | None) -> Task:

@@ -14,8 +14,8 @@ from plan_cutters.report.to_npz import write_arrays
 def write_operations(result: Judged, _split: object, path: Path) -> None:
     """Write `operations.npz`: of each plan what each sample goes with, and the candidates that the proof is about.
 
-    For each plan, its name behind the word: `operation_` (n,) int16, an index into its operations, -1 for none; `strip_mm_`, the
-    width of a pass; `seconds_`, nan without a feed; `exclusive_`, that no other operation of it serves the sample.
+    Of the first plan, and of others with `_` and their name behind the words: `operation` (n,) int16, an index into its operations,
+    -1 for none; `strip_mm`, the width of a pass; `seconds`, nan without a feed; `exclusive`, that no other operation serves it.
     `candidate_cutter` and `candidate_setup` (m,) are indices into the plan's cutters and setups, `candidate_angle` (m, 2) is in
     degrees.
     """
@@ -30,8 +30,9 @@ def write_operations(result: Judged, _split: object, path: Path) -> None:
         "candidate_axis": few.columns.axis,
         "chosen": few.chosen,
     }
-    for plan in found.plans:
-        arrays |= {f"{word}_{plan.name.replace(' ', '_')}": each for word, each in _columns(plan).items()}
+    for k, plan in enumerate(found.plans):
+        behind = f"_{plan.name.replace(' ', '_')}" if k else ""
+        arrays |= {f"{word}{behind}": each for word, each in _columns(plan).items()}
     write_arrays(arrays, path)
 
 
