@@ -7,7 +7,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
@@ -121,8 +121,14 @@ def test_hard_arrangements_tile_their_face(name):
     assert seen == set(np.unique(field.label)) - ({1} if name == "beside each other" else set())
 
 
+#: Seeds whose fields of any size split: the escape below must not hide that nothing splits.
+SOUND = range(100)
+
+
 @settings(max_examples=12, deadline=None)
 @given(st.integers(0, 10**6), st.integers(2, 9), st.booleans())
+@example(3, 4, False)
+@example(7, 8, True)
 def test_any_field_of_blocks_tiles_its_face(seed, size, closed):
     part = Part(BRepPrimAPI_MakeCylinder(10, 40).Solid() if closed else patch())
     blocks = np.random.default_rng(seed).integers(0, 4, (size, size))
@@ -131,7 +137,24 @@ def test_any_field_of_blocks_tiles_its_face(seed, size, closed):
         return blocks[np.minimum((x * size).astype(int), size - 1), np.minimum((y * size).astype(int), size - 1)]
 
     fields = [labels(part, 1, field, n=45, closed=(closed, False))]
-    sound(part, split(part, fields), fields)
+    found = split(part, fields)
+    if found.whole:
+        # Of about a thousand fields one has a piece that the CAD kernel calls invalid: the face stays as it was, and is named.
+        assert found.whole == {1: "a piece of it is not valid"}
+        assert seed not in SOUND
+        assert [p.face for p in found.pieces].count(1) == 1
+        return
+    sound(part, found, fields)
+
+
+@pytest.mark.xfail(strict=True, reason="a piece of this field is not valid for the CAD kernel")
+def test_a_field_that_is_left_whole():
+    part = Part(patch())
+    blocks = np.random.default_rng(2439).integers(0, 4, (6, 6))
+    field = labels(
+        part, 1, lambda x, y: blocks[np.minimum((x * 6).astype(int), 5), np.minimum((y * 6).astype(int), 5)], n=45
+    )
+    assert split(part, [field]).whole == {}
 
 
 @pytest.mark.parametrize("at", [0.25, 0.5, 0.8])
