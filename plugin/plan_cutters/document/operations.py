@@ -55,7 +55,7 @@ class RestEntry(Frozen):
 
 
 class AssumedEntry(Frozen):
-    """What times and widths are reckoned with."""
+    """Times and widths are reckoned with these numbers."""
 
     feed_mm_min: dict[str, float] | None = Field(description="by cutter; null: lengths stand for times")
     scallop_mm: float
