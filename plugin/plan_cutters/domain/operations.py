@@ -81,7 +81,7 @@ class Fewest(Record):
 
     @property
     def proof(self) -> Literal["weights", "branch and bound", "not closed"]:
-        """What proves that there are no fewer: the weights alone, a solver, or nothing yet."""
+        """Name the proof that there are no fewer: the weights alone, a solver, or none yet."""
         if np.ceil(self.bound - 1e-9) >= len(self.chosen):
             return "weights"
         return "branch and bound" if self.at_least >= len(self.chosen) else "not closed"
@@ -171,7 +171,7 @@ class OperationPlan:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Operations:
-    """What was asked for of operations, and what was found.
+    """The plans of operations that were asked for, with what proves and bounds them.
 
     Attributes
     ----------

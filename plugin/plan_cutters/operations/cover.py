@@ -85,7 +85,7 @@ class Relaxed:
 
     @property
     def bound(self) -> float:
-        """What the whole weights prove."""
+        """Return the number that the whole weights prove."""
         return float(self.weight.sum()) / UNIT
 
 
