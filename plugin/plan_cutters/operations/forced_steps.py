@@ -1,14 +1,14 @@
 """Forced steps: by how much the rotary axes must turn at least from one sample of a grid line to the next.
 
-Whatever path the postures take along a line, one of its steps is at least so large. Positions of the two rotary axes are looked at
-on a grid of angles: both solutions, the limits and whole turns are in it by themselves. The largest step that a line forces is
-found by bisection: with a step d, the positions that can be reached at the next sample are the free ones within d of those
-before.
+Whatever path the postures take along a line, one of its steps is about so large. Positions of the two rotary axes are looked at
+on a grid of angles, which has both solutions, the limits and whole turns in it. The step is found by bisection: with a step d,
+the positions that can be reached at the next sample are the free ones within d of those before.
 """
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,11 +18,13 @@ from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.kinematics import SINGULAR, Kinematics
 from plan_cutters.domain.operations import RESOLUTION, ForcedStep
 from plan_cutters.domain.posture import tilt_direction
-from plan_cutters.operations.free_tilts import cells_of, holding, postures_of
+from plan_cutters.operations.free_tilts import holding, postures_of
 from plan_cutters.stages.posture_maps import PostureMaps
 
 Line = NDArray[np.int64]
 Bits = NDArray[np.uint8]
+#: Directions of grid lines.
+DIRECTIONS: tuple[Literal["u", "v"], ...] = ("u", "v")
 #: Samples of lines that are looked at in each direction, about.
 _SAMPLES = 400
 #: Limits that are farther apart than this, deg, are none.
@@ -58,12 +60,14 @@ class Positions:
         """Lay the grid within the limits of a machine."""
         limit = np.degrees(kinematics.limit)
         free = tuple(bool(high - low > _TURNS) for low, high in limit)
-        angles = [np.arange(-180.0, 180.0, RESOLUTION) if free[k] else np.arange(limit[k, 0], limit[k, 1] + 1e-9, RESOLUTION)
-                  for k in range(2)]  # fmt: skip
-        both = np.stack(np.meshgrid(*angles, indexing="ij"), axis=-1)
+        first, second = (
+            np.arange(-180.0, 180.0, RESOLUTION) if free[k] else np.arange(limit[k, 0], limit[k, 1] + 1e-9, RESOLUTION)
+            for k in range(2)
+        )
+        both = np.stack(np.meshgrid(first, second, indexing="ij"), axis=-1)
         axis = kinematics.axis(np.radians(both.reshape(-1, 2))).reshape(*both.shape[:2], 3)
         sine = np.linalg.norm(np.cross(axis[0], kinematics.direction[0]), axis=1)
-        return cls(kinematics, *angles, (free[0], free[1]), axis, sine <= math.sin(SINGULAR))
+        return cls(kinematics, first, second, (free[0], free[1]), axis, sine <= math.sin(SINGULAR))
 
     def free_at(self, maps: PostureMaps, row: int) -> Bits:
         """Mark (a, b) the positions that are free at a sample: those whose tilt is free at both rotations beside them, and those
@@ -71,17 +75,17 @@ class Positions:
         """
         k = len(maps.rotations)
         flat = self.axis.reshape(-1, 3)
-        found = np.zeros(len(flat), np.uint8)
+        free = np.zeros(len(flat), np.uint8)
         begin, end = int(maps.offset[row * k]), int(maps.offset[row * k + k])
         if begin == end:
-            return found.reshape(self.axis.shape[:2])
+            return np.zeros(self.axis.shape[:2], np.uint8)
         most = math.cos(min(math.pi, float(maps.free[begin:end, 1].max()) + 1e-6))
         facing = np.flatnonzero(flat @ maps.normal[row] >= most)
         rows = np.full(len(facing), row)
-        found[facing] = (holding(maps, rows, *postures_of(maps, rows, flat[facing])) >= 0).all(axis=1)
-        found = found.reshape(self.axis.shape[:2])
+        free[facing] = (holding(maps, rows, *postures_of(maps, rows, flat[facing])) >= 0).all(axis=1)
+        found = free.reshape(self.axis.shape[:2])
         node = np.arange(begin, end)
-        turned = maps.rotations[(cells_of_row(maps, row) % k)]
+        turned = maps.rotations[_turns_of(maps, row)]
         lean = tilt_direction(maps.normal[row], maps.direction_max[row], turned)
         for part in (0.1, 0.5, 0.9):
             tilt = (1.0 - part) * maps.free[node, 0] + part * maps.free[node, 1]
@@ -129,7 +133,7 @@ class Positions:
         return False
 
 
-def cells_of_row(maps: PostureMaps, row: int) -> Line:
+def _turns_of(maps: PostureMaps, row: int) -> Line:
     """The rotations (m,) of the free intervals of one sample."""
     k = len(maps.rotations)
     return np.repeat(np.arange(k), np.diff(maps.offset[row * k : row * k + k + 1]))
@@ -152,7 +156,7 @@ def forced_steps(
     """
     grid, known = Positions.of(kinematics), dict[int, Bits]()
     found = []
-    for word, along in (("u", 0), ("v", 1)):
+    for along in DIRECTIONS:
         lines = _lines(samples, reached, along)
         whole = sum(map(len, lines))
         some = lines[:: max(1, -(-whole // _SAMPLES))]
@@ -165,15 +169,15 @@ def forced_steps(
         least, line = _largest(grid, bits, cone=False)
         turning, _ = _largest(grid, bits, cone=True)
         face = int(samples.face[some[line][0]])
-        found.append(ForcedStep(word, least * RESOLUTION, turning * RESOLUTION, face, len(some), len(lines)))
+        found.append(ForcedStep(along, least * RESOLUTION, turning * RESOLUTION, face, len(some), len(lines)))
     return tuple(found)
 
 
-def _lines(samples: SurfaceSamples, reached: NDArray[np.bool_], along: int) -> list[Line]:
+def _lines(samples: SurfaceSamples, reached: NDArray[np.bool_], along: Literal["u", "v"]) -> list[Line]:
     """Runs of at least two samples along lines of the grids."""
     found = []
     for grid in samples.grids:
-        for line in grid.index.T if along == 0 else grid.index:
+        for line in grid.index.T if along == "u" else grid.index:
             there = (line >= 0) & reached[np.maximum(line, 0)]
             runs = np.split(line.astype(np.int64), np.flatnonzero(there[1:] != there[:-1]) + 1)
             found += [run for run in runs if len(run) > 1 and run[0] >= 0 and reached[run[0]]]

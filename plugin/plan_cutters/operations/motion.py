@@ -54,7 +54,7 @@ def motion(maps: PostureMaps, ready: Prepared) -> Motion | str:
     touched = np.unique(np.column_stack([loose[kept], sample[kept]]), axis=0)
     reached = np.zeros(len(samples), bool)
     reached[touched[:, 1]] = True
-    size = np.bincount(touched[:, 0], area[touched[:, 1]], loose.max(initial=-1) + 1)
+    size = np.asarray(np.bincount(touched[:, 0], area[touched[:, 1]], int(loose.max(initial=-1)) + 1), float)
     largest = int(size.argmax()) if len(size) else -1
     found, at_least = _needed(touched, size)
     whole = float(area.sum())

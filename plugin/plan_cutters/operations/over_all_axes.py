@@ -1,8 +1,8 @@
 """How few orientations there can be whatever the axes: a bound that holds for every direction, not for candidates alone.
 
-The sphere of directions is parted into triangles, called cells. A cell counts as blocked for a sample only if one body lies in the
-tool of every axis of the cell, as deep as a gouge must be to count, and a certain obstacle reaches into it. All other cells count
-as open, so a cover of the samples by open cells has no more of them than any set of axes that serves all (`docs/motion.md`).
+The sphere of directions is parted into triangles, called cells. A cell counts as blocked for a sample only if a certain obstacle
+reaches into a body that lies in the tool of every axis of the cell, as deep as a gouge must be to count. All other cells count as
+open, so the fewest open cells that cover the samples are no more than any axes that serve them all (`docs/motion.md`).
 """
 
 import math
@@ -18,7 +18,21 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Fewest
 from plan_cutters.domain.pieces import row_of, solid
 from plan_cutters.kernels.codes import (
-    ARC, BOTTOM, COLUMNS, HIGH, KIND, LOW, OFFSET_OF, PART, RADIUS, ROUND, SLOPE, TILT_FROM, TILT_TO, TOP, WIDE,
+    ARC,
+    BOTTOM,
+    COLUMNS,
+    HIGH,
+    KIND,
+    LOW,
+    OFFSET_OF,
+    PART,
+    RADIUS,
+    ROUND,
+    SLOPE,
+    TILT_FROM,
+    TILT_TO,
+    TOP,
+    WIDE,
 )  # fmt: skip
 from plan_cutters.kernels.rows import Tool
 from plan_cutters.operations.cover import UNIT, fewest, relax
@@ -122,7 +136,7 @@ class OpenCells:
         self._tools: dict[tuple[Cutter, int, int, float], list[Tool]] = {}
 
     def table(self, cells: Cells, before: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
-        """Find which cells are open, (cells, pairs of a cutter and a setup, rows); `before`: those of larger cells around them."""
+        """Find which cells are open, (cells, cutters with setups, rows); `before`: what is known of larger cells around them."""
         probes = self.probes
         pairs = [(c, s) for s in range(len(probes.setups)) for c in range(len(probes.cutters))]
         found = np.ones((len(cells), len(pairs), len(self.rows)), bool) if before is None else before.copy()

@@ -59,8 +59,8 @@ def plan_operations(
     with stage("operations") as tell:
         search = Search(task.probes, _first(task), task.rows, lambda bare: _stored(task, bare))
         fewest = search_fewest(search, task.orientations, options.index_step or STEP, finest, tell)
-        least, cells = over_all_axes(task.probes, fewest, task.rows)
-        fewest = replace(fewest, at_least_any=least, cells=cells)
+        any_axes, cells = over_all_axes(task.probes, fewest, task.rows)
+        fewest = replace(fewest, at_least_any=any_axes, cells=cells)
         open_ = ready.finished & (ready.inside < 0)
         steps = curve(task.probes, fewest, task.rows, ready.samples.area, float(np.nansum(ready.samples.area[open_])))
         plans, timed = [], None

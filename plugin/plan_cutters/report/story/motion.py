@@ -26,35 +26,34 @@ def motion(found: MotionEntry | None) -> Iterator[str]:
     if not found.components:
         yield f"Of motion nothing can be estimated: {found.cutter} has no free posture in the maps."
         return
-    if found.components == 1:
-        yield f"Simultaneous motion (an estimate, between samples nothing is looked at): all postures of {found.cutter} hang together."
-    else:
-        outside = f"; {found.outside} samples lie outside of it" if found.outside else ""
-        yield (f"Simultaneous motion (an estimate, between samples nothing is looked at): the postures of {found.cutter} fall into "
-               f"{found.components} parts, the largest touches {some(found.largest_share)} of the area{outside}; {_needed(found)}.")  # fmt: skip
+    yield f"Simultaneous motion with {found.cutter}, an estimate: {_parts(found)}."
     if found.components_strict > found.components:
-        yield f"  By stricter joins there are {found.components_strict} parts: some ways are narrower than the maps' rotations tell."
+        yield f"  By strict joins there are {found.components_strict} parts: some ways are narrower than the maps tell."
     for each in found.forced_steps:
         yield from _step(found, each)
 
 
-def _needed(found: MotionEntry) -> str:
-    if found.needed == 1:
-        return "one touches all that is reached"
-    least = "" if found.needed == found.needed_at_least else f" (at least {found.needed_at_least})"
-    return f"{found.needed} of them{least} together touch all that is reached"
+def _parts(found: MotionEntry) -> str:
+    if found.components == 1:
+        return "all its postures hang together"
+    outside = f", {found.outside} samples lie outside of it" if found.outside else ""
+    least = "" if found.needed == found.needed_at_least else f", at least {found.needed_at_least},"
+    needed = (
+        "one touches" if found.needed == 1 else f"{found.needed} of them{least} together touch"
+    ) + " all that is reached"
+    largest = f"the largest touches {some(found.largest_share)} of the area{outside}"
+    return f"its postures fall into {found.components} parts; {largest}; {needed}"
 
 
 def _step(found: MotionEntry, each: ForcedStepEntry) -> Iterator[str]:
     """A large step of the rotary axes, and turns of the first one near its own direction."""
-    lines = (
-        f"grid lines along {each.along}"
-        if each.looked_at == each.lines
-        else f"{each.looked_at} of {each.lines} grid lines along {each.along}"
-    )
+    lines = f"grid lines along {each.along}"
+    if each.looked_at < each.lines:
+        lines = f"{each.looked_at} of {each.lines} {lines}"
+    exact = f"(to {found.resolution_deg:g} deg)"
     if each.deg >= _LARGE:
-        yield (f"  On {lines} a rotary axis must turn by about {each.deg:g} deg (to {found.resolution_deg:g}) from one sample to the "
-               f"next, whatever the postures: {each.face}.")  # fmt: skip
+        yield (f"  On {lines} a rotary axis must turn by {each.deg:g} deg {exact} from one sample to the next, whatever the "
+               f"postures: {each.face}.")  # fmt: skip
     if each.turning_deg >= max(_LARGE, each.deg + found.resolution_deg):
-        yield (f"  On {lines} the first rotary axis turns by about {each.turning_deg:g} deg between two samples where the tool stands "
-               "along it.")  # fmt: skip
+        yield (f"  On {lines} the first rotary axis turns by {each.turning_deg:g} deg {exact} between two samples where the tool "
+               "stands along it.")  # fmt: skip
