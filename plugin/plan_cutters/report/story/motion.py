@@ -10,7 +10,7 @@ _LARGE = 15.0
 
 
 def whatever_the_axes(few: FewestEntry) -> Iterator[str]:
-    """The bound over all axes, where it says something: two at least, and no less than half of what was found."""
+    """Say the bound over all axes where it tells something: two at least, and no less than half of what was found."""
     if few.at_least_any < 2 or 2 * few.at_least_any < few.found:
         return
     if few.at_least_any >= few.found:
@@ -20,7 +20,7 @@ def whatever_the_axes(few: FewestEntry) -> Iterator[str]:
 
 
 def motion(found: MotionEntry | None) -> Iterator[str]:
-    """What the joined postures let expect: an estimate, and called one."""
+    """Say what the joined postures let expect: an estimate, and called one."""
     if found is None:
         return
     if not found.components:
