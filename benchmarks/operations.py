@@ -58,7 +58,10 @@ def main() -> None:
         few = entry.fewest
         found = f"{few.found} ({few.at_least}, {few.proof})"
         spent = f"{entry.probes / 1e6:9.2f} {whole - mine:7.1f} {took['fewest']:9.1f} {took['both']:7.1f}"
-        print(f"{name:18} {len(result.samples):8}  {found:30} {few.candidates:11}  {few.spacing_deg:4.2g} {spent}", flush=True)
+        print(
+            f"{name:18} {len(result.samples):8}  {found:30} {few.candidates:11}  {few.spacing_deg:4.2g} {spent}",
+            flush=True,
+        )
 
 
 if __name__ == "__main__":

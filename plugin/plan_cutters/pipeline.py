@@ -21,6 +21,7 @@ from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock, Progress
 from plan_cutters.document.frozen import Vector
 from plan_cutters.document.model import AreaEntry, CutterEntry
+from plan_cutters.document.operations import with_motion
 from plan_cutters.document.plan import Elsewhere, OverSetups, completed, plan_of, selection
 from plan_cutters.document.setups import SetupEntry
 from plan_cutters.document.travel import travels
@@ -29,12 +30,11 @@ from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.nesting import handed, order
 from plan_cutters.domain.over_setups import over_setups
-from plan_cutters.domain.verdicts import CONVEX, UNJUDGED, Verdicts, blank
+from plan_cutters.domain.verdicts import CONVEX, UNJUDGED, Verdicts
 from plan_cutters.errors import OptionError, UnjudgeableError
-from plan_cutters.kernels.rows import Contacts
 from plan_cutters.options import Options, PlanOptions
 from plan_cutters.result import Result
-from plan_cutters.scene.conditions import Conditions, contacts_of, found_of, tool_of
+from plan_cutters.scene.conditions import Conditions, contacts_of, warm
 from plan_cutters.scene.faces import choose
 from plan_cutters.scene.inside_material import inside_bodies, inside_material
 from plan_cutters.scene.preparation import Prepared
@@ -171,7 +171,14 @@ def run(
         document = document.model_copy(
             update={"notes": [*document.notes, said], "note_codes": [*document.note_codes, "maps_partial"]}
         )
-    return replace(result, plan=clock.stamp(document), maps=maps)
+    if answers.operations is not None and document.operations is not None:
+        from plan_cutters.operations.motion import motion
+
+        with clock.stage("motion"):
+            moved = motion(maps, ready)
+        answers = replace(answers, operations=answers.operations.moving(moved))
+        document = document.model_copy(update={"operations": with_motion(document.operations, moved)})
+    return replace(result, plan=clock.stamp(document), maps=maps, answers=answers)
 
 
 def _elsewhere(
@@ -389,16 +396,3 @@ def _setups(ready: Prepared, within: Sequence[NDArray[np.bool_]], over: OverSetu
             mine = asked & within_limits(ready.samples, ready.cutters, ready.conditions, axis)
             found[axis] = SetupEntry(axis=axis, within=int(mine.sum()), share=share(mine))
     return list(found.values())
-
-
-def warm(contacts: Contacts, cutter: Cutter, conditions: Conditions) -> None:
-    """Load or compile every kernel, so that stage times are those of the work."""
-    from plan_cutters.kernels.search import search
-
-    none, found = np.zeros(0, np.int64), found_of(blank(0))
-    outer_tool, inner_tool = conditions.outer_tool(cutter), conditions.inner_tool(cutter)
-    search.dummy_clear(
-        none, contacts, outer_tool.dummy, tool_of(outer_tool), conditions.obstacles.solids, np.zeros(0, bool)
-    )
-    search.search(none, contacts, conditions.ranges, tool_of(outer_tool), tool_of(inner_tool), conditions.obstacles.solids,
-                  conditions.around.certain.solids, found)  # fmt: skip

@@ -58,8 +58,7 @@ def compile_all(maps: bool) -> None:
     from plan_cutters.domain.machine import Machine
     from plan_cutters.domain.posture import PostureRange
     from plan_cutters.kernels.rows import Contacts
-    from plan_cutters.pipeline import warm
-    from plan_cutters.scene.conditions import Conditions
+    from plan_cutters.scene.conditions import Conditions, warm
     from plan_cutters.scene.obstacles import Obstacles
     from plan_cutters.scene.surroundings import Surroundings
 

@@ -33,6 +33,7 @@ _WORDS = {
     "mend": "asking what to do next",
     "area": "looking between the samples",
     "maps": "mapping all postures",
+    "motion": "joining postures over the surface",
     "files": "writing the plan and the samples",
     "write": "writing the models",
 }

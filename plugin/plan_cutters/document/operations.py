@@ -8,7 +8,7 @@ from pydantic import Field
 
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.document.frozen import Frozen, Vector, vector
-from plan_cutters.domain.operations import Fewest, Operation, OperationPlan, Operations
+from plan_cutters.domain.operations import RESOLUTION, Fewest, Motion, Operation, OperationPlan, Operations
 from plan_cutters.domain.verdicts import NO_REASON, REASONS
 from plan_cutters.options import Options
 
@@ -96,6 +96,10 @@ class FewestEntry(Frozen):
     candidates: int = Field(description="their angles are in operations.npz")
     spacing_deg: float = Field(description="between candidates where the weights lie")
     alone: int = Field(description="reached samples that no candidate serves: they need simultaneous motion")
+    at_least_any: int = Field(description="no choice of any axes has fewer, candidates or not; as far as was looked")
+    cells_deg: float | None = Field(
+        description="radius of the smallest cells of directions that this bound was found with; null where none were needed"
+    )
 
 
 class FastestEntry(Frozen):
@@ -121,6 +125,34 @@ class StepEntry(Frozen):
     )
 
 
+class ForcedStepEntry(Frozen):
+    """Some step of the rotary axes between neighbours of a grid line is at least so large, whatever postures are taken."""
+
+    along: Literal["u", "v"] = Field(description="the direction of the grid lines")
+    deg: float = Field(
+        description="the larger angle of the two axes; the first one does not count within 2 deg of its direction"
+    )
+    turning_deg: float = Field(description="the same where that counts, too")
+    face: str = Field(description="where that line is")
+    looked_at: int = Field(description="lines that were looked at")
+    lines: int
+
+
+class MotionEntry(Frozen):
+    """How the free postures of one cutter in the first setup hang together over the surface. An estimate: it proves nothing."""
+
+    cutter: str
+    components: int = Field(description="sets of postures between which no way in contact was found")
+    components_strict: int = Field(description="the same where ways between two rotations count only if both are free")
+    largest_share: float = Field(description="of the judged area, 0 to 1: what the largest of them touches")
+    needed: int = Field(description="fewest of them that touch every sample with a posture")
+    needed_at_least: int
+    outside: int = Field(description="samples with a posture that the largest does not touch")
+    without: int = Field(description="judged samples without a posture in the maps")
+    forced_steps: list[ForcedStepEntry] = Field(description="empty without two rotary axes")
+    resolution_deg: float = Field(description="of the forced steps")
+
+
 class OperationsEntry(Frozen):
     """Operations with fixed orientations that finish together all that is reached. All is about samples, at their contacts."""
 
@@ -131,6 +163,7 @@ class OperationsEntry(Frozen):
     fastest: FastestEntry | None = Field(description="null unless the fastest were asked for")
     curve: list[StepEntry]
     assumed: AssumedEntry
+    motion: MotionEntry | None = Field(description="null unless posture maps were asked for, too")
     probes: int = Field(description="how many times a tool was put down")
     notes: list[str]
 
@@ -159,7 +192,7 @@ def operations_entry(
     return OperationsEntry(
         asked=found.which,  # type: ignore[arg-type]
         rotary=found.names, plans=plans, fewest=_fewest(found.fewest), curve=steps, fastest=_fastest(found), assumed=assumed,
-        probes=found.probes, notes=list(found.notes),
+        probes=found.probes, motion=_motion(found.motion), notes=list(found.notes),
     )  # fmt: skip
 
 
@@ -168,7 +201,30 @@ def _fewest(found: Fewest) -> FewestEntry:
     return FewestEntry(
         found=len(found.chosen), at_least=found.at_least, proof=found.proof, weights=sorted(weights), bound=found.bound,
         lp=found.relaxed, samples=found.samples, candidates=len(found.columns), spacing_deg=float(np.degrees(found.spacing)),
-        alone=len(found.alone),
+        alone=len(found.alone), at_least_any=found.at_least_any,
+        cells_deg=float(np.degrees(found.cells)) if np.isfinite(found.cells) else None,
+    )  # fmt: skip
+
+
+def with_motion(plan: OperationsEntry, found: Motion | str) -> OperationsEntry:
+    """The entry with what was found of motion, or with the words why there is nothing."""
+    if isinstance(found, str):
+        return plan.model_copy(update={"notes": [*plan.notes, found]})
+    return plan.model_copy(update={"motion": _motion(found)})
+
+
+def _motion(found: Motion | None) -> MotionEntry | None:
+    if found is None:
+        return None
+    steps = [
+        ForcedStepEntry(along=each.along, deg=each.step, turning_deg=each.turning, face=f"F{each.face}",
+                        looked_at=each.looked_at, lines=each.lines)
+        for each in found.steps
+    ]  # fmt: skip
+    return MotionEntry(
+        cutter=found.cutter, components=found.components, components_strict=found.strictly, largest_share=found.largest_share,
+        needed=found.needed, needed_at_least=found.needed_at_least, outside=found.outside, without=found.without,
+        forced_steps=steps, resolution_deg=RESOLUTION,
     )  # fmt: skip
 
 

@@ -2,8 +2,9 @@
 what proves that there are no fewer.
 """
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -18,6 +19,8 @@ from plan_cutters.errors import OptionError
 #: Plans that may be asked for.
 WHICH = ("fewest", "fastest", "both")
 Mode = Literal["fixed", "simultaneous"]
+#: Forced steps of rotary axes are known to this, deg.
+RESOLUTION = 3.0
 
 
 def operations_of(given: Any) -> str | None:
@@ -66,6 +69,10 @@ class Fewest(Record):
         Samples that no candidate serves.
     samples : int
         How many are reached.
+    at_least_any : int
+        No choice of any axes has fewer, candidates or not.
+    cells : float
+        Radius of the smallest cells of directions that this was found with, rad; nan where none were needed.
     """
 
     columns: Columns
@@ -78,6 +85,8 @@ class Fewest(Record):
     spacing: float
     alone: NDArray[np.int64]
     samples: int
+    at_least_any: int = 0
+    cells: float = math.nan
 
     @property
     def proof(self) -> Literal["weights", "branch and bound", "not closed"]:
@@ -106,6 +115,61 @@ class Fastest:
     at_best: float
     samples: int
     candidates: int
+
+
+@dataclass(frozen=True, slots=True)
+class ForcedStep:
+    """Along the grid lines of one direction, some step of the rotary axes is at least so large, whatever postures are taken.
+
+    Attributes
+    ----------
+    along : str
+        `u` or `v`.
+    step, turning : float
+        Largest of the least steps, deg: without turns of the first axis where the tool axis is within 2 deg of it; and with them.
+    face : int
+        Where that line is.
+    looked_at, lines : int
+        Lines, and how many there are.
+    """
+
+    along: Literal["u", "v"]
+    step: float
+    turning: float
+    face: int
+    looked_at: int
+    lines: int
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """How the free postures of one cutter in the first setup hang together over the surface: an estimate, proved nowhere.
+
+    Attributes
+    ----------
+    cutter : str
+        Its id.
+    components, strictly : int
+        Sets of postures between which no way was found, by loose joins and by strict ones.
+    largest_share : float
+        Of the judged area: what the largest component touches.
+    needed, needed_at_least : int
+        Fewest components that touch all that has a posture, and how few there can be.
+    outside, without : int
+        Samples that the largest component does not touch; samples without a posture in the maps.
+    steps : tuple of ForcedStep
+        Empty without rotary axes, or where no sample has a neighbour on a grid line.
+    """
+
+    cutter: str
+    components: int
+    strictly: int
+    largest_share: float
+    needed: int
+    needed_at_least: int
+    outside: int
+    without: int
+    steps: tuple[ForcedStep, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -192,6 +256,8 @@ class Operations:
         Why the most wanted cutter does not reach a sample in the first setup, an index into REASONS, or NO_REASON.
     fastest : Fastest, optional
         Where the fastest were asked for.
+    motion : Motion, optional
+        Where posture maps were asked for, too.
     """
 
     which: str
@@ -204,8 +270,13 @@ class Operations:
     feed: Mapping[Cutter, float] | None
     reason: NDArray[np.uint8]
     fastest: Fastest | None = None
+    motion: Motion | None = None
     notes: tuple[str, ...] = field(default_factory=tuple)
 
     def plan(self, name: str) -> OperationPlan | None:
         """The plan of a name."""
         return next((each for each in self.plans if each.name == name), None)
+
+    def moving(self, found: Motion | str) -> "Operations":
+        """The same with what was found of motion, or with the words why there is nothing."""
+        return replace(self, notes=(*self.notes, found)) if isinstance(found, str) else replace(self, motion=found)

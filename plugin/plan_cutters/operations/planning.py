@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from plan_cutters.operations.candidates import STEP, apart, candidates
 from plan_cutters.operations.curve import curve
 from plan_cutters.operations.fastest import Costs
 from plan_cutters.operations.fewest import FINEST, Search, search_fewest
+from plan_cutters.operations.over_all_axes import over_all_axes
 from plan_cutters.operations.plans import Task, best_area, considered, orientations_of, plan_with
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.timing import Paths, least_time, shared_area
@@ -57,6 +59,8 @@ def plan_operations(
     with stage("operations") as tell:
         search = Search(task.probes, _first(task), task.rows, lambda bare: _stored(task, bare))
         fewest = search_fewest(search, task.orientations, options.index_step or STEP, finest, tell)
+        any_axes, cells = over_all_axes(task.probes, fewest, task.rows)
+        fewest = replace(fewest, at_least_any=any_axes, cells=cells)
         open_ = ready.finished & (ready.inside < 0)
         steps = curve(task.probes, fewest, task.rows, ready.samples.area, float(np.nansum(ready.samples.area[open_])))
         plans, timed = [], None

@@ -12,7 +12,7 @@ from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.posture import PostureRange
-from plan_cutters.domain.verdicts import VerdictBuffer
+from plan_cutters.domain.verdicts import VerdictBuffer, blank
 from plan_cutters.kernels.rows import Contacts, Found, Ranges, Rotary, Tool
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
@@ -199,3 +199,16 @@ def search_postures(
     looked = in_chunks(searched, rows, conditions.jobs, progress, fixed=fixed)
     if work is not None:
         work.add(looked)
+
+
+def warm(contacts: Contacts, cutter: Cutter, conditions: Conditions) -> None:
+    """Load or compile every kernel, so that stage times are those of the work."""
+    from plan_cutters.kernels.search import search
+
+    none, found = np.zeros(0, np.int64), found_of(blank(0))
+    outer_tool, inner_tool = conditions.outer_tool(cutter), conditions.inner_tool(cutter)
+    search.dummy_clear(
+        none, contacts, outer_tool.dummy, tool_of(outer_tool), conditions.obstacles.solids, np.zeros(0, bool)
+    )
+    search.search(none, contacts, conditions.ranges, tool_of(outer_tool), tool_of(inner_tool), conditions.obstacles.solids,
+                  conditions.around.certain.solids, found)  # fmt: skip

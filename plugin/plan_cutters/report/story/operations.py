@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from plan_cutters.document.model import Plan
 from plan_cutters.document.operations import FewestEntry, OperationEntry, OperationPlanEntry, OperationsEntry
 from plan_cutters.report.story.line import Line
+from plan_cutters.report.story.motion import motion, whatever_the_axes
 from plan_cutters.report.story.names import named
 from plan_cutters.report.story.numbers import some
 
@@ -25,6 +26,7 @@ def operations(plan: Plan) -> list[Line]:
         *_rest(found),
         *_fewest(found),
         *(line for each in found.plans for line in _plan(found, each)),
+        *motion(found.motion),
         *found.notes,
     ]
     return [Line(named(plan, text)) for text in told]
@@ -45,6 +47,7 @@ def _fewest(found: OperationsEntry) -> Iterator[str]:
         yield "There is nothing that a fixed orientation reaches."
         return
     yield f"{_times(few.found)} everything that is reached{_proved(few)}"
+    yield from whatever_the_axes(few)
     part = next((step for step in found.curve if step.share >= _KNEE * found.curve[-1].share), None)
     if part is not None and part.orientations < few.found:
         end = (
