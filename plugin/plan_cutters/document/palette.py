@@ -1,4 +1,4 @@
-"""Colours of the verdicts: Okabe and Ito's set, told apart with any kind of colour vision."""
+"""Colours of verdicts and operations: Okabe and Ito's set, told apart with any kind of colour vision."""
 
 #: Verdict -> sRGB hex. Their order is that of the labels along which faces are split, from best to worst.
 PALETTE = {
@@ -14,6 +14,10 @@ PALETTE = {
     "fixture": "#0072B2",
 }
 LABELS = tuple(PALETTE)
+#: Colours of operations: the set in its order, with its black last and as a grey on which a form can still be seen.
+_OPERATIONS = ("#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2", "#D55E00", "#CC79A7", "#404040")
+#: Each time that they come round: what is left of their lightness, and the pattern upon it.
+_ROUNDS = ((1.0, "plain"), (0.5, "hatch"), (1.0, "cross"), (0.5, "dots"))
 #: What each of them means, in words for people.
 MEANING = {
     "interference_free": "interference-free",
@@ -42,3 +46,14 @@ def rgb(verdict: str) -> tuple[float, float, float]:
     """sRGB, 0 to 1."""
     r, g, b = bytes.fromhex(PALETTE[verdict][1:])
     return r / 255, g / 255, b / 255
+
+
+def operation_look(number: int) -> tuple[str, str]:
+    """Colour, sRGB hex, and pattern of an operation, counted from 0 for the largest.
+
+    >>> operation_look(0), operation_look(8)
+    (('#E69F00', 'plain'), ('#735000', 'hatch'))
+    """
+    turn, k = divmod(number, len(_OPERATIONS))
+    light, pattern = _ROUNDS[turn % len(_ROUNDS)]
+    return "#" + "".join(f"{round(light * each):02X}" for each in bytes.fromhex(_OPERATIONS[k][1:])), pattern
