@@ -3,7 +3,7 @@
 import type { Arrays } from "./decode.ts";
 import type { Meta, OperationPlan, Pattern, Scalar } from "./meta.ts";
 import { NO_REASON, UNJUDGED } from "./meta.ts";
-import { modeOf, planOf, plansOf, takenBy } from "./operations.ts";
+import { modeOf, planOf, plansOf, takenBy, titleOf } from "./operations.ts";
 import type { Samples } from "./samples.ts";
 
 export const PATTERNS: Pattern[] = ["plain", "hatch", "dots", "cross", "bars", "lines", "back"];
@@ -64,7 +64,7 @@ export function modesOf(meta: Meta, cutter: string): Mode[] {
   const scalars = meta.scalars.filter((each) => each.cutter === null || each.cutter === cutter);
   return [
     { key: "verdict", label: "Verdict" },
-    ...plansOf(meta).map((plan) => ({ key: modeOf(plan), label: `Operations (${plan.name})` })),
+    ...plansOf(meta).map((plan) => ({ key: modeOf(plan), label: titleOf(plan) })),
     { key: "reason", label: "Reason" },
     ...(meta.setups.length ? [{ key: "setup", label: "Setup that serves" }] : []),
     { key: "class", label: "Surface class" },
@@ -103,7 +103,7 @@ function verdictLook(meta: Meta, samples: Samples, cutter: string): Look {
 function operationLook(meta: Meta, arrays: Arrays, samples: Samples, plan: OperationPlan, cutter: string): Look {
   const { operations } = plan;
   const number = takenBy(plan, arrays);
-  return painted(meta, `Operations: ${plan.name}`, [...operations, ...verdictEntries(meta)], samples, (i) => {
+  return painted(meta, titleOf(plan), [...operations, ...verdictEntries(meta)], samples, (i) => {
     const k = number(i);
     return k >= 0 ? k : operations.length + VERDICTS.indexOf(samples.verdict(cutter, i));
   });

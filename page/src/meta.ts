@@ -79,13 +79,14 @@ export interface Scalar {
 
 /** An operation of a plan: one cutter in one setup, with one tool axis or, where that is null, simultaneous motion. */
 export interface Operation {
-  id: string;
+  label: string;
+  /** Its angles, degrees. */
+  turned: string;
   cutter: string;
   setup: number;
   axis: Vec | null;
   colour: string;
   pattern: Pattern;
-  label: string;
   text: string;
   /** Where its tool is shown. */
   sample: number;

@@ -14,6 +14,8 @@ const MODE = "operation:";
 /** The colouring of a plan. */
 export const modeOf = (plan: OperationPlan): string => MODE + plan.key;
 
+export const titleOf = ({ name }: OperationPlan): string => `${name.charAt(0).toUpperCase()}${name.slice(1)} operations`;
+
 export const plansOf = (meta: Meta): OperationPlan[] => meta.operations?.plans ?? [];
 
 /** The plan that a colouring shows; null for other colourings. */
@@ -38,7 +40,7 @@ export function operationSwitch(app: App): HTMLElement | null {
   const plans = plansOf(app.meta);
   if (!plans.length) return null;
   const choices: [string, string][] = [["verdict", "Verdicts"]];
-  for (const plan of plans) choices.push([modeOf(plan), plans.length > 1 ? `Operations: ${plan.name}` : "Operations"]);
+  for (const plan of plans) choices.push([modeOf(plan), plans.length > 1 ? titleOf(plan) : "Operations"]);
   const buttons = choices.map(([mode, label]) => button(label, () => app.setMode(mode), { title: "Verdicts or operations (o)" }));
   const mark = (): void => choices.forEach(([mode], i) => buttons[i].setAttribute("aria-pressed", String(app.mode === mode)));
   app.on("look", mark);
@@ -51,7 +53,7 @@ export function nextPlan(app: App): void {
   const modes = ["verdict", ...plansOf(app.meta).map(modeOf)];
   app.setMode(modes[(modes.indexOf(app.mode) + 1) % modes.length]);
   const plan = app.plan;
-  app.say(plan ? `Operations: ${plan.name}` : "Verdicts");
+  app.say(plan ? titleOf(plan) : "Verdicts");
 }
 
 /** The tables of operations: an entry lights its regions up, and shows its tool along its axis. */
@@ -110,6 +112,8 @@ export class OperationTables {
       const { turn, rise } = table.facing(axis);
       table.fly(table.fitted(turn, rise));
     }
+    // In a narrow window the picture stands above the tables.
+    document.getElementById("frame")?.scrollIntoView({ block: "nearest" });
     app.say(found.text);
   }
 }

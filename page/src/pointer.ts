@@ -59,7 +59,7 @@ export function listen(app: App, measure: Measure, told: (text: string) => void)
     const name = face?.name && face.name !== face.id ? `, ${face.name}` : "";
     const verdict = found.sample === null ? "" : `: ${app.samples.verdict(app.cutter.id, found.sample).replaceAll("_", " ")}`;
     const operation = found.sample === null ? null : app.operationAt(found.sample);
-    told(`${app.drawn.called(found.owner)}${name}${operation ? `: ${operation.label}` : verdict}`);
+    told(`${app.drawn.called(found.owner)}${name}${operation ? `: ${operation.label}, ${operation.turned}` : verdict}`);
   };
 
   /** What a click there does, or Enter in the middle of the picture. */

@@ -86,7 +86,7 @@ export class PosturePanel {
     const setup = served === null ? "" : `, in setup ${served + 1}`;
     const known = samples.posture(cutter.id, sample.row);
     const { operation } = this.app;
-    this.start.textContent = operation?.axis ? `Posture of ${operation.id}` : known ? "Posture found" : this.app.spot ? "Posture of the witness" : "Nearest posture";
+    this.start.textContent = operation?.axis ? `Posture of ${operation.label}` : known ? "Posture found" : this.app.spot ? "Posture of the witness" : "Nearest posture";
     const named = `Posture map of sample ${sample.row}: tilt against rotation; arrow keys move the tool`;
     this.canvas.setAttribute("aria-label", named);
     this.about.replaceChildren(

@@ -14,8 +14,9 @@ PALETTE = {
     "fixture": "#0072B2",
 }
 LABELS = tuple(PALETTE)
-#: Colours of operations: the set in its order, with its black last and as a grey on which a form can still be seen.
-_OPERATIONS = ("#E69F00", "#56B4E9", "#009E73", "#F0E442", "#0072B2", "#D55E00", "#CC79A7", "#404040")
+#: Colours of operations: the set again. Those come last that are like what is not reached, and black, as a grey on which a
+#: form can still be seen.
+_OPERATIONS = ("#56B4E9", "#009E73", "#CC79A7", "#E69F00", "#0072B2", "#F0E442", "#D55E00", "#404040")
 #: Each time that they come round: what is left of their lightness, and the pattern upon it.
 _ROUNDS = ((1.0, "plain"), (0.5, "hatch"), (1.0, "cross"), (0.5, "dots"))
 #: What each of them means, in words for people.
@@ -52,7 +53,7 @@ def operation_look(number: int) -> tuple[str, str]:
     """Colour, sRGB hex, and pattern of an operation, counted from 0 for the largest.
 
     >>> operation_look(0), operation_look(8)
-    (('#E69F00', 'plain'), ('#735000', 'hatch'))
+    (('#56B4E9', 'plain'), ('#2B5A74', 'hatch'))
     """
     turn, k = divmod(number, len(_OPERATIONS))
     light, pattern = _ROUNDS[turn % len(_ROUNDS)]

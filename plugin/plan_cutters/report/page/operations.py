@@ -71,8 +71,8 @@ def _operation(plan: Plan, entry: OperationEntry, number: int, row: int) -> dict
     colour, pattern = operation_look(number)
     words = told(plan, entry)
     return {
-        "id": entry.id, "cutter": entry.cutter, "setup": entry.setup, "axis": entry.axis, "colour": colour, "pattern": pattern,
-        "label": f"{entry.id}: {words.turned}", "text": words.sentence, "sample": row,
+        "cutter": entry.cutter, "setup": entry.setup, "axis": entry.axis, "colour": colour, "pattern": pattern,
+        "label": entry.id, "turned": words.turned, "text": words.sentence, "sample": row,
     }  # fmt: skip
 
 

@@ -94,7 +94,7 @@ def _listed(each: OperationEntry) -> str:
 
 
 class Told(NamedTuple):
-    """An operation as a row of a table, and as a sentence."""
+    """An operation as a row of a table, with angles in degrees, and as a sentence."""
 
     entry: OperationEntry
     turned: str
@@ -107,7 +107,7 @@ def told(plan: Plan, each: OperationEntry) -> Told:
     """Put one operation into words; `took` is its cutting time or, without a feed, its cut length."""
     length = "" if each.cut_length_mm is None else f"{each.cut_length_mm / 1000.0:.3g} m"
     took = length if each.seconds is None else _duration(each.seconds)
-    return Told(each, _turned(each), took, _faces(each), named(plan, _listed(each)))
+    return Told(each, _turned(each).removesuffix(" deg"), took, _faces(each), named(plan, _listed(each)))
 
 
 def of_the_whole(lines: Iterable[Line]) -> list[Line]:
