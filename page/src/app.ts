@@ -2,7 +2,7 @@
 
 import type { Clip } from "./clip.ts";
 import { lookOf } from "./colours.ts";
-import { place } from "./contact.ts";
+import { place, type Placed } from "./contact.ts";
 import type { Arrays } from "./decode.ts";
 import { LiveTool, type Met, Probe, type State } from "./live_map.ts";
 import type { Drawn, Owner } from "./mesh.ts";
@@ -141,9 +141,9 @@ export class App {
     this.stage.request();
   }
 
-  /** The tool axis of the posture shown. */
-  shownAxis(): Vec | null {
-    return this.sample && this.posture ? place(this.cutter, this.sample, this.posture).axis : null;
+  /** Tip and axis of the tool at the posture shown. */
+  placed(): Placed | null {
+    return this.sample && this.posture && place(this.cutter, this.sample, this.posture);
   }
 
   /** Show a sample with the posture found there, or with its witness. */

@@ -29,7 +29,8 @@ const FLIGHT_MS = 320;
 export class Turntable {
   readonly camera = new OrthographicCamera();
   aim: Aim;
-  private aspect = 1;
+  /** Width of the picture over its height. */
+  aspect = 1;
   private flight = 0;
   private moved = false;
   private readonly x: Vec;

@@ -7,7 +7,7 @@ import { press } from "./lists.ts";
 import type { Meta, Operation, OperationPlan, Vec } from "./meta.ts";
 import { swatch } from "./patterns.ts";
 import type { Posture, Sample } from "./samples.ts";
-import { cross, DEG, dot, turned } from "./vectors.ts";
+import { cross, DEG, dot, minus, turned } from "./vectors.ts";
 
 const MODE = "operation:";
 
@@ -106,14 +106,23 @@ export class OperationTables {
     if (app.cutter.id !== found.cutter) app.setCutter(found.cutter);
     app.select(found.sample);
     app.clip?.release();
-    const axis = found.axis ?? app.shownAxis();
-    const { table } = app.stage;
-    if (axis) {
-      const { turn, rise } = table.facing(axis);
-      table.fly(table.fitted(turn, rise));
-    }
+    this.face();
     // In a narrow window the picture stands above the tables.
     document.getElementById("frame")?.scrollIntoView({ block: "nearest" });
     app.say(found.text);
+  }
+
+  /** Look along the axis of the tool shown, from its holder, at all of the part and of the tool. */
+  private face(): void {
+    const placed = this.app.placed();
+    if (!placed) return;
+    const { table } = this.app.stage;
+    const { turn, rise } = table.facing(placed.axis);
+    const aim = table.fitted(turn, rise);
+    const { up, right } = table.frame(aim);
+    const away = minus(placed.tip, aim.target);
+    const radius = Math.max(...this.app.cutter.outline.flatMap(({ points }) => points.map(([r]) => r)));
+    const [across, along] = [right, up].map((way) => 1.06 * (Math.abs(dot(away, way)) + radius));
+    table.fly({ ...aim, half: Math.max(aim.half, along, across / table.aspect) });
   }
 }

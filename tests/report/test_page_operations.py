@@ -170,9 +170,7 @@ def test_simultaneous_operations_and_none_are_shown_too(planned):
     changed = replace(
         planned,
         answers=replace(planned.answers, operations=replace(found, plans=(some, none))),
-        plan=planned.plan.model_copy(
-            update={"operations": entry.model_copy(update={"plans": plans, "curve": []})}
-        ),
+        plan=planned.plan.model_copy(update={"operations": entry.model_copy(update={"plans": plans, "curve": []})}),
     )
     read = Page(write.page(changed, triangles=500))
     few, nothing = read.meta["operations"]["plans"]
@@ -180,9 +178,8 @@ def test_simultaneous_operations_and_none_are_shown_too(planned):
     assert read.array(few["array"]).tolist() == (label + 1).tolist()
     assert nothing["operations"] == []
     assert not read.array(nothing["array"]).any()
-    assert [" ".join(t.split()) for tag, a, t in read.elements if tag == "tr" and "data-operation" in a][0].startswith(
-        "op1simultaneous–"
-    )
+    row = next(text for tag, a, text in read.elements if tag == "tr" and "data-operation" in a)
+    assert row.startswith("op1simultaneous–")
     assert not any(a.get("class") == "curve" for _, a, _ in read.elements)
 
 

@@ -121,10 +121,17 @@ def tables(plan: Plan, story: Story) -> OperationTables | None:
     if found is None:
         return None
     plans = [
-        (each, key(each), [told(plan, one) for one in each.operations], all(o.seconds is not None for o in each.operations))
+        (
+            each,
+            key(each),
+            [told(plan, one) for one in each.operations],
+            all(o.seconds is not None for o in each.operations),
+        )
         for each in found.plans
     ]
-    steps = [(s.orientations, _percent(s.share), "" if s.at_most is None else _percent(_up(s.at_most))) for s in found.curve]
+    steps = [
+        (s.orientations, _percent(s.share), "" if s.at_most is None else _percent(_up(s.at_most))) for s in found.curve
+    ]
     return OperationTables(of_the_whole(story.operations), plans, steps, curve(found.curve))
 
 
