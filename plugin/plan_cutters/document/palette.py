@@ -1,4 +1,4 @@
-"""Colours of verdicts and operations: Okabe and Ito's set, told apart with any kind of colour vision."""
+"""Colours of the verdicts: Okabe and Ito's set, told apart with any kind of colour vision."""
 
 #: Verdict -> sRGB hex. Their order is that of the labels along which faces are split, from best to worst.
 PALETTE = {
@@ -14,11 +14,6 @@ PALETTE = {
     "fixture": "#0072B2",
 }
 LABELS = tuple(PALETTE)
-#: Colours of operations: the set again. Those come last that are like what is not reached, and black, as a grey on which a
-#: form can still be seen.
-_OPERATIONS = ("#56B4E9", "#009E73", "#CC79A7", "#E69F00", "#0072B2", "#F0E442", "#D55E00", "#404040")
-#: Each time that they come round: what is left of their lightness, and the pattern upon it.
-_ROUNDS = ((1.0, "plain"), (0.5, "hatch"), (1.0, "cross"), (0.5, "dots"))
 #: What each of them means, in words for people.
 MEANING = {
     "interference_free": "interference-free",
@@ -34,6 +29,24 @@ MEANING = {
 }
 
 
+#: Colours of operations, the first ones first: Okabe and Ito's eight.
+OPERATIONS = ("#0072B2", "#009E73", "#E69F00", "#56B4E9", "#CC79A7", "#F0E442", "#D55E00", "#000000")
+
+
+def operation_colour(number: int) -> str:
+    """sRGB hex of an operation by its place in its plan, from 0: eight colours, the same at half lightness, and again.
+
+    >>> operation_colour(0), operation_colour(8), operation_colour(16), operation_colour(15)
+    ('#0072B2', '#003959', '#0072B2', '#7F7F7F')
+    """
+    colour = OPERATIONS[number % len(OPERATIONS)]
+    if number // len(OPERATIONS) % 2 == 0:
+        return colour
+    # Half of black is black: half of white stands for it.
+    half = [each // 2 for each in bytes.fromhex(colour[1:])] if any(bytes.fromhex(colour[1:])) else [127] * 3
+    return "#" + bytes(half).hex().upper()
+
+
 def label(word: str) -> str:
     """A verdict in a legend: its meaning without what explains it.
 
@@ -47,14 +60,3 @@ def rgb(verdict: str) -> tuple[float, float, float]:
     """sRGB, 0 to 1."""
     r, g, b = bytes.fromhex(PALETTE[verdict][1:])
     return r / 255, g / 255, b / 255
-
-
-def operation_look(number: int) -> tuple[str, str]:
-    """Colour, sRGB hex, and pattern of an operation, counted from 0 for the largest.
-
-    >>> operation_look(0), operation_look(8)
-    (('#56B4E9', 'plain'), ('#2B5A74', 'hatch'))
-    """
-    turn, k = divmod(number, len(_OPERATIONS))
-    light, pattern = _ROUNDS[turn % len(_ROUNDS)]
-    return "#" + "".join(f"{round(light * each):02X}" for each in bytes.fromhex(_OPERATIONS[k][1:])), pattern

@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 from cad_io.arrays import SurfaceSamples
 from plan_cutters.document.model import Plan
 from plan_cutters.document.operations import OperationEntry, OperationPlanEntry, StepEntry
-from plan_cutters.document.palette import operation_look
+from plan_cutters.document.palette import OPERATIONS, operation_colour
 from plan_cutters.domain.operations import OperationPlan
 from plan_cutters.report.page.arrays import Arrays
 from plan_cutters.report.page.encode import Stored
@@ -26,6 +26,8 @@ _WIDE, _HIGH = 360, 170
 _LEFT, _RIGHT, _TOP, _BOTTOM = 46, 352, 8, 132
 #: A share that falls short of all by no more is all of it: areas are sums of rounded numbers.
 _ALL = 1e-9
+#: Patterns of operations, another one each time that the colours come round.
+_PATTERNS = ("plain", "hatch", "cross", "dots")
 #: Numbers along the curve, at most.
 _TICKS = 10
 
@@ -68,10 +70,10 @@ def operations_of(result: Judged) -> dict[str, Any] | None:
 
 
 def _operation(plan: Plan, entry: OperationEntry, number: int, row: int) -> dict[str, Any]:
-    colour, pattern = operation_look(number)
+    pattern = _PATTERNS[number // len(OPERATIONS) % len(_PATTERNS)]
     words = told(plan, entry)
     return {
-        "cutter": entry.cutter, "setup": entry.setup, "axis": entry.axis, "colour": colour, "pattern": pattern,
+        "cutter": entry.cutter, "setup": entry.setup, "axis": entry.axis, "colour": operation_colour(number), "pattern": pattern,
         "label": entry.id, "turned": words.turned, "text": words.sentence, "sample": row,
     }  # fmt: skip
 
