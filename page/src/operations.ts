@@ -69,6 +69,7 @@ export class OperationTables {
       }
     }
     app.on("operation", () => this.mark());
+    this.mark();
   }
 
   private enliven(row: HTMLElement, plan: OperationPlan, found: Operation, number: number): void {

@@ -49,7 +49,7 @@ def _numbers(plan: OperationPlan) -> Any:
 
 
 def operations_of(result: Judged) -> dict[str, Any] | None:
-    """What the script needs of the operations beside the tables; null where they were not asked for."""
+    """Collect what the script needs of the operations beside the tables; None where they were not asked for."""
     found, entry = result.answers.operations, result.plan.operations
     if found is None or entry is None:
         return None
@@ -109,7 +109,7 @@ class Curve(NamedTuple):
 
 
 class OperationTables(NamedTuple):
-    """What the template shows of the operations."""
+    """These are what the template shows of the operations."""
 
     lines: list[Line]
     plans: list[tuple[OperationPlanEntry, str, list[Told], bool]]
