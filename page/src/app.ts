@@ -2,12 +2,13 @@
 
 import type { Clip } from "./clip.ts";
 import { lookOf } from "./colours.ts";
-import { place } from "./contact.ts";
+import { place, type Placed } from "./contact.ts";
 import type { Arrays } from "./decode.ts";
 import { LiveTool, type Met, Probe, type State } from "./live_map.ts";
 import type { Drawn, Owner } from "./mesh.ts";
 import { Machine } from "./machine.ts";
-import type { Cutter, Meta, Spot, Vec } from "./meta.ts";
+import type { Cutter, Meta, Operation, OperationPlan, Spot, Vec } from "./meta.ts";
+import { planOf, postureOf, takenBy } from "./operations.ts";
 import type { PartView } from "./part.ts";
 import type { Picker } from "./pick.ts";
 import { alike, type Posture, type Sample, type Samples } from "./samples.ts";
@@ -20,7 +21,7 @@ export interface Judged {
   certified: boolean;
 }
 
-type Event = "cutter" | "look" | "sample" | "posture" | "hot" | "spot";
+type Event = "cutter" | "look" | "sample" | "posture" | "hot" | "spot" | "operation";
 
 export class App {
   cutter: Cutter;
@@ -96,13 +97,16 @@ export class App {
   }
 
   setMode(mode: string): void {
+    const before = this.plan;
     this.mode = mode;
     this.repaint();
+    // The tool at the sample is that of the operation where operations are shown.
+    if (this.sample && this.plan !== before) this.select(this.sample.row, this.spot);
   }
 
   repaint(): void {
     const look = lookOf(this.meta, this.arrays, this.samples, this.mode, this.cutter.id);
-    this.part.paint(look);
+    this.part.paint(look, this.standOut);
     this.look = look;
     this.emit("look");
     this.stage.request();
@@ -110,14 +114,47 @@ export class App {
 
   look: ReturnType<typeof lookOf> | null = null;
 
+  /** The plan of operations that is shown; null where something else is. */
+  get plan(): OperationPlan | null {
+    return planOf(this.meta, this.mode);
+  }
+
+  /** The operation of the plan shown that takes a sample. */
+  operationAt(row: number): Operation | null {
+    const { plan } = this;
+    return plan?.operations[takenBy(plan, this.arrays)(row)] ?? null;
+  }
+
+  /** That of the sample shown, if it is done with the cutter shown. */
+  get operation(): Operation | null {
+    const found = this.sample && this.operationAt(this.sample.row);
+    return found?.cutter === this.cutter.id ? found : null;
+  }
+
+  private standOut: ((row: number) => boolean) | null = null;
+
+  /** Let the regions of an operation stand out, whatever is shown; null: none. */
+  lightOperation(plan: OperationPlan | null, number: number): void {
+    const taken = plan && takenBy(plan, this.arrays);
+    this.standOut = taken && ((row) => taken(row) === number);
+    if (this.look) this.part.paint(this.look, this.standOut);
+    this.stage.request();
+  }
+
+  /** Tip and axis of the tool at the posture shown. */
+  placed(): Placed | null {
+    return this.sample && this.posture && place(this.cutter, this.sample, this.posture);
+  }
+
   /** Show a sample with the posture found there, or with its witness. */
   select(row: number | null, spot: Spot | null = null): void {
     this.sample = row === null ? null : this.samples.at(row);
     this.spot = row === null ? null : (spot ?? this.spotOf(row));
     this.posture = null;
     this.met = null;
-    this.machine.stand(row === null ? 0 : (this.samples.setup(this.cutter.id, row) ?? 0));
+    this.machine.stand(this.operation?.setup ?? (row === null ? 0 : (this.samples.setup(this.cutter.id, row) ?? 0)));
     this.emit("sample");
+    this.emit("operation");
     if (spot) this.emit("spot");
     this.setPosture(row === null ? null : this.startPosture(row));
   }
@@ -126,8 +163,16 @@ export class App {
     return this.meta.spots.find((each) => each.sample === row && each.cutter === this.cutter.id) ?? null;
   }
 
-  /** The posture found, or the witness's. */
+  /** The posture with the axis of the operation that takes the sample shown. */
+  plannedPosture(): Posture | null {
+    const axis = this.operation?.axis;
+    return axis && this.sample ? postureOf(axis, this.sample) : null;
+  }
+
+  /** The posture of the operation shown, the one found, or the witness's. */
   startPosture(row: number): Posture | null {
+    const planned = this.plannedPosture();
+    if (planned) return planned;
     const found = this.samples.posture(this.cutter.id, row);
     if (found) return found;
     return this.witness();

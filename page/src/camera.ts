@@ -29,7 +29,8 @@ const FLIGHT_MS = 320;
 export class Turntable {
   readonly camera = new OrthographicCamera();
   aim: Aim;
-  private aspect = 1;
+  /** Width of the picture over its height. */
+  aspect = 1;
   private flight = 0;
   private moved = false;
   private readonly x: Vec;
@@ -159,11 +160,17 @@ export class Turntable {
     this.flight = requestAnimationFrame(step);
   }
 
+  /** Turn and rise from which a direction points at the eye. */
+  facing(direction: Vec): { turn: number; rise: number } {
+    const [x, y, z] = [dot(direction, this.x), dot(direction, this.y), dot(direction, this.z)];
+    const level = Math.hypot(x, y);
+    const turn = level > 1e-3 ? Math.atan2(y, x) * DEG : this.aim.turn;
+    return { turn, rise: Math.atan2(z, level) * DEG };
+  }
+
   /** Turn and rise from which a direction is seen from its front, askew, so that a tool there shows its side. */
   towards(direction: Vec): { turn: number; rise: number } {
-    const level = Math.hypot(dot(direction, this.x), dot(direction, this.y));
-    const rise = Math.atan2(dot(direction, this.z), level) * DEG;
-    const turn = level > 1e-3 ? Math.atan2(dot(direction, this.y), dot(direction, this.x)) * DEG : this.aim.turn;
+    const { turn, rise } = this.facing(direction);
     return { turn: turn + 28, rise: Math.max(-65, Math.min(55, rise > 25 ? rise - 22 : rise + 12)) };
   }
 }

@@ -1,8 +1,9 @@
 // What the surface is coloured by: a colour and a pattern for each sample, and the legend that says so.
 
 import type { Arrays } from "./decode.ts";
-import type { Meta, Pattern, Scalar } from "./meta.ts";
+import type { Meta, OperationPlan, Pattern, Scalar } from "./meta.ts";
 import { NO_REASON, UNJUDGED } from "./meta.ts";
+import { modeOf, planOf, plansOf, takenBy, titleOf } from "./operations.ts";
 import type { Samples } from "./samples.ts";
 
 export const PATTERNS: Pattern[] = ["plain", "hatch", "dots", "cross", "bars", "lines", "back"];
@@ -63,6 +64,7 @@ export function modesOf(meta: Meta, cutter: string): Mode[] {
   const scalars = meta.scalars.filter((each) => each.cutter === null || each.cutter === cutter);
   return [
     { key: "verdict", label: "Verdict" },
+    ...plansOf(meta).map((plan) => ({ key: modeOf(plan), label: titleOf(plan) })),
     { key: "reason", label: "Reason" },
     ...(meta.setups.length ? [{ key: "setup", label: "Setup that serves" }] : []),
     { key: "class", label: "Surface class" },
@@ -76,7 +78,8 @@ export function lookOf(meta: Meta, arrays: Arrays, samples: Samples, mode: strin
   if (mode === "reason") return reasonLook(meta, samples, cutter);
   if (mode === "setup") return setupLook(meta, samples, cutter);
   if (mode === "class") return classLook(meta, samples);
-  return verdictLook(meta, samples, cutter);
+  const plan = planOf(meta, mode);
+  return plan ? operationLook(meta, arrays, samples, plan, cutter) : verdictLook(meta, samples, cutter);
 }
 
 export const colourOf = (meta: Meta, word: string): string => meta.words[word]?.colour ?? UNKNOWN;
@@ -87,10 +90,23 @@ export function patternOf(verdict: string): Pattern {
 
 const plain = (meta: Meta, word: string): Entry => ({ colour: colourOf(meta, word), pattern: "plain", label: spoken(meta, word) });
 
+const VERDICTS = ["interference_free", "accessible", "undecided", "inaccessible", "unjudged", "inside_bodies"];
+
+const verdictEntries = (meta: Meta): Entry[] =>
+  VERDICTS.map((word) => ({ colour: colourOf(meta, word), pattern: patternOf(word), label: spoken(meta, word) }));
+
 function verdictLook(meta: Meta, samples: Samples, cutter: string): Look {
-  const order = ["interference_free", "accessible", "undecided", "inaccessible", "unjudged", "inside_bodies"];
-  const entries = order.map((word) => ({ colour: colourOf(meta, word), pattern: patternOf(word), label: spoken(meta, word) }));
-  return painted(meta, "Verdict", entries, samples, (i) => order.indexOf(samples.verdict(cutter, i)));
+  return painted(meta, "Verdict", verdictEntries(meta), samples, (i) => VERDICTS.indexOf(samples.verdict(cutter, i)));
+}
+
+/** Which operation takes each sample; what none takes keeps the colours of its verdicts. */
+function operationLook(meta: Meta, arrays: Arrays, samples: Samples, plan: OperationPlan, cutter: string): Look {
+  const { operations } = plan;
+  const number = takenBy(plan, arrays);
+  return painted(meta, titleOf(plan), [...operations, ...verdictEntries(meta)], samples, (i) => {
+    const k = number(i);
+    return k >= 0 ? k : operations.length + VERDICTS.indexOf(samples.verdict(cutter, i));
+  });
 }
 
 function reasonLook(meta: Meta, samples: Samples, cutter: string): Look {

@@ -4,8 +4,10 @@ import type { App } from "./app.ts";
 import { VIEWS } from "./camera.ts";
 import type { Clip } from "./clip.ts";
 import { button, el } from "./dom.ts";
+import type { Meta } from "./meta.ts";
 import type { SpotList } from "./lists.ts";
 import type { Measure } from "./measure.ts";
+import { nextPlan, plansOf } from "./operations.ts";
 
 const HELP: [string, string][] = [
   ["Click, Enter", "show the posture map of the sample there (Enter: in the middle of the picture)"],
@@ -25,8 +27,10 @@ const HELP: [string, string][] = [
   ["?", "this help"],
 ];
 
-export function helpDialog(): HTMLDialogElement {
-  const rows = HELP.map(([keys, work]) => el("tr", {}, el("th", { scope: "row" }, keys), el("td", {}, work)));
+const OPERATIONS: [string, string] = ["o", "show verdicts, or the operations of a plan"];
+
+export function helpDialog(meta: Meta): HTMLDialogElement {
+  const rows = [...HELP.slice(0, 9), ...(plansOf(meta).length ? [OPERATIONS] : []), ...HELP.slice(9)].map(([keys, work]) => el("tr", {}, el("th", { scope: "row" }, keys), el("td", {}, work)));
   const dialog = el("dialog", { id: "help", "aria-labelledby": "help-title" });
   dialog.append(
     el("h2", { id: "help-title" }, "Mouse and keys"),
@@ -75,6 +79,7 @@ export function listenKeys(app: App, parts: Parts): void {
       "]": () => nextCutter(app, 1),
       c: () => parts.clip.next(),
       m: () => parts.measure.toggle(),
+      o: () => (plansOf(app.meta).length ? nextPlan(app) : undefined),
       t: parts.tool,
       g: parts.glass,
       "?": () => parts.help.showModal(),

@@ -7,7 +7,7 @@ import type { Vec } from "./meta.ts";
 import { dot } from "./vectors.ts";
 
 /** Turn what an element says into a button in it. */
-function press(host: HTMLElement, work: () => void): HTMLButtonElement {
+export function press(host: HTMLElement, work: () => void): HTMLButtonElement {
   const made = el("button", { type: "button", class: "text" });
   made.append(...host.childNodes);
   host.append(made);

@@ -12,6 +12,7 @@ import { legend } from "./legend.ts";
 import { enhanceCutters, FaceTable, SpotList } from "./lists.ts";
 import { Marks } from "./marks.ts";
 import { Measure } from "./measure.ts";
+import { OperationTables, operationSwitch } from "./operations.ts";
 import { Drawn } from "./mesh.ts";
 import { PartView } from "./part.ts";
 import { Picker } from "./pick.ts";
@@ -71,7 +72,7 @@ async function start(): Promise<void> {
   const panel = new PosturePanel(app);
   const measure = new Measure(app, marks);
   const clip = (app.clip = new Clip(app));
-  const help = helpDialog();
+  const help = helpDialog(meta);
   const stills = new Stills(app);
   const glass = button("See through", () => setGlass(), { "aria-pressed": "true", title: "See through the tool (g)" });
   const setGlass = (): void => {
@@ -87,6 +88,7 @@ async function start(): Promise<void> {
   const toolbar = el(
     "div",
     { id: "toolbar", role: "toolbar", "aria-label": "Picture" },
+    operationSwitch(app),
     el("label", {}, "Colour by ", colouring(app)),
     el("label", {}, "View ", views(app)),
     el("span", { class: "group" }, shown, glass, measure.root),
@@ -107,6 +109,7 @@ async function start(): Promise<void> {
   enhanceCutters(app);
   const spots = new SpotList(app);
   new FaceTable(app);
+  new OperationTables(app);
   listenKeys(app, { spots, clip, measure, help, glass: setGlass, tool: setTool });
   // The tree over the triangles is what a click needs: once it is there the page answers.
   void app.drawn.tree;
@@ -129,6 +132,9 @@ function colouring(app: App): HTMLSelectElement {
   };
   select.addEventListener("change", () => app.setMode(select.value));
   app.on("cutter", fill);
+  app.on("look", () => {
+    select.value = app.mode;
+  });
   fill();
   return select;
 }

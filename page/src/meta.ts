@@ -77,6 +77,28 @@ export interface Scalar {
   column: number | null;
 }
 
+/** An operation of a plan: one cutter in one setup, with one tool axis or, where that is null, simultaneous motion. */
+export interface Operation {
+  label: string;
+  /** Its angles, degrees. */
+  turned: string;
+  cutter: string;
+  setup: number;
+  axis: Vec | null;
+  colour: string;
+  pattern: Pattern;
+  text: string;
+  /** Where its tool is shown. */
+  sample: number;
+}
+
+export interface OperationPlan {
+  key: string;
+  name: string;
+  array: string;
+  operations: Operation[];
+}
+
 export interface ArrayEntry {
   dtype: "u1" | "u2" | "u4" | "i2" | "i4" | "f2";
   shape: number[];
@@ -121,6 +143,7 @@ export interface Meta {
   cutters: Cutter[];
   spots: Spot[];
   scalars: Scalar[];
+  operations: null | { plans: OperationPlan[] };
   maps: null | { cutter: string; count: number; of: number; step_deg: number; why: string | null };
   arrays: Record<string, ArrayEntry>;
 }

@@ -6,6 +6,8 @@ import type { Arrays } from "./decode.ts";
 import type { Drawn, Owner } from "./mesh.ts";
 import { atlasTexture, NOBODY, partMaterial } from "./shading.ts";
 
+/** Added to the pattern of a sample that is faded, so that others stand out. */
+const FADED = 64;
 /** A texel of no sample. */
 const NO_SAMPLE = 255;
 
@@ -33,15 +35,16 @@ export class PartView {
     }
   }
 
-  /** Colour every sample. */
-  paint(look: Look): void {
+  /** Colour every sample; where some are to stand out, fade the others. */
+  paint(look: Look, lit: ((row: number) => boolean) | null = null): void {
     const data = this.texture.image.data as Uint8Array;
     const words = new Uint32Array(data.buffer);
     const colours = new Uint32Array(look.bytes.buffer, look.bytes.byteOffset, look.bytes.length / 4);
-    const none = new Uint32Array(new Uint8Array([0, 0, 0, NO_SAMPLE]).buffer)[0];
+    const word = (alpha: number): number => new Uint32Array(new Uint8Array([0, 0, 0, alpha]).buffer)[0];
+    const [none, faded] = [word(NO_SAMPLE), word(FADED)];
     for (let i = 0; i < words.length; i++) {
       const row = this.index[i];
-      words[i] = row < 0 ? none : colours[row];
+      words[i] = row < 0 ? none : lit && !lit(row) ? colours[row] | faded : colours[row];
     }
     this.texture.needsUpdate = true;
   }

@@ -58,7 +58,8 @@ export function listen(app: App, measure: Measure, told: (text: string) => void)
     const face = app.meta.faces[found.owner];
     const name = face?.name && face.name !== face.id ? `, ${face.name}` : "";
     const verdict = found.sample === null ? "" : `: ${app.samples.verdict(app.cutter.id, found.sample).replaceAll("_", " ")}`;
-    told(`${app.drawn.called(found.owner)}${name}${verdict}`);
+    const operation = found.sample === null ? null : app.operationAt(found.sample);
+    told(`${app.drawn.called(found.owner)}${name}${operation ? `: ${operation.label}, ${operation.turned}` : verdict}`);
   };
 
   /** What a click there does, or Enter in the middle of the picture. */
@@ -72,7 +73,7 @@ export function listen(app: App, measure: Measure, told: (text: string) => void)
       app.say(found ? `${app.drawn.called(found.owner)} has no samples` : "Nothing is there");
       return;
     }
-    app.select(found.sample);
+    show(app, found.sample);
   };
   canvas.addEventListener("keydown", (event) => {
     if (event.key !== "Enter") return;
@@ -81,8 +82,15 @@ export function listen(app: App, measure: Measure, told: (text: string) => void)
     const near = nearestToMiddle(app);
     if (near === null) return app.say("No sample is in the picture");
     if (measure.on) measure.add(app.samples.point(near));
-    else app.select(near);
+    else show(app, near);
   });
+}
+
+/** Select a sample; where operations are shown, with the cutter that takes it. */
+function show(app: App, row: number): void {
+  const cutter = app.operationAt(row)?.cutter;
+  if (cutter && cutter !== app.cutter.id) app.setCutter(cutter);
+  app.select(row);
 }
 
 /** The sample that is drawn nearest to the middle of the picture and is not hidden; null where there is none. */

@@ -85,7 +85,8 @@ export class PosturePanel {
     const served = this.app.meta.setups.length ? samples.setup(cutter.id, sample.row) : null;
     const setup = served === null ? "" : `, in setup ${served + 1}`;
     const known = samples.posture(cutter.id, sample.row);
-    this.start.textContent = known ? "Posture found" : this.app.spot ? "Posture of the witness" : "Nearest posture";
+    const { operation } = this.app;
+    this.start.textContent = operation?.axis ? `Posture of ${operation.label}` : known ? "Posture found" : this.app.spot ? "Posture of the witness" : "Nearest posture";
     const named = `Posture map of sample ${sample.row}: tilt against rotation; arrow keys move the tool`;
     this.canvas.setAttribute("aria-label", named);
     this.about.replaceChildren(
@@ -142,7 +143,9 @@ export class PosturePanel {
     const { posture, met, state, sample } = this.app;
     if (posture && state && sample) {
       const found = this.app.samples.posture(this.app.cutter.id, sample.row);
-      const sure = state.state === "free" && found && alike(found, posture) ? ", the posture found" : "";
+      const planned = this.app.plannedPosture();
+      const of = planned && alike(planned, posture) ? `, ${this.app.operation!.label}` : "";
+      const sure = of || (state.state === "free" && found && alike(found, posture) ? ", the posture found" : "");
       this.line.textContent =
         `tilt ${degrees(posture.tilt)} deg, rotation ${degrees(posture.rotation)} deg: ` +
         (this.app.atWitness() ? this.witnessed() : wording(this.app, state, met) + sure);

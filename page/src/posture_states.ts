@@ -85,7 +85,8 @@ export class SampleMap {
   /** The state of a posture, and whether that is certified. */
   at(posture: Posture, met: Met): Judged {
     const found = this.app.samples.posture(this.app.cutter.id, this.sample.row);
-    if (found && alike(found, posture)) return { state: "free", certified: true };
+    const planned = this.app.plannedPosture();
+    if ((found && alike(found, posture)) || (planned && alike(planned, posture))) return { state: "free", certified: true };
     const column = this.column(posture.rotation);
     const searched = apart(this.grid.rotations[column], posture.rotation) < 0.02;
     if (!this.certified || !searched) return { state: met.state, certified: false };

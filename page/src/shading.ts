@@ -80,15 +80,20 @@ void main() {
   if (dot(plane.xyz, vPlace) > plane.w) discard;
   vec3 base = vOwner < 0.0 ? fixed_ : plain;
   int pattern = 0;
+  bool faded = false;
   if (vTexel.x >= -0.5) {
     vec4 found = texelFetch(colours, ivec2(clamp(floor(vTexel + 0.5), vec2(0.0), size - 1.0)), 0);
     base = found.rgb;
     pattern = int(found.a * 255.0 + 0.5);
     if (pattern == 255) { base = plain; pattern = 0; }
+    // As in part.ts.
+    faded = pattern >= 64;
+    pattern = pattern % 64;
   }
   float dark = ink(pattern, gl_FragCoord.xy / ratio);
   base = mix(base, base * 0.42, dark);
   vec3 seen = lit(base, vNormal);
+  if (faded) seen = mix(seen, lit(vec3(0.93), vNormal), 0.78);
   if (abs(vOwner - held) < 0.25) seen = mix(seen, vec3(1.0, 0.25, 0.6), 0.45);
   if (abs(vOwner - hot) < 0.25) seen = mix(seen, vec3(1.0, 0.97, 0.75), 0.5);
   colour = vec4(seen, 1.0);

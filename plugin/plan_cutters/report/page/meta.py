@@ -18,6 +18,7 @@ from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.verdicts import WORDS
 from plan_cutters.report.page.atlas import Atlas
 from plan_cutters.report.page.facts import Spot
+from plan_cutters.report.page.operations import operations_of
 from plan_cutters.report.page.surface import Surface
 from plan_cutters.report.protocol import Judged
 from plan_cutters.report.story.cutters import spot as sentence
@@ -71,6 +72,7 @@ def meta_of(
             for entry in plan.cutters
         ],
         "spots": [_spot(each) for each in spots],
+        "operations": operations_of(result),
     }
 
 

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 from plan_cutters.document.model import CutterEntry, FaceEntry, Plan
 from plan_cutters.document.palette import label
 from plan_cutters.domain.reasons import REASONS
+from plan_cutters.report.page import operations
 from plan_cutters.report.page.facts import Spot
 from plan_cutters.report.protocol import Judged
 from plan_cutters.report.story import answers, cutters, headline, numbers
@@ -73,6 +74,7 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
         "drawing": drawing,
         "left": left,
         "empty": headline.not_sampled(plan),
+        "operations": operations.tables(plan, story),
     }
 
 

@@ -22,6 +22,7 @@ from plan_cutters.report.page.atlas import atlas_of
 from plan_cutters.report.page.encode import joined, size_of
 from plan_cutters.report.page.facts import spots_of
 from plan_cutters.report.page.meta import meta_of
+from plan_cutters.report.page.operations import operation_arrays
 from plan_cutters.report.page.surface import box_of, surface_of
 from plan_cutters.report.page.tables import Drawing
 from plan_cutters.report.protocol import Judged
@@ -99,6 +100,7 @@ def page(
         **arrays.sample_arrays(result, *box),
         **arrays.posture_arrays(result, result.shown),
         **scalars,
+        **operation_arrays(result),
     }
     others = _together(arrays.posture_arrays(result, name) for name in result.reaches if name != result.shown)
     meta = {**meta_of(result, surface, atlas, box, spots), "drawn_chord_mm": faces.deflection, "scalars": told}

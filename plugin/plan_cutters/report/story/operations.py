@@ -1,6 +1,7 @@
 """Put the plan of operations into words, the worst first."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
 
 from plan_cutters.document.model import Plan
 from plan_cutters.document.operations import FewestEntry, OperationEntry, OperationPlanEntry, OperationsEntry
@@ -81,14 +82,40 @@ def _plan(found: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str]:
     )
     yield f"The {plan.name} plan: {_count(plan.orientations)} {what}."
     for each in plan.operations[:_LISTED]:
-        took = "" if each.seconds is None else f", {_duration(each.seconds)}"
-        where = "" if each.setup == 0 else f" in setup {each.setup + 1}"
-        yield f"  {each.id}: {each.cutter}{where}, {_turned(each)}: {some(each.share)} of the area{took}, {_faces(each)}."
+        yield f"  {_listed(each)}"
     if len(plan.operations) > _LISTED:
         yield f"  and {len(plan.operations) - _LISTED} more in plan.json."
     small = [each for each in plan.operations if each.mode == "fixed" and each.share < _LITTLE]
     for each in small[:3]:
         yield f"  {each.id} is there for {some(each.share)} of the area: {_faces(each)}."
+
+
+def _listed(each: OperationEntry) -> str:
+    took = "" if each.seconds is None else f", {_duration(each.seconds)}"
+    where = "" if each.setup == 0 else f" in setup {each.setup + 1}"
+    return f"{each.id}: {each.cutter}{where}, {_turned(each)}: {some(each.share)} of the area{took}, {_faces(each)}."
+
+
+class Told(NamedTuple):
+    """An operation as a row of a table, with angles in degrees, and as a sentence."""
+
+    entry: OperationEntry
+    turned: str
+    took: str
+    faces: str
+    sentence: str
+
+
+def told(plan: Plan, each: OperationEntry) -> Told:
+    """Put one operation into words; `took` is its cutting time or, without a feed, its cut length."""
+    length = "" if each.cut_length_mm is None else f"{each.cut_length_mm / 1000.0:.3g} m"
+    took = length if each.seconds is None else _duration(each.seconds)
+    return Told(each, _turned(each).removesuffix(" deg"), took, _faces(each), named(plan, _listed(each)))
+
+
+def of_the_whole(lines: Iterable[Line]) -> list[Line]:
+    """Those lines that are about plans, not about one operation: what is indented stands in a list of operations."""
+    return [line for line in lines if not line.text.startswith(" ")]
 
 
 def _turned(each: OperationEntry) -> str:

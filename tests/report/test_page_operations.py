@@ -1,0 +1,348 @@
+"""Operations on the review page: its data, its tables, and what a browser shows of them."""
+
+import io
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from plan_cutters import plan
+from plan_cutters.document.operations import StepEntry
+from plan_cutters.document.palette import operation_colour
+from plan_cutters.report.page import operations, write
+from plan_cutters.report.story.operations import of_the_whole
+from plan_cutters.report.story.story import story_of
+from tests.support.browser import launch, opened, place_of, seen
+from tests.support.places import ROOT
+from tests.support.review_page import Page
+
+
+@pytest.fixture(scope="module")
+def planned():
+    """A block with a sculptured top, from all sides, by two cutters of which one is held."""
+    return plan(
+        ROOT / "samples" / "pocket_top.step", faces="all", spacing=6.0, cutters=["R6L80", "R3L40rc3"], holder="R15L40",
+        machine="trunnion-ac", operations="both", feed=2000.0, area_budget=0, index_step=np.radians(15.0),
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def data(planned):
+    return write.page(planned, triangles=2000)
+
+
+@pytest.fixture(scope="module")
+def read(data):
+    return Page(data)
+
+
+def each_plan(planned, read):
+    return zip(
+        planned.answers.operations.plans, planned.plan.operations.plans, read.meta["operations"]["plans"], strict=True
+    )
+
+
+def test_every_sample_has_the_operation_of_the_plan(planned, read):
+    for found, _, told in each_plan(planned, read):
+        assert (read.array(told["array"]).astype(int) - 1).tolist() == found.label.tolist()
+        assert (found.label >= 0).any()
+
+
+def test_operations_are_told_as_they_are_in_the_plan(planned, read):
+    for found, entry, told in each_plan(planned, read):
+        assert told["name"] == entry.name
+        for k, (one, wanted) in enumerate(zip(told["operations"], entry.operations, strict=True)):
+            assert (one["label"], one["cutter"], one["setup"]) == (wanted.id, wanted.cutter, wanted.setup)
+            assert one["axis"] == (None if wanted.axis is None else list(wanted.axis))
+            assert (one["colour"], one["pattern"]) == (operation_colour(k), "plain")
+            assert one["text"].startswith(f"{wanted.id}: ")
+            # Its tool is shown where it is proved to serve.
+            assert found.label[one["sample"]] == k
+            assert found.serves[one["sample"], k]
+
+
+def test_each_operation_is_listed(planned, read):
+    rows = [text for tag, a, text in read.elements if tag == "tr" and "data-operation" in a]
+    more = [text for tag, a, text in read.elements if tag == "td" and a.get("colspan") == "4"]
+    wanted = [one for _, entry, _ in each_plan(planned, read) for one in entry.operations]
+    assert len(rows) == len(wanted)
+    for one, row in zip(wanted, rows, strict=True):
+        cells = row.split("\n")[0]
+        assert cells.startswith(one.id)
+        assert all(f"{name} {angle:g}" in cells for name, angle in one.angles_deg.items())
+        assert re.search(r"\d (s|min)", cells)
+        assert one.faces[0].face in " ".join(more)
+    titles = [" ".join(text.split()) for tag, a, text in read.elements if a.get("id", "").startswith("plan-")]
+    assert titles == [f"{e.name.capitalize()}: {len(e.operations)} operations" for e in planned.plan.operations.plans]
+
+
+def test_sentences_are_those_of_the_story(planned, read):
+    story = story_of(planned.plan)
+    told = of_the_whole(story.operations)
+    assert any("fixed orientation" in line.text for line in told)
+    paragraphs = read.of("p")
+    assert all(line.text in paragraphs for line in told)
+    # What is left out is told by the list.
+    for line in story.operations:
+        if line not in told:
+            assert re.match(r"  (op\d+|and) ", line.text.replace(":", " ")), line
+
+
+def test_the_curve_is_drawn_and_told(planned, read):
+    steps = planned.plan.operations.curve
+    rows = {"".join(text.split()) for tag, _, text in read.elements if tag == "tr"}
+    for step in steps:
+        shares = [step.share] if step.at_most is None else [step.share, operations._up(step.at_most)]
+        assert "".join([str(step.orientations), *map(operations._percent, shares)]).replace(" ", "") in rows
+    (line,) = [a["d"] for tag, a, _ in read.elements if tag == "path" and a.get("class") == "line"]
+    heights = [float(y) for y in re.findall(r"V([\d.]+)", line)]
+    assert len(heights) == len(steps)
+    # A share grows upwards.
+    assert heights == sorted(heights, reverse=True)
+
+
+def steps_of(*pairs):
+    return [StepEntry(orientations=k, share=share, at_most=most) for k, (share, most) in enumerate(pairs, 1)]
+
+
+def test_the_curve_stands_at_its_shares():
+    drawn = operations.curve(steps_of((0.5, 0.75), (1.0, None)))
+    near, far, top, bottom = drawn.edges
+    half, middle = (top + bottom) / 2, (near + far) / 2
+    assert drawn.line == f"M{near} {bottom}V{half}H{middle}V{float(top)}H{float(far)}"
+    assert drawn.bounds == [(near, middle, bottom - 0.75 * (bottom - top))]
+    assert [text for _, text in drawn.across] == ["1", "2"]
+    assert operations.curve([]) is None
+    assert operations.curve(steps_of((1.0, 1.0))).line.count("V") == 1
+    assert len(operations.curve(steps_of(*[(0.5, None)] * 37)).across) <= 10
+
+
+def test_shares_of_the_curve_are_rounded_to_the_safe_side():
+    assert operations._percent(operations._up(0.98301)) == "98.4 %"
+    assert operations._percent(operations._up(1.0)) == "100 %"
+    assert operations._percent(operations._up(0.75)) == "75 %"
+    assert operations._percent(1.0 - 1e-6) == ">99.9 %"
+
+
+def test_looks_differ(planned):
+    """Of so many operations as the colours go round four times."""
+    one = planned.plan.operations.plans[0].operations[0]
+    told = [operations._operation(planned.plan, one, k, 0) for k in range(32)]
+    assert len({(each["colour"], each["pattern"]) for each in told}) == 32
+    assert [each["pattern"] for each in told[:16]] == ["plain"] * 8 + ["hatch"] * 8
+
+
+def rgb(text):
+    return np.array(list(bytes.fromhex(text[1:]))).astype(int)
+
+
+def test_labels_take_little(planned, data):
+    """The page with operations is at most so much larger as its list and one label a sample are."""
+    answers = replace(planned.answers, operations=None)
+    without = write.page(replace(planned, answers=answers), triangles=2000)
+    assert len(data) <= 1.15 * len(without)
+
+
+def test_a_page_without_operations_has_none_of_it(planned):
+    bare = plan(ROOT / "samples" / "pocket_top.step", faces="all", grid=5, cutters=["R6L80"], area_budget=0)
+    read = Page(write.page(bare, triangles=500))
+    assert read.meta["operations"] is None
+    assert not any(name.startswith("operation") for name in read.meta["arrays"])
+    assert not any(a.get("id") in ("operations", "curve") for _, a, _ in read.elements)
+    assert operations.tables(bare.plan, story_of(bare.plan)) is None
+
+
+def test_simultaneous_operations_and_none_are_shown_too(planned):
+    """An operation without an axis; samples that none takes; a plan of nothing."""
+    found, entry = planned.answers.operations, planned.plan.operations
+    first, told = found.plans[0], entry.plans[0]
+    one = replace(first.operations[0], mode="simultaneous", axis=None, angle=None, other_angle=None)
+    label = np.where(first.label == 0, 0, -1).astype(np.int32)
+    some = replace(first, operations=(one,), label=label)
+    none = replace(first, name="fastest", operations=(), label=np.full_like(label, -1))
+    plans = [
+        told.model_copy(update={"operations": [told.operations[0].model_copy(update={"mode": "simultaneous", "axis": None,
+                                                "angles_deg": None, "seconds": None, "cut_length_mm": None})]}),
+        told.model_copy(update={"name": "fastest", "operations": []}),
+    ]  # fmt: skip
+    changed = replace(
+        planned,
+        answers=replace(planned.answers, operations=replace(found, plans=(some, none))),
+        plan=planned.plan.model_copy(update={"operations": entry.model_copy(update={"plans": plans, "curve": []})}),
+    )
+    read = Page(write.page(changed, triangles=500))
+    few, nothing = read.meta["operations"]["plans"]
+    assert [o["axis"] for o in few["operations"]] == [None]
+    assert read.array(few["array"]).tolist() == (label + 1).tolist()
+    assert nothing["operations"] == []
+    assert not read.array(nothing["array"]).any()
+    row = next(text for tag, a, text in read.elements if tag == "tr" and "data-operation" in a)
+    assert row.startswith("op1simultaneous–")
+    assert not any(a.get("class") == "curve" for _, a, _ in read.elements)
+
+
+sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: setup.sh dev")
+
+
+@pytest.fixture(scope="module")
+def path(data, tmp_path_factory):
+    path = tmp_path_factory.mktemp("page") / "review.html"
+    path.write_bytes(data)
+    return path
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with sync_api.sync_playwright() as playwright:
+        browser = launch(playwright)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def page(browser, path):
+    context = browser.new_context(viewport={"width": 1366, "height": 768}, reduced_motion="reduce")
+    page = opened(context, path)
+    yield page
+    said = page.said
+    context.close()
+    assert said == []
+
+
+def picture(page):
+    """The canvas as it is seen: (height, width, 3) bytes."""
+    from PIL import Image
+
+    return np.asarray(Image.open(io.BytesIO(page.locator("#frame").screenshot())).convert("RGB")).astype(int)
+
+
+def colours(page, rows):
+    """Mean colours of the pixels about samples."""
+    box, image = page.locator("#frame").bounding_box(), picture(page)
+    at = [[round(a - b) for a, b in zip(place_of(page, r), (box["x"], box["y"]), strict=True)] for r in rows]
+    return [image[y - 2 : y + 3, x - 2 : x + 3].reshape(-1, 3).mean(axis=0) for x, y in at]
+
+
+def alike(found, wanted):
+    """Whether a lit colour has the hue of another one; black has none."""
+    if not wanted.any():
+        return found.max() < 40
+    return np.abs(found / found.sum() - wanted / wanted.sum()).max() < 0.1
+
+
+def shown_rows(page, planned, label, k):
+    """Some seen samples of an operation with neighbours of the same one, on the same face, on all four sides."""
+    edge, face = planned.samples.neighbours, planned.samples.face
+    same = (label[edge] == k).all(axis=1) & (face[edge[:, 0]] == face[edge[:, 1]])
+    count = np.bincount(edge[same].reshape(-1), minlength=len(label))
+    return seen(page, np.flatnonzero(count >= 4))[:3]
+
+
+def test_the_surface_is_coloured_by_operation(page, planned, read):
+    before = page.locator("#legend").inner_text()
+    for (found, _, told), title in zip(each_plan(planned, read), ("Fewest", "Fastest"), strict=True):
+        page.get_by_role("button", name=f"{title} operations").click()
+        assert page.evaluate("document.querySelector('#colouring').value") == f"operation:{told['key']}"
+        seen_colours = 0
+        for k, one in enumerate(told["operations"]):
+            rows = shown_rows(page, planned, found.label, k)
+            for each in colours(page, rows):
+                assert alike(each, rgb(one["colour"])), (title, one["label"], each)
+                seen_colours += 1
+            assert one["label"] in page.inner_text("#legend")
+        assert seen_colours >= 3
+    page.get_by_role("button", name="Verdicts").click()
+    assert page.locator("#legend").inner_text() == before
+
+
+def entry(page, key, k):
+    return page.locator(f'#operations table[data-plan="{key}"] tr[data-operation="{k}"] button')
+
+
+def test_an_entry_turns_the_part_and_puts_its_tool_there(page, planned, read):
+    for _, _, told in each_plan(planned, read):
+        for k, one in enumerate(told["operations"][:4]):
+            entry(page, told["key"], k).click()
+            assert page.evaluate("review.cutter.id") == one["cutter"]
+            assert page.evaluate("review.sample.row") == one["sample"]
+            assert page.inner_text("#status") == one["text"]
+            assert entry(page, told["key"], k).get_attribute("aria-pressed") == "true"
+            tool, back = page.evaluate(
+                "[review.tool.group.matrix.elements.slice(4, 7), review.stage.table.frame().back]"
+            )
+            assert np.allclose(tool, one["axis"], atol=1e-3)
+            assert np.allclose(back, one["axis"], atol=1e-9)
+            assert page.evaluate("[review.state.state, review.state.certified, review.tool.group.visible]") == [
+                "free", True, True,
+            ]  # fmt: skip
+            assert one["label"] in page.inner_text("#posture-line")
+
+
+def test_hovering_or_focusing_an_entry_lights_its_regions(page, planned, read):
+    found, _, told = next(iter(each_plan(planned, read)))
+    page.keyboard.press("o")
+    mine, others = shown_rows(page, planned, found.label, 0), shown_rows(page, planned, found.label, 1)
+    assert mine
+    assert others
+    plain = colours(page, [*mine, *others])
+
+    def changed():
+        return [np.abs(a - b).max() > 20 for a, b in zip(plain, colours(page, [*mine, *others]), strict=True)]
+
+    lit = [False] * len(mine) + [True] * len(others)
+    entry(page, told["key"], 0).hover()
+    assert changed() == lit
+    page.mouse.move(1360, 5)
+    assert not any(changed())
+    entry(page, told["key"], 0).focus()
+    assert changed() == lit
+    entry(page, told["key"], 0).evaluate("button => button.blur()")
+    assert not any(changed())
+
+
+def test_the_keyboard_switches_and_the_help_says_so(page, read):
+    keys = [f"operation:{each['key']}" for each in read.meta["operations"]["plans"]]
+    for wanted in [*keys, "verdict"]:
+        page.keyboard.press("o")
+        assert page.evaluate("review.mode") == wanted
+    page.keyboard.press("?")
+    assert "operations" in page.inner_text("#help")
+
+
+def test_a_click_shows_the_tool_of_the_operation_there(page, planned, read):
+    found, _, told = next(iter(each_plan(planned, read)))
+    page.keyboard.press("o")
+    for k in range(2):
+        (row, *_) = shown_rows(page, planned, found.label, k)
+        page.mouse.click(*place_of(page, row))
+        axis = page.evaluate("review.tool.group.matrix.elements.slice(4, 7)")
+        assert np.allclose(axis, told["operations"][k]["axis"], atol=1e-3)
+    # Verdicts show the posture found again.
+    page.keyboard.press("o")
+    page.keyboard.press("o")
+    tilt = np.degrees(planned.reaches[page.evaluate("review.cutter.id")].tilt[row])
+    assert page.evaluate("review.posture.tilt") == pytest.approx(tilt, abs=0.01)
+
+
+def test_the_list_is_printed(page):
+    from pypdf import PdfReader
+
+    text = " ".join(each.extract_text() for each in PdfReader(io.BytesIO(page.pdf(format="A4"))).pages)
+    for words in ("Operations", "op1", "op2", "Share of the area by number"):
+        assert words in text, words
+
+
+@pytest.mark.parametrize("width", [1366, 700])
+def test_axe_finds_nothing(browser, path, width):
+    axe = ROOT / "page" / "node_modules" / "axe-core" / "axe.min.js"
+    if not axe.exists():
+        pytest.skip("axe-core is not installed: npm ci in page/")
+    context = browser.new_context(viewport={"width": width, "height": 768}, reduced_motion="reduce")
+    page = opened(context, path)
+    page.keyboard.press("o")
+    entry(page, "fewest", 0).click()
+    page.evaluate(axe.read_text())
+    found = page.evaluate("axe.run().then(result => result.violations)")
+    assert [(each["id"], each["nodes"][0]["html"][:120]) for each in found] == []
+    context.close()
