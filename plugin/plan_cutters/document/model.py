@@ -13,7 +13,7 @@ from plan_cutters.document.inside import InsideEntry
 from plan_cutters.document.operations import OperationsEntry
 from plan_cutters.document.part_info import PartInfo
 from plan_cutters.document.scope import Scope
-from plan_cutters.document.setups import SetupEntry, SetupReach
+from plan_cutters.document.setups import SetupEntry, SetupProposal, SetupReach
 from plan_cutters.document.shares import AreaShare, FaceVerdicts, VerdictCounts
 from plan_cutters.document.travel import PlacementEntry, TravelEntry
 
@@ -41,6 +41,7 @@ class Effective(Frozen):
     setup: Vector
     placement: PlacementEntry | None = Field(default=None, description="null where the axis alone was given")
     other_setups: list[Vector] = Field(default=[], description="in which every cutter was judged, too")
+    propose: bool = Field(default=False, description="always false: what was proposed is in `setup_proposal`")
     other_placements: list[PlacementEntry | None] = Field(
         default=[], description="of these; empty if only axes were given"
     )
@@ -249,6 +250,7 @@ class FixtureEntry(Frozen):
     chord_error_mm: float = Field(description="how far they are from what they stand for; of a mesh, as stated")
     watertight: bool = Field(description="it encloses something; else only its surface is in the way")
     notes: list[str]
+    setups: list[int] = Field(default=[0], description="setups in which it stands, counted from 0 for the first")
 
 
 class CutterEntry(VerdictCounts):
@@ -385,6 +387,7 @@ class Plan(Frozen):
         "where a cutter is selected, where none does, or where nothing is within the limit",
     )
     selection: Selection
+    setup_proposal: SetupProposal | None = Field(default=None, description="null unless asked for (--setup auto)")
     setups: list[SetupEntry] = Field(
         default=[], description="this setup axis first; empty where any tool axis is possible"
     )

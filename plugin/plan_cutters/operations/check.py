@@ -94,6 +94,7 @@ def _weights(
     for c, s in sorted({*zip(cutter.tolist(), setup.tolist(), strict=True)}):
         axes = orientations[s].kinematics.axis(np.radians(angle[(cutter == c) & (setup == s)]))
         free, _ = served_by(rows, axes, ready.samples, ready.cutters[c], ready.setups[s])
+        free &= ready.machinable[s][rows]
         most = max(most, int((free @ weight).max(initial=0)))
     total = int(weight.sum())
     proved = -(-total // _UNIT)
@@ -118,6 +119,7 @@ def _plan(
         angle = np.radians([[operation["angles_deg"][name] for name in names]])
         axis = orientations[operation["setup"]].kinematics.axis(angle)
         free, _ = served_by(rows, axis, ready.samples, cutters[operation["cutter"]], ready.setups[operation["setup"]])
+        free &= ready.machinable[operation["setup"]][rows]
         wrong += int((~free[0]).sum())
         tested += len(rows)
     each = len([operation for operation in plan["operations"] if operation["mode"] == "fixed"])
