@@ -31,6 +31,8 @@ _ONE = float(np.cos(np.radians(0.1)))
 COMPARED, _FIRST, _MORE = 400, 10, 6
 #: Heights over the table are told apart in so many steps; shares nearer than the second are equal.
 _HEIGHTS, _EVEN = 12, 0.002
+#: A setup that stands on no plane counts so much: it needs more to hold it than a table.
+_ON_NO_PLANE = 0.75
 #: Setups that are proposed together, at most.
 MOST = 3
 
@@ -213,9 +215,9 @@ class Ranking:
 
     def search(self, left: NDArray[np.bool_], most: int) -> None:
         """Search the directions that may serve most of what is left (r,), at most so many, while they may beat what was found."""
-        stands = np.array([len(each) > 0 for each in self.candidates.stands_on])
-        upper = self.share(self.bound & left[:, None])
-        order = np.lexsort((np.arange(len(upper)), ~stands, -np.round(upper / _EVEN)))
+        worth = np.array([1.0 if each else _ON_NO_PLANE for each in self.candidates.stands_on])
+        upper = worth * self.share(self.bound & left[:, None])
+        order = np.lexsort((np.arange(len(upper)), -np.round(upper / _EVEN)))
         best, tried = 0.0, 0
         for k in order.tolist():
             if tried == most or upper[k] <= best + 0.5 * _EVEN:
@@ -223,7 +225,7 @@ class Ranking:
             if k not in self.served:
                 self.served[k] = self._searched(k)
                 tried += 1
-            best = max(best, float(self.share((self.served[k] & left)[:, None])[0]))
+            best = max(best, float(worth[k] * self.share((self.served[k] & left)[:, None])[0]))
 
     def _searched(self, k: int) -> NDArray[np.bool_]:
         """Where any cutter has a posture with a table under the part, of the rows (r,)."""
@@ -255,8 +257,20 @@ class Ranking:
         tuple of int
             Candidates, that with the most area first; none where none serves anything.
         """
-        # Of equal ones that which stands on a plane, then that which comes first.
-        every = sorted(set(self.served) - without, key=lambda k: (not self.candidates.stands_on[k], k))
+        every = sorted(set(self.served) - without)
+        flat = self._chosen([k for k in every if self.candidates.stands_on[k]], most)
+        free = self._chosen(every, most)
+        return flat if self._together(flat) >= _ON_NO_PLANE * self._together(free) else free
+
+    def _together(self, chosen: Sequence[int]) -> float:
+        """The share of area that some candidates serve together."""
+        whole = np.zeros(len(self.rows), bool)
+        for k in chosen:
+            whole |= self.served[k]
+        return float(self.share(whole[:, None])[0])
+
+    def _chosen(self, every: Sequence[int], most: int) -> tuple[int, ...]:
+        """The same among some candidates."""
         if not every:
             return ()
         table = np.stack([self.served[k] for k in every], axis=1)
