@@ -190,6 +190,8 @@ def prepare(
     at: At = lambda whose, face: None, ahead: Callable[[str], None] = lambda entry: None, aside: Mapping[int, str] | None = None,
 ) -> Prepared:  # fmt: skip
     """Read, sample, classify and surround with obstacles; arguments as for `run`."""
+    if options.propose:
+        raise OptionError("setup auto is for a whole plan: name the setup")
     clock = clock or Clock()
     with clock.stage("read"):
         stands = _read(part, options, read_timeout)

@@ -158,7 +158,7 @@ def holdable(
 
 @dataclass(slots=True)
 class Ranking:
-    """What is known of each direction; it grows as directions are searched.
+    """The ranking keeps what is known of each direction; it grows as directions are searched.
 
     Attributes
     ----------

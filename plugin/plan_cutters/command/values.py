@@ -79,7 +79,7 @@ class Setup(click.ParamType):
 
         if (named := along(value)) is not None:
             return named
-        if value.strip().lower() == "auto":
+        if value.strip().lower() == "auto" and param is not None and param.multiple:
             return "auto"
         try:
             x, y, z = (float(part) for part in value.split(","))

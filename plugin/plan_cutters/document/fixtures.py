@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from cad_io.read.mesh import Mesh
-from plan_cutters.document.model import FixtureEntry
+from plan_cutters.document.fixture_entry import FixtureEntry
 from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
 
 

@@ -8,6 +8,7 @@ from typing import Literal
 from pydantic import Field
 
 from plan_cutters.document.answers import LeastSetEntry, MendEntry, RadiusEntry, StickOutEntry
+from plan_cutters.document.fixture_entry import FixtureEntry
 from plan_cutters.document.frozen import Frozen, Posture, Vector
 from plan_cutters.document.inside import InsideEntry
 from plan_cutters.document.operations import OperationsEntry
@@ -234,23 +235,6 @@ class LibraryEntry(Frozen):
     holders: list[str] = Field(description="that it lists by themselves")
     notes: list[str]
     unused: list[UnusedEntry]
-
-
-class FixtureEntry(Frozen):
-    """A body that is in the way and no part of what is machined."""
-
-    name: str = Field(description="as `obstacle_face` has it: fixture:NAME")
-    file: str | None = Field(description="null for words and objects")
-    sha256: str | None
-    unit: str | None = Field(description="of lengths in the file; null: as the file says")
-    placement: tuple[float, float, float, float, float, float] = Field(
-        description="x, y, z, mm, and turns about the part's fixed x, then y, then z axis, deg, which come before the shift"
-    )
-    triangles: int
-    chord_error_mm: float = Field(description="how far they are from what they stand for; of a mesh, as stated")
-    watertight: bool = Field(description="it encloses something; else only its surface is in the way")
-    notes: list[str]
-    setups: list[int] = Field(default=[0], description="setups in which it stands, counted from 0 for the first")
 
 
 class CutterEntry(VerdictCounts):

@@ -20,7 +20,7 @@ Axis = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class OtherSetup(Record):
-    """What judging needs to know of another setup than the first.
+    """Another setup than the first has its own conditions, and its own samples that no cutter gets to.
 
     Attributes
     ----------
