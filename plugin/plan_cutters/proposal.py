@@ -126,9 +126,9 @@ def _told(
         axis_words(each.axis) + (f" (on {', '.join(each.stands_on)})" if each.stands_on else " (on no plane)")
         for each in setups
     )
-    of = f"Of {len(ranking.candidates.axis)} directions, {len(ranking.served)} were searched at {len(ranking.rows)} samples"
-    why = (f"{of} over a table; {'this one serves' if len(setups) == 1 else 'these serve'} {together:.1%} of the samples' area. "
-           f"The plan reaches {share:.1%} of the target area"
+    of = f"{len(ranking.served)} of {len(ranking.candidates.axis)} directions searched at {len(ranking.rows)} samples"
+    why = (f"With {of} over a table, {'this one serves' if len(setups) == 1 else 'these serve'} {together:.1%} of the samples' "
+           f"area. The plan reaches {share:.1%} of the target area"
            f"{'' if held else f', and holds only {kept:.1%} of what was promised'}.")  # fmt: skip
     entry = SetupProposal(setups=setups, directions=len(ranking.candidates.axis), searched=len(ranking.served),
                           samples=len(ranking.rows), promised=min(1.0, together), found=share, kept=kept, held=held, tried=tried,

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from plan_cutters import Options, plan
-from plan_cutters.command.check_operations import checked  # noqa: F401  the command is there
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.verdicts import FIXTURE, INACCESSIBLE, REASONS
@@ -108,6 +107,7 @@ def test_fixtures_are_listed_with_the_setups_that_they_stand_in():
     found = two(part, fixtures=[post])
     listed = {(each.name, each.placement[:3]): each.setups for each in found.plan.fixtures}
     assert listed["fixture:box", (50.0, 0.0, 0.0)] == [0, 1]
+    assert sum("fixture:table" in note and "in the setup 0,0,-1" in note for note in found.plan.notes) == 1
     tables = [each.setups for each in found.plan.fixtures if each.name == "fixture:table"]
     assert tables == [[0], [1]]
     first = [each.name for each in found.conditions.around.fixtures]
@@ -140,8 +140,8 @@ def test_clearances_are_among_the_obstacles_of_the_setup_that_serves():
 def test_operations_of_a_setup_leave_what_it_holds_and_what_its_fixtures_cover():
     found = two(box(), machine="trunnion-ac", operations="fewest")
     made, at = found.answers.operations.plans[0], faces_at(found)
-    (name,) = found.reaches
     machinable = found.ready.machinable
+    (name,) = found.reaches
     assert {each.setup for each in made.operations} == {0, 1}
     for each in made.operations:
         assert machinable[each.setup][each.rows].all()

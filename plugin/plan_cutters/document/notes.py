@@ -10,6 +10,7 @@ from plan_cutters.document.model import CutterEntry
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.notes import Note
+from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.travel import unjudged
 from plan_cutters.options import Options
@@ -29,6 +30,7 @@ def notes_of(ready: Prepared, entries: Sequence[CutterEntry]) -> list[Note]:
         *_of_sides(scene, options, ready.conditions.tolerance),
         *_of_obstacles(scene.part, around),
         *_of_fixtures(around.fixtures, options.shared_fixtures, several=bool(options.other_setups)),
+        *_of_other_fixtures(ready),
         *ready.chosen.notes,
         *notes_of_setups(ready),
         *_of_spacing(ready),
@@ -157,6 +159,16 @@ def _of_travel(options: Options) -> Iterator[Note]:
     yield Note("travel_of_holder", said)
     if options.other_setups:
         yield Note("travel_first_setup", "Linear travel is judged in the first setup alone.")
+
+
+def _of_other_fixtures(ready: Prepared) -> Iterator[Note]:
+    """Give the notes on fixtures that stand in other setups than the first alone."""
+    first = [(each.name, each.notes) for each in ready.conditions.around.fixtures]
+    for conditions in ready.setups[1:]:
+        for each in conditions.around.fixtures:
+            for note in each.notes if (each.name, each.notes) not in first else ():
+                there = axis_words(conditions.setup.tolist())
+                yield Note("fixture", f"{each.name} in the setup {there}: {note}.")
 
 
 def _of_fixtures(fixtures: Sequence[PlacedFixture], shared: Sequence[Fixture], *, several: bool) -> Iterator[Note]:
