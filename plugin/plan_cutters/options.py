@@ -10,7 +10,7 @@ from typing import Any, TypedDict
 from cad_io.arrays import Floats
 from cad_io.units import UNITS
 from plan_cutters.domain.answers import answers_of
-from plan_cutters.domain.checks import choice, flag, items, number, shown, whole
+from plan_cutters.domain.checks import choice, flag, number, shown, whole
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.default_tools import builtin
 from plan_cutters.domain.fixture import Fixture
@@ -18,9 +18,10 @@ from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.operations import operations_of
 from plan_cutters.domain.placement import Placement
-from plan_cutters.domain.posture import PostureRange, along, unit
+from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import OptionError
 from plan_cutters.library.records import Entry, Library, libraries_of
+from plan_cutters.machines.given_setups import setups_given, without
 
 #: Gouge tolerances that can be asked for, mm.
 LEAST_TOLERANCE, MOST_TOLERANCE = 1e-4, 10.0
@@ -39,24 +40,6 @@ def machine_given(given: Any) -> Machine:
 
         return machine_of(given)
     return Machine.of(given)
-
-
-def _setup(given: Any, placed: Placement | None) -> tuple[tuple[float, float, float], Placement | None]:
-    """A setup axis, and what more is known of the setup: a word as `+z` is an axis, another text or path a setup file."""
-    if isinstance(given, os.PathLike) or (isinstance(given, str) and along(given) is None):
-        from plan_cutters.machines.setups import read_setup
-
-        given = read_setup(given)
-    if isinstance(given, Placement):
-        return given.z, given
-    x, y, z = unit(given, "setup axis").tolist()
-    if placed is None:
-        return (x, y, z), None
-    if not isinstance(placed, Placement):
-        raise OptionError(f"a placement must be a Placement, not {shown(placed)}")
-    if not placed.stands_as((x, y, z)):
-        raise OptionError("the setup axis and the placement disagree: give the placement as the setup")
-    return placed.z, placed
 
 
 def cores() -> int:
@@ -124,6 +107,7 @@ class PlanOptions(SceneOptions, total=False):
     unit: str | None
     placement: Placement | None
     other_placements: Sequence[Placement | None]
+    propose: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,9 +130,10 @@ class Options:
     setup : tuple of float
         Direction of the part along the machine's spindle at zero angles; kept with length 1. May be given as a word (`+z`, `-y`),
         a Placement or a setup file: of the last two it is kept as `placement`, too, and its fixtures are added to `fixtures`.
+        `auto` proposes setups (`propose`).
     other_setups : tuple of (float, float, float)
         More setup axes, in which every cutter is judged as well; the sides of open faces stay those of `setup`. May be given in
-        the same ways, without fixtures and clamped faces of their own.
+        the same ways, with fixtures and clamped faces of their own.
     faces : str or objects, optional
         Target faces, in the words of the command line, or as numbers, or as objects of the kernel or a CAD host. Default:
         the faces picked on the object that the part was made from; where none were, `sculptured,blends`.
@@ -197,11 +182,13 @@ class Options:
         Length unit to take instead of the part's own, one of `cad_io.units.UNITS`.
     fixtures : tuple of Fixture
         What holds the part: obstacles, never targets. May be given as texts such as `vise.step@0,0,-20` or `table:-5`, as
-        trimesh meshes and shapes of a kernel or CAD host, or as one of these.
+        trimesh meshes and shapes of a kernel or CAD host, or as one of these. Those that no setup file names stand in all setups.
     placement : Placement, optional
         How the part stands in `setup`, where more than the axis is known.
     other_placements : tuple of (Placement or None)
         The same of each of `other_setups`; empty where none says more than its axis.
+    propose : bool
+        The setups are to be proposed: as `setup="auto"` says it.
 
     Raises
     ------
@@ -256,6 +243,7 @@ class Options:
     fixtures: tuple[Fixture, ...] = ()
     placement: Placement | None = None
     other_placements: tuple[Placement | None, ...] = ()
+    propose: bool = False
 
     def __post_init__(self) -> None:
         self._check_kinds()
@@ -286,6 +274,11 @@ class Options:
         if self.operations is not None and self.machine.turns and len(self.machine.rotary) < 2:
             raise OptionError(f"machine {self.machine.name} has {len(self.machine.rotary)} rotary axes: a plan of operations "
                               "chooses orientations of two; leave out --operations, or name another machine")  # fmt: skip
+        if not self.held_alike and (self.posture_maps or {"mend", "mend-all"} & set(self.answers)):
+            asked = "posture maps are" if self.posture_maps else "the answer mend is"
+            raise OptionError(
+                f"{asked} about one setup, and these differ in fixtures or clamped faces: plan one setup by itself"
+            )
         if self.most_operations is not None and self.most_operations < 1:
             raise OptionError(f"most operations {self.most_operations} must be at least 1")
         for word, (low, high, unit_) in _RECKONED.items():
@@ -311,7 +304,8 @@ class Options:
         else:
             take(libraries=libraries, cutters=Cutter.each_of(self.cutters))
         take(machine=machine_given(self.machine))
-        self._place(take)
+        take(**setups_given(self.setup, self.placement, self.other_setups, self.other_placements, self.fixtures,
+                            propose=flag(self.propose, "propose")))  # fmt: skip
         take(tolerance=number(self.tolerance, "tolerance"))
         take(jobs=cores() if self.jobs is None else whole(self.jobs, "jobs"))
         if self.area_budget is not None:
@@ -341,25 +335,19 @@ class Options:
         postures = self.postures
         take(tilt=postures.tilt, rotation=postures.rotation, rotation_step=postures.step)
 
-    def _place(self, take: Any) -> None:
-        """Setups as axes, and what more is known of them as placements."""
-        axis, placed = _setup(self.setup, self.placement)
-        fixtures = Fixture.each_of(self.fixtures)
-        if placed is not None and placed is not self.placement:
-            fixtures = Fixture.each_of([*fixtures, *(each for each in placed.fixtures if each not in fixtures)])
-        take(setup=axis, placement=placed, fixtures=fixtures)
-        given = items(self.other_setups, "other setups", "directions")
-        places = items(self.other_placements, "other placements", "placements") or [None] * len(given)
-        if len(places) != len(given):
-            raise OptionError(f"{len(places)} other placements were given for {len(given)} other setups")
-        others = [_setup(each, place) for each, place in zip(given, places, strict=True)]
-        for place in [place for _, place in others if place is not None]:
-            if place.clamped or any(each not in fixtures for each in place.fixtures):
-                raise OptionError("only the first setup can have clamped faces and fixtures; plan the others each by itself",
-                                  file=place.file or None)  # fmt: skip
-        known = any(place is not None for _, place in others)
-        take(other_setups=tuple(axis for axis, _ in others))
-        take(other_placements=tuple(place for _, place in others) if known else ())
+    @property
+    def shared_fixtures(self) -> tuple[Fixture, ...]:
+        """Fixtures that stand in all setups: those that the first setup does not bring itself."""
+        own = () if self.placement is None else self.placement.fixtures
+        return without(self.fixtures, own)
+
+    @property
+    def held_alike(self) -> bool:
+        """Whether the part is held by the same fixtures, at the same faces, in all setups."""
+        if not self.other_setups:
+            return True
+        places = (self.placement, *(self.other_placements or (None,) * len(self.other_setups)))
+        return not any(place is not None and (place.clamped or place.fixtures) for place in places)
 
     @classmethod
     def of(cls, words: Mapping[str, Any]) -> "Options":

@@ -9,7 +9,6 @@ from functools import partial
 from typing import Any, Unpack, get_type_hints
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cad_io import Part, read_part
 from cad_io.arrays import Ints
@@ -19,11 +18,10 @@ from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock, Progress
-from plan_cutters.document.frozen import Vector
 from plan_cutters.document.model import AreaEntry, CutterEntry
 from plan_cutters.document.operations import with_motion
 from plan_cutters.document.plan import Elsewhere, OverSetups, completed, plan_of, selection
-from plan_cutters.document.setups import SetupEntry
+from plan_cutters.document.setup_table import setup_table
 from plan_cutters.document.travel import travels
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.checks import shown
@@ -33,13 +31,15 @@ from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.verdicts import CONVEX, UNJUDGED, Verdicts
 from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.options import Options, PlanOptions
+from plan_cutters.proposal import plan_proposed
 from plan_cutters.result import Result
-from plan_cutters.scene.conditions import Conditions, contacts_of, warm
+from plan_cutters.scene.conditions import contacts_of, warm
 from plan_cutters.scene.faces import choose
 from plan_cutters.scene.inside_material import inside_bodies, inside_material
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.question import question
 from plan_cutters.scene.scene import Scene
+from plan_cutters.scene.setups import conditions_of, places, with_setups
 from plan_cutters.scene.spacing import affordable, sampled
 from plan_cutters.scene.threads import part_of
 from plan_cutters.scene.work import Work
@@ -51,7 +51,7 @@ from plan_cutters.stages.other_setups import in_setup
 from plan_cutters.stages.posture_maps import posture_maps
 from plan_cutters.stages.reasons import Reasons
 from plan_cutters.stages.select_cutters import ranked
-from plan_cutters.stages.setups import AXES, within_limits
+from plan_cutters.stages.setups import within_limits
 from plan_cutters.stages.witness import witnesses
 
 #: The work between samples, as a share of that of the searches, and so much of it in any case: boxes.
@@ -123,6 +123,11 @@ def run(
     `ahead` waits for the machine code of an entry that is made meanwhile; `aside` says by number why faces are not to be worked
     on at all.
     """
+    if options.propose:
+        again = partial(run, read_timeout=read_timeout, at=at, ahead=ahead)
+        return plan_proposed(
+            partial(prepare, part, read_timeout=read_timeout, at=at, ahead=ahead, aside=aside), again, options, clock
+        )
     started = datetime.datetime.now(datetime.UTC)
     ready = prepare(part, options, clock, read_timeout=read_timeout, at=at, ahead=ahead, aside=aside)
     here: dict[Cutter, Verdicts] = {}
@@ -136,10 +141,7 @@ def run(
             here[cutter] = judge(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell,
                                  work=searched)  # fmt: skip
             seconds[cutter] = time.perf_counter() - began
-    elsewhere = [
-        (axis, _elsewhere(ready, here, conditions, clock))
-        for axis, conditions in zip(options.other_setups, ready.setups[1:], strict=True)
-    ]
+    elsewhere = [(axis, _elsewhere(ready, here, k, clock)) for k, axis in enumerate(options.other_setups, 1)]
     judged = _judged(ready, here, elsewhere, seconds, clock)
     answers = ask(ready, {cutter: each.here for cutter, each in judged.items()}, clock.stage, elsewhere)
     if options.operations is not None:
@@ -181,14 +183,12 @@ def run(
     return replace(result, plan=clock.stamp(document), maps=maps, answers=answers)
 
 
-def _elsewhere(
-    ready: Prepared, here: Mapping[Cutter, Verdicts], conditions: Conditions, clock: Clock
-) -> dict[str, Verdicts]:
+def _elsewhere(ready: Prepared, here: Mapping[Cutter, Verdicts], setup: int, clock: Clock) -> dict[str, Verdicts]:
     """Find the verdicts of each cutter in another setup."""
     found = {}
     for cutter, verdicts in here.items():
         with clock.stage("setups") as tell:
-            found[cutter.id] = in_setup(ready, cutter, conditions, verdicts, progress=tell)
+            found[cutter.id] = in_setup(ready, cutter, setup, verdicts, progress=tell)
     return found
 
 
@@ -197,6 +197,8 @@ def prepare(
     at: At = lambda whose, face: None, ahead: Callable[[str], None] = lambda entry: None, aside: Mapping[int, str] | None = None,
 ) -> Prepared:  # fmt: skip
     """Read, sample, classify and surround with obstacles; arguments as for `run`."""
+    if options.propose:
+        raise OptionError("setup auto is for a whole plan: name the setup")
     clock = clock or Clock()
     with clock.stage("read"):
         stands = _read(part, options, read_timeout)
@@ -217,7 +219,8 @@ def prepare(
         with clock.stage("fixtures"):
             scene.read_fixtures(read_timeout)
     with clock.stage("sample"):
-        chosen = choose(whole, options.faces, scene.ignored, scene.ignore, options.placement)
+        first, *others = places(options)
+        chosen = choose(whole, options.faces, scene.ignored, scene.ignore, first, others)
         affordable(whole, chosen.targets, options)
         job = partial(sampled, whole, scene.orientation, options, chosen.targets, cutters)
     # Sampling and meshing need nothing of each other.
@@ -234,13 +237,10 @@ def prepare(
         raise UnjudgeableError(
             f"no target face can be judged: {'; '.join(sorted(causes)) or 'no samples'}", file=whole.file
         )
-    along = None if options.placement is None else options.placement.x
-    conditions = Conditions(
-        options.machine, np.array(scene.setup), options.postures, around, around.tolerance(scene.asked), options.jobs,
-        None if along is None else np.array(along),
-    )  # fmt: skip
     with clock.stage("tree"):
-        around.build(options.jobs)
+        conditions, *_ = each = conditions_of(scene, options)
+        for one in each:
+            one.around.build(options.jobs)
     with clock.stage("compile"):
         ahead("search.search")
         warm(contacts_of(samples), cutters[0], conditions)
@@ -249,9 +249,23 @@ def prepare(
             samples, scene.orientation, around.enclosing, around.certain, conditions.tolerance, options.jobs
         )
         inside = inside_bodies(within, around.bodies, scene.orientation)
-    ready = Prepared(
-        scene, options, chosen, spacing, samples, surface_class, region, within, inside, conditions, cutters, coarser
-    )
+        ready = with_setups(
+            Prepared(
+                scene,
+                options,
+                chosen,
+                spacing,
+                samples,
+                surface_class,
+                region,
+                within,
+                inside,
+                conditions,
+                cutters,
+                coarser,
+            ),
+            each,
+        )
     if not ready.finished.any():
         raise UnjudgeableError(
             "every target sample lies inside another body of the part, so there is no surface to finish: leave a body out with "
@@ -298,7 +312,7 @@ def _judged(
     """Combine the verdicts of each cutter over all setups, find the reasons, and make its line in the plan."""
     samples, convex, around = ready.samples, ready.surface_class == CONVEX, ready.conditions.around
     inside = ready.inside_bodies
-    reasons = Reasons(samples, ready.setups, ready.finished & (ready.inside < 0))
+    reasons = Reasons(samples, ready.setups, ready.somewhere, ready.machinable)
     told = {}
     with clock.stage("reasons") as tell:
         for k, (cutter, mine) in enumerate(here.items()):
@@ -310,7 +324,7 @@ def _judged(
         verdicts = explained.verdicts
         with clock.stage(cutter.id, shown=False):
             slack, part = ready.conditions.outer_tool(cutter).slack, ready.scene.part
-            found = witnesses(samples, verdicts, cutter, ready.conditions, inside=ready.inside, part=part)
+            found = witnesses(samples, verdicts, cutter, ready.conditions, inside=ready.shut, part=part)
             marched = march_differs(samples, convex, ready.region, mine.interference_free)
             entry = cutter_entry(cutter, samples, verdicts, found, marched, seconds[cutter], part=part, around=around,
                                  slack=slack, inside=inside, besides=explained.besides)  # fmt: skip
@@ -333,7 +347,7 @@ def assemble(
     here = {cutter.id: each.here for cutter, each in judged.items()}
     served_in = {cutter.id: each.which for cutter, each in judged.items()}
     within = [within_limits(ready.samples, ready.cutters, conditions) & ready.finished for conditions in ready.setups]
-    beyond = ready.finished & ~np.logical_or.reduce(within) & (ready.inside < 0)
+    beyond = ready.somewhere & ~np.logical_or.reduce(within)
     moved = travels(ready.options, ready.samples, {cutter: each.here for cutter, each in judged.items()})
     over = OverSetups(reaches, here, served_in, ready.scene.setup, tuple(elsewhere))
     entries = completed([judged[c].entry for c in ready.cutters], ready, answers, over, beyond, moved)
@@ -341,7 +355,8 @@ def assemble(
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
     best = selected or next((e.id for e in entries if not e.not_reached), None)
     budget = ready.options.contacts_between(len(ready.samples))
-    if best and budget:
+    # Between samples one setup is looked at, whose fixtures and clamped faces would have to be those of all.
+    if best and budget and ready.alike:
         with clock.stage("area"):
             ahead("cover.cover")
             cutter = next(c for c in ready.cutters if c.id == best)
@@ -357,7 +372,7 @@ def assemble(
         ]
     with clock.stage("plan", shown=False):
         began = started or datetime.datetime.now(datetime.UTC)
-        document = plan_of(ready, entries, selected, chosen, began, answers, _setups(ready, within, over))
+        document = plan_of(ready, entries, selected, chosen, began, answers, setup_table(ready, within, over))
     return Result(
         clock.stamp(document),
         ready.scene,
@@ -373,26 +388,3 @@ def assemble(
         here=here,
         served_in=served_in if elsewhere else {},
     )
-
-
-def _setups(ready: Prepared, within: Sequence[NDArray[np.bool_]], over: OverSetups) -> list[SetupEntry]:
-    """How much is within the axis limits and is reached in each setup asked for, `within` (n,) each, and how much would be within
-    them in each along the part's own axes."""
-    if not ready.conditions.machine.limited:
-        return []
-    asked = ready.finished
-    whole = float(ready.samples.area[asked].sum())
-
-    def share(mine: NDArray[np.bool_]) -> float:
-        return min(1.0, float(ready.samples.area[mine].sum()) / whole) if whole > 0.0 else 0.0
-
-    found: dict[Vector, SetupEntry] = {}
-    for k, (axis, each) in enumerate(over.each()):
-        mine = asked & np.logical_or.reduce([verdicts.reached for verdicts in each.values()])
-        found.setdefault(axis, SetupEntry(axis=axis, within=int(within[k].sum()), share=share(within[k]),
-                                          reached=int(mine.sum()), reached_share=share(mine)))  # fmt: skip
-    for axis in AXES:
-        if axis not in found:
-            mine = asked & within_limits(ready.samples, ready.cutters, ready.conditions, axis)
-            found[axis] = SetupEntry(axis=axis, within=int(mine.sum()), share=share(mine))
-    return list(found.values())

@@ -22,7 +22,7 @@ from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.errors import OptionError
-from plan_cutters.scene.clearance import Clearances, clearances
+from plan_cutters.scene.clearance import Clearances, clearances_over
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.faces import face_numbers
 from plan_cutters.scene.preparation import Prepared
@@ -115,7 +115,10 @@ class Result:
     @cached_property
     def clearances(self) -> Clearances:
         """How far the cutter `shown` keeps from everything at the postures found, where it does not cut."""
-        return clearances(self.samples, self.judged(), self.reaches[self.shown], self.conditions)
+        setups = (self.conditions,) if self.ready is None else self.ready.setups
+        return clearances_over(
+            self.samples, self.judged(), self.reaches[self.shown], setups, self.served_in.get(self.shown)
+        )
 
     @property
     def inside_bodies(self) -> NDArray[np.bool_]:

@@ -54,8 +54,8 @@ def test_the_stub_has_the_names_that_are_handed_on():
 
 def test_every_option_can_be_given_on_the_command_line():
     given = cli.command.make_context("plan-cutters", ["part.step", "--setup", "+z", "--setup", "-y"]).params
-    # The last two come with setup files.
-    assert set(words_of(given)) == WORDS - {"placement", "other_placements"}
+    # Two come with setup files, the last one with the setup `auto`.
+    assert set(words_of(given)) == WORDS - {"placement", "other_placements", "propose"}
     assert set(NAMED) <= set(given)
 
 

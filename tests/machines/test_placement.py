@@ -379,8 +379,16 @@ def test_options_keep_a_placement(tmp_path):
     assert (again.setup, again.placement, again.fixtures) == (found.setup, found.placement, found.fixtures)
     with pytest.raises(OptionError, match="disagree"):
         replace(found, setup=X)
-    with pytest.raises(OptionError, match=r"vise.toml: only the first setup"):
-        Options(setup=X, other_setups=[path])
+    # What it names stands in its own setup alone; what is given beside it, in all.
+    other = Options(setup=X, other_setups=[path], fixtures="box:1,2,3")
+    assert [each.text for each in other.fixtures] == [each.text for each in other.shared_fixtures] == ["box:1,2,3"]
+    assert [each.text for each in other.other_placements[0].fixtures] == ["table:-50"]
+    assert replace(other, grid=5).other_placements == other.other_placements
+    assert (
+        [each.text for each in found.shared_fixtures] == [each.text for each in again.shared_fixtures] == ["box:1,2,3"]
+    )
+    both = Options(setup=path, fixtures="table:-50")
+    assert both.shared_fixtures == both.fixtures
     assert Options(setup=X, other_setups=[path], fixtures="table:-50").other_placements[0].x == Y
 
 

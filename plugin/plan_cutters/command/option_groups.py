@@ -119,7 +119,8 @@ _OPTIONS = (
         multiple=True,
         default=["0,0,1"],
         help="Direction of the part along the machine's spindle, +z, -y or x,y,z, or a setup file (TOML) that says where the "
-        "part stands. Repeatable: every cutter is judged in each, and the summary says what they reach together.  "
+        "part stands. Repeatable: every cutter is judged in each, and the summary says what they reach together. `auto` "
+        "proposes the best one over a table, with --operations the fewest, and plans what it proposes.  "
         "[default: 0,0,1]",
     ),
     _machine(

@@ -26,6 +26,7 @@ _WORDS = {
     "compile": "preparing the search",
     "bodies": "preparing the search",
     "setups": "judging in the other setups",
+    "proposal": "comparing setups",
     "reasons": "finding the reasons",
     "stick-out": "asking for the least stick-out",
     "stick-out-map": "asking for the least stick-out",

@@ -87,6 +87,11 @@ def _words(parts: Sequence[str], given: dict[str, Any]) -> None:
         raise OptionError("-o: the folder has no name")
     if "" in parts:
         raise OptionError("PART: a file has no name")
+    for name in ("postures", "check_operations"):
+        if given[name] is not None and any(str(each).lower() == "auto" for each in given["setup"]):
+            raise OptionError(
+                f"--setup auto plans what it proposes, and --{name.replace('_', '-')} plans nothing: name the setup"
+            )
     if given["check_operations"] is not None and len(parts) > 1:
         raise OptionError("--check-operations is about one part")
     if given["postures"] is not None and len(parts) > 1:
@@ -135,7 +140,8 @@ def look_at(options: "Options") -> None:
     for option, text in (("--faces", options.faces), *(("--ignore", each) for each in given)):
         if isinstance(text, str):
             grammar(text, option)
-    for fixture in options.fixtures:
+    others = [each for place in options.other_placements if place is not None for each in place.fixtures]
+    for fixture in (*options.fixtures, *others):
         if isinstance(fixture.source, str) and not fixture.kind:
             _fixture(fixture.source)
 

@@ -79,16 +79,18 @@ class Setup(click.ParamType):
 
         if (named := along(value)) is not None:
             return named
+        if value.strip().lower() == "auto" and param is not None and param.multiple:
+            return "auto"
         try:
             x, y, z = (float(part) for part in value.split(","))
         except ValueError:
             if value.lower().endswith(".toml") or os.path.isfile(value):
                 return str(value)
-            self.fail(f"{value!r} is no direction, as +z, -y or 0,0,1 (x,y,z), nor a setup file", param, ctx)
+            self.fail(f"{value!r} is no direction, as +z, -y or 0,0,1 (x,y,z), a setup file, or auto", param, ctx)
         return x, y, z
 
     def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
-        found = [CompletionItem(f"{sign}{axis}") for axis in "xyz" for sign in "+-"]
+        found = [CompletionItem(f"{sign}{axis}") for axis in "xyz" for sign in "+-"] + [CompletionItem("auto")]
         return [each for each in found if each.value.startswith(incomplete)] or [FILE]
 
 

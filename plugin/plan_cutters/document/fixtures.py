@@ -1,10 +1,26 @@
 """Fixtures, as the plan file has them."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from cad_io.read.mesh import Mesh
-from plan_cutters.document.model import FixtureEntry
-from plan_cutters.scene.surroundings import PlacedFixture
+from plan_cutters.document.fixture_entry import FixtureEntry
+from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
+
+
+def fixture_entries(each: Sequence[Surroundings]) -> list[FixtureEntry]:
+    """Fixtures of all setups, those of the first one first; what stands there in the same place is one entry."""
+    found: list[FixtureEntry] = []
+    for number, around in enumerate(each):
+        for standing in around.fixtures:
+            mine = fixture_entry(standing)
+            same = [k for k, known in enumerate(found) if known.model_copy(update={"setups": mine.setups}) == mine]
+            if number and same:
+                kept = found[same[0]]
+                found[same[0]] = kept.model_copy(update={"setups": [*kept.setups, number]})
+            else:
+                found.append(mine.model_copy(update={"setups": [number]}))
+    return found
 
 
 def fixture_entry(standing: PlacedFixture) -> FixtureEntry:

@@ -8,12 +8,13 @@ from typing import Literal
 from pydantic import Field
 
 from plan_cutters.document.answers import LeastSetEntry, MendEntry, RadiusEntry, StickOutEntry
+from plan_cutters.document.fixture_entry import FixtureEntry
 from plan_cutters.document.frozen import Frozen, Posture, Vector
 from plan_cutters.document.inside import InsideEntry
 from plan_cutters.document.operations import OperationsEntry
 from plan_cutters.document.part_info import PartInfo
 from plan_cutters.document.scope import Scope
-from plan_cutters.document.setups import SetupEntry, SetupReach
+from plan_cutters.document.setups import SetupEntry, SetupProposal, SetupReach
 from plan_cutters.document.shares import AreaShare, FaceVerdicts, VerdictCounts
 from plan_cutters.document.travel import PlacementEntry, TravelEntry
 
@@ -41,6 +42,7 @@ class Effective(Frozen):
     setup: Vector
     placement: PlacementEntry | None = Field(default=None, description="null where the axis alone was given")
     other_setups: list[Vector] = Field(default=[], description="in which every cutter was judged, too")
+    propose: bool = Field(default=False, description="always false: what was proposed is in `setup_proposal`")
     other_placements: list[PlacementEntry | None] = Field(
         default=[], description="of these; empty if only axes were given"
     )
@@ -235,22 +237,6 @@ class LibraryEntry(Frozen):
     unused: list[UnusedEntry]
 
 
-class FixtureEntry(Frozen):
-    """A body that is in the way and no part of what is machined."""
-
-    name: str = Field(description="as `obstacle_face` has it: fixture:NAME")
-    file: str | None = Field(description="null for words and objects")
-    sha256: str | None
-    unit: str | None = Field(description="of lengths in the file; null: as the file says")
-    placement: tuple[float, float, float, float, float, float] = Field(
-        description="x, y, z, mm, and turns about the part's fixed x, then y, then z axis, deg, which come before the shift"
-    )
-    triangles: int
-    chord_error_mm: float = Field(description="how far they are from what they stand for; of a mesh, as stated")
-    watertight: bool = Field(description="it encloses something; else only its surface is in the way")
-    notes: list[str]
-
-
 class CutterEntry(VerdictCounts):
     id: str
     name: str
@@ -385,6 +371,7 @@ class Plan(Frozen):
         "where a cutter is selected, where none does, or where nothing is within the limit",
     )
     selection: Selection
+    setup_proposal: SetupProposal | None = Field(default=None, description="null unless asked for (--setup auto)")
     setups: list[SetupEntry] = Field(
         default=[], description="this setup axis first; empty where any tool axis is possible"
     )

@@ -8,12 +8,15 @@ from cad_io import Part
 from plan_cutters.document.listed import listed
 from plan_cutters.document.model import CutterEntry
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.notes import Note
+from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.travel import unjudged
 from plan_cutters.options import Options
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
+from plan_cutters.scene.setups import notes_of_setups
 from plan_cutters.scene.spacing import BUDGET
 from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
 
@@ -26,11 +29,14 @@ def notes_of(ready: Prepared, entries: Sequence[CutterEntry]) -> list[Note]:
         *_of_samples(ready),
         *_of_sides(scene, options, ready.conditions.tolerance),
         *_of_obstacles(scene.part, around),
-        *_of_fixtures(around.fixtures, several=bool(options.other_setups)),
+        *_of_fixtures(around.fixtures, options.shared_fixtures, several=bool(options.other_setups)),
+        *_of_other_fixtures(ready),
         *ready.chosen.notes,
+        *notes_of_setups(ready),
         *_of_spacing(ready),
         *_of_travel(options),
         *_of_area(entries, doubtful=around.doubtful),
+        *_of_no_area(ready),
     ]
 
 
@@ -136,6 +142,12 @@ def _of_area(entries: Sequence[CutterEntry], *, doubtful: bool) -> Iterator[Note
                        "served.")  # fmt: skip
 
 
+def _of_no_area(ready: Prepared) -> Iterator[Note]:
+    if not ready.alike and ready.options.area_budget != 0:
+        yield Note("area_not_looked_at", "Nothing is proved between the samples, for the setups differ in fixtures or clamped "
+                   "faces: plan one setup by itself for that.")  # fmt: skip
+
+
 def _of_travel(options: Options) -> Iterator[Note]:
     """Why linear travel is not judged, or what it is judged of."""
     why = unjudged(options.machine, options.placement)
@@ -149,14 +161,24 @@ def _of_travel(options: Options) -> Iterator[Note]:
         yield Note("travel_first_setup", "Linear travel is judged in the first setup alone.")
 
 
-def _of_fixtures(fixtures: Sequence[PlacedFixture], *, several: bool) -> Iterator[Note]:
-    """Give the notes on fixtures that the plan must have; `several`: there is more than one setup."""
+def _of_other_fixtures(ready: Prepared) -> Iterator[Note]:
+    """Give the notes on fixtures that stand in other setups than the first alone."""
+    first = [(each.name, each.notes) for each in ready.conditions.around.fixtures]
+    for conditions in ready.setups[1:]:
+        for each in conditions.around.fixtures:
+            for note in each.notes if (each.name, each.notes) not in first else ():
+                there = axis_words(conditions.setup.tolist())
+                yield Note("fixture", f"{each.name} in the setup {there}: {note}.")
+
+
+def _of_fixtures(fixtures: Sequence[PlacedFixture], shared: Sequence[Fixture], *, several: bool) -> Iterator[Note]:
+    """Give the notes on fixtures that the plan must have; `shared` stand in all setups, of which there are `several`."""
     for each in fixtures:
         for note in each.notes:
             yield Note("fixture", f"{each.name}: {note}.")
     if several:
         for each in fixtures:
-            if each.fixture.follows_setup:
+            if each.fixture.follows_setup and each.fixture in shared:
                 yield Note("fixture_stays", f"{each.name}: it lies across the axis of the first setup, and stays there in the "
                            "others.")  # fmt: skip
     drawn = [each.name for each in fixtures if not isinstance(each.source, Part)]

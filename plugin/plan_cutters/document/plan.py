@@ -19,7 +19,7 @@ from plan_cutters.document.build import (
     versions,
 )
 from plan_cutters.document.effective import effective
-from plan_cutters.document.fixtures import fixture_entry
+from plan_cutters.document.fixtures import fixture_entries
 from plan_cutters.document.frozen import Vector, vector
 from plan_cutters.document.inside import inside_entry
 from plan_cutters.document.libraries import library_entry, source_entry
@@ -57,7 +57,10 @@ def plan_of(
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
     part, around = scene.part, ready.conditions.around
     faces, remarks = face_entries(part, samples, choice), notes_of(ready, entries)
-    absent = {*(() if around.fixtures else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
+    absent = {
+        *(() if _anything_held(ready) else ("fixture",)),
+        *(() if ready.inside_bodies.any() else ("inside_bodies",)),
+    }
     return Plan(
         part=part_info(scene, around),
         effective=effective(ready),
@@ -78,7 +81,7 @@ def plan_of(
         missing=missing_entries(part, around),
         reasons=list(REASONS),
         machine=machine_entry(options.machine, ready.conditions.kinematics),
-        fixtures=[fixture_entry(each) for each in around.fixtures],
+        fixtures=fixture_entries([each.around for each in ready.setups]),
         libraries=[library_entry(library) for library in options.libraries],
         cutters=list(entries),
         selected=selected,
@@ -96,6 +99,11 @@ def plan_of(
         legend_words={word: MEANING[word] for word in PALETTE if word not in absent},
         run=Run(time=started.isoformat(timespec="seconds"), seconds={}),
     )
+
+
+def _anything_held(ready: Prepared) -> bool:
+    """Whether a fixture stands, or a target face is clamped, in any setup."""
+    return any(each.around.fixtures for each in ready.setups) or not ready.alike
 
 
 def _operations(ready: Prepared, answers: Answers) -> OperationsEntry | None:

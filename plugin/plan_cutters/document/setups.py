@@ -18,6 +18,29 @@ class SetupEntry(Frozen):
     reached_share: float | None = Field(default=None, description="of the judged samples' area, 0 to 1")
 
 
+class ProposedSetup(Frozen):
+    """A setup that was proposed, with a table as all that holds the part."""
+
+    axis: Vector
+    stands_on: list[str] = Field(description="planar faces that lie on the table: no targets in this setup")
+    promised: float = Field(description="share of the compared samples' area that it serves by itself, 0 to 1")
+
+
+class SetupProposal(Frozen):
+    """Which setups were proposed, what was promised of them, and what their plan found."""
+
+    setups: list[ProposedSetup] = Field(description="those of the plan, in its order")
+    directions: int = Field(description="directions of the part that were compared by the limits of the machine")
+    searched: int = Field(description="those of them that were searched for postures over a table")
+    samples: int = Field(description="at which they were compared")
+    promised: float = Field(description="share of these samples' area that the setups serve together, 0 to 1")
+    found: float = Field(description="share of all target area that the plan reaches, faces that are stood on included")
+    kept: float = Field(description="of what was promised, the share of area that the plan reaches, 0 to 1")
+    held: bool = Field(description="the plan holds what was promised, to 1 %")
+    tried: int = Field(description="which proposal this is: those before it did not hold")
+    why: str
+
+
 class SetupReach(VerdictCounts):
     """The verdicts of a cutter in one setup are counted in samples."""
 

@@ -16,6 +16,7 @@ from plan_cutters.errors import OptionError
 from plan_cutters.operations.candidates import Orientations
 from plan_cutters.scene.fixed_axis import served_by
 from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.setups import places
 
 _UNIT = 1_000_000
 
@@ -66,7 +67,29 @@ def _fits(ready: Prepared, document: Mapping[str, Any], arrays: Mapping[str, NDA
         ("cutters (--cutter, --holder)", asked["cutters"], [cutter.id for cutter in ready.cutters]),
         ("machine (--machine)", asked["machine"], options.machine.name),
         ("setup (--setup)", [round(x, 9) for x in asked["setup"]], [round(x, 9) for x in ready.scene.setup]),
-        ("tolerance (--tolerance)", asked["tolerance_mm"], ready.scene.tolerance),
+        (
+            "list of other setups (--setup)",
+            [round(x, 9) for axis in asked["other_setups"] for x in axis],
+            [round(x, 9) for axis in options.other_setups for x in axis],
+        ),
+        # Not their places: where a fixture stands shows in what it serves.
+        (
+            "list of fixtures (--fixture, --setup)",
+            [
+                [each["name"] for each in document["fixtures"] if s in each.get("setups", [0])]
+                for s in range(len(ready.setups))
+            ],
+            [[each.name for each in one.around.fixtures] for one in ready.setups],
+        ),
+        (
+            "choice of clamped faces (--setup)",
+            [
+                (place or {}).get("clamped", [])
+                for place in (asked["placement"], *(asked["other_placements"] or [None] * len(asked["other_setups"])))
+            ],
+            [[] if place is None else list(place.clamped) for place in places(options)],
+        ),
+        ("tolerance (--tolerance)", asked["tolerance_mm"], ready.conditions.tolerance),
         ("number of samples (--grid, --spacing, --faces)", document["samples"]["count"], len(ready.samples)),
     ]
     for what, was, now in pairs:
@@ -95,6 +118,7 @@ def _weights(
     for c, s in sorted({*zip(cutter.tolist(), setup.tolist(), strict=True)}):
         axes = orientations[s].kinematics.axis(np.radians(angle[(cutter == c) & (setup == s)]))
         free, _ = served_by(rows, axes, ready.samples, ready.cutters[c], ready.setups[s])
+        free &= ready.machinable[s][rows]
         most = max(most, int((free @ weight).max(initial=0)))
     total = int(weight.sum())
     proved = -(-total // _UNIT)
@@ -118,6 +142,7 @@ def _plan(
         angle = np.radians([[operation["angles_deg"][name] for name in names]])
         axis = orientations[operation["setup"]].kinematics.axis(angle)
         free, _ = served_by(rows, axis, ready.samples, cutters[operation["cutter"]], ready.setups[operation["setup"]])
+        free &= ready.machinable[operation["setup"]][rows]
         wrong += int((~free[0]).sum())
         tested += len(rows)
     each = len([operation for operation in plan["operations"] if operation["mode"] == "fixed"])

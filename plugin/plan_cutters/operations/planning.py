@@ -61,8 +61,8 @@ def plan_operations(
         fewest = search_fewest(search, task.orientations, options.index_step or STEP, finest, tell)
         any_axes, cells = over_all_axes(task.probes, fewest, task.rows)
         fewest = replace(fewest, at_least_any=any_axes, cells=cells)
-        open_ = ready.finished & (ready.inside < 0)
-        steps = curve(task.probes, fewest, task.rows, ready.samples.area, float(np.nansum(ready.samples.area[open_])))
+        whole = float(np.nansum(ready.samples.area[ready.somewhere]))
+        steps = curve(task.probes, fewest, task.rows, ready.samples.area, whole)
         plans, timed = [], None
         if options.operations in ("fewest", "both"):
             plans.append(_capped(task, "fewest", fewest.columns.of(fewest.chosen)))
@@ -76,9 +76,11 @@ def plan_operations(
 def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], least: LeastSet | None) -> Task:
     options = ready.options
     cutters = considered(ready.cutters, [run.cutter for run in least.runs] if least else [], _CUTTERS)
-    open_ = ready.finished & (ready.inside < 0)
-    reached = open_ & np.logical_or.reduce([found[cutter].reached for found in everywhere for cutter in cutters])
-    probes = Probes(ready.samples, cutters, ready.setups, [open_] * len(everywhere))
+    open_ = ready.machinable
+    reached = np.logical_or.reduce(
+        [open_[s] & found[cutter].reached for s, found in enumerate(everywhere) for cutter in cutters]
+    )
+    probes = Probes(ready.samples, cutters, ready.setups, open_)
     paths = Paths(options.scallop, options.stepover, feeds(options, cutters))
     return Task(ready, cutters, orientations_of(ready), tuple(everywhere), np.flatnonzero(reached), probes, paths)
 

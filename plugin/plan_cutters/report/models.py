@@ -162,7 +162,7 @@ def write_glb(result: Judged, split: Any, path: Path, *, merged: bool = False) -
         merged=merged,
         others=[
             Drawn(each.name, each.shown, rgb("fixture"), entry.model_dump(mode="json"))
-            for each, entry in zip(result.conditions.around.fixtures, result.plan.fixtures, strict=True)
+            for each, entry in zip(result.conditions.around.fixtures, result.plan.fixtures, strict=False)
         ],
     )
 

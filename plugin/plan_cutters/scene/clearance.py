@@ -5,7 +5,8 @@ around it. A tool grown by a clearance and the chord error meets no triangle: th
 clearance. So what is told is proved, and never more than the true distance.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints, Record, SurfaceSamples
 from plan_cutters.domain.clearance import grown, rungs
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.kernels.codes import PART
 from plan_cutters.scene.conditions import Conditions, tool_of
 from plan_cutters.scene.threads import in_chunks
@@ -40,6 +41,27 @@ class Clearances(Record):
     distance: Floats
     part: NDArray[np.int8]
     face: Ints
+
+
+def clearances_over(
+    samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts, setups: Sequence[Conditions], served_in: Ints | None
+) -> Clearances:  # fmt: skip
+    """The same over several setups: each posture among the obstacles of the setup that serves its sample, (n,) int32.
+
+    A fixture that stands in another setup than the first has no number: its `face` is 0.
+    """
+    if served_in is None or all(each.around is setups[0].around for each in setups):
+        return clearances(samples, cutter, verdicts, setups[0])
+    n = len(samples)
+    found = Clearances(np.full(n, np.nan), np.full(n, -1, np.int8), np.zeros(n, np.int32))
+    for k, conditions in enumerate(setups):
+        mine = served_in == k
+        verdict = np.where(mine, verdicts.verdict, UNJUDGED).astype(np.uint8)
+        there = clearances(samples, cutter, replace(verdicts, verdict=verdict), conditions)
+        for name in ("distance", "part", "face"):
+            value = getattr(there, name)
+            getattr(found, name)[mine] = (np.maximum(value, 0) if name == "face" and k else value)[mine]
+    return found
 
 
 def clearances(samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts, conditions: Conditions) -> Clearances:

@@ -61,7 +61,8 @@ class Chosen:
 
 
 def choose(
-    part: "Part", faces: Any, ignored: Collection[int], ignore: tuple[str, ...], placed: Placement | None = None
+    part: "Part", faces: Any, ignored: Collection[int], ignore: tuple[str, ...], placed: Placement | None = None,
+    others: Sequence[Placement | None] = (),
 ) -> Chosen:  # fmt: skip
     """Target and ignored faces of a part.
 
@@ -76,6 +77,8 @@ def choose(
         The words for these.
     placed : Placement, optional
         Whose clamped faces are left out of the targets.
+    others : sequence of (Placement or None)
+        Of other setups: only what is clamped in all of them, too, is left out.
 
     Raises
     ------
@@ -94,10 +97,8 @@ def choose(
         said = (f"{len(ignored)} {'face is' if len(ignored) == 1 else 'faces are'} ignored, neither targets nor obstacles "
                 f"(nothing is checked against them): {_some(f'F{n}' for n in sorted(ignored))}.")  # fmt: skip
         notes.append(Note("faces_ignored", said))
-    if placed is not None and placed.clamped:
-        held = frozenset().union(
-            *(_selected(part.faces, text, part.tree, placed.where, part.blends) for text in placed.clamped)
-        )
+    held = clamped_faces(part, placed).intersection(*[clamped_faces(part, each) for each in others])
+    if placed is not None and held:
         left = tuple(n for n in targets if n not in held)
         if not left:
             raise OptionError(f"{placed.where} {_brief(', '.join(placed.clamped))} leaves no target face")
@@ -110,6 +111,20 @@ def choose(
             notes.append(Note("faces_clamped", f"{what}: {_some(lost)}."))
         targets = left
     return Chosen(targets, tuple(sorted(ignored)), asked, ignore, tuple(notes), part.blends)
+
+
+def clamped_faces(part: "Part", placed: Placement | None) -> frozenset[int]:
+    """Numbers of the faces that are held in a setup.
+
+    Raises
+    ------
+    OptionError
+        A word selects no face of the part.
+    """
+    if placed is None:
+        return frozenset()
+    words = (_selected(part.faces, text, part.tree, placed.where, part.blends) for text in placed.clamped)
+    return frozenset().union(*words)
 
 
 def ignored_words(part: "Part", ignore: Any) -> tuple[str, ...]:

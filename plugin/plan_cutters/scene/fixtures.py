@@ -91,7 +91,8 @@ def _read(fixture: Fixture, timeout: float) -> Part | Mesh:
 
 
 def joined(
-    around: Surroundings, fixtures: Sequence[Fixture], chord: float, kept: Kept, setup: Sequence[float] = (0.0, 0.0, 1.0)
+    around: Surroundings, fixtures: Sequence[Fixture], chord: float, kept: Kept, setup: Sequence[float] = (0.0, 0.0, 1.0),
+    own: Sequence[Fixture] = (), own_setup: Sequence[float] = (0.0, 0.0, 1.0),
 ) -> Surroundings:  # fmt: skip
     """Add the fixtures to the surroundings of a part.
 
@@ -106,22 +107,25 @@ def joined(
         Fixtures that are known, by their sources: they are not read again.
     setup : sequence of float
         Unit setup axis, across which tables lie.
+    own, own_setup : sequence of Fixture, sequence of float
+        More fixtures, whose tables lie across another unit setup axis.
 
     Raises
     ------
     ReadError, UnjudgeableError
         A fixture cannot be read, or has no triangles.
     """
-    if not fixtures:
+    placed = [(each, setup) for each in fixtures] + [(each, own_setup) for each in own]
+    if not placed:
         return around
     vertex = around.possible.triangles.vertex
     near = np.array([vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))])
     standing, bodies = [], []
-    for number, fixture in enumerate(fixtures, 1):
-        bed = _bed(fixture, around, setup, near) if fixture.kind == "table" else None
+    for number, (fixture, across) in enumerate(placed, 1):
+        bed = _bed(fixture, around, across, near) if fixture.kind == "table" else None
         body = _body(fixture, chord, kept) if bed is None else _solid(bed(TABLE), 0.0)
         shown = None if bed is None else bed(_SHOWN * float(np.ptp(near, axis=0).max()))
-        standing.append(_standing(-number, packable(fixture, kept), body, read(fixture, kept), shown, setup))
+        standing.append(_standing(-number, packable(fixture, kept), body, read(fixture, kept), shown, across))
         bodies.append(body)
     possible = _together(around.possible, standing, [body.possible for body in bodies], near)
     certain = possible

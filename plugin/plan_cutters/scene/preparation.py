@@ -19,6 +19,25 @@ Axis = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
+class OtherSetup(Record):
+    """Another setup than the first has its own conditions, and its own samples that no cutter gets to.
+
+    Attributes
+    ----------
+    conditions : Conditions
+        With the obstacles of that setup.
+    inside : (n,) int32
+        The body that each sample lies within there, -1 for none.
+    clamped : (n,) bool
+        Samples of faces that are held there.
+    """
+
+    conditions: Conditions
+    inside: Ints
+    clamped: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Prepared(Record):
     """Everything that is needed to judge a cutter.
 
@@ -35,7 +54,7 @@ class Prepared(Record):
     region : (n,) int32
         Connected samples of one class.
     inside : (n,) int32
-        The body that each sample lies within, -1 for none.
+        The body that each sample lies within in the first setup, -1 for none.
     inside_bodies : (n,) bool
         Samples that lie inside another body of the part (`inside_material.inside_bodies`).
     conditions : Conditions
@@ -43,6 +62,10 @@ class Prepared(Record):
         From the most wanted down.
     coarser : float
         How many times as far apart as curvature and cutters ask the samples are, for the budget of a default plan.
+    held : (n,) bool, optional
+        Samples of faces that are clamped in the first setup; None: none of them is.
+    others : tuple of OtherSetup
+        The setups beside the first.
     """
 
     scene: Scene
@@ -57,6 +80,8 @@ class Prepared(Record):
     conditions: Conditions
     cutters: tuple[Cutter, ...]
     coarser: float = 1.0
+    held: NDArray[np.bool_] | None = None
+    others: tuple[OtherSetup, ...] = ()
 
     @property
     def axes(self) -> tuple[tuple[Axis, Axis | None], ...]:
@@ -68,11 +93,46 @@ class Prepared(Record):
     @property
     def setups(self) -> tuple[Conditions, ...]:
         """Give the conditions for judging cutters in each requested setup, the first one first."""
-        others = (
-            replace(self.conditions, setup=np.array(axis), x=None if x is None else np.array(x))
-            for axis, x in self.axes[1:]
+        return (self.conditions, *(each.conditions for each in self.others))
+
+    def there(self, setup: int) -> "Prepared":
+        """The same as the first setup sees it, for a setup counted from 0: its conditions, and what is held there."""
+        if setup == 0:
+            return self
+        other = self.others[setup - 1]
+        return replace(self, conditions=other.conditions, inside=other.inside, held=other.clamped)
+
+    @property
+    def clamped(self) -> NDArray[np.bool_]:
+        """Samples (n,) of faces that are held in this setup: no cutter gets there."""
+        return np.zeros(len(self.samples), bool) if self.held is None else self.held
+
+    @property
+    def shut(self) -> Ints:
+        """The body that each sample (n,) lies within, -1 for none; of a clamped face, one more than there are."""
+        if self.held is None or not self.held.any():
+            return self.inside
+        return np.where(self.held & (self.inside < 0), len(self.conditions.around.enclosing), self.inside).astype(
+            np.int32
         )
-        return (self.conditions, *others)
+
+    @property
+    def machinable(self) -> tuple[NDArray[np.bool_], ...]:
+        """Of each setup the finished samples (n,) that are neither clamped nor inside material there."""
+        each = [self.there(k) for k in range(1 + len(self.others))]
+        return tuple(self.finished & (one.inside < 0) & ~one.clamped for one in each)
+
+    @property
+    def somewhere(self) -> NDArray[np.bool_]:
+        """Finished samples (n,) that can be machined in one setup or another, as far as fixtures and clamped faces go."""
+        return np.asarray(np.logical_or.reduce(self.machinable))
+
+    @property
+    def alike(self) -> bool:
+        """Whether the part stands among the same obstacles in all setups, held at the same faces."""
+        return not self.clamped.any() and not any(
+            each.conditions.around is not self.conditions.around or each.clamped.any() for each in self.others
+        )
 
     @property
     def finished(self) -> NDArray[np.bool_]:

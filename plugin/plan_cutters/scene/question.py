@@ -106,6 +106,8 @@ def refuse_others(about: Mapping[str, Any], options: Options, given: Collection[
         raise OptionError(_UNSAID)
     if about.get("method") != METHOD:
         raise OptionError("these maps were made by an earlier version, whose verdicts may differ: plan again")
+    if options.propose:
+        raise OptionError("posture maps do not answer the setup auto: leave it out, or plan the part with it")
     try:
         for word in sorted(given):
             if word in ANSWERED or word in IRRELEVANT:

@@ -1,5 +1,6 @@
 """A part as it stands to be judged: its faces' sides, what is in the way, and the tolerance that can be kept."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Unpack, get_type_hints
 
@@ -170,6 +171,38 @@ class Scene(Record):
             refuse_overlaps(around, around.tolerance(self.asked))
             memory.around = around
         return memory.around
+
+    def surround_in(
+        self, setup: tuple[float, float, float], shared: Sequence[Fixture], own: Sequence[Fixture]
+    ) -> Surroundings:
+        """Gather the obstacles of another setup, with the same triangles of the part; `surround` must have been called.
+
+        Parameters
+        ----------
+        setup : (float, float, float)
+            Unit setup axis, across which the tables of `own` lie; those of `shared` stay where they are in this setup.
+        shared, own : sequence of Fixture
+            Those that stand in all setups, and those of that setup alone.
+
+        Raises
+        ------
+        FixtureError
+            A fixture stands in the part.
+        """
+        memory, chord = self._memory, CHORD_ASKED * self.asked
+        mine = tuple(Fixture.each_of([*shared, *own]))
+        alone = memory.alone
+        if alone is None or (mine == self.fixtures and not (setup != self.setup and any(f.follows_setup for f in own))):
+            return self.surround()
+        around = joined(alone, mine[: len(shared)], chord, memory.sources, self.setup, mine[len(shared) :], setup)
+        refuse_overlaps(around, around.tolerance(self.asked))
+        return around
+
+    def turned_to(self, setup: tuple[float, float, float]) -> "Scene":
+        """The same part in another setup, the sides of its faces as they are, without fixtures: it is not tessellated again."""
+        scene = replace(self, setup=setup, fixtures=())
+        scene._memory.sources, scene._memory.alone = self._memory.sources, self._memory.alone
+        return scene
 
     def surround_closer(self, chord: float) -> Surroundings:
         """The same, with triangles for another chord error, mm, which are not kept."""

@@ -1,12 +1,13 @@
 """One cutter on samples of a part that is ready: the seed's two phases, one after the other."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.verdicts import CONVEX, Verdicts
+from plan_cutters.domain.verdicts import CONVEX, FIXTURE, INSIDE, Verdicts
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import with_company
 from plan_cutters.scene.work import Work
@@ -47,9 +48,13 @@ def judge(
     samples, conditions = ready.samples, ready.conditions
     whole = None if rows is None else with_company(rows, len(samples))
     free = decompose(
-        samples, ready.surface_class == CONVEX, cutter, conditions, inside=ready.inside, rows=whole, work=work
+        samples, ready.surface_class == CONVEX, cutter, conditions, inside=ready.shut, rows=whole, work=work
     )
     verdicts = access(
-        samples, free, cutter, conditions, inside=ready.inside, known=known, rows=whole, progress=progress, work=work
+        samples, free, cutter, conditions, inside=ready.shut, known=known, rows=whole, progress=progress, work=work
     )
+    # What is clamped is lost to what holds it, if nothing was found that loses it all the same.
+    held = ready.clamped & (ready.inside < 0) & (verdicts.reason == INSIDE)
+    if held.any():
+        verdicts = replace(verdicts, reason=np.where(held, FIXTURE, verdicts.reason).astype(np.uint8))
     return verdicts if rows is None else verdicts.of(rows)

@@ -1,13 +1,10 @@
 """The same part in another setup: postures that its machine holds there, too, are not searched again."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import ACCESSIBLE, Verdicts, blank
-from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress
 from plan_cutters.stages.judge import judge
@@ -16,7 +13,7 @@ from plan_cutters.stages.judge import judge
 def in_setup(
     ready: Prepared,
     cutter: Cutter,
-    conditions: Conditions,
+    setup: int,
     verdicts: Verdicts,
     *,
     progress: Progress | None = None,
@@ -27,16 +24,19 @@ def in_setup(
     ----------
     ready : Prepared
     cutter : Cutter
-    conditions : Conditions
-        Those of `ready` in that setup (`Prepared.setups`). The side of open faces stays as it is.
+    setup : int
+        Its number, from 1. The side of open faces stays as it is.
     verdicts : Verdicts
         Its verdicts in the setup of `ready`.
     """
-    machine, known = conditions.machine, blank(len(ready.samples))
-    rows = np.flatnonzero(verdicts.reached)
+    there = ready.there(setup)
+    conditions, known = there.conditions, blank(len(ready.samples))
+    machine = conditions.machine
+    # Among other fixtures, nothing is known of a posture.
+    rows = np.flatnonzero(verdicts.reached & (conditions.around is ready.conditions.around))
     # Where fewer than two axes turn the tool, rotations are numbered by the axes that there are in a setup.
     few = machine.turns and len(machine.rotary) < 2
     rows = rows[:0] if few else rows[machine.allows(verdicts.axis[rows], frame_of(conditions.setup, conditions.x))]
     known.verdict[rows] = ACCESSIBLE
     known.take_posture(rows, verdicts)
-    return judge(replace(ready, conditions=conditions), cutter, known=known.freeze(), progress=progress)
+    return judge(there, cutter, known=known.freeze(), progress=progress)

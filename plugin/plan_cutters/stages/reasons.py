@@ -17,6 +17,7 @@ from plan_cutters.domain.nesting import inside
 from plan_cutters.domain.shapes import flute_length
 from plan_cutters.domain.verdicts import (
     AXIS_LIMIT,
+    FIXTURE,
     INACCESSIBLE,
     INSIDE,
     LOCAL_GOUGE,
@@ -60,11 +61,14 @@ class Reasons:
         Of each setup.
     asked : (n,) bool
         Samples that have a reason to be looked for.
+    machinable : sequence of (n,) bool
+        Of each setup, the samples that are neither clamped nor inside material there.
     """
 
     samples: SurfaceSamples
     conditions: Sequence[Conditions]
     asked: NDArray[np.bool_]
+    machinable: Sequence[NDArray[np.bool_]]
     _known: dict[str, dict[Cutter, Verdicts]] = field(default_factory=dict)
 
     def of(self, cutter: Cutter, verdicts: Verdicts, progress: Progress | None = None) -> Explained:
@@ -83,19 +87,20 @@ class Reasons:
         before, reason, besides = verdicts.reason, verdicts.reason.copy(), np.full(n, NO_REASON, np.uint8)
         rows = np.flatnonzero(verdicts.not_reached & self.asked & ~np.isin(before, (INSIDE, TOLERANCE)))
         limited, less, alone = first.machine.limited, list(_less(cutter)), first.around.alone
-        if not len(rows) or not (limited or less or alone is not None):
+        held = any(each.around.alone is not None for each in self.conditions) or not self._alike
+        if not len(rows) or not (limited or less or held):
             return Explained(verdicts, besides)
         # Flutes by themselves, without limits and fixtures: what they do not reach nothing else frees, and is done with.
         bare = replace(first.machineless, around=alone or first.around)
         found = self._search("flutes", less[-1][1] if less else cutter, rows, bare)
-        shut = rows[~found.reached[rows] & np.isin(before[rows], (AXIS_LIMIT, *_PARTS))]
+        shut = rows[~found.reached[rows] & np.isin(before[rows], (AXIS_LIMIT, FIXTURE, *_PARTS))]
         reason[shut] = found.reason[shut]
         rows = rows[found.reached[rows]]
         tell(1, 3)
         if limited:
-            if less or alone is not None:
+            if less or held:
                 found = self._search("unlimited", cutter, rows, first.machineless)
-            free = found.reached[rows]
+            free = found.reached[rows] if self._alike else self._anywhere(cutter, rows, limited=False)
             reason[rows[free]] = AXIS_LIMIT
             # Where the limit leaves nothing by itself, and so does something without it, both take part.
             other = np.where(free, before[rows], found.reason[rows])
@@ -107,7 +112,7 @@ class Reasons:
         if less:
             # Where limits and local gouge alone leave nothing, flutes by themselves find nothing.
             rows = rows[~np.isin(before[rows], (AXIS_LIMIT, LOCAL_GOUGE))]
-            if limited or alone is not None:
+            if limited or held:
                 rows = rows[self._anywhere(less[-1][1], rows)]
             self._held(less, rows, reason)
         tell(3, 3)
@@ -121,12 +126,22 @@ class Reasons:
             rows = rows[~served]
         reason[rows] = less[-1][0]
 
-    def _anywhere(self, cutter: Cutter, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Whether a cutter has a posture in some setup."""
+    @property
+    def _alike(self) -> bool:
+        """Whether all setups have the same obstacles, and leave the same samples."""
+        first, mine = self.conditions[0].around, self.machinable[0]
+        return all(each.around is first for each in self.conditions) and not any(
+            (mine != each).any() for each in self.machinable
+        )
+
+    def _anywhere(self, cutter: Cutter, rows: NDArray[np.int64], *, limited: bool = True) -> NDArray[np.bool_]:
+        """Whether a cutter has a posture in some setup that leaves the sample free; or would have, without axis limits."""
         served = np.zeros(len(rows), bool)
         for k, conditions in enumerate(self.conditions):
-            found = self._search(f"setup {k}", cutter, rows[~served], conditions)
-            served |= found.reached[rows]
+            open_ = self.machinable[k][rows] & ~served
+            found = self._search(f"setup {k}" if limited else f"unlimited {k}", cutter, rows[open_],
+                                 conditions if limited else conditions.machineless)  # fmt: skip
+            served |= open_ & found.reached[rows]
         return served
 
     def _search(self, under: str, cutter: Cutter, rows: NDArray[np.int64], conditions: Conditions) -> Verdicts:

@@ -21,6 +21,7 @@ def within_limits(
     cutters: Sequence[Cutter],
     conditions: Conditions,
     setup: tuple[float, float, float] | None = None,
+    rows: NDArray[np.int64] | None = None,
 ) -> NDArray[np.bool_]:
     """Judged samples (n,) at which the machine can hold some tool axis at which any of the cutters touches.
 
@@ -30,10 +31,14 @@ def within_limits(
     cutters, conditions
     setup : (float, float, float), optional
         Another setup axis than that of the conditions, a unit direction.
+    rows : (m,) int64, optional
+        The samples to look at, all by default.
     """
     if setup is not None:
         conditions = replace(conditions, setup=np.array(setup), x=None)
-    ranges, held, rows = conditions.ranges, np.zeros(len(samples), bool), np.flatnonzero(samples.unjudged < 0)
+    ranges, held = conditions.ranges, np.zeros(len(samples), bool)
+    rows = np.arange(len(samples)) if rows is None else rows
+    rows = rows[samples.unjudged[rows] < 0]
     touching = [mode for cutter in cutters for mode in modes(cutter)]
     low = max(ranges.tilt_low, min(mode.low for mode in touching))
     high = min(ranges.tilt_high, max(mode.high for mode in touching))

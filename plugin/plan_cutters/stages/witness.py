@@ -197,6 +197,8 @@ def _least_depth(
 def _covered(samples: SurfaceSamples, plain: Witness, body: int, conditions: Conditions) -> Witness:
     """Add the obstacle to the witness of a sample inside material: the point where the way out along the normal leaves it."""
     around = conditions.around
+    if body >= len(around.enclosing):
+        return plain  # on a clamped face
     within = around.enclosing[body] if body >= 0 else None
     way_out = cover(samples.point[plain.sample], samples.normal[plain.sample], around.certain, within)
     return plain if way_out is None else replace(plain, obstacle_face=way_out.face, obstacle_point=way_out.point)

@@ -1,0 +1,108 @@
+"""Setups as a caller gives them: as axes, with what more is known of each as placements, and the fixtures of the first."""
+
+import os
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from plan_cutters.domain.checks import items, shown
+from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.placement import Placement
+from plan_cutters.domain.posture import along, unit
+from plan_cutters.errors import OptionError
+
+#: The word that asks for setups to be proposed.
+AUTO = "auto"
+
+
+def is_auto(given: Any) -> bool:
+    """Whether a setup is the word that asks for a proposal."""
+    return isinstance(given, str) and given.strip().lower() == AUTO
+
+
+def same_fixture(one: Fixture, other: Fixture) -> bool:
+    """Whether two fixtures are one, whatever they are called."""
+    return replace(one, name="fixture") == replace(other, name="fixture")
+
+
+def joined_fixtures(fixtures: Sequence[Fixture], more: Sequence[Fixture]) -> tuple[Fixture, ...]:
+    """Fixtures and those of others that are not among them, each with a name of its own."""
+    return Fixture.each_of([*fixtures, *without(more, fixtures)])
+
+
+def without(fixtures: Sequence[Fixture], others: Sequence[Fixture]) -> tuple[Fixture, ...]:
+    """Those fixtures that are none of the others."""
+    return tuple(each for each in fixtures if not any(same_fixture(each, other) for other in others))
+
+
+def setups_given(
+    setup: Any, placement: Placement | None, others: Any, other_placements: Any, fixtures: Any, *, propose: bool
+) -> dict[str, Any]:
+    """Give the values of the options about setups by their names.
+
+    Parameters
+    ----------
+    setup, placement, others, other_placements, fixtures
+        As `Options` takes them.
+    propose : bool
+        Setups are to be proposed.
+
+    Raises
+    ------
+    OptionError
+        A value has no meaning, or setups are to be proposed beside some that are given.
+    """
+    common = Fixture.each_of(fixtures)
+    if is_auto(setup):
+        setup, propose = (0.0, 0.0, 1.0), True
+    axis, placed = _setup(setup, placement)
+    if placed is not None:
+        if placed is not placement:
+            # What stands in all setups is not this one's own.
+            placed = replace(placed, fixtures=without(placed.fixtures, common))
+        common = joined_fixtures(common, placed.fixtures)
+    listed = items(others, "other setups", "directions")
+    places = items(other_placements, "other placements", "placements") or [None] * len(listed)
+    if len(places) != len(listed):
+        raise OptionError(f"{len(places)} other placements were given for {len(listed)} other setups")
+    if any(is_auto(each) for each in listed) or (propose and (listed or placed is not None)):
+        raise OptionError("setup auto proposes all setups: leave out the other setups, or auto")
+    if propose and common:
+        raise OptionError(
+            "setup auto puts a table under the part in each setup: leave out the fixtures, or name the setup"
+        )
+    shared = without(common, () if placed is None else placed.fixtures)
+    found = [_own(_setup(each, place), shared) for each, place in zip(listed, places, strict=True)]
+    known = any(place is not None for _, place in found)
+    return {"setup": axis, "placement": placed, "fixtures": common, "propose": propose,
+            "other_setups": tuple(each for each, _ in found),
+            "other_placements": tuple(place for _, place in found) if known else ()}  # fmt: skip
+
+
+def _own(
+    found: tuple[tuple[float, float, float], Placement | None], shared: Sequence[Fixture]
+) -> tuple[tuple[float, float, float], Placement | None]:
+    """A setup without those fixtures that stand in all setups; a table that lies across its own axis is another one."""
+    axis, place = found
+    if place is None:
+        return found
+    kept = tuple(each for each in place.fixtures if each.follows_setup or without((each,), shared))
+    return axis, replace(place, fixtures=kept)
+
+
+def _setup(given: Any, placed: Placement | None) -> tuple[tuple[float, float, float], Placement | None]:
+    """A setup axis, and what more is known of the setup: a word as `+z` is an axis, another text or path a setup file."""
+    if isinstance(given, os.PathLike) or (isinstance(given, str) and along(given) is None):
+        from plan_cutters.machines.setups import read_setup
+
+        given = read_setup(given)
+    if isinstance(given, Placement):
+        return given.z, given
+    x, y, z = unit(given, "setup axis").tolist()
+    if placed is None:
+        return (x, y, z), None
+    if not isinstance(placed, Placement):
+        raise OptionError(f"a placement must be a Placement, not {shown(placed)}")
+    if not placed.stands_as((x, y, z)):
+        raise OptionError("the setup axis and the placement disagree: give the placement as the setup")
+    return placed.z, placed

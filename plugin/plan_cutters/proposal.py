@@ -1,0 +1,139 @@
+"""Setups that are proposed: ranked, then planned with a table each, and kept only if that plan holds what was promised."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from plan_cutters.answers.setup_ranking import MOST, Ranking, ranked
+from plan_cutters.document.clock import Clock
+from plan_cutters.document.setups import ProposedSetup, SetupProposal
+from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.placement import Placement, axis_words
+from plan_cutters.errors import OptionError, PlanError
+from plan_cutters.options import Options
+from plan_cutters.result import Result
+from plan_cutters.scene.preparation import Prepared
+
+#: Proposals that are planned, at most, and the share of what was promised that a plan must hold.
+_TRIES, _KEPT = 3, 0.99
+
+
+def plan_proposed(
+    prepare: Callable[[Options, Clock], Prepared], run: Callable[..., Result], options: Options, clock: Clock
+) -> Result:  # fmt: skip
+    """Propose setups and plan them; with a plan of operations the fewest of up to three, else the best one.
+
+    Parameters
+    ----------
+    prepare, run : callable
+        Read and sample a part under options; plan a scene under options.
+    options : Options
+        With `propose`.
+    clock : Clock
+
+    Returns
+    -------
+    Result
+        The plan of the first proposal that holds what it promised; where none of three does, that which reaches most, which says
+        so.
+
+    Raises
+    ------
+    OptionError
+        In no direction is anything within the limits or reached, or no proposal can be planned.
+    """
+    asked = replace(options, propose=False)
+    ready = prepare(asked, clock)
+    most = 1 if options.operations is None else MOST
+    with clock.stage("proposal"):
+        ranking = ranked(ready, most)
+    best: tuple[float, Result] | None = None
+    failed, why = frozenset[int](), ""
+    for tried in range(1, _TRIES + 1):
+        chosen = ranking.choose(most, failed)
+        promised = np.logical_or.reduce([ranking.served[k] for k in chosen]) if chosen else np.zeros(0, bool)
+        if not promised.any():
+            break
+        try:
+            result = run(ready.scene.turned_to(_axis(ranking, chosen[0])), _options(asked, ranking, chosen), clock)
+        except PlanError as error:
+            why, failed = error.cause, failed | {chosen[0]}
+            continue
+        found, kept, worst = _compared(result, ranking, chosen)
+        told = _told(result, ranking, chosen, clock, (found, kept, tried))
+        if kept >= _KEPT:
+            return told
+        if best is None or found > best[0]:
+            best = found, told
+        failed |= {worst}
+    if best is not None:
+        return best[1]
+    if why:
+        raise OptionError(f"setup auto: no proposal can be planned: {why}")
+    raise OptionError(f"setup auto: over a table, no cutter reaches any of {len(ranking.rows)} samples in the "
+                      f"{len(ranking.served)} best directions; name a setup with its fixtures")  # fmt: skip
+
+
+def _axis(ranking: Ranking, k: int) -> tuple[float, float, float]:
+    x, y, z = ranking.candidates.axis[k].tolist()
+    return x, y, z
+
+
+def _options(asked: Options, ranking: Ranking, chosen: tuple[int, ...]) -> Options:
+    """The options of a plan in the chosen setups, a table under the part in each; the scene has the unit already."""
+    table = (Fixture.parse("table"),)
+    first, *others = (
+        Placement(_axis(ranking, k), clamped=tuple(f"F{n}" for n in ranking.candidates.stands_on[k]), fixtures=table)
+        for k in chosen
+    )
+    return replace(asked, setup=first.z, placement=first, other_setups=tuple(each.z for each in others),
+                   other_placements=tuple(others), unit=None)  # fmt: skip
+
+
+def _compared(result: Result, ranking: Ranking, chosen: tuple[int, ...]) -> tuple[float, float, int]:
+    """Find the share of area that a plan reaches, the part of what was promised that it holds, and the setup that lost most."""
+    assert result.ready is not None, "a plan of the pipeline has what it was judged on"
+    samples, ready = result.samples, ranking.ready
+    reached = np.logical_or.reduce([each.reached for each in result.reaches.values()]) & result.ready.finished
+    whole = float(np.nansum(ready.samples.area[ready.finished]))
+    found = float(np.nansum(samples.area[reached])) / max(1e-300, whole)
+    # Samples may stand elsewhere where fewer faces are targets: the nearest one answers.
+    near = cKDTree(samples.point).query(ready.samples.point[ranking.rows])[1]
+    held = reached[near]
+    served = np.stack([ranking.served[k] for k in chosen], axis=1)
+    promised = served.any(axis=1)
+    kept = float(ranking.area[promised & held].sum()) / max(1e-300, float(ranking.area[promised].sum()))
+    lost = np.asarray(ranking.area @ (served & ~held[:, None]))
+    return min(1.0, found), min(1.0, kept), chosen[int(lost.argmax())]
+
+
+def _told(
+    result: Result, ranking: Ranking, chosen: tuple[int, ...], clock: Clock, found: tuple[float, float, int]
+) -> Result:  # fmt: skip
+    """The same plan with its proposal."""
+    served = np.stack([ranking.served[k] for k in chosen], axis=1)
+    alone, together = ranking.share(served), float(ranking.share(np.asarray(served.any(axis=1))[:, None])[0])
+    share, kept, tried = found
+    setups = [
+        ProposedSetup(axis=_axis(ranking, k), stands_on=[f"F{n}" for n in ranking.candidates.stands_on[k]],
+                      promised=min(1.0, float(each)))
+        for k, each in zip(chosen, alone, strict=True)
+    ]  # fmt: skip
+    held = kept >= _KEPT
+    where = " and ".join(
+        axis_words(each.axis) + (f" (on {', '.join(each.stands_on)})" if each.stands_on else " (on no plane)")
+        for each in setups
+    )
+    of = f"{len(ranking.served)} of {len(ranking.candidates.axis)} directions searched at {len(ranking.rows)} samples"
+    why = (f"With {of} over a table, {'this one serves' if len(setups) == 1 else 'these serve'} {together:.1%} of the samples' "
+           f"area. The plan reaches {share:.1%} of the target area"
+           f"{'' if held else f', and holds only {kept:.1%} of what was promised'}.")  # fmt: skip
+    entry = SetupProposal(setups=setups, directions=len(ranking.candidates.axis), searched=len(ranking.served),
+                          samples=len(ranking.rows), promised=min(1.0, together), found=share, kept=kept, held=held, tried=tried,
+                          why=why)  # fmt: skip
+    document = result.plan
+    notes = [*document.notes, f"Proposed {'setup' if len(setups) == 1 else 'setups'}: {where}. {why}"]
+    more = {"setup_proposal": entry, "notes": notes, "note_codes": [*document.note_codes, "setup_proposed"]}
+    return replace(result, plan=clock.stamp(document.model_copy(update=more)))

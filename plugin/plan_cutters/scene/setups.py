@@ -1,0 +1,87 @@
+"""Each setup with its own fixtures and clamped faces: what is in the way there, and where nothing can be machined."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from plan_cutters.domain.notes import Note
+from plan_cutters.domain.placement import Placement, axis_words
+from plan_cutters.errors import FixtureError
+from plan_cutters.options import Options
+from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.faces import clamped_faces
+from plan_cutters.scene.inside_material import inside_material
+from plan_cutters.scene.preparation import OtherSetup, Prepared
+from plan_cutters.scene.scene import Scene
+from plan_cutters.scene.surroundings import Surroundings
+
+
+def places(options: Options) -> tuple[Placement | None, ...]:
+    """How the part stands in each setup, as far as it is known, the first one first."""
+    return options.placement, *(options.other_placements or (None,) * len(options.other_setups))
+
+
+def conditions_of(scene: Scene, options: Options) -> list[Conditions]:
+    """The conditions of each setup, the first one first: with the obstacles of each, and one tolerance that all of them keep.
+
+    Raises
+    ------
+    FixtureError
+        A fixture stands in the part, or faces of one of another setup could not be read.
+    """
+    first, shared = scene.surround(), options.shared_fixtures
+    axes = (scene.setup, *options.other_setups)
+    own = [() if place is None else place.fixtures for place in places(options)]
+    around: list[Surroundings] = [first]
+    for axis, mine in zip(axes[1:], own[1:], strict=True):
+        around.append(scene.surround_in(axis, shared, mine))
+        if doubts := [each for each in around[-1].doubts if each not in first.doubts]:
+            # What is missing there would have to be told of each setup by itself.
+            raise FixtureError(f"setup {axis_words(axis)}: {doubts[0]}; give a fixture that can be read whole, or make this "
+                               "setup the first")  # fmt: skip
+    tolerance = max(each.tolerance(scene.asked) for each in around)
+    return [
+        Conditions(options.machine, np.array(axis), options.postures, each, tolerance, options.jobs, _x(place))
+        for axis, each, place in zip(axes, around, places(options), strict=True)
+    ]
+
+
+def _x(place: Placement | None) -> Floats | None:
+    return None if place is None or place.x is None else np.array(place.x)
+
+
+def with_setups(ready: Prepared, conditions: list[Conditions]) -> Prepared:
+    """Add what is held in the first setup, and the other setups with what cannot be machined there."""
+    held = [_samples_of(ready, place) for place in places(ready.options)]
+    others = []
+    for each, clamped in zip(conditions[1:], held[1:], strict=True):
+        inside = ready.inside
+        if each.around is not ready.conditions.around:
+            inside = inside_material(ready.samples, ready.scene.orientation, each.around.enclosing, each.around.certain,
+                                     each.tolerance, each.jobs)  # fmt: skip
+        others.append(OtherSetup(each, inside, clamped))
+    return replace(ready, held=held[0], others=tuple(others))
+
+
+def _samples_of(ready: Prepared, place: Placement | None) -> NDArray[np.bool_]:
+    """Samples (n,) of the faces that a setup clamps."""
+    return np.isin(ready.samples.face, sorted(clamped_faces(ready.scene.part, place)))
+
+
+def notes_of_setups(ready: Prepared) -> Iterator[Note]:
+    """Say which faces are held in some setups alone, and which setups hold the part with nothing."""
+    if not ready.others or ready.options.held_alike:
+        return
+    axes = (ready.scene.setup, *ready.options.other_setups)
+    for axis, place, conditions in zip(axes, places(ready.options), ready.setups, strict=True):
+        held = sorted(clamped_faces(ready.scene.part, place) & set(ready.chosen.targets))
+        if held:
+            names = ", ".join(f"F{number}" for number in held)
+            yield Note("faces_clamped_there", f"{names}: clamped in the setup {axis_words(axis)}, and to be machined in another "
+                       "one.")  # fmt: skip
+        if not conditions.around.fixtures:
+            yield Note("setup_without_fixtures", f"No fixture stands in the setup {axis_words(axis)}: nothing that holds the "
+                       "part there was in the way.")  # fmt: skip

@@ -1,0 +1,191 @@
+"""Setups ranked by what a machine can hold there: closed forms without a table, and proposals that are planned."""
+
+import math
+
+import numpy as np
+import pytest
+
+from plan_cutters import Options, plan
+from plan_cutters.answers.least_set import cover
+from plan_cutters.answers.setup_ranking import Candidates, cube, distinct, fibonacci, holdable, ranked
+from plan_cutters.document.clock import Clock
+from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.placement import Placement
+from plan_cutters.errors import OptionError
+from plan_cutters.pipeline import prepare
+from plan_cutters.proposal import plan_proposed
+from tests.support.cad_parts import ball, box
+from tests.support.commands import assert_one_line
+from tests.support.forked import run
+from tests.support.places import SAMPLES
+
+BALL = "R1L60rc1"
+Z = np.array([0.0, 0.0, 1.0])
+
+
+def ready(shape, tilt, machine, **options):
+    limits = (0.0, math.radians(tilt))
+    return prepare(shape, Options(cutters=BALL, faces="all", tilt=limits, machine=machine, area_budget=0,
+                                  **{"grid": 5, **options}))  # fmt: skip
+
+
+def held(one, axis):
+    return holdable(one.samples, one.cutters, one.conditions, axis)
+
+
+@pytest.mark.parametrize(("tilt", "setups"), [(40.0, 6), (50.0, 3), (56.0, 2)])
+def test_a_cube_on_three_axes_needs_as_many_setups_as_fixed_axes(tilt, setups):
+    """A setup is one axis there: up to 45 deg it serves a face, then an edge's two, from acos(1 / sqrt 3) on a corner's three."""
+    one = ready(box(), tilt, "3-axis")
+    axes = cube()
+    chosen, proven = cover(np.stack([held(one, axis) for axis in axes], axis=1), range(len(axes)), range(len(axes)))
+    assert (len(chosen), proven) == (setups, True)
+
+
+@pytest.mark.parametrize(("tilt", "sixth"), [(59.0, False), (61.0, True), (89.0, True)])
+def test_a_trunnion_serves_five_faces_of_a_cube_and_the_sixth_from_60_deg_on(tilt, sixth):
+    """A from -30 to 120 deg and C all round hold axes up to 120 deg from +Z: 60 deg from the underside's normal."""
+    one = ready(box(), tilt, "trunnion-ac")
+    below = one.samples.normal @ Z < -0.5
+    found = held(one, Z)
+    assert found[~below].all()
+    assert found[below].all() == found[below].any() == sixth
+
+
+@pytest.mark.parametrize(("tilt", "limit"), [(40.0, 49.0), (40.0, 51.0), (75.0, 14.0), (75.0, 16.0)])
+def test_half_a_ball_is_served_along_its_pole_if_tilt_and_limit_make_a_right_angle(tilt, limit):
+    one = ready(ball(20.0), tilt, f"tilt:{limit:g}", grid=41)
+    upper = one.samples.normal @ Z >= -1e-9
+    assert (one.samples.normal[upper] @ Z).min() < 0.02
+    assert held(one, Z)[upper].all() == (tilt + limit >= 90.0)
+
+
+def test_a_table_only_takes_away_and_more_so_near_it():
+    one = ready(box(), 89.0, "unlimited")
+    low = float(one.samples.point[:, 2].min())
+    free, over = held(one, Z), holdable(one.samples, one.cutters, one.conditions, Z, low)
+    assert free.all()
+    # A tool of 60 mm that is 62 mm long at most above the table leans 90 deg and a little more: not to the underside's normal.
+    height = one.samples.point[:, 2] - low
+    least = np.arccos(-np.minimum(1.0, (height + 2.0) / 60.0))
+    angle = np.arccos(np.clip(one.samples.normal @ Z, -1.0, 1.0))
+    assert not (angle[over] - math.radians(89.0) > np.arccos(-np.minimum(1.0, (height[over].max() + 2.0) / 60.0))).any()
+    assert over[angle <= least].all()
+
+
+def test_directions_are_unit_and_differ():
+    every = distinct(np.concatenate([cube(), fibonacci(60), cube()]))
+    assert np.allclose(np.linalg.norm(every, axis=1), 1.0)
+    assert len(cube()) == 26
+    assert tuple(every[0]) == (0.0, 0.0, 1.0)
+    near = every @ every.T - 2.0 * np.eye(len(every))
+    assert near.max() < math.cos(math.radians(0.1))
+
+
+def test_what_a_cube_stands_on():
+    one = ready(box(), 89.0, "unlimited")
+    found = Candidates.of(one)
+    normal = {n: one.samples.normal[one.samples.face == n][0] for n in np.unique(one.samples.face).tolist()}
+    for axis, stands in zip(found.axis, found.stands_on, strict=True):
+        assert set(stands) == {n for n, out in normal.items() if out @ axis < -1.0 + 1e-9}
+
+
+HOW = {"cutters": "R2L60rc2", "faces": "all", "grid": 5, "area_budget": 0}
+
+
+def test_a_proposal_stands_on_a_face_and_holds_what_it_promised():
+    found = plan(box(), setup="auto", machine="trunnion-ac", **HOW)
+    said = found.plan.setup_proposal
+    (mine,) = said.setups
+    assert said.held
+    assert (len(mine.stands_on), said.tried) == (1, 1)
+    assert tuple(found.plan.effective.setup) == tuple(mine.axis)
+    assert found.plan.effective.placement.clamped == mine.stands_on
+    assert [each.name for each in found.plan.fixtures] == ["fixture:table"]
+    # The same setup by hand is the same plan.
+    place = Placement(z=mine.axis, clamped=tuple(mine.stands_on), fixtures=(Fixture.parse("table"),))
+    again = plan(box(), setup=place, machine="trunnion-ac", **HOW)
+    assert [c.model_dump() for c in again.plan.cutters] == [c.model_dump() for c in found.plan.cutters]
+    assert "setup_proposed" in found.plan.note_codes
+    # Five of six faces of a cube of equal faces: at most what does not lie on the table.
+    assert said.found <= 1.0 - min(f.area_mm2 for f in found.plan.faces) / sum(f.area_mm2 for f in found.plan.faces)
+
+
+def test_with_operations_the_fewest_setups_are_planned_together():
+    found = plan(box(), setup="auto", machine="trunnion-ac", operations="fewest", **HOW)
+    said = found.plan.setup_proposal
+    assert len(said.setups) == 2
+    assert said.held
+    assert said.found > 0.99
+    held = [{int(name[1:]) for name in each.stands_on} for each in said.setups]
+    assert held[0]
+    assert not held[0] & held[1]
+    made = found.answers.operations.plans[0]
+    assert {each.setup for each in made.operations} == {0, 1}
+    for each in made.operations:
+        assert not set(found.samples.face[each.rows].tolist()) & held[each.setup]
+
+
+def test_a_promise_that_is_not_held_is_followed_by_the_next_one(monkeypatch):
+    """A ranking that promises too much: its plan falls short, the next direction is tried, and the plan says which one it is."""
+    import plan_cutters.proposal as proposal
+
+    def boastful(one, most):
+        made = ranked(one, most)
+        first = made.choose(1)[0]
+        made.served[first] = np.ones(len(made.rows), bool)
+        return made
+
+    monkeypatch.setattr(proposal, "ranked", boastful)
+    said = plan(box(), setup="auto", machine="tilt:30", **HOW).plan.setup_proposal
+    assert said.held
+    assert said.tried == 2
+
+    def all_boastful(one, most):
+        made = ranked(one, most)
+        made.served = {k: np.ones(len(made.rows), bool) for k in made.served}
+        return made
+
+    monkeypatch.setattr(proposal, "ranked", all_boastful)
+    said = plan(box(), setup="auto", machine="tilt:30", **HOW).plan.setup_proposal
+    assert not said.held
+    assert "holds only" in said.why
+    assert said.found < said.promised
+
+
+def test_where_nothing_is_within_the_limits_it_is_one_line():
+    flat = Options(cutters="R2L40", faces="all", grid=5, tilt=(1.7, 1.9), setup="auto", machine="3-axis")
+
+    def never(*_, **__):
+        raise AssertionError
+
+    with pytest.raises(OptionError, match=r"in none of \d+ directions does machine 3-axis hold") as caught:
+        plan_proposed(lambda options, clock: prepare(box(), options, clock), never, flat, Clock())
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("words", "cause"),
+    [
+        ({"setup": "auto", "other_setups": ["+x"]}, "leave out the other setups"),
+        ({"setup": "+x", "other_setups": ["auto"]}, "leave out the other setups"),
+        ({"setup": "auto", "fixtures": "table"}, "leave out the fixtures"),
+        ({"setup": "auto", "placement": Placement()}, "leave out the other setups"),
+    ],
+)
+def test_auto_stands_alone(words, cause):
+    with pytest.raises(OptionError, match=cause):
+        Options(**words)
+
+
+@pytest.mark.parametrize(
+    ("words", "cause"),
+    [
+        (("--setup", "auto", "--setup", "+x"), "leave out the other setups"),
+        (("--setup", "auto", "--fixture", "table"), "leave out the fixtures"),
+        (("--setup", "auto", "--postures", SAMPLES / "v_groove.step"), "name the setup"),
+        (("--setup", "auto", "--check-operations", "x"), "name the setup"),
+    ],
+)
+def test_the_command_says_so_in_one_line(tmp_path, words, cause):
+    assert_one_line(run(SAMPLES / "v_groove.step", "--cutter", "R2L30", *words, "--quiet", cwd=tmp_path), 2, cause)
