@@ -12,6 +12,7 @@ from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.operations import Fastest, OperationPlan, Operations
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import OptionError
+from plan_cutters.library.presets import feed_of
 from plan_cutters.operations.candidates import STEP, apart, candidates
 from plan_cutters.operations.curve import curve
 from plan_cutters.operations.fastest import Costs
@@ -89,10 +90,14 @@ def feeds(options: Options, cutters: Sequence[Cutter]) -> Mapping[Cutter, float]
     """
     if options.feed is not None:
         return dict.fromkeys(cutters, options.feed)
-    if options.operations in ("fastest", "both"):
-        raise OptionError(f"the fastest operations need a feed, and {cutters[0].id} has none: give --feed MM/MIN, or ask for the "
-                          "fewest")  # fmt: skip
-    return None
+    sources = options.sources
+    stated = {cutter: feed_of([entry for _, entry in sources.get(cutter.id, ())]) for cutter in cutters}
+    found = {cutter: feed for cutter, feed in stated.items() if feed is not None}
+    without = [cutter.id for cutter in cutters if cutter not in found]
+    if without and options.operations in ("fastest", "both"):
+        raise OptionError(f"the fastest operations need a feed, and {', '.join(without)} {'has' if len(without) == 1 else 'have'} "
+                          "none: give --feed MM/MIN, or ask for the fewest")  # fmt: skip
+    return None if without else found
 
 
 def _first(task: Task) -> Columns:
