@@ -32,7 +32,9 @@ _MM = {"mm": 1.0, "µm": 1e-3, "μm": 1e-3, "um": 1e-3, "nm": 1e-6, "cm": 10.0, 
        '"': 25.4, "″": 25.4, "inch": 25.4, "mil": 0.0254, "thou": 0.0254, "ft": 304.8, "'": 304.8}  # fmt: skip
 _DEGREES = ("", "°", "deg", "degrees")
 _QUANTITY = re.compile(r"\s*([-+]?[\d.,]+(?:[eE][-+]?\d+)?|[-+]?(?:nan|inf(?:inity)?))\s*([^\s/]*)\s*", re.IGNORECASE)
-_FEED = re.compile(r"\s*([-+]?[\d.,]+(?:[eE][-+]?\d+)?|[-+]?(?:nan|inf))\s*(?:([^\s/\d]+)\s*/\s*(min|s))?\s*", re.IGNORECASE)
+_FEED = re.compile(
+    r"\s*([-+]?[\d.,]+(?:[eE][-+]?\d+)?|[-+]?(?:nan|inf))\s*(?:([^\s/\d]+)\s*/\s*(min|s))?\s*", re.IGNORECASE
+)
 #: Our name of each dimension, and the names that shapes have had for it.
 _PARAMETERS = (
     ("DC", ("Diameter",)),

@@ -82,7 +82,12 @@ class Problem:
         if not len(chosen):
             return 0.0 if not len(self.cost) else np.inf
         each, cutters, setups = self.costs, len(np.unique(self.cutter[chosen])), len(np.unique(self.setup[chosen]))
-        return self.cutting(chosen) + each.operation * len(chosen) + each.cutter * (cutters - 1) + each.setup * (setups - 1)
+        return (
+            self.cutting(chosen)
+            + each.operation * len(chosen)
+            + each.cutter * (cutters - 1)
+            + each.setup * (setups - 1)
+        )
 
     def cutting(self, chosen: Which) -> float:
         """What the samples cost, each with the best of a choice."""
@@ -112,6 +117,12 @@ def cheap(problem: Problem, start: Which | None = None) -> Which:
     found = [_improved(problem, _grown(problem, np.zeros(0, np.int64)))]
     if start is not None and len(start):
         found.append(_improved(problem, _grown(problem, start)))
+    for cutter in np.unique(problem.cutter).tolist():
+        # Another cutter may not be worth its change, though the first steps take it.
+        own = np.flatnonzero(problem.cutter == cutter)
+        if len(own) < len(problem.cutter) and np.isfinite(problem.cost[:, own]).any(axis=1).all():
+            part = problem.of(own)
+            found.append(own[_improved(part, _grown(part, np.zeros(0, np.int64)))])
     return np.sort(min(found, key=problem.total))
 
 
