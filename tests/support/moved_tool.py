@@ -13,7 +13,7 @@ def centre_of_tip(radius, corner, point, normal, axis):
 
 
 def heights(radius, corner, middle, axis, feed, across, turns):
-    """Height of a tip over places (n, 2) that lie at distances `across` beside the feed through the origin; inf where it is not."""
+    """Height of a tip over places at distances `across` (n,) beside the feed through the origin; inf where it is not."""
     rho, side = radius - corner, np.array([-feed[1], feed[0], 0.0])
     u = np.cross(axis, [0.0, 1.0, 0.0])
     u /= np.linalg.norm(u)

@@ -66,8 +66,8 @@ class OperationPlanEntry(Frozen):
         description="index time of each operation, change and setup time of each cutter and setup after the first"
     )
     ratio_at_most: float | None = Field(
-        description="cutting of the fixed operations over at_best_seconds of the fastest: they take at most so many times as long "
-        "as simultaneous motion, by the samples compared; null where that is not known"
+        description="cutting of the fixed operations over at_best_seconds of the fastest: they take at most so many times as "
+        "long as simultaneous motion, by the samples compared; null where that is not known"
     )
     operations: list[OperationEntry] = Field(description="the largest share first")
     rest: RestEntry

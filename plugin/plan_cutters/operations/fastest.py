@@ -32,7 +32,7 @@ _NOTHING = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Costs:
-    """What each operation, each cutter and each setup after the first costs, whatever they cut, in the unit of the samples' costs."""
+    """What each operation, and each cutter and setup after the first, costs whatever it cuts, in the unit of the samples' costs."""
 
     operation: float
     cutter: float

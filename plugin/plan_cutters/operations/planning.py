@@ -99,8 +99,8 @@ def feeds(options: Options, cutters: Sequence[Cutter]) -> Mapping[Cutter, float]
     found = {cutter: feed for cutter, feed in stated.items() if feed is not None}
     without = [cutter.id for cutter in cutters if cutter not in found]
     if without and options.operations in ("fastest", "both"):
-        raise OptionError(f"the fastest operations need a feed, and {', '.join(without)} {'has' if len(without) == 1 else 'have'} "
-                          "none: give --feed MM/MIN, or ask for the fewest")  # fmt: skip
+        who = f"{', '.join(without)} {'has' if len(without) == 1 else 'have'} none"
+        raise OptionError(f"the fastest operations need a feed, and {who}: give --feed MM/MIN, or ask for the fewest")
     return None if without else found
 
 

@@ -55,10 +55,7 @@ def _own(task: Task, search: Search, cutter: int, left: Rows) -> tuple[Columns, 
         columns = search.columns.of(active[mine])
         some = table[np.isin(search.rows, left)][:, mine]
         some = some[some.any(axis=1)]
-        if not len(some):
-            chosen = columns.of(np.zeros(0, np.int64))
-        else:
-            chosen = columns.of(fewest(some, prove=False).chosen)
+        chosen = columns.of(fewest(some, prove=False).chosen)
         served = np.asarray(task.probes.table(left, chosen).any(axis=1))
         missed = left[~served & reached[left] & ~np.isin(left, search.rows)]
         if not len(missed):
