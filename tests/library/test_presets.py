@@ -86,7 +86,8 @@ def test_hsmworks_has_presets_or_the_tools_own_motion(tmp_path):
         assert only(read_library(path)).feed == feed
 
 
-@pytest.mark.parametrize(("given", "feed"), [("500", 500.0), (500, 500.0), ("8 mm/s", 480.0), ("10 in/min", 254.0), ("0,5 m/min", 500.0),
+@pytest.mark.parametrize(("given", "feed"), [("500", 500.0), (500, 500.0), ("8 mm/s", 480.0), ("10 in/min", 254.0),
+                                            ("0,5 m/min", 500.0),
                                             ("quick", None), ("-3", None)])  # fmt: skip
 def test_a_freecad_bit_may_have_one(tmp_path, given, feed):
     parameter = {"Diameter": "6 mm", "CuttingEdgeHeight": "12 mm", "Length": "60 mm", "ShankDiameter": "6 mm"}

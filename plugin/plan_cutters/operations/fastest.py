@@ -32,7 +32,7 @@ _NOTHING = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Costs:
-    """What each operation, and each cutter and setup after the first, costs whatever it cuts, in the unit of the samples' costs."""
+    """What each operation, and each cutter and setup after the first, costs whatever it cuts, in the samples' unit."""
 
     operation: float
     cutter: float
