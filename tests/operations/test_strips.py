@@ -111,7 +111,7 @@ def test_a_whole_sphere_takes_its_area_over_width_and_feed():
 
 def test_the_flank_of_a_barrel_has_the_width_of_its_arc():
     """Across the flank lies an arc of 80 mm: the pass is as wide as that of a ball of this radius."""
-    barrel = Cutter.barrel(radius=5.0, flank_radius=80.0, length=60.0, height=8.0)
+    barrel = Cutter.barrel(radius=5.0, flank_radius=80.0, length=60.0, height=8.0, flutes=16.0, shank_radius=4.0)
     found = width(barrel, math.radians(90.0), stepover=10.0)
     assert found == pytest.approx(2.0 * math.sqrt(2 * 80 * 0.01), rel=0.01)
 

@@ -108,7 +108,7 @@ class FastestEntry(Frozen):
 
 
 class CutterUse(Frozen):
-    """What a cutter does in each plan, and what it is worth beside the others that were compared."""
+    """A cutter takes so much in each plan, and is worth so much beside the others that were compared."""
 
     id: str
     takes_mm2: dict[str, float] = Field(description="area of its operations, by the name of the plan")

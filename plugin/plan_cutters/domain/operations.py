@@ -114,7 +114,7 @@ class Fastest:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Worth:
-    """What a cutter is worth beside the others that were compared.
+    """A cutter is worth this beside the others that were compared.
 
     Attributes
     ----------

@@ -32,7 +32,7 @@ _NOTHING = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Costs:
-    """What each operation, and each cutter and setup after the first, costs whatever it cuts, in the samples' unit."""
+    """Each operation, and each cutter and setup after the first, costs this whatever it cuts, in the samples' unit."""
 
     operation: float
     cutter: float
@@ -78,7 +78,7 @@ class Problem:
         )
 
     def total(self, chosen: Which) -> float:
-        """What a choice costs; infinite where it leaves a sample."""
+        """Sum up the costs of a choice; infinite where it leaves a sample."""
         if not len(chosen):
             return 0.0 if not len(self.cost) else np.inf
         each, cutters, setups = self.costs, len(np.unique(self.cutter[chosen])), len(np.unique(self.setup[chosen]))
@@ -90,7 +90,7 @@ class Problem:
         )
 
     def cutting(self, chosen: Which) -> float:
-        """What the samples cost, each with the best of a choice."""
+        """Sum up the costs of the samples, each with the best of a choice."""
         return float(self.cost[:, chosen].min(axis=1, initial=np.inf).sum())
 
     def added(self, chosen: Which, now: Floats) -> tuple[int, float]:

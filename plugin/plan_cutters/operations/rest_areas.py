@@ -73,7 +73,7 @@ def allowed(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> NDArray[
 
 
 def worths(task: Task, problem: Problem, chosen: Rows) -> tuple[Worth, ...]:
-    """What each cutter is worth, by the best choices that are found with it and without it; none for a single cutter."""
+    """Compare the best choices that are found with each cutter and without it; none for a single cutter."""
     if len(task.cutters) < 2:
         return ()
     cutters = task.cutters
