@@ -43,7 +43,7 @@ def test_any_prices_bound_the_cost_of_any_choice(seed):
     if not len(problem.cost):
         return
     price = np.random.default_rng(seed).normal(5.0, 10.0, len(problem.cost))
-    assert lagrange(problem, price)[0] <= brute(problem) + 1e-9
+    assert lagrange(problem.cost.T, problem.costs.operation, price)[0] <= brute(problem) + 1e-9
 
 
 def test_without_costs_of_operations_each_sample_takes_its_best_and_the_bound_is_that():

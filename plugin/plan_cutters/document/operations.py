@@ -8,9 +8,21 @@ from pydantic import Field
 
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.document.frozen import Frozen, Vector, vector
-from plan_cutters.domain.operations import RESOLUTION, Fewest, Motion, Operation, OperationPlan, Operations
+from plan_cutters.domain.operations import (
+    RESOLUTION,
+    Fastest,
+    Fewest,
+    Motion,
+    Operation,
+    OperationPlan,
+    Operations,
+    Worth,
+)
 from plan_cutters.domain.verdicts import NO_REASON, REASONS
 from plan_cutters.options import Options
+
+#: Areas differ by less, as a share, where they are of the same samples.
+_SAME_AREA = 1e-3
 
 
 class OperationFace(Frozen):
@@ -72,7 +84,15 @@ class OperationPlanEntry(Frozen):
     name: Literal["fewest", "fastest", "largest first"]
     orientations: int = Field(description="fixed ones, each with one cutter and setup")
     cut_length_mm: float
-    seconds: float | None = Field(description="cutting, orientations, cutters and setups; null without a feed")
+    seconds: float | None = Field(description="cutting and other_seconds together; null without a feed")
+    cutting_seconds: float | None = Field(description="of all operations, at the feed; null without a feed")
+    other_seconds: float = Field(
+        description="index time of each operation, change and setup time of each cutter and setup after the first"
+    )
+    ratio_at_most: float | None = Field(
+        description="cutting of the fixed operations over at_best_seconds of the fastest: they take at most so many times as "
+        "long as simultaneous motion, by the samples compared; null where that is not known"
+    )
     operations: list[OperationEntry] = Field(description="the largest share first")
     rest: RestEntry
 
@@ -111,8 +131,21 @@ class FastestEntry(Frozen):
         description="cutting alone, each sample with its own best axis among the candidates: simultaneous motion at its best, "
         "without its rotary speeds"
     )
+    gap: float = Field(description="how far seconds are above bound_seconds, as a share of these")
     samples: int
     candidates: int
+
+
+class CutterUse(Frozen):
+    """A cutter takes so much in each plan, and is worth so much beside the others that were compared."""
+
+    id: str
+    takes_mm2: dict[str, float] = Field(description="area of its operations, by the name of the plan")
+    only_mm2: float = Field(description="judged area that none of the others reaches")
+    saves_seconds: float | None = Field(
+        description="of cutting, orientations and other cutters, before its own change; null: the others alone cannot do it"
+    )
+    change_seconds: float = Field(description="that its change costs; 0 where it is the only one")
 
 
 class StepEntry(Frozen):
@@ -161,6 +194,9 @@ class OperationsEntry(Frozen):
     plans: list[OperationPlanEntry]
     fewest: FewestEntry
     fastest: FastestEntry | None = Field(description="null unless the fastest were asked for")
+    cutters: list[CutterUse] = Field(
+        description="the largest first; empty unless the fastest were asked for and several cutters were compared"
+    )
     curve: list[StepEntry]
     assumed: AssumedEntry
     motion: MotionEntry | None = Field(description="null unless posture maps were asked for, too")
@@ -188,11 +224,12 @@ def operations_entry(
         change_s=options.change_time, setup_s=options.setup_time,
     )  # fmt: skip
     plans = [_plan(each, found, samples, area, wanted, assumed) for each in found.plans]
+    uses = [_use(each, plans, area) for each in found.worth]
     steps = [StepEntry(orientations=s.orientations, share=s.share, at_most=s.at_most) for s in found.curve]
     return OperationsEntry(
         asked=found.which,  # type: ignore[arg-type]
-        rotary=found.names, plans=plans, fewest=_fewest(found.fewest), curve=steps, fastest=_fastest(found), assumed=assumed,
-        probes=found.probes, motion=_motion(found.motion), notes=list(found.notes),
+        rotary=found.names, plans=plans, fewest=_fewest(found.fewest), cutters=uses, curve=steps, fastest=_fastest(found),
+        assumed=assumed, probes=found.probes, motion=_motion(found.motion), notes=list(found.notes),
     )  # fmt: skip
 
 
@@ -232,8 +269,17 @@ def _fastest(found: Operations) -> FastestEntry | None:
     timed = found.fastest
     if timed is None:
         return None
-    return FastestEntry(seconds=timed.seconds, bound_seconds=timed.bound, at_best_seconds=timed.at_best, samples=timed.samples,
-                        candidates=timed.candidates)  # fmt: skip
+    return FastestEntry(seconds=timed.seconds, bound_seconds=timed.bound, at_best_seconds=timed.at_best, gap=timed.gap,
+                        samples=timed.samples, candidates=timed.candidates)  # fmt: skip
+
+
+def _use(found: Worth, plans: list[OperationPlanEntry], area: Floats) -> CutterUse:
+    takes: dict[str, float] = {
+        str(plan.name): sum(each.area_mm2 for each in plan.operations if each.cutter == found.cutter.id)
+        for plan in plans
+    }
+    return CutterUse(id=found.cutter.id, takes_mm2=takes, only_mm2=float(area[found.only].sum()), saves_seconds=found.saves,
+                     change_seconds=found.change)  # fmt: skip
 
 
 def _plan(
@@ -244,15 +290,16 @@ def _plan(
     operations = [_operation(each, plan, found.names, samples, area, whole) for each in plan.operations]
     rest = wanted & (plan.label < 0)
     left = float(area[rest].sum())
-    seconds = None
-    if all(each.seconds is not None for each in operations):
-        seconds = sum(each.seconds or 0.0 for each in operations) + assumed.index_s * len(operations)
-        seconds += assumed.change_s * len({each.cutter for each in operations}) + assumed.setup_s * len(
-            {each.setup for each in operations}
-        )
+    # The first cutter and the first setup are there anyway.
+    other = assumed.index_s * len(operations) + assumed.change_s * max(0, len({each.cutter for each in operations}) - 1)
+    other += assumed.setup_s * max(0, len({each.setup for each in operations}) - 1)
+    known = [each.seconds for each in operations if each.seconds is not None]
+    cutting = sum(known) if len(known) == len(operations) else None
     return OperationPlanEntry(
         name=plan.name, orientations=sum(each.mode == "fixed" for each in operations),  # type: ignore[arg-type]
-        cut_length_mm=sum(each.cut_length_mm or 0.0 for each in operations), seconds=seconds, operations=operations,
+        cut_length_mm=sum(each.cut_length_mm or 0.0 for each in operations), operations=operations,
+        seconds=None if cutting is None else cutting + other, cutting_seconds=cutting, other_seconds=other,
+        ratio_at_most=_ratio(operations, found.fastest),
         rest=RestEntry(samples=int(rest.sum()), area_mm2=left, share=left / whole if whole > 0.0 else 0.0,
                        reason_counts=_reasons(found.reason[rest])),
     )  # fmt: skip
@@ -262,6 +309,16 @@ def _reasons(reason: NDArray[np.uint8]) -> dict[str, int]:
     """How many samples have each reason."""
     codes, counts = np.unique(reason[reason != NO_REASON], return_counts=True)
     return {REASONS[code]: count for code, count in zip(codes.tolist(), counts.tolist(), strict=True)}
+
+
+def _ratio(operations: list[OperationEntry], timed: Fastest | None) -> float | None:
+    """Cutting of the fixed operations over that at best; only where both are about the same area."""
+    fixed = [each for each in operations if each.mode == "fixed"]
+    if timed is None or timed.at_best <= 0.0 or any(each.seconds is None for each in fixed):
+        return None
+    if abs(sum(each.area_mm2 for each in fixed) - timed.area) > _SAME_AREA * timed.area:
+        return None
+    return max(1.0, sum(each.seconds or 0.0 for each in fixed) / timed.at_best)
 
 
 def _operation(

@@ -106,6 +106,8 @@ class Fastest:
         Of the choice, with the times of its orientations, cutters and setups; no choice among the candidates takes less.
     at_best : float
         Cutting alone, each sample with its own best axis among the candidates: simultaneous motion at its best.
+    area : float
+        That the samples stand for, mm2.
     samples, candidates : int
         How many they were.
     """
@@ -113,8 +115,36 @@ class Fastest:
     seconds: float
     bound: float
     at_best: float
+    area: float
     samples: int
     candidates: int
+
+    @property
+    def gap(self) -> float:
+        """How far the choice is above the best of the candidates at most, as a share of the bound."""
+        return self.seconds / self.bound - 1.0 if self.bound > 0.0 else 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Worth:
+    """A cutter is worth this beside the others that were compared.
+
+    Attributes
+    ----------
+    cutter : Cutter
+    only : (n,) int64
+        Samples that none of the others reaches.
+    saves : float, optional
+        Seconds of cutting, orientations and other cutters that it saves, before its own change; None where the others alone
+        cannot do what the operations do.
+    change : float
+        Seconds that its change costs: 0 where it is the only one then.
+    """
+
+    cutter: Cutter
+    only: NDArray[np.int64]
+    saves: float | None
+    change: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,6 +288,8 @@ class Operations:
         Where the fastest were asked for.
     motion : Motion, optional
         Where posture maps were asked for, too.
+    worth : tuple of Worth
+        Of each cutter, the largest first, where the fastest were asked for and several were compared.
     """
 
     which: str
@@ -271,6 +303,7 @@ class Operations:
     reason: NDArray[np.uint8]
     fastest: Fastest | None = None
     motion: Motion | None = None
+    worth: tuple[Worth, ...] = ()
     notes: tuple[str, ...] = field(default_factory=tuple)
 
     def plan(self, name: str) -> OperationPlan | None:

@@ -14,6 +14,7 @@ from plan_cutters.domain.holder import Holder
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.library.files import MOST_TOOLS, Content, data_of, is_file, lines_of, too_many
 from plan_cutters.library.fusion_json import MOST_SECTIONS
+from plan_cutters.library.presets import Preset, take_feed
 from plan_cutters.library.raw_tool import (
     FaultError,
     Found,
@@ -31,6 +32,9 @@ _MM = {"mm": 1.0, "µm": 1e-3, "μm": 1e-3, "um": 1e-3, "nm": 1e-6, "cm": 10.0, 
        '"': 25.4, "″": 25.4, "inch": 25.4, "mil": 0.0254, "thou": 0.0254, "ft": 304.8, "'": 304.8}  # fmt: skip
 _DEGREES = ("", "°", "deg", "degrees")
 _QUANTITY = re.compile(r"\s*([-+]?[\d.,]+(?:[eE][-+]?\d+)?|[-+]?(?:nan|inf(?:inity)?))\s*([^\s/]*)\s*", re.IGNORECASE)
+_FEED = re.compile(
+    r"\s*([-+]?[\d.,]+(?:[eE][-+]?\d+)?|[-+]?(?:nan|inf))\s*(?:([^\s/\d]+)\s*/\s*(min|s))?\s*", re.IGNORECASE
+)
 #: Our name of each dimension, and the names that shapes have had for it.
 _PARAMETERS = (
     ("DC", ("Diameter",)),
@@ -190,7 +194,21 @@ def _tool(given: dict[str, Any], place: str, number: int | None) -> Listed:
     if tool.sort == "chamfer mill":
         tool.take("TA", parameters.get(_ANGLE), _ANGLE, _half_angle)
     tool.words["LPR"] = "length below the holder"
+    attribute = given.get("attribute")
+    if isinstance(attribute, dict):
+        take_feed(tool, [Preset("", attribute.get("cutting_feedrate"))], "cutting_feedrate", _feed)
     return tool
+
+
+def _feed(value: Any, field: str) -> float:
+    """mm/min of a number or a text; without a unit it is mm/min, as the programs that write bits count."""
+    match = _FEED.fullmatch(value) if isinstance(value, str) else None
+    if match is None:
+        return number_of(value, field)
+    scale = _MM.get((match[2] or "mm").lower())
+    if scale is None:
+        raise FaultError(f"{field} is {shown(value)}, not a feed as 500 mm/min")
+    return number_in(match[1], field)[0] * scale * (60.0 if match[3] == "s" else 1.0)
 
 
 def _length(value: Any, field: str, imperial: bool, tool: Listed) -> float:

@@ -9,6 +9,7 @@ from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.library.files import MOST_TOOLS, Content, too_many
 from plan_cutters.library.fusion_json import MOST_SECTIONS
+from plan_cutters.library.presets import Preset, take_feed
 from plan_cutters.library.raw_tool import FaultError, Found, Listed, mm, name_of, number_in, sections, unit_of, whole_of
 from plan_cutters.library.records import Entry
 
@@ -104,6 +105,8 @@ def _tool(row: dict[str | None, str], place: str) -> Listed:
             tool.holder = Holder(tuple(stages), name_of(row.get("holder_description")))
     except (FaultError, CutterError) as fault:
         tool.faults.append(str(fault))
+    take_feed(tool, [Preset(row.get("preset_name", ""), row.get("tool_feedCutting", "").strip())], "tool_feedCutting",
+              lambda text, field: number_in(text, field)[0])  # fmt: skip
     return tool
 
 

@@ -7,6 +7,7 @@ from plan_cutters.domain.checks import shown
 from plan_cutters.domain.holder import Holder
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.library.files import MOST_TOOLS, Content, lines_of, too_many
+from plan_cutters.library.presets import Preset, take_feed
 from plan_cutters.library.raw_tool import FaultError, Found, Listed, mm, name_of, number_of, sections, unit_of, whole_of
 from plan_cutters.library.records import Entry
 
@@ -96,7 +97,17 @@ def _tool(item: dict[str, Any], place: str) -> Listed:
         tool.take("LH", holder.get("gaugeLength"), "holder.gaugeLength")
         if "LH" in tool.values:
             tool.values["LH"] = round(tool.values["LH"] / tool.scale * scale, 9)
+    take_feed(tool, _presets(item), "v_f")
     return tool
+
+
+def _presets(item: dict[str, Any]) -> list[Preset]:
+    """Its presets. They say nothing of its shape: where they cannot be read, there are none."""
+    start = item.get("start-values")
+    given = start.get("presets") if isinstance(start, dict) else None
+    if not isinstance(given, list):
+        return []
+    return [Preset(name_of(each.get("name")), each.get("v_f")) for each in given if isinstance(each, dict)]
 
 
 def _table(item: dict[str, Any], key: str) -> dict[str, Any]:

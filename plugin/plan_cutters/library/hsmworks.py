@@ -7,6 +7,7 @@ from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.files.xml_tree import Element
 from plan_cutters.library.files import MOST_TOOLS, Content, too_many
 from plan_cutters.library.fusion_json import EXPRESSIONS, MOST_SECTIONS
+from plan_cutters.library.presets import Preset, take_feed
 from plan_cutters.library.raw_tool import FaultError, Found, Listed, mm, name_of, number_in, sections, unit_of, whole_of
 from plan_cutters.library.records import Entry
 
@@ -78,7 +79,22 @@ def _tool(element: Element, place: str) -> Listed:
         tool.take("LH", holder.given.get("gauge-length"), "holder gauge-length", _number)
         if "LH" in tool.values:
             tool.values["LH"] = round(tool.values["LH"] / tool.scale * scale, 9)
+    take_feed(tool, _presets(element), "cutting feed", _number)
     return tool
+
+
+def _presets(element: Element) -> list[Preset]:
+    """Its presets; without one, what its `motion` states."""
+    found = [
+        Preset(preset.given.get("name", ""), parameter.given.get("value"))
+        for preset in element.below(("preset",))
+        for parameter in preset.children
+        if parameter.given.get("key") == "tool_feedCutting"
+    ]
+    motion = element.first("motion")
+    if found or motion is None or motion.given.get("feed-mode", "per-minute") != "per-minute":
+        return found
+    return [Preset("", motion.given.get("cutting-feedrate"))]
 
 
 def _number(value: str, field: str) -> float:

@@ -125,6 +125,8 @@ class Listed:
     needs : tuple of str
         Dimensions without which there is no cutter.
     stated : Stated, optional
+    feed : float, optional
+        mm/min, and the name of the `preset` that it is of.
     """
 
     place: str
@@ -142,6 +144,8 @@ class Listed:
     notes: list[str] = field(default_factory=list)
     needs: tuple[str, ...] = ("DC", "LCF")
     stated: Stated | None = None
+    feed: float | None = None
+    preset: str = ""
 
     def tried(self, make: Callable[[], Any], otherwise: Any) -> Any:
         """Make a part of the tool; where it cannot be read, record the fault and return `otherwise` in its place."""
@@ -187,6 +191,8 @@ class Listed:
             self.unit,
             notes=tuple(dict.fromkeys(self.notes)),
             given=tuple(self.values.items()),
+            feed=self.feed,
+            preset=self.preset,
             **more,
         )
 

@@ -34,6 +34,10 @@ class Entry:
         How it was understood where that is not plain.
     given : tuple of (str, float)
         Dimensions that were read, mm and degrees, by their ISO 13399 names.
+    feed : float, optional
+        Of its preset, mm/min. It is none of the cutter's, whose id stays the same.
+    preset : str
+        The name of the preset that the feed is of.
     """
 
     place: str
@@ -46,6 +50,8 @@ class Entry:
     broken: bool = False
     notes: tuple[str, ...] = ()
     given: tuple[tuple[str, float], ...] = ()
+    feed: float | None = None
+    preset: str = ""
 
     @property
     def label(self) -> str:

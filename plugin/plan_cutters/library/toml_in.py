@@ -13,6 +13,7 @@ from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.library.files import MOST_TOOLS, Content, too_many
 from plan_cutters.library.milling import cause_of
+from plan_cutters.library.presets import Preset, take_feed
 from plan_cutters.library.raw_tool import FaultError, Found, Listed, Stated, mm, name_of, number_of, unit_of, whole_of
 from plan_cutters.library.records import Entry
 
@@ -63,6 +64,7 @@ class ToolTable(BaseModel):
     neck: list[Section] = []
     outline: list[Point] = []
     holder: str | list[Point] | HolderTable | None = None
+    feed: Annotated[float, Field(strict=True)] | None = None
     allowance: Number | None = None
     clearance: Number | None = None
 
@@ -198,6 +200,7 @@ def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) 
         needs["DC"], needs["outline"], tool.values["DC"] = False, not widest, widest
     _neck(model, tool, length(model.LN, "LN"), needs)
     tool.needs = tuple(key for key, needed in needs.items() if needed)
+    take_feed(tool, [Preset("", model.feed)], "feed", lambda value, _: float(value))
     return tool
 
 

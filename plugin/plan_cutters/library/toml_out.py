@@ -41,7 +41,7 @@ def _kind(cutter: Cutter) -> str:
     return "flat" if not cutter.corner_radius else "ball" if cutter.corner_radius == cutter.radius else "bull"
 
 
-def _written(cutter: Cutter, name: str, number: int | None) -> list[str]:
+def _written(cutter: Cutter, name: str, number: int | None, feed: float | None = None) -> list[str]:
     lines = ["", "[[tool]]"]
     if number is not None:
         lines.append(f"number = {number}")
@@ -76,6 +76,8 @@ def _written(cutter: Cutter, name: str, number: int | None) -> list[str]:
     for word in ("allowance", "clearance"):
         if getattr(cutter, word) is not None:
             lines.append(f"{word} = {getattr(cutter, word)!r}")
+    if feed is not None:
+        lines.append(f"feed = {float(feed)!r}")
     return lines
 
 
@@ -107,6 +109,6 @@ def to_toml(cutters: Library | Iterable[Cutter]) -> str:
         if entry.cutter is None:
             lines += ["", f"# Not used: {name_of(entry.label)}: {name_of(entry.unused)}"]
             continue
-        lines += _written(entry.cutter, entry.name, entry.number)
+        lines += _written(entry.cutter, entry.name, entry.number, entry.feed)
         lines[-1:] = [lines[-1], *(f"# {name_of(note)}" for note in entry.notes)]
     return "\n".join([*lines, ""])

@@ -3,9 +3,13 @@
 It is a facility location: each sample is cut by one chosen operation that serves it, each operation costs an index of the rotary
 axes, each cutter a change and each setup a clamping. A choice is made greedily and made better by leaving out and by exchanging
 operations. The bound is Lagrange's: any prices of samples give one, over all candidates at once (`docs/operations.md`, lemma 8).
+Prices are made better by steps along the mean of what samples are served too often or not at all; candidates that no better
+choice can have are left out on the way.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import combinations, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,15 +17,22 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints
 
 Which = NDArray[np.int64]
-#: Rounds of leaving out and exchanging, and of the linear program whose prices bound the time; columns that enter it at once.
-_ROUNDS, _PRICED, _ENTER = 12, 8, 40
+#: Rounds of leaving out and exchanging.
+_ROUNDS = 12
+#: Costs looked at for the bound, at most, and a gap at which it is good enough, as a share.
+_WORK, _CLOSE = 10**9, 0.01
+#: Steps of prices for all cutters and setups; cutters and setups whose sets are told apart, together.
+_FIRST, _KINDS = 80, 7
+#: Part of the newest direction in the mean; what counts as a gain, as a share; steps without one until they are made shorter, and
+#: by how much, down to what; a share of candidates left for which the others are dropped.
+_NEWEST, _GAIN, _PATIENT, _SHORTER, _SHORTEST, _FEWER = 0.2, 2e-4, 8, 0.7, 1e-3, 0.8
 #: Seconds that count as nothing.
 _NOTHING = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
 class Costs:
-    """What an operation, a cutter and a setup cost whatever they cut, in the unit of the samples' costs."""
+    """Each operation, and each cutter and setup after the first, costs this whatever it cuts, in the samples' unit."""
 
     operation: float
     cutter: float
@@ -37,7 +48,7 @@ class Location:
     chosen : (k,) int64
         Ascending.
     cost : float
-        Of all samples, each with the best of the chosen, and of operations, cutters and setups.
+        Of all samples, each with the best of the chosen, of operations, and of cutters and setups after the first.
     bound : float
         No choice costs less.
     """
@@ -62,37 +73,63 @@ class Problem:
         self.cost, self.cutter, self.setup, self.costs = cost, cutter, setup, costs
         finite = cost[np.isfinite(cost)]
         #: Costs more than any choice.
-        self.dear = float(cost.min(axis=1).sum() + finite.max(initial=0.0) * len(cost)) + 10.0 * sum(
+        self.dear = float(cost.min(axis=1, initial=np.inf).sum() + finite.max(initial=0.0) * len(cost)) + 10.0 * sum(
             (costs.operation, costs.cutter, costs.setup)
         )
 
     def total(self, chosen: Which) -> float:
-        """What a choice costs; infinite where it leaves a sample."""
+        """Sum up the costs of a choice; infinite where it leaves a sample."""
         if not len(chosen):
             return 0.0 if not len(self.cost) else np.inf
-        each = self.costs
-        return float(
-            self.cost[:, chosen].min(axis=1).sum() + each.operation * len(chosen)
-            + each.cutter * len(np.unique(self.cutter[chosen])) + each.setup * len(np.unique(self.setup[chosen]))
-        )  # fmt: skip
+        each, cutters, setups = self.costs, len(np.unique(self.cutter[chosen])), len(np.unique(self.setup[chosen]))
+        return (
+            self.cutting(chosen)
+            + each.operation * len(chosen)
+            + each.cutter * (cutters - 1)
+            + each.setup * (setups - 1)
+        )
+
+    def cutting(self, chosen: Which) -> float:
+        """Sum up the costs of the samples, each with the best of a choice."""
+        return float(self.cost[:, chosen].min(axis=1, initial=np.inf).sum())
 
     def added(self, chosen: Which, now: Floats) -> tuple[int, float]:
         """The candidate that saves most beside a choice, and how much: `now` (n,) is what the samples cost with it."""
         gain = np.maximum(0.0, now[:, None] - self.cost).sum(axis=0) - self.costs.operation
-        gain -= self.costs.cutter * ~np.isin(self.cutter, self.cutter[chosen])
-        gain -= self.costs.setup * ~np.isin(self.setup, self.setup[chosen])
+        if len(chosen):
+            gain -= self.costs.cutter * ~np.isin(self.cutter, self.cutter[chosen])
+            gain -= self.costs.setup * ~np.isin(self.setup, self.setup[chosen])
         best = int(gain.argmax())
         return best, float(gain[best])
+
+    def of(self, which: Which) -> "Problem":
+        """The same samples with some of the candidates."""
+        return Problem(self.cost[:, which], self.cutter[which], self.setup[which], self.costs)
 
 
 def fastest(problem: Problem, start: Which | None = None) -> Location:
     """Choose operations of little cost, from a choice that serves all or from nothing, and bound what the best costs."""
+    return bounded(problem, cheap(problem, start))
+
+
+def cheap(problem: Problem, start: Which | None = None) -> Which:
+    """Choose operations of little cost, from a choice that serves all or from nothing."""
     found = [_improved(problem, _grown(problem, np.zeros(0, np.int64)))]
-    if start is not None:
+    if start is not None and len(start):
         found.append(_improved(problem, _grown(problem, start)))
-    best = min(found, key=problem.total)
-    bound = _bound(problem, best)
-    return Location(np.sort(best), problem.total(best), min(bound, problem.total(best)))
+    for cutter in np.unique(problem.cutter).tolist():
+        # Another cutter may not be worth its change, though the first steps take it.
+        own = np.flatnonzero(problem.cutter == cutter)
+        if len(own) < len(problem.cutter) and np.isfinite(problem.cost[:, own]).any(axis=1).all():
+            part = problem.of(own)
+            found.append(own[_improved(part, _grown(part, np.zeros(0, np.int64)))])
+    return np.sort(min(found, key=problem.total))
+
+
+def bounded(problem: Problem, chosen: Which) -> Location:
+    """Say what a choice costs, and bound what any choice does."""
+    cost = problem.total(chosen)
+    return Location(chosen, cost, min(_bound(problem, chosen), cost))
 
 
 def _now(problem: Problem, chosen: Which) -> Floats:
@@ -130,55 +167,119 @@ def _improved(problem: Problem, chosen: Which) -> Which:
     return chosen
 
 
-def lagrange(problem: Problem, price: Floats) -> tuple[float, Floats]:
-    """Bound what any choice costs, by prices (n,) of samples; and the reduced costs (m,) of candidates.
+def lagrange(cost: Floats, operation: float, price: Floats) -> tuple[float, Floats, Floats]:
+    """Bound what any choice costs that pays for its samples and operations alone, by prices (n,) of samples.
 
-    Whatever the prices, a choice pays for each sample its price, less what its candidates, cutters and setups gain on that: what
-    they can gain at most leaves the bound. At least one cutter, and one setup, is paid for.
+    Whatever the prices, a choice pays for each sample its price, less what its candidates gain on that: what they can gain at
+    most leaves the bound.
+
+    Parameters
+    ----------
+    cost : (m, n) float
+        Of each sample with each candidate.
+    operation : float
+        What each candidate costs beside.
+    price : (n,) float
+
+    Returns
+    -------
+    float
+        The bound.
+    (m,) float
+        Reduced costs of the candidates: those below 0 gain something.
+    (m, n) float
+        What each candidate gains on each sample, 0 or less.
     """
-    reduced = problem.costs.operation + np.minimum(0.0, problem.cost - price[:, None]).sum(axis=0)
-    gain, costs = np.minimum(0.0, reduced), problem.costs
-    by_cutter = np.minimum(0.0, costs.cutter + np.bincount(problem.cutter, gain)).sum() + costs.setup
-    by_setup = np.minimum(0.0, costs.setup + np.bincount(problem.setup, gain)).sum() + costs.cutter
-    return float(price.sum() + max(by_cutter, by_setup, gain.sum() + costs.cutter + costs.setup)), reduced
+    gain = np.minimum(0.0, cost - price)
+    reduced = operation + gain.sum(axis=1)
+    return float(price.sum() + np.minimum(0.0, reduced).sum()), reduced, gain
+
+
+class _Ascent:
+    """Prices of samples that are made better step by step, for choices of some cutters and some setups.
+
+    Each step raises prices of samples that the candidates taken do not serve, and lowers those that several of them serve; its
+    length follows from how far the bound is from a choice that is known.
+
+    Attributes
+    ----------
+    bound : float
+        Of choices with all these cutters and setups.
+    work : int
+        Costs looked at.
+    """
+
+    def __init__(self, cost: Floats, operation: float, base: float, price: Floats) -> None:
+        self._cost, self._operation, self._base, self.price = cost, operation, base, price
+        self._mean, self._length, self._waited = np.zeros(len(price)), 1.0, 0
+        self.bound, self.work, self.over = -np.inf, 0, not len(cost)
+
+    def step(self, most: float) -> None:
+        """Make the prices better, below a cost that a choice has."""
+        price = self.price
+        if np.isfinite(self.bound):
+            far = most - self.bound + 2e-3 * abs(most)
+            price = price + self._length * far / max(1e-300, float(self._mean @ self._mean)) * self._mean
+        value, reduced, gain = lagrange(self._cost, self._operation, price)
+        value += self._base
+        direction = 1.0 - (gain[reduced < 0.0] < 0.0).sum(axis=0)
+        self._mean = _NEWEST * direction + (1.0 - _NEWEST) * self._mean if np.isfinite(self.bound) else direction
+        self._waited = 0 if value > self.bound + _GAIN * abs(most) else self._waited + 1
+        if value > self.bound:
+            self.bound, self.price = value, price
+        if self._waited >= _PATIENT:
+            self._length, self._waited = _SHORTER * self._length, 0
+        self.work += self._cost.size
+        self.over = self._length < _SHORTEST or not self._mean.any()
+        # With one of the others any choice costs more than that: they are in no better choice.
+        some = value + np.maximum(0.0, reduced) <= most + _NOTHING
+        if 0.0 < some.mean() < _FEWER:
+            self._cost = self._cost[some]
 
 
 def _bound(problem: Problem, chosen: Which) -> float:
-    """The best bound by prices of a linear program on few candidates, to which others are added as the prices ask for them."""
-    from scipy.optimize import linprog
-    from scipy.sparse import coo_array
+    """Bound what any choice costs: the least over all sets of cutters and setups of what choices with these cost.
 
-    n, m = problem.cost.shape
-    best = -np.inf
-    often = np.bincount(problem.cost.argmin(axis=1), minlength=m)
-    some = np.union1d(chosen, np.argsort(-often, kind="stable")[:_ENTER])
-    for _ in range(_PRICED):
-        row, column = np.nonzero(np.isfinite(problem.cost[:, some]))
-        pairs, each = len(row), len(some)
-        cost = np.concatenate(
-            [problem.cost[:, some][row, column], np.full(each, problem.costs.operation), np.full(n, problem.dear)]
-        )
-        served = coo_array(
-            (np.ones(pairs + n), (np.r_[row, np.arange(n)], np.r_[np.arange(pairs), pairs + each + np.arange(n)])),
-            shape=(n, pairs + each + n),
-        ).tocsr()
-        opened = coo_array(
-            (
-                np.r_[np.ones(pairs), -np.ones(pairs)],
-                (np.r_[np.arange(pairs), np.arange(pairs)], np.r_[np.arange(pairs), pairs + column]),
-            ),
-            shape=(pairs, pairs + each + n),
-        ).tocsr()
-        found = linprog(
-            cost, A_ub=opened, b_ub=np.zeros(pairs), A_eq=served, b_eq=np.ones(n), bounds=(0.0, None), method="highs"
-        )
-        if found.x is None:
+    The set whose bound is the least is worked on until it is near to the choice.
+    """
+    if not len(problem.cost):
+        return 0.0
+    most, costs = problem.total(chosen), problem.costs
+    which, now = problem.cost[:, chosen].argmin(axis=1), problem.cost[:, chosen].min(axis=1)
+    first = now + costs.operation / np.bincount(which, minlength=len(chosen))[which]
+    table = np.ascontiguousarray(problem.cost.T)
+    whole = _Ascent(table, costs.operation, 0.0, first)
+    for _ in range(_FIRST):
+        if whole.over or whole.bound >= most * (1.0 - _CLOSE):
             break
-        bound, reduced = lagrange(problem, found.eqlin.marginals)
-        best = max(best, bound)
-        new = np.setdiff1d(np.argsort(reduced, kind="stable")[:_ENTER], some)
-        new = new[reduced[new] < -1e-7]
-        if not len(new):
-            break
-        some = np.union1d(some, new)
-    return float(best)
+        whole.step(most)
+    open_ = list[_Ascent]()
+    for base, kept in _sets(problem):
+        served = np.isfinite(table[kept]).any(axis=0).all()
+        if served and base + whole.bound < most:
+            open_.append(_Ascent(table[kept], costs.operation, base, whole.price))
+            open_[-1].step(most)
+    work = 0
+    while open_:
+        least = min(open_, key=lambda each: each.bound)
+        if least.over or least.bound >= most * (1.0 - _CLOSE) or work > _WORK:
+            return max(whole.bound, least.bound)
+        before = least.work
+        least.step(most)
+        work += least.work - before
+    return most
+
+
+def _sets(problem: Problem) -> Iterator[tuple[float, NDArray[np.bool_]]]:
+    """Of each set of cutters and setups what those after the first cost, and which candidates (m,) it has.
+
+    Where there are too many sets, one stands for all: that with all candidates, for which nothing is paid.
+    """
+    kinds = [np.unique(problem.cutter), np.unique(problem.setup)]
+    if sum(len(each) for each in kinds) > _KINDS:
+        yield 0.0, np.ones(len(problem.cutter), bool)
+        return
+    some = [[set_ for k in range(1, len(each) + 1) for set_ in combinations(each.tolist(), k)] for each in kinds]
+    for cutters, setups in product(*some):
+        base = problem.costs.cutter * (len(cutters) - 1) + problem.costs.setup * (len(setups) - 1)
+        yield base, np.isin(problem.cutter, cutters) & np.isin(problem.setup, setups)

@@ -10,17 +10,19 @@ from numpy.typing import NDArray
 from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet
-from plan_cutters.domain.operations import Fastest, OperationPlan, Operations
+from plan_cutters.domain.operations import Fastest, OperationPlan, Operations, Worth
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import OptionError
+from plan_cutters.library.presets import feed_of
 from plan_cutters.operations.candidates import STEP, apart, candidates
 from plan_cutters.operations.curve import curve
-from plan_cutters.operations.fastest import Costs
+from plan_cutters.operations.fastest import Costs, bounded, cheap
 from plan_cutters.operations.fewest import FINEST, Search, search_fewest
 from plan_cutters.operations.over_all_axes import over_all_axes
 from plan_cutters.operations.plans import Task, best_area, considered, orientations_of, plan_with
 from plan_cutters.operations.probes import Probes
-from plan_cutters.operations.timing import Paths, least_time, shared_area
+from plan_cutters.operations.rest_areas import allowed, largest_first, worths
+from plan_cutters.operations.timing import Paths, problem_of, shared_area
 from plan_cutters.options import Options
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress
@@ -63,14 +65,17 @@ def plan_operations(
         fewest = replace(fewest, at_least_any=any_axes, cells=cells)
         whole = float(np.nansum(ready.samples.area[ready.somewhere]))
         steps = curve(task.probes, fewest, task.rows, ready.samples.area, whole)
-        plans, timed = [], None
+        plans, timed, worth = [], None, tuple[Worth, ...]()
         if options.operations in ("fewest", "both"):
             plans.append(_capped(task, "fewest", fewest.columns.of(fewest.chosen)))
         if options.operations in ("fastest", "both"):
-            columns, timed = _fastest(task, search, fewest.columns.of(fewest.chosen))
+            columns, timed, worth = _fastest(task, search, fewest.columns.of(fewest.chosen))
             plans.append(_capped(task, "fastest", columns))
+            if len(task.cutters) > 1:
+                columns = largest_first(task, search, fewest.columns.of(fewest.chosen))
+                plans.append(_capped(task, "largest first", columns))
     return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
-                      task.probes.made, task.paths.feed, everywhere[0][task.cutters[0]].reason, timed)  # fmt: skip
+                      task.probes.made, task.paths.feed, everywhere[0][task.cutters[0]].reason, timed, worth=worth)  # fmt: skip
 
 
 def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], least: LeastSet | None) -> Task:
@@ -95,10 +100,14 @@ def feeds(options: Options, cutters: Sequence[Cutter]) -> Mapping[Cutter, float]
     """
     if options.feed is not None:
         return dict.fromkeys(cutters, options.feed)
-    if options.operations in ("fastest", "both"):
-        raise OptionError(f"the fastest operations need a feed, and {cutters[0].id} has none: give --feed MM/MIN, or ask for the "
-                          "fewest")  # fmt: skip
-    return None
+    sources = options.sources
+    stated = {cutter: feed_of([entry for _, entry in sources.get(cutter.id, ())]) for cutter in cutters}
+    found = {cutter: feed for cutter, feed in stated.items() if feed is not None}
+    without = [cutter.id for cutter in cutters if cutter not in found]
+    if without and options.operations in ("fastest", "both"):
+        who = f"{', '.join(without)} {'has' if len(without) == 1 else 'have'} none"
+        raise OptionError(f"the fastest operations need a feed, and {who}: give --feed MM/MIN, or ask for the fewest")
+    return None if without else found
 
 
 def _first(task: Task) -> Columns:
@@ -129,26 +138,30 @@ def _capped(task: Task, name: str, columns: Columns) -> OperationPlan:
     most = task.ready.options.most_operations
     if most is not None and len(columns) > most:
         columns = best_area(task, columns, most)
-    return plan_with(task, name, columns)
+    habit = name == "largest first"
+    return plan_with(task, name, columns, (lambda serves: allowed(task, columns, serves)) if habit else None)
 
 
-def _fastest(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Fastest]:
+def _fastest(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Fastest, tuple[Worth, ...]]:
     """Columns of least time, chosen by some samples and then checked at all; what they leave joins these samples."""
     options, samples = task.ready.options, task.ready.samples
     costs = Costs(options.index_time, options.change_time, options.setup_time)
     wanted = np.setdiff1d(task.rows, search.alone)
     search.require(wanted[:: max(1, len(wanted) // _TIMED)])
-    start = fewest
     for _ in range(_ROUNDS):
         active, table = search.whole
         columns = search.columns.of(active)
         area = shared_area(samples, wanted, search.rows)
-        known = np.flatnonzero(np.isin(columns.key, start.key))
-        found, at_best = least_time(columns, table, search.rows, area, samples, task.cutters, task.paths, costs, known)
-        chosen = columns.of(found.chosen)
-        left = wanted[~task.probes.table(wanted, chosen).any(axis=1)]
-        timed = Fastest(found.cost, found.bound, at_best, len(search.rows), len(active))
+        known = np.flatnonzero(np.isin(columns.key, fewest.key))
+        problem = problem_of(columns, table, search.rows, area, samples, task.cutters, task.paths, costs)
+        chosen = cheap(problem, known)
+        left = wanted[~task.probes.table(wanted, columns.of(chosen)).any(axis=1)]
         if not len(left):
-            return chosen, timed
+            break
         search.require(left[:: max(1, len(left) // 120)])
-    return chosen.and_(fewest), timed
+    else:
+        chosen = np.union1d(chosen, known)
+    found = bounded(problem, chosen)
+    at_best = float(problem.cost.min(axis=1, initial=np.inf).sum())
+    timed = Fastest(found.cost, found.bound, at_best, float(area.sum()), len(problem.cost), len(active))
+    return columns.of(chosen), timed, worths(task, problem, chosen)

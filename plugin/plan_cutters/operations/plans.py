@@ -1,6 +1,6 @@
 """A plan made of chosen columns: what each sample goes with, region by region."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,8 +51,13 @@ class Task:
     paths: Paths
 
 
-def plan_with(task: Task, name: str, columns: Columns) -> OperationPlan:
-    """Make the plan of some columns: each sample goes with one that serves it, the rest with simultaneous operations."""
+def plan_with(
+    task: Task, name: str, columns: Columns, rule: Callable[[NDArray[np.bool_]], NDArray[np.bool_]] | None = None
+) -> OperationPlan:
+    """Make the plan of some columns: each sample goes with one that serves it, the rest with simultaneous operations.
+
+    A `rule` says which of those that serve (n, k) a sample may go with.
+    """
     samples, rows = task.ready.samples, task.rows
     n, overlap = len(samples), task.ready.options.overlap
     area, edge = np.nan_to_num(samples.area), samples.neighbours
@@ -67,7 +72,8 @@ def plan_with(task: Task, name: str, columns: Columns) -> OperationPlan:
     finite = np.isfinite(cost)
     each = float((cost[finite].sum() / max(1e-300, (finite * area[:, None]).sum())) if finite.any() else 0.0)
     border = np.sqrt(0.5 * area[edge].sum(axis=1)) * overlap * each
-    label = joined(labelled(cost, edge, border), finite, edge, area, _SMALL * overlap**2)
+    may = finite if rule is None else rule(finite)
+    label = joined(labelled(np.where(may, cost, np.inf), edge, border), may, edge, area, _SMALL * overlap**2)
     operations, order = _fixed(task, columns, finite, label, area)
     place = np.full(len(columns) + 1, -1, np.int32)
     place[order] = np.arange(len(order))

@@ -3,9 +3,13 @@
 At a contact the gap between the tool and the surface is, to second order, a quadratic form `D = S_tool - S_surface` in the
 tangent plane. Its inverse gives the width of a pass in the feed direction d, with e at right angles to d, as
 `2 sqrt(2 h e D^-1 e)`: the pass is widest where e is the eigenvector of the largest eigenvalue of `D^-1`
-(`docs/operations.md`, lemma 6).
+(`docs/operations.md`, lemma 6). Where that is wider than a quarter of the tool's radius the second order is not enough, and
+the section across the feed is taken: a circle on a circle for a ball, an ellipse for a flat end, a line parallel to an
+ellipse for a bull nose on a plane. For a bull nose on a curved surface, and for a flat end there, the ellipse with the same
+second order stands for the section.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +18,10 @@ from cad_io.arrays import Floats, Record, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.shapes import modes
 
+#: Widths beyond this part of the radius are those of a section; curvatures below the other count as a plane, 1/mm.
+_WIDE, _PLANE = 0.25, 1e-9
+#: Halvings by which a section is found.
+_HALVINGS = 40
 #: Tilts are within a mode up to this, rad; sines below it are that of an axis along the normal.
 _HAIR = 1e-9
 
@@ -75,7 +83,10 @@ def strips(cutter: Cutter, samples: SurfaceSamples, axis: Floats, scallop: float
     room = np.where(matched, np.inf, value[:, 1])
     most = stepover * 2.0 * cutter.radius
     with np.errstate(invalid="ignore"):
-        width = np.minimum(most, 2.0 * np.sqrt(2.0 * scallop * room))
+        width = 2.0 * np.sqrt(2.0 * scallop * room)
+        bent = ((width > _WIDE * cutter.radius) | (offset == 0.0)) & np.isfinite(width)
+        width[bent] = _section(width[bent], samples.curvature[bent], offset[bent], radius[bent], sine[bent], scallop)
+        width = np.minimum(most, width)
     e = vector[:, :, 1]
     feed = e[:, :1] * t - e[:, 1:] * f
     known = np.isfinite(radius) & np.isfinite(axis).all(axis=1)
@@ -89,6 +100,65 @@ def _touching(cutter: Cutter, tilt: Floats) -> tuple[Floats, Floats]:
         mine = (tilt >= mode.low - _HAIR) & (tilt <= mode.high + _HAIR)
         offset[mine], radius[mine] = mode.offset, mode.radius
     return offset, radius
+
+
+def _section(width: Floats, curvature: Floats, offset: Floats, radius: Floats, sine: Floats, scallop: float) -> Floats:
+    """Widths (n,) of passes that are wide for the tool, by its section across the feed.
+
+    Parameters
+    ----------
+    width : (n,) float
+        By the second order, mm.
+    curvature : (n, 2) float
+        Of the surface, the larger first.
+    offset, radius : (n,) float
+        Of the part that touches, mm.
+    sine : (n,) float
+        Of the tilt.
+    scallop : float
+    """
+    # The ellipse of the largest half width: w^2 = w2^2 - (w2 / 2)^4 / a^2, until its sides are reached.
+    half = np.maximum(np.abs(radius + offset), radius)
+    found = np.where(
+        width >= math.sqrt(8.0) * half,
+        2.0 * half,
+        width * np.sqrt(np.maximum(0.0, 1.0 - (0.25 * width / half) ** 2)),
+    )
+    ball = offset == 0.0
+    found[ball] = _circles(radius[ball], curvature[ball, 0], scallop)
+    bull = (offset > 0.0) & (radius > 0.0) & (np.abs(curvature).max(axis=1, initial=0.0) <= _PLANE)
+    found[bull] = _parallel(offset[bull], sine[bull], radius[bull], scallop)
+    return np.asarray(found)
+
+
+def _circles(radius: Floats, curvature: Floats, scallop: float) -> Floats:
+    """Width of the part of a circle or line that a ball leaves within the scallop height, along the surface."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        c = -1.0 / curvature
+        cosine = ((c + radius) ** 2 + (c + scallop) ** 2 - radius**2) / (2.0 * (c + radius) * (c + scallop))
+        bent = 2.0 * np.abs(c) * np.arccos(np.clip(cosine, -1.0, 1.0))
+    flat = 2.0 * np.sqrt(np.maximum(0.0, 2.0 * radius * scallop - scallop**2))
+    flat = np.where(scallop >= radius, 2.0 * radius, flat)
+    # Nearly flat ones lose their digits in the cosine.
+    return np.where(np.abs(curvature) * radius < 1e-4, flat, bent)
+
+
+def _parallel(offset: Floats, sine: Floats, radius: Floats, scallop: float) -> Floats:
+    """Width of a bull nose on a plane, fed along its tilt: by the line parallel to its circle's ellipse at the corner radius."""
+    low, high = np.zeros(len(offset)), np.full(len(offset), 0.5 * math.pi)
+    for _ in range(_HALVINGS):
+        turn = 0.5 * (low + high)
+        below = _height(turn, offset, sine, radius)[1] < scallop
+        low, high = np.where(below, turn, low), np.where(below, high, turn)
+    return np.asarray(2.0 * _height(low, offset, sine, radius)[0])
+
+
+def _height(turn: Floats, offset: Floats, sine: Floats, radius: Floats) -> tuple[Floats, Floats]:
+    """How far aside, and how high over the plane, the line parallel to the ellipse is at an angle of it."""
+    tall = offset * sine
+    along, up = tall * np.sin(turn), offset * np.cos(turn)
+    size = np.maximum(np.hypot(along, up), 1e-300)
+    return offset * np.sin(turn) + radius * along / size, radius + tall * (1.0 - np.cos(turn)) - radius * up / size
 
 
 def _surface(samples: SurfaceSamples, f: Floats) -> Floats:

@@ -1,5 +1,6 @@
-"""The least-time choice of operations: what each sample costs with each candidate, the choice, and what it is compared with."""
+"""The time, or the length of path, that each sample takes with each candidate."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -10,12 +11,14 @@ from scipy.spatial import cKDTree
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.operations.fastest import Costs, Location, Problem, fastest
+from plan_cutters.operations.fastest import Costs, Problem
 from plan_cutters.operations.strips import strips
 
 Rows = NDArray[np.int64]
 #: How much farther apart samples of two faces count than those of one, in lengths of the part.
 _OTHER_FACE = 10.0
+#: Widths that are found at once.
+_AT_ONCE = 100_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,13 +40,23 @@ class Paths:
     feed: Mapping[Cutter, float] | None
 
 
-def widths(columns: Columns, rows: Rows, samples: SurfaceSamples, cutters: Sequence[Cutter], paths: Paths) -> Floats:
-    """Width of a pass (rows, columns), mm, whether a column serves there or not; nan where the tool does not touch."""
-    some = samples_at(samples, rows)
-    found = np.empty((len(rows), len(columns)))
-    for k in range(len(columns)):
-        axis = np.broadcast_to(columns.axis[k], (len(rows), 3))
-        found[:, k] = strips(cutters[columns.cutter[k]], some, axis, paths.scallop, paths.stepover).width
+def widths(
+    columns: Columns, rows: Rows, samples: SurfaceSamples, cutters: Sequence[Cutter], paths: Paths,
+    where: NDArray[np.bool_] | None = None,
+) -> Floats:  # fmt: skip
+    """Width of a pass (rows, columns), mm, whether a column serves there or not; nan where the tool does not touch.
+
+    With `where` (rows, columns) it is nan elsewhere, too.
+    """
+    found = np.full((len(rows), len(columns)), np.nan)
+    asked = np.ones(found.shape, bool) if where is None else where
+    for c, cutter in enumerate(cutters):
+        row, column = np.nonzero(asked & (columns.cutter == c))
+        for part in np.array_split(np.arange(len(row)), max(1, math.ceil(len(row) / _AT_ONCE))):
+            i, k = row[part], column[part]
+            found[i, k] = strips(
+                cutter, samples_at(samples, rows[i]), columns.axis[k], paths.scallop, paths.stepover
+            ).width
     return found
 
 
@@ -74,11 +87,11 @@ def shared_area(samples: SurfaceSamples, all_rows: Rows, rows: Rows) -> Floats:
     return np.bincount(nearest, np.nan_to_num(samples.area[all_rows]), len(rows)).astype(float)
 
 
-def least_time(
+def problem_of(
     columns: Columns, table: NDArray[np.bool_], rows: Rows, area: Floats, samples: SurfaceSamples, cutters: Sequence[Cutter],
-    paths: Paths, costs: Costs, start: Rows,
-) -> tuple[Location, float]:  # fmt: skip
-    """Choose the columns of least time for some samples, weighted by area.
+    paths: Paths, costs: Costs,
+) -> Problem:  # fmt: skip
+    """Say what some samples, weighted by area, cost with columns.
 
     Parameters
     ----------
@@ -89,15 +102,6 @@ def least_time(
     area : (r,) float
         That each of `rows` stands for, mm2.
     samples, cutters, paths, costs
-    start : (k,) int64
-        A choice that serves all of them.
-
-    Returns
-    -------
-    Location
-    float
-        Seconds at best where each sample has its own axis among the candidates: what simultaneous motion takes at least on them.
     """
-    cost = costs_of(columns, widths(columns, rows, samples, cutters, paths), table, area, cutters, paths)
-    problem = Problem(cost, columns.cutter, columns.setup, costs)
-    return fastest(problem, start), float(cost.min(axis=1).sum())
+    width = widths(columns, rows, samples, cutters, paths, table)
+    return Problem(costs_of(columns, width, table, area, cutters, paths), columns.cutter, columns.setup, costs)

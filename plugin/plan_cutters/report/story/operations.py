@@ -1,20 +1,23 @@
 """Put the plan of operations into words, the worst first."""
 
+import math
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from plan_cutters.document.model import Plan
-from plan_cutters.document.operations import FewestEntry, OperationEntry, OperationPlanEntry, OperationsEntry
+from plan_cutters.document.operations import CutterUse, FewestEntry, OperationEntry, OperationPlanEntry, OperationsEntry
 from plan_cutters.report.story.line import Line
 from plan_cutters.report.story.motion import motion, whatever_the_axes
 from plan_cutters.report.story.names import named
-from plan_cutters.report.story.numbers import some
+from plan_cutters.report.story.numbers import figure, percent, some
 
 #: Operations that are listed, and faces that are named of one.
 _LISTED, _FACES = 12, 4
+#: Operations for little area that are named before the others; a gap that counts as none, as a share.
+_SMALL, _NO_GAP = 3, 1e-6
 #: A share of the curve that is worth stopping at, and a share of the area for which an orientation is hardly worth its turn.
 _KNEE, _LITTLE = 0.97, 0.005
-#: A sample of this much cutting is told in minutes, s.
+#: So many seconds are told in minutes.
 _MINUTES = 120.0
 
 
@@ -26,7 +29,10 @@ def operations(plan: Plan) -> list[Line]:
     told = [
         *_rest(found),
         *_fewest(found),
-        *(line for each in found.plans for line in _plan(found, each)),
+        *(line for each in found.plans for line in _plan(each)),
+        *_fastest(found),
+        *_habit(found),
+        *(line for use in found.cutters for line in _worth(found, use)),
         *motion(found.motion),
         *found.notes,
     ]
@@ -74,26 +80,92 @@ def _proved(few: FewestEntry) -> str:
     return f"; among {near} at least {few.at_least} are needed."
 
 
-def _plan(found: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str]:
-    what = (
-        f"in {_duration(plan.seconds)}"
-        if plan.seconds is not None
-        else f"with {plan.cut_length_mm / 1000.0:.3g} m of cutting"
-    )
-    yield f"The {plan.name} plan: {_count(plan.orientations)} {what}."
+def _plan(plan: OperationPlanEntry) -> Iterator[str]:
+    yield f"The {plan.name} plan: {_count(plan.orientations)}, {_work(plan)}."
+    small = [each for each in plan.operations if each.mode == "fixed" and each.share < _LITTLE]
+    if plan.name == "largest first":
+        # It is there to be compared: its operations are in the plan file.
+        return
+    for each in small[:_SMALL]:
+        yield f"  {each.id} is there for {_little(each)}: {_faces(each)}."
+    if len(small) > _SMALL:
+        yield f"  So are {len(small) - _SMALL} more, each for less than {some(_LITTLE)}."
     for each in plan.operations[:_LISTED]:
         yield f"  {_listed(each)}"
     if len(plan.operations) > _LISTED:
         yield f"  and {len(plan.operations) - _LISTED} more in plan.json."
-    small = [each for each in plan.operations if each.mode == "fixed" and each.share < _LITTLE]
-    for each in small[:3]:
-        yield f"  {each.id} is there for {some(each.share)} of the area: {_faces(each)}."
+
+
+def _work(plan: OperationPlanEntry) -> str:
+    if plan.cutting_seconds is None:
+        return f"{plan.cut_length_mm / 1000.0:.3g} m of cutting"
+    if plan.other_seconds <= 0.0:
+        return f"{_duration(plan.cutting_seconds)} of cutting"
+    cutters = len({each.cutter for each in plan.operations})
+    setups = len({each.setup for each in plan.operations})
+    what = [word for word, there in (("orientations", True), ("cutters", cutters > 1), ("setups", setups > 1)) if there]
+    return f"{_duration(plan.cutting_seconds)} of cutting and {_duration(plan.other_seconds)} for {_joined(what)}"
+
+
+def _share(share: float) -> str:
+    return percent(share, some=share > 0.0, whole=share >= 1.0 - 1e-9)
+
+
+def _little(each: OperationEntry) -> str:
+    took = "" if each.seconds is None else f", {_short(each.seconds)} of cutting"
+    return f"{some(each.share)} of the area{took}"
+
+
+def _fastest(found: OperationsEntry) -> Iterator[str]:
+    """How the times of fixed orientations compare with simultaneous motion and with the best choice."""
+    timed = found.fastest
+    if timed is None:
+        return
+    for plan in found.plans:
+        if plan.ratio_at_most is not None and plan.name != "largest first":
+            cutting = sum(each.seconds or 0.0 for each in plan.operations if each.mode == "fixed")
+            times = f"at most {_factor(plan.ratio_at_most)} times as long as five axes at once"
+            yield f"3+2 ({plan.name}) takes {_duration(cutting)} of cutting, {times}."
+    near = f"the best of {timed.candidates} candidates, by {timed.samples} samples"
+    if timed.gap <= _NO_GAP:
+        yield f"No choice takes less than the fastest plan: it is {near}."
+    else:
+        yield f"The fastest plan is at most {_up(timed.gap)} above {near}."
+
+
+def _habit(found: OperationsEntry) -> Iterator[str]:
+    """What it costs to let the largest cutter go first."""
+    totals = {plan.name: plan.seconds for plan in found.plans}
+    habit, fastest = totals.get("largest first"), totals.get("fastest")
+    if habit is None or fastest is None:
+        return
+    if habit - fastest >= 1.0:
+        yield f"Largest cutter first costs {_duration(habit - fastest)} more than the fastest plan."
+    else:
+        yield "Largest cutter first is as fast as the fastest plan."
+
+
+def _worth(found: OperationsEntry, use: CutterUse) -> Iterator[str]:
+    """What a cutter saves, and what its change costs."""
+    if use.only_mm2 > 0.0:
+        yield f"Only {use.id} reaches {figure(use.only_mm2)} mm2."
+        return
+    used = any(use.id == each.cutter for plan in found.plans if plan.name == "fastest" for each in plan.operations)
+    if use.saves_seconds is None:
+        yield f"{use.id} is needed: without it no fixed orientation serves all."
+    elif use.saves_seconds < 1.0:
+        yield f"{use.id} would save nothing."
+    elif use.change_seconds <= 0.0:
+        yield f"{use.id} saves {_duration(use.saves_seconds)} against the best without it."
+    else:
+        verb, cost = ("saves", "costs") if used else ("would save", "cost")
+        yield f"{use.id} {verb} {_duration(use.saves_seconds)} and {cost} a change of {_duration(use.change_seconds)}."
 
 
 def _listed(each: OperationEntry) -> str:
     took = "" if each.seconds is None else f", {_duration(each.seconds)}"
     where = "" if each.setup == 0 else f" in setup {each.setup + 1}"
-    return f"{each.id}: {each.cutter}{where}, {_turned(each)}: {some(each.share)} of the area{took}, {_faces(each)}."
+    return f"{each.id}: {each.cutter}{where}, {_turned(each)}: {_share(each.share)} of the area{took}, {_faces(each)}."
 
 
 class Told(NamedTuple):
@@ -130,5 +202,23 @@ def _faces(each: OperationEntry) -> str:
     return ", ".join(names[:_FACES]) + (f" and {more} more faces" if more > 0 else "")
 
 
+def _joined(words: list[str]) -> str:
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
 def _duration(seconds: float) -> str:
-    return f"{seconds:.0f} s" if seconds < _MINUTES else f"{seconds / 60.0:.1f} min"
+    return _short(seconds) if seconds < _MINUTES else f"{seconds / 60.0:.1f} min"
+
+
+def _short(seconds: float) -> str:
+    """Whole seconds; what is less than one is said so."""
+    return f"{seconds:.0f} s" if seconds >= 1.0 or seconds == 0.0 else "less than 1 s"
+
+
+def _factor(ratio: float) -> str:
+    return f"{math.ceil(10.0 * ratio - 1e-9) / 10.0:.1f}"
+
+
+def _up(share: float) -> str:
+    """A share in percent that is not rounded down."""
+    return f"{math.ceil(1000.0 * share - 1e-9) / 10.0:g} %"

@@ -1,0 +1,101 @@
+"""What cutters are worth: a plane with a groove, whose answer is known, and the shop's habit on a real plan."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from plan_cutters import Cutter, plan
+from plan_cutters.domain.columns import Columns
+from plan_cutters.operations.fastest import Costs, Problem, fastest
+from plan_cutters.operations.rest_areas import allowed, worths
+from tests.support.shapes import trough
+
+LARGE, SMALL = Cutter.parse("R8L80rc8"), Cutter.parse("R3L80rc3")
+FEED = 2000.0 / 60.0
+
+
+def pass_width(cutter):
+    return 2.0 * math.sqrt(2.0 * cutter.radius * 0.01 - 0.01**2)
+
+
+def grooved(plane, groove, change):
+    """Rows: a plane, and a groove that only the small cutter reaches; columns: the large cutter and the small one."""
+    seconds = [[area / (pass_width(cutter) * FEED) for cutter in (LARGE, SMALL)] for area in (plane, groove)]
+    seconds[1][0] = math.inf
+    kind = np.array([0, 1], np.int32)
+    return Problem(np.array(seconds), kind, np.zeros(2, np.int32), Costs(0.0, change, 300.0))
+
+
+def task_of(reached):
+    verdicts = {
+        cutter: SimpleNamespace(reached=np.array(mine)) for cutter, mine in zip((LARGE, SMALL), reached, strict=True)
+    }
+    return SimpleNamespace(cutters=(LARGE, SMALL), everywhere=(verdicts,), rows=np.arange(2))
+
+
+@pytest.mark.parametrize("change", [5.0, 20.0, 60.0])
+@pytest.mark.parametrize("side", [0.9, 1.1])
+def test_the_large_cutter_takes_the_plane_if_that_saves_more_than_its_change(change, side):
+    area = side * change * FEED / (1.0 / pass_width(SMALL) - 1.0 / pass_width(LARGE))
+    problem = grooved(area, 50.0, change)
+    found = fastest(problem)
+    assert (0 in found.chosen) == (side > 1.0)
+    assert 1 in found.chosen
+    assert found.bound <= found.cost * (1.0 + 1e-12)
+    large, small = worths(task_of([[True, False], [True, True]]), problem, found.chosen)
+    assert large.cutter is LARGE
+    assert (large.saves, large.change) == (pytest.approx(side * change), change)
+    assert len(large.only) == 0
+    assert small.saves is None
+    assert small.only.tolist() == [1]
+
+
+def test_the_first_cutter_and_the_first_setup_cost_nothing():
+    problem = grooved(1000.0, 50.0, 20.0)
+    assert problem.total(np.array([1])) == pytest.approx(1050.0 / (pass_width(SMALL) * FEED))
+    assert problem.total(np.array([0, 1])) == pytest.approx(problem.cutting(np.array([0, 1])) + 20.0)
+
+
+def test_by_the_habit_a_sample_goes_with_the_largest_cutter_that_serves_it():
+    columns = Columns(np.array([1, 0, 0], np.int32), np.zeros(3, np.int32), np.zeros((3, 3)), np.zeros((3, 2)))
+    serves = np.array([[1, 1, 1], [1, 0, 1], [1, 0, 0], [0, 0, 0]], bool)
+    found = allowed(SimpleNamespace(cutters=(LARGE, SMALL)), columns, serves)
+    assert found.tolist() == [[False, True, True], [False, False, True], [True, False, False], [False, False, False]]
+
+
+def test_plans_of_two_cutters_agree_with_themselves():
+    result = plan(trough(10.0, 10.0), cutters=["R2L60rc2", "R6L60rc6"], faces="all", grid=7, operations="both", feed=1000.0,
+                  area_budget=0, index_time=3.0, change_time=7.0)  # fmt: skip
+    found = result.plan.operations
+    assert [each.name for each in found.plans] == ["fewest", "fastest", "largest first"]
+    for each in found.plans:
+        assert each.cutting_seconds == pytest.approx(sum(one.seconds for one in each.operations))
+        cutters = {one.cutter for one in each.operations}
+        assert each.other_seconds == pytest.approx(3.0 * len(each.operations) + 7.0 * (len(cutters) - 1))
+        assert each.seconds == pytest.approx(each.cutting_seconds + each.other_seconds)
+        assert each.ratio_at_most >= 1.0
+        assert each.rest.samples == 0
+    assert [use.id for use in found.cutters] == ["R6L60rc6", "R2L60rc2"]
+    for use in found.cutters:
+        for each in found.plans:
+            mine = sum(one.area_mm2 for one in each.operations if one.cutter == use.id)
+            assert use.takes_mm2[each.name] == pytest.approx(mine)
+    # Both reach all of it: by the habit the large one takes all.
+    assert {one.cutter for one in found.plans[2].operations} == {"R6L60rc6"}
+    assert found.fastest.bound_seconds <= found.fastest.seconds * (1.0 + 1e-9)
+    assert found.fastest.gap == pytest.approx(found.fastest.seconds / found.fastest.bound_seconds - 1.0)
+
+
+def test_a_ball_in_a_plane_trough_takes_the_seconds_of_its_width():
+    """In a cylinder, fed along it, the section is a circle in a circle; all samples have it."""
+    c, radius, feed = -10.0, 6.0, 1000.0
+    cosine = ((c + radius) ** 2 + (c + 0.01) ** 2 - radius**2) / (2 * (c + radius) * (c + 0.01))
+    each = 2.0 * abs(c) * math.acos(cosine)
+    result = plan(
+        trough(10.0, 10.0), cutters="R6L60rc6", faces="all", grid=7, operations="fewest", feed=feed, area_budget=0
+    )
+    entry = result.plan.operations.plans[0]
+    area = sum(one.area_mm2 for one in entry.operations)
+    assert entry.cutting_seconds == pytest.approx(area / (each * feed / 60.0), rel=0.01)
