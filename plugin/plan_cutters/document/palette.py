@@ -29,6 +29,24 @@ MEANING = {
 }
 
 
+#: Colours of operations, the first ones first: Okabe and Ito's eight.
+OPERATIONS = ("#0072B2", "#009E73", "#E69F00", "#56B4E9", "#CC79A7", "#F0E442", "#D55E00", "#000000")
+
+
+def operation_colour(number: int) -> str:
+    """sRGB hex of an operation by its place in its plan, from 0: eight colours, the same at half lightness, and again.
+
+    >>> operation_colour(0), operation_colour(8), operation_colour(16), operation_colour(15)
+    ('#0072B2', '#003959', '#0072B2', '#7F7F7F')
+    """
+    colour = OPERATIONS[number % len(OPERATIONS)]
+    if number // len(OPERATIONS) % 2 == 0:
+        return colour
+    # Half of black is black: half of white stands for it.
+    half = [each // 2 for each in bytes.fromhex(colour[1:])] if any(bytes.fromhex(colour[1:])) else [127] * 3
+    return "#" + bytes(half).hex().upper()
+
+
 def label(word: str) -> str:
     """A verdict in a legend: its meaning without what explains it.
 
@@ -40,5 +58,10 @@ def label(word: str) -> str:
 
 def rgb(verdict: str) -> tuple[float, float, float]:
     """sRGB, 0 to 1."""
-    r, g, b = bytes.fromhex(PALETTE[verdict][1:])
+    return parts(PALETTE[verdict])
+
+
+def parts(colour: str) -> tuple[float, float, float]:
+    """sRGB, 0 to 1, of a hex colour."""
+    r, g, b = bytes.fromhex(colour[1:])
     return r / 255, g / 255, b / 255

@@ -16,7 +16,7 @@ from plan_cutters.operations.candidates import STEP, apart, candidates
 from plan_cutters.operations.curve import curve
 from plan_cutters.operations.fastest import Costs
 from plan_cutters.operations.fewest import FINEST, Search, search_fewest
-from plan_cutters.operations.plans import Task, best_area, considered, orientations_of, plan_with
+from plan_cutters.operations.plans import Task, best_area, considered, orientations_of, plan_with, small_pieces
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.timing import Paths, least_time, shared_area
 from plan_cutters.options import Options
@@ -65,8 +65,9 @@ def plan_operations(
         if options.operations in ("fastest", "both"):
             columns, timed = _fastest(task, search, fewest.columns.of(fewest.chosen))
             plans.append(_capped(task, "fastest", columns))
+    small = tuple(note for each in plans for note in small_pieces(each, ready.samples, options.overlap))
     return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
-                      task.probes.made, timed)  # fmt: skip
+                      task.probes.made, timed, small)  # fmt: skip
 
 
 def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], least: LeastSet | None) -> Task:
