@@ -89,11 +89,11 @@ def split_by_turns(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 
             left[stage.pieces[i - 1][0].face] = fields[stage.pieces[i - 1][0].face]
         joined.update({stage.pieces[i - 1][0].face: n for i, n in done.joined.items()})
         stage = _Stage(part, done.shape, pieces)
-    found = tuple(each for each, _ in stage.pieces)
+    last = tuple(each for each, _ in stage.pieces)
     strays = {
-        number: _strays(each, [piece for piece in found if piece.face == number]) for number, each in fields.items()
+        number: _strays(each, [piece for piece in last if piece.face == number]) for number, each in fields.items()
     }
-    return Split(stage.shape, found, whole, {k: n for k, n in strays.items() if n}, left, dict(joined))
+    return Split(stage.shape, last, whole, {k: n for k, n in strays.items() if n}, left, dict(joined))
 
 
 def with_room(labels: FaceLabels) -> FaceLabels:
@@ -108,7 +108,9 @@ def with_room(labels: FaceLabels) -> FaceLabels:
         before, after = [(0, 0), (0, 0)], [(0, 0), (0, 0)]
         before[axis], after[axis] = (1, 0), (0, 1)
         alone &= ~np.pad(same, before) & ~np.pad(same, after)
-    (u, rows), (v, columns) = (_beside(line, alone.any(axis=1 - k)) for k, line in enumerate((labels.u, labels.v)))
+    (u, rows), (v, columns) = (
+        _beside(line, np.asarray(alone.any(axis=1 - k))) for k, line in enumerate((labels.u, labels.v))
+    )
     return FaceLabels(labels.face, u, v, field[np.ix_(rows, columns)])
 
 

@@ -64,10 +64,6 @@ def written(plan: "Plan", out: Path | None, formats: Sequence[str]) -> list[Any]
             if entry.rung != "contour":
                 how = "it is one piece in the STEP, and the GLB shows it by its samples"
                 lines.append(f"{face} could not be split in its place{where} ({entry.why}): {how}.")
-            if where and entry.dropped:
-                lines.append(
-                    f"{face}: {entry.dropped} samples{where} have the colour of the operation around them in the models."
-                )
     if out is not None and formats and (old := left_over(out, plan, formats)):
         lines.append(f"Left over from an earlier run, or not ours: {', '.join(old)} in {out}")
     return lines

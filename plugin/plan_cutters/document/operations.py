@@ -66,8 +66,8 @@ class OperationEntry(Frozen):
     faces: list[OperationFace] = Field(description="the one with the most of it first")
     frame: WorkplaneEntry | None = Field(description="null if simultaneous")
     index_s: float | None = Field(
-        description="what the rotary axes take to come to its angles from those before, in the best order of the operations of its "
-        "cutter and setup, the first one from zero; null if simultaneous. The plan's seconds reckon with --index-time instead"
+        description="what the rotary axes take to come to its angles from those before, in the best order of the operations of "
+        "its cutter and setup, the first one from zero; null if simultaneous. The plan's seconds reckon with --index-time instead"
     )
     index_from: Literal["rates", "assumed"] | None = Field(
         description="of the rotary axes; or assumed, as not all have rates: --index-time"

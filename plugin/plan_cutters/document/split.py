@@ -19,6 +19,6 @@ class SplitEntry(Frozen):
     )
     dropped: int = Field(
         default=0,
-        description="samples without a piece of their label, coloured as what is around them: of operations those beyond a smooth "
-        "border, by half a cell of the grid at most",
+        description="samples without a piece of their label, coloured as what is around them: of operations those beyond a "
+        "smooth border, by half a cell of the grid at most",
     )
