@@ -87,7 +87,8 @@ def split_by_turns(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 
         for i, why in done.whole.items():
             whole[stage.pieces[i - 1][0].face] = why
             left[stage.pieces[i - 1][0].face] = fields[stage.pieces[i - 1][0].face]
-        joined.update({stage.pieces[i - 1][0].face: n for i, n in done.joined.items()})
+        for i, n in done.joined.items():
+            joined[stage.pieces[i - 1][0].face] += n
         stage = _Stage(part, done.shape, pieces)
     last = tuple(each for each, _ in stage.pieces)
     strays = {

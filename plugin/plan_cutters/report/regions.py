@@ -20,10 +20,11 @@ from plan_cutters.document.axis_regions import (
 )
 from plan_cutters.document.frozen import vector
 from plan_cutters.document.runs import runs
+from plan_cutters.operations.fixed_axes import fixed_axes
 from plan_cutters.operations.labels import pieces
 from plan_cutters.report.protocol import Judged
 from plan_cutters.scene.clearance import clearances
-from plan_cutters.scene.fixed_axis import few_axes, held_at
+from plan_cutters.scene.fixed_axis import held_at
 
 #: Tilts from which ranges are looked for are so far apart, deg.
 _STEP = 1.0
@@ -42,7 +43,8 @@ def axis_regions(result: Judged) -> AxisRegions:
     samples, name, plan = result.samples, result.shown, result.plan
     # Axes are held in the first setup.
     verdicts, cutter, conditions = result.here.get(name, result.reaches[name]), result.judged(name), result.conditions
-    axes, number = few_axes(samples, cutter, verdicts, conditions)
+    operations = result.answers.operations
+    axes, number = fixed_axes(samples, cutter, verdicts, conditions, operations.plans[0] if operations else None)
     held = held_at(axes, number, samples)
     near = clearances(samples, cutter, held, conditions).distance
     label = pieces(number, samples.neighbours)
