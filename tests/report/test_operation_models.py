@@ -1,4 +1,4 @@
-"""The files of a plan of operations: regions, planes, and models that are read back by other means than they were written with."""
+"""The files of a plan of operations: regions, planes, and models read back by other means than they were written with."""
 
 import json
 import math
@@ -28,9 +28,15 @@ from tests.support.shapes import ridge
 
 BALL = "R1L60rc1"
 CASES = {
-    "ridge": (lambda: ridge(10.0, 10.0), {"cutters": BALL, "faces": "all", "grid": 15, "tilt": (0.0, math.radians(31.0))}),
-    "peaks": (lambda: SAMPLES / "peaks_and_valleys.step", {"cutters": "R6L80", "grid": 25, "machine": "trunnion-ac", "index_step": math.radians(5.0)}),
-}  # fmt: skip
+    "ridge": (
+        lambda: ridge(10.0, 10.0),
+        {"cutters": BALL, "faces": "all", "grid": 15, "tilt": (0.0, math.radians(31.0))},
+    ),
+    "peaks": (
+        lambda: SAMPLES / "peaks_and_valleys.step",
+        {"cutters": "R6L80", "grid": 25, "machine": "trunnion-ac", "index_step": math.radians(5.0)},
+    ),
+}
 
 
 @pytest.fixture(scope="module", params=CASES)
@@ -57,8 +63,9 @@ def test_regions_part_the_samples_of_their_operation_and_are_connected(written):
         assert [r.id for each in entry.operations for r in each.regions] == list(range(found.region.max() + 1))
         for number, each in enumerate(entry.operations):
             rows = [unpacked(region.rows) for region in each.regions]
-            assert sorted(sum(rows, [])) == np.flatnonzero(found.label == number).tolist()
-            assert found.serves[sum(rows, []), number].all()
+            every = [row for mine in rows for row in mine]
+            assert sorted(every) == np.flatnonzero(found.label == number).tolist()
+            assert found.serves[every, number].all()
             assert sum(region.area_mm2 for region in each.regions) == pytest.approx(each.area_mm2)
             assert all(a.area_mm2 >= b.area_mm2 for a, b in pairwise(each.regions))
             for region, mine in zip(each.regions, rows, strict=True):
@@ -112,7 +119,7 @@ def test_step_faces_have_the_names_colours_and_areas_of_their_operations(written
 
 
 def test_no_face_has_an_operation_that_does_not_serve_the_samples_on_it(written):
-    """The nearest triangle of the GLB says where a sample lies; what is beyond a border by less than a cell is counted in the plan."""
+    """The nearest triangle of the GLB says where a sample lies; what is beyond a border is counted in the plan."""
     result, document, out = written
     samples = result.samples
     for (entry, stem), found in zip(files(document), result.answers.operations.plans, strict=True):

@@ -55,11 +55,8 @@ def fixed_axes(
 
     if plan is not None:
         # Regions are those of the plan, as far as this cutter has them; then its axes serve what other cutters have there.
-        mine = [
-            i
-            for i, each in enumerate(plan.operations)
-            if each.axis is not None and each.setup == 0 and each.cutter == cutter
-        ]
+        here = [each.axis is not None and each.setup == 0 and each.cutter == cutter for each in plan.operations]
+        mine = np.flatnonzero(here).tolist()
         for i in mine:
             number[(plan.label == i) & reached] = len(axes)
             axes.append(np.asarray(plan.operations[i].axis))
