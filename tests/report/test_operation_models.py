@@ -34,7 +34,7 @@ CASES = {
     ),
     "peaks": (
         lambda: SAMPLES / "peaks_and_valleys.step",
-        {"cutters": "R6L80", "grid": 25, "machine": "trunnion-ac", "index_step": math.radians(5.0)},
+        {"cutters": "R6L80", "grid": 21, "machine": "trunnion-ac", "index_step": math.radians(15.0)},
     ),
 }
 
