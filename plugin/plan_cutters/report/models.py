@@ -168,7 +168,7 @@ def write_styled_step(result: Judged, split: Any, path: Path, style: Callable[[A
 
 
 def face_facts(result: Judged, entry: FaceEntry) -> dict[str, Any]:
-    """What models say of a face, whatever they show on it."""
+    """Give what models say of a face, whatever they show on it."""
     number = int(entry.id[1:])
     return {
         "face": entry.id,
