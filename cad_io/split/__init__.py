@@ -3,6 +3,7 @@
 May use: single faces and the kernel's manners.
 """
 
+from cad_io.split.by_turns import split_by_turns
 from cad_io.split.pieces import split
 
-__all__ = ["split"]
+__all__ = ["split", "split_by_turns"]

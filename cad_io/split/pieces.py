@@ -63,7 +63,7 @@ def split(part: Any, labels: Sequence[FaceLabels], *, worst: int = -1, seconds: 
         not mentioned, or of one label, stay whole.
     worst : int
         Labels up to this one are worse the higher they are: slivers (three nodes at most, less area than a cell) join the
-        label around them where that one is worse. By default all slivers stay.
+        label around them where that one is worse. By default no label is worse: only slivers without any node join.
     seconds : float
         Of processor time, after which the work on one face is taken for endless; more for fine grids.
 

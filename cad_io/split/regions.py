@@ -120,7 +120,7 @@ def slivers(found: Arrangement, parts: list[Judged], worst: int) -> tuple[list[i
     """Tell which slivers are to join what is around them.
 
     A sliver has some nodes at most and less area than a cell. It joins the neighbour with the longest common border if that
-    one has nodes and a worse (higher) label, up to `worst`.
+    one has nodes and a worse (higher) label, up to `worst`. With `worst` -1 any label will do, for slivers without nodes alone.
 
     Returns
     -------
@@ -146,7 +146,8 @@ def slivers(found: Arrangement, parts: list[Judged], worst: int) -> tuple[list[i
             if group[a] != group[b] and r in (group[a], group[b]):
                 shared[group[b] if group[a] == r else group[a]] += length  # type: ignore[assignment]
         around = max(shared, key=lambda k: (shared[k], -k), default=r)
-        if parts[r].label < parts[around].label <= worst and parts[around].counts:
+        worse = parts[r].label < parts[around].label <= worst
+        if parts[around].counts and (worse or (worst < 0 and not parts[r].counts)):
             group = {k: around if g == r else g for k, g in group.items()}
             area[around] += area[r]
     kept = [i for i, (a, b) in enumerate(beside) if group[a] != group[b]]

@@ -15,9 +15,10 @@ from plan_cutters import Cutter, PostureRange, plan, posture_map
 from plan_cutters.answers.largest_radius import largest_radius
 from plan_cutters.domain.holder import Holder, Stage
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, REASONS, UNDECIDED
+from plan_cutters.operations.fixed_axes import fixed_axes
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
-from plan_cutters.scene.fixed_axis import few_axes, serves
+from plan_cutters.scene.fixed_axis import serves
 from plan_cutters.stages.judge import judge
 from tests.support import shapes
 from tests.support.tool_reference import Reference
@@ -223,7 +224,7 @@ def test_largest_radius_fixed_axes_and_nesting_follow_the_same_rule():
         assert largest > 0.5 * 1.002, row
     reach = judge(ready, same)
     assert reach.reached.all()
-    axes, number = few_axes(ready.samples, same, reach, ready.conditions)
+    axes, number = fixed_axes(ready.samples, same, reach, ready.conditions)
     assert (number >= 0).all()
     rows = np.flatnonzero(number == 0)
     assert serves(rows, axes[0], ready.samples, same, ready.conditions).all()

@@ -57,10 +57,13 @@ def written(plan: "Plan", out: Path | None, formats: Sequence[str]) -> list[Any]
         lines.append(f"Written to {out}: {', '.join(files)} ({plan.run.total:.0f} s in all).")
     if out is not None and "html" in plan.files:
         lines.append(f"Look at it in a browser: {out / plan.files['html'].name}")
-    for face, entry in plan.split.items():
-        if entry.rung != "contour":
-            how = "it is one piece in the STEP, and the GLB shows it by its samples"
-            lines.append(f"{face} could not be split in its place ({entry.why}): {how}.")
+    splits = [("", plan.split)]
+    splits += [(f" in the {each.name} plan", each.split) for each in (plan.operations.plans if plan.operations else [])]
+    for where, split in splits:
+        for face, entry in split.items():
+            if entry.rung != "contour":
+                how = "it is one piece in the STEP, and the GLB shows it by its samples"
+                lines.append(f"{face} could not be split in its place{where} ({entry.why}): {how}.")
     if out is not None and formats and (old := left_over(out, plan, formats)):
         lines.append(f"Left over from an earlier run, or not ours: {', '.join(old)} in {out}")
     return lines

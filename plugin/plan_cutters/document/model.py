@@ -16,6 +16,7 @@ from plan_cutters.document.part_info import PartInfo
 from plan_cutters.document.scope import Scope
 from plan_cutters.document.setups import SetupEntry, SetupProposal, SetupReach
 from plan_cutters.document.shares import AreaShare, FaceVerdicts, VerdictCounts
+from plan_cutters.document.split import SplitEntry
 from plan_cutters.document.travel import PlacementEntry, TravelEntry
 
 FORMAT_VERSION = 1
@@ -316,17 +317,6 @@ class Selection(Frozen):
 class FileEntry(Frozen):
     name: str
     sha256: str
-
-
-class SplitEntry(Frozen):
-    """How the models show a face of mixed verdicts."""
-
-    rung: Literal["contour", "beside", "whole"] = Field(
-        description="split in its place; split as a copy of the face beside the part; coloured whole"
-    )
-    why: str | None = Field(description="why it could not be split in its place")
-    joined: int = Field(default=0, description="slivers coloured as what is worse and around them")
-    dropped: int = Field(default=0, description="samples without a piece, coloured as what is around them")
 
 
 class Run(Frozen):

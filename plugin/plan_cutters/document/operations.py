@@ -8,6 +8,9 @@ from pydantic import Field
 
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.document.frozen import Frozen, Vector, vector
+from plan_cutters.document.palette import operation_colour
+from plan_cutters.document.runs import Runs, runs
+from plan_cutters.document.split import SplitEntry
 from plan_cutters.domain.operations import (
     RESOLUTION,
     Fastest,
@@ -16,6 +19,7 @@ from plan_cutters.domain.operations import (
     Operation,
     OperationPlan,
     Operations,
+    Workplane,
     Worth,
 )
 from plan_cutters.domain.verdicts import NO_REASON, REASONS
@@ -31,6 +35,26 @@ class OperationFace(Frozen):
     face: str
     samples: int
     area_mm2: float
+
+
+class OperationRegion(Frozen):
+    """Connected samples of one operation."""
+
+    id: int = Field(description="in its plan, from 0: by operation, the largest first")
+    samples: int
+    area_mm2: float
+    faces: list[OperationFace] = Field(description="the one with the most of it first")
+    low: Vector = Field(description="corner of the box around its samples")
+    high: Vector
+    rows: Runs = Field(description="its samples: first and last of runs of rows of samples.npz and axes.csv, from 0")
+
+
+class WorkplaneEntry(Frozen):
+    """The tilted plane that a control turns to: z is the tool axis, x the machine's X turned with it. Part coordinates."""
+
+    origin: Vector = Field(description="mm: the setup's origin, or the part's zero where the setup names none")
+    x: Vector
+    z: Vector
 
 
 class OperationEntry(Frozen):
@@ -55,6 +79,16 @@ class OperationEntry(Frozen):
     cut_length_mm: float | None = Field(description="area over width, summed up: without links and lead-ins")
     seconds: float | None = Field(description="cutting alone, at the feed; null without a feed")
     faces: list[OperationFace] = Field(description="the one with the most of it first")
+    frame: WorkplaneEntry | None = Field(description="null if simultaneous")
+    index_s: float | None = Field(
+        description="what the rotary axes take to come to its angles from those before, in the best order of the operations of "
+        "its cutter and setup, the first one from zero; null if simultaneous. The plan's seconds reckon with --index-time instead"
+    )
+    index_from: Literal["rates", "assumed"] | None = Field(
+        description="of the rotary axes; or assumed, as not all have rates: --index-time"
+    )
+    regions: list[OperationRegion]
+    colour: str = Field(description="sRGB, in the models")
 
 
 class RestEntry(Frozen):
@@ -95,6 +129,9 @@ class OperationPlanEntry(Frozen):
     )
     operations: list[OperationEntry] = Field(description="the largest share first")
     rest: RestEntry
+    split: dict[str, SplitEntry] = Field(
+        default_factory=dict, description="by face: how its models show those of several operations"
+    )
 
 
 class FewestEntry(Frozen):
@@ -287,7 +324,10 @@ def _plan(
     assumed: AssumedEntry,
 ) -> OperationPlanEntry:  # fmt: skip
     whole = float(area.sum())
-    operations = [_operation(each, plan, found.names, samples, area, whole) for each in plan.operations]
+    operations = [
+        _operation(i, each, plan, plane, found.names, samples, area, whole)
+        for i, (each, plane) in enumerate(zip(plan.operations, plan.planes, strict=True))
+    ]
     rest = wanted & (plan.label < 0)
     left = float(area[rest].sum())
     # The first cutter and the first setup are there anyway.
@@ -322,18 +362,14 @@ def _ratio(operations: list[OperationEntry], timed: Fastest | None) -> float | N
 
 
 def _operation(
-    found: Operation, plan: OperationPlan, names: tuple[str, str], samples: SurfaceSamples, area: Floats, whole: float
+    number: int, found: Operation, plan: OperationPlan, plane: Workplane | None, names: tuple[str, str],
+    samples: SurfaceSamples, area: Floats, whole: float,
 ) -> OperationEntry:  # fmt: skip
     rows = found.rows
     strip, mine = plan.strip[rows], area[rows]
     known = np.isfinite(strip) & (strip > 0.0)
     length = float((mine[known] / strip[known]).sum()) if known.all() else None
     seconds = plan.seconds[rows]
-    faces = [
-        OperationFace(face=f"F{f}", samples=int((samples.face[rows] == f).sum()),
-                      area_mm2=float(mine[samples.face[rows] == f].sum()))
-        for f in np.unique(samples.face[rows]).tolist()
-    ]  # fmt: skip
     return OperationEntry(
         id=found.name, mode=found.mode, cutter=found.cutter.id, setup=found.setup,
         axis=None if found.axis is None else vector(found.axis), angles_deg=_angles(found.angle, names),
@@ -341,8 +377,36 @@ def _operation(
         share=min(1.0, float(mine.sum()) / whole) if whole > 0.0 else 0.0, exclusive_mm2=float(area[found.only].sum()),
         strip_mm=_tenths(strip[known]), cut_length_mm=length,
         seconds=float(seconds.sum()) if np.isfinite(seconds).all() else None,
-        faces=sorted(faces, key=lambda each: -each.area_mm2),
+        faces=_faces(rows, samples, area), frame=None if plane is None else _frame(plane),
+        colour=operation_colour(number), index_s=None if plane is None else plane.index,
+        index_from=None if plane is None else "rates" if plane.timed else "assumed",
+        regions=[
+            _region(k, np.flatnonzero(plan.region == k), samples, area)
+            for k in np.unique(plan.region[rows]).tolist()
+        ],
     )  # fmt: skip
+
+
+def _frame(plane: Workplane) -> WorkplaneEntry:
+    return WorkplaneEntry(origin=vector(plane.origin), x=vector(plane.x), z=vector(plane.z))
+
+
+def _region(number: int, rows: NDArray[np.int64], samples: SurfaceSamples, area: Floats) -> OperationRegion:
+    point = samples.point[rows]
+    return OperationRegion(
+        id=number, samples=len(rows), area_mm2=float(area[rows].sum()), faces=_faces(rows, samples, area),
+        low=vector(point.min(axis=0)), high=vector(point.max(axis=0)), rows=runs(rows),
+    )  # fmt: skip
+
+
+def _faces(rows: NDArray[np.int64], samples: SurfaceSamples, area: Floats) -> list[OperationFace]:
+    number, which, count = np.unique(samples.face[rows], return_inverse=True, return_counts=True)
+    size = np.bincount(which, area[rows], len(number))
+    faces = [
+        OperationFace(face=f"F{f}", samples=n, area_mm2=a)
+        for f, n, a in zip(number.tolist(), count.tolist(), size.tolist(), strict=True)
+    ]
+    return sorted(faces, key=lambda each: -each.area_mm2)
 
 
 def _angles(angle: Floats | None, names: tuple[str, str]) -> dict[str, float] | None:

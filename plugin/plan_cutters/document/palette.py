@@ -58,5 +58,10 @@ def label(word: str) -> str:
 
 def rgb(verdict: str) -> tuple[float, float, float]:
     """sRGB, 0 to 1."""
-    r, g, b = bytes.fromhex(PALETTE[verdict][1:])
+    return parts(PALETTE[verdict])
+
+
+def parts(colour: str) -> tuple[float, float, float]:
+    """sRGB, 0 to 1, of a hex colour."""
+    r, g, b = bytes.fromhex(colour[1:])
     return r / 255, g / 255, b / 255

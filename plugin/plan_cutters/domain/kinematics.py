@@ -69,7 +69,11 @@ class Kinematics(Record):
 
     def axis(self, angle: Floats) -> Floats:
         """Tool axes (n, 3) at angles (n, k), rad."""
-        found = np.broadcast_to(self.tool, (len(angle), 3))
+        return self.carried(self.tool, angle)
+
+    def carried(self, vector: Floats, angle: Floats) -> Floats:
+        """Directions (n, 3) of what points along a vector (3,) at zero angles and turns with the tool, at angles (n, k), rad."""
+        found = np.broadcast_to(vector, (len(angle), 3))
         for k in range(len(self.direction) - 1, -1, -1):
             found = turned(self.direction[k], angle[:, k], found)
         return np.asarray(found)

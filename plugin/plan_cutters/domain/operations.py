@@ -237,6 +237,28 @@ class Operation:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Workplane:
+    """The tilted plane of an operation with a fixed axis, as a control turns it to.
+
+    Attributes
+    ----------
+    origin, x, z : (3,) float
+        Part coordinates: the zero of the setup, or of the part where that is not known; the machine's X turned with the tool
+        axis; the tool axis.
+    index : float
+        Time that the rotary axes take to come there, s.
+    timed : bool
+        Whether that follows from the rates of the axes; else it is assumed.
+    """
+
+    origin: Floats
+    x: Floats
+    z: Floats
+    index: float
+    timed: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class OperationPlan:
     """A plan: its operations, and the one that each sample goes with.
 
@@ -253,6 +275,11 @@ class OperationPlan:
         Width of the strip that a path cuts there, mm; nan where it is not known.
     seconds : (n,) float
         Cutting time, s; nan without a feed.
+    region : (n,) int32
+        Number of the connected samples of one operation that each belongs to, -1 for none: from 0 by operation, the largest
+        first.
+    planes : tuple of Workplane or None
+        Of each operation; None where it is simultaneous.
     """
 
     name: str
@@ -261,6 +288,8 @@ class OperationPlan:
     serves: NDArray[np.bool_]
     strip: Floats
     seconds: Floats
+    region: Ints
+    planes: tuple[Workplane | None, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

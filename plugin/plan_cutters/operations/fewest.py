@@ -88,7 +88,7 @@ class Search:
                 missed = self._missed(found.chosen) if len(found.chosen) < len(known) else missed
             if not len(missed):
                 return found
-            self._add_rows(_spread(missed, self._probes.samples.point, _MORE))
+            self._add_rows(spread(missed, self._probes.samples.point, _MORE))
         return self._patched()
 
     @property
@@ -222,7 +222,7 @@ def search_fewest(
                   search.alone, search.wanted)  # fmt: skip
 
 
-def _spread(rows: Rows, point: Floats, most: int) -> Rows:
+def spread(rows: Rows, point: Floats, most: int) -> Rows:
     """Some of the samples, far from each other."""
     if len(rows) <= most:
         return rows

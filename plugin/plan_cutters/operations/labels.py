@@ -127,6 +127,17 @@ def pieces(label: Ints, edge: Ints) -> Ints:
     return number
 
 
+def regions_of(label: Ints, edge: Ints, area: Floats) -> Ints:
+    """Number (n,) the connected samples of one operation from 0, by operation, the largest first; -1 where there is none."""
+    number = pieces(label, edge)
+    mine = number >= 0
+    size = np.bincount(number[mine], area[mine])
+    first = np.unique(number[mine], return_index=True)[1]
+    order = np.lexsort((first, -size, label[mine][first]))
+    place = np.append(np.argsort(order), -1).astype(np.int32)
+    return np.asarray(place[number])
+
+
 def joined(label: Ints, serves: NDArray[np.bool_], edge: Ints, area: Floats, least: float) -> Ints:
     """Let pieces smaller than an area go over to a neighbouring operation that serves all of them, where there is one.
 

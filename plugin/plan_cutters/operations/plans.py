@@ -6,16 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats
+from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Operation, OperationPlan
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.candidates import Orientations
-from plan_cutters.operations.labels import joined, labelled
+from plan_cutters.operations.labels import joined, labelled, regions_of
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.strips import strips
 from plan_cutters.operations.timing import Paths, costs_of, widths
+from plan_cutters.operations.workplanes import workplanes
 from plan_cutters.scene.preparation import Prepared
 
 Rows = NDArray[np.int64]
@@ -89,7 +90,9 @@ def plan_with(
             speed[number == k] = task.paths.feed[operation.cutter] / 60.0
     with np.errstate(divide="ignore", invalid="ignore"):
         seconds = area / (strip * speed)
-    return OperationPlan(name, tuple(operations), number, table, strip, seconds)
+    region = regions_of(number, edge, area)
+    planes = workplanes(operations, task.ready, task.orientations)
+    return OperationPlan(name, tuple(operations), number, table, strip, seconds, region, planes)
 
 
 def _fixed(
@@ -133,6 +136,18 @@ def _simultaneous(
                 Operation(f"op{before + len(found) + 1}", "simultaneous", cutter, s, None, None, None, mine, mine)
             )
     return number, table, strip, found
+
+
+def small_pieces(plan: OperationPlan, samples: SurfaceSamples, overlap: float) -> tuple[str, ...]:
+    """Say what pieces of a plan are small, where there are any: no neighbouring operation serves all of one of these."""
+    mine = plan.region >= 0
+    size = np.bincount(plan.region[mine], np.nan_to_num(samples.area[mine]))
+    small = size < _SMALL * overlap**2
+    if not small.any():
+        return ()
+    many, them = ("one piece", "it") if small.sum() == 1 else (f"{small.sum()} pieces", "all of one of them")
+    return (f"The {plan.name} plan has {many} of less than {_SMALL * overlap**2:g} mm², {size[small].sum():.3g} mm² in all: no "
+            f"operation beside serves {them}.",)  # fmt: skip
 
 
 def best_area(task: Task, columns: Columns, most: int) -> Columns:

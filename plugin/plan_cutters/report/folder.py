@@ -20,7 +20,17 @@ if TYPE_CHECKING:
     from plan_cutters.document.model import FileEntry, Plan
 
 PLAN = "plan.json"
-FORMATS = ("json", *(f for f in WRITERS if f not in {"postures", "operations", "operations_csv"}))
+#: Written where posture maps or operations were asked for.
+_BESIDE = {
+    "postures",
+    "operations",
+    "operations_csv",
+    "operations_step",
+    "operations_glb",
+    "fastest_step",
+    "fastest_glb",
+}
+FORMATS = ("json", *(f for f in WRITERS if f not in _BESIDE))
 #: What is written unless asked otherwise (`docs/decisions/0017-formats-on-request.md`).
 DEFAULT_FORMATS = ("json", "html", "step", "glb", "npz")
 
@@ -149,13 +159,14 @@ def write_all(
     read_formats(",".join(formats))
     clock = clock or Clock.after(result.plan.run)
     with clock.stage("start", shown=False):
-        from plan_cutters.report.formats import Making
-        from plan_cutters.report.models import SCHEMAS, rungs
+        from plan_cutters.report.formats import Making, with_operations
+        from plan_cutters.report.models import SCHEMAS, with_splits
         from plan_cutters.report.to_json import PENDING, write_plan
 
     if step_schema not in SCHEMAS:
         raise OptionError(f"STEP schema {step_schema!r} is not built in; give one of {', '.join(SCHEMAS)}")
-    later = [name for name in LATER if name in formats]
+    wanted = with_operations(formats, len(result.plan.operations.plans) if result.plan.operations else 0)
+    later = [name for name in LATER if name in wanted]
     arrays = [name for name in ("npz",) if name in formats] + (["postures"] if result.maps else [])
     arrays += ["operations", "operations_csv"] if result.plan.operations else []
     with staging or Staging(out) as staging:
@@ -199,7 +210,7 @@ def write_all(
         if onlooker:
             with clock.stage("show", shown=False):
                 onlooker.safe(document)
-        split = None
+        split = 0
         with closing(making.files(later)) as each:
             for name, make in each:
                 if onlooker:
@@ -213,9 +224,8 @@ def write_all(
                         onlooker.failed(name, error)
                 else:
                     del missing[name]
-                if making.split is not None and split is None:
-                    split = rungs(making.split)
-                    document = document.model_copy(update={"split": split})
+                if len(making.splits) > split:
+                    split, document = len(making.splits), with_splits(document, making.splits)
                 document = put()
                 if name in files:
                     staging.publish(files[name].name)

@@ -26,15 +26,26 @@ WRITERS = {
     "postures": ("postures.npz", "to_npz", "write_postures"),
     "operations": ("operations.npz", "operation_files", "write_operations"),
     "operations_csv": ("operations.csv", "operation_files", "write_operations_csv"),
+    "operations_step": ("operations.step", "operation_models", "write_operations_step"),
+    "operations_glb": ("operations.glb", "operation_models", "write_operations_glb"),
+    "fastest_step": ("operations_fastest.step", "operation_models", "write_fastest_step"),
+    "fastest_glb": ("operations_fastest.glb", "operation_models", "write_fastest_glb"),
     "csv": ("axes.csv", "to_csv", "write_csv"),
     "vtk": ("axes.vtp", "to_vtk", "write_vtk"),
     "regions": ("axis_regions.json", "regions", "write_regions"),
     "png": ("review.png", "drawing.part", "write_png"),
 }
-#: What is shown on faces that are split along the verdicts: the CAD kernel has a part in it.
-_MODELS = ("glb", "merged", "png", "step")
+#: What is shown on faces that are split, which the CAD kernel has a part in: along the verdicts (None), or along the
+#: operations of a plan, by its place. Of each, the first one is made while the others are.
+_MODELS: dict[int | None, tuple[str, ...]] = {
+    None: ("glb", "merged", "png", "step"),
+    0: ("operations_glb", "operations_step"),
+    1: ("fastest_glb", "fastest_step"),
+}
 #: What follows the plan and the arrays, the easier ones first.
-LATER = ("html", "csv", "vtk", "regions", *_MODELS)
+LATER = ("html", "csv", "vtk", "regions", *(name for models in _MODELS.values() for name in models))
+#: What is written of operations with these formats, besides what they say: of the first plan, of the second one.
+_OF_OPERATIONS = {"step": ("operations_step", "fastest_step"), "glb": ("operations_glb", "fastest_glb")}
 #: Processor time that a copy may take for a file, s: behind it, the file is made here.
 _COPY = 300.0
 
@@ -54,16 +65,16 @@ class Making:
 
     Attributes
     ----------
-    split : cad_io.split.Split, optional
-        The part with its faces split, once that is done.
+    splits : dict
+        The part with its faces split, once that is done: along the verdicts (None), or the operations of a plan.
     """
 
     def __init__(
         self, result: Judged, folder: Path, schema: str, clock: "Clock", begins: Callable[[str], None]
     ) -> None:
-        self.split: Any = None
+        self.splits: dict[int | None, Any] = {}
         self._result, self._folder, self._schema, self._clock, self._begins = result, folder, schema, clock, begins
-        self._error: Exception | None = None
+        self._errors: dict[int | None, Exception] = {}
         self._several = result.ready is not None and result.ready.options.jobs > 1
 
     def file(self, name: str, split: Any = None) -> "FileEntry":
@@ -72,7 +83,7 @@ class Making:
 
         file, module, function = WRITERS[name]
         write = getattr(import_module(f"plan_cutters.report.{module}"), function)
-        write(self._result, split, self._folder / file, **({"schema": self._schema} if name == "step" else {}))
+        write(self._result, split, self._folder / file, **({"schema": self._schema} if file.endswith(".step") else {}))
         return FileEntry(name=file, sha256=sha256(self._folder / file))
 
     def files(self, formats: Sequence[str]) -> Generator[tuple[str, Callable[[], "FileEntry"]]]:
@@ -82,7 +93,9 @@ class Making:
         """
         from cad_io.kernel.side_process import SideProcess
 
-        models = [name for name in formats if name in _MODELS]
+        models = {which: [name for name in mine if name in formats] for which, mine in _MODELS.items()}
+        models = {which: mine for which, mine in models.items() if mine}
+        each = [name for mine in models.values() for name in mine]
         with ExitStack() as copies:
 
             def begun(make: Callable[[str], "FileEntry"], name: str, beside: bool) -> "SideProcess[FileEntry]":
@@ -91,31 +104,40 @@ class Making:
 
             page = begun(self.file, "html", bool(models))
             if page.works:
-                self._split()
+                self._split(next(iter(models)))
             for name in formats:
-                if name not in models:
+                if name not in each:
                     yield name, page.result if name == "html" else partial(self.file, name)
-            if models:
-                self._split()
-            model = begun(self._model, "glb", self._error is None and "step" in models)
-            for name in sorted(models, key=lambda name: name == "glb" and model.works):
-                yield name, model.result if name == "glb" else partial(self._model, name)
+            for which, mine in models.items():
+                self._split(which)
+                make, first = partial(self._model, which), mine[0]
+                model = begun(make, first, which not in self._errors and len(mine) > 1)
+                for name in sorted(mine, key=lambda name: name == first and model.works):
+                    yield name, model.result if name == first else partial(make, name)
 
-    def _split(self) -> None:
-        if self.split is None and self._error is None:
+    def _split(self, which: int | None) -> None:
+        if which not in self.splits and which not in self._errors:
             from plan_cutters.report.models import split_result
+            from plan_cutters.report.operation_models import split_operations
 
             self._begins("split")
-            with self._clock.stage("split", shown=False):
+            with self._clock.stage("split" if which is None else "split_operations", shown=False):
                 try:
-                    self.split = split_result(self._result)
+                    self.splits[which] = (
+                        split_result(self._result) if which is None else split_operations(self._result, which)
+                    )
                 except Exception as error:
-                    self._error = error
+                    self._errors[which] = error
 
-    def _model(self, name: str) -> "FileEntry":
-        if self._error is not None:
-            raise self._error
-        return self.file(name, self.split)
+    def _model(self, which: int | None, name: str) -> "FileEntry":
+        if which in self._errors:
+            raise self._errors[which]
+        return self.file(name, self.splits[which])
+
+
+def with_operations(formats: Sequence[str], plans: int) -> list[str]:
+    """Formats, and what they stand for with so many plans of operations."""
+    return [*formats, *(name for word in formats for name in _OF_OPERATIONS.get(word, ())[:plans])]
 
 
 def sha256(file: Path) -> str:

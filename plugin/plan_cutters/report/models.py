@@ -4,7 +4,7 @@ They show one cutter: the selected one or, where none is feasible, the one that 
 """
 
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,7 @@ from cad_io.write import write_gltf
 from cad_io.write.gltf import Other as Drawn
 from cad_io.write.step import Other as Product
 from cad_io.write.step import write_step as write_cad
-from plan_cutters.document.model import SplitEntry
+from plan_cutters.document.model import FaceEntry, Plan, SplitEntry
 from plan_cutters.document.palette import LABELS, MEANING, rgb
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED
 from plan_cutters.report.protocol import Judged
@@ -48,15 +48,45 @@ def _grid_labels(grid: FaceGrid, label: NDArray[np.int32]) -> FaceLabels:
 
 def split_result(result: Judged, cutter: str | None = None) -> Any:
     """Split the part's target faces along the verdicts of a cutter, by its id; default the one shown."""
-    samples = result.samples
+    label = verdict_labels(result, cutter)
+    covered = LABELS.index("inside_bodies")
+
+    def worst(rows: NDArray[np.bool_]) -> int:
+        """Its worst verdict stands for a face, as far as it is one of the finished part."""
+        seen = rows & (label != covered)
+        return int(label[seen].max()) if seen.any() else covered
+
+    # Slivers may join what is worse, but not what is not judged.
+    return split(result.part, face_labels(result, label, worst, 0), worst=LABELS.index("inaccessible"))
+
+
+def verdict_labels(result: Judged, cutter: str | None = None) -> NDArray[np.int32]:
+    """The verdict of each sample (n,) as an index into LABELS."""
     code = np.full(256, -1, np.int32)
     for verdict, word in _LABEL.items():
         code[verdict] = word
     label = code[result.reaches[cutter or result.shown].verdict]
-    covered = LABELS.index("inside_bodies")
-    label[result.inside_bodies] = covered
+    label[result.inside_bodies] = LABELS.index("inside_bodies")
+    return label
+
+
+def face_labels(
+    result: Judged, label: NDArray[np.int32], of_face: Callable[[NDArray[np.bool_]], int], first: int
+) -> list[FaceLabels]:
+    """Labels on the grids of all faces.
+
+    Parameters
+    ----------
+    result : Result
+    label : (n,) int32
+        Of the samples, from 0; those of LABELS begin at `first`.
+    of_face : callable
+        Gives the label of a face that was sampled without a grid, by its samples (n,).
+    first : int
+    """
+    samples = result.samples
     grids = {g.face: g for g in samples.grids}
-    check, ignored = LABELS.index("check"), LABELS.index("ignored")
+    check, ignored, unjudged = (first + LABELS.index(word) for word in ("check", "ignored", "unjudged"))
     labels = []
     for face in result.plan.faces:
         number = int(face.id[1:])
@@ -65,13 +95,10 @@ def split_result(result: Judged, cutter: str | None = None) -> Any:
         elif number in grids:
             labels.append(_grid_labels(grids[number], label))
         elif (mine := samples.face == number).any():
-            # Sampled without a grid: its worst verdict stands for the face, as far as it is one of the finished part.
-            seen = mine & (label != covered)
-            labels.append(_whole(number, int(label[seen].max()) if seen.any() else covered))
+            labels.append(_whole(number, of_face(mine)))
         else:
-            labels.append(_whole(number, LABELS.index("unjudged")))
-    # Slivers may join what is worse, but not what is not judged.
-    return split(result.part, labels, worst=LABELS.index("inaccessible"))
+            labels.append(_whole(number, unjudged))
+    return labels
 
 
 def _whole(face: int, label: int) -> FaceLabels:
@@ -97,6 +124,18 @@ def rungs(split: Any) -> dict[str, SplitEntry]:
     return {f"F{number}": shown[number] for number in sorted(shown)}
 
 
+def with_splits(plan: Plan, splits: Mapping[int | None, Any]) -> Plan:
+    """The plan with how its models show faces: by plan of operations, None for the verdicts."""
+    update: dict[str, Any] = {"split": rungs(splits[None])} if None in splits else {}
+    if plan.operations is not None:
+        plans = [
+            each.model_copy(update={"split": rungs(splits[i])}) if i in splits else each
+            for i, each in enumerate(plan.operations.plans)
+        ]
+        update["operations"] = plan.operations.model_copy(update={"plans": plans})
+    return plan.model_copy(update=update)
+
+
 def styles(result: Judged) -> Callable[[Any], Style]:
     """Name and colour of a piece: a target face has the colour of its verdict, others keep their own."""
     faces = result.part.faces
@@ -111,6 +150,11 @@ def styles(result: Judged) -> Callable[[Any], Style]:
 
 def write_step(result: Judged, split: Any, path: Path, *, schema: str = "ap242") -> None:
     """Write `annotated.step`: the input's products and layers, each piece a face named `F<number>_<verdict>`."""
+    write_styled_step(result, split, path, styles(result), schema)
+
+
+def write_styled_step(result: Judged, split: Any, path: Path, style: Callable[[Any], Style], schema: str) -> None:
+    """Write a split part with names and colours, and the fixtures that are CAD files beside it."""
     part = result.part
     others = [
         Product(
@@ -119,8 +163,32 @@ def write_step(result: Judged, split: Any, path: Path, *, schema: str = "ap242")
         for each in result.conditions.around.fixtures
         if isinstance(each.source, Part)
     ]
-    write_cad(split, path, styles(result), product=product(result), tree=part.tree, layers=part.layers,
-              schema=SCHEMAS[schema], others=others)  # fmt: skip
+    write_cad(split, path, style, product=product(result), tree=part.tree, layers=part.layers, schema=SCHEMAS[schema],
+              others=others)  # fmt: skip
+
+
+def face_facts(result: Judged, entry: FaceEntry) -> dict[str, Any]:
+    """Give what models say of a face, whatever they show on it."""
+    number = int(entry.id[1:])
+    return {
+        "face": entry.id,
+        "number": number,
+        "name": entry.name,
+        "component": entry.component,
+        "layers": list(result.part.layers.get(number, ())),
+        "surface": entry.surface,
+        "kind": entry.kind,
+        "target": entry.target,
+        "ignored": entry.ignored,
+    }
+
+
+def drawn_fixtures(result: Judged) -> list[Drawn]:
+    """The fixtures of a result, as triangles with their facts."""
+    return [
+        Drawn(each.name, each.shown, rgb("fixture"), entry.model_dump(mode="json"))
+        for each, entry in zip(result.conditions.around.fixtures, result.plan.fixtures, strict=False)
+    ]
 
 
 def write_glb(result: Judged, split: Any, path: Path, *, merged: bool = False) -> None:
@@ -133,15 +201,7 @@ def write_glb(result: Judged, split: Any, path: Path, *, merged: bool = False) -
         counts = shown.faces.get(entry.id)
         reasons = sorted({w.reason for w in shown.witnesses if w.face == entry.id and not w.inside_bodies})
         return {
-            "face": entry.id,
-            "number": face,
-            "name": entry.name,
-            "component": entry.component,
-            "layers": list(result.part.layers.get(face, ())),
-            "surface": entry.surface,
-            "kind": entry.kind,
-            "target": entry.target,
-            "ignored": entry.ignored,
+            **face_facts(result, entry),
             "cutter": shown.id,
             "verdicts": counts.model_dump() if counts else {},
             "reasons": reasons,
@@ -160,10 +220,7 @@ def write_glb(result: Judged, split: Any, path: Path, *, merged: bool = False) -
             "cutter": shown.id,
         },
         merged=merged,
-        others=[
-            Drawn(each.name, each.shown, rgb("fixture"), entry.model_dump(mode="json"))
-            for each, entry in zip(result.conditions.around.fixtures, result.plan.fixtures, strict=False)
-        ],
+        others=drawn_fixtures(result),
     )
 
 

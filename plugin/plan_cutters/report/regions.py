@@ -6,10 +6,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-from cad_io.arrays import Floats, Ints
+from cad_io.arrays import Floats
 from plan_cutters.document.axis_regions import (
     AxisFound,
     AxisRegions,
@@ -21,9 +19,12 @@ from plan_cutters.document.axis_regions import (
     Span,
 )
 from plan_cutters.document.frozen import vector
+from plan_cutters.document.runs import runs
+from plan_cutters.operations.fixed_axes import fixed_axes
+from plan_cutters.operations.labels import pieces
 from plan_cutters.report.protocol import Judged
 from plan_cutters.scene.clearance import clearances
-from plan_cutters.scene.fixed_axis import few_axes, held_at
+from plan_cutters.scene.fixed_axis import held_at
 
 #: Tilts from which ranges are looked for are so far apart, deg.
 _STEP = 1.0
@@ -42,10 +43,11 @@ def axis_regions(result: Judged) -> AxisRegions:
     samples, name, plan = result.samples, result.shown, result.plan
     # Axes are held in the first setup.
     verdicts, cutter, conditions = result.here.get(name, result.reaches[name]), result.judged(name), result.conditions
-    axes, number = few_axes(samples, cutter, verdicts, conditions)
+    operations = result.answers.operations
+    axes, number = fixed_axes(samples, cutter, verdicts, conditions, operations.plans[0] if operations else None)
     held = held_at(axes, number, samples)
     near = clearances(samples, cutter, held, conditions).distance
-    label = _connected(number, samples.neighbours)
+    label = pieces(number, samples.neighbours)
     free = None if result.maps is None else _Free(result.maps.held(conditions))
     parts = [np.flatnonzero(label == k) for k in range(label.max(initial=-1) + 1)]
     parts = sorted(parts, key=lambda rows: (-float(samples.area[rows].sum()), int(rows[0])))
@@ -58,7 +60,7 @@ def axis_regions(result: Judged) -> AxisRegions:
                 id=i, axis=int(number[rows[0]]), tilt_deg=_span(tilt), clearance_mm=least, samples=len(rows),
                 area_mm2=float(samples.area[rows].sum()), low=vector(point.min(axis=0)), high=vector(point.max(axis=0)),
                 faces=_faces(rows, samples), found=_found(rows, samples, verdicts), free=None if free is None else free.of(rows),
-                rows=_runs(rows),
+                rows=runs(rows),
             )
         )  # fmt: skip
     whole = float(samples.area.sum())
@@ -89,19 +91,6 @@ def schema() -> dict[str, Any]:
 
 def schema_text() -> str:
     return json.dumps(schema(), indent=2) + "\n"
-
-
-def _connected(number: Ints, neighbours: Ints) -> Ints:
-    """Regions (n,) of connected samples of one axis, from 0; -1 where there is no axis."""
-    a, b = neighbours.T
-    same = (number[a] == number[b]) & (number[a] >= 0)
-    n = len(number)
-    graph = coo_array((np.ones(int(same.sum()), np.int8), (a[same], b[same])), shape=(n, n))
-    label = np.asarray(connected_components(graph, directed=False)[1])
-    found = np.full(n, -1, np.int32)
-    mine = number >= 0
-    found[mine] = np.unique(label[mine], return_inverse=True)[1]
-    return found
 
 
 def _span(values: Floats) -> Span:
@@ -142,20 +131,7 @@ def _rotary(result: Judged, axes: Floats) -> list[dict[str, float] | None]:
 
 def _rest(mask: NDArray[np.bool_], samples: Any) -> Rest:
     rows = np.flatnonzero(mask)
-    return Rest(samples=len(rows), area_mm2=float(samples.area[rows].sum()), rows=_runs(rows))
-
-
-def _runs(rows: NDArray[np.int64]) -> list[tuple[int, int]]:
-    """First and last of runs of consecutive numbers.
-
-    >>> _runs(np.array([3, 4, 5, 9]))
-    [(3, 5), (9, 9)]
-    """
-    if not len(rows):
-        return []
-    ends = np.flatnonzero(np.diff(rows) > 1)
-    first, last = rows[np.concatenate([[0], ends + 1])], rows[np.concatenate([ends, [len(rows) - 1]])]
-    return list(zip(first.tolist(), last.tolist(), strict=True))
+    return Rest(samples=len(rows), area_mm2=float(samples.area[rows].sum()), rows=runs(rows))
 
 
 class _Free:

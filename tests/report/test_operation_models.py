@@ -1,0 +1,253 @@
+"""The files of a plan of operations: regions, planes, and models read back by other means than they were written with."""
+
+import json
+import math
+import os
+import re
+import subprocess
+from dataclasses import replace
+from itertools import pairwise, permutations, product
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial import cKDTree
+
+from cad_io import read_part
+from plan_cutters import plan
+from plan_cutters.document.palette import operation_colour, parts, rgb
+from plan_cutters.domain.machine import Machine
+from plan_cutters.operations.workplanes import MOST, index_times
+from plan_cutters.report import DEFAULT_FORMATS, operation_models
+from plan_cutters.report.regions import axis_regions
+from tests.support.cad_parts import box
+from tests.support.places import ROOT, SAMPLES
+from tests.support.shapes import ridge
+
+BALL = "R1L60rc1"
+CASES = {
+    "ridge": (
+        lambda: ridge(10.0, 10.0),
+        {"cutters": BALL, "faces": "all", "grid": 15, "tilt": (0.0, math.radians(31.0))},
+    ),
+    "peaks": (
+        lambda: SAMPLES / "peaks_and_valleys.step",
+        {"cutters": "R6L80", "grid": 21, "machine": "trunnion-ac", "index_step": math.radians(15.0)},
+    ),
+}
+
+
+@pytest.fixture(scope="module", params=CASES)
+def written(request, tmp_path_factory):
+    part, options = CASES[request.param]
+    out = tmp_path_factory.mktemp(request.param)
+    result = plan(part(), **options, operations="both", feed=2000.0, area_budget=0)
+    return result, result.write(out, (*DEFAULT_FORMATS, "regions")), out
+
+
+def unpacked(runs):
+    return [row for first, last in runs for row in range(first, last + 1)]
+
+
+def files(document):
+    stems = ("operations", "operations_fastest")
+    return list(zip(document.operations.plans, stems, strict=True))
+
+
+def test_regions_part_the_samples_of_their_operation_and_are_connected(written):
+    result, document, _ = written
+    samples = result.samples
+    for entry, found in zip(document.operations.plans, result.answers.operations.plans, strict=True):
+        assert [r.id for each in entry.operations for r in each.regions] == list(range(found.region.max() + 1))
+        for number, each in enumerate(entry.operations):
+            rows = [unpacked(region.rows) for region in each.regions]
+            every = [row for mine in rows for row in mine]
+            assert sorted(every) == np.flatnonzero(found.label == number).tolist()
+            assert found.serves[every, number].all()
+            assert sum(region.area_mm2 for region in each.regions) == pytest.approx(each.area_mm2)
+            assert all(a.area_mm2 >= b.area_mm2 for a, b in pairwise(each.regions))
+            for region, mine in zip(each.regions, rows, strict=True):
+                assert sum(face.samples for face in region.faces) == region.samples == len(mine)
+                assert np.allclose(
+                    [region.low, region.high], [f(samples.point[mine], axis=0) for f in (np.min, np.max)]
+                )
+                met, inside = {mine[0]}, set(mine)
+                while more := {
+                    b for a, b in [*samples.neighbours.tolist(), *samples.neighbours[:, ::-1].tolist()]
+                    if a in met and b in inside and b not in met
+                }:  # fmt: skip
+                    met |= more
+                assert met == inside
+
+
+def test_the_plane_turns_with_the_rotary_axes(written):
+    result, document, _ = written
+    for entry in document.operations.plans:
+        for each in entry.operations:
+            if each.mode == "simultaneous":
+                assert each.frame is each.index_s is each.index_from is None
+                continue
+            assert np.allclose(each.frame.z, each.axis, atol=1e-12)
+            assert np.isclose(np.linalg.norm(each.frame.x), 1.0)
+            assert abs(np.dot(each.frame.x, each.frame.z)) < 1e-12
+            assert (each.index_s, each.index_from) == (5.0, "assumed")
+            if result.kinematics is not None:
+                # C about Z and A about X of the tool: R_z(C) R_x(A), by hand. The machine's X stays across Z.
+                c = math.radians(each.angles_deg["C"])
+                assert np.allclose(each.frame.x, (math.cos(c), math.sin(c), 0.0), atol=1e-9)
+
+
+def test_step_faces_have_the_names_colours_and_areas_of_their_operations(written):
+    result, document, out = written
+    for (entry, stem), found in zip(files(document), result.answers.operations.plans, strict=True):
+        again = read_part(out / f"{stem}.step")
+        assert again.solids == result.part.solids
+        colours = {each.id: parts(operation_colour(k)) for k, each in enumerate(entry.operations)}
+        words = [face.name.split()[0].partition("_")[2] for face in again.faces]
+        for face, word in zip(again.faces, words, strict=True):
+            assert face.colour == pytest.approx(colours[word] if word in colours else rgb(word), abs=2e-3)
+        whole = sum(face.area_mm2 for face in document.faces)
+        assert sum(face.area for face in again.faces) == pytest.approx(whole, rel=2e-4)
+        for number, each in enumerate(entry.operations):
+            # Of each region a face, also of one sample: what is around it may not serve it.
+            area = sum(face.area for face, word in zip(again.faces, words, strict=True) if word == each.id)
+            assert area == pytest.approx(each.area_mm2, abs=0.03 * whole)
+            assert area > 0.0
+            assert (found.label == number).any()
+
+
+def test_no_face_has_an_operation_that_does_not_serve_the_samples_on_it(written):
+    """The nearest triangle of the GLB says where a sample lies; what is beyond a border is counted in the plan."""
+    result, document, out = written
+    samples = result.samples
+    for (entry, stem), found in zip(files(document), result.answers.operations.plans, strict=True):
+        scene = trimesh.load(out / f"{stem}.glb")
+        points, names = [], []
+        for name, mesh in scene.geometry.items():
+            dense, _ = trimesh.sample.sample_surface(mesh, max(50, int(mesh.area * 1e6 * 4)), seed=1)
+            points.append(np.asarray(dense) * 1000.0)
+            names += [re.sub(r"_\d+$", "", name.split()[0].partition("_")[2])] * len(dense)
+        cloud = np.concatenate(points)[:, [0, 2, 1]] * (1.0, -1.0, 1.0)
+        near = cKDTree(cloud).query(samples.point)[1]
+        ids = [each.id for each in entry.operations]
+        wrong = 0
+        for row in np.flatnonzero(found.label >= 0).tolist():
+            word = names[near[row]]
+            assert word in ids
+            wrong += not found.serves[row, ids.index(word)]
+        told = sum(each.dropped for each in entry.split.values())
+        assert wrong <= told + 0.01 * len(samples)
+        assert all(each.rung == "contour" for each in entry.split.values())
+
+
+def test_glb_says_the_operation_of_each_piece_and_passes_the_khronos_validator(written):
+    _, document, out = written
+    for entry, stem in files(document):
+        data = (out / f"{stem}.glb").read_bytes()
+        tree = json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])
+        said = [node for node in tree["nodes"] if "operation" in node.get("extras", {})]
+        known = {each.id: each for each in entry.operations}
+        assert {node["extras"]["operation"] for node in said} - {None} == set(known)
+        for node in said:
+            extras = node["extras"]
+            if extras["operation"]:
+                assert extras["cutter"] == known[extras["operation"]].cutter
+                assert node["name"].startswith(f"{extras['face']}_{extras['operation']}")
+            else:
+                assert node["name"].startswith(f"{extras['face']}_{extras['verdict']}")
+    done = subprocess.run(
+        ["node", str(ROOT / "tests" / "support" / "gltf_validate.js"), *(str(out / f"{s}.glb") for _, s in files(document))],
+        capture_output=True, text=True, check=True, env={**os.environ, "NODE_PATH": str(ROOT / "node_modules")},
+    )  # fmt: skip
+    for line in done.stdout.splitlines():
+        issues = json.loads(line)
+        assert (issues["numErrors"], issues["numWarnings"]) == (0, 0), issues
+
+
+def test_files_are_whole_or_named_and_written_with_the_formats_asked_for(written, tmp_path, monkeypatch):
+    result, document, out = written
+    names = {"operations_step", "operations_glb", "fastest_step", "fastest_glb"}
+    assert names <= document.files.keys()
+    assert not document.not_written
+    assert all((out / entry.name).is_file() for entry in document.files.values())
+    few = result.write(tmp_path / "few", ["json", "glb"])
+    assert names & few.files.keys() == {"operations_glb", "fastest_glb"}
+
+    def fails(*_):
+        raise RuntimeError("no halves")
+
+    monkeypatch.setattr(operation_models, "split_by_turns", fails)
+    lost = result.write(tmp_path / "lost", ["json", "step", "glb"])
+    assert {"step", "glb"} <= lost.files.keys()
+    assert set(lost.not_written) == names
+    assert all("no halves" in why for why in lost.not_written.values())
+
+
+def test_axis_regions_have_the_axes_of_the_plan(written):
+    result, document, _ = written
+    found = axis_regions(result)
+    wanted = [each.axis for each in document.operations.plans[0].operations if each.mode == "fixed"]
+    assert [each.axis for each in found.axes][: len(wanted)] == wanted
+    assert [each.samples for each in found.axes][: len(wanted)] == [
+        each.samples for each in document.operations.plans[0].operations if each.mode == "fixed"
+    ]
+    assert found.rest.samples == 0
+
+
+def brute(positions, rate):
+    """The least time over all orders and solutions."""
+    best = math.inf
+    for order in permutations(range(len(positions))):
+        for ways in product(*(positions[i] for i in order)):
+            places = [(0.0, 0.0), *ways]
+            best = min(
+                best, sum(max(abs(b - a) / r for a, b, r in zip(p, q, rate, strict=True)) for p, q in pairwise(places))
+            )
+    return best
+
+
+@given(
+    st.lists(
+        st.lists(st.tuples(st.floats(-1.5, 1.5), st.floats(-1.5, 1.5)), min_size=1, max_size=2), min_size=1, max_size=4
+    )
+)
+@settings(max_examples=60, deadline=None)
+def test_index_times_are_those_of_the_best_of_all_orders(positions):
+    rate = np.array([0.5, 2.0])
+    found = index_times([np.array(each) for each in positions], np.array([[-1.6, 1.6]] * 2), rate)
+    assert found.sum() == pytest.approx(brute(positions, rate), abs=1e-9)
+
+
+def test_an_endless_axis_takes_the_shorter_way_and_a_limited_one_does_not():
+    places = [np.radians([[170.0, 0.0]]), np.radians([[-170.0, 0.0]])]
+    rate = np.radians([10.0, 10.0])
+    endless = index_times(places, np.array([[-math.inf, math.inf], [-2.0, 2.0]]), rate)
+    limited = index_times(places, np.radians([[-180.0, 180.0], [-90.0, 90.0]]), rate)
+    turning = index_times(places, np.radians([[-360.0, 360.0], [-90.0, 90.0]]), rate)
+    assert (endless.sum(), limited.sum(), turning.sum()) == pytest.approx((19.0, 51.0, 19.0))
+
+
+def test_more_positions_than_all_orders_can_be_tried_of_take_the_nearest_next():
+    places = [np.array([[0.1 * k, 0.0]]) for k in range(MOST + 3)]
+    found = index_times(places, np.array([[-3.0, 3.0]] * 2), np.array([1.0, 1.0]))
+    assert found.sum() == pytest.approx(0.1 * (MOST + 2))
+
+
+def test_index_times_follow_from_the_rates_of_a_machine():
+    machine = Machine.parse("trunnion-ac")
+    axes = tuple(replace(each, rate=math.radians(30.0)) for each in machine.axes)
+    result = plan(
+        box(),
+        cutters=BALL,
+        faces="all",
+        grid=4,
+        operations="fewest",
+        machine=replace(machine, axes=axes),
+        area_budget=0,
+    )
+    found = result.plan.operations.plans[0].operations
+    assert {each.index_from for each in found} == {"rates"}
+    for each in found:
+        assert 0.0 <= each.index_s <= 180.0 / 30.0 + 1e-9
