@@ -153,7 +153,7 @@ def test_axes_between_samples_keep_the_machines_limit():
                   np.zeros(2, bool), point, normal, np.zeros((1, 3, 3)))  # fmt: skip
     cell = CellContacts(point, normal, direction, curvature, normal, np.array([True]), np.ones(1), np.zeros((1, 2), np.int32),
                     np.zeros((1, 2), np.int64), uv, np.full((1, 2), 0.4), np.array([True]), np.ones(1), np.ones(1),
-                            np.zeros(1, bool))  # fmt: skip
+                    np.zeros(1, bool), direction, np.zeros(1, np.int64))  # fmt: skip
     plane = Surroundings.sheet(Obstacles(tessellate(part, 0.002)))
     conditions = Conditions(Machine.parse("tilt:10"), UP, PostureRange(), plane, 0.01, 1)
     quarters = quartered(cell, field, 0, conditions)
