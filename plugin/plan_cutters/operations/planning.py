@@ -18,6 +18,7 @@ from plan_cutters.operations.fastest import Costs
 from plan_cutters.operations.fewest import FINEST, Search, search_fewest
 from plan_cutters.operations.plans import Task, best_area, considered, orientations_of, plan_with
 from plan_cutters.operations.probes import Probes
+from plan_cutters.operations.proof import proved
 from plan_cutters.operations.timing import Paths, least_time, shared_area
 from plan_cutters.options import Options
 from plan_cutters.scene.preparation import Prepared
@@ -65,6 +66,7 @@ def plan_operations(
         if options.operations in ("fastest", "both"):
             columns, timed = _fastest(task, search, fewest.columns.of(fewest.chosen))
             plans.append(_capped(task, "fastest", columns))
+        plans = [proved(ready, each) for each in plans]
     return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
                       task.probes.made, timed)  # fmt: skip
 

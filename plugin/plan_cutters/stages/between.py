@@ -19,6 +19,7 @@ from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.cells import CellContacts, Field, laid
+from plan_cutters.stages.connected import connected
 from plan_cutters.stages.site import Fixed, Site, best
 
 #: Least gain, as a share of the target area for each contact, for which cells are cut into four.
@@ -45,6 +46,8 @@ class Cells(Record):
         Of what lies in the trim, mm2.
     sample : (m,) int64
         The one that it lies about, -1 for none.
+    piece : (m,) int64
+        Connected cells with one axis have the same number (`connected`).
     """
 
     face: Ints
@@ -55,6 +58,7 @@ class Cells(Record):
     whole: NDArray[np.bool_]
     area: Floats
     sample: NDArray[np.int64]
+    piece: NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -204,13 +208,17 @@ def _covered(field: Field, grid: FaceGrid, beside: NDArray[np.bool_]) -> NDArray
 
 def _cells(sites: Sequence[Site]) -> Cells:
     """The served cells of all faces."""
-    none, wide = np.zeros(0), np.zeros((0, 2))
-    pieces = [Cells(none.astype(np.int32), wide, wide, np.zeros((0, 3)), np.zeros((0, 3)), none.astype(bool), none,
+    none, wide, last = np.zeros(0), np.zeros((0, 3)), 0
+    pieces = [Cells(none.astype(np.int32), wide[:, :2], wide[:, :2], wide, wide, none.astype(bool), none, none.astype(np.int64),
                     none.astype(np.int64))]  # fmt: skip
-    pieces += [
-        Cells(np.full(len(each), site.field.number, np.int32), each.middle, each.span, each.axis, each.side, each.whole,
-              each.area, each.sample)
-        for site in sites for each in site.found
-    ]  # fmt: skip
+    for site in sites:
+        if not site.found:
+            continue
+        each = CellContacts(*(np.concatenate([getattr(c, n) for c in site.found]) for n in CellContacts.__slots__))
+        level = np.repeat(np.array(site.levels, np.int64), [len(c) for c in site.found])
+        piece = last + connected(site.field, each, level)
+        last += len(each)
+        pieces.append(Cells(np.full(len(each), site.field.number, np.int32), each.middle, each.span, each.axis, each.side,
+                            each.whole, each.area, each.sample, piece))  # fmt: skip
     columns = ([getattr(cells, name) for cells in pieces] for name in Cells.__slots__)
     return Cells(*map(np.concatenate, columns))

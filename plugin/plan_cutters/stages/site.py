@@ -70,6 +70,8 @@ class Site:
         Where postures are not searched.
     found : list of CellContacts
         Served.
+    levels : list of int
+        How often those were cut into four.
     pools : list of (CellContacts, outlook)
         Open, by how often they were cut into four.
     unseen : int
@@ -88,6 +90,7 @@ class Site:
     work: Work = dataclasses_field(default_factory=Work)
     fixed: Fixed | None = None
     found: list[CellContacts] = dataclasses_field(default_factory=list)
+    levels: list[int] = dataclasses_field(default_factory=list)
     pools: list[tuple[CellContacts, Outlook]] = dataclasses_field(default_factory=list)
     unseen: int = 0
     short: int = 0
@@ -137,6 +140,7 @@ class Site:
         self.seen, self.spent = self.seen + len(contacts), self.spent + self.work.looked - began
         good = outlook == 0
         self.found.append(contacts.of(good))
+        self.levels.append(level)
         if level == len(self.pools):
             self.pools.append((contacts.of(np.zeros(0, np.intp)), outlook[:0]))
         before, known = self.pools[level]

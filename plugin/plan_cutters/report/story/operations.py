@@ -81,6 +81,8 @@ def _plan(found: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str]:
         took = "" if each.seconds is None else f", {_duration(each.seconds)}"
         where = "" if each.setup == 0 else f" in setup {each.setup + 1}"
         yield f"  {each.id}: {each.cutter}{where}, {_turned(each)}: {some(each.share)} of the area{took}, {_faces(each)}."
+    if plan.proved_share is not None and plan.proved_share < 1.0:
+        yield f"  Not proved between samples: {some(1.0 - plan.proved_share)} of their area."
     if len(plan.operations) > _LISTED:
         yield f"  and {len(plan.operations) - _LISTED} more in plan.json."
     small = [each for each in plan.operations if each.mode == "fixed" and each.share < _LITTLE]
