@@ -156,23 +156,37 @@ def _reaches(vertex, i, mask, workspace):
 
 
 @kernel
-def _blocks(i, mask, nose, whole, frame, face, tree, triangle_face, workspace):
+def _below(vertex, i, frame, near):
+    """Whether triangle i is no deeper in flutes than allowed, for it is no higher over the tangent planes of the patch (B14)."""
+    p, n, _, _ = frame
+    for corner in range(3):
+        dx, dy, dz = vertex[i, corner, 0] - p[0], vertex[i, corner, 1] - p[1], vertex[i, corner, 2] - p[2]
+        height, away = dx * n[0] + dy * n[1] + dz * n[2], np.sqrt(dx * dx + dy * dy + dz * dz)
+        if not height + away * near[6] + near[7] <= near[8]:
+            return False
+    return True
+
+
+@kernel
+def _blocks(i, mask, nose, flutes, whole, frame, face, tree, triangle_face, workspace):
     """Whether triangle i reaches into a piece of the moved cutter; into its nose only if it is not near."""
     vertex = tree.vertex
     workspace.scratch.looked[0] += _TRIANGLE
     hit = drawn_hit(vertex, i, workspace.bodies[0], workspace.pieces[0], mask, workspace.scratch)
     if hit & nose and near_by(vertex, triangle_face, i, frame, face, workspace.near):
         hit &= ~nose
+    if hit & flutes and _below(vertex, i, frame, workspace.near):
+        hit &= ~flutes
     return hit != 0 and (whole or _reaches(vertex, i, hit, workspace))
 
 
 @kernel
-def _first(hint, nose, whole, frame, face, tree, triangle_face, workspace):
+def _first(hint, nose, flutes, whole, frame, face, tree, triangle_face, workspace):
     """First triangle found that is in the way of the moved cutter, `hint` (-1: none) before others."""
     vertex, box, depth = tree.vertex, tree.box, tree.depth
     stack, masks, count, first, top = workspace.scratch.stack, workspace.scratch.masks, len(vertex), (1 << depth) - 1, 1
     every = hit.everything(workspace.pieces[0])
-    if hint >= 0 and _blocks(hint, every, nose, whole, frame, face, tree, triangle_face, workspace):
+    if hint >= 0 and _blocks(hint, every, nose, flutes, whole, frame, face, tree, triangle_face, workspace):
         return hint
     stack[0], masks[0] = 0, every
     while top > 0:
@@ -189,7 +203,7 @@ def _first(hint, nose, whole, frame, face, tree, triangle_face, workspace):
             continue
         leaf = node - first
         for i in range((count * leaf) >> depth, (count * (leaf + 1)) >> depth):
-            if _blocks(i, mask, nose, whole, frame, face, tree, triangle_face, workspace):
+            if _blocks(i, mask, nose, flutes, whole, frame, face, tree, triangle_face, workspace):
                 return i
     return -1
 
@@ -341,7 +355,8 @@ def _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, blocker,
         slides = (1.0 - rise * k_ff, rise * abs(k_ft), lever * k_ft, abs(1.0 - lever * k_tt), abs(offset) * beside)
         _bodies(body, tool.piece[mode], frame, h, pose, slides, grow, workspace, 18)
     exempt = sweeping.flutes if upright else sweeping.nose[mode]
-    found = _first(blocker, exempt, rule == _ABOUT, frame, face, tree, triangle_face, workspace)
+    near[6], near[7], near[8] = turn, lift, depth
+    found = _first(blocker, exempt, sweeping.flutes, rule == _ABOUT, frame, face, tree, triangle_face, workspace)
     return 0 if found < 0 else 1, found
 
 
@@ -370,7 +385,7 @@ def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, outlook):
         How many boxes were looked at, and what else takes as long: triangles and nodes.
     """
     count = sweeping.tool.piece.shape[1]
-    workspace = _Workspace(np.empty(3), np.empty(3), np.empty((_BODIES, BODY)), np.empty((_BODIES, count, COLUMNS)), np.empty(6),
+    workspace = _Workspace(np.empty(3), np.empty(3), np.empty((_BODIES, BODY)), np.empty((_BODIES, count, COLUMNS)), np.empty(9),
                            seen(), hit.scratch())  # fmt: skip
     body, blocker = np.empty(BODY), -1
     for row in rows:
