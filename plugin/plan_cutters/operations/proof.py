@@ -19,9 +19,9 @@ _MOST_OF = 0.99
 def proved(ready: Prepared, plan: OperationPlan) -> OperationPlan:
     """Write into fixed operations which share of their area is proved, and in how many pieces.
 
-    A cell goes with the operation of its sample. Where that does not serve it all, the others of the plan with the same cutter and
-    setup are tried which serve the sample, before it is cut into four: its area is proved if one does. Where no area between
-    samples was asked for, nothing is looked at and nothing is written.
+    A cell goes with the operation of its sample. Where that does not serve it all, the others of the plan with the same
+    cutter and setup are tried which serve the sample, before it is cut into four: its area is proved if one does. Where no
+    area between samples was asked for, nothing is looked at and nothing is written.
 
     Parameters
     ----------

@@ -181,9 +181,10 @@ def laid(
     bare = node < 0
     geometry = field.at(clip.middle[bare])
     beside = _beside(index, tile[bare], rows, reach)
-    axis, flat, side = (column[beside] for column in (reach.axis, reach.interference_free, reach.tilt_direction))
-    axis, side = (np.where((beside < 0)[:, None], np.nan, column) for column in (axis, side))
-    flat = flat & (beside >= 0)
+    axis, side = (
+        np.where((beside < 0)[:, None], np.nan, column[beside]) for column in (reach.axis, reach.tilt_direction)
+    )
+    flat = reach.interference_free[beside] & (beside >= 0)
     strips = CellContacts(
         *geometry, _started(axis, flat, geometry[1], conditions), flat, np.zeros(len(flat)),
         tile[bare].astype(np.int32), tile[bare], middle[bare], span[bare], clip.whole[bare], np.full(len(flat), np.nan),

@@ -1,4 +1,4 @@
-"""Pieces of served cells: inside one that keeps a single axis every path is safe (lemma B13 of `docs/between_samples.md`)."""
+"""Pieces of served cells: inside one that keeps a single axis every path is safe (lemma B14 of `docs/between_samples.md`)."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -253,16 +253,16 @@ def _served(contacts: CellContacts, site: Site, rooms: Sequence[float], upto: fl
     return outlook
 
 
-def _among(
-    fixed: Fixed, contacts: CellContacts, tensor: Floats, outlook: Outlook, site: Site, upto: float
-) -> None:
+def _among(fixed: Fixed, contacts: CellContacts, tensor: Floats, outlook: Outlook, site: Site, upto: float) -> None:
     """Try fixed axes in turn on cells that their own does not serve; the one with the best outlook is kept."""
     able = (contacts.sample >= 0)[:, None] & fixed.serves[contacts.sample]
     own = contacts.axis.copy()
     for k, axis in enumerate(fixed.axis):
         if site.work.looked >= upto:
             return
-        rows = np.flatnonzero((outlook > 0) & able[:, k] & np.isfinite(own[:, 0]) & (own != axis).any(axis=1) & _whole(contacts))
+        rows = np.flatnonzero(
+            (outlook > 0) & able[:, k] & np.isfinite(own[:, 0]) & (own != axis).any(axis=1) & _whole(contacts)
+        )
         if not len(rows):
             continue
         tried, side = np.broadcast_to(axis, own.shape), contacts.direction_max

@@ -33,7 +33,7 @@ _TRIANGLE, _NODES = 2, 6
 #: How a patch is served: by a lean of a known side; in the dummy about the axis, whatever the side; as a plane across the axis,
 #: all on one side.
 _LEANING, _ABOUT, _LEVEL = 0, 1, 2
-#: An axis is near the normal up to so many turns of the normal in the patch, and along it where both are no larger than this, rad.
+#: An axis is near the normal up to so many turns of the normal in the patch, and along it where both are no larger, rad.
 _NEAR, _ALONG = 4.0, 1e-9
 
 
@@ -157,7 +157,7 @@ def _reaches(vertex, i, mask, workspace):
 
 @kernel
 def _below(vertex, i, frame, near):
-    """Whether triangle i is no deeper in flutes than allowed, for it is no higher over the tangent planes of the patch (B14)."""
+    """Whether triangle i is no deeper in flutes than allowed, for it is no higher over the tangent planes of the patch (B13)."""
     p, n, _, _ = frame
     for corner in range(3):
         dx, dy, dz = vertex[i, corner, 0] - p[0], vertex[i, corner, 1] - p[1], vertex[i, corner, 2] - p[2]
@@ -284,8 +284,10 @@ def _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, blocker,
     if mode < 0:
         return NEVER, -1
     offset, rise, low, high, _ = tool.mode[mode]
-    if upright and not flat and not (
-        mode == 0 and low <= 0.0 and cosine > 0.0 and lean <= _NEAR * MOST_TURN and len(sweeping.dummy) > 0
+    if (
+        upright
+        and not flat
+        and not (mode == 0 and low <= 0.0 and cosine > 0.0 and lean <= _NEAR * MOST_TURN and len(sweeping.dummy) > 0)
     ):
         return NEVER, -1
     nose = Nose(offset, rise, np.cos(sweeping.widening[mode]), np.sin(sweeping.widening[mode]), low, high)
@@ -345,8 +347,8 @@ def _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, blocker,
         _grown(sweeping.dummy, workspace.pieces[0], h + rise * turn, lift + h * lean + rise * turn * (lean + turn))
     elif rule == _LEVEL:
         body[OFFSET] = offset
-        _bodies(body, tool.piece[mode], frame, h, pose, (1.0, 0.0, 0.0, 1.0, 0.0), lift + (h + rise + 2.0 * offset) * 2.0 * _ALONG,
-                workspace, 18)  # fmt: skip
+        grow = lift + (h + rise + 2.0 * offset) * 2.0 * _ALONG
+        _bodies(body, tool.piece[mode], frame, h, pose, (1.0, 0.0, 0.0, 1.0, 0.0), grow, workspace, 18)
     else:
         body[OFFSET] = offset
         grow = 0.5 * abs(offset) * psi * psi + lift + rise * rest
