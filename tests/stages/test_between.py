@@ -117,10 +117,10 @@ def test_no_smaller_patch_is_served_where_none_is_said_to_be():
             tensor = tensors(shrunk.normal, shrunk.direction_max, shrunk.curvature)
             again = _cover(shrunk, tensor, contacts.axis, contacts.flat, site, rows)
             assert (again != 0).all()
-    assert never > 20
+    assert never > 15
 
 
-def test_leans_too_small_to_know_their_side_serve_no_cell():
+def test_leans_too_small_to_know_their_side_serve_no_cell_beside_a_wall():
     """A ridge beside a wall, tilts of a quarter degree: within a cell the cutter would swing over to the wall, but in few small
     ones."""
     x, y = np.meshgrid(np.linspace(-6, 6, 11), np.linspace(0, 12, 5), indexing="ij")
@@ -133,7 +133,9 @@ def test_leans_too_small_to_know_their_side_serve_no_cell():
                                         tilt=(math.radians(low), math.radians(high)))  # fmt: skip
         if len(found.cells.face):
             assert deepest(found, geometry, whole, cutter, dense(whole, 0.4), 400, np.random.default_rng(0)) < 0.01
-        assert low > 0.4 or found.share < 0.05
+        # Farther than a diameter from the wall, at x = 9, it does not matter on which side the cutter stands.
+        near = geometry(1, found.cells.uv)[0][:, 0] > 9.0 - 2.0 * cutter.radius
+        assert low > 0.4 or found.cells.area[near].sum() < 0.05 * found.around.sum()
 
 
 def test_axes_between_samples_keep_the_machines_limit():
@@ -153,7 +155,7 @@ def test_axes_between_samples_keep_the_machines_limit():
                   np.zeros(2, bool), point, normal, np.zeros((1, 3, 3)))  # fmt: skip
     cell = CellContacts(point, normal, direction, curvature, normal, np.array([True]), np.ones(1), np.zeros((1, 2), np.int32),
                     np.zeros((1, 2), np.int64), uv, np.full((1, 2), 0.4), np.array([True]), np.ones(1), np.ones(1),
-                            np.zeros(1, bool))  # fmt: skip
+                    np.zeros(1, bool), direction, np.zeros(1, np.int64))  # fmt: skip
     plane = Surroundings.sheet(Obstacles(tessellate(part, 0.002)))
     conditions = Conditions(Machine.parse("tilt:10"), UP, PostureRange(), plane, 0.01, 1)
     quarters = quartered(cell, field, 0, conditions)

@@ -10,15 +10,17 @@ from cad_io.sample import sample
 from cad_io.tessellate import tessellate
 from plan_cutters import Machine, plan
 from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.fixed_axis import held_at, served_by
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.stages.between import between
+from plan_cutters.stages.site import Fixed
 
 UP = np.array([0.0, 0.0, 1.0])
 
 
-def served(part, cutter, *, budget, tolerance=0.01, chord=None, machine="unlimited", jobs=2, **how):
-    """What `between` finds after a plan, and the geometry that it is asked of."""
+def served(part, cutter, *, budget, tolerance=0.01, chord=None, machine="unlimited", jobs=2, axes=None, **how):
+    """What `between` finds after a plan, and the geometry that it is asked of; with fixed axes (k, 3) instead of its postures."""
     machine = Machine.parse(machine)
     result = plan(part, cutters=[cutter], tolerance=tolerance, area_budget=0, machine=machine, **how)
     whole, samples = result.part, result.samples
@@ -30,7 +32,14 @@ def served(part, cutter, *, budget, tolerance=0.01, chord=None, machine="unlimit
 
     around = Surroundings.sheet(Obstacles(tessellate(whole, chord or 0.2 * tolerance)))
     conditions = Conditions(machine, UP, result.postures, around, tolerance, jobs)
-    found = between(samples, result.reaches[cutter.id], cutter, whole, side, conditions, budget=budget)
+    verdicts, fixed = result.reaches[cutter.id], None
+    if axes is not None:
+        rows = np.arange(len(samples))
+        serves = served_by(rows, axes, samples, cutter, conditions)[0].T
+        upright = np.where(serves, samples.normal @ axes.T, -2.0)
+        verdicts = held_at(axes, np.where(serves.any(axis=1), upright.argmax(axis=1), -1), samples)
+        fixed = Fixed(axes, serves)
+    found = between(samples, verdicts, cutter, whole, side, conditions, budget=budget, fixed=fixed)
     return found, geometry, whole
 
 
@@ -54,8 +63,8 @@ def wandering(found, geometry, whole, cloud, count, rng):
         contact, normal = (x[0] for x in geometry(face, uv[None])[:2])
         axis = cells.axis[row]
         across = normal - (normal @ axis) * axis
-        if np.linalg.norm(across) < 1e-9:  # the axis is the normal: any side will do
-            across = rng.standard_normal(3)
+        if np.linalg.norm(across) < 1e-9:  # the axis is the normal: the side is the cell's, or else any will do
+            across = -cells.side[row] if np.isfinite(cells.side[row]).all() else rng.standard_normal(3)
             across -= (across @ axis) * axis
         x_t = -across / np.linalg.norm(across)
         offsets = np.concatenate([rng.standard_normal((400, 2)) * size for size in (0.5, 2.0, 8.0)])

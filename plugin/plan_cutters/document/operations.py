@@ -78,6 +78,12 @@ class OperationEntry(Frozen):
     )
     cut_length_mm: float | None = Field(description="area over width, summed up: without links and lead-ins")
     seconds: float | None = Field(description="cutting alone, at the feed; null without a feed")
+    proved_share: float | None = Field(
+        description="of its area, proved between the samples with its axis or another of the plan; null: not looked at"
+    )
+    approaches_proved: int | None = Field(
+        description="connected pieces that hold 99 % of what is proved with its axis; inside one, any path is safe"
+    )
     faces: list[OperationFace] = Field(description="the one with the most of it first")
     frame: WorkplaneEntry | None = Field(description="null if simultaneous")
     index_s: float | None = Field(
@@ -127,6 +133,8 @@ class OperationPlanEntry(Frozen):
         description="cutting of the fixed operations over at_best_seconds of the fastest: they take at most so many times as "
         "long as simultaneous motion, by the samples compared; null where that is not known"
     )
+    proved_share: float | None = Field(description="of the area of all fixed operations, proved between the samples")
+    approaches_proved: int | None = Field(description="of all of them together")
     operations: list[OperationEntry] = Field(description="the largest share first")
     rest: RestEntry
     split: dict[str, SplitEntry] = Field(
@@ -335,11 +343,15 @@ def _plan(
     other += assumed.setup_s * max(0, len({each.setup for each in operations}) - 1)
     known = [each.seconds for each in operations if each.seconds is not None]
     cutting = sum(known) if len(known) == len(operations) else None
+    held = [each for each in operations if each.proved_share is not None]
+    size = sum(each.area_mm2 for each in held)
+    share = sum(each.area_mm2 * (each.proved_share or 0.0) for each in held) / size if size > 0.0 else None
     return OperationPlanEntry(
         name=plan.name, orientations=sum(each.mode == "fixed" for each in operations),  # type: ignore[arg-type]
         cut_length_mm=sum(each.cut_length_mm or 0.0 for each in operations), operations=operations,
         seconds=None if cutting is None else cutting + other, cutting_seconds=cutting, other_seconds=other,
-        ratio_at_most=_ratio(operations, found.fastest),
+        ratio_at_most=_ratio(operations, found.fastest), proved_share=share,
+        approaches_proved=sum(each.approaches_proved or 0 for each in held) if held else None,
         rest=RestEntry(samples=int(rest.sum()), area_mm2=left, share=left / whole if whole > 0.0 else 0.0,
                        reason_counts=_reasons(found.reason[rest])),
     )  # fmt: skip
@@ -376,7 +388,8 @@ def _operation(
         other_angles_deg=_angles(found.other_angle, names), samples=len(rows), area_mm2=float(mine.sum()),
         share=min(1.0, float(mine.sum()) / whole) if whole > 0.0 else 0.0, exclusive_mm2=float(area[found.only].sum()),
         strip_mm=_tenths(strip[known]), cut_length_mm=length,
-        seconds=float(seconds.sum()) if np.isfinite(seconds).all() else None,
+        seconds=float(seconds.sum()) if np.isfinite(seconds).all() else None, proved_share=found.proved,
+        approaches_proved=found.approaches,
         faces=_faces(rows, samples, area), frame=None if plane is None else _frame(plane),
         colour=operation_colour(number), index_s=None if plane is None else plane.index,
         index_from=None if plane is None else "rates" if plane.timed else "assumed",

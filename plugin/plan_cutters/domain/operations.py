@@ -223,6 +223,10 @@ class Operation:
         Samples that go with it.
     only : (n,) int64
         Samples that no other operation of the plan serves.
+    proved : float, optional
+        Share of its area that is proved between the samples, with its axis or that of another operation of the plan.
+    approaches : int, optional
+        Connected pieces of the area proved with its axis, the largest, until they hold 99 % of it: inside one, any path is safe.
     """
 
     name: str
@@ -234,6 +238,8 @@ class Operation:
     other_angle: Floats | None
     rows: NDArray[np.int64]
     only: NDArray[np.int64]
+    proved: float | None = None
+    approaches: int | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -21,6 +21,7 @@ from plan_cutters.operations.fewest import FINEST, Search, search_fewest
 from plan_cutters.operations.over_all_axes import over_all_axes
 from plan_cutters.operations.plans import Task, best_area, considered, orientations_of, plan_with, small_pieces
 from plan_cutters.operations.probes import Probes
+from plan_cutters.operations.proof import proved
 from plan_cutters.operations.rest_areas import allowed, largest_first, worths
 from plan_cutters.operations.timing import Paths, problem_of, shared_area
 from plan_cutters.options import Options
@@ -74,6 +75,7 @@ def plan_operations(
             if len(task.cutters) > 1:
                 columns = largest_first(task, search, fewest.columns.of(fewest.chosen))
                 plans.append(_capped(task, "largest first", columns))
+        plans = [proved(ready, each) for each in plans]
     small = tuple(note for each in plans for note in small_pieces(each, ready.samples, options.overlap))
     return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
                       task.probes.made, task.paths.feed, everywhere[0][task.cutters[0]].reason, timed, worth=worth,

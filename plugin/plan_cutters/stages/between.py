@@ -19,7 +19,8 @@ from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.cells import CellContacts, Field, laid
-from plan_cutters.stages.site import Site, best
+from plan_cutters.stages.connected import connected
+from plan_cutters.stages.site import Fixed, Site, best
 
 #: Least gain, as a share of the target area for each contact, for which cells are cut into four.
 LEAST_GAIN = 1e-7
@@ -37,12 +38,27 @@ class Cells(Record):
     axis : (m, 3) float
         Unit tool axis `a`. At a contact with the normal n the cutter stands on the side that they give: its bottom
         centre lies from the contact along `n - (n.a) a`.
+    side : (m, 3) float
+        Unit tilt direction where the axis is the normal all over the cell: there the bottom centre lies against it.
+    whole : (m,) bool
+        It lies in the trim altogether.
+    area : (m,) float
+        Of what lies in the trim, mm2.
+    sample : (m,) int64
+        The one that it lies about, -1 for none.
+    piece : (m,) int64
+        Connected cells with one axis have the same number (`connected`).
     """
 
     face: Ints
     uv: Floats
     span: Floats
     axis: Floats
+    side: Floats
+    whole: NDArray[np.bool_]
+    area: Floats
+    sample: NDArray[np.int64]
+    piece: NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -65,6 +81,8 @@ class Between(Record):
     unknown : tuple of int
         Target faces whose area is not known: none of them is proved, and they are not in `share`.
     cells : Cells
+    around : (n,) float
+        Area of all cells about each sample, served or not, mm2.
     """
 
     share: float
@@ -74,6 +92,7 @@ class Between(Record):
     dropped: int
     unknown: tuple[int, ...]
     cells: Cells
+    around: Floats
 
     @property
     def feasible(self) -> bool:
@@ -93,6 +112,7 @@ def between(
     most: float = np.inf,
     work: Work | None = None,
     beside: NDArray[np.bool_] | None = None,
+    fixed: Fixed | None = None,
 ) -> Between:
     """Find the share of the target area over which a cutter's postures hold.
 
@@ -114,6 +134,8 @@ def between(
         Where it is counted.
     beside : (n,) bool, optional
         Samples that are no surface of the finished part: cells about them are left out where all around them are such, too.
+    fixed : Fixed, optional
+        Each cell keeps the axis of its sample, or takes one of these that serve the sample: no other posture is searched.
     """
     targets = sorted({*np.unique(samples.face).tolist(), *(number for number, _ in samples.empty)})
     areas = {number: part.faces[number - 1].area for number in targets}
@@ -122,7 +144,7 @@ def between(
     beside = np.zeros(len(samples), bool) if beside is None else beside
     looked, left, short = int(((samples.unjudged < 0) & ~beside).sum()), int((~beside).sum()), 0
     work = Work() if work is None else work
-    upto = work.looked + most
+    upto, around = work.looked + most, np.zeros(len(samples))
     sites, nodes, strips = list[Site](), list[CellContacts](), list[CellContacts]()
     for grid in samples.grids:
         trim = part.trim(grid.face)
@@ -136,9 +158,12 @@ def between(
             for cells in (mine, bare):
                 whole -= float(cells.area[deep[tuple(cells.home.T)]].sum())
             mine, bare = (cells.of(~deep[tuple(cells.home.T)]) for cells in (mine, bare))
-        sites.append(Site(field, cutter, conditions, work))
+        sites.append(Site(field, cutter, conditions, work, fixed))
         nodes.append(mine)
         strips.append(bare)
+        for cells in (mine, bare):
+            known = cells.sample >= 0
+            around += np.bincount(cells.sample[known], cells.area[known], len(samples))
     # The strips come first, the largest ones where the budget is short.
     chosen = best(np.concatenate([np.zeros(0), *(each.area for each in strips)]), budget)
     short += int((~chosen).sum())
@@ -166,7 +191,7 @@ def between(
     served = sum(site.served for site in sites) / whole if whole > 0 else 0.0
     return Between(
         float(np.floor(1e6 * min(1.0, served + 1e-9)) / 1e6), looked, left, short + sum(site.short for site in sites),
-        sum(site.dropped for site in sites), unknown, _cells(sites),
+        sum(site.dropped for site in sites), unknown, _cells(sites), around,
     )  # fmt: skip
 
 
@@ -183,10 +208,17 @@ def _covered(field: Field, grid: FaceGrid, beside: NDArray[np.bool_]) -> NDArray
 
 def _cells(sites: Sequence[Site]) -> Cells:
     """The served cells of all faces."""
-    pieces = [Cells(np.zeros(0, np.int32), np.zeros((0, 2)), np.zeros((0, 2)), np.zeros((0, 3)))]
-    pieces += [
-        Cells(np.full(len(each), site.field.number, np.int32), each.middle, each.span, each.axis)
-        for site in sites for each in site.found
-    ]  # fmt: skip
+    none, wide, last = np.zeros(0), np.zeros((0, 3)), 0
+    pieces = [Cells(none.astype(np.int32), wide[:, :2], wide[:, :2], wide, wide, none.astype(bool), none, none.astype(np.int64),
+                    none.astype(np.int64))]  # fmt: skip
+    for site in sites:
+        if not site.found:
+            continue
+        each = CellContacts(*(np.concatenate([getattr(c, n) for c in site.found]) for n in CellContacts.__slots__))
+        level = np.repeat(np.array(site.levels, np.int64), [len(c) for c in site.found])
+        piece = last + connected(site.field, each, level)
+        last += len(each)
+        pieces.append(Cells(np.full(len(each), site.field.number, np.int32), each.middle, each.span, each.axis, each.side,
+                            each.whole, each.area, each.sample, piece))  # fmt: skip
     columns = ([getattr(cells, name) for cells in pieces] for name in Cells.__slots__)
     return Cells(*map(np.concatenate, columns))

@@ -35,7 +35,8 @@ class CellContacts:
     lies. home (n, 2): the grid's tile, of which the cell is a part. tile (n, 2): among the lines of its level. middle,
     span (n, 2): rectangle in parameters. whole (n,): it lies in the trim altogether. size (n,): largest distance from its
     middle, mm, nan where that is not known. area (n,): mm2 of what lies in the trim.
-    not_reached (n,): a posture was searched for, and there is none.
+    not_reached (n,): a posture was searched for, and there is none. side (n, 3): unit tilt direction where the axis is the normal
+    all over the cell. sample (n,): the row of the sample whose posture it starts from, -1 for none.
     """
 
     point: Floats
@@ -53,6 +54,8 @@ class CellContacts:
     size: Floats
     area: Floats
     not_reached: NDArray[np.bool_]
+    side: Floats
+    sample: Indices
 
     def of(self, rows: NDArray[Any]) -> "CellContacts":
         return CellContacts(*(getattr(self, name)[rows] for name in self.__slots__))
@@ -173,14 +176,19 @@ def laid(
         samples.point[mine], samples.normal[mine], samples.direction_max[mine], samples.curvature[mine],
         reach.axis[mine], reach.verdict[mine] == INTERFERENCE_FREE, size[judged], tile[judged].astype(np.int32), tile[judged],
         middle[judged], span[judged], clip.whole[judged], size[judged], area[judged], reach.not_reached[mine],
+        reach.tilt_direction[mine], mine,
     )  # fmt: skip
     bare = node < 0
     geometry = field.at(clip.middle[bare])
-    axis, flat = _beside(index, tile[bare], rows, reach)
+    beside = _beside(index, tile[bare], rows, reach)
+    axis, side = (
+        np.where((beside < 0)[:, None], np.nan, column[beside]) for column in (reach.axis, reach.tilt_direction)
+    )
+    flat = reach.interference_free[beside] & (beside >= 0)
     strips = CellContacts(
         *geometry, _started(axis, flat, geometry[1], conditions), flat, np.zeros(len(flat)),
         tile[bare].astype(np.int32), tile[bare], middle[bare], span[bare], clip.whole[bare], np.full(len(flat), np.nan),
-        area[bare], np.zeros(len(flat), bool),
+        area[bare], np.zeros(len(flat), bool), side, beside,
     )  # fmt: skip
     _add_nodes(field, strips, clip.low[bare], clip.high[bare])
     return field, contacts, strips
@@ -218,7 +226,8 @@ def quartered(contacts: CellContacts, field: Field, level: int, conditions: Cond
     flat = contacts.flat[parent]
     return CellContacts(*geometry, _started(contacts.axis[parent], flat, geometry[1], conditions), flat, patch,
                     contacts.home[parent], tile, middle, span, clip.whole, size,
-                    contacts.area[parent] * weight / np.where(whole > 0, whole, 1.0), np.zeros(len(flat), bool))  # fmt: skip
+                    contacts.area[parent] * weight / np.where(whole > 0, whole, 1.0), np.zeros(len(flat), bool),
+                    contacts.side[parent], contacts.sample[parent])  # fmt: skip
 
 
 def _tiles(
@@ -259,18 +268,17 @@ def _started(axis: Floats, flat: NDArray[np.bool_], normal: Floats, conditions: 
     return np.where(flat[:, None], own, axis)
 
 
-def _beside(
-    index: Ints, tile: Indices, rows: NDArray[np.intp], reach: Verdicts
-) -> tuple[Floats, NDArray[np.bool_]]:  # fmt: skip
-    """Axis (n, 3), nan where there is none, of a sample in the next tile, and whether that is interference-free."""
-    axis, flat = np.full((len(tile), 3), np.nan), np.zeros(len(tile), bool)
+def _beside(index: Ints, tile: Indices, rows: NDArray[np.intp], reach: Verdicts) -> Indices:
+    """Row (n,) of a sample in the next tile that has an axis; -1 where there is none."""
+    found = np.full(len(tile), -1, np.int64)
+    known = np.isfinite(reach.axis[rows, 0])
     for step in _BESIDE:
         i, j = (tile + step).T
         on = (i >= 0) & (j >= 0) & (i < index.shape[0]) & (j < index.shape[1])
         node = np.where(on, index[np.where(on, i, 0), np.where(on, j, 0)], -1)
-        new = np.isnan(axis[:, 0]) & (node >= 0)
-        axis[new], flat[new] = reach.axis[rows[node[new]]], reach.verdict[rows[node[new]]] == INTERFERENCE_FREE
-    return axis, flat
+        new = (found < 0) & (node >= 0) & known[np.maximum(node, 0)]
+        found[new] = rows[node[new]]
+    return found
 
 
 def _bare_nodes(field: Field, node: Ints, clip: Clipped) -> None:

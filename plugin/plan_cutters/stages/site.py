@@ -39,6 +39,22 @@ Outlook = NDArray[np.uint8]
 _UNTOLD = 2
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Fixed:
+    """Tool axes that stay as they are: no other posture is tried.
+
+    Attributes
+    ----------
+    axis : (k, 3) float
+        Unit.
+    serves : (n, k) bool
+        At which samples each of them is tried, where the sample's own does not serve its cell.
+    """
+
+    axis: Floats
+    serves: NDArray[np.bool_]
+
+
 @dataclass(slots=True)
 class Site:
     """A face and its cells.
@@ -50,8 +66,12 @@ class Site:
     conditions : Conditions
     work : Work
         What was looked at, for this face and others.
+    fixed : Fixed, optional
+        Where postures are not searched.
     found : list of CellContacts
         Served.
+    levels : list of int
+        How often those were cut into four.
     pools : list of (CellContacts, outlook)
         Open, by how often they were cut into four.
     unseen : int
@@ -68,7 +88,9 @@ class Site:
     cutter: Cutter
     conditions: Conditions
     work: Work = dataclasses_field(default_factory=Work)
+    fixed: Fixed | None = None
     found: list[CellContacts] = dataclasses_field(default_factory=list)
+    levels: list[int] = dataclasses_field(default_factory=list)
     pools: list[tuple[CellContacts, Outlook]] = dataclasses_field(default_factory=list)
     unseen: int = 0
     short: int = 0
@@ -118,6 +140,7 @@ class Site:
         self.seen, self.spent = self.seen + len(contacts), self.spent + self.work.looked - began
         good = outlook == 0
         self.found.append(contacts.of(good))
+        self.levels.append(level)
         if level == len(self.pools):
             self.pools.append((contacts.of(np.zeros(0, np.intp)), outlook[:0]))
         before, known = self.pools[level]
@@ -202,6 +225,10 @@ def _served(contacts: CellContacts, site: Site, rooms: Sequence[float], upto: fl
     known = np.isfinite(contacts.axis).all(axis=1) & _whole(contacts)
     rows = np.flatnonzero(known)
     outlook[rows] = _cover(contacts, tensor, contacts.axis, contacts.flat, site, rows)
+    if site.fixed is not None:
+        outlook[~known] = NEVER
+        _among(site.fixed, contacts, tensor, outlook, site, upto)
+        return outlook
     outer_tool, bends = conditions.outer_tool(cutter), 1.0 / cutter.radius
     if not (outer_tool.mode[:, OFFSET_OF] > 0.0).any():
         # A ball gouges at every tilt or at none.
@@ -218,23 +245,45 @@ def _served(contacts: CellContacts, site: Site, rooms: Sequence[float], upto: fl
         search_postures(at, open_rows, outer_tool, outer_tool, conditions, found, strict=bends > 0.0, work=site.work)
         rows = open_rows[found.reached[open_rows]]
         if len(rows):
-            new = _cover(contacts, tensor, found.axis, np.zeros(len(contacts), bool), site, rows)
+            new = _cover(contacts, tensor, found.axis, np.zeros(len(contacts), bool), site, rows, found.tilt_direction)
             better = (new <= outlook[rows]) | ~known[rows]
             rows, new = rows[better], new[better]
             contacts.axis[rows], contacts.flat[rows], outlook[rows], known[rows] = found.axis[rows], False, new, True
+            contacts.side[rows] = found.tilt_direction[rows]
     return outlook
 
 
+def _among(fixed: Fixed, contacts: CellContacts, tensor: Floats, outlook: Outlook, site: Site, upto: float) -> None:
+    """Try fixed axes in turn on cells that their own does not serve; the one with the best outlook is kept."""
+    able = (contacts.sample >= 0)[:, None] & fixed.serves[contacts.sample]
+    own = contacts.axis.copy()
+    for k, axis in enumerate(fixed.axis):
+        if site.work.looked >= upto:
+            return
+        rows = np.flatnonzero(
+            (outlook > 0) & able[:, k] & np.isfinite(own[:, 0]) & (own != axis).any(axis=1) & _whole(contacts)
+        )
+        if not len(rows):
+            continue
+        tried, side = np.broadcast_to(axis, own.shape), contacts.direction_max
+        new = _cover(contacts, tensor, np.ascontiguousarray(tried), np.zeros(len(own), bool), site, rows, side)
+        better = new < outlook[rows]
+        rows = rows[better]
+        contacts.axis[rows], contacts.side[rows], outlook[rows] = axis, side[rows], new[better]
+
+
 def _cover(
-    contacts: CellContacts, tensor: Floats, axes: Floats, flats: NDArray[np.bool_], site: Site, rows: NDArray[np.int64]
-) -> Outlook:
-    """Outlook (m,) of rows of contacts with tensors and axes."""
+    contacts: CellContacts, tensor: Floats, axes: Floats, flats: NDArray[np.bool_], site: Site, rows: NDArray[np.int64],
+    sides: Floats | None = None,
+) -> Outlook:  # fmt: skip
+    """Outlook (m,) of rows of contacts with tensors and axes; on the sides that they have, or others."""
     from plan_cutters.kernels.area.cover import Patches, Sweeping, cover
     from plan_cutters.kernels.area.zone import Nodes
 
     field, cutter, conditions = site.field, site.cutter, site.conditions
+    sides = contacts.side if sides is None else sides
     obstacles, outer_tool = conditions.obstacles, conditions.outer_tool(cutter)
-    patches = Patches(contacts.point, contacts.normal, tensor, axes, flats, contacts.patch, contacts.home)
+    patches = Patches(contacts.point, contacts.normal, tensor, axes, flats, sides, contacts.patch, contacts.home)
     nodes, outlook = Nodes(field.index, field.closed, site.about), np.zeros(len(contacts), np.uint8)
     chord = obstacles.triangles.chord_error
     sweeping = Sweeping(tool_of(outer_tool), outer_tool.dummy, *outer_tool.noses(cutter.taper, cutter.shape), outer_tool.flutes,
@@ -251,7 +300,7 @@ def _cover(
     across = axis - upright[:, None] * normal
     sine = np.linalg.norm(across, axis=1)
     flat = flats[mine] | (sine < _UPRIGHT)
-    tilt_direction = np.where(flat[:, None], contacts.direction_max[mine], across / np.where(flat, 1.0, sine)[:, None])
+    tilt_direction = np.where(flat[:, None], sides[mine], across / np.where(flat, 1.0, sine)[:, None])
     tilt = np.where(flat, 0.0, np.arctan2(sine, upright))
     outlook[mine[conditions.obstacles.holds(outer_tool, contacts.point[mine], normal, tilt_direction, tilt)]] = NEVER
     return outlook[rows]

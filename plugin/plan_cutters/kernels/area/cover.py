@@ -30,13 +30,19 @@ _HALF_WAY = 8
 _BODIES = 27
 #: Boxes in whose time a triangle is looked at, and nodes looked at in that of a box, about.
 _TRIANGLE, _NODES = 2, 6
+#: How a patch is served: by a lean of a known side; in the dummy about the axis, whatever the side; as a plane across the axis,
+#: all on one side.
+_LEANING, _ABOUT, _LEVEL = 0, 1, 2
+#: An axis is near the normal up to so many turns of the normal in the patch, and along it where both are no larger, rad.
+_NEAR, _ALONG = 4.0, 1e-9
 
 
 class Patches(NamedTuple):
     """Contacts on one face, each with the patch about it that its axis may serve.
 
     point, normal, axis (n, 3). tensor (n, 3, 3): second fundamental form in part coordinates, 1/mm, concave positive.
-    flat (n,) bool: interference-free, the axis is the normal in any tilt direction. patch (n,): its radius, mm; nan: not decided.
+    flat (n,) bool: interference-free, the axis is the normal in any tilt direction. side (n, 3): unit tilt direction where the
+    axis is the normal all over the patch. patch (n,): its radius, mm; nan: not decided.
     home (n, 2) int32: the grid node in whose cell the contact lies.
     """
 
@@ -45,6 +51,7 @@ class Patches(NamedTuple):
     tensor: Any
     axis: Any
     flat: Any
+    side: Any
     patch: Any
     home: Any
 
@@ -149,23 +156,37 @@ def _reaches(vertex, i, mask, workspace):
 
 
 @kernel
-def _blocks(i, mask, nose, whole, frame, face, tree, triangle_face, workspace):
+def _below(vertex, i, frame, near):
+    """Whether triangle i is no deeper in flutes than allowed, for it is no higher over the tangent planes of the patch (B13)."""
+    p, n, _, _ = frame
+    for corner in range(3):
+        dx, dy, dz = vertex[i, corner, 0] - p[0], vertex[i, corner, 1] - p[1], vertex[i, corner, 2] - p[2]
+        height, away = dx * n[0] + dy * n[1] + dz * n[2], np.sqrt(dx * dx + dy * dy + dz * dz)
+        if not height + away * near[6] + near[7] <= near[8]:
+            return False
+    return True
+
+
+@kernel
+def _blocks(i, mask, nose, flutes, whole, frame, face, tree, triangle_face, workspace):
     """Whether triangle i reaches into a piece of the moved cutter; into its nose only if it is not near."""
     vertex = tree.vertex
     workspace.scratch.looked[0] += _TRIANGLE
     hit = drawn_hit(vertex, i, workspace.bodies[0], workspace.pieces[0], mask, workspace.scratch)
     if hit & nose and near_by(vertex, triangle_face, i, frame, face, workspace.near):
         hit &= ~nose
+    if hit & flutes and _below(vertex, i, frame, workspace.near):
+        hit &= ~flutes
     return hit != 0 and (whole or _reaches(vertex, i, hit, workspace))
 
 
 @kernel
-def _first(hint, nose, whole, frame, face, tree, triangle_face, workspace):
+def _first(hint, nose, flutes, whole, frame, face, tree, triangle_face, workspace):
     """First triangle found that is in the way of the moved cutter, `hint` (-1: none) before others."""
     vertex, box, depth = tree.vertex, tree.box, tree.depth
     stack, masks, count, first, top = workspace.scratch.stack, workspace.scratch.masks, len(vertex), (1 << depth) - 1, 1
     every = hit.everything(workspace.pieces[0])
-    if hint >= 0 and _blocks(hint, every, nose, whole, frame, face, tree, triangle_face, workspace):
+    if hint >= 0 and _blocks(hint, every, nose, flutes, whole, frame, face, tree, triangle_face, workspace):
         return hint
     stack[0], masks[0] = 0, every
     while top > 0:
@@ -182,7 +203,7 @@ def _first(hint, nose, whole, frame, face, tree, triangle_face, workspace):
             continue
         leaf = node - first
         for i in range((count * leaf) >> depth, (count * (leaf + 1)) >> depth):
-            if _blocks(i, mask, nose, whole, frame, face, tree, triangle_face, workspace):
+            if _blocks(i, mask, nose, flutes, whole, frame, face, tree, triangle_face, workspace):
                 return i
     return -1
 
@@ -211,7 +232,25 @@ def _motion(row, patches, nodes, frame, sine, h, turn, offset, rise):
 
 @kernel
 def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace):
-    """Return the `outlook` of `cover` for a contact, and the triangle in the way, -1 if none; `blocker` is tested first."""
+    """Return the `outlook` of `cover` for a contact, and the triangle in the way, -1 if none; `blocker` is tested first.
+
+    An axis near the normal that does not serve with a lean of a known side may serve about itself (lemma B11), and on a plane
+    across it all on one side (B12).
+    """
+    first = _ABOUT if patches.flat[row] else _LEANING
+    best, found = _by(first, row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace)
+    if first == _LEANING and sweeping.tool.mode[0, 0] > 0.0:
+        for rule in (_ABOUT, _LEVEL):
+            if best == 0:
+                break
+            outlook, met = _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, found, body, workspace)
+            best, found = min(best, outlook), met if met >= 0 else found
+    return best, found
+
+
+@kernel
+def _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace):
+    """`_outlook` by one rule."""
     tool, depth, chord = sweeping.tool, sweeping.depth, sweeping.chord
     f, t, near = workspace.f, workspace.t, workspace.near
     p, n, a = patches.point[row], patches.normal[row], patches.axis[row]
@@ -221,28 +260,51 @@ def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, 
     cosine = dot(a, n)
     for k in range(3):
         f[k] = a[k] - cosine * n[k]
-    sine = np.sqrt(dot(f, f))
-    if flat or sine < 1e-6:
+    lean = np.sqrt(dot(f, f))
+    sine = lean
+    upright = rule != _LEANING
+    if rule == _LEVEL:
+        side = patches.side[row]
+        length = np.sqrt(dot(side, side))
+        # A side that is not known, or does not lie in the plane, is none.
+        if not (lean <= _ALONG and cosine > 0.0 and abs(length - 1.0) <= 1e-6 and abs(dot(side, n)) <= 1e-6):
+            return NEVER, -1
+        for k in range(3):
+            f[k] = side[k]
+        sine, cosine = 0.0, 1.0
+    elif flat or sine < 1e-6:
         sine, cosine = 0.0, 1.0
         perpendicular(n, f)
     else:
         for k in range(3):
             f[k] /= sine
     cross(n, f, t)
-    mode = 0 if flat else mode_at(tool, np.arctan2(sine, cosine))
+    tilt = np.arctan2(sine, cosine)
+    mode = 0 if flat else mode_at(tool, tilt)
     if mode < 0:
         return NEVER, -1
     offset, rise, low, high, _ = tool.mode[mode]
+    if (
+        upright
+        and not flat
+        and not (mode == 0 and low <= 0.0 and cosine > 0.0 and lean <= _NEAR * MOST_TURN and len(sweeping.dummy) > 0)
+    ):
+        return NEVER, -1
     nose = Nose(offset, rise, np.cos(sweeping.widening[mode]), np.sin(sweeping.widening[mode]), low, high)
     if flat and len(tool.mode) > 1 and high < 0.25:
         return NEVER, -1
     frame, pose, most = Frame(p, n, f, t), (sine, cosine), workspace.seen.most
     if not begin(frame, h, home, nodes, workspace.seen):
         return NEVER, -1
+    if rule == _LEVEL and not STRETCH * most[0, 3] * _SMALLEST * h <= _ALONG:
+        return NEVER, -1
     # In the smallest patch there remain the home node's own curvature and what it may differ in its cell.
     least = spared(chord + distance_of(0) * _SMALLEST * h, depth, chord)
-    if not flat and not held_below(pose, 0.0, most[0, 0] - least, most[0, 2], most[0, 1] - least, 0.0, nose):
+    if not upright and not held_below(pose, 0.0, most[0, 0] - least, most[0, 2], most[0, 1] - least, 0.0, nose):
         return NEVER, -1
+    if rule == _LEVEL:
+        # What a cutter that does not lean at all enters of a plane that leans this little.
+        depth -= 2.0 * offset * (2.0 * _ALONG)
     full, turn, lift, k_ff, k_tt, k_ft, psi, beside, rest = np.inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     # Bounds do not get smaller with distance: what does not hold nearby needs no look farther out.
     for last in (0, _HALF_WAY, EXTENTS - 1):
@@ -252,13 +314,21 @@ def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, 
             return 1, -1
         # How far the normal turns within the patch, and how far the surface leaves the tangent plane.
         turn, lift = STRETCH * most[0, 3] * h, LIFT * most[0, 3] * h * h
-        if not turn <= MOST_TURN or too_steep(pose, turn, flat, nose):
-            return halvings(most, h, pose, flat, nose, depth, chord, near), -1
-        if not flat:
+        if upright and not flat:
+            # In a smaller patch normals turn less: there the lean is no nearer to them.
+            if rule == _ABOUT and not lean <= _NEAR * turn + _ALONG:
+                return NEVER, -1
+            if rule == _LEVEL and not turn <= _ALONG:
+                return 1, -1
+            if len(tool.mode) > 1 and not tilt + turn <= high:
+                return 1, -1
+        if not turn <= MOST_TURN or too_steep(pose, turn, upright, nose):
+            return halvings(most, h, pose, upright, nose, depth, chord, near), -1
+        if not upright:
             k_ff, k_tt, k_ft, psi, beside, rest = _motion(row, patches, nodes, frame, sine, h, turn, offset, rise)
-        held = extent(most, last, full, h, pose, flat, psi, turn, nose, depth, chord, near)
+        held = extent(most, last, full, h, pose, upright, psi, turn, nose, depth, chord, near)
         if held < 0:
-            return halvings(most, h, pose, flat, nose, depth, chord, near), -1
+            return halvings(most, h, pose, upright, nose, depth, chord, near), -1
         if held < last:
             break
     if not near[0] > 0.0:
@@ -269,11 +339,16 @@ def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, 
         body[X + k] = cosine * f[k] - sine * n[k]
         body[Y + k] = t[k]
     body[HALF] = 0.0
-    if flat:
+    if rule == _ABOUT:
         body[OFFSET] = 0.0
         for k in range(BODY):
             workspace.bodies[0, k] = body[k]
-        _grown(sweeping.dummy, workspace.pieces[0], h + rise * turn, lift + rise * turn * turn)
+        # What the contact and the centre of curvature move across the axis, and along it.
+        _grown(sweeping.dummy, workspace.pieces[0], h + rise * turn, lift + h * lean + rise * turn * (lean + turn))
+    elif rule == _LEVEL:
+        body[OFFSET] = offset
+        grow = lift + (h + rise + 2.0 * offset) * 2.0 * _ALONG
+        _bodies(body, tool.piece[mode], frame, h, pose, (1.0, 0.0, 0.0, 1.0, 0.0), grow, workspace, 18)
     else:
         body[OFFSET] = offset
         grow = 0.5 * abs(offset) * psi * psi + lift + rise * rest
@@ -281,8 +356,9 @@ def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, 
         lever = rise + (offset / sine if sine > 0.0 else 0.0)
         slides = (1.0 - rise * k_ff, rise * abs(k_ft), lever * k_ft, abs(1.0 - lever * k_tt), abs(offset) * beside)
         _bodies(body, tool.piece[mode], frame, h, pose, slides, grow, workspace, 18)
-    exempt = sweeping.flutes if flat else sweeping.nose[mode]
-    found = _first(blocker, exempt, flat, frame, face, tree, triangle_face, workspace)
+    exempt = sweeping.flutes if upright else sweeping.nose[mode]
+    near[6], near[7], near[8] = turn, lift, depth
+    found = _first(blocker, exempt, sweeping.flutes, rule == _ABOUT, frame, face, tree, triangle_face, workspace)
     return 0 if found < 0 else 1, found
 
 
@@ -311,7 +387,7 @@ def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, outlook):
         How many boxes were looked at, and what else takes as long: triangles and nodes.
     """
     count = sweeping.tool.piece.shape[1]
-    workspace = _Workspace(np.empty(3), np.empty(3), np.empty((_BODIES, BODY)), np.empty((_BODIES, count, COLUMNS)), np.empty(6),
+    workspace = _Workspace(np.empty(3), np.empty(3), np.empty((_BODIES, BODY)), np.empty((_BODIES, count, COLUMNS)), np.empty(9),
                            seen(), hit.scratch())  # fmt: skip
     body, blocker = np.empty(BODY), -1
     for row in rows:

@@ -94,6 +94,8 @@ def _plan(plan: OperationPlanEntry) -> Iterator[str]:
         yield f"  {_listed(each)}"
     if len(plan.operations) > _LISTED:
         yield f"  and {len(plan.operations) - _LISTED} more in plan.json."
+    if plan.proved_share is not None and plan.proved_share < 1.0:
+        yield f"Not proved between samples: {some(1.0 - plan.proved_share)} of the area of the {plan.name} plan."
 
 
 def _work(plan: OperationPlanEntry) -> str:

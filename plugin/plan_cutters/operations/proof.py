@@ -1,0 +1,77 @@
+"""What of a plan's fixed operations is proved between the samples, and in how many pieces: inside one, any path is safe."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from plan_cutters.domain.operations import Operation, OperationPlan
+from plan_cutters.scene.fixed_axis import held_at
+from plan_cutters.scene.preparation import Prepared
+from plan_cutters.stages.between import between
+from plan_cutters.stages.site import Fixed
+
+#: The work of a plan unless a budget was asked for: boxes in any case, and for each sample.
+_WORK_LEAST, _WORK_SAMPLE = 2e7, 1000.0
+#: Pieces are counted, the largest first, until they hold so much of what an operation has proved.
+_MOST_OF = 0.99
+
+
+def proved(ready: Prepared, plan: OperationPlan) -> OperationPlan:
+    """Write into fixed operations which share of their area is proved, and in how many pieces.
+
+    A cell goes with the operation of its sample. Where that does not serve it all, the others of the plan with the same
+    cutter and setup are tried which serve the sample, before it is cut into four: its area is proved if one does. Where no
+    area between samples was asked for, nothing is looked at and nothing is written.
+
+    Parameters
+    ----------
+    ready : Prepared
+    plan : OperationPlan
+
+    Returns
+    -------
+    OperationPlan
+    """
+    options, n = ready.options, len(ready.samples)
+    budget = options.contacts_between(n)
+    if not budget:
+        return plan
+    most = np.inf if options.area_budget is not None else _WORK_LEAST + _WORK_SAMPLE * n
+    operations, alike = list(plan.operations), dict[tuple[str, int], list[int]]()
+    for k, each in enumerate(operations):
+        if each.mode == "fixed":
+            alike.setdefault((each.cutter.id, each.setup), []).append(k)
+    whole = sum(len(operations[k].rows) for group in alike.values() for k in group)
+    for group in alike.values():
+        part = sum(len(operations[k].rows) for k in group) / max(1, whole)
+        for k, each in zip(group, _proved(ready, plan, group, int(budget * part), most * part), strict=True):
+            operations[k] = each
+    return replace(plan, operations=tuple(operations))
+
+
+def _proved(ready: Prepared, plan: OperationPlan, group: list[int], budget: int, most: float) -> list[Operation]:
+    """The operations of one cutter and setup, numbers in the plan, with what is proved of them."""
+    samples, chosen = ready.samples, [plan.operations[k] for k in group]
+    number = np.full(len(samples), -1, np.int32)
+    for i, k in enumerate(group):
+        number[plan.label == k] = i
+    axes = np.array([each.axis for each in chosen])
+    found = between(
+        samples, held_at(axes, number, samples), chosen[0].cutter, ready.scene.part, ready.scene.orientation,
+        ready.setups[chosen[0].setup], budget=budget, most=most, beside=ready.inside_bodies,
+        fixed=Fixed(axes, plan.serves[:, group]),
+    )  # fmt: skip
+    cells = found.cells
+    by_sample = np.bincount(cells.sample, cells.area, len(samples))
+    result = []
+    for i, each in enumerate(chosen):
+        mine = number == i
+        around = float(found.around[mine].sum())
+        own = (cells.axis == axes[i]).all(axis=1)
+        piece = np.unique(cells.piece[own], return_inverse=True)[1]
+        size = np.sort(np.bincount(piece, cells.area[own]))[::-1]
+        # Rounded down: a share of 1 means all of it.
+        share = np.floor(1e6 * min(1.0, float(by_sample[mine].sum()) / around + 1e-9)) / 1e6 if around > 0.0 else 0.0
+        count = int((np.cumsum(size) < _MOST_OF * size.sum()).sum()) + 1 if len(size) else 0
+        result.append(replace(each, proved=float(share), approaches=count))
+    return result
