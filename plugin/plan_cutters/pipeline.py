@@ -19,7 +19,7 @@ from plan_cutters.answers.ask import ask
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock, Progress
 from plan_cutters.document.model import AreaEntry, CutterEntry
-from plan_cutters.document.operations import with_motion
+from plan_cutters.document.operations_entry import with_motion
 from plan_cutters.document.plan import Elsewhere, OverSetups, completed, plan_of, selection
 from plan_cutters.document.setup_table import setup_table
 from plan_cutters.document.travel import travels

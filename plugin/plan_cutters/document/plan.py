@@ -33,7 +33,8 @@ from plan_cutters.document.model import (
     Selection,
 )
 from plan_cutters.document.notes import notes_of
-from plan_cutters.document.operations import OperationsEntry, operations_entry
+from plan_cutters.document.operations import OperationsEntry
+from plan_cutters.document.operations_entry import operations_entry
 from plan_cutters.document.palette import MEANING, PALETTE
 from plan_cutters.document.setups import SetupEntry, SetupReach
 from plan_cutters.document.shares import counts

@@ -1,0 +1,225 @@
+"""The entry of the plan of operations is made here, of what was found."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats, SurfaceSamples
+from plan_cutters.document.frozen import vector
+from plan_cutters.document.operations import (
+    AssumedEntry,
+    CutterUse,
+    FastestEntry,
+    FewestEntry,
+    ForcedStepEntry,
+    MotionEntry,
+    OperationEntry,
+    OperationFace,
+    OperationPlanEntry,
+    OperationRegion,
+    OperationsEntry,
+    RestEntry,
+    StepEntry,
+    WorkplaneEntry,
+)
+from plan_cutters.document.palette import operation_colour
+from plan_cutters.document.runs import runs
+from plan_cutters.domain.operations import (
+    RESOLUTION,
+    Fastest,
+    Fewest,
+    Motion,
+    Operation,
+    OperationPlan,
+    Operations,
+    Workplane,
+    Worth,
+)
+from plan_cutters.domain.verdicts import NO_REASON, REASONS
+from plan_cutters.options import Options
+
+#: Areas differ by less, as a share, where they are of the same samples.
+_SAME_AREA = 1e-3
+
+
+def operations_entry(
+    found: Operations, samples: SurfaceSamples, wanted: NDArray[np.bool_], options: Options
+) -> OperationsEntry:
+    """Make the entry of what was found.
+
+    Parameters
+    ----------
+    found : Operations
+    samples : SurfaceSamples
+    wanted : (n,) bool
+        Judged samples of the finished surface.
+    options : Options
+    """
+    area = np.where(wanted, np.nan_to_num(samples.area), 0.0)
+    assumed = AssumedEntry(
+        feed_mm_min=None if found.feed is None else {cutter.id: feed for cutter, feed in found.feed.items()},
+        scallop_mm=options.scallop, stepover=options.stepover, overlap_mm=options.overlap, index_s=options.index_time,
+        change_s=options.change_time, setup_s=options.setup_time,
+    )  # fmt: skip
+    plans = [_plan(each, found, samples, area, wanted, assumed) for each in found.plans]
+    uses = [_use(each, plans, area) for each in found.worth]
+    steps = [StepEntry(orientations=s.orientations, share=s.share, at_most=s.at_most) for s in found.curve]
+    return OperationsEntry(
+        asked=found.which,  # type: ignore[arg-type]
+        rotary=found.names, plans=plans, fewest=_fewest(found.fewest), cutters=uses, curve=steps, fastest=_fastest(found),
+        assumed=assumed, probes=found.probes, motion=_motion(found.motion), notes=list(found.notes),
+    )  # fmt: skip
+
+
+def _fewest(found: Fewest) -> FewestEntry:
+    weights = [(row, weight) for row, weight in zip(found.rows.tolist(), found.weight.tolist(), strict=True) if weight]
+    return FewestEntry(
+        found=len(found.chosen), at_least=found.at_least, proof=found.proof, weights=sorted(weights), bound=found.bound,
+        lp=found.relaxed, samples=found.samples, candidates=len(found.columns), spacing_deg=float(np.degrees(found.spacing)),
+        alone=len(found.alone), at_least_any=found.at_least_any,
+        cells_deg=float(np.degrees(found.cells)) if np.isfinite(found.cells) else None,
+    )  # fmt: skip
+
+
+def with_motion(plan: OperationsEntry, found: Motion | str) -> OperationsEntry:
+    """The entry with what was found of motion, or with the words why there is nothing."""
+    if isinstance(found, str):
+        return plan.model_copy(update={"notes": [*plan.notes, found]})
+    return plan.model_copy(update={"motion": _motion(found)})
+
+
+def _motion(found: Motion | None) -> MotionEntry | None:
+    if found is None:
+        return None
+    steps = [
+        ForcedStepEntry(along=each.along, deg=each.step, turning_deg=each.turning, face=f"F{each.face}",
+                        looked_at=each.looked_at, lines=each.lines)
+        for each in found.steps
+    ]  # fmt: skip
+    return MotionEntry(
+        cutter=found.cutter, components=found.components, components_strict=found.strictly, largest_share=found.largest_share,
+        needed=found.needed, needed_at_least=found.needed_at_least, outside=found.outside, without=found.without,
+        forced_steps=steps, resolution_deg=RESOLUTION,
+    )  # fmt: skip
+
+
+def _fastest(found: Operations) -> FastestEntry | None:
+    timed = found.fastest
+    if timed is None:
+        return None
+    return FastestEntry(seconds=timed.seconds, bound_seconds=timed.bound, at_best_seconds=timed.at_best, gap=timed.gap,
+                        samples=timed.samples, candidates=timed.candidates)  # fmt: skip
+
+
+def _use(found: Worth, plans: list[OperationPlanEntry], area: Floats) -> CutterUse:
+    takes: dict[str, float] = {
+        str(plan.name): sum(each.area_mm2 for each in plan.operations if each.cutter == found.cutter.id)
+        for plan in plans
+    }
+    return CutterUse(id=found.cutter.id, takes_mm2=takes, only_mm2=float(area[found.only].sum()), saves_seconds=found.saves,
+                     change_seconds=found.change)  # fmt: skip
+
+
+def _plan(
+    plan: OperationPlan, found: Operations, samples: SurfaceSamples, area: Floats, wanted: NDArray[np.bool_],
+    assumed: AssumedEntry,
+) -> OperationPlanEntry:  # fmt: skip
+    whole = float(area.sum())
+    operations = [
+        _operation(i, each, plan, plane, found.names, samples, area, whole)
+        for i, (each, plane) in enumerate(zip(plan.operations, plan.planes, strict=True))
+    ]
+    rest = wanted & (plan.label < 0)
+    left = float(area[rest].sum())
+    # The first cutter and the first setup are there anyway.
+    other = assumed.index_s * len(operations) + assumed.change_s * max(0, len({each.cutter for each in operations}) - 1)
+    other += assumed.setup_s * max(0, len({each.setup for each in operations}) - 1)
+    known = [each.seconds for each in operations if each.seconds is not None]
+    cutting = sum(known) if len(known) == len(operations) else None
+    held = [each for each in operations if each.proved_share is not None]
+    size = sum(each.area_mm2 for each in held)
+    share = sum(each.area_mm2 * (each.proved_share or 0.0) for each in held) / size if size > 0.0 else None
+    return OperationPlanEntry(
+        name=plan.name, orientations=sum(each.mode == "fixed" for each in operations),  # type: ignore[arg-type]
+        cut_length_mm=sum(each.cut_length_mm or 0.0 for each in operations), operations=operations,
+        seconds=None if cutting is None else cutting + other, cutting_seconds=cutting, other_seconds=other,
+        ratio_at_most=_ratio(operations, found.fastest), proved_share=share,
+        approaches_proved=sum(each.approaches_proved or 0 for each in held) if held else None,
+        rest=RestEntry(samples=int(rest.sum()), area_mm2=left, share=left / whole if whole > 0.0 else 0.0,
+                       reason_counts=_reasons(found.reason[rest])),
+    )  # fmt: skip
+
+
+def _reasons(reason: NDArray[np.uint8]) -> dict[str, int]:
+    """How many samples have each reason."""
+    codes, counts = np.unique(reason[reason != NO_REASON], return_counts=True)
+    return {REASONS[code]: count for code, count in zip(codes.tolist(), counts.tolist(), strict=True)}
+
+
+def _ratio(operations: list[OperationEntry], timed: Fastest | None) -> float | None:
+    """Cutting of the fixed operations over that at best; only where both are about the same area."""
+    fixed = [each for each in operations if each.mode == "fixed"]
+    if timed is None or timed.at_best <= 0.0 or any(each.seconds is None for each in fixed):
+        return None
+    if abs(sum(each.area_mm2 for each in fixed) - timed.area) > _SAME_AREA * timed.area:
+        return None
+    return max(1.0, sum(each.seconds or 0.0 for each in fixed) / timed.at_best)
+
+
+def _operation(
+    number: int, found: Operation, plan: OperationPlan, plane: Workplane | None, names: tuple[str, str],
+    samples: SurfaceSamples, area: Floats, whole: float,
+) -> OperationEntry:  # fmt: skip
+    rows = found.rows
+    strip, mine = plan.strip[rows], area[rows]
+    known = np.isfinite(strip) & (strip > 0.0)
+    length = float((mine[known] / strip[known]).sum()) if known.all() else None
+    seconds = plan.seconds[rows]
+    return OperationEntry(
+        id=found.name, mode=found.mode, cutter=found.cutter.id, setup=found.setup,
+        axis=None if found.axis is None else vector(found.axis), angles_deg=_angles(found.angle, names),
+        other_angles_deg=_angles(found.other_angle, names), samples=len(rows), area_mm2=float(mine.sum()),
+        share=min(1.0, float(mine.sum()) / whole) if whole > 0.0 else 0.0, exclusive_mm2=float(area[found.only].sum()),
+        strip_mm=_tenths(strip[known]), cut_length_mm=length,
+        seconds=float(seconds.sum()) if np.isfinite(seconds).all() else None, proved_share=found.proved,
+        approaches_proved=found.approaches,
+        faces=_faces(rows, samples, area), frame=None if plane is None else _frame(plane),
+        colour=operation_colour(number), index_s=None if plane is None else plane.index,
+        index_from=None if plane is None else "rates" if plane.timed else "assumed",
+        regions=[
+            _region(k, np.flatnonzero(plan.region == k), samples, area)
+            for k in np.unique(plan.region[rows]).tolist()
+        ],
+    )  # fmt: skip
+
+
+def _frame(plane: Workplane) -> WorkplaneEntry:
+    return WorkplaneEntry(origin=vector(plane.origin), x=vector(plane.x), z=vector(plane.z))
+
+
+def _region(number: int, rows: NDArray[np.int64], samples: SurfaceSamples, area: Floats) -> OperationRegion:
+    point = samples.point[rows]
+    return OperationRegion(
+        id=number, samples=len(rows), area_mm2=float(area[rows].sum()), faces=_faces(rows, samples, area),
+        low=vector(point.min(axis=0)), high=vector(point.max(axis=0)), rows=runs(rows),
+    )  # fmt: skip
+
+
+def _faces(rows: NDArray[np.int64], samples: SurfaceSamples, area: Floats) -> list[OperationFace]:
+    number, which, count = np.unique(samples.face[rows], return_inverse=True, return_counts=True)
+    size = np.bincount(which, area[rows], len(number))
+    faces = [
+        OperationFace(face=f"F{f}", samples=n, area_mm2=a)
+        for f, n, a in zip(number.tolist(), count.tolist(), size.tolist(), strict=True)
+    ]
+    return sorted(faces, key=lambda each: -each.area_mm2)
+
+
+def _angles(angle: Floats | None, names: tuple[str, str]) -> dict[str, float] | None:
+    return None if angle is None else dict(zip(names, angle.tolist(), strict=True))
+
+
+def _tenths(strip: Floats) -> tuple[float, float, float] | None:
+    if not len(strip):
+        return None
+    low, middle, high = np.percentile(strip, (10, 50, 90)).tolist()
+    return low, middle, high
