@@ -116,7 +116,7 @@ def test_help_is_in_groups_with_examples_and_fits(tmp_path):
     said = run("--help", cwd=tmp_path).stdout
     heads = re.findall(r"^(\w.*):$", said, re.MULTILINE)
     assert heads == ["Commands", "Cutters", "Machine and setup", "Faces", "Sampling and tolerances", "Postures", "Output",
-                     "Answers", "Run", "Examples", "Exit codes"]  # fmt: skip
+                     "Answers", "Plan of operations", "Run", "Examples", "Exit codes"]  # fmt: skip
     assert max(map(len, said.splitlines())) <= 80
     assert "\x1b" not in said
     examples = [line.split() for line in said.splitlines() if line.strip().startswith("plan-cutters ")]
