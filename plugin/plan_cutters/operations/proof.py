@@ -1,4 +1,4 @@
-"""What of a plan's fixed operations is proved between the samples, and in how many pieces: inside one, any path is safe."""
+"""Fixed operations between the samples: their proved share, and in how many pieces; inside one, any path is safe."""
 
 from dataclasses import replace
 
