@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.operations.fastest import Costs, Problem, fastest, lagrange
+from plan_cutters.operations.fastest import Costs, Problem, exchanged, fastest, lagrange
 
 
 def problem_of(seed, n, m):
@@ -59,3 +59,23 @@ def test_dear_operations_leave_one_if_one_serves_all():
     found = fastest(Problem(cost, np.zeros(3, np.int32), np.zeros(3, np.int32), Costs(100.0, 0.0, 0.0)))
     assert found.chosen.tolist() == [0]
     assert found.cost == 102.0
+
+
+@given(st.integers(0, 2**31), st.integers(2, 9), st.integers(2, 7))
+@settings(max_examples=40, deadline=None)
+def test_exchanging_keeps_the_number_and_that_all_are_served_and_is_never_dearer(seed, n, m):
+    problem = problem_of(seed, n, m)
+    if not len(problem.cost):
+        return
+    start = fastest(problem).chosen
+    found = exchanged(problem, start)
+    assert len(found) == len(set(found.tolist())) == len(start)
+    assert np.isfinite(problem.cost[:, found]).any(axis=1).all()
+    assert problem.cutting(found) <= problem.cutting(start) + 1e-9
+
+
+def test_of_two_that_serve_all_the_faster_is_taken():
+    problem = Problem(
+        np.array([[3.0, 1.0], [3.0, 2.0]]), np.zeros(2, np.int32), np.zeros(2, np.int32), Costs(0.0, 0.0, 0.0)
+    )
+    assert exchanged(problem, np.array([0])).tolist() == [1]
