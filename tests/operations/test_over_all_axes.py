@@ -35,7 +35,7 @@ def test_it_never_passes_the_least_number_of_caps_that_cover_a_sphere(tilt, caps
     ready = prepare(ball(), Options(cutters=[BALL], grid=9, faces="all", tilt=(0.0, math.radians(tilt))))
     probes = Probes(ready.samples, ready.cutters, ready.setups, [ready.finished])
     rows, many = np.flatnonzero(ready.finished), columns_of(np.zeros((40, 3)), np.zeros((40, 2)))
-    found = Fewest(many, np.arange(40), rows, np.ones(len(rows), np.int64), 1, 0.0, 0.0, 0.0, rows[:0])
+    found = Fewest(many, np.arange(40), rows, np.ones(len(rows), np.int64), 1, 0.0, 0.0, 0.0, rows[:0], len(rows))
     least, cells = over_all_axes(probes, found, rows)
     # A cap is this share of the sphere.
     assert 0.8 * 2.0 / (1.0 - math.cos(math.radians(tilt))) <= least <= caps

@@ -18,10 +18,10 @@ Which = NDArray[np.int64]
 
 #: Weights are whole parts of so many.
 UNIT = 1_000_000
-#: Greedy covers that are tried, each with other random weights, and how much the weights differ.
-_TRIES, _SPREAD = 24, 0.5
-#: Nodes of branch and bound: for a cover of some rows only, and for the proof.
-_FEW_NODES, _NODES = 40, 20_000
+#: Greedy covers that are tried, each with other random weights, on the way and for the proof, and how much the weights differ.
+_TRIES, _MORE_TRIES, _SPREAD = 24, 150, 0.5
+#: Nodes of branch and bound.
+_NODES = 20_000
 #: Seconds that a proof may take unless another number is asked for, whatever its nodes.
 SECONDS = 30.0
 #: Rows that are compared with each other, at most: those that hold another one follow from it.
@@ -139,13 +139,13 @@ def fewest(
     small, bound = table[relaxed.rows], relaxed.bound
     at_least = max(1, math.ceil(bound - 1e-9))
     covers = [_without_spare(small, known)] if known is not None and small[:, known].any(axis=1).all() else []
-    covers.append(_greedy_covers(small, relaxed.share, at_least))
+    covers.append(_greedy_covers(small, relaxed.share, at_least, _MORE_TRIES if prove else _TRIES))
     best = min(covers, key=len)
-    if len(best) > at_least:
+    if prove and len(best) > at_least:
         # A cover with one column less has none whose price, by the weights, passes what is left over.
         price = 1.0 - relaxed.dual @ small
         kept = np.flatnonzero(price <= len(best) - 1 - relaxed.dual.sum() + _ROUNDING)
-        smaller, proven = _smaller(small[:, kept], len(best) - 1, _NODES if prove else _FEW_NODES, seconds)
+        smaller, proven = _smaller(small[:, kept], len(best) - 1, seconds)
         best = best if smaller is None else kept[smaller]
         if proven is not None:
             at_least = max(at_least, min(proven, len(best)))
@@ -174,11 +174,11 @@ def whole_weights(table: Table, weight: Floats) -> Which:
     return found if load <= UNIT else found * UNIT // load
 
 
-def _greedy_covers(table: Table, share: Floats, least: int) -> Which:
+def _greedy_covers(table: Table, share: Floats, least: int, tries: int) -> Which:
     """The smallest of some greedy covers, led by the parts that the relaxed cover takes."""
     rng = np.random.default_rng(0)
     held, best = table.astype(np.float32), None
-    for attempt in range(_TRIES):
+    for attempt in range(tries):
         lead = 1.0 + (share * rng.uniform(0.5, 2.0) if attempt else 0.0) + (
             _SPREAD * rng.random(len(share)) * (share > 0.0) if attempt else 0.0
         )  # fmt: skip
@@ -211,7 +211,7 @@ def _without_spare(table: Table, chosen: Which) -> Which:
     return chosen[kept]
 
 
-def _smaller(table: Table, most: int, nodes: int, seconds: float) -> tuple[Which | None, int | None]:
+def _smaller(table: Table, most: int, seconds: float) -> tuple[Which | None, int | None]:
     """A cover of at most so many columns; else None, and how many every cover needs, where that is known."""
     from scipy.optimize import Bounds, LinearConstraint, milp
     from scipy.sparse import csr_array
@@ -223,7 +223,7 @@ def _smaller(table: Table, most: int, nodes: int, seconds: float) -> tuple[Which
     found = milp(
         np.ones(table.shape[1]), integrality=np.ones(table.shape[1]), bounds=Bounds(0, 1),
         constraints=[LinearConstraint(held, 1.0, np.inf), LinearConstraint(few, 0.0, most)],
-        options={"time_limit": max(0.1, seconds), "mip_rel_gap": 0.99 / (most + 1), "node_limit": nodes},
+        options={"time_limit": max(0.1, seconds), "mip_rel_gap": 0.99 / (most + 1), "node_limit": _NODES},
     )  # fmt: skip
     if found.status == 2:
         return None, most + 1

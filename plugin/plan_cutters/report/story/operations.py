@@ -60,7 +60,7 @@ def _fewest(found: OperationsEntry) -> Iterator[str]:
         end = (
             "" if part.at_most is None else f" (no choice of {part.orientations} serves more than {some(part.at_most)})"
         )
-        yield f"{_count(part.orientations)} of them finish {some(part.share)} of the area{end}."
+        yield f"{part.orientations} of them finish{'es' * (part.orientations == 1)} {some(part.share)} of the area{end}."
 
 
 def _times(found: int) -> str:
