@@ -29,7 +29,7 @@ def operations(plan: Plan) -> list[Line]:
     told = [
         *_rest(found),
         *_fewest(found),
-        *(line for each in found.plans for line in _plan(each)),
+        *(line for each in found.plans for line in _plan(found, each)),
         *_fastest(found),
         *_habit(found),
         *(line for use in found.cutters for line in _worth(found, use)),
@@ -80,7 +80,11 @@ def _proved(few: FewestEntry) -> str:
     return f"; among {near} at least {few.at_least} are needed."
 
 
-def _plan(plan: OperationPlanEntry) -> Iterator[str]:
+def _plan(found: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str]:
+    first = found.plans[0]
+    if plan is not first and _choice(plan) == _choice(first):
+        yield f"The {plan.name} plan is the same."
+        return
     yield f"The {plan.name} plan: {_count(plan.orientations)}, {_work(plan)}."
     small = [each for each in plan.operations if each.mode == "fixed" and each.share < _LITTLE]
     if plan.name == "largest first":
@@ -96,6 +100,11 @@ def _plan(plan: OperationPlanEntry) -> Iterator[str]:
         yield f"  and {len(plan.operations) - _LISTED} more in plan.json."
     if plan.proved_share is not None and plan.proved_share < 1.0:
         yield f"Not proved between samples: {some(1.0 - plan.proved_share)} of the area of the {plan.name} plan."
+
+
+def _choice(plan: OperationPlanEntry) -> list[tuple[object, ...]]:
+    """The operations of a plan, whatever they are called."""
+    return sorted((each.cutter, each.setup, *sorted((each.angles_deg or {}).items())) for each in plan.operations)
 
 
 def _work(plan: OperationPlanEntry) -> str:
@@ -124,7 +133,8 @@ def _fastest(found: OperationsEntry) -> Iterator[str]:
     if timed is None:
         return
     for plan in found.plans:
-        if plan.ratio_at_most is not None and plan.name != "largest first":
+        again = plan is not found.plans[0] and _choice(plan) == _choice(found.plans[0])
+        if plan.ratio_at_most is not None and plan.name != "largest first" and not again:
             cutting = sum(each.seconds or 0.0 for each in plan.operations if each.mode == "fixed")
             times = f"at most {_factor(plan.ratio_at_most)} times as long as five axes at once"
             yield f"3+2 ({plan.name}) takes {_duration(cutting)} of cutting, {times}."
