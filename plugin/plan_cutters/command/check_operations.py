@@ -28,7 +28,7 @@ def checked(part: str, file: str, options: "Options", given: dict[str, Any]) -> 
         findings = check_operations(ready, document, arrays)
     except OptionError as error:
         raise OptionError(error.cause, file=file) from None
-    except (KeyError, TypeError, ValueError, IndexError) as error:
+    except (KeyError, TypeError, ValueError, IndexError, OverflowError) as error:
         raise OptionError(
             f"the plan of operations cannot be understood ({type(error).__name__}: {error})", file=file
         ) from None
@@ -38,20 +38,16 @@ def checked(part: str, file: str, options: "Options", given: dict[str, Any]) -> 
 
 
 def _read(file: str) -> tuple[dict[str, Any], dict[str, Any]]:
-    import numpy as np
-
     from plan_cutters.errors import OptionError
+    from plan_cutters.files.arrays import Archive
 
-    beside = Path(file).parent / "operations.npz"
     try:
         document = json.loads(Path(file).read_text(encoding="utf-8"))
-        if not isinstance(document, dict) or document.get("format") != "plan-cutters-plan":
-            raise OptionError("this is no plan.json of plan-cutters", file=file)
-        with np.load(beside, allow_pickle=False) as archive:
-            return document, {name: archive[name] for name in archive.files}
     except OSError as error:
-        raise OptionError(f"cannot be read ({error.strerror or error})", file=error.filename or str(beside)) from None
-    except (ValueError, KeyError) as error:
-        raise OptionError(
-            f"cannot be understood ({error}): give a plan.json beside its operations.npz", file=file
-        ) from None
+        raise OptionError(f"cannot be read ({error.strerror or error})", file=file) from None
+    except (ValueError, RecursionError) as error:
+        raise OptionError(f"is no JSON ({error}): give the plan.json of a plan of operations", file=file) from None
+    if not isinstance(document, dict) or document.get("format") != "plan-cutters-plan":
+        raise OptionError("is no plan.json of plan-cutters", file=file)
+    with Archive(Path(file).parent / "operations.npz", "operations of a plan", OptionError) as archive:
+        return document, {name: archive.read(name) for name in archive.headers}

@@ -112,14 +112,17 @@ def _weights(
     rows = np.array([row for row, _ in few["weights"]], np.int64)
     weight = np.array([w for _, w in few["weights"]], np.int64)
     cutter, setup, angle = arrays["candidate_cutter"], arrays["candidate_setup"], arrays["candidate_angle"]
-    if len(rows) and (rows.min() < 0 or rows.max() >= len(ready.samples) or weight.min() < 0):
-        return Finding(False, "The weights name samples that there are not, or are negative.")
-    most = 0
+    if len(rows) and (rows.min() < 0 or rows.max() >= len(ready.samples) or weight.min() < 0 or weight.max() > _UNIT):
+        return Finding(False, "The weights name samples that there are not, or are negative or above 1,000,000.")
+    most, served = 0, np.zeros(len(rows), bool)
     for c, s in sorted({*zip(cutter.tolist(), setup.tolist(), strict=True)}):
         axes = orientations[s].kinematics.axis(np.radians(angle[(cutter == c) & (setup == s)]))
         free, _ = served_by(rows, axes, ready.samples, ready.cutters[c], ready.setups[s])
         free &= ready.machinable[s][rows]
-        most = max(most, int((free @ weight).max(initial=0)))
+        most, served = max(most, int((free @ weight).max(initial=0))), served | free.any(axis=0)
+    if not served.all():
+        # A sample that no candidate serves would make any number of orientations too few.
+        return Finding(False, f"{int((~served).sum())} of the samples with weights are served by no candidate.")
     total = int(weight.sum())
     proved = -(-total // _UNIT)
     claimed = few["at_least"] if few["proof"] == "weights" else min(few["at_least"], proved)
