@@ -72,6 +72,8 @@ def _count(found: int) -> str:
 
 
 def _proved(few: FewestEntry) -> str:
+    if few.found == 1:
+        return "."
     near = f"{few.candidates} candidates ({few.spacing_deg:.2g} deg apart where it matters)"
     if few.proof == "weights":
         return f"; no choice among {near} does with fewer, as weights on {len(few.weights)} samples prove."
