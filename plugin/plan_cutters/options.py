@@ -279,6 +279,8 @@ class Options:
             raise OptionError(
                 f"{asked} about one setup, and these differ in fixtures or clamped faces: plan one setup by itself"
             )
+        if self.operations in ("fastest", "both") and self.feed is None and not self.libraries:
+            raise OptionError("the fastest operations need a feed: give --feed MM/MIN, or ask for the fewest")
         if self.most_operations is not None and self.most_operations < 1:
             raise OptionError(f"most operations {self.most_operations} must be at least 1")
         for word, (low, high, unit_) in _RECKONED.items():
