@@ -158,37 +158,49 @@ def _timed(task: Task, search: Search, costs: Costs) -> tuple[Columns, Problem, 
     return columns, problem, float(area.sum())
 
 
-def _quicker(task: Task, search: Search, fewest: Columns, costs: Costs) -> Columns:
-    """As many columns that cut faster, if they serve all samples as well; else the same."""
+def _checked(
+    task: Task, search: Search, fewest: Columns, costs: Costs, choose: Callable[[Problem, Rows], Rows], rounds: int
+) -> tuple[Columns, Problem, float, Rows, Rows, bool]:
+    """Choose columns by some samples and check them at all; what they leave joins these samples, and it is chosen again.
+
+    Returns
+    -------
+    columns, problem, area
+        As of `_timed`.
+    chosen, known : (k,) int64
+        The last choice, and the fewest: of the columns.
+    bool
+        Whether the choice serves all samples.
+    """
     wanted = np.setdiff1d(task.rows, search.alone)
     search.require(wanted[:: max(1, len(wanted) // _TIMED)])
-    for _ in range(_TRIES):
-        columns, problem, _ = _timed(task, search, costs)
+    while True:
+        columns, problem, area = _timed(task, search, costs)
         known = np.flatnonzero(np.isin(columns.key, fewest.key))
-        if not np.isfinite(problem.cost[:, known]).any(axis=1).all():
-            return fewest
-        found = columns.of(exchanged(problem, known))
-        left = wanted[~task.probes.table(wanted, found).any(axis=1)]
+        chosen, rounds = choose(problem, known), rounds - 1
+        left = wanted[~task.probes.table(wanted, columns.of(chosen)).any(axis=1)]
         if not len(left):
-            return found
+            return columns, problem, area, chosen, known, True
         search.require(left[:: max(1, len(left) // 120)])
-    return fewest
+        if not rounds:
+            return columns, problem, area, chosen, known, False
+
+
+def _quicker(task: Task, search: Search, fewest: Columns, costs: Costs) -> Columns:
+    """As many columns that cut faster, if they serve all samples as well; else the same."""
+
+    def choose(problem: Problem, known: Rows) -> Rows:
+        priced = np.isfinite(problem.cost[:, known]).any(axis=1).all()
+        return exchanged(problem, known) if priced else known
+
+    columns, _, _, chosen, _, whole = _checked(task, search, fewest, costs, choose, _TRIES)
+    return columns.of(chosen) if whole else fewest
 
 
 def _fastest(task: Task, search: Search, fewest: Columns, costs: Costs) -> tuple[Columns, Fastest, tuple[Worth, ...]]:
-    """Columns of least time, chosen by some samples and then checked at all; what they leave joins these samples."""
-    wanted = np.setdiff1d(task.rows, search.alone)
-    search.require(wanted[:: max(1, len(wanted) // _TIMED)])
-    for _ in range(_ROUNDS):
-        columns, problem, area = _timed(task, search, costs)
-        known = np.flatnonzero(np.isin(columns.key, fewest.key))
-        chosen = cheap(problem, known)
-        left = wanted[~task.probes.table(wanted, columns.of(chosen)).any(axis=1)]
-        if not len(left):
-            break
-        search.require(left[:: max(1, len(left) // 120)])
-    else:
-        chosen = np.union1d(chosen, known)
+    """Columns of least time."""
+    columns, problem, area, chosen, known, whole = _checked(task, search, fewest, costs, cheap, _ROUNDS)
+    chosen = chosen if whole else np.union1d(chosen, known)
     found = bounded(problem, chosen)
     at_best = float(problem.cost.min(axis=1, initial=np.inf).sum())
     timed = Fastest(found.cost, found.bound, at_best, area, len(problem.cost), len(columns))
