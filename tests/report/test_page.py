@@ -14,6 +14,7 @@ from plan_cutters.report.page import meta
 from plan_cutters.scene.scene import Scene
 from tests.support.browser import choose, chromium, intervals, launch, opened, place_of, seen, wait_for_map
 from tests.support.places import ROOT
+from tests.support.review_page import picture
 
 sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: setup.sh dev")
 PART = ROOT / "samples" / "pocket_top.step"
@@ -61,13 +62,6 @@ def page(browser, path):
     said = page.said
     context.close()
     assert said == []
-
-
-def picture(page):
-    """The canvas as it is seen: (height, width, 3) bytes."""
-    from PIL import Image
-
-    return np.asarray(Image.open(io.BytesIO(page.locator("#frame").screenshot())).convert("RGB")).astype(int)
 
 
 def colour(page, row):

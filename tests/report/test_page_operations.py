@@ -15,7 +15,7 @@ from plan_cutters.report.story.operations import of_the_whole
 from plan_cutters.report.story.story import story_of
 from tests.support.browser import launch, opened, place_of, seen
 from tests.support.places import ROOT
-from tests.support.review_page import Page
+from tests.support.review_page import Page, picture
 
 
 @pytest.fixture(scope="module")
@@ -208,13 +208,6 @@ def page(browser, path):
     said = page.said
     context.close()
     assert said == []
-
-
-def picture(page):
-    """The canvas as it is seen: (height, width, 3) bytes."""
-    from PIL import Image
-
-    return np.asarray(Image.open(io.BytesIO(page.locator("#frame").screenshot())).convert("RGB")).astype(int)
 
 
 def colours(page, rows):

@@ -1,6 +1,7 @@
 """A reader of review pages that shares no code with their writer: elements by html.parser, arrays as the docs describe them."""
 
 import base64
+import io
 import json
 import zlib
 from html.parser import HTMLParser
@@ -108,3 +109,10 @@ def decoded(raw, dtype, shape, filter):
                 column[i] = (column[i] + column[i - 1]) % top
     flat = np.array(columns, dtype=f"<u{size}").reshape(len(columns), rows).T
     return np.ascontiguousarray(flat).view(f"<{dtype}").reshape(shape)
+
+
+def picture(page):
+    """The canvas as it is seen: (height, width, 3) bytes."""
+    from PIL import Image
+
+    return np.asarray(Image.open(io.BytesIO(page.locator("#frame").screenshot())).convert("RGB")).astype(int)
