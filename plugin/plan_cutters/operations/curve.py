@@ -5,18 +5,24 @@ the sum of the k largest gains: the least of such sums over the prefixes of a gr
 is a bound where the table has all samples; else columns are chosen by some samples, and their shares measured at all.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
+from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.operations import Fewest, Step
 from plan_cutters.operations.probes import Probes
 
-#: Tests that the table of the curve may take.
-_TESTS = 600_000
+Known = tuple[Columns, NDArray[np.bool_], Floats]
+#: Tests that a table of all samples may take.
+_TESTS = 300_000
 
 
-def curve(probes: Probes, fewest: Fewest, rows: NDArray[np.int64], area: Floats, whole: float) -> tuple[Step, ...]:
+def curve(
+    probes: Probes, fewest: Fewest, rows: NDArray[np.int64], area: Floats, whole: float, some: Callable[[], Known]
+) -> tuple[Step, ...]:  # fmt: skip
     """Steps of the greedy choice by area, as many as the cover has columns.
 
     Parameters
@@ -29,19 +35,28 @@ def curve(probes: Probes, fewest: Fewest, rows: NDArray[np.int64], area: Floats,
         Of all samples, mm2.
     whole : float
         Area that shares are of, mm2.
+    some : callable
+        Gives columns, among them the cover's, where each serves some samples (s, columns), and the area (s,) that each of these
+        stands for: columns are chosen by these where the table of all samples is large.
     """
     most = len(fewest.chosen)
     if not most or not len(rows):
         return ()
-    some = rows[:: max(1, -(-len(rows) * len(fewest.columns) // _TESTS))]
-    table, size = probes.table(some, fewest.columns).T.astype(np.float32), np.nan_to_num(area[some])
-    order = _order(table, size, most)
-    bound = _bound(table, size, order) / max(whole, 1e-300) if len(some) == len(rows) else None
-    own = fewest.chosen[_order(table[fewest.chosen], size, most)]
-    ways = [probes.table(rows, fewest.columns.of(each)) for each in (np.array(order, np.int64), own)]
-    steps, left = [], np.nan_to_num(area[rows])
+    size = np.nan_to_num(area[rows])
+    if len(rows) * len(fewest.columns) <= _TESTS:
+        columns, table, weight = fewest.columns, probes.table(rows, fewest.columns).T.astype(np.float32), size
+        order = _order(table, weight, most)
+        bound = _bound(table, weight, order) / max(whole, 1e-300)
+    else:
+        columns, known, weight = some()
+        table = known.T.astype(np.float32)
+        order, bound = _order(table, weight, most), None
+    chosen = np.flatnonzero(np.isin(columns.key, fewest.columns.of(fewest.chosen).key))
+    own = chosen[_order(table[chosen], weight, most)]
+    ways = [probes.table(rows, columns.of(each)) for each in (np.array(order, np.int64), own)]
+    steps = []
     for k in range(most):
-        share = min(1.0, max(float(left[way[:, : k + 1].any(axis=1)].sum()) for way in ways) / max(whole, 1e-300))
+        share = min(1.0, max(float(size[way[:, : k + 1].any(axis=1)].sum()) for way in ways) / max(whole, 1e-300))
         steps.append(Step(k + 1, share, None if bound is None else min(1.0, max(share, float(bound[k])))))
     return tuple(steps)
 

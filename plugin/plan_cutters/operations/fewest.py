@@ -28,6 +28,8 @@ _ROUNDS = 60
 _LOADED = 250
 #: Candidates that enter the table at once.
 _ENTER = 150
+#: Candidates that come with one that enters are loaded with at least so much of what it takes.
+_NEARLY = 0.97
 #: Whole weights and those of the solver differ by less, summed up.
 _MARGIN = 0.01
 #: Spacing down to which candidates are laid, rad.
@@ -73,12 +75,11 @@ class Search:
         first = rng.choice(rows, min(_FIRST, len(rows)), replace=False) if len(rows) else rows
         self._add_rows(np.sort(first))
 
-    def solve(self, *, prove: bool = True) -> Cover:
+    def solve(self, known: Rows | None = None, *, prove: bool = True) -> Cover:
         """Return a small cover of the candidates that serves all samples but those that none serves.
 
-        With `prove` the smallest, or at least a bound of it; else what is found soon.
+        With `prove` the smallest, or at least a bound of it; else what is found soon. `known` is such a cover.
         """
-        known: Rows | None = None
         for _ in range(_ROUNDS):
             found = self._cover(known, prove=False)
             missed = self._missed(found.chosen)
@@ -125,7 +126,14 @@ class Search:
             active = np.flatnonzero(self._active)
             table = self._table[:, active] == 1
             relaxed = relax(table)
-            if self._enter(relaxed.weight, 1.0):
+            idle, load = self._idle(relaxed.weight)
+            if known is not None:
+                # Weights that load a candidate that waits too much still prove something: all of them made smaller.
+                weight = relaxed.weight * UNIT // max(UNIT, int(load.max(initial=0)))
+                bound = float(weight.sum()) / UNIT
+                if math.ceil(bound - 1e-9) >= len(known):
+                    return Cover(known, len(known), weight, bound, bound)
+            if self._enter(idle, load, 1.0):
                 continue
             own = None if known is None else np.searchsorted(active, known)
             prove, began = prove and self._seconds > 0.0, time.monotonic()
@@ -136,24 +144,27 @@ class Search:
             by_weights = math.ceil(found.bound - 1e-9)
             if not prove or by_weights >= len(found.chosen):
                 return replace(found, at_least=max(min(1, len(found.chosen)), by_weights))
-            if not self._enter(relaxed.weight, found.bound + 2.0 - len(found.chosen) - _MARGIN):
+            if not self._enter(idle, load, found.bound + 2.0 - len(found.chosen) - _MARGIN):
                 return found
 
-    def _enter(self, weight: Rows, most: float) -> bool:
-        """Take candidates into the table whole that wait and that the weights load with more than so much."""
+    def _idle(self, weight: Rows) -> tuple[Rows, Rows]:
+        """Candidates that wait, and how much the weights load each."""
         idle, rows = np.flatnonzero(~self._active), np.flatnonzero(weight)
-        if not len(idle):
-            return False
         open_ = rows[(self._table[np.ix_(rows, idle)] < 0).any(axis=1)]
-        if len(open_):
+        if len(open_) and len(idle):
             self._table[np.ix_(open_, idle)] = self._probes.table(self.rows[open_], self.columns.of(idle))
-        load = weight[rows] @ (self._table[np.ix_(rows, idle)] == 1)
-        over = np.flatnonzero(load > most * UNIT)
+        return idle, weight[rows] @ (self._table[np.ix_(rows, idle)] == 1)
+
+    def _enter(self, idle: Rows, load: Rows, most: float) -> bool:
+        """Take candidates into the table whole that wait and that are loaded with more than so much, if there are any."""
+        if not (load > most * UNIT).any():
+            return False
+        # Those loaded nearly as much are likely the next ones.
+        over = np.flatnonzero(load > _NEARLY * most * UNIT)
         new = np.sort(idle[over[np.argsort(-load[over], kind="stable")[:_ENTER]]])
-        if len(new):
-            self._table[:, new] = self._probes.table(self.rows, self.columns.of(new))
-            self._active[new] = True
-        return bool(len(new))
+        self._table[:, new] = self._probes.table(self.rows, self.columns.of(new))
+        self._active[new] = True
+        return True
 
     def _missed(self, chosen: Rows) -> Rows:
         """Samples that chosen candidates do not serve."""
@@ -217,7 +228,7 @@ def search_fewest(
             break
         spacing *= (finest / spacing) ** (1.0 / (levels - level))
         search.refine(best, spacing, orientations)
-        best = search.solve(prove=level == levels - 1)
+        best = search.solve(best.chosen, prove=level == levels - 1)
     return Fewest(search.columns, best.chosen, search.rows, best.weight, best.at_least, best.bound, best.relaxed, spacing,
                   search.alone, search.wanted)  # fmt: skip
 

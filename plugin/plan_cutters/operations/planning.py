@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet
@@ -68,7 +69,7 @@ def plan_operations(
         any_axes, cells = over_all_axes(task.probes, fewest, task.rows)
         fewest = replace(fewest, at_least_any=any_axes, cells=cells)
         whole = float(np.nansum(ready.samples.area[ready.somewhere]))
-        steps = curve(task.probes, fewest, task.rows, ready.samples.area, whole)
+        steps = curve(task.probes, fewest, task.rows, ready.samples.area, whole, lambda: _even(task, search))
         plans, timed, worth = [], None, tuple[Worth, ...]()
         if options.operations in ("fewest", "both"):
             plans.append(_capped(task, "fewest", _quicker(task, search, fewest.columns.of(fewest.chosen), costs)))
@@ -149,11 +150,18 @@ def _capped(task: Task, name: str, columns: Columns) -> OperationPlan:
     return plan_with(task, name, columns, (lambda serves: allowed(task, columns, serves)) if habit else None)
 
 
-def _timed(task: Task, search: Search, costs: Costs) -> tuple[Columns, Problem, float]:
-    """The candidates that are known whole, what the samples of the table cost with each, and the area that these stand for."""
+def _even(task: Task, search: Search) -> tuple[Columns, NDArray[np.bool_], Floats]:
+    """Return the candidates that are known whole, where they serve samples all over the part, and the area of each of these."""
+    wanted = np.setdiff1d(task.rows, search.alone)
+    search.require(wanted[:: max(1, len(wanted) // _TIMED)])
     active, table = search.whole
-    columns, samples = search.columns.of(active), task.ready.samples
-    area = shared_area(samples, np.setdiff1d(task.rows, search.alone), search.rows)
+    return search.columns.of(active), table, shared_area(task.ready.samples, wanted, search.rows)
+
+
+def _timed(task: Task, search: Search, costs: Costs) -> tuple[Columns, Problem, float]:
+    """The candidates that are known whole, what samples all over the part cost with each, and the area that these stand for."""
+    columns, table, area = _even(task, search)
+    samples = task.ready.samples
     problem = problem_of(columns, table, search.rows, area, samples, task.cutters, task.paths, costs)
     return columns, problem, float(area.sum())
 
@@ -173,7 +181,6 @@ def _checked(
         Whether the choice serves all samples.
     """
     wanted = np.setdiff1d(task.rows, search.alone)
-    search.require(wanted[:: max(1, len(wanted) // _TIMED)])
     while True:
         columns, problem, area = _timed(task, search, costs)
         known = np.flatnonzero(np.isin(columns.key, fewest.key))
