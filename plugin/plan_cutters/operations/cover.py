@@ -19,7 +19,7 @@ Which = NDArray[np.int64]
 #: Weights are whole parts of so many.
 UNIT = 1_000_000
 #: Greedy covers that are tried, each with other random weights, on the way and for the proof, and how much the weights differ.
-_TRIES, _MORE_TRIES, _SPREAD = 24, 150, 0.5
+_TRIES, _MORE_TRIES, _SPREAD = 12, 150, 0.5
 #: Nodes of branch and bound.
 _NODES = 20_000
 #: Seconds that a proof may take unless another number is asked for, whatever its nodes.

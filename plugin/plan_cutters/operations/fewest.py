@@ -21,7 +21,7 @@ from plan_cutters.operations.probes import Probes
 
 Rows = NDArray[np.int64]
 #: Samples that the first table holds, and samples that are added to it at once.
-_FIRST, _MORE = 400, 120
+_FIRST, _MORE = 300, 200
 #: Rounds, at most, until a cover of some samples must serve all.
 _ROUNDS = 60
 #: Candidates about which new ones are laid, at most, at each halving of their spacing.

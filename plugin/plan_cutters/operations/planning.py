@@ -32,8 +32,8 @@ from plan_cutters.scene.threads import Progress
 Rows = NDArray[np.int64]
 #: Cutters whose operations are compared, at most: the fewest that reach all, and then by rank.
 _CUTTERS = 4
-#: Samples by which times are compared, at least if there are so many; and rounds until the fastest choice serves all.
-_TIMED, _ROUNDS = 600, 12
+#: Samples all over the part by which plans are compared, and more by which the fastest is found; rounds until it serves all.
+_EVEN, _TIMED, _ROUNDS = 250, 600, 12
 #: Tries to exchange the fewest for as many that cut faster.
 _TRIES = 4
 
@@ -153,7 +153,8 @@ def _capped(task: Task, name: str, columns: Columns) -> OperationPlan:
 def _even(task: Task, search: Search) -> tuple[Columns, NDArray[np.bool_], Floats]:
     """Return the candidates that are known whole, where they serve samples all over the part, and the area of each of these."""
     wanted = np.setdiff1d(task.rows, search.alone)
-    search.require(wanted[:: max(1, len(wanted) // _TIMED)])
+    most = _EVEN if task.ready.options.operations == "fewest" else _TIMED
+    search.require(wanted[:: max(1, len(wanted) // most)])
     active, table = search.whole
     return search.columns.of(active), table, shared_area(task.ready.samples, wanted, search.rows)
 
