@@ -230,7 +230,7 @@ class Ranking:
     def _searched(self, k: int) -> NDArray[np.bool_]:
         """Where any cutter has a posture with a table under the part, of the rows (r,)."""
         x, y, z = self.candidates.axis[k].tolist()
-        around = self.ready.scene.turned_to((x, y, z)).clamped("table").surround()
+        around = self.ready.scene.surround_on_table((x, y, z))
         conditions = replace(self.ready.conditions, setup=np.array([x, y, z]), x=None, around=around)
         found, left = np.zeros(len(self.ready.samples), bool), self.rows[self.bound[:, k]]
         # The least wanted cutter is the smallest: it reaches most.

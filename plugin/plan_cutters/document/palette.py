@@ -29,8 +29,8 @@ MEANING = {
 }
 
 
-#: Colours of operations, the first ones first: Okabe and Ito's eight.
-OPERATIONS = ("#0072B2", "#009E73", "#E69F00", "#56B4E9", "#CC79A7", "#F0E442", "#D55E00", "#000000")
+#: Colours of operations, the first ones first: Okabe and Ito's, with a dark grey for their black, which hides the form.
+OPERATIONS = ("#0072B2", "#009E73", "#E69F00", "#56B4E9", "#CC79A7", "#F0E442", "#D55E00", "#404040")
 
 
 def operation_colour(number: int) -> str:
@@ -42,8 +42,8 @@ def operation_colour(number: int) -> str:
     colour = OPERATIONS[number % len(OPERATIONS)]
     if number // len(OPERATIONS) % 2 == 0:
         return colour
-    # Half of black is black: half of white stands for it.
-    half = [each // 2 for each in bytes.fromhex(colour[1:])] if any(bytes.fromhex(colour[1:])) else [127] * 3
+    # Half of the dark grey is nearly black: half of white stands for it.
+    half = [127] * 3 if colour == OPERATIONS[-1] else [each // 2 for each in bytes.fromhex(colour[1:])]
     return "#" + bytes(half).hex().upper()
 
 
