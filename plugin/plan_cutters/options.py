@@ -273,8 +273,8 @@ class Options:
             raise OptionError(f"map budget {self.map_budget} must be at least 1 sample")
         if self.operations is not None and self.machine.turns and len(self.machine.rotary) < 2:
             axes = "one rotary axis" if self.machine.rotary else "no rotary axis"
-            raise OptionError(f"machine {self.machine.name} has {axes}: a plan of operations chooses the angles of two; leave out "
-                              "--operations, or name a machine that has them")  # fmt: skip
+            raise OptionError(f"machine {self.machine.name} has {axes}: a plan of operations chooses the angles of two; leave "
+                              "out --operations, or name a machine that has them")  # fmt: skip
         if not self.held_alike and (self.posture_maps or {"mend", "mend-all"} & set(self.answers)):
             asked = "posture maps are" if self.posture_maps else "the answer mend is"
             raise OptionError(
@@ -288,7 +288,9 @@ class Options:
             value = getattr(self, word)
             # Angles are rad here, and degrees where they are asked for and read.
             if value is not None and not low <= (value := math.degrees(value) if unit_ == "deg" else value) <= high:
-                raise OptionError(f"{word.replace('_', ' ')} {value:g} must lie between {low:g} and {high:,.9g} {unit_}")
+                raise OptionError(
+                    f"{word.replace('_', ' ')} {value:g} must lie between {low:g} and {high:,.9g} {unit_}"
+                )
         if not 1 <= self.jobs <= _MOST_JOBS:
             raise OptionError(f"jobs {self.jobs} must be at least 1 and at most {_MOST_JOBS}")
         for cutter in self.judged:

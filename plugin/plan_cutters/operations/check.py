@@ -94,7 +94,9 @@ def _fits(ready: Prepared, document: Mapping[str, Any], arrays: Mapping[str, NDA
     ]
     for what, was, now in pairs:
         if was != now:
-            raise OptionError(f"the plan of operations does not fit: {what}: {_short(was)} in the plan, {_short(now)} here")
+            raise OptionError(
+                f"the plan of operations does not fit: {what}: {_short(was)} in the plan, {_short(now)} here"
+            )
     if any(len(array) != len(ready.samples) for name, array in arrays.items() if name.startswith("operation")):
         raise OptionError("operations.npz is of other samples than the plan")
 
@@ -153,9 +155,11 @@ def _plan(
         wrong += int((~free[0]).sum())
         tested += len(rows)
     each = len([operation for operation in plan["operations"] if operation["mode"] == "fixed"])
-    served = Finding(wrong == 0, f"The {plan['name']} plan: each of {each} fixed operations was put down at its samples, "
-                                 f"{tested} in all; {wrong} of them are not served."
-                                 f"{f' {simultaneous} samples of simultaneous motion were not tested.' * (simultaneous > 0)}")  # fmt: skip
+    words = (f"The {plan['name']} plan: each of {each} fixed operations was put down at its samples, {tested} in all; {wrong} of "
+             "them are not served.")  # fmt: skip
+    if simultaneous:
+        words += f" {simultaneous} samples of simultaneous motion were not tested."
+    served = Finding(wrong == 0, words)
     rest = int((ready.finished & ((label < 0) | (label >= len(plan["operations"])))).sum())
     whole = Finding(rest == plan["rest"]["samples"],
                     f"The {plan['name']} plan leaves {rest} judged samples, and says {plan['rest']['samples']}.")  # fmt: skip
