@@ -116,8 +116,7 @@ def test_a_proposal_stands_on_a_face_and_holds_what_it_promised():
     assert [c.model_dump() for c in again.plan.cutters] == [c.model_dump() for c in found.plan.cutters]
     assert "setup_proposed" in found.plan.note_codes
     (told,) = story_of(found.plan).proposal
-    assert told.startswith("Proposed setup: ")
-    assert f"on {mine.stands_on[0]}. " in told
+    assert told.startswith(f"Proposed setup: on {mine.stands_on[0]}, with ")
     # Five of six faces of a cube of equal faces: at most what does not lie on the table.
     assert said.found <= 1.0 - min(f.area_mm2 for f in found.plan.faces) / sum(f.area_mm2 for f in found.plan.faces)
 
@@ -128,7 +127,7 @@ def test_with_operations_the_fewest_setups_are_planned_together():
     assert len(said.setups) == 2
     assert said.held
     (told,) = story_of(found.plan).proposal
-    assert all(f"setup {k}, " in told for k in (1, 2))
+    assert all(f" {k} on {each.stands_on[0]}" in told for k, each in enumerate(said.setups, 1))
     assert "100 % of the area" in told or said.found < 1.0
     assert said.found > 0.99
     held = [{int(name[1:]) for name in each.stands_on} for each in said.setups]

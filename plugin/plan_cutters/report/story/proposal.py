@@ -12,12 +12,12 @@ def proposal(plan: Plan) -> tuple[str, ...]:
     if found is None:
         return ()
     one = len(found.setups) == 1
-    where = [_stands(each) for each in found.setups]
-    told = where[0] if one else "; ".join(f"setup {k}, {each}" for k, each in enumerate(where, 1))
+    where = [f"{_stands(each)}, with {axis_words(each.axis)}" for each in found.setups]
+    where[0] += " of the part along the spindle"
+    told = where[0] if one else "; ".join(f"{k} {each}" for k, each in enumerate(where, 1))
     share = percent(found.found, some=found.found > 0.0, whole=found.found >= 1.0)
     lines = [f"Proposed {'setup' if one else 'setups'}: {told}. Over a table and nothing else that holds the part, "
-             f"{'it reaches' if one else 'together they reach'} {share} of the area to machine; "
-             f"{found.searched} of {found.directions} directions were searched."]  # fmt: skip
+             f"{'it reaches' if one else 'they reach'} {share} of the area to machine."]  # fmt: skip
     if not found.held:
         lines.append(f"The proposal does not hold: the plan reaches {some(found.kept)} of what the search promised, and no other "
                      "proposal did better. Name a setup with its fixtures.")  # fmt: skip
@@ -25,5 +25,4 @@ def proposal(plan: Plan) -> tuple[str, ...]:
 
 
 def _stands(each: ProposedSetup) -> str:
-    what = f"on {', '.join(each.stands_on)}" if each.stands_on else "on no plane: something must hold it"
-    return f"{axis_words(each.axis)} of the part along the spindle, {what}"
+    return f"on {', '.join(each.stands_on)}" if each.stands_on else "on no plane (something must hold it)"
