@@ -11,7 +11,7 @@ from plan_cutters import plan
 from plan_cutters.document.operations import StepEntry
 from plan_cutters.document.palette import operation_colour
 from plan_cutters.report.page import operations, write
-from plan_cutters.report.story.operations import of_the_whole
+from plan_cutters.report.story.operations import in_short, of_the_whole
 from plan_cutters.report.story.story import story_of
 from tests.support.browser import opened, place_of, seen
 from tests.support.places import ROOT
@@ -89,6 +89,23 @@ def test_sentences_are_those_of_the_story(planned, read):
     for line in story.operations:
         if line not in told:
             assert re.match(r"  (op\d+|and) ", line.text.replace(":", " ")), line
+
+
+def test_only_what_no_fixed_axis_reaches_is_said_to_need_simultaneous_motion(planned):
+    """Where fewer orientations were asked for than all needs, another one may reach what is left."""
+    entry = planned.plan.operations
+    first = entry.plans[0]
+    moved = first.operations[-1].model_copy(update={"mode": "simultaneous", "axis": None, "angles_deg": None})
+    left = first.orientations - 1
+    changed = first.model_copy(update={"operations": [*first.operations[:-1], moved], "orientations": left})
+
+    def told(found):
+        few = entry.fewest.model_copy(update={"found": found})
+        operations = entry.model_copy(update={"plans": [changed], "fewest": few})
+        return in_short(planned.plan.model_copy(update={"operations": operations}))[0]
+
+    assert told(left).startswith("Only simultaneous motion reaches ")
+    assert told(left + 1).startswith("Simultaneous motion finishes ")
 
 
 def test_the_curve_is_drawn_and_told(planned, read):

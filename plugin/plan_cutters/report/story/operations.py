@@ -49,8 +49,13 @@ def _rest(found: OperationsEntry) -> Iterator[str]:
     rest = found.plans[0].rest
     if rest.samples:
         yield f"No operation finishes {some(rest.share)} of the area: no cutter of the plan reaches it."
-    for each in found.plans[0].operations:
-        if each.mode == "simultaneous":
+    # Where fewer orientations were asked for than all needs, others may reach what is left to simultaneous motion.
+    first, most = found.plans[0], found.fewest.found
+    for each in first.operations:
+        if each.mode == "simultaneous" and first.orientations < most:
+            yield (f"Simultaneous motion finishes {some(each.share)} of the area, with {each.cutter}: {_faces(each)}. "
+                   f"{_count(first.orientations)} leave{'s' * (first.orientations == 1)} it.")  # fmt: skip
+        elif each.mode == "simultaneous":
             yield f"Only simultaneous motion reaches {some(each.share)} of the area, with {each.cutter}: {_faces(each)}."
 
 
