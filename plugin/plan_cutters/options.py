@@ -29,7 +29,7 @@ LEAST_TOLERANCE, MOST_TOLERANCE = 1e-4, 10.0
 _LONGEST, _MOST_JOBS = 1e6, 1024
 #: What the plan of operations reckons with: the least and the largest value of each option, and its unit.
 _RECKONED = {"feed": (0.1, 1e6, "mm/min"), "scallop": (1e-5, 10.0, "mm"), "stepover": (0.01, 1.0, "diameters"),
-             "index_step": (math.radians(0.5), math.radians(90.0), "rad"), "index_time": (0.0, 1e5, "s"),
+             "index_step": (0.5, 90.0, "deg"), "index_time": (0.0, 1e5, "s"),
              "change_time": (0.0, 1e5, "s"), "setup_time": (0.0, 1e6, "s"), "overlap": (0.0, 1e3, "mm")}  # fmt: skip
 
 
@@ -272,8 +272,9 @@ class Options:
         if self.map_budget is not None and self.map_budget < 1:
             raise OptionError(f"map budget {self.map_budget} must be at least 1 sample")
         if self.operations is not None and self.machine.turns and len(self.machine.rotary) < 2:
-            raise OptionError(f"machine {self.machine.name} has {len(self.machine.rotary)} rotary axes: a plan of operations "
-                              "chooses orientations of two; leave out --operations, or name another machine")  # fmt: skip
+            axes = "one rotary axis" if self.machine.rotary else "no rotary axis"
+            raise OptionError(f"machine {self.machine.name} has {axes}: a plan of operations chooses the angles of two; leave "
+                              "out --operations, or name a machine that has them")  # fmt: skip
         if not self.held_alike and (self.posture_maps or {"mend", "mend-all"} & set(self.answers)):
             asked = "posture maps are" if self.posture_maps else "the answer mend is"
             raise OptionError(
@@ -285,8 +286,11 @@ class Options:
             raise OptionError(f"most operations {self.most_operations} must be at least 1")
         for word, (low, high, unit_) in _RECKONED.items():
             value = getattr(self, word)
-            if value is not None and not low <= value <= high:
-                raise OptionError(f"{word.replace('_', ' ')} {value:g} must lie between {low:g} and {high:g} {unit_}")
+            # Angles are rad here, and degrees where they are asked for and read.
+            if value is not None and not low <= (value := math.degrees(value) if unit_ == "deg" else value) <= high:
+                raise OptionError(
+                    f"{word.replace('_', ' ')} {value:g} must lie between {low:g} and {high:,.9g} {unit_}"
+                )
         if not 1 <= self.jobs <= _MOST_JOBS:
             raise OptionError(f"jobs {self.jobs} must be at least 1 and at most {_MOST_JOBS}")
         for cutter in self.judged:

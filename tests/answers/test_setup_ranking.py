@@ -14,6 +14,7 @@ from plan_cutters.domain.placement import Placement
 from plan_cutters.errors import OptionError
 from plan_cutters.pipeline import prepare
 from plan_cutters.proposal import plan_proposed
+from plan_cutters.report.story.story import story_of
 from tests.support.cad_parts import ball, box
 from tests.support.commands import assert_one_line
 from tests.support.forked import run
@@ -73,6 +74,13 @@ def test_a_table_only_takes_away_and_more_so_near_it():
     assert over[angle <= least].all()
 
 
+def test_the_table_of_a_ranking_is_the_fixture():
+    scene, axis = ready(box(), 89.0, "unlimited").scene, (0.0, -0.6, 0.8)
+    fixture, laid = scene.turned_to(axis).clamped("table").surround(), scene.surround_on_table(axis)
+    assert laid.possible.triangles.vertex.tolist() == fixture.possible.triangles.vertex.tolist()
+    assert laid.possible.weight.tolist() == fixture.possible.weight.tolist()
+
+
 def test_directions_are_unit_and_differ():
     every = distinct(np.concatenate([cube(), fibonacci(60), cube()]))
     assert np.allclose(np.linalg.norm(every, axis=1), 1.0)
@@ -107,6 +115,8 @@ def test_a_proposal_stands_on_a_face_and_holds_what_it_promised():
     again = plan(box(), setup=place, machine="trunnion-ac", **HOW)
     assert [c.model_dump() for c in again.plan.cutters] == [c.model_dump() for c in found.plan.cutters]
     assert "setup_proposed" in found.plan.note_codes
+    (told,) = story_of(found.plan).proposal
+    assert told.startswith(f"Proposed setup: on {mine.stands_on[0]}, with ")
     # Five of six faces of a cube of equal faces: at most what does not lie on the table.
     assert said.found <= 1.0 - min(f.area_mm2 for f in found.plan.faces) / sum(f.area_mm2 for f in found.plan.faces)
 
@@ -116,6 +126,9 @@ def test_with_operations_the_fewest_setups_are_planned_together():
     said = found.plan.setup_proposal
     assert len(said.setups) == 2
     assert said.held
+    (told,) = story_of(found.plan).proposal
+    assert all(f" {k} on {each.stands_on[0]}" in told for k, each in enumerate(said.setups, 1))
+    assert "100 % of the area" in told or said.found < 1.0
     assert said.found > 0.99
     held = [{int(name[1:]) for name in each.stands_on} for each in said.setups]
     assert held[0]
@@ -147,7 +160,9 @@ def test_a_promise_that_is_not_held_is_followed_by_the_next_one(monkeypatch):
         return made
 
     monkeypatch.setattr(proposal, "ranked", all_boastful)
-    said = plan(box(), setup="auto", machine="tilt:30", **HOW).plan.setup_proposal
+    found = plan(box(), setup="auto", machine="tilt:30", **HOW).plan
+    said = found.setup_proposal
+    assert "does not hold" in story_of(found).proposal[1]
     assert not said.held
     assert "holds only" in said.why
     assert said.found < said.promised

@@ -3,6 +3,7 @@
 import json
 import math
 import time
+from dataclasses import fields
 
 import jsonschema
 import numpy as np
@@ -14,6 +15,8 @@ from cad_io import CadIoError, read_part
 from cad_io.arrays import FaceInfo
 from cad_io.kernel.assembly import Node
 from plan_cutters import Cutter, Machine, Options, PlanError, PostureRange, plan, posture_map
+from plan_cutters.command import validation
+from plan_cutters.command.validation import OF_OPERATIONS
 from plan_cutters.errors import CutterError, MachineError, OptionError
 from plan_cutters.scene.faces import select_faces
 from tests.support.cad_parts import compound
@@ -315,3 +318,29 @@ def test_a_setup_axis_of_any_length():
         axis = (3 * size, 0.0, 4 * size)
         found = plan(plane((-10, 10), (-10, 10)), setup=axis, **SMALL).plan.effective.setup
         assert found == pytest.approx((0.6, 0.0, 0.8))
+
+
+@pytest.mark.parametrize("word", sorted(OF_OPERATIONS))
+def test_what_counts_in_operations_alone_is_not_ignored(word):
+    """Without a plan of operations an option of it is refused, unless it has its default, which is that of `Options`."""
+    default = next(each.default for each in fields(Options) if each.name == word)
+    assert OF_OPERATIONS[word] == default
+    given = {"operations": None, "check_operations": None, "setup": (), "postures": None}
+    with pytest.raises(OptionError, match=f"--{word.replace('_', '-')} is about a plan of operations"):
+        validation.refuse_unasked(given | {word: 7})
+    validation.refuse_unasked(given | {word: default})
+    validation.refuse_unasked(given | {word: 7, "operations": "both"})
+
+
+@pytest.mark.parametrize(("machine", "axes"), [("3-axis", "no rotary axis"), ("4-axis-a", "one rotary axis")])
+def test_operations_need_two_rotary_axes(machine, axes):
+    with pytest.raises(OptionError, match=f"machine {machine} has {axes}: ") as caught:
+        Options(machine=machine, operations="fewest")
+    assert "\n" not in str(caught.value)
+
+
+def test_an_index_step_is_told_in_degrees():
+    with pytest.raises(OptionError, match=r"index step 120 must lie between 0\.5 and 90 deg"):
+        Options(operations="fewest", index_step=math.radians(120.0))
+    assert Options(operations="fewest", index_step=math.radians(0.5)).index_step == pytest.approx(math.radians(0.5))
+    assert Options(operations="fewest", index_step=math.radians(90.0)).index_step == pytest.approx(math.pi / 2)

@@ -66,6 +66,21 @@ def test_samples_that_are_dropped_are_found(ready, written):
     assert not holds(ready, document, arrays)
 
 
+def test_an_operation_that_is_left_out_is_found(ready, written):
+    document, arrays = written
+    document["operations"]["plans"][0]["operations"].pop()
+    found = check_operations(ready, document, arrays)
+    assert not all(each.holds for each in found)
+    assert "leaves" in found[-1].words
+
+
+def test_regions_that_are_not_the_samples_are_found(ready, written):
+    document, arrays = written
+    region = document["operations"]["plans"][0]["operations"][0]["regions"][0]
+    region["rows"][0][1] += 1
+    assert not holds(ready, document, arrays)
+
+
 @pytest.mark.parametrize("forged", ["doubled", "more", "negative", "beyond", "huge"])
 def test_weights_that_prove_too_much_are_found(ready, written, forged):
     document, arrays = written
@@ -92,7 +107,7 @@ def test_weight_on_samples_that_nothing_serves_proves_nothing(ready, written):
 
 @pytest.mark.parametrize(
     ("place", "value", "said"),
-    [(("part", "sha256"), "0" * 64, "another part"), (("effective", "cutters"), ["R1L9"], "R1L9"),
+    [(("part", "sha256"), "0" * 64, r"does not fit: part"), (("effective", "cutters"), ["R1L9"], "R1L9"),
      (("effective", "machine"), "3+2", r"3\+2"), (("samples", "count"), 3, "number of samples")],
 )  # fmt: skip
 def test_a_plan_of_another_part_or_other_options_is_refused(ready, written, place, value, said):
@@ -110,6 +125,9 @@ def test_the_command_ends_with_0_1_or_2(folder, tmp_path):
     document = json.loads((folder / "plan.json").read_text())
     document["operations"]["plans"][0]["operations"][0]["angles_deg"] = {"C": 0.0, "A": 45.0}
     (tmp_path / "plan.json").write_text(json.dumps(document))
+    alone = run(*words, "--check-operations", str(tmp_path / "plan.json"), cwd=tmp_path)
+    assert alone.returncode == 2
+    assert "operations.npz must stand beside it" in alone.stderr
     (tmp_path / "operations.npz").write_bytes((folder / "operations.npz").read_bytes())
     forged = run(*words, "--check-operations", str(tmp_path / "plan.json"), cwd=tmp_path)
     assert forged.returncode == 1

@@ -1,5 +1,6 @@
 """The files of a plan of operations: regions, planes, and models read back by other means than they were written with."""
 
+import csv
 import json
 import math
 import os
@@ -251,3 +252,22 @@ def test_index_times_follow_from_the_rates_of_a_machine():
     assert {each.index_from for each in found} == {"rates"}
     for each in found:
         assert 0.0 <= each.index_s <= 180.0 / 30.0 + 1e-9
+
+
+def test_the_table_has_a_line_for_each_operation(written):
+    """Numbers are rounded for people; an axis still points where the plan says."""
+    _, document, out = written
+    with (out / "operations.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    wanted = [(plan.name, each) for plan in document.operations.plans for each in plan.operations]
+    assert [(row["plan"], row["operation"]) for row in rows] == [(name, each.id) for name, each in wanted]
+    for row, (_, each) in zip(rows, wanted, strict=True):
+        assert float(row["area_mm2"]) == pytest.approx(each.area_mm2, abs=5e-4)
+        assert len(row["area_mm2"].partition(".")[2]) <= 3
+        assert row["faces"].split() == [face.face for face in each.faces]
+        assert int(row["setup"]) == each.setup + 1
+        found = [row[name] for name in ("axis_x", "axis_y", "axis_z")]
+        assert (
+            found == ["", "", ""] if each.axis is None else np.allclose([float(x) for x in found], each.axis, atol=1e-9)
+        )
+        assert "-0.0" not in row.values()

@@ -16,7 +16,7 @@ from tests.support.browser import choose, chromium, intervals, launch, opened, p
 from tests.support.places import ROOT
 from tests.support.review_page import picture
 
-sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: setup.sh dev")
+pytest.importorskip("playwright.sync_api", reason="playwright is not installed: setup.sh dev")
 PART = ROOT / "samples" / "pocket_top.step"
 SCENE = {"fixtures": ["box:15,60,40@62,-10,-10"]}
 SHOWN, OTHER = "R6L60HR22L30", "R10L12HR22L30"
@@ -39,29 +39,6 @@ def path(planned, tmp_path_factory):
     path = tmp_path_factory.mktemp("page") / "review.html"
     write_html(planned, None, path)
     return path
-
-
-@pytest.fixture(scope="module")
-def playwright():
-    with sync_api.sync_playwright() as playwright:
-        yield playwright
-
-
-@pytest.fixture(scope="module")
-def browser(playwright):
-    browser = launch(playwright)
-    yield browser
-    browser.close()
-
-
-@pytest.fixture
-def page(browser, path):
-    context = browser.new_context(viewport={"width": 1366, "height": 768}, reduced_motion="reduce")
-    page = opened(context, path)
-    yield page
-    said = page.said
-    context.close()
-    assert said == []
 
 
 def colour(page, row):

@@ -168,7 +168,8 @@ class Ranking:
     rows : (r,) int64
         Samples on which directions are compared.
     bound : (r, m) bool
-        Where the machine holds an axis over the table at all, and the face is not stood on.
+        Where the machine holds an axis over the table at all, the face is not stood on, and a posture was found without table
+        and machine: what the part itself is in the way of is not searched again in each direction.
     served : mapping
         By candidate, where a posture was found over a real table, (r,).
     """
@@ -202,7 +203,9 @@ class Ranking:
                 f"setup auto: in none of {len(candidates.axis)} directions does machine {few.machine.name} hold an axis "
                 f"at which a cutter touches with tilts from {low:g} to {high:g} deg; give other tilts or machine"
             )
-        return cls(ready, candidates, rows, bound, {})
+        around = few.around.alone or few.around
+        free = _reached(ready, rows, replace(few.machineless, around=around))
+        return cls(ready, candidates, rows, bound & free[rows, None] if free.any() else bound, {})
 
     @property
     def area(self) -> Floats:
@@ -230,18 +233,9 @@ class Ranking:
     def _searched(self, k: int) -> NDArray[np.bool_]:
         """Where any cutter has a posture with a table under the part, of the rows (r,)."""
         x, y, z = self.candidates.axis[k].tolist()
-        around = self.ready.scene.turned_to((x, y, z)).clamped("table").surround()
+        around = self.ready.scene.surround_on_table((x, y, z))
         conditions = replace(self.ready.conditions, setup=np.array([x, y, z]), x=None, around=around)
-        found, left = np.zeros(len(self.ready.samples), bool), self.rows[self.bound[:, k]]
-        # The least wanted cutter is the smallest: it reaches most.
-        for cutter in reversed(self.ready.cutters):
-            if len(left) and conditions.judges(cutter):
-                verdicts = blank(len(found))
-                tools = conditions.outer_tool(cutter), conditions.inner_tool(cutter)
-                search_postures(contacts_of(self.ready.samples), left, *tools, conditions, verdicts, fixed=True)
-                found |= verdicts.reached
-                left = left[~verdicts.reached[left]]
-        return found[self.rows]
+        return _reached(self.ready, self.rows[self.bound[:, k]], conditions)[self.rows]
 
     def choose(self, most: int, without: frozenset[int] = frozenset()) -> tuple[int, ...]:
         """Choose the fewest directions that serve all that any of those searched serves, or as many as there may be.
@@ -286,6 +280,20 @@ class Ranking:
                 chosen.append(k)
                 left &= ~table[:, k]
         return tuple(every[k] for k in sorted(chosen, key=lambda k: -round(float(share[k]) / _EVEN)))
+
+
+def _reached(ready: Prepared, rows: Rows, conditions: Conditions) -> NDArray[np.bool_]:
+    """The samples (n,) of some rows at which any of the cutters has a posture under some conditions."""
+    found, left = np.zeros(len(ready.samples), bool), rows
+    # The least wanted cutter is the smallest: it reaches most.
+    for cutter in reversed(ready.cutters):
+        if len(left) and conditions.judges(cutter):
+            verdicts = blank(len(found))
+            tools = conditions.outer_tool(cutter), conditions.inner_tool(cutter)
+            search_postures(contacts_of(ready.samples), left, *tools, conditions, verdicts, fixed=True)
+            found |= verdicts.reached
+            left = left[~verdicts.reached[left]]
+    return found
 
 
 def ranked(ready: Prepared, most: int) -> Ranking:

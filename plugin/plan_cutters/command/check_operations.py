@@ -49,5 +49,7 @@ def _read(file: str) -> tuple[dict[str, Any], dict[str, Any]]:
         raise OptionError(f"is no JSON ({error}): give the plan.json of a plan of operations", file=file) from None
     if not isinstance(document, dict) or document.get("format") != "plan-cutters-plan":
         raise OptionError("is no plan.json of plan-cutters", file=file)
-    with Archive(Path(file).parent / "operations.npz", "operations of a plan", OptionError) as archive:
+    if not (beside := Path(file).parent / "operations.npz").exists():
+        raise OptionError("operations.npz must stand beside it: copy both files of the plan", file=file)
+    with Archive(beside, "operations of a plan", OptionError) as archive:
         return document, {name: archive.read(name) for name in archive.headers}

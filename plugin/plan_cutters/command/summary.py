@@ -33,7 +33,7 @@ def summary(plan: "Plan", *, verbose: bool = False) -> None:
         "",
         *([_marked("Inside other bodies:", story.inside[0]), *map(cell, story.inside[1:]), ""] if story.inside else []),
         Text.assemble(cell(title, _MARKS[good]), cell(f"{about}. {why}")),
-        *map(cell, (*story.scope, *story.between)),
+        *map(cell, (*story.proposal, *story.scope, *story.between)),
         cell(f"The part has {count(plan.part.faces, 'face')}: {targets} to machine{f', {ignored} ignored' if ignored else ''}, "
              f"with {plan.samples.count} samples, at most {plan.samples.max_gap_mm:.3g} mm apart. {machine(plan)}"),
         "",

@@ -23,6 +23,9 @@ _NOT_BUILT = {
 }
 #: Parameters of the commands that `Options` names otherwise.
 NAMED = {"cutter": "cutters", "cutters": "libraries", "fixture": "fixtures"}
+#: Options that count in a plan of operations alone, with their defaults: without one they must not be ignored.
+OF_OPERATIONS = {"feed": None, "scallop": 0.01, "stepover": 0.75, "index_step": None, "index_time": 5.0, "change_time": 20.0,
+                  "setup_time": 300.0, "overlap": 2.0, "most_operations": None}  # fmt: skip
 #: Bytes of memory below which nothing can be planned.
 LEAST_MEMORY = 2e9
 
@@ -92,6 +95,7 @@ def _words(parts: Sequence[str], given: dict[str, Any]) -> None:
             raise OptionError(
                 f"--setup auto plans what it proposes, and --{name.replace('_', '-')} plans nothing: name the setup"
             )
+    refuse_unasked(given)
     if given["check_operations"] is not None and len(parts) > 1:
         raise OptionError("--check-operations is about one part")
     if given["postures"] is not None and len(parts) > 1:
@@ -102,6 +106,23 @@ def _words(parts: Sequence[str], given: dict[str, Any]) -> None:
         raise OptionError("--read-timeout must be a positive number of seconds")
     if given["memory"] is not None and not LEAST_MEMORY <= given["memory"] * 1e9 < 1e18:
         raise OptionError("--memory must be at least 2 GB")
+
+
+def refuse_unasked(given: dict[str, Any]) -> None:
+    """Refuse options of a plan of operations where none is asked for.
+
+    Raises
+    ------
+    OptionError
+    """
+    from plan_cutters.errors import OptionError
+
+    if given["operations"] is not None or given["check_operations"] is not None:
+        return
+    for name, default in OF_OPERATIONS.items():
+        if given.get(name, default) != default:
+            word = f"--{name.replace('_', '-')}"
+            raise OptionError(f"{word} is about a plan of operations: give it with --operations, or leave it out")
 
 
 def _faults(parts: Sequence[str]) -> list[CadIoError]:

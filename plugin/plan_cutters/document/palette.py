@@ -1,4 +1,4 @@
-"""Colours of the verdicts: Okabe and Ito's set, told apart with any kind of colour vision."""
+"""Colours of verdicts and operations: Okabe and Ito's set, told apart with any kind of colour vision; obstacles are grey."""
 
 #: Verdict -> sRGB hex. Their order is that of the labels along which faces are split, from best to worst.
 PALETTE = {
@@ -11,7 +11,7 @@ PALETTE = {
     "check": "#BFBFBF",
     "ignored": "#BFBFBF",
     "mixed": "#E69F00",
-    "fixture": "#0072B2",
+    "fixture": "#6E7B8B",
 }
 LABELS = tuple(PALETTE)
 #: What each of them means, in words for people.
@@ -29,21 +29,23 @@ MEANING = {
 }
 
 
-#: Colours of operations, the first ones first: Okabe and Ito's eight.
-OPERATIONS = ("#0072B2", "#009E73", "#E69F00", "#56B4E9", "#CC79A7", "#F0E442", "#D55E00", "#000000")
+_DARK = "#404040"
+#: Colours of operations, the first ones first: Okabe and Ito's, with a dark grey for their black, which hides the form. That of
+#: what is not reached, which stands beside operations, comes last.
+OPERATIONS = ("#0072B2", "#009E73", "#E69F00", "#56B4E9", "#CC79A7", "#F0E442", _DARK, "#D55E00")
 
 
 def operation_colour(number: int) -> str:
     """sRGB hex of an operation by its place in its plan, from 0: eight colours, the same at half lightness, and again.
 
-    >>> operation_colour(0), operation_colour(8), operation_colour(16), operation_colour(15)
+    >>> operation_colour(0), operation_colour(8), operation_colour(16), operation_colour(14)
     ('#0072B2', '#003959', '#0072B2', '#7F7F7F')
     """
     colour = OPERATIONS[number % len(OPERATIONS)]
     if number // len(OPERATIONS) % 2 == 0:
         return colour
-    # Half of black is black: half of white stands for it.
-    half = [each // 2 for each in bytes.fromhex(colour[1:])] if any(bytes.fromhex(colour[1:])) else [127] * 3
+    # Half of the dark grey is nearly black: half of white stands for it.
+    half = [127] * 3 if colour == _DARK else [each // 2 for each in bytes.fromhex(colour[1:])]
     return "#" + bytes(half).hex().upper()
 
 

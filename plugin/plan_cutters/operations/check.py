@@ -68,13 +68,13 @@ def _fits(ready: Prepared, document: Mapping[str, Any], arrays: Mapping[str, NDA
         ("machine (--machine)", asked["machine"], options.machine.name),
         ("setup (--setup)", [round(x, 9) for x in asked["setup"]], [round(x, 9) for x in ready.scene.setup]),
         (
-            "list of other setups (--setup)",
+            "other setups (--setup)",
             [round(x, 9) for axis in asked["other_setups"] for x in axis],
             [round(x, 9) for axis in options.other_setups for x in axis],
         ),
         # Not their places: where a fixture stands shows in what it serves.
         (
-            "list of fixtures (--fixture, --setup)",
+            "fixtures (--fixture, --setup)",
             [
                 [each["name"] for each in document["fixtures"] if s in each.get("setups", [0])]
                 for s in range(len(ready.setups))
@@ -82,7 +82,7 @@ def _fits(ready: Prepared, document: Mapping[str, Any], arrays: Mapping[str, NDA
             [[each.name for each in one.around.fixtures] for one in ready.setups],
         ),
         (
-            "choice of clamped faces (--setup)",
+            "clamped faces (--setup)",
             [
                 (place or {}).get("clamped", [])
                 for place in (asked["placement"], *(asked["other_placements"] or [None] * len(asked["other_setups"])))
@@ -94,7 +94,9 @@ def _fits(ready: Prepared, document: Mapping[str, Any], arrays: Mapping[str, NDA
     ]
     for what, was, now in pairs:
         if was != now:
-            raise OptionError(f"the plan of operations was made with another {what}: {_short(was)}, not {_short(now)}")
+            raise OptionError(
+                f"the plan of operations does not fit: {what}: {_short(was)} in the plan, {_short(now)} here"
+            )
     if any(len(array) != len(ready.samples) for name, array in arrays.items() if name.startswith("operation")):
         raise OptionError("operations.npz is of other samples than the plan")
 
@@ -137,10 +139,14 @@ def _plan(
     cutters: Mapping[str, Cutter], orientations: list[Orientations],
 ) -> list[Finding]:  # fmt: skip
     """Each operation at its own samples, with the axis that its angles give."""
-    wrong, tested = 0, 0
+    wrong, tested, simultaneous = 0, 0, 0
     for k, operation in enumerate(plan["operations"]):
         rows = np.flatnonzero(label == k)
+        if not np.array_equal(rows, _of_regions(operation, len(label))):
+            return [Finding(False, f"The {plan['name']} plan: the regions of {operation['id']} do not have the samples that "
+                                   "operations.npz gives it.")]  # fmt: skip
         if operation["mode"] != "fixed":
+            simultaneous += len(rows)
             continue
         angle = np.radians([[operation["angles_deg"][name] for name in names]])
         axis = orientations[operation["setup"]].kinematics.axis(angle)
@@ -149,9 +155,20 @@ def _plan(
         wrong += int((~free[0]).sum())
         tested += len(rows)
     each = len([operation for operation in plan["operations"] if operation["mode"] == "fixed"])
-    served = Finding(wrong == 0, f"The {plan['name']} plan: each of {each} fixed operations was put down at its samples, "
-                                 f"{tested} in all; {wrong} of them are not served.")  # fmt: skip
-    rest = int((ready.finished & (label < 0)).sum())
+    words = (f"The {plan['name']} plan: each of {each} fixed operations was put down at its samples, {tested} in all; {wrong} of "
+             "them are not served.")  # fmt: skip
+    if simultaneous:
+        words += f" {simultaneous} samples of simultaneous motion were not tested."
+    served = Finding(wrong == 0, words)
+    rest = int((ready.finished & ((label < 0) | (label >= len(plan["operations"])))).sum())
     whole = Finding(rest == plan["rest"]["samples"],
                     f"The {plan['name']} plan leaves {rest} judged samples, and says {plan['rest']['samples']}.")  # fmt: skip
     return [served, whole]
+
+
+def _of_regions(operation: Mapping[str, Any], count: int) -> NDArray[np.int64]:
+    """The samples of an operation's regions, in order, where there are `count`: what a planner cuts."""
+    runs = [(int(first), int(last) + 1) for region in operation["regions"] for first, last in region["rows"]]
+    if any(first < 0 or end > count for first, end in runs):
+        raise ValueError(f"regions of {operation['id']} name samples that there are not")
+    return np.sort(np.concatenate([np.zeros(0, np.int64), *(np.arange(*run) for run in runs)]))

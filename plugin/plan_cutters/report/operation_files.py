@@ -60,12 +60,13 @@ def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
         for plan in entry.plans:
             for each in plan.operations:
                 angles = each.angles_deg or {}
-                axis = each.axis or ("", "", "")
+                axis = ("", "", "") if each.axis is None else [_rounded(x, 9) for x in each.axis]
                 rows.writerow([plan.name, each.id, each.mode, each.cutter, each.setup + 1, angles.get(first, ""),
-                               angles.get(second, ""), *axis, each.area_mm2, each.share, each.exclusive_mm2,
-                               _or_empty(each.cut_length_mm), _or_empty(each.seconds),
+                               angles.get(second, ""), *axis, _rounded(each.area_mm2), _rounded(each.share, 6),
+                               _rounded(each.exclusive_mm2), _rounded(each.cut_length_mm), _rounded(each.seconds),
                                " ".join(face.face for face in each.faces)])  # fmt: skip
 
 
-def _or_empty(value: float | None) -> float | str:
-    return "" if value is None else value
+def _rounded(value: float | None, digits: int = 3) -> float | str:
+    """A number as people read it in a table: plan.json has all digits. Nothing is empty."""
+    return "" if value is None else round(value, digits) + 0.0

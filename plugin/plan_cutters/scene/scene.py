@@ -204,6 +204,16 @@ class Scene(Record):
         scene._memory.sources, scene._memory.alone = self._memory.sources, self._memory.alone
         return scene
 
+    def surround_on_table(self, setup: tuple[float, float, float]) -> Surroundings:
+        """Gather the obstacles where the part stands on a table across a setup axis, and nothing else holds it.
+
+        The table touches the part at its lowest point: nothing is to be refused.
+        """
+        memory, chord = self._memory, CHORD_ASKED * self.asked
+        if memory.alone is None:
+            memory.alone = surroundings(self.part, chord, ignored=self.ignored)
+        return joined(memory.alone, Fixture.each_of("table"), chord, memory.sources, setup)
+
     def surround_closer(self, chord: float) -> Surroundings:
         """The same, with triangles for another chord error, mm, which are not kept."""
         alone = surroundings(self.part, chord, ignored=self.ignored)

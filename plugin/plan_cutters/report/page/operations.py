@@ -134,7 +134,7 @@ def tables(plan: Plan, story: Story) -> OperationTables | None:
     steps = [
         (s.orientations, _percent(s.share), "" if s.at_most is None else _percent(_up(s.at_most))) for s in found.curve
     ]
-    return OperationTables(of_the_whole(story.operations), plans, steps, curve(found.curve))
+    return OperationTables(of_the_whole(story.operations, story.in_short), plans, steps, curve(found.curve))
 
 
 def _percent(share: float) -> str:

@@ -11,7 +11,7 @@ from plan_cutters.report.story.names import named
 from plan_cutters.report.story.numbers import count, percent, place
 
 #: Notes that say what the first lines say in other words; those of the area between samples, where it was looked at.
-_SAID_ABOVE: frozenset[NoteCode | None] = frozenset({"samples_apart", "area_proved", "area_left"})
+_SAID_ABOVE: frozenset[NoteCode | None] = frozenset({"samples_apart", "area_proved", "area_left", "setup_proposed"})
 #: What stands for an obstacle that is not known.
 _STAND_IN = {
     "none": "nothing stands for it",

@@ -39,12 +39,23 @@ def operations(plan: Plan) -> list[Line]:
     return [Line(named(plan, text)) for text in told]
 
 
+def in_short(plan: Plan) -> list[str]:
+    """Say what no operation finishes, and how many orientations finish the rest; nothing where operations were not asked for."""
+    found = plan.operations
+    return [] if found is None else [named(plan, text) for text in (*_rest(found), next(_fewest(found)))]
+
+
 def _rest(found: OperationsEntry) -> Iterator[str]:
     rest = found.plans[0].rest
     if rest.samples:
         yield f"No operation finishes {some(rest.share)} of the area: no cutter of the plan reaches it."
-    for each in found.plans[0].operations:
-        if each.mode == "simultaneous":
+    # Where fewer orientations were asked for than all needs, others may reach what is left to simultaneous motion.
+    first, most = found.plans[0], found.fewest.found
+    for each in first.operations:
+        if each.mode == "simultaneous" and first.orientations < most:
+            yield (f"Simultaneous motion finishes {some(each.share)} of the area, with {each.cutter}: {_faces(each)}. "
+                   f"{_count(first.orientations)} leave{'s' * (first.orientations == 1)} it.")  # fmt: skip
+        elif each.mode == "simultaneous":
             yield f"Only simultaneous motion reaches {some(each.share)} of the area, with {each.cutter}: {_faces(each)}."
 
 
@@ -97,7 +108,7 @@ def _plan(found: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str]:
     if len(small) > _SMALL:
         yield f"  So are {len(small) - _SMALL} more, each for less than {some(_LITTLE)}."
     for each in plan.operations[:_LISTED]:
-        yield f"  {_listed(each)}"
+        yield f"  {_listed(each, _setups(found))}"
     if len(plan.operations) > _LISTED:
         yield f"  and {len(plan.operations) - _LISTED} more in plan.json."
     if plan.proved_share is not None and plan.proved_share < 1.0:
@@ -176,16 +187,22 @@ def _worth(found: OperationsEntry, use: CutterUse) -> Iterator[str]:
         yield f"{use.id} {verb} {_duration(use.saves_seconds)} and {cost} a change of {_duration(use.change_seconds)}."
 
 
-def _listed(each: OperationEntry) -> str:
+def _setups(found: OperationsEntry) -> bool:
+    """Whether operations are in more than one setup: then each says in which."""
+    return len({each.setup for plan in found.plans for each in plan.operations}) > 1
+
+
+def _listed(each: OperationEntry, setups: bool) -> str:
     took = "" if each.seconds is None else f", {_duration(each.seconds)}"
-    where = "" if each.setup == 0 else f" in setup {each.setup + 1}"
+    where = f" in setup {each.setup + 1}" if setups else ""
     return f"{each.id}: {each.cutter}{where}, {_turned(each)}: {_share(each.share)} of the area{took}, {_faces(each)}."
 
 
 class Told(NamedTuple):
-    """An operation as a row of a table, with angles in degrees, and as a sentence."""
+    """An operation as a row of a table, with angles in degrees and the setup where there are several, and as a sentence."""
 
     entry: OperationEntry
+    setup: str
     turned: str
     took: str
     faces: str
@@ -196,12 +213,15 @@ def told(plan: Plan, each: OperationEntry) -> Told:
     """Put one operation into words; `took` is its cutting time or, without a feed, its cut length."""
     length = "" if each.cut_length_mm is None else f"{each.cut_length_mm / 1000.0:.3g} m"
     took = length if each.seconds is None else _duration(each.seconds)
-    return Told(each, _turned(each).removesuffix(" deg"), took, _faces(each), named(plan, _listed(each)))
+    setups = plan.operations is not None and _setups(plan.operations)
+    where = f"setup {each.setup + 1}" if setups else ""
+    return Told(each, where, _turned(each).removesuffix(" deg"), took, _faces(each), named(plan, _listed(each, setups)))
 
 
-def of_the_whole(lines: Iterable[Line]) -> list[Line]:
-    """Those lines that are about plans, not about one operation: what is indented stands in a list of operations."""
-    return [line for line in lines if not line.text.startswith(" ")]
+def of_the_whole(lines: Iterable[Line], above: Iterable[str] = ()) -> list[Line]:
+    """Those lines that are about plans, not about one operation, and do not stand above: what is indented stands in a list."""
+    said = set(above)
+    return [line for line in lines if not line.text.startswith(" ") and line.text not in said]
 
 
 def _turned(each: OperationEntry) -> str:
@@ -213,7 +233,7 @@ def _turned(each: OperationEntry) -> str:
 def _faces(each: OperationEntry) -> str:
     names = [face.face for face in each.faces]
     more = len(names) - _FACES
-    return ", ".join(names[:_FACES]) + (f" and {more} more faces" if more > 0 else "")
+    return ", ".join(names[:_FACES]) + (f" and {more} more face{'s' * (more > 1)}" if more > 0 else "")
 
 
 def _joined(words: list[str]) -> str:

@@ -13,7 +13,8 @@ from plan_cutters.report.story.line import Line
 from plan_cutters.report.story.names import named, short_names
 from plan_cutters.report.story.next_steps import together
 from plan_cutters.report.story.numbers import sentence
-from plan_cutters.report.story.operations import operations
+from plan_cutters.report.story.operations import in_short, operations
+from plan_cutters.report.story.proposal import proposal
 from plan_cutters.report.story.scope import not_judged, not_seen
 
 
@@ -30,6 +31,8 @@ class Story:
     inside, scope, between : tuple of str
         Surface that does not belong to the finished part, which comes first; faces that were not judged or not seen, and how
         much the cutters reach together; how much is known between the samples.
+    proposal, in_short : tuple of str
+        Setups that were proposed; what the plan of operations leaves, and how many orientations it needs.
     setups, operations, answers, notes : tuple of Line
     doubts : dict
         Causes that make verdicts unsure, by their kind in the plural.
@@ -40,6 +43,8 @@ class Story:
     shown: str
     inside: tuple[str, ...]
     headline: Headline
+    proposal: tuple[str, ...]
+    in_short: tuple[str, ...]
     scope: tuple[str, ...]
     between: tuple[str, ...]
     cutters: tuple[CutterStory, ...]
@@ -66,6 +71,8 @@ def story_of(plan: Plan) -> Story:
         shown=best.id,
         inside=tuple(named(plan, line) for line in inside(plan)),
         headline=headline(plan, names),
+        proposal=proposal(plan),
+        in_short=tuple(in_short(plan)),
         scope=(*not_judged(plan), *not_seen(plan, names), *([sentence(named(plan, pair))] if pair else [])),
         between=tuple(each.between for each in cutters if each.between),
         cutters=cutters,

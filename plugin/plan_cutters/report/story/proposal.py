@@ -1,0 +1,28 @@
+"""Put proposed setups into words: they stand among the first, for all that follows is about them."""
+
+from plan_cutters.document.model import Plan
+from plan_cutters.document.setups import ProposedSetup
+from plan_cutters.domain.placement import axis_words
+from plan_cutters.report.story.numbers import percent, some
+
+
+def proposal(plan: Plan) -> tuple[str, ...]:
+    """Which setups were proposed, and whether their plan holds what was promised; nothing where none was asked for."""
+    found = plan.setup_proposal
+    if found is None:
+        return ()
+    one = len(found.setups) == 1
+    where = [f"{_stands(each)}, with {axis_words(each.axis)}" for each in found.setups]
+    where[0] += " of the part along the spindle"
+    told = where[0] if one else "; ".join(f"{k} {each}" for k, each in enumerate(where, 1))
+    share = percent(found.found, some=found.found > 0.0, whole=found.found >= 1.0)
+    lines = [f"Proposed {'setup' if one else 'setups'}: {told}. Over a table and nothing else that holds the part, "
+             f"{'it reaches' if one else 'they reach'} {share} of the area to machine."]  # fmt: skip
+    if not found.held:
+        lines.append(f"The proposal does not hold: the plan reaches {some(found.kept)} of what the search promised, and no other "
+                     "proposal did better. Name a setup with its fixtures.")  # fmt: skip
+    return tuple(lines)
+
+
+def _stands(each: ProposedSetup) -> str:
+    return f"on {', '.join(each.stands_on)}" if each.stands_on else "on no plane (something must hold it)"
