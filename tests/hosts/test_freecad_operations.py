@@ -132,6 +132,11 @@ def changed(name, **more):
     json.dump(entry, open(path, "w"))
     return folder
 
+def reframed(name, **more):
+    plans = json.load(open(os.path.join(FOLDER, "plan.json")))["operations"]
+    plans["plans"][0]["operations"][-1].update(more)
+    return changed(name, operations=plans)
+
 full = App.newDocument("Full")
 full.addObject("App::DocumentObjectGroup", "Mine")
 other = changed("other")
@@ -145,6 +150,9 @@ found["errors"] = dict(
     nowhere=line_of(os.getcwd()), without=line_of(changed("without", operations=None)), other=line_of(other),
     gone=line_of(gone), torn=line_of(torn), unknown=line_of(FOLDER, "best"), third=line_of(FOLDER, "largest first"),
     full=line_of(FOLDER, document=full), alien=line_of(os.path.join(FOLDER, "annotated.step")),
+    inside_out=line_of(reframed("inside_out", frame=dict(origin=[0, 0, 0], x=[1, 0, 0], z=[0, 0, -1]), axis=[0, 0, 1])),
+    nan=line_of(reframed("nan", frame=dict(origin=[float("nan"), 0, 0], x=[1, 0, 0], z=[0, 0, 1]), axis=[0, 0, 1])),
+    old=line_of(reframed("old", frame={})), fewer=line_of(reframed("fewer", id="op9")),
     models=line_of(changed("models", files={})), json=line_of(os.path.join(FOLDER, "points.json")),
 )
 found["mine"] = [each.Name for each in full.Objects]
@@ -292,6 +300,10 @@ def test_errors_are_one_line_and_leave_nothing(inside):
         "third": "'largest first'",
         "full": "holds 1 objects",
         "alien": "is no model of operations",
+        "inside_out": "no frame about its tool axis",
+        "nan": "no frame about its tool axis",
+        "old": "both have to be of one release",
+        "fewer": "has faces that the plan does not know",
         "models": "has no model of its operations",
         "json": "is not a plan of plan-cutters",
     }
