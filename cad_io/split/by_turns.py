@@ -6,7 +6,7 @@ so on: each turn draws one boundary, and where three labels meet the later bound
 """
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -67,10 +67,12 @@ def split_by_turns(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 
     whole, left, joined = dict[int, str](), dict[int, FaceLabels](), Counter[int]()
     while any(len(group) > 1 for _, group in stage.pieces):
         asked = []
+        taken = _taken(stage.pieces, roomy)
         for i, (piece, group) in enumerate(stage.pieces, 1):
             if len(group) > 1:
                 field = roomy[piece.face]
-                asked.append(FaceLabels(i, field.u, field.v, _halves(field, piece.shape, group)))
+                off = np.isin(taken[piece.face], [0, i], invert=True)
+                asked.append(FaceLabels(i, field.u, field.v, _halves(field, off, group)))
         done = split(stage, asked, seconds=seconds)
         pieces = []
         for each in done.pieces:
@@ -135,11 +137,22 @@ def _first(piece: Piece, labels: FaceLabels | None) -> tuple[Piece, tuple[int, .
     return Piece(piece.face, MIXED if group else UNKNOWN, piece.shape), group
 
 
-def _halves(labels: FaceLabels, face: Any, group: tuple[int, ...]) -> Ints:
-    """Which half of a group of labels each node (nu, nv) of a piece belongs to, -1 off the piece and for other labels."""
+def _taken(pieces: Sequence[tuple[Piece, tuple[int, ...]]], labels: Mapping[int, FaceLabels]) -> dict[int, Ints]:
+    """The piece, from 1, that each node (nu, nv) of a face with labels to part lies on; 0 on any border, the face's own too."""
+    found = {
+        piece.face: np.zeros(labels[piece.face].label.shape, np.int32) for piece, group in pieces if len(group) > 1
+    }
+    for i, (piece, _) in enumerate(pieces, 1):
+        if piece.face in found:
+            found[piece.face][_on(labels[piece.face], piece.shape)] = i
+    return found
+
+
+def _halves(labels: FaceLabels, off: NDArray[np.bool_], group: tuple[int, ...]) -> Ints:
+    """Which half of a group of labels each node (nu, nv) of a piece belongs to, -1 on other pieces and for other labels."""
     middle = len(group) // 2
     half = np.where(np.isin(labels.label, group[:middle]), 0, np.where(np.isin(labels.label, group[middle:]), 1, -1))
-    on = np.where(_on(labels, face), half, -1)
+    on = np.where(off, -1, half)
     # A piece too small for a node goes with the nodes around it.
     return np.asarray(on if (on >= 0).any() else half, np.int32)
 
@@ -165,13 +178,15 @@ def _on(labels: FaceLabels, face: Any) -> NDArray[np.bool_]:
 
 
 def _strays(labels: FaceLabels, pieces: Sequence[Piece]) -> int:
-    """Nodes that lie on a piece of another label, and on none of their own."""
+    """Nodes that lie on a piece of another label, and on none of their own, or whose label has no piece at all."""
+    shown = [piece.label for piece in pieces]
+    lost = ~np.isin(labels.label, shown) & (MIXED not in shown)
     if len(pieces) < 2:
-        return 0
+        return int((lost & (labels.label >= 0)).sum())
     own, other = np.zeros((2, *labels.label.shape), bool)
     for piece in pieces:
         on = _on(labels, piece.shape)
         same = (labels.label == piece.label) | (piece.label == MIXED)
         own |= on & same
         other |= on & ~same
-    return int((other & ~own & (labels.label >= 0)).sum())
+    return int((((other & ~own) | lost) & (labels.label >= 0)).sum())

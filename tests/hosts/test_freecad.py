@@ -1,21 +1,16 @@
 """The FreeCAD macro, in FreeCAD's own Python: numbers, places, verdicts and errors; once with its window."""
 
-import json
-import os
 import re
 import shutil
-import subprocess
-import sys
 import xml.etree.ElementTree as ET
-from pathlib import Path
 
 import pytest
 
 from plan_cutters.document.palette import PALETTE
+from tests.support.freecad_host import CONSOLE, run
 from tests.support.places import ROOT
 
 MACRO = ROOT / "freecad" / "PlanCutters.FCMacro"
-CONSOLE = next(filter(None, map(shutil.which, ("freecadcmd", "FreeCADCmd", "freecad.cmd"))), None)
 WINDOW = shutil.which("freecad") and shutil.which("xvfb-run")
 
 HEAD = f"""
@@ -84,24 +79,8 @@ found["errors"].append(line_of(macro["run"], thing, [], ""))
 
 
 def freecad(words, script, folder, **more):
-    """Run a script in FreeCAD; what it found."""
-    (folder / "home").mkdir()
-    (folder / "script.py").write_text(HEAD + script + "\njson.dump(found, open('found.json', 'w'))\n", encoding="utf-8")
-    # The command is that of this Python, and not one that FreeCAD's could import; compiled code is where it always is.
-    ours = [
-        "env",
-        f"HOME={Path.home()}",
-        f"PYTHONPATH={ROOT / 'plugin'}{os.pathsep}{ROOT}",
-        sys.executable,
-        "-m",
-        "plan_cutters",
-    ]
-    environment = {**os.environ, "PLAN_CUTTERS": " ".join(ours), "HOME": str(folder / "home"), **more}
-    done = subprocess.run([*words, "script.py"], cwd=folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True,
-                          text=True, timeout=200)  # fmt: skip
-    if not (folder / "found.json").exists():
-        raise AssertionError(done.stdout[-2000:] + done.stderr[-2000:])
-    return json.loads((folder / "found.json").read_text())
+    """Run a script behind HEAD in FreeCAD; what it found."""
+    return run(words, HEAD + script, folder, **more)
 
 
 @pytest.fixture(scope="module")
@@ -152,11 +131,11 @@ def test_errors_are_one_line(inside):
 def test_the_addon_says_what_it_is():
     tree = ET.parse(MACRO.parent / "package.xml")
     space = {"p": "https://wiki.freecad.org/Package_Metadata"}
-    (file,) = tree.findall("p:content/p:macro/p:file", space)
-    assert (MACRO.parent / file.text) == MACRO
+    files = [MACRO.parent / file.text for file in tree.findall("p:content/p:macro/p:file", space)]
+    assert sorted(files) == sorted(MACRO.parent.glob("*.FCMacro"))
     version = re.search(r'^version = "(.*)"', (ROOT / "pyproject.toml").read_text(), re.MULTILINE)[1]
     assert tree.find("p:version", space).text == version
-    assert f'__Version__ = "{version}"' in MACRO.read_text()
+    assert all(f'__Version__ = "{version}"' in file.read_text() for file in files)
 
 
 WITH_WINDOW = """

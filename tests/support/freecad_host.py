@@ -1,0 +1,33 @@
+"""FreeCAD runs a script in its own Python."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from tests.support.places import ROOT
+
+CONSOLE = next(filter(None, map(shutil.which, ("freecadcmd", "FreeCADCmd", "freecad.cmd"))), None)
+
+
+def run(words, script, folder, **more):
+    """Run a script in FreeCAD with a home of its own; what it put into `found`."""
+    (folder / "home").mkdir()
+    (folder / "script.py").write_text(script + "\njson.dump(found, open('found.json', 'w'))\n", encoding="utf-8")
+    # The command is that of this Python, and not one that FreeCAD's could import; compiled code is where it always is.
+    ours = [
+        "env",
+        f"HOME={Path.home()}",
+        f"PYTHONPATH={ROOT / 'plugin'}{os.pathsep}{ROOT}",
+        sys.executable,
+        "-m",
+        "plan_cutters",
+    ]
+    environment = {**os.environ, "PLAN_CUTTERS": " ".join(ours), "HOME": str(folder / "home"), **more}
+    done = subprocess.run([*words, "script.py"], cwd=folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True,
+                          text=True, timeout=200)  # fmt: skip
+    if not (folder / "found.json").exists():
+        raise AssertionError(done.stdout[-2000:] + done.stderr[-2000:])
+    return json.loads((folder / "found.json").read_text())
