@@ -19,7 +19,7 @@ from cad_io import read_part
 from plan_cutters import plan
 from plan_cutters.document.palette import operation_colour, parts, rgb
 from plan_cutters.domain.machine import Machine
-from plan_cutters.operations.workplanes import MOST, index_times
+from plan_cutters.operations.indexing import MOST, index_times
 from plan_cutters.report import DEFAULT_FORMATS, operation_models
 from plan_cutters.report.regions import axis_regions
 from tests.support.cad_parts import box

@@ -21,6 +21,9 @@ WHICH = ("fewest", "fastest", "both")
 Mode = Literal["fixed", "simultaneous"]
 #: Forced steps of rotary axes are known to this, deg.
 RESOLUTION = 3.0
+#: Another orientation takes this, s, where no time was given and the machine does not say how fast its rotary axes turn.
+INDEX_TIME = 5.0
+IndexFrom = Literal["rates", "given", "assumed"]
 
 
 def operations_of(given: Any) -> str | None:
@@ -252,16 +255,13 @@ class Workplane:
         Part coordinates: the zero of the setup, or of the part where that is not known; the machine's X turned with the tool
         axis; the tool axis.
     index : float
-        Time that the rotary axes take to come there, s.
-    timed : bool
-        Whether that follows from the rates of the axes; else it is assumed.
+        Time that it takes to come there, s.
     """
 
     origin: Floats
     x: Floats
     z: Floats
     index: float
-    timed: bool
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -325,6 +325,8 @@ class Operations:
         Where posture maps were asked for, too.
     worth : tuple of Worth
         Of each cutter, the largest first, where the fastest were asked for and several were compared.
+    index_from : str
+        What the times between orientations follow from: the rates of the rotary axes, what was given, or what is assumed.
     """
 
     which: str
@@ -340,6 +342,7 @@ class Operations:
     motion: Motion | None = None
     worth: tuple[Worth, ...] = ()
     notes: tuple[str, ...] = field(default_factory=tuple)
+    index_from: IndexFrom = "assumed"
 
     def plan(self, name: str) -> OperationPlan | None:
         """The plan of a name."""

@@ -12,6 +12,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Operation, OperationPlan
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.candidates import Orientations
+from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.labels import joined, labelled, regions_of
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.strips import strips
@@ -41,6 +42,7 @@ class Task:
         Samples that are reached by one of the cutters in one of the setups.
     probes : Probes
     paths : Paths
+    indexing : Indexing
     """
 
     ready: Prepared
@@ -50,6 +52,7 @@ class Task:
     rows: Rows
     probes: Probes
     paths: Paths
+    indexing: Indexing
 
 
 def plan_with(
@@ -74,7 +77,8 @@ def plan_with(
     each = float((cost[finite].sum() / max(1e-300, (finite * area[:, None]).sum())) if finite.any() else 0.0)
     border = np.sqrt(0.5 * area[edge].sum(axis=1)) * overlap * each
     may = finite if rule is None else rule(finite)
-    label = joined(labelled(np.where(may, cost, np.inf), edge, border), may, edge, area, _SMALL * overlap**2)
+    # A rule is about areas that are worth an operation: crumbs go with what is beside them.
+    label = joined(labelled(np.where(may, cost, np.inf), edge, border), finite, edge, area, _SMALL * overlap**2)
     operations, order = _fixed(task, columns, finite, label, area)
     place = np.full(len(columns) + 1, -1, np.int32)
     place[order] = np.arange(len(order))
@@ -91,7 +95,7 @@ def plan_with(
     with np.errstate(divide="ignore", invalid="ignore"):
         seconds = area / (strip * speed)
     region = regions_of(number, edge, area)
-    planes = workplanes(operations, task.ready, task.orientations)
+    planes = workplanes(operations, task.ready, task.indexing)
     return OperationPlan(name, tuple(operations), number, table, strip, seconds, region, planes)
 
 

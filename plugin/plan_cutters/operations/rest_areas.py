@@ -1,18 +1,16 @@
 """Rest areas: what larger cutters leave for smaller ones, what a shop's habit costs, and what each cutter is worth."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.operations import Worth
-from plan_cutters.operations.cover import fewest
 from plan_cutters.operations.fastest import Problem, cheap
-from plan_cutters.operations.fewest import Search
 from plan_cutters.operations.plans import Task
 
 Rows = NDArray[np.int64]
-#: Rounds in which samples that a cutter's orientations leave join the table, and samples that join it at once.
-_ROUNDS, _MORE = 6, 120
 
 
 def by_size(task: Task) -> list[int]:
@@ -22,46 +20,61 @@ def by_size(task: Task) -> list[int]:
     )  # fmt: skip
 
 
-def largest_first(task: Task, search: Search, fewest_columns: Columns) -> Columns:
-    """The columns of a shop's habit: each cutter, the largest first, takes all that it serves of what is left.
+def largest_first(problem: Problem, order: Sequence[int]) -> Rows:
+    """Choose by the habit of a shop: each cutter, the largest first, takes what it serves of what is left, as far as that pays.
 
-    It does so with few orientations. What no cutter's candidates serve in its turn goes with the columns of the fewest plan.
+    An orientation of a cutter pays if it serves what no smaller one does, or if it cuts all that it serves of what is left so
+    much faster than the smaller cutters would by themselves that this makes up for the orientation. Changes of cutters are not
+    looked at: that is what makes it a habit.
+
+    Parameters
+    ----------
+    problem : Problem
+    order : sequence of int
+        Numbers of the cutters, the largest first.
+
+    Returns
+    -------
+    (k,) int64
+        Candidates, ascending, that serve all samples.
     """
-    left = np.setdiff1d(task.rows, search.alone)
-    found = fewest_columns.of(np.zeros(0, np.int64))
-    for c in by_size(task):
-        own, left = _own(task, search, c, left)
-        found = found.and_(own)
-    while len(left):
-        serves = task.probes.table(left, fewest_columns)
-        best = int(serves.sum(axis=0).argmax())
-        if not serves[:, best].any():
-            break
-        found, left = found.and_(fewest_columns.of(np.array([best]))), left[~serves[:, best]]
-    return found
+    left, found = np.ones(len(problem.cost), bool), list[int]()
+    for place, cutter in enumerate(order):
+        own = np.flatnonzero(problem.cutter == cutter)
+        later = np.flatnonzero(np.isin(problem.cutter, order[place + 1 :]))
+        serves = np.isfinite(problem.cost[:, own])
+        alone = left & serves.any(axis=1) & ~np.isfinite(problem.cost[:, later]).any(axis=1)
+        chosen = cheap(problem.of(own, alone)) if alone.any() else np.zeros(0, np.int64)
+        left &= ~serves[:, chosen].any(axis=1)
+        for one in _paying(problem, own, later, left & serves.any(axis=1)):
+            chosen = np.append(chosen, one)
+            left &= ~serves[:, one]
+        found += own[chosen].tolist()
+    return np.sort(np.array(found, np.int64))
+
+
+def _paying(problem: Problem, own: Rows, later: Rows, left: NDArray[np.bool_]) -> list[int]:
+    """Which of a cutter's candidates pay against those of smaller cutters, one after the other, for samples that both serve."""
+    found = list[int]()
+    if not left.any():
+        return found
+    smaller = problem.of(later, left)
+    then = smaller.cost[:, cheap(smaller)].min(axis=1)
+    cost = problem.cost[np.ix_(left, own)]
+    serves = np.isfinite(cost)
+    gain = np.where(serves, then[:, None] - cost, 0.0)
+    while True:
+        saved = gain.sum(axis=0) - problem.costs.operation
+        best = int(saved.argmax())
+        if saved[best] <= 0.0:
+            return found
+        found.append(best)
+        gain[serves[:, best]] = 0.0
 
 
 def _reached(task: Task, cutter: int) -> NDArray[np.bool_]:
     """Samples (n,) that a cutter reaches in one of the setups."""
     return np.asarray(np.logical_or.reduce([verdicts[task.cutters[cutter]].reached for verdicts in task.everywhere]))
-
-
-def _own(task: Task, search: Search, cutter: int, left: Rows) -> tuple[Columns, Rows]:
-    """Few columns of one cutter for what is left, and what is left then."""
-    reached = _reached(task, cutter)
-    for _ in range(_ROUNDS):
-        active, table = search.whole
-        mine = search.columns.cutter[active] == cutter
-        columns = search.columns.of(active[mine])
-        some = table[np.isin(search.rows, left)][:, mine]
-        some = some[some.any(axis=1)]
-        chosen = columns.of(fewest(some, prove=False).chosen)
-        served = np.asarray(task.probes.table(left, chosen).any(axis=1))
-        missed = left[~served & reached[left] & ~np.isin(left, search.rows)]
-        if not len(missed):
-            break
-        search.require(missed[:: max(1, len(missed) // _MORE)])
-    return chosen, left[~served]
 
 
 def allowed(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> NDArray[np.bool_]:

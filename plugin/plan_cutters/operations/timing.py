@@ -11,7 +11,8 @@ from scipy.spatial import cKDTree
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.operations.fastest import Costs, Problem
+from plan_cutters.operations.fastest import Costs, Problem, Turning
+from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.strips import strips
 
 Rows = NDArray[np.int64]
@@ -89,7 +90,7 @@ def shared_area(samples: SurfaceSamples, all_rows: Rows, rows: Rows) -> Floats:
 
 def problem_of(
     columns: Columns, table: NDArray[np.bool_], rows: Rows, area: Floats, samples: SurfaceSamples, cutters: Sequence[Cutter],
-    paths: Paths, costs: Costs,
+    paths: Paths, costs: Costs, indexing: Indexing,
 ) -> Problem:  # fmt: skip
     """Say what some samples, weighted by area, cost with columns.
 
@@ -101,7 +102,10 @@ def problem_of(
     rows : (r,) int64
     area : (r,) float
         That each of `rows` stands for, mm2.
-    samples, cutters, paths, costs
+    samples, cutters, paths, costs, indexing
     """
     width = widths(columns, rows, samples, cutters, paths, table)
-    return Problem(costs_of(columns, width, table, area, cutters, paths), columns.cutter, columns.setup, costs)
+    turning = None
+    if indexing.rate is not None:
+        turning = Turning(lambda chosen: indexing.together(columns.of(chosen)), indexing.from_zero(columns))
+    return Problem(costs_of(columns, width, table, area, cutters, paths), columns.cutter, columns.setup, costs, turning)
