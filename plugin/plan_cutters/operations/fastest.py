@@ -277,7 +277,9 @@ def lagrange(cost: Floats, operation: float, price: Floats, reach: Reach | None 
         value, taken = float(np.minimum(0.0, reduced).sum()), reduced < 0.0
     else:
         value, taken = reach.gained(reduced)
-    return float(price.sum()) + value, reduced, (gain[taken] < 0.0).sum(axis=0) - 1.0
+    # Large prices of both signs cancel: what the sums may be wrong by leaves the bound, too.
+    wrong = np.finfo(float).eps * (len(price) + len(reduced)) * float(np.abs(price).sum() + np.abs(reduced).sum())
+    return float(price.sum()) + value - wrong, reduced, (gain[taken] < 0.0).sum(axis=0) - 1.0
 
 
 class _Ascent:

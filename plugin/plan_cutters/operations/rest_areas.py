@@ -21,11 +21,10 @@ def by_size(task: Task) -> list[int]:
 
 
 def largest_first(problem: Problem, order: Sequence[int]) -> Rows:
-    """Choose by the habit of a shop: each cutter, the largest first, takes what it serves of what is left, as far as that pays.
+    """Choose by the habit of a shop: each cutter, the largest first, takes all that it serves of what is left, but for crumbs.
 
-    An orientation of a cutter pays if it serves what no smaller one does, or if it cuts all that it serves of what is left so
-    much faster than the smaller cutters would by themselves that this makes up for the orientation. Changes of cutters are not
-    looked at: that is what makes it a habit.
+    Crumbs are what a cutter cuts in one orientation in less time than that takes to turn to, if a smaller cutter serves it:
+    nobody turns a large cutter there.
 
     Parameters
     ----------
@@ -42,34 +41,30 @@ def largest_first(problem: Problem, order: Sequence[int]) -> Rows:
     for place, cutter in enumerate(order):
         own = np.flatnonzero(problem.cutter == cutter)
         later = np.flatnonzero(np.isin(problem.cutter, order[place + 1 :]))
-        serves = np.isfinite(problem.cost[:, own])
-        alone = left & serves.any(axis=1) & ~np.isfinite(problem.cost[:, later]).any(axis=1)
-        chosen = cheap(problem.of(own, alone)) if alone.any() else np.zeros(0, np.int64)
-        left &= ~serves[:, chosen].any(axis=1)
-        for one in _paying(problem, own, later, left & serves.any(axis=1)):
-            chosen = np.append(chosen, one)
-            left &= ~serves[:, one]
-        found += own[chosen].tolist()
+        mine = left & np.isfinite(problem.cost[:, own]).any(axis=1)
+        if not mine.any():
+            continue
+        part = problem.of(own, mine)
+        again = np.asarray(np.isfinite(problem.cost[np.ix_(mine, later)]).any(axis=1))
+        chosen = own[_without_crumbs(part, cheap(part), again)]
+        left &= ~np.isfinite(problem.cost[:, chosen]).any(axis=1)
+        found += chosen.tolist()
     return np.sort(np.array(found, np.int64))
 
 
-def _paying(problem: Problem, own: Rows, later: Rows, left: NDArray[np.bool_]) -> list[int]:
-    """Which of a cutter's candidates pay against those of smaller cutters, one after the other, for samples that both serve."""
-    found = list[int]()
-    if not left.any():
-        return found
-    smaller = problem.of(later, left)
-    then = smaller.cost[:, cheap(smaller)].min(axis=1)
-    cost = problem.cost[np.ix_(left, own)]
-    serves = np.isfinite(cost)
-    gain = np.where(serves, then[:, None] - cost, 0.0)
-    while True:
-        saved = gain.sum(axis=0) - problem.costs.operation
-        best = int(saved.argmax())
-        if saved[best] <= 0.0:
-            return found
-        found.append(best)
-        gain[serves[:, best]] = 0.0
+def _without_crumbs(problem: Problem, chosen: Rows, again: NDArray[np.bool_]) -> Rows:
+    """A choice without candidates that cut less than they cost: `again` (n,) are samples that something else serves later."""
+    while len(chosen):
+        cost = problem.cost[:, chosen]
+        serves = np.isfinite(cost)
+        there = serves.any(axis=1)
+        cuts = np.bincount(cost.argmin(axis=1)[there], cost[there].min(axis=1), len(chosen))
+        needed = serves[(serves.sum(axis=1) == 1) & ~again].any(axis=0)
+        crumbs = np.flatnonzero((cuts < problem.costs.operation) & ~needed)
+        if not len(crumbs):
+            break
+        chosen = np.delete(chosen, crumbs[cuts[crumbs].argmin()])
+    return chosen
 
 
 def _reached(task: Task, cutter: int) -> NDArray[np.bool_]:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.operations.fastest import Costs, Problem, Turning
 from plan_cutters.operations.indexing import Indexing
-from plan_cutters.operations.strips import strips
+from plan_cutters.operations.strips import strips_at
 
 Rows = NDArray[np.int64]
 #: How much farther apart samples of two faces count than those of one, in lengths of the part.
@@ -55,9 +55,11 @@ def widths(
         row, column = np.nonzero(asked & (columns.cutter == c))
         for part in np.array_split(np.arange(len(row)), max(1, math.ceil(len(row) / _AT_ONCE))):
             i, k = row[part], column[part]
-            found[i, k] = strips(
-                cutter, samples_at(samples, rows[i]), columns.axis[k], paths.scallop, paths.stepover
-            ).width
+            at = rows[i]
+            found[i, k] = strips_at(
+                cutter, samples.normal[at], samples.direction_max[at], samples.curvature[at], columns.axis[k], paths.scallop,
+                paths.stepover,
+            ).width  # fmt: skip
     return found
 
 
@@ -71,13 +73,6 @@ def costs_of(
     with np.errstate(divide="ignore", invalid="ignore"):
         found = area[:, None] / (width * speed)
     return np.where(serves & np.isfinite(found), found, np.inf)
-
-
-def samples_at(samples: SurfaceSamples, rows: Rows) -> SurfaceSamples:
-    """Some of the samples, without their grids and neighbours."""
-    names = ("point", "normal", "direction_max", "curvature", "uv", "face", "area", "unjudged")
-    own = {name: getattr(samples, name)[rows] for name in names}
-    return replace(samples, **own, neighbours=np.zeros((0, 2), np.int32), grids=())
 
 
 def shared_area(samples: SurfaceSamples, all_rows: Rows, rows: Rows) -> Floats:
