@@ -24,6 +24,8 @@ from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.indexing import MOST, Indexing, index_times
 from plan_cutters.report import DEFAULT_FORMATS, operation_models
 from plan_cutters.report.regions import axis_regions
+from plan_cutters.scene.clearance import clearances
+from plan_cutters.scene.fixed_axis import held_at
 from tests.support.cad_parts import box
 from tests.support.places import ROOT, SAMPLES
 from tests.support.shapes import ridge
@@ -99,6 +101,16 @@ def test_the_plane_turns_with_the_rotary_axes(written):
                 # C about Z and A about X of the tool: R_z(C) R_x(A), by hand. The machine's X stays across Z.
                 c = math.radians(each.angles_deg["C"])
                 assert np.allclose(each.frame.x, (math.cos(c), math.sin(c), 0.0), atol=1e-9)
+
+
+def test_the_clearance_of_an_operation_is_the_least_of_its_samples(written):
+    result, document, _ = written
+    samples = result.samples
+    for entry, found in zip(document.operations.plans, result.answers.operations.plans, strict=True):
+        for number, (said, each) in enumerate(zip(entry.operations, found.operations, strict=True)):
+            there = held_at(each.axis[None], np.where(found.label == number, 0, -1), samples)
+            every = clearances(samples, each.cutter, there, result.ready.setups[0]).distance[each.rows]
+            assert said.clearance_mm == pytest.approx(every.min(), abs=0.0)
 
 
 def test_step_faces_have_the_names_colours_and_areas_of_their_operations(written):

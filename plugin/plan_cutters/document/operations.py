@@ -64,6 +64,11 @@ class OperationEntry(Frozen):
     approaches_proved: int | None = Field(
         description="connected pieces that hold 99 % of what is proved with its axis; inside one, any path is safe"
     )
+    clearance_mm: float | None = Field(
+        default=None,
+        description="least at any of its samples, as in axes.csv: what does not cut keeps so far from all that is around; 100: "
+        "that or more; null: not known",
+    )
     faces: list[OperationFace] = Field(description="the one with the most of it first")
     frame: WorkplaneEntry | None = Field(description="null if simultaneous")
     index_s: float | None = Field(

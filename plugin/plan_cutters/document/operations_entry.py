@@ -190,7 +190,7 @@ def _operation(
         share=min(1.0, float(mine.sum()) / whole) if whole > 0.0 else 0.0, exclusive_mm2=float(area[found.only].sum()),
         strip_mm=_tenths(strip[known]), cut_length_mm=length,
         seconds=float(seconds.sum()) if np.isfinite(seconds).all() else None, proved_share=found.proved,
-        approaches_proved=found.approaches,
+        approaches_proved=found.approaches, clearance_mm=found.clearance,
         faces=_faces(rows, samples, area), frame=None if plane is None else _frame(plane),
         colour=operation_colour(number), index_s=None if plane is None else plane.index,
         index_from=None if plane is None else index_from,

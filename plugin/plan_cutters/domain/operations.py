@@ -230,6 +230,8 @@ class Operation:
         Share of its area that is proved between the samples, with its axis or that of another operation of the plan.
     approaches : int, optional
         Connected pieces of the area proved with its axis, the largest, until they hold 99 % of it: inside one, any path is safe.
+    clearance : float, optional
+        Least clearance at its samples, mm, of what does not cut; None where nothing is proved.
     """
 
     name: str
@@ -243,6 +245,7 @@ class Operation:
     only: NDArray[np.int64]
     proved: float | None = None
     approaches: int | None = None
+    clearance: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,7 +1,8 @@
 """A plan made of chosen columns: what each sample goes with, region by region."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,7 @@ from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Operation, OperationPlan
-from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.labels import joined, labelled, regions_of
@@ -18,6 +19,8 @@ from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.strips import strips
 from plan_cutters.operations.timing import Paths, costs_of, widths
 from plan_cutters.operations.workplanes import workplanes
+from plan_cutters.scene.clearance import least_clearance
+from plan_cutters.scene.fixed_axis import held_at
 from plan_cutters.scene.preparation import Prepared
 
 Rows = NDArray[np.int64]
@@ -94,6 +97,7 @@ def plan_with(
             speed[number == k] = task.paths.feed[operation.cutter] / 60.0
     with np.errstate(divide="ignore", invalid="ignore"):
         seconds = area / (strip * speed)
+    operations = [replace(each, clearance=_clearance(task, each)) for each in operations]
     region = regions_of(number, edge, area)
     planes = workplanes(operations, task.ready, task.indexing)
     return OperationPlan(name, tuple(operations), number, table, strip, seconds, region, planes)
@@ -140,6 +144,20 @@ def _simultaneous(
                 Operation(f"op{before + len(found) + 1}", "simultaneous", cutter, s, None, None, None, mine, mine)
             )
     return number, table, strip, found
+
+
+def _clearance(task: Task, operation: Operation) -> float | None:
+    """The least clearance at the samples of an operation; None where nothing is known."""
+    samples, n = task.ready.samples, len(task.ready.samples)
+    number = np.full(n, -1, np.int32)
+    number[operation.rows] = 0
+    if operation.axis is None:
+        verdicts = task.everywhere[operation.setup][operation.cutter]
+        verdicts = replace(verdicts, verdict=np.where(number == 0, verdicts.verdict, UNJUDGED).astype(np.uint8))
+    else:
+        verdicts = held_at(operation.axis[None], number, samples)
+    found = least_clearance(samples, operation.cutter, verdicts, task.ready.setups[operation.setup])
+    return found if math.isfinite(found) else None
 
 
 def small_pieces(plan: OperationPlan, samples: SurfaceSamples, overlap: float) -> tuple[str, ...]:
