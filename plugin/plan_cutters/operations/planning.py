@@ -24,7 +24,7 @@ from plan_cutters.operations.plans import Task, best_area, considered, orientati
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
 from plan_cutters.operations.rest_areas import allowed, by_size, largest_first, worths
-from plan_cutters.operations.timing import Paths, problem_of, shared_area
+from plan_cutters.operations.timing import Paths, Problems, shared_area
 from plan_cutters.options import Options
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress
@@ -96,7 +96,8 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     paths = Paths(options.scallop, options.stepover, feeds(options, cutters))
     where = orientations_of(ready)
     indexing = Indexing(where, options.index_time)
-    return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing)
+    return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing,
+                Problems(ready.samples, cutters, paths, indexing))  # fmt: skip
 
 
 def feeds(options: Options, cutters: Sequence[Cutter]) -> Mapping[Cutter, float] | None:
@@ -166,7 +167,7 @@ def _timed(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Proble
     area = shared_area(samples, np.setdiff1d(task.rows, search.alone), search.rows)
     mean = indexing.constant if indexing.rate is None else indexing.together(fewest) / max(1, len(fewest))
     costs = Costs(mean, options.change_time, options.setup_time)
-    problem = problem_of(columns, table, search.rows, area, samples, task.cutters, task.paths, costs, indexing)
+    problem = task.problems.of(columns, active, table, search.rows, area, costs)
     return columns, problem, float(area.sum())
 
 

@@ -17,7 +17,7 @@ from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.labels import joined, labelled, regions_of
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.strips import strips
-from plan_cutters.operations.timing import Paths, costs_of, widths
+from plan_cutters.operations.timing import Paths, Problems, costs_of, widths
 from plan_cutters.operations.workplanes import workplanes
 from plan_cutters.scene.clearance import least_clearance
 from plan_cutters.scene.fixed_axis import held_at
@@ -46,6 +46,7 @@ class Task:
     probes : Probes
     paths : Paths
     indexing : Indexing
+    problems : Problems
     """
 
     ready: Prepared
@@ -56,6 +57,7 @@ class Task:
     probes: Probes
     paths: Paths
     indexing: Indexing
+    problems: Problems
 
 
 def plan_with(
@@ -69,10 +71,8 @@ def plan_with(
     n, overlap = len(samples), task.ready.options.overlap
     area, edge = np.nan_to_num(samples.area), samples.neighbours
     serves, width = np.zeros((n, len(columns)), bool), np.full((n, len(columns)), np.nan)
-    serves[rows], width[rows] = (
-        task.probes.table(rows, columns),
-        widths(columns, rows, samples, task.cutters, task.paths),
-    )
+    serves[rows] = task.probes.table(rows, columns)
+    width[rows] = widths(columns, rows, samples, task.cutters, task.paths, serves[rows])
     cost = np.full((n, len(columns)), np.inf)
     cost[rows] = costs_of(columns, width[rows], serves[rows], area[rows], task.cutters, task.paths)
     # A border is cut twice over the overlap: what that takes is what the same area costs elsewhere.

@@ -83,24 +83,56 @@ def shared_area(samples: SurfaceSamples, all_rows: Rows, rows: Rows) -> Floats:
     return np.bincount(nearest, np.nan_to_num(samples.area[all_rows]), len(rows)).astype(float)
 
 
-def problem_of(
-    columns: Columns, table: NDArray[np.bool_], rows: Rows, area: Floats, samples: SurfaceSamples, cutters: Sequence[Cutter],
-    paths: Paths, costs: Costs, indexing: Indexing,
-) -> Problem:  # fmt: skip
-    """Say what some samples, weighted by area, cost with columns.
+class Problems:
+    """What samples cost with candidates, as both become more: widths that were found once are kept.
 
     Parameters
     ----------
-    columns : Columns
-    table : (r, m) bool
-        Where they serve.
-    rows : (r,) int64
-    area : (r,) float
-        That each of `rows` stands for, mm2.
-    samples, cutters, paths, costs, indexing
+    samples : SurfaceSamples
+    cutters : sequence of Cutter
+    paths : Paths
+    indexing : Indexing
     """
-    width = widths(columns, rows, samples, cutters, paths, table)
-    turning = None
-    if indexing.rate is not None:
-        turning = Turning(lambda chosen: indexing.together(columns.of(chosen)), indexing.from_zero(columns))
-    return Problem(costs_of(columns, width, table, area, cutters, paths), columns.cutter, columns.setup, costs, turning)
+
+    def __init__(
+        self, samples: SurfaceSamples, cutters: Sequence[Cutter], paths: Paths, indexing: Indexing
+    ) -> None:  # fmt: skip
+        self._samples, self._cutters, self._paths, self._indexing = samples, cutters, paths, indexing
+        self._rows: Rows = np.zeros(0, np.int64)
+        self._active: Rows = np.zeros(0, np.int64)
+        self._width: Floats = np.zeros((0, 0))
+        self._known: NDArray[np.bool_] = np.zeros((0, 0), bool)
+
+    def of(
+        self, columns: Columns, active: Rows, table: NDArray[np.bool_], rows: Rows, area: Floats, costs: Costs
+    ) -> Problem:
+        """Say what some samples, weighted by area, cost with columns.
+
+        Parameters
+        ----------
+        columns : Columns
+        active : (m,) int64
+            Their numbers, ascending: what had one keeps it.
+        table : (r, m) bool
+            Where they serve.
+        rows : (r,) int64
+            Those of the time before come first.
+        area : (r,) float
+            That each of `rows` stands for, mm2.
+        costs : Costs
+        """
+        width, known = np.full(table.shape, np.nan), np.zeros(table.shape, bool)
+        if np.array_equal(rows[: len(self._rows)], self._rows) and np.isin(self._active, active).all():
+            there = np.searchsorted(active, self._active)
+            width[: len(self._rows), there], known[: len(self._rows), there] = self._width, self._known
+        new = table & ~known
+        found = widths(columns, rows, self._samples, self._cutters, self._paths, new)
+        width[new] = found[new]
+        self._rows, self._active, self._width, self._known = rows, active, width, known | new
+        cost = costs_of(columns, width, table, area, self._cutters, self._paths)
+        turning = None
+        if self._indexing.rate is not None:
+            turning = Turning(
+                lambda chosen: self._indexing.together(columns.of(chosen)), self._indexing.from_zero(columns)
+            )
+        return Problem(cost, columns.cutter, columns.setup, costs, turning)
