@@ -134,6 +134,7 @@ class OpenCells:
     def __init__(self, probes: Probes, rows: Rows) -> None:
         self.probes, self.rows, self.made = probes, rows, 0
         self._tools: dict[tuple[Cutter, int, int, float], list[Tool]] = {}
+        self._modes = [[setup.inner_tool(each).mode for setup in probes.setups] for each in probes.cutters]
 
     def table(self, cells: Cells, before: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
         """Find which cells are open, (cells, cutters with setups, rows); `before`: what is known of larger cells around them."""
@@ -160,11 +161,11 @@ class OpenCells:
         from plan_cutters.kernels.material import sheet
         from plan_cutters.kernels.search.fixed_axis import served
 
-        cutter, conditions = self.probes.cutters[c], self.probes.setups[s]
+        conditions = self.probes.setups[s]
         # What is enclosed is not asked for: only what a triangle blocks counts.
         solids, contacts = sheet(conditions.around.certain.tree), contacts_of(self.probes.samples)
         free = np.zeros(len(mine), bool)
-        for number, mode in enumerate(conditions.inner_tool(cutter).mode):
+        for number, mode in enumerate(self._modes[c][s]):
             touching = (tilt + radius >= mode[TILT_FROM] - _ROUNDING) & (tilt - radius <= mode[TILT_TO] + _ROUNDING)
             turn = _turn(tilt, radius, float(mode[OFFSET_OF]))
             free |= touching & ~np.isfinite(turn)
