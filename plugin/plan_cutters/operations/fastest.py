@@ -121,9 +121,20 @@ class Problem:
         """Sum up the costs of the samples, each with the best of a choice."""
         return float(self.cost[:, chosen].min(axis=1, initial=np.inf).sum())
 
-    def added(self, chosen: Which, now: Floats) -> tuple[int, float]:
-        """The candidate that saves most beside a choice, and how much: `now` (n,) is what the samples cost with it."""
-        gain = np.maximum(0.0, now[:, None] - self.cost).sum(axis=0) - self.costs.operation
+    def gains(self, now: Floats, rows: Which | None = None) -> Floats:
+        """What each candidate (m,) saves on samples that cost so much now (n,), on some rows or all."""
+        cost = self.cost if rows is None else self.cost[rows]
+        saved = np.subtract((now if rows is None else now[rows])[:, None], cost)
+        return np.asarray(np.maximum(0.0, saved, out=saved).sum(axis=0))
+
+    def regained(self, gains: Floats, before: Floats, now: Floats) -> Floats:
+        """Gains of samples that cost so much now, from those of before: only samples whose costs differ are looked at."""
+        rows = np.flatnonzero(before != now)
+        return gains + self.gains(now, rows) - self.gains(before, rows)
+
+    def added(self, chosen: Which, gains: Floats) -> tuple[int, float]:
+        """The candidate that saves most beside a choice, with its own costs, and how much."""
+        gain = gains - self.costs.operation
         if len(chosen):
             gain -= self.costs.cutter * ~np.isin(self.cutter, self.cutter[chosen])
             gain -= self.costs.setup * ~np.isin(self.setup, self.setup[chosen])
@@ -170,27 +181,33 @@ def _now(problem: Problem, chosen: Which) -> Floats:
 
 def _grown(problem: Problem, chosen: Which) -> Which:
     """A choice with candidates added as long as one saves something."""
+    now = _now(problem, chosen)
+    gains = problem.gains(now)
     while True:
-        best, gain = problem.added(chosen, _now(problem, chosen))
-        if gain <= _NOTHING:
+        best, gain = problem.added(chosen, gains)
+        if gain <= _NOTHING or best in chosen:
             return chosen
         chosen = np.append(chosen, best)
+        before, now = now, np.minimum(now, problem.cost[:, best])
+        gains = problem.regained(gains, before, now)
 
 
 def _improved(problem: Problem, chosen: Which) -> Which:
     """A choice of which leaving out or exchanging one candidate saves nothing more."""
-    cost = problem.total(chosen)
+    cost, now = problem.total(chosen), _now(problem, chosen)
+    gains = problem.gains(now)
     for _ in range(_ROUNDS):
         before = cost
         for candidate in chosen.tolist():
             rest = chosen[chosen != candidate]
-            if problem.total(rest) < cost - _NOTHING:
-                chosen, cost = rest, problem.total(rest)
-                continue
-            other, _ = problem.added(rest, _now(problem, rest))
-            swapped = np.append(rest, other)
-            if problem.total(swapped) < cost - _NOTHING:
-                chosen, cost = swapped, problem.total(swapped)
+            other = rest
+            if not problem.total(rest) < cost - _NOTHING:
+                best, _gain = problem.added(rest, problem.regained(gains, now, _now(problem, rest)))
+                other = np.append(rest, best)
+            if problem.total(other) < cost - _NOTHING:
+                chosen, cost = other, problem.total(other)
+                last, now = now, _now(problem, chosen)
+                gains = problem.regained(gains, last, now)
         if cost >= before - _NOTHING:
             break
     return chosen
