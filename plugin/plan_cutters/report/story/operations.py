@@ -151,7 +151,8 @@ def _fastest(found: OperationsEntry) -> Iterator[str]:
 def _assumed(found: OperationsEntry) -> Iterator[str]:
     """That nobody knows how long an orientation takes, where it counts."""
     if found.fastest is not None and found.assumed.index_from == "assumed" and found.plans[0].orientations > 1:
-        yield f"Each orientation counts {found.assumed.index_s:g} s, a guess: the machine states no rates of two rotary axes."
+        guess = f"Each orientation counts {found.assumed.index_s:g} s, which is a guess"
+        yield f"{guess}: the machine does not say how fast its rotary axes turn; --index-time tells it."
 
 
 def _habit(found: OperationsEntry) -> Iterator[str]:
