@@ -122,13 +122,13 @@ class Problem:
         return float(self.cost[:, chosen].min(axis=1, initial=np.inf).sum())
 
     def gains(self, now: Floats, rows: Which | None = None) -> Floats:
-        """What each candidate (m,) saves on samples that cost so much now (n,), on some rows or all."""
+        """Sum up what each candidate (m,) saves on samples that cost so much now (n,), on some rows or all."""
         cost = self.cost if rows is None else self.cost[rows]
         saved = np.subtract((now if rows is None else now[rows])[:, None], cost)
         return np.asarray(np.maximum(0.0, saved, out=saved).sum(axis=0))
 
     def regained(self, gains: Floats, before: Floats, now: Floats) -> Floats:
-        """Gains of samples that cost so much now, from those of before: only samples whose costs differ are looked at."""
+        """Find gains for costs of now from those of before: only samples whose costs differ are looked at."""
         rows = np.flatnonzero(before != now)
         return gains + self.gains(now, rows) - self.gains(before, rows)
 
@@ -232,7 +232,7 @@ def exchanged(problem: Problem, chosen: Which) -> Which:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Reach:
-    """What the operations of one cutter in one setup cost together at least, by the candidate that costs most.
+    """The operations of one cutter in one setup cost at least as much together as the candidate that costs most.
 
     Attributes
     ----------
@@ -251,7 +251,7 @@ class Reach:
         return cls(least, np.flatnonzero(np.diff(group, prepend=-1)))
 
     def gained(self, reduced: Floats) -> tuple[float, NDArray[np.bool_]]:
-        """What candidates gain together at most, 0 or less, and which (m,) of them do, by their reduced costs (m,)."""
+        """Sum up what candidates gain together at most, 0 or less, and say which (m,) do, by their reduced costs (m,)."""
         value, taken = 0.0, np.zeros(len(reduced), bool)
         for low, high in pairwise([*self.first.tolist(), len(reduced)]):
             gain = np.cumsum(np.minimum(0.0, reduced[low:high])) + self.least[low:high]

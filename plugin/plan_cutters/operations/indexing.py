@@ -19,7 +19,7 @@ MOST = 12
 
 @dataclass(frozen=True, slots=True)
 class Indexing:
-    """What another orientation takes: the time that was given, else that of the rotary axes by their rates, else 5 s.
+    """Another orientation takes the time that was given, else that of the rotary axes by their rates, else 5 s.
 
     Attributes
     ----------

@@ -84,7 +84,7 @@ def shared_area(samples: SurfaceSamples, all_rows: Rows, rows: Rows) -> Floats:
 
 
 class Problems:
-    """What samples cost with candidates, as both become more: widths that were found once are kept.
+    """Say what samples cost with candidates, as both become more: widths that were found once are kept.
 
     Parameters
     ----------
