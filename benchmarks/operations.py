@@ -4,11 +4,18 @@
 
 FOLDER holds public CAD files (`DATA.md`); without it the samples alone are planned. Seconds are by the clock: run it on a quiet
 machine. `probes`: millions of times that a tool was put down.
+
+    python benchmarks/operations.py --memory [FOLDER]
+
+says instead how much memory each case takes at most, with `--operations both` and without: MB, each in a process of its own.
 """
 
+import multiprocessing
+import resource
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 from plan_cutters import plan
 
@@ -38,12 +45,34 @@ REAL = {
 }
 
 
+def peak(file: Path, more: dict[str, Any]) -> float:
+    """Most memory, MB, that this process has taken once a plan is made."""
+    plan(file, machine="trunnion-ac", area_budget=0, **more)
+    size = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return size / (1e6 if sys.platform == "darwin" else 1e3)
+
+
+def memory(cases: dict[str, tuple[Path, dict[str, Any]]]) -> None:
+    """Print the memory of each case, without operations and with both plans."""
+    print("part                    plan MB   both MB   ratio")
+    for name, (file, more) in cases.items():
+        found = []
+        for asked in ({}, {"operations": "both", "feed": 2000}):
+            with multiprocessing.get_context("spawn").Pool(1) as one:
+                found.append(one.apply(peak, (file, {**more, **asked})))
+        print(f"{name:22} {found[0]:8.0f}  {found[1]:8.0f}  {found[1] / found[0]:6.2f}", flush=True)
+
+
 def main() -> None:
     """Plan each case with the fewest operations, and with the fastest."""
-    plan(SAMPLES / "pocket_top.step", cutters="R6L80", grid=4, operations="both", feed=2000, area_budget=0)
+    given = [word for word in sys.argv[1:] if word != "--memory"]
     cases = {name: (SAMPLES / file, more) for name, (file, more) in CASES.items()}
-    if len(sys.argv) > 1:
-        cases |= {name: (Path(sys.argv[1]) / file, more) for name, (file, more) in REAL.items()}
+    if given:
+        cases |= {name: (Path(given[0]) / file, more) for name, (file, more) in REAL.items()}
+    if "--memory" in sys.argv:
+        memory(cases)
+        return
+    plan(SAMPLES / "pocket_top.step", cutters="R6L80", grid=4, operations="both", feed=2000, area_budget=0)
     print(
         "part                samples  fewest (at least, proof)        candidates  deg   probes M  plan s  fewest s  both s"
     )

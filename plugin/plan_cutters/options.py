@@ -99,7 +99,7 @@ class PlanOptions(SceneOptions, total=False):
     scallop: float
     stepover: float
     index_step: float | None
-    index_time: float
+    index_time: float | None
     change_time: float
     setup_time: float
     overlap: float
@@ -172,8 +172,10 @@ class Options:
         Height of the cusps between passes, mm, and the widest distance of passes, in diameters.
     index_step : float, optional
         Rotary axes lock at whole multiples of this angle alone, rad. None: anywhere.
-    index_time, change_time, setup_time : float
-        Seconds that another orientation, another cutter and another setup take.
+    index_time : float, optional
+        Seconds that another orientation takes. None: what the machine's rotary axes need by their rates, else 5 s.
+    change_time, setup_time : float
+        Seconds that another cutter and another setup take.
     overlap : float
         Width by which operations overlap at a common border, mm.
     most_operations : int, optional
@@ -234,7 +236,7 @@ class Options:
     scallop: float = 0.01
     stepover: float = 0.75
     index_step: float | None = None
-    index_time: float = 5.0
+    index_time: float | None = None
     change_time: float = 20.0
     setup_time: float = 300.0
     overlap: float = 2.0

@@ -1,12 +1,13 @@
 """The choice of least cost, against all choices, and its bound."""
 
-from itertools import combinations
+from itertools import combinations, permutations
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.operations.fastest import Costs, Problem, exchanged, fastest, lagrange
+from plan_cutters.operations.fastest import Costs, Problem, Turning, bounded, exchanged, fastest, lagrange
 
 
 def problem_of(seed, n, m):
@@ -79,3 +80,39 @@ def test_of_two_that_serve_all_the_faster_is_taken():
         np.array([[3.0, 1.0], [3.0, 2.0]]), np.zeros(2, np.int32), np.zeros(2, np.int32), Costs(0.0, 0.0, 0.0)
     )
     assert exchanged(problem, np.array([0])).tolist() == [1]
+
+
+def turning(seed, n, m):
+    """Candidates on a line: those of one cutter and setup are visited from 0, each group by itself, in the best order."""
+    problem, place = problem_of(seed, n, m), 20.0 * np.random.default_rng(seed + 1).uniform(-1.0, 1.0, m)
+
+    def together(chosen):
+        groups = {}
+        for each in chosen.tolist():
+            groups.setdefault((problem.cutter[each], problem.setup[each]), []).append(place[each])
+        ways = [[np.abs(np.diff([0.0, *order])).sum() for order in permutations(mine)] for mine in groups.values()]
+        return float(sum(map(min, ways)))
+
+    return Problem(problem.cost, problem.cutter, problem.setup, problem.costs, Turning(together, np.abs(place)))
+
+
+@given(st.integers(0, 2**31), st.integers(1, 8), st.integers(1, 6))
+@settings(max_examples=80, deadline=None)
+def test_turning_axes_leave_the_least_between_the_choice_and_its_bound(seed, n, m):
+    problem = turning(seed, n, m)
+    if not len(problem.cost):
+        return
+    every = [np.array(some) for k in range(1, m + 1) for some in combinations(range(m), k)]
+    least = min(problem.turned(some) for some in every)
+    found = fastest(problem)
+    assert found.cost == problem.turned(found.chosen)
+    assert found.bound <= least * (1.0 + 1e-9) + 1e-9
+    assert found.cost >= least - 1e-9
+
+
+def test_one_candidate_far_away_is_bounded_by_its_turn():
+    cost = np.array([[1.0, 2.0], [1.0, np.inf]])
+    problem = Problem(cost, np.zeros(2, np.int32), np.zeros(2, np.int32), Costs(5.0, 0.0, 0.0),
+                      Turning(lambda chosen: 30.0 if 0 in chosen else 10.0, np.array([30.0, 10.0])))  # fmt: skip
+    found = bounded(problem, np.array([0]))
+    assert (found.cost, found.bound) == (32.0, pytest.approx(32.0))

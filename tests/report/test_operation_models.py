@@ -19,10 +19,14 @@ from scipy.spatial import cKDTree
 from cad_io import read_part
 from plan_cutters import plan
 from plan_cutters.document.palette import operation_colour, parts, rgb
+from plan_cutters.domain.columns import columns_of
 from plan_cutters.domain.machine import Machine
-from plan_cutters.operations.workplanes import MOST, index_times
+from plan_cutters.operations.candidates import Orientations
+from plan_cutters.operations.indexing import MOST, Indexing, index_times
 from plan_cutters.report import DEFAULT_FORMATS, operation_models
 from plan_cutters.report.regions import axis_regions
+from plan_cutters.scene.clearance import clearances
+from plan_cutters.scene.fixed_axis import held_at
 from tests.support.cad_parts import box
 from tests.support.places import ROOT, SAMPLES
 from tests.support.shapes import ridge
@@ -98,6 +102,18 @@ def test_the_plane_turns_with_the_rotary_axes(written):
                 # C about Z and A about X of the tool: R_z(C) R_x(A), by hand. The machine's X stays across Z.
                 c = math.radians(each.angles_deg["C"])
                 assert np.allclose(each.frame.x, (math.cos(c), math.sin(c), 0.0), atol=1e-9)
+
+
+def test_the_clearance_of_an_operation_is_the_least_of_its_samples(written):
+    result, document, _ = written
+    samples = result.samples
+    for entry, found in zip(document.operations.plans, result.answers.operations.plans, strict=True):
+        for number, (said, each) in enumerate(zip(entry.operations, found.operations, strict=True)):
+            if each.axis is None:
+                continue
+            there = held_at(each.axis[None], np.where(found.label == number, 0, -1), samples)
+            every = clearances(samples, each.cutter, there, result.ready.setups[0]).distance[each.rows]
+            assert said.clearance_mm == pytest.approx(every.min(), abs=0.0)
 
 
 def test_step_faces_have_the_names_colours_and_areas_of_their_operations(written):
@@ -236,22 +252,50 @@ def test_more_positions_than_all_orders_can_be_tried_of_take_the_nearest_next():
     assert found.sum() == pytest.approx(0.1 * (MOST + 2))
 
 
-def test_index_times_follow_from_the_rates_of_a_machine():
-    machine = Machine.parse("trunnion-ac")
-    axes = tuple(replace(each, rate=math.radians(30.0)) for each in machine.axes)
+RATED = replace(TRUNNION := Machine.parse("trunnion-ac"),
+                axes=tuple(replace(each, rate=math.radians(30.0)) for each in TRUNNION.axes))  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("machine", "given", "source"),
+    [(RATED, None, "rates"), (RATED, 7.0, "given"), (TRUNNION, 7.0, "given"), (TRUNNION, None, "assumed")],
+)
+def test_seconds_of_orientations_follow_from_rates_unless_they_are_given(machine, given, source):
     result = plan(
-        box(),
-        cutters=BALL,
-        faces="all",
-        grid=4,
-        operations="fewest",
-        machine=replace(machine, axes=axes),
+        box(), cutters=BALL, faces="all", grid=4, operations="both", feed=1000.0, machine=machine, index_time=given,
         area_budget=0,
-    )
-    found = result.plan.operations.plans[0].operations
-    assert {each.index_from for each in found} == {"rates"}
-    for each in found:
-        assert 0.0 <= each.index_s <= 180.0 / 30.0 + 1e-9
+    )  # fmt: skip
+    entry = result.plan.operations
+    assert (entry.assumed.index_from, entry.assumed.index_s) == (source, given or 5.0)
+    for each in entry.plans:
+        found = each.operations
+        assert {one.index_from for one in found} == {source}
+        assert each.other_seconds == pytest.approx(sum(one.index_s for one in found))
+        for one in found:
+            assert 0.0 <= one.index_s <= 180.0 / 30.0 + 1e-9 if source == "rates" else one.index_s == (given or 5.0)
+    assert entry.fastest.bound_seconds <= entry.fastest.seconds * (1.0 + 1e-9)
+
+
+@pytest.fixture(scope="module")
+def rated():
+    return Orientations.of(plan(box(), cutters=BALL, grid=2, machine=RATED, area_budget=0).ready.setups[0])
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_any_orientations_together_take_at_least_the_turn_to_each(rated, seed):
+    rng = np.random.default_rng(seed)
+    indexing = Indexing((rated,), None)
+    axis = rng.normal(size=(8, 3)) * (1.0, 1.0, 0.3) + (0.0, 0.0, 1.0)
+    angle, held = indexing.orientations[0].near(axis / np.linalg.norm(axis, axis=1)[:, None])
+    columns = columns_of(held, angle)
+    reach = indexing.from_zero(columns)
+    assert len(columns) > 3
+    assert reach.max() > 0.5
+    for count in range(1, len(columns) + 1):
+        some = rng.choice(len(columns), count, replace=False)
+        assert indexing.together(columns.of(some)) >= reach[some].max() - 1e-9
+    alone = [indexing.together(columns.of(np.array([k]))) for k in range(len(columns))]
+    assert np.allclose(reach, alone, atol=1e-3)
 
 
 def test_the_table_has_a_line_for_each_operation(written):

@@ -273,9 +273,8 @@ _OPTIONS = (
     _operations(
         "--index-time",
         type=float,
-        default=5.0,
         metavar="S",
-        help="Seconds that another orientation takes.  [default: 5]",
+        help="Seconds that another orientation takes.  [default: by the rates of the machine's rotary axes, else 5]",
     ),
     _operations(
         "--change-time", type=float, default=20.0, metavar="S", help="Seconds that another cutter takes.  [default: 20]"

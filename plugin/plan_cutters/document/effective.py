@@ -8,6 +8,7 @@ import numpy as np
 from plan_cutters.document.build import degrees
 from plan_cutters.document.model import Effective
 from plan_cutters.document.travel import placement_entry
+from plan_cutters.domain.operations import INDEX_TIME
 from plan_cutters.options import Options
 from plan_cutters.scene.preparation import Prepared
 
@@ -34,6 +35,7 @@ def effective(ready: Prepared) -> Effective:
         "chord_measured_share": around.certain.triangles.measured_share,
         "obstacle_triangles": len(around.possible.triangles),
         "area_budget": options.contacts_between(len(ready.samples)),
+        "index_time_s": INDEX_TIME if options.index_time is None else options.index_time,
     }
     return Effective(**{name: _as_asked(options, name) for name in Effective.model_fields if name not in made}, **made)
 

@@ -64,14 +64,19 @@ class OperationEntry(Frozen):
     approaches_proved: int | None = Field(
         description="connected pieces that hold 99 % of what is proved with its axis; inside one, any path is safe"
     )
+    clearance_mm: float | None = Field(
+        default=None,
+        description="least at any of its samples, as in axes.csv: what does not cut keeps so far from all that is around; 100: "
+        "that or more; null: not known",
+    )
     faces: list[OperationFace] = Field(description="the one with the most of it first")
     frame: WorkplaneEntry | None = Field(description="null if simultaneous")
     index_s: float | None = Field(
         description="what the rotary axes take to come to its angles from those before, in the best order of the operations of "
-        "its cutter and setup, the first one from zero; null if simultaneous. The plan's seconds reckon with --index-time instead"
+        "its cutter and setup, the first one from zero, or what was given or assumed; null if simultaneous"
     )
-    index_from: Literal["rates", "assumed"] | None = Field(
-        description="of the rotary axes; or assumed, as not all have rates: --index-time"
+    index_from: Literal["rates", "given", "assumed"] | None = Field(
+        description="of the rotary axes; given by --index-time; or assumed, as nothing was given and not all axes have rates"
     )
     regions: list[OperationRegion]
     colour: str = Field(description="sRGB, in the models")
@@ -93,7 +98,8 @@ class AssumedEntry(Frozen):
     scallop_mm: float
     stepover: float = Field(description="widest distance of passes, in diameters")
     overlap_mm: float
-    index_s: float
+    index_s: float = Field(description="of another orientation, where rates of the rotary axes do not say it")
+    index_from: Literal["rates", "given", "assumed"] = Field(description="what the seconds of orientations follow from")
     change_s: float
     setup_s: float
 
@@ -109,6 +115,8 @@ class OperationPlanEntry(Frozen):
     other_seconds: float = Field(
         description="index time of each operation, change and setup time of each cutter and setup after the first"
     )
+    changes: int = Field(description="of cutters")
+    pieces: int = Field(description="connected regions of its operations")
     ratio_at_most: float | None = Field(
         description="cutting of the fixed operations over at_best_seconds of the fastest: they take at most so many times as "
         "long as simultaneous motion, by the samples compared; null where that is not known"

@@ -24,9 +24,11 @@ from plan_cutters.document.operations import (
 from plan_cutters.document.palette import operation_colour
 from plan_cutters.document.runs import runs
 from plan_cutters.domain.operations import (
+    INDEX_TIME,
     RESOLUTION,
     Fastest,
     Fewest,
+    IndexFrom,
     Motion,
     Operation,
     OperationPlan,
@@ -57,7 +59,8 @@ def operations_entry(
     area = np.where(wanted, np.nan_to_num(samples.area), 0.0)
     assumed = AssumedEntry(
         feed_mm_min=None if found.feed is None else {cutter.id: feed for cutter, feed in found.feed.items()},
-        scallop_mm=options.scallop, stepover=options.stepover, overlap_mm=options.overlap, index_s=options.index_time,
+        scallop_mm=options.scallop, stepover=options.stepover, overlap_mm=options.overlap,
+        index_s=INDEX_TIME if options.index_time is None else options.index_time, index_from=found.index_from,
         change_s=options.change_time, setup_s=options.setup_time,
     )  # fmt: skip
     plans = [_plan(each, found, samples, area, wanted, assumed) for each in found.plans]
@@ -125,13 +128,18 @@ def _plan(
 ) -> OperationPlanEntry:  # fmt: skip
     whole = float(area.sum())
     operations = [
-        _operation(i, each, plan, plane, found.names, samples, area, whole)
+        _operation(i, each, plan, plane, found.names, samples, area, whole, found.index_from)
         for i, (each, plane) in enumerate(zip(plan.operations, plan.planes, strict=True))
     ]
     rest = wanted & (plan.label < 0)
     left = float(area[rest].sum())
     # The first cutter and the first setup are there anyway.
-    other = assumed.index_s * len(operations) + assumed.change_s * max(0, len({each.cutter for each in operations}) - 1)
+    changes = max(0, len({each.cutter for each in operations}) - 1)
+    # How simultaneous motion begins is not known.
+    other = (
+        sum(assumed.index_s if each.index_s is None else each.index_s for each in operations)
+        + assumed.change_s * changes
+    )
     other += assumed.setup_s * max(0, len({each.setup for each in operations}) - 1)
     known = [each.seconds for each in operations if each.seconds is not None]
     cutting = sum(known) if len(known) == len(operations) else None
@@ -142,7 +150,8 @@ def _plan(
         name=plan.name, orientations=sum(each.mode == "fixed" for each in operations),  # type: ignore[arg-type]
         cut_length_mm=sum(each.cut_length_mm or 0.0 for each in operations), operations=operations,
         seconds=None if cutting is None else cutting + other, cutting_seconds=cutting, other_seconds=other,
-        ratio_at_most=_ratio(operations, found.fastest), proved_share=share,
+        ratio_at_most=_ratio(operations, found.fastest), proved_share=share, changes=changes,
+        pieces=len(np.unique(plan.region[plan.region >= 0])),
         approaches_proved=sum(each.approaches_proved or 0 for each in held) if held else None,
         rest=RestEntry(samples=int(rest.sum()), area_mm2=left, share=left / whole if whole > 0.0 else 0.0,
                        reason_counts=_reasons(found.reason[rest])),
@@ -167,7 +176,7 @@ def _ratio(operations: list[OperationEntry], timed: Fastest | None) -> float | N
 
 def _operation(
     number: int, found: Operation, plan: OperationPlan, plane: Workplane | None, names: tuple[str, str],
-    samples: SurfaceSamples, area: Floats, whole: float,
+    samples: SurfaceSamples, area: Floats, whole: float, index_from: IndexFrom,
 ) -> OperationEntry:  # fmt: skip
     rows = found.rows
     strip, mine = plan.strip[rows], area[rows]
@@ -181,10 +190,10 @@ def _operation(
         share=min(1.0, float(mine.sum()) / whole) if whole > 0.0 else 0.0, exclusive_mm2=float(area[found.only].sum()),
         strip_mm=_tenths(strip[known]), cut_length_mm=length,
         seconds=float(seconds.sum()) if np.isfinite(seconds).all() else None, proved_share=found.proved,
-        approaches_proved=found.approaches,
+        approaches_proved=found.approaches, clearance_mm=found.clearance,
         faces=_faces(rows, samples, area), frame=None if plane is None else _frame(plane),
         colour=operation_colour(number), index_s=None if plane is None else plane.index,
-        index_from=None if plane is None else "rates" if plane.timed else "assumed",
+        index_from=None if plane is None else index_from,
         regions=[
             _region(k, np.flatnonzero(plan.region == k), samples, area)
             for k in np.unique(plan.region[rows]).tolist()

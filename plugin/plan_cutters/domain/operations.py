@@ -21,6 +21,9 @@ WHICH = ("fewest", "fastest", "both")
 Mode = Literal["fixed", "simultaneous"]
 #: Forced steps of rotary axes are known to this, deg.
 RESOLUTION = 3.0
+#: Another orientation takes this, s, where no time was given and the machine does not say how fast its rotary axes turn.
+INDEX_TIME = 5.0
+IndexFrom = Literal["rates", "given", "assumed"]
 
 
 def operations_of(given: Any) -> str | None:
@@ -227,6 +230,8 @@ class Operation:
         Share of its area that is proved between the samples, with its axis or that of another operation of the plan.
     approaches : int, optional
         Connected pieces of the area proved with its axis, the largest, until they hold 99 % of it: inside one, any path is safe.
+    clearance : float, optional
+        Least clearance at its samples, mm, of what does not cut; None where nothing is proved.
     """
 
     name: str
@@ -240,6 +245,7 @@ class Operation:
     only: NDArray[np.int64]
     proved: float | None = None
     approaches: int | None = None
+    clearance: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -252,16 +258,13 @@ class Workplane:
         Part coordinates: the zero of the setup, or of the part where that is not known; the machine's X turned with the tool
         axis; the tool axis.
     index : float
-        Time that the rotary axes take to come there, s.
-    timed : bool
-        Whether that follows from the rates of the axes; else it is assumed.
+        Time that it takes to come there, s.
     """
 
     origin: Floats
     x: Floats
     z: Floats
     index: float
-    timed: bool
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -325,6 +328,8 @@ class Operations:
         Where posture maps were asked for, too.
     worth : tuple of Worth
         Of each cutter, the largest first, where the fastest were asked for and several were compared.
+    index_from : str
+        What the times between orientations follow from: the rates of the rotary axes, what was given, or what is assumed.
     """
 
     which: str
@@ -340,6 +345,7 @@ class Operations:
     motion: Motion | None = None
     worth: tuple[Worth, ...] = ()
     notes: tuple[str, ...] = field(default_factory=tuple)
+    index_from: IndexFrom = "assumed"
 
     def plan(self, name: str) -> OperationPlan | None:
         """The plan of a name."""

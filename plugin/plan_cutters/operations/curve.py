@@ -15,7 +15,7 @@ from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.operations import Fewest, Step
 from plan_cutters.operations.probes import Probes
 
-Known = tuple[Columns, NDArray[np.bool_], Floats]
+Known = tuple[Columns, NDArray[np.int64], NDArray[np.bool_], Floats]
 #: Tests that a table of all samples may take.
 _TESTS = 300_000
 
@@ -36,8 +36,8 @@ def curve(
     whole : float
         Area that shares are of, mm2.
     some : callable
-        Gives columns, among them the cover's, where each serves some samples (s, columns), and the area (s,) that each of these
-        stands for: columns are chosen by these where the table of all samples is large.
+        Gives columns, among them the cover's, their numbers, where each serves some samples (s, columns), and the area (s,) that
+        each of these stands for: columns are chosen by these where the table of all samples is large.
     """
     most = len(fewest.chosen)
     if not most or not len(rows):
@@ -48,7 +48,7 @@ def curve(
         order = _order(table, weight, most)
         bound = _bound(table, weight, order) / max(whole, 1e-300)
     else:
-        columns, known, weight = some()
+        columns, _, known, weight = some()
         table = known.T.astype(np.float32)
         order, bound = _order(table, weight, most), None
     chosen = np.flatnonzero(np.isin(columns.key, fewest.columns.of(fewest.chosen).key))

@@ -2,14 +2,15 @@
 
 It is a facility location: each sample is cut by one chosen operation that serves it, each operation costs an index of the rotary
 axes, each cutter a change and each setup a clamping. A choice is made greedily and made better by leaving out and by exchanging
-operations. The bound is Lagrange's: any prices of samples give one, over all candidates at once (`docs/operations.md`, lemma 8).
+operations. The bound is Lagrange's: any prices of samples give one, over all candidates at once (`docs/operations_proof.md`,
+lemmas O8 and O9).
 Prices are made better by steps along the mean of what samples are served too often or not at all; candidates that no better
 choice can have are left out on the way.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from itertools import combinations, product
+from itertools import combinations, pairwise, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,11 +33,30 @@ _NOTHING = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class Costs:
-    """Each operation, and each cutter and setup after the first, costs this whatever it cuts, in the samples' unit."""
+    """Each operation, and each cutter and setup after the first, costs this whatever it cuts, in the samples' unit.
+
+    Where candidates turn, the cost of an operation only leads the choice.
+    """
 
     operation: float
     cutter: float
     setup: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Turning:
+    """Operations of a choice cost what the rotary axes take from one to the next.
+
+    Attributes
+    ----------
+    together : callable
+        What the operations (k,) of a choice cost together.
+    reach : (m,) float
+        Whatever else is chosen, those of the same cutter and setup cost at least this together with a candidate.
+    """
+
+    together: Callable[[Which], float]
+    reach: Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,10 +87,14 @@ class Problem:
         Of each sample with each candidate; infinite where the candidate does not serve it. Each row has a finite one.
     cutter, setup : (m,) int
     costs : Costs
+    turning : Turning, optional
+        None: each operation costs the same.
     """
 
-    def __init__(self, cost: Floats, cutter: Ints, setup: Ints, costs: Costs) -> None:
-        self.cost, self.cutter, self.setup, self.costs = cost, cutter, setup, costs
+    def __init__(
+        self, cost: Floats, cutter: Ints, setup: Ints, costs: Costs, turning: Turning | None = None
+    ) -> None:  # fmt: skip
+        self.cost, self.cutter, self.setup, self.costs, self.turning = cost, cutter, setup, costs, turning
         finite = cost[np.isfinite(cost)]
         #: Costs more than any choice.
         self.dear = float(cost.min(axis=1, initial=np.inf).sum() + finite.max(initial=0.0) * len(cost)) + 10.0 * sum(
@@ -81,30 +105,46 @@ class Problem:
         """Sum up the costs of a choice; infinite where it leaves a sample."""
         if not len(chosen):
             return 0.0 if not len(self.cost) else np.inf
-        each, cutters, setups = self.costs, len(np.unique(self.cutter[chosen])), len(np.unique(self.setup[chosen]))
-        return (
-            self.cutting(chosen)
-            + each.operation * len(chosen)
-            + each.cutter * (cutters - 1)
-            + each.setup * (setups - 1)
-        )
+        return self.cutting(chosen) + self.costs.operation * len(chosen) + self._changes(chosen)
+
+    def turned(self, chosen: Which) -> float:
+        """As `total`, but with what the rotary axes take in truth."""
+        if self.turning is None or not len(chosen):
+            return self.total(chosen)
+        return self.cutting(chosen) + self.turning.together(chosen) + self._changes(chosen)
+
+    def _changes(self, chosen: Which) -> float:
+        cutters, setups = len(np.unique(self.cutter[chosen])), len(np.unique(self.setup[chosen]))
+        return self.costs.cutter * (cutters - 1) + self.costs.setup * (setups - 1)
 
     def cutting(self, chosen: Which) -> float:
         """Sum up the costs of the samples, each with the best of a choice."""
         return float(self.cost[:, chosen].min(axis=1, initial=np.inf).sum())
 
-    def added(self, chosen: Which, now: Floats) -> tuple[int, float]:
-        """The candidate that saves most beside a choice, and how much: `now` (n,) is what the samples cost with it."""
-        gain = np.maximum(0.0, now[:, None] - self.cost).sum(axis=0) - self.costs.operation
+    def gains(self, now: Floats, rows: Which | None = None) -> Floats:
+        """Sum up what each candidate (m,) saves on samples that cost so much now (n,), on some rows or all."""
+        cost = self.cost if rows is None else self.cost[rows]
+        saved = np.subtract((now if rows is None else now[rows])[:, None], cost)
+        return np.asarray(np.maximum(0.0, saved, out=saved).sum(axis=0))
+
+    def regained(self, gains: Floats, before: Floats, now: Floats) -> Floats:
+        """Find gains for costs of now from those of before: only samples whose costs differ are looked at."""
+        rows = np.flatnonzero(before != now)
+        return gains + self.gains(now, rows) - self.gains(before, rows)
+
+    def added(self, chosen: Which, gains: Floats) -> tuple[int, float]:
+        """The candidate that saves most beside a choice, with its own costs, and how much."""
+        gain = gains - self.costs.operation
         if len(chosen):
             gain -= self.costs.cutter * ~np.isin(self.cutter, self.cutter[chosen])
             gain -= self.costs.setup * ~np.isin(self.setup, self.setup[chosen])
         best = int(gain.argmax())
         return best, float(gain[best])
 
-    def of(self, which: Which) -> "Problem":
-        """The same samples with some of the candidates."""
-        return Problem(self.cost[:, which], self.cutter[which], self.setup[which], self.costs)
+    def of(self, which: Which, rows: NDArray[np.bool_] | None = None) -> "Problem":
+        """Some of the candidates, each of which costs the same, with the samples or some (n,) of them."""
+        cost = self.cost[:, which] if rows is None else self.cost[np.ix_(rows, which)]
+        return Problem(cost, self.cutter[which], self.setup[which], self.costs)
 
 
 def fastest(problem: Problem, start: Which | None = None) -> Location:
@@ -128,7 +168,7 @@ def cheap(problem: Problem, start: Which | None = None) -> Which:
 
 def bounded(problem: Problem, chosen: Which) -> Location:
     """Say what a choice costs, and bound what any choice does."""
-    cost = problem.total(chosen)
+    cost = problem.turned(chosen)
     return Location(chosen, cost, min(_bound(problem, chosen), cost))
 
 
@@ -141,27 +181,33 @@ def _now(problem: Problem, chosen: Which) -> Floats:
 
 def _grown(problem: Problem, chosen: Which) -> Which:
     """A choice with candidates added as long as one saves something."""
+    now = _now(problem, chosen)
+    gains = problem.gains(now)
     while True:
-        best, gain = problem.added(chosen, _now(problem, chosen))
-        if gain <= _NOTHING:
+        best, gain = problem.added(chosen, gains)
+        if gain <= _NOTHING or best in chosen:
             return chosen
         chosen = np.append(chosen, best)
+        before, now = now, np.minimum(now, problem.cost[:, best])
+        gains = problem.regained(gains, before, now)
 
 
 def _improved(problem: Problem, chosen: Which) -> Which:
     """A choice of which leaving out or exchanging one candidate saves nothing more."""
-    cost = problem.total(chosen)
+    cost, now = problem.total(chosen), _now(problem, chosen)
+    gains = problem.gains(now)
     for _ in range(_ROUNDS):
         before = cost
         for candidate in chosen.tolist():
             rest = chosen[chosen != candidate]
-            if problem.total(rest) < cost - _NOTHING:
-                chosen, cost = rest, problem.total(rest)
-                continue
-            other, _ = problem.added(rest, _now(problem, rest))
-            swapped = np.append(rest, other)
-            if problem.total(swapped) < cost - _NOTHING:
-                chosen, cost = swapped, problem.total(swapped)
+            other = rest
+            if not problem.total(rest) < cost - _NOTHING:
+                best, _gain = problem.added(rest, problem.regained(gains, now, _now(problem, rest)))
+                other = np.append(rest, best)
+            if problem.total(other) < cost - _NOTHING:
+                chosen, cost = other, problem.total(other)
+                last, now = now, _now(problem, chosen)
+                gains = problem.regained(gains, last, now)
         if cost >= before - _NOTHING:
             break
     return chosen
@@ -184,7 +230,39 @@ def exchanged(problem: Problem, chosen: Which) -> Which:
     return np.sort(chosen)
 
 
-def lagrange(cost: Floats, operation: float, price: Floats) -> tuple[float, Floats, Floats]:
+@dataclass(frozen=True, slots=True, eq=False)
+class Reach:
+    """The operations of one cutter in one setup cost at least as much together as the candidate that costs most.
+
+    Attributes
+    ----------
+    least : (m,) float
+        By candidate, ascending in each group.
+    first : (g,) int64
+        Of each group, its first candidate.
+    """
+
+    least: Floats
+    first: Which
+
+    @classmethod
+    def of(cls, least: Floats, group: Which) -> "Reach":
+        """That of candidates in the order of their groups."""
+        return cls(least, np.flatnonzero(np.diff(group, prepend=-1)))
+
+    def gained(self, reduced: Floats) -> tuple[float, NDArray[np.bool_]]:
+        """Sum up what candidates gain together at most, 0 or less, and say which (m,) do, by their reduced costs (m,)."""
+        value, taken = 0.0, np.zeros(len(reduced), bool)
+        for low, high in pairwise([*self.first.tolist(), len(reduced)]):
+            gain = np.cumsum(np.minimum(0.0, reduced[low:high])) + self.least[low:high]
+            last = int(gain.argmin())
+            if gain[last] < 0.0:
+                value += float(gain[last])
+                taken[low : low + last + 1] = reduced[low : low + last + 1] < 0.0
+        return value, taken
+
+
+def lagrange(cost: Floats, operation: float, price: Floats, reach: Reach | None = None) -> tuple[float, Floats, Floats]:
     """Bound what any choice costs that pays for its samples and operations alone, by prices (n,) of samples.
 
     Whatever the prices, a choice pays for each sample its price, less what its candidates gain on that: what they can gain at
@@ -197,6 +275,8 @@ def lagrange(cost: Floats, operation: float, price: Floats) -> tuple[float, Floa
     operation : float
         What each candidate costs beside.
     price : (n,) float
+    reach : Reach, optional
+        What some candidates cost together at least, beside.
 
     Returns
     -------
@@ -204,12 +284,19 @@ def lagrange(cost: Floats, operation: float, price: Floats) -> tuple[float, Floa
         The bound.
     (m,) float
         Reduced costs of the candidates: those below 0 gain something.
-    (m, n) float
-        What each candidate gains on each sample, 0 or less.
+    (n,) float
+        How much more often than once the candidates that gain serve each sample, below 0 where none does.
     """
-    gain = np.minimum(0.0, cost - price)
+    gain = np.subtract(cost, price)
+    np.minimum(gain, 0.0, out=gain)
     reduced = operation + gain.sum(axis=1)
-    return float(price.sum() + np.minimum(0.0, reduced).sum()), reduced, gain
+    if reach is None:
+        value, taken = float(np.minimum(0.0, reduced).sum()), reduced < 0.0
+    else:
+        value, taken = reach.gained(reduced)
+    # Large prices of both signs cancel: what the sums may be wrong by leaves the bound, too.
+    wrong = np.finfo(float).eps * (len(price) + len(reduced)) * float(np.abs(price).sum() + np.abs(reduced).sum())
+    return float(price.sum()) + value - wrong, reduced, (gain[taken] < 0.0).sum(axis=0) - 1.0
 
 
 class _Ascent:
@@ -226,8 +313,11 @@ class _Ascent:
         Costs looked at.
     """
 
-    def __init__(self, cost: Floats, operation: float, base: float, price: Floats) -> None:
+    def __init__(
+        self, cost: Floats, operation: float, base: float, price: Floats, reach: Floats, group: Which
+    ) -> None:  # fmt: skip
         self._cost, self._operation, self._base, self.price = cost, operation, base, price
+        self._least, self._group, self._reach = reach, group, Reach.of(reach, group)
         self._mean, self._length, self._waited = np.zeros(len(price)), 1.0, 0
         self.bound, self.work, self.over = -np.inf, 0, not len(cost)
 
@@ -237,9 +327,9 @@ class _Ascent:
         if np.isfinite(self.bound):
             far = most - self.bound + 2e-3 * abs(most)
             price = price + self._length * far / max(1e-300, float(self._mean @ self._mean)) * self._mean
-        value, reduced, gain = lagrange(self._cost, self._operation, price)
+        value, reduced, often = lagrange(self._cost, self._operation, price, self._reach)
         value += self._base
-        direction = 1.0 - (gain[reduced < 0.0] < 0.0).sum(axis=0)
+        direction = -often
         self._mean = _NEWEST * direction + (1.0 - _NEWEST) * self._mean if np.isfinite(self.bound) else direction
         self._waited = 0 if value > self.bound + _GAIN * abs(most) else self._waited + 1
         if value > self.bound:
@@ -251,7 +341,8 @@ class _Ascent:
         # With one of the others any choice costs more than that: they are in no better choice.
         some = value + np.maximum(0.0, reduced) <= most + _NOTHING
         if 0.0 < some.mean() < _FEWER:
-            self._cost = self._cost[some]
+            self._cost, self._least, self._group = self._cost[some], self._least[some], self._group[some]
+            self._reach = Reach.of(self._least, self._group)
 
 
 def _bound(problem: Problem, chosen: Which) -> float:
@@ -261,20 +352,25 @@ def _bound(problem: Problem, chosen: Which) -> float:
     """
     if not len(problem.cost):
         return 0.0
-    most, costs = problem.total(chosen), problem.costs
+    most, costs, turning = problem.turned(chosen), problem.costs, problem.turning
     which, now = problem.cost[:, chosen].argmin(axis=1), problem.cost[:, chosen].min(axis=1)
     first = now + costs.operation / np.bincount(which, minlength=len(chosen))[which]
-    table = np.ascontiguousarray(problem.cost.T)
-    whole = _Ascent(table, costs.operation, 0.0, first)
+    reach = np.zeros(len(problem.cutter)) if turning is None else turning.reach
+    operation = costs.operation if turning is None else 0.0
+    group = np.unique(np.column_stack([problem.cutter, problem.setup]), axis=0, return_inverse=True)[1].reshape(-1)
+    order = np.lexsort((reach, group))
+    table, reach, group = np.ascontiguousarray(problem.cost.T[order]), reach[order], group[order]
+    whole = _Ascent(table, operation, 0.0, first, reach, group)
     for _ in range(_FIRST):
         if whole.over or whole.bound >= most * (1.0 - _CLOSE):
             break
         whole.step(most)
     open_ = list[_Ascent]()
-    for base, kept in _sets(problem):
+    for base, inside in _sets(problem):
+        kept = inside[order]
         served = np.isfinite(table[kept]).any(axis=0).all()
         if served and base + whole.bound < most:
-            open_.append(_Ascent(table[kept], costs.operation, base, whole.price))
+            open_.append(_Ascent(table[kept], operation, base, whole.price, reach[kept], group[kept]))
             open_[-1].step(most)
     work = 0
     while open_:

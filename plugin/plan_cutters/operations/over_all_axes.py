@@ -134,7 +134,7 @@ class OpenCells:
     def __init__(self, probes: Probes, rows: Rows) -> None:
         self.probes, self.rows, self.made = probes, rows, 0
         self._tools: dict[tuple[Cutter, int, int, float], list[Tool]] = {}
-        self._modes = [[each.inner_tool(cutter).mode for cutter in probes.cutters] for each in probes.setups]
+        self._modes = [[setup.inner_tool(each).mode for setup in probes.setups] for each in probes.cutters]
 
     def table(self, cells: Cells, before: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
         """Find which cells are open, (cells, cutters with setups, rows); `before`: what is known of larger cells around them."""
@@ -165,7 +165,7 @@ class OpenCells:
         # What is enclosed is not asked for: only what a triangle blocks counts.
         solids, contacts = sheet(conditions.around.certain.tree), contacts_of(self.probes.samples)
         free = np.zeros(len(mine), bool)
-        for number, mode in enumerate(self._modes[s][c]):
+        for number, mode in enumerate(self._modes[c][s]):
             touching = (tilt + radius >= mode[TILT_FROM] - _ROUNDING) & (tilt - radius <= mode[TILT_TO] + _ROUNDING)
             turn = _turn(tilt, radius, float(mode[OFFSET_OF]))
             free |= touching & ~np.isfinite(turn)

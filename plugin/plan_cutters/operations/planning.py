@@ -19,12 +19,13 @@ from plan_cutters.operations.candidates import STEP, apart, candidates
 from plan_cutters.operations.curve import curve
 from plan_cutters.operations.fastest import Costs, Problem, bounded, cheap, exchanged
 from plan_cutters.operations.fewest import FINEST, Search, search_fewest
+from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.over_all_axes import over_all_axes
 from plan_cutters.operations.plans import Task, best_area, considered, orientations_of, plan_with, small_pieces
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
-from plan_cutters.operations.rest_areas import allowed, largest_first, worths
-from plan_cutters.operations.timing import Paths, problem_of, shared_area
+from plan_cutters.operations.rest_areas import allowed, by_size, largest_first, worths
+from plan_cutters.operations.timing import Paths, Problems, shared_area
 from plan_cutters.options import Options
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress
@@ -62,7 +63,6 @@ def plan_operations(
     options = ready.options
     task = _task(ready, everywhere, least)
     finest = FINEST if options.index_step is None else options.index_step
-    costs = Costs(options.index_time, options.change_time, options.setup_time)
     with stage("operations") as tell:
         search = Search(task.probes, _first(task), task.rows, lambda bare: _stored(task, bare))
         fewest = search_fewest(search, task.orientations, options.index_step or STEP, finest, tell)
@@ -71,19 +71,19 @@ def plan_operations(
         whole = float(np.nansum(ready.samples.area[ready.somewhere]))
         steps = curve(task.probes, fewest, task.rows, ready.samples.area, whole, lambda: _even(task, search))
         plans, timed, worth = [], None, tuple[Worth, ...]()
+        few = fewest.columns.of(fewest.chosen)
         if options.operations in ("fewest", "both"):
-            plans.append(_capped(task, "fewest", _quicker(task, search, fewest.columns.of(fewest.chosen), costs)))
+            plans.append(_capped(task, "fewest", _quicker(task, search, few)))
         if options.operations in ("fastest", "both"):
-            columns, timed, worth = _fastest(task, search, fewest.columns.of(fewest.chosen), costs)
+            columns, timed, worth = _fastest(task, search, few)
             plans.append(_capped(task, "fastest", columns))
             if len(task.cutters) > 1:
-                columns = largest_first(task, search, fewest.columns.of(fewest.chosen))
-                plans.append(_capped(task, "largest first", columns))
+                plans.append(_capped(task, "largest first", _by_habit(task, search, few)))
         plans = [proved(ready, each) for each in plans]
     small = tuple(note for each in plans for note in small_pieces(each, ready.samples, options.overlap))
     return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
                       task.probes.made, task.paths.feed, everywhere[0][task.cutters[0]].reason, timed, worth=worth,
-                      notes=small)  # fmt: skip
+                      notes=small, index_from=task.indexing.source)  # fmt: skip
 
 
 def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], least: LeastSet | None) -> Task:
@@ -95,7 +95,10 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     )
     probes = Probes(ready.samples, cutters, ready.setups, open_)
     paths = Paths(options.scallop, options.stepover, feeds(options, cutters))
-    return Task(ready, cutters, orientations_of(ready), tuple(everywhere), np.flatnonzero(reached), probes, paths)
+    where = orientations_of(ready)
+    indexing = Indexing(where, options.index_time)
+    return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing,
+                Problems(ready.samples, cutters, paths, indexing))  # fmt: skip
 
 
 def feeds(options: Options, cutters: Sequence[Cutter]) -> Mapping[Cutter, float] | None:
@@ -150,25 +153,30 @@ def _capped(task: Task, name: str, columns: Columns) -> OperationPlan:
     return plan_with(task, name, columns, (lambda serves: allowed(task, columns, serves)) if habit else None)
 
 
-def _even(task: Task, search: Search) -> tuple[Columns, NDArray[np.bool_], Floats]:
-    """Return the candidates that are known whole, where they serve samples all over the part, and the area of each of these."""
+def _even(task: Task, search: Search) -> tuple[Columns, Rows, NDArray[np.bool_], Floats]:
+    """Return the candidates that are known whole, their numbers, where they serve samples all over the part, and these' area."""
     wanted = np.setdiff1d(task.rows, search.alone)
     most = _EVEN if task.ready.options.operations == "fewest" else _TIMED
     search.require(wanted[:: max(1, len(wanted) // most)])
     active, table = search.whole
-    return search.columns.of(active), table, shared_area(task.ready.samples, wanted, search.rows)
+    return search.columns.of(active), active, table, shared_area(task.ready.samples, wanted, search.rows)
 
 
-def _timed(task: Task, search: Search, costs: Costs) -> tuple[Columns, Problem, float]:
-    """The candidates that are known whole, what samples all over the part cost with each, and the area that these stand for."""
-    columns, table, area = _even(task, search)
-    samples = task.ready.samples
-    problem = problem_of(columns, table, search.rows, area, samples, task.cutters, task.paths, costs)
+def _timed(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Problem, float]:
+    """The candidates that are known whole, what samples all over the part cost with each, and the area that these stand for.
+
+    Where the rotary axes have rates, an orientation counts in the choice what it takes in the mean of the fewest.
+    """
+    options, indexing = task.ready.options, task.indexing
+    columns, active, table, area = _even(task, search)
+    mean = indexing.constant if indexing.rate is None else indexing.together(fewest) / max(1, len(fewest))
+    costs = Costs(mean, options.change_time, options.setup_time)
+    problem = task.problems.of(columns, active, table, search.rows, area, costs)
     return columns, problem, float(area.sum())
 
 
 def _checked(
-    task: Task, search: Search, fewest: Columns, costs: Costs, choose: Callable[[Problem, Rows], Rows], rounds: int
+    task: Task, search: Search, fewest: Columns, choose: Callable[[Problem, Rows], Rows], rounds: int
 ) -> tuple[Columns, Problem, float, Rows, Rows, bool]:
     """Choose columns by some samples and check them at all; what they leave joins these samples, and it is chosen again.
 
@@ -183,7 +191,7 @@ def _checked(
     """
     wanted = np.setdiff1d(task.rows, search.alone)
     while True:
-        columns, problem, area = _timed(task, search, costs)
+        columns, problem, area = _timed(task, search, fewest)
         known = np.flatnonzero(np.isin(columns.key, fewest.key))
         chosen, rounds = choose(problem, known), rounds - 1
         left = wanted[~task.probes.table(wanted, columns.of(chosen)).any(axis=1)]
@@ -194,22 +202,29 @@ def _checked(
             return columns, problem, area, chosen, known, False
 
 
-def _quicker(task: Task, search: Search, fewest: Columns, costs: Costs) -> Columns:
+def _quicker(task: Task, search: Search, fewest: Columns) -> Columns:
     """As many columns that cut faster, if they serve all samples as well; else the same."""
 
     def choose(problem: Problem, known: Rows) -> Rows:
         priced = np.isfinite(problem.cost[:, known]).any(axis=1).all()
         return exchanged(problem, known) if priced else known
 
-    columns, _, _, chosen, _, whole = _checked(task, search, fewest, costs, choose, _TRIES)
+    columns, _, _, chosen, _, whole = _checked(task, search, fewest, choose, _TRIES)
     return columns.of(chosen) if whole else fewest
 
 
-def _fastest(task: Task, search: Search, fewest: Columns, costs: Costs) -> tuple[Columns, Fastest, tuple[Worth, ...]]:
+def _fastest(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Fastest, tuple[Worth, ...]]:
     """Columns of least time."""
-    columns, problem, area, chosen, known, whole = _checked(task, search, fewest, costs, cheap, _ROUNDS)
+    columns, problem, area, chosen, known, whole = _checked(task, search, fewest, cheap, _ROUNDS)
     chosen = chosen if whole else np.union1d(chosen, known)
     found = bounded(problem, chosen)
     at_best = float(problem.cost.min(axis=1, initial=np.inf).sum())
     timed = Fastest(found.cost, found.bound, at_best, area, len(problem.cost), len(columns))
     return columns.of(chosen), timed, worths(task, problem, chosen)
+
+
+def _by_habit(task: Task, search: Search, fewest: Columns) -> Columns:
+    """Columns of the habit to let the largest cutter go first; what they leave goes with the fewest."""
+    order = by_size(task)
+    columns, _, _, chosen, known, whole = _checked(task, search, fewest, lambda p, _: largest_first(p, order), _TRIES)
+    return columns.of(chosen if whole else np.union1d(chosen, known))

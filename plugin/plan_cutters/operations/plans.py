@@ -1,7 +1,8 @@
 """A plan made of chosen columns: what each sample goes with, region by region."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,13 +11,16 @@ from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Operation, OperationPlan
-from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.operations.candidates import Orientations
+from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.labels import joined, labelled, regions_of
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.strips import strips
-from plan_cutters.operations.timing import Paths, costs_of, widths
+from plan_cutters.operations.timing import Paths, Problems, costs_of, widths
 from plan_cutters.operations.workplanes import workplanes
+from plan_cutters.scene.clearance import least_clearance
+from plan_cutters.scene.fixed_axis import held_at
 from plan_cutters.scene.preparation import Prepared
 
 Rows = NDArray[np.int64]
@@ -41,6 +45,8 @@ class Task:
         Samples that are reached by one of the cutters in one of the setups.
     probes : Probes
     paths : Paths
+    indexing : Indexing
+    problems : Problems
     """
 
     ready: Prepared
@@ -50,6 +56,8 @@ class Task:
     rows: Rows
     probes: Probes
     paths: Paths
+    indexing: Indexing
+    problems: Problems
 
 
 def plan_with(
@@ -63,10 +71,8 @@ def plan_with(
     n, overlap = len(samples), task.ready.options.overlap
     area, edge = np.nan_to_num(samples.area), samples.neighbours
     serves, width = np.zeros((n, len(columns)), bool), np.full((n, len(columns)), np.nan)
-    serves[rows], width[rows] = (
-        task.probes.table(rows, columns),
-        widths(columns, rows, samples, task.cutters, task.paths),
-    )
+    serves[rows] = task.probes.table(rows, columns)
+    width[rows] = widths(columns, rows, samples, task.cutters, task.paths, serves[rows])
     cost = np.full((n, len(columns)), np.inf)
     cost[rows] = costs_of(columns, width[rows], serves[rows], area[rows], task.cutters, task.paths)
     # A border is cut twice over the overlap: what that takes is what the same area costs elsewhere.
@@ -74,7 +80,8 @@ def plan_with(
     each = float((cost[finite].sum() / max(1e-300, (finite * area[:, None]).sum())) if finite.any() else 0.0)
     border = np.sqrt(0.5 * area[edge].sum(axis=1)) * overlap * each
     may = finite if rule is None else rule(finite)
-    label = joined(labelled(np.where(may, cost, np.inf), edge, border), may, edge, area, _SMALL * overlap**2)
+    # A rule is about areas that are worth an operation: crumbs go with what is beside them.
+    label = joined(labelled(np.where(may, cost, np.inf), edge, border), finite, edge, area, _SMALL * overlap**2)
     operations, order = _fixed(task, columns, finite, label, area)
     place = np.full(len(columns) + 1, -1, np.int32)
     place[order] = np.arange(len(order))
@@ -90,8 +97,9 @@ def plan_with(
             speed[number == k] = task.paths.feed[operation.cutter] / 60.0
     with np.errstate(divide="ignore", invalid="ignore"):
         seconds = area / (strip * speed)
+    operations = [replace(each, clearance=_clearance(task, each)) for each in operations]
     region = regions_of(number, edge, area)
-    planes = workplanes(operations, task.ready, task.orientations)
+    planes = workplanes(operations, task.ready, task.indexing)
     return OperationPlan(name, tuple(operations), number, table, strip, seconds, region, planes)
 
 
@@ -136,6 +144,20 @@ def _simultaneous(
                 Operation(f"op{before + len(found) + 1}", "simultaneous", cutter, s, None, None, None, mine, mine)
             )
     return number, table, strip, found
+
+
+def _clearance(task: Task, operation: Operation) -> float | None:
+    """The least clearance at the samples of an operation; None where nothing is known."""
+    samples, n = task.ready.samples, len(task.ready.samples)
+    number = np.full(n, -1, np.int32)
+    number[operation.rows] = 0
+    if operation.axis is None:
+        verdicts = task.everywhere[operation.setup][operation.cutter]
+        verdicts = replace(verdicts, verdict=np.where(number == 0, verdicts.verdict, UNJUDGED).astype(np.uint8))
+    else:
+        verdicts = held_at(operation.axis[None], number, samples)
+    found = least_clearance(samples, operation.cutter, verdicts, task.ready.setups[operation.setup])
+    return found if math.isfinite(found) else None
 
 
 def small_pieces(plan: OperationPlan, samples: SurfaceSamples, overlap: float) -> tuple[str, ...]:

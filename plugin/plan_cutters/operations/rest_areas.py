@@ -1,18 +1,16 @@
 """Rest areas: what larger cutters leave for smaller ones, what a shop's habit costs, and what each cutter is worth."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.operations import Worth
-from plan_cutters.operations.cover import fewest
 from plan_cutters.operations.fastest import Problem, cheap
-from plan_cutters.operations.fewest import Search
 from plan_cutters.operations.plans import Task
 
 Rows = NDArray[np.int64]
-#: Rounds in which samples that a cutter's orientations leave join the table, and samples that join it at once.
-_ROUNDS, _MORE = 6, 120
 
 
 def by_size(task: Task) -> list[int]:
@@ -22,46 +20,56 @@ def by_size(task: Task) -> list[int]:
     )  # fmt: skip
 
 
-def largest_first(task: Task, search: Search, fewest_columns: Columns) -> Columns:
-    """The columns of a shop's habit: each cutter, the largest first, takes all that it serves of what is left.
+def largest_first(problem: Problem, order: Sequence[int]) -> Rows:
+    """Choose by the habit of a shop: each cutter, the largest first, takes all that it serves of what is left, but for crumbs.
 
-    It does so with few orientations. What no cutter's candidates serve in its turn goes with the columns of the fewest plan.
+    Crumbs are what a cutter cuts in one orientation in less time than that takes to turn to, if a smaller cutter serves it:
+    nobody turns a large cutter there.
+
+    Parameters
+    ----------
+    problem : Problem
+    order : sequence of int
+        Numbers of the cutters, the largest first.
+
+    Returns
+    -------
+    (k,) int64
+        Candidates, ascending, that serve all samples.
     """
-    left = np.setdiff1d(task.rows, search.alone)
-    found = fewest_columns.of(np.zeros(0, np.int64))
-    for c in by_size(task):
-        own, left = _own(task, search, c, left)
-        found = found.and_(own)
-    while len(left):
-        serves = task.probes.table(left, fewest_columns)
-        best = int(serves.sum(axis=0).argmax())
-        if not serves[:, best].any():
+    left, found = np.ones(len(problem.cost), bool), list[int]()
+    for place, cutter in enumerate(order):
+        own = np.flatnonzero(problem.cutter == cutter)
+        later = np.flatnonzero(np.isin(problem.cutter, order[place + 1 :]))
+        mine = left & np.isfinite(problem.cost[:, own]).any(axis=1)
+        if not mine.any():
+            continue
+        part = problem.of(own, mine)
+        again = np.asarray(np.isfinite(problem.cost[np.ix_(mine, later)]).any(axis=1))
+        chosen = own[_without_crumbs(part, cheap(part), again)]
+        left &= ~np.isfinite(problem.cost[:, chosen]).any(axis=1)
+        found += chosen.tolist()
+    return np.sort(np.array(found, np.int64))
+
+
+def _without_crumbs(problem: Problem, chosen: Rows, again: NDArray[np.bool_]) -> Rows:
+    """A choice without candidates that cut less than they cost: `again` (n,) are samples that something else serves later."""
+    while len(chosen):
+        cost = problem.cost[:, chosen]
+        serves = np.isfinite(cost)
+        there = serves.any(axis=1)
+        cuts = np.bincount(cost.argmin(axis=1)[there], cost[there].min(axis=1), len(chosen))
+        needed = serves[(serves.sum(axis=1) == 1) & ~again].any(axis=0)
+        crumbs = np.flatnonzero((cuts < problem.costs.operation) & ~needed)
+        if not len(crumbs):
             break
-        found, left = found.and_(fewest_columns.of(np.array([best]))), left[~serves[:, best]]
-    return found
+        chosen = np.delete(chosen, crumbs[cuts[crumbs].argmin()])
+    return chosen
 
 
 def _reached(task: Task, cutter: int) -> NDArray[np.bool_]:
     """Samples (n,) that a cutter reaches in one of the setups."""
     return np.asarray(np.logical_or.reduce([verdicts[task.cutters[cutter]].reached for verdicts in task.everywhere]))
-
-
-def _own(task: Task, search: Search, cutter: int, left: Rows) -> tuple[Columns, Rows]:
-    """Few columns of one cutter for what is left, and what is left then."""
-    reached = _reached(task, cutter)
-    for _ in range(_ROUNDS):
-        active, table = search.whole
-        mine = search.columns.cutter[active] == cutter
-        columns = search.columns.of(active[mine])
-        some = table[np.isin(search.rows, left)][:, mine]
-        some = some[some.any(axis=1)]
-        chosen = columns.of(fewest(some, prove=False).chosen)
-        served = np.asarray(task.probes.table(left, chosen).any(axis=1))
-        missed = left[~served & reached[left] & ~np.isin(left, search.rows)]
-        if not len(missed):
-            break
-        search.require(missed[:: max(1, len(missed) // _MORE)])
-    return chosen, left[~served]
 
 
 def allowed(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,8 +11,9 @@ from scipy.spatial import cKDTree
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.operations.fastest import Costs, Problem
-from plan_cutters.operations.strips import strips
+from plan_cutters.operations.fastest import Costs, Problem, Turning
+from plan_cutters.operations.indexing import Indexing
+from plan_cutters.operations.strips import strips_at
 
 Rows = NDArray[np.int64]
 #: How much farther apart samples of two faces count than those of one, in lengths of the part.
@@ -54,9 +55,11 @@ def widths(
         row, column = np.nonzero(asked & (columns.cutter == c))
         for part in np.array_split(np.arange(len(row)), max(1, math.ceil(len(row) / _AT_ONCE))):
             i, k = row[part], column[part]
-            found[i, k] = strips(
-                cutter, samples_at(samples, rows[i]), columns.axis[k], paths.scallop, paths.stepover
-            ).width
+            at = rows[i]
+            found[i, k] = strips_at(
+                cutter, samples.normal[at], samples.direction_max[at], samples.curvature[at], columns.axis[k], paths.scallop,
+                paths.stepover,
+            ).width  # fmt: skip
     return found
 
 
@@ -72,13 +75,6 @@ def costs_of(
     return np.where(serves & np.isfinite(found), found, np.inf)
 
 
-def samples_at(samples: SurfaceSamples, rows: Rows) -> SurfaceSamples:
-    """Some of the samples, without their grids and neighbours."""
-    names = ("point", "normal", "direction_max", "curvature", "uv", "face", "area", "unjudged")
-    own = {name: getattr(samples, name)[rows] for name in names}
-    return replace(samples, **own, neighbours=np.zeros((0, 2), np.int32), grids=())
-
-
 def shared_area(samples: SurfaceSamples, all_rows: Rows, rows: Rows) -> Floats:
     """The area (r,) that some samples stand for when each of all gives its own to the nearest of them, on its face if it can."""
     size = float(np.linalg.norm(np.ptp(samples.point[all_rows], axis=0))) or 1.0
@@ -87,21 +83,56 @@ def shared_area(samples: SurfaceSamples, all_rows: Rows, rows: Rows) -> Floats:
     return np.bincount(nearest, np.nan_to_num(samples.area[all_rows]), len(rows)).astype(float)
 
 
-def problem_of(
-    columns: Columns, table: NDArray[np.bool_], rows: Rows, area: Floats, samples: SurfaceSamples, cutters: Sequence[Cutter],
-    paths: Paths, costs: Costs,
-) -> Problem:  # fmt: skip
-    """Say what some samples, weighted by area, cost with columns.
+class Problems:
+    """Say what samples cost with candidates, as both become more: widths that were found once are kept.
 
     Parameters
     ----------
-    columns : Columns
-    table : (r, m) bool
-        Where they serve.
-    rows : (r,) int64
-    area : (r,) float
-        That each of `rows` stands for, mm2.
-    samples, cutters, paths, costs
+    samples : SurfaceSamples
+    cutters : sequence of Cutter
+    paths : Paths
+    indexing : Indexing
     """
-    width = widths(columns, rows, samples, cutters, paths, table)
-    return Problem(costs_of(columns, width, table, area, cutters, paths), columns.cutter, columns.setup, costs)
+
+    def __init__(
+        self, samples: SurfaceSamples, cutters: Sequence[Cutter], paths: Paths, indexing: Indexing
+    ) -> None:  # fmt: skip
+        self._samples, self._cutters, self._paths, self._indexing = samples, cutters, paths, indexing
+        self._rows: Rows = np.zeros(0, np.int64)
+        self._active: Rows = np.zeros(0, np.int64)
+        self._width: Floats = np.zeros((0, 0))
+        self._known: NDArray[np.bool_] = np.zeros((0, 0), bool)
+
+    def of(
+        self, columns: Columns, active: Rows, table: NDArray[np.bool_], rows: Rows, area: Floats, costs: Costs
+    ) -> Problem:
+        """Say what some samples, weighted by area, cost with columns.
+
+        Parameters
+        ----------
+        columns : Columns
+        active : (m,) int64
+            Their numbers, ascending: what had one keeps it.
+        table : (r, m) bool
+            Where they serve.
+        rows : (r,) int64
+            Those of the time before come first.
+        area : (r,) float
+            That each of `rows` stands for, mm2.
+        costs : Costs
+        """
+        width, known = np.full(table.shape, np.nan), np.zeros(table.shape, bool)
+        if np.array_equal(rows[: len(self._rows)], self._rows) and np.isin(self._active, active).all():
+            there = np.searchsorted(active, self._active)
+            width[: len(self._rows), there], known[: len(self._rows), there] = self._width, self._known
+        new = table & ~known
+        found = widths(columns, rows, self._samples, self._cutters, self._paths, new)
+        width[new] = found[new]
+        self._rows, self._active, self._width, self._known = rows, active, width, known | new
+        cost = costs_of(columns, width, table, area, self._cutters, self._paths)
+        turning = None
+        if self._indexing.rate is not None:
+            turning = Turning(
+                lambda chosen: self._indexing.together(columns.of(chosen)), self._indexing.from_zero(columns)
+            )
+        return Problem(cost, columns.cutter, columns.setup, costs, turning)

@@ -29,6 +29,8 @@ _BESIDE = {
     "operations_glb",
     "fastest_step",
     "fastest_glb",
+    "largest_first_step",
+    "largest_first_glb",
 }
 FORMATS = ("json", *(f for f in WRITERS if f not in _BESIDE))
 #: What is written unless asked otherwise (`docs/decisions/0017-formats-on-request.md`).
@@ -165,7 +167,8 @@ def write_all(
 
     if step_schema not in SCHEMAS:
         raise OptionError(f"STEP schema {step_schema!r} is not built in; give one of {', '.join(SCHEMAS)}")
-    wanted = with_operations(formats, len(result.plan.operations.plans) if result.plan.operations else 0)
+    plans = [str(each.name) for each in result.plan.operations.plans] if result.plan.operations else []
+    wanted = with_operations(formats, plans)
     later = [name for name in LATER if name in wanted]
     arrays = [name for name in ("npz",) if name in formats] + (["postures"] if result.maps else [])
     arrays += ["operations", "operations_csv"] if result.plan.operations else []

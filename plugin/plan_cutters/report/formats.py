@@ -30,22 +30,23 @@ WRITERS = {
     "operations_glb": ("operations.glb", "operation_models", "write_operations_glb"),
     "fastest_step": ("operations_fastest.step", "operation_models", "write_fastest_step"),
     "fastest_glb": ("operations_fastest.glb", "operation_models", "write_fastest_glb"),
+    "largest_first_step": ("operations_largest_first.step", "operation_models", "write_largest_first_step"),
+    "largest_first_glb": ("operations_largest_first.glb", "operation_models", "write_largest_first_glb"),
     "csv": ("axes.csv", "to_csv", "write_csv"),
     "vtk": ("axes.vtp", "to_vtk", "write_vtk"),
     "regions": ("axis_regions.json", "regions", "write_regions"),
     "png": ("review.png", "drawing.part", "write_png"),
 }
-#: What is shown on faces that are split, which the CAD kernel has a part in: along the verdicts (None), or along the
-#: operations of a plan, by its place. Of each, the first one is made while the others are.
-_MODELS: dict[int | None, tuple[str, ...]] = {
-    None: ("glb", "merged", "png", "step"),
-    0: ("operations_glb", "operations_step"),
-    1: ("fastest_glb", "fastest_step"),
+#: What is shown on faces that are split, which the CAD kernel has a part in: along the verdicts, or along the operations of the
+#: first plan, or of another one by its name. Of each, the first one is made while the others are.
+_MODELS = {
+    "verdicts": ("glb", "merged", "png", "step"),
+    "operations": ("operations_glb", "operations_step"),
+    "fastest": ("fastest_glb", "fastest_step"),
+    "largest first": ("largest_first_glb", "largest_first_step"),
 }
 #: What follows the plan and the arrays, the easier ones first.
 LATER = ("html", "csv", "vtk", "regions", *(name for models in _MODELS.values() for name in models))
-#: What is written of operations with these formats, besides what they say: of the first plan, of the second one.
-_OF_OPERATIONS = {"step": ("operations_step", "fastest_step"), "glb": ("operations_glb", "fastest_glb")}
 #: Processor time that a copy may take for a file, s: behind it, the file is made here.
 _COPY = 300.0
 
@@ -93,8 +94,8 @@ class Making:
         """
         from cad_io.kernel.side_process import SideProcess
 
-        models = {which: [name for name in mine if name in formats] for which, mine in _MODELS.items()}
-        models = {which: mine for which, mine in models.items() if mine}
+        asked = {about: [name for name in mine if name in formats] for about, mine in _MODELS.items()}
+        models = {self._place(about): mine for about, mine in asked.items() if mine}
         each = [name for mine in models.values() for name in mine]
         with ExitStack() as copies:
 
@@ -114,6 +115,13 @@ class Making:
                 model = begun(make, first, which not in self._errors and len(mine) > 1)
                 for name in sorted(mine, key=lambda name: name == first and model.works):
                     yield name, model.result if name == first else partial(make, name)
+
+    def _place(self, about: str) -> int | None:
+        """Of a plan of operations its place among them; None where models are about verdicts."""
+        plan = self._result.plan.operations
+        if about == "verdicts" or plan is None:
+            return None
+        return 0 if about == "operations" else [str(each.name) for each in plan.plans].index(about)
 
     def _split(self, which: int | None) -> None:
         if which not in self.splits and which not in self._errors:
@@ -135,9 +143,10 @@ class Making:
         return self.file(name, self.splits[which])
 
 
-def with_operations(formats: Sequence[str], plans: int) -> list[str]:
-    """Formats, and what they stand for with so many plans of operations."""
-    return [*formats, *(name for word in formats for name in _OF_OPERATIONS.get(word, ())[:plans])]
+def with_operations(formats: Sequence[str], plans: Sequence[str]) -> list[str]:
+    """Formats, and what they stand for with plans of operations of these names: the first one's models have no name of a plan."""
+    about = ["operations", *plans[1:]] if plans else []
+    return [*formats, *(name for each in about for name in _MODELS[each] if name.rpartition("_")[2] in formats)]
 
 
 def sha256(file: Path) -> str:

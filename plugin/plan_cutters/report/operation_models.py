@@ -77,13 +77,29 @@ def write_operations_glb(result: Judged, split: Any, path: Path, *, number: int 
 
 
 def write_fastest_step(result: Judged, split: Any, path: Path, *, schema: str = "ap242") -> None:
-    """Write `operations_fastest.step`: the second plan."""
-    write_operations_step(result, split, path, number=1, schema=schema)
+    """Write `operations_fastest.step`: the fastest plan beside another one."""
+    write_operations_step(result, split, path, number=_place(result, "fastest"), schema=schema)
 
 
 def write_fastest_glb(result: Judged, split: Any, path: Path) -> None:
-    """Write `operations_fastest.glb`: the second plan."""
-    write_operations_glb(result, split, path, number=1)
+    """Write `operations_fastest.glb`."""
+    write_operations_glb(result, split, path, number=_place(result, "fastest"))
+
+
+def write_largest_first_step(result: Judged, split: Any, path: Path, *, schema: str = "ap242") -> None:
+    """Write `operations_largest_first.step`: the plan of the habit."""
+    write_operations_step(result, split, path, number=_place(result, "largest first"), schema=schema)
+
+
+def write_largest_first_glb(result: Judged, split: Any, path: Path) -> None:
+    """Write `operations_largest_first.glb`."""
+    write_operations_glb(result, split, path, number=_place(result, "largest first"))
+
+
+def _place(result: Judged, name: str) -> int:
+    operations = result.plan.operations
+    assert operations is not None, "models of operations are written where these were asked for"
+    return [str(each.name) for each in operations.plans].index(name)
 
 
 def _entry(result: Judged, number: int) -> OperationPlanEntry:

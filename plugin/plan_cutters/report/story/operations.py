@@ -31,6 +31,7 @@ def operations(plan: Plan) -> list[Line]:
         *_fewest(found),
         *(line for each in found.plans for line in _plan(found, each)),
         *_fastest(found),
+        *_assumed(found),
         *_habit(found),
         *(line for use in found.cutters for line in _worth(found, use)),
         *motion(found.motion),
@@ -158,6 +159,13 @@ def _fastest(found: OperationsEntry) -> Iterator[str]:
         yield f"The fastest plan is at most {_up(timed.gap)} above {near}."
 
 
+def _assumed(found: OperationsEntry) -> Iterator[str]:
+    """That nobody knows how long an orientation takes, where it counts."""
+    if found.fastest is not None and found.assumed.index_from == "assumed" and found.plans[0].orientations > 1:
+        guess = f"Each orientation counts {found.assumed.index_s:g} s, which is a guess"
+        yield f"{guess}: the machine does not say how fast its rotary axes turn; --index-time tells it."
+
+
 def _habit(found: OperationsEntry) -> Iterator[str]:
     """What it costs to let the largest cutter go first."""
     totals = {plan.name: plan.seconds for plan in found.plans}
@@ -168,6 +176,12 @@ def _habit(found: OperationsEntry) -> Iterator[str]:
         yield f"Largest cutter first costs {_duration(habit - fastest)} more than the fastest plan."
     else:
         yield "Largest cutter first is as fast as the fastest plan."
+    for name in ("largest first", "fastest"):
+        taken = [(use.id, use.takes_mm2[name]) for use in found.cutters if use.takes_mm2.get(name, 0.0) > 0.0]
+        whole = sum(area for _, area in taken)
+        shares = [f"{_share(area / whole)} with {cutter}" for cutter, area in taken]
+        if len(shares) > 1:
+            yield f"Of what is cut, the {name} plan cuts {_joined(shares)}."
 
 
 def _worth(found: OperationsEntry, use: CutterUse) -> Iterator[str]:
