@@ -26,7 +26,7 @@ from plan_cutters.operations.indexing import MOST, Indexing, index_times
 from plan_cutters.report import DEFAULT_FORMATS, operation_models
 from plan_cutters.report.regions import axis_regions
 from plan_cutters.scene.clearance import clearances
-from plan_cutters.scene.fixed_axis import held_at
+from plan_cutters.scene.fixed_axis import held_at, standing
 from tests.support.cad_parts import box
 from tests.support.places import ROOT, SAMPLES
 from tests.support.shapes import ridge
@@ -111,8 +111,8 @@ def test_the_clearance_of_an_operation_is_the_least_of_its_samples(written):
         for number, (said, each) in enumerate(zip(entry.operations, found.operations, strict=True)):
             if each.axis is None:
                 continue
-            there = held_at(each.axis[None], np.where(found.label == number, 0, -1), samples)
-            every = clearances(samples, each.cutter, there, result.ready.setups[0]).distance[each.rows]
+            there = held_at(each.axis[None], np.where(found.label == number, 0, -1), samples, each.cutter, result.ready.setups[0])
+            every = clearances(standing(samples, there), each.cutter, there, result.ready.setups[0]).distance[each.rows]
             assert said.clearance_mm == pytest.approx(every.min(), abs=0.0)
 
 

@@ -37,7 +37,7 @@ def served(part, cutter, *, budget, tolerance=0.01, chord=None, machine="unlimit
         rows = np.arange(len(samples))
         serves = served_by(rows, axes, samples, cutter, conditions)[0].T
         upright = np.where(serves, samples.normal @ axes.T, -2.0)
-        verdicts = held_at(axes, np.where(serves.any(axis=1), upright.argmax(axis=1), -1), samples)
+        verdicts = held_at(axes, np.where(serves.any(axis=1), upright.argmax(axis=1), -1), samples, cutter, conditions)
         fixed = Fixed(axes, serves)
     found = between(samples, verdicts, cutter, whole, side, conditions, budget=budget, fixed=fixed)
     return found, geometry, whole

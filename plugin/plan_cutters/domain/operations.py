@@ -289,6 +289,9 @@ class OperationPlan:
         first.
     planes : tuple of Workplane or None
         Of each operation; None where it is simultaneous.
+    lean : (n, 3) float
+        Unit direction in which the tool leans, across its contact's normal; where it stands upright, the side of its bottom that
+        touches. nan where there is no operation.
     """
 
     name: str
@@ -299,6 +302,7 @@ class OperationPlan:
     seconds: Floats
     region: Ints
     planes: tuple[Workplane | None, ...]
+    lean: Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)

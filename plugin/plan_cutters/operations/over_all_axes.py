@@ -172,11 +172,11 @@ class OpenCells:
             for psi in np.unique(turn[touching & np.isfinite(turn)]).tolist():
                 left = np.flatnonzero(touching & (turn == psi) & ~free)
                 for tool in self._bodies(c, s, number, psi):
-                    missed = np.zeros(len(left), bool)
+                    lean = np.full(len(left), -1, np.int8)
                     self.made += served(
-                        self.rows[mine[left]], axis, contacts, -1.0, math.pi + 1.0, tool, solids, missed
+                        self.rows[mine[left]], axis, contacts, -1.0, math.pi + 1.0, tool, solids, 0, lean
                     )
-                    left = left[missed]
+                    left = left[lean >= 0]
                 free[left] = True
         return free
 

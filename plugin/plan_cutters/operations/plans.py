@@ -20,7 +20,7 @@ from plan_cutters.operations.strips import strips
 from plan_cutters.operations.timing import Paths, Problems, costs_of, widths
 from plan_cutters.operations.workplanes import workplanes
 from plan_cutters.scene.clearance import least_clearance
-from plan_cutters.scene.fixed_axis import held_at
+from plan_cutters.scene.fixed_axis import held_at, standing
 from plan_cutters.scene.preparation import Prepared
 
 Rows = NDArray[np.int64]
@@ -97,10 +97,14 @@ def plan_with(
             speed[number == k] = task.paths.feed[operation.cutter] / 60.0
     with np.errstate(divide="ignore", invalid="ignore"):
         seconds = area / (strip * speed)
-    operations = [replace(each, clearance=_clearance(task, each)) for each in operations]
+    lean = np.full((n, 3), np.nan)
+    for k, operation in enumerate(operations):
+        held = _held(task, operation)
+        lean[operation.rows] = held.tilt_direction[operation.rows]
+        operations[k] = replace(operation, clearance=_clearance(task, operation, held))
     region = regions_of(number, edge, area)
     planes = workplanes(operations, task.ready, task.indexing)
-    return OperationPlan(name, tuple(operations), number, table, strip, seconds, region, planes)
+    return OperationPlan(name, tuple(operations), number, table, strip, seconds, region, planes, lean)
 
 
 def _fixed(
@@ -146,17 +150,22 @@ def _simultaneous(
     return number, table, strip, found
 
 
-def _clearance(task: Task, operation: Operation) -> float | None:
-    """The least clearance at the samples of an operation; None where nothing is known."""
+def _held(task: Task, operation: Operation) -> Verdicts:
+    """The postures at the samples of an operation; those of others are not looked at."""
     samples, n = task.ready.samples, len(task.ready.samples)
     number = np.full(n, -1, np.int32)
     number[operation.rows] = 0
-    if operation.axis is None:
-        verdicts = task.everywhere[operation.setup][operation.cutter]
-        verdicts = replace(verdicts, verdict=np.where(number == 0, verdicts.verdict, UNJUDGED).astype(np.uint8))
-    else:
-        verdicts = held_at(operation.axis[None], number, samples)
-    found = least_clearance(samples, operation.cutter, verdicts, task.ready.setups[operation.setup])
+    if operation.axis is not None:
+        conditions = task.ready.setups[operation.setup]
+        return held_at(operation.axis[None], number, samples, operation.cutter, conditions)
+    verdicts = task.everywhere[operation.setup][operation.cutter]
+    return replace(verdicts, verdict=np.where(number == 0, verdicts.verdict, UNJUDGED).astype(np.uint8))
+
+
+def _clearance(task: Task, operation: Operation, held: Verdicts) -> float | None:
+    """The least clearance of postures of an operation; None where nothing is known."""
+    samples = standing(task.ready.samples, held)
+    found = least_clearance(samples, operation.cutter, held, task.ready.setups[operation.setup])
     return found if math.isfinite(found) else None
 
 

@@ -57,7 +57,7 @@ def _proved(ready: Prepared, plan: OperationPlan, group: list[int], budget: int,
         number[plan.label == k] = i
     axes = np.array([each.axis for each in chosen])
     found = between(
-        samples, held_at(axes, number, samples), chosen[0].cutter, ready.scene.part, ready.scene.orientation,
+        samples, held_at(axes, number, samples, chosen[0].cutter, ready.setups[chosen[0].setup]), chosen[0].cutter, ready.scene.part, ready.scene.orientation,
         ready.setups[chosen[0].setup], budget=budget, most=most, beside=ready.inside_bodies,
         fixed=Fixed(axes, plan.serves[:, group]),
     )  # fmt: skip

@@ -45,6 +45,7 @@ def _columns(plan: OperationPlan) -> dict[str, Any]:
         "strip_mm": plan.strip,
         "seconds": plan.seconds,
         "exclusive": alone,
+        "lean": plan.lean,
     }
 
 

@@ -24,7 +24,7 @@ from plan_cutters.operations.fixed_axes import fixed_axes
 from plan_cutters.operations.labels import pieces
 from plan_cutters.report.protocol import Judged
 from plan_cutters.scene.clearance import clearances
-from plan_cutters.scene.fixed_axis import held_at
+from plan_cutters.scene.fixed_axis import held_at, standing
 
 #: Tilts from which ranges are looked for are so far apart, deg.
 _STEP = 1.0
@@ -45,8 +45,8 @@ def axis_regions(result: Judged) -> AxisRegions:
     verdicts, cutter, conditions = result.here.get(name, result.reaches[name]), result.judged(name), result.conditions
     operations = result.answers.operations
     axes, number = fixed_axes(samples, cutter, verdicts, conditions, operations.plans[0] if operations else None)
-    held = held_at(axes, number, samples)
-    near = clearances(samples, cutter, held, conditions).distance
+    held = held_at(axes, number, samples, cutter, conditions)
+    near = clearances(standing(samples, held), cutter, held, conditions).distance
     label = pieces(number, samples.neighbours)
     free = None if result.maps is None else _Free(result.maps.held(conditions))
     parts = [np.flatnonzero(label == k) for k in range(label.max(initial=-1) + 1)]

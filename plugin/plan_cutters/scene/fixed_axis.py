@@ -4,6 +4,8 @@ A machine that holds its rotary axes while it cuts (3+2) needs just that. Each a
 postures that it finds: what is served is proved to the same tolerance.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -38,14 +40,24 @@ def served_by(
     made : int
         How many times the tool was put down.
     """
-    from plan_cutters.kernels.search.fixed_axis import served
+    lean, made = _tested(rows, axes, samples, cutter, conditions)
+    return lean >= 0, made
+
+
+def _tested(
+    rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, cutter: Cutter, conditions: Conditions
+) -> tuple[NDArray[np.int8], int]:
+    """How a cutter stands at samples with axes (k, m), in the numbers of the kernel, and how many times it was put down."""
+    from plan_cutters.kernels.search.fixed_axis import LEANS, served
 
     low, high = conditions.postures.tilt
-    free = np.zeros((len(axes), len(rows)), bool)
+    lean = np.full((len(axes), len(rows)), -1, np.int8)
     held = np.flatnonzero(conditions.machine.allows(axes, frame_of(conditions.setup, conditions.x)))
     if not len(held) or not len(rows):
-        return free, 0
+        return lean, 0
     tool, solids, contacts = tool_of(conditions.outer_tool(cutter)), conditions.obstacles.solids, contacts_of(samples)
+    all_around = conditions.postures.rotation[1] - conditions.postures.rotation[0] > 2.0 * np.pi - _END
+    ways = LEANS if all_around else 0
 
     def tested(piece: NDArray[np.int64]) -> int:
         """Test a piece of a table of axes by blocks of rows."""
@@ -53,17 +65,18 @@ def served_by(
         count = 0
         for k, part in zip(held[which].tolist(), block.tolist(), strict=True):
             ends = slice(part * _BLOCK, (part + 1) * _BLOCK)
-            count += served(rows[ends], axes[k], contacts, low - _END, high + _END, tool, solids, free[k, ends])
+            count += served(rows[ends], axes[k], contacts, low - _END, high + _END, tool, solids, ways, lean[k, ends])
         return count
 
     blocks = -(-len(rows) // _BLOCK)
     most = max(1, _AT_ONCE // min(_BLOCK, len(rows)))
     made = in_chunks(tested, np.arange(len(held) * blocks), conditions.jobs, chunk=most)
-    if conditions.postures.rotation[1] - conditions.postures.rotation[0] <= 2.0 * np.pi - _END:
+    if not all_around:
         for k in held.tolist():
-            found = np.flatnonzero(free[k])
-            free[k, found] &= _turned(rows[found], axes[k], samples, conditions)
-    return free, made
+            found = np.flatnonzero(lean[k] >= 0)
+            turned = _turned(rows[found], axes[k], samples, conditions)
+            lean[k, found[~turned]] = -1
+    return lean, made
 
 
 def _turned(
@@ -77,7 +90,7 @@ def _turned(
 
 
 def lean_of(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples) -> Floats:
-    """Unit tilt directions (m, 3) of one axis at samples; `direction_max` where it is the normal."""
+    """Return the unit tilt directions (m, 3) of one axis at samples; `direction_max` where it is the normal."""
     normal = samples.normal[rows]
     tilt_direction = axis - (normal @ axis)[:, None] * normal
     length = np.linalg.norm(tilt_direction, axis=1)[:, None]
@@ -86,14 +99,35 @@ def lean_of(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples) -> F
     )
 
 
-def held_at(axes: Floats, number: Ints, samples: SurfaceSamples) -> Verdicts:
-    """The postures of samples that go with one of some axes each, as a search would write them."""
+def held_at(
+    axes: Floats, number: Ints, samples: SurfaceSamples, cutter: Cutter, conditions: Conditions
+) -> Verdicts:  # fmt: skip
+    """Return the postures of samples that go with one of some axes each, as a search would write them.
+
+    Where the axis is the normal, or nearly so (`kernels.search.fixed_axis.FLAT`), and the cutter is free upright alone, with its
+    bottom across the axis, the tilt is 0 and the tilt direction is where it leans: about `standing` samples.
+    """
+    from plan_cutters.kernels.search.fixed_axis import LEANS
+
     found = blank(len(number))
     for k, axis in enumerate(axes):
         rows = np.flatnonzero(number == k)
-        found.axis[rows], found.tilt_direction[rows] = axis, lean_of(rows, axis, samples)
+        ways = _tested(rows, axis[None], samples, cutter, conditions)[0][0].astype(np.int64)
         cosine = samples.normal[rows] @ axis
         across = np.linalg.norm(np.cross(samples.normal[rows], axis), axis=1)
-        found.tilt[rows] = np.arctan2(across, cosine)
+        first = samples.direction_max[rows] - (samples.direction_max[rows] @ axis)[:, None] * axis
+        first /= np.maximum(np.linalg.norm(first, axis=1), 1e-300)[:, None]
+        turn = (2.0 * np.pi / LEANS) * (ways - 1)[:, None]
+        about = np.cos(turn) * first + np.sin(turn) * np.cross(axis, first)
+        flat = ways > 0
+        found.axis[rows] = axis
+        found.tilt_direction[rows] = np.where(flat[:, None], about, lean_of(rows, axis, samples))
+        found.tilt[rows] = np.where(flat, 0.0, np.arctan2(across, cosine))
         found.verdict[rows] = ACCESSIBLE
     return found.freeze()
+
+
+def standing(samples: SurfaceSamples, held: Verdicts) -> SurfaceSamples:
+    """Samples with the axis for their normal where the cutter stands upright."""
+    upright = (held.tilt == 0.0)[:, None] & np.isfinite(held.axis)
+    return replace(samples, normal=np.where(upright, held.axis, samples.normal))

@@ -12,11 +12,15 @@ from plan_cutters.kernels.tool.hit import BODY, scratch, stand, tree_hit
 
 #: Sines of a tilt below which the axis is the normal, and leans nowhere.
 _UPRIGHT = 1e-12
+#: Tilts at which the bottom of a tool may as well lie across its axis, through the contact, rad: no control holds smaller ones.
+FLAT = 1e-4
+#: Directions in which a tool that stands upright lies on its contact, besides that of its tilt.
+LEANS = 36
 
 
 @kernel
-def _stands(row, axis, contacts, low, high, tool, solids, body, f, t, workspace, hint):
-    """Return whether the tool stands free at a contact with an axis, and the triangle that was in its way last."""
+def _stands(row, axis, contacts, low, high, tool, solids, leans, body, f, t, workspace, hint):
+    """Return how the tool stands free at a contact with an axis, as `served` writes it, and the triangle in its way last."""
     n, e1 = contacts.normal[row], contacts.direction_max[row]
     cosine = min(1.0, max(-1.0, dot(axis, n)))
     for k in range(3):
@@ -28,9 +32,36 @@ def _stands(row, axis, contacts, low, high, tool, solids, body, f, t, workspace,
     cross(n, f, t)
     mode = mode_at(tool, tilt)
     if mode < 0 or tilt < low or tilt > high:
-        return False, hint
+        return -1, hint
     offset, rise = tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE]
     stand(body, Frame(contacts.point[row], n, f, t), cosine, sine, offset, rise)
+    free, hint = _is_free(body, mode, tool, solids, workspace, hint)
+    if free:
+        return 0, hint
+    if tilt > FLAT or offset == 0.0:
+        return -1, hint
+    # The bottom lies across the axis: about the contact the tool may be at any side.
+    along = dot(axis, e1)
+    for k in range(3):
+        t[k] = e1[k] - along * axis[k]
+    length = np.sqrt(dot(t, t))
+    x, y = t / length, np.empty(3)
+    cross(axis, x, y)
+    for number in range(leans):
+        turn = 2.0 * np.pi * number / LEANS
+        for k in range(3):
+            f[k] = np.cos(turn) * x[k] + np.sin(turn) * y[k]
+        cross(axis, f, t)
+        stand(body, Frame(contacts.point[row], axis, f, t), 1.0, 0.0, offset, rise)
+        free, hint = _is_free(body, mode, tool, solids, workspace, hint)
+        if free:
+            return number + 1, hint
+    return -1, hint
+
+
+@kernel
+def _is_free(body, mode, tool, solids, workspace, hint):
+    """Return whether a tool that was put down is free, and the triangle that was in its way last."""
     triangle, _, _, _, _ = tree_hit(solids.tree, body, tool.piece[mode], 0.0, hint, workspace)
     if triangle >= 0:
         return False, triangle
@@ -38,7 +69,7 @@ def _stands(row, axis, contacts, low, high, tool, solids, body, f, t, workspace,
 
 
 @entry
-def served(rows, axis, contacts, low, high, tool, solids, free):
+def served(rows, axis, contacts, low, high, tool, solids, leans, lean):
     """Test one axis at contacts, as a search tests the postures that it finds.
 
     Parameters
@@ -54,8 +85,12 @@ def served(rows, axis, contacts, low, high, tool, solids, free):
         Smaller by what does not matter.
     solids : Solids
         All that may be in the way.
-    free : (m,) bool, written
-        Whether the tool touches there at that tilt, no triangle reaches into it, and it lies in no body.
+    leans : int
+        Directions that are tried where the axis is the normal, of `LEANS`; 0: none but one.
+    lean : (m,) int8, written
+        -1: the tool does not touch there at that tilt, a triangle reaches into it, or it lies in a body. 0: it is free as it
+        leans by its tilt, or towards `direction_max` if it has none. k > 0: it is free with its bottom across the axis, leaning
+        to where k - 1 of `LEANS` parts of a turn about the axis bring `direction_max`.
 
     Returns
     -------
@@ -66,8 +101,10 @@ def served(rows, axis, contacts, low, high, tool, solids, free):
     workspace = scratch()
     least, count, hint = np.cos(min(high, np.pi)) - 1e-9, 0, -1
     for i in range(len(rows)):
-        free[i] = False
+        lean[i] = -1
         if dot(axis, contacts.normal[rows[i]]) >= least:
             count += 1
-            free[i], hint = _stands(rows[i], axis, contacts, low, high, tool, solids, body, f, t, workspace, hint)
+            lean[i], hint = _stands(
+                rows[i], axis, contacts, low, high, tool, solids, leans, body, f, t, workspace, hint
+            )
     return count
