@@ -37,7 +37,7 @@ def room(axis: Floats, normal: Floats, tensor: Floats, cutter: Cutter, condition
     t = across / np.maximum(sine, 1e-12)[:, None]
     bend = np.einsum("ni,nij,nj->n", t, tensor.reshape(-1, 3, 3), t)
     left = sine / (mode[OFFSET_OF] + mode[RISE] * sine) - bend
-    return np.asarray(np.where(cosine > 0.0, cutter.radius * left, -np.inf))
+    return np.asarray(np.where(cosine > -1e-9, cutter.radius * left, -np.inf))
 
 
 def roomiest(
@@ -62,7 +62,7 @@ def roomiest(
     low, high = conditions.postures.tilt
     frame, other = frame_of(conditions.setup, conditions.x), np.cross(normal, direction)
     best, side, most = axis.copy(), direction.copy(), np.full(len(axis), -np.inf)
-    for tilt in _TILTS[(_TILTS >= low) & (_TILTS <= high)]:
+    for tilt in (each for each in _TILTS if low <= each <= high):
         for turn in np.arange(_ROTATIONS) * (2.0 * np.pi / _ROTATIONS):
             lean = np.cos(turn) * direction + np.sin(turn) * other
             tried = np.cos(tilt) * normal + np.sin(tilt) * lean
