@@ -14,7 +14,7 @@ import numpy as np
 from plan_cutters.kernels.area.moved_cutter import BODIES, Workspace, drawn_out, first_in_the_way, grown
 from plan_cutters.kernels.area.near import LIFT, MOST_TURN, STRETCH, extent, halvings, spared, too_steep
 from plan_cutters.kernels.area.zone import EXTENTS, Nose, begin, distance_of, held_below, look_round, seen
-from plan_cutters.kernels.codes import COLUMNS, HIGH, LOW, NEVER, WIDE
+from plan_cutters.kernels.codes import BOTTOM, COLUMNS, NEVER, TOP, WIDE
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.linear.vectors import cross, dot, perpendicular
 from plan_cutters.kernels.rows import Frame
@@ -118,7 +118,7 @@ def _longest(piece):
     """Return a bound of the distance between any two points of a tool."""
     low, high, wide = np.inf, -np.inf, 0.0
     for k in range(len(piece)):
-        low, high, wide = min(low, piece[k, LOW]), max(high, piece[k, HIGH]), max(wide, piece[k, WIDE])
+        low, high, wide = min(low, piece[k, BOTTOM]), max(high, piece[k, TOP]), max(wide, piece[k, WIDE])
     return high - low + 2.0 * wide
 
 
