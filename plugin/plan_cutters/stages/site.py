@@ -267,7 +267,9 @@ def _lean_more(
     Returns those that keep it: their parts may be served by it, and there is none with more room.
     """
     leant = np.zeros(len(contacts), bool)
-    if not len(rows) or site.work.looked >= upto:
+    first, last = site.conditions.postures.rotation
+    # Where rotations are limited the search knows which there are.
+    if not len(rows) or site.work.looked >= upto or last - first <= 2.0 * np.pi - 1e-9:
         return leant
     axes, side = contacts.axis.copy(), contacts.side.copy()
     some = contacts.of(rows)
