@@ -166,7 +166,7 @@ export class App {
   /** The posture with the axis of the operation that takes the sample shown. */
   plannedPosture(): Posture | null {
     const axis = this.operation?.axis;
-    return axis && this.sample ? postureOf(axis, this.sample) : null;
+    return axis && this.plan && this.sample ? postureOf(this.plan, this.arrays, axis, this.sample) : null;
   }
 
   /** The posture of the operation shown, the one found, or the witness's. */

@@ -96,6 +96,7 @@ export interface OperationPlan {
   key: string;
   name: string;
   array: string;
+  lean: string;
   operations: Operation[];
 }
 

@@ -28,11 +28,15 @@ export function takenBy(plan: OperationPlan, arrays: Arrays): (row: number) => n
   return (row) => values[row] - 1;
 }
 
-/** The posture of a tool axis at a sample. */
-export function postureOf(axis: Vec, sample: Sample): Posture {
+/** Axes nearer to the normal lean nowhere: the posture says which side of the tool touches, degrees. */
+const UPRIGHT = 0.01;
+
+/** The posture of a tool axis at a sample that an operation of a plan takes. */
+export function postureOf(plan: OperationPlan, arrays: Arrays, axis: Vec, sample: Sample): Posture {
   const side = cross(sample.normal, sample.direction);
   const tilt = Math.acos(Math.min(1, Math.max(-1, dot(axis, sample.normal)))) * DEG;
-  return { tilt, rotation: turned(Math.atan2(dot(axis, side), dot(axis, sample.direction)) * DEG) };
+  const lean = Math.atan2(dot(axis, side), dot(axis, sample.direction)) * DEG;
+  return { tilt, rotation: turned(tilt < UPRIGHT ? arrays.get(plan.lean).values[sample.row] / 100 : lean) };
 }
 
 /** What the surface shows: verdicts, or the operations of a plan. */

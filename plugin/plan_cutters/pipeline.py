@@ -54,8 +54,8 @@ from plan_cutters.stages.select_cutters import ranked
 from plan_cutters.stages.setups import within_limits
 from plan_cutters.stages.witness import witnesses
 
-#: The work between samples, as a share of that of the searches, and so much of it in any case: boxes.
-_WORK_SHARE, _WORK_LEAST = 0.5, 2e7
+#: The work between samples, as a share of that of the searches, and so much of it in any case and for each sample: boxes.
+_WORK_SHARE, _WORK_LEAST, _WORK_SAMPLE = 0.5, 2e7, 2000.0
 #: Faces from which on they are sampled in a copy of the process, and the processor time that it may take, s.
 _MANY_FACES, _SAMPLING = 12, 60.0
 
@@ -362,7 +362,7 @@ def assemble(
             cutter = next(c for c in ready.cutters if c.id == best)
             most = np.inf
             if searched is not None and ready.options.area_budget is None:
-                most = _WORK_LEAST + _WORK_SHARE * searched.looked
+                most = _WORK_LEAST + _WORK_SHARE * searched.looked + _WORK_SAMPLE * len(ready.samples)
             served = between(ready.samples, judged[cutter].verdicts, cutter, ready.scene.part, ready.scene.orientation,
                              ready.conditions, budget=budget, most=most, beside=ready.inside_bodies)  # fmt: skip
         area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,

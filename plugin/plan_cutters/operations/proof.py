@@ -3,15 +3,21 @@
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from cad_io.arrays import Floats
 from plan_cutters.domain.operations import Operation, OperationPlan
 from plan_cutters.scene.fixed_axis import held_at
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.stages.between import between
+from plan_cutters.stages.nodes import tensors
+from plan_cutters.stages.room import room
 from plan_cutters.stages.site import Fixed
 
 #: The work of a plan unless a budget was asked for: boxes in any case, and for each sample.
-_WORK_LEAST, _WORK_SAMPLE = 2e7, 1000.0
+_WORK_LEAST, _WORK_SAMPLE = 2e7, 2500.0
+#: Contacts for each sample, where that is more than a plan may add between samples.
+_CONTACTS = 4
 #: Pieces are counted, the largest first, until they hold so much of what an operation has proved.
 _MOST_OF = 0.99
 
@@ -19,9 +25,10 @@ _MOST_OF = 0.99
 def proved(ready: Prepared, plan: OperationPlan) -> OperationPlan:
     """Write into fixed operations which share of their area is proved, and in how many pieces.
 
-    A cell goes with the operation of its sample. Where that does not serve it all, the others of the plan with the same
-    cutter and setup are tried which serve the sample, before it is cut into four: its area is proved if one does. Where no
-    area between samples was asked for, nothing is looked at and nothing is written.
+    Of the operations of the plan with the same cutter and setup that serve a sample, its cell is tried with the one that has
+    most room to the gouging bound, and then with the others, before it is cut into four: its area is proved if one does,
+    and counts for the operation of its sample. Where no area between samples was asked for, nothing is looked at and nothing is
+    written.
 
     Parameters
     ----------
@@ -36,7 +43,9 @@ def proved(ready: Prepared, plan: OperationPlan) -> OperationPlan:
     budget = options.contacts_between(n)
     if not budget:
         return plan
-    most = np.inf if options.area_budget is not None else _WORK_LEAST + _WORK_SAMPLE * n
+    most = np.inf
+    if options.area_budget is None:
+        budget, most = max(budget, _CONTACTS * n), _WORK_LEAST + _WORK_SAMPLE * n
     operations, alike = list(plan.operations), dict[tuple[str, int], list[int]]()
     for k, each in enumerate(operations):
         if each.mode == "fixed":
@@ -55,11 +64,13 @@ def _proved(ready: Prepared, plan: OperationPlan, group: list[int], budget: int,
     number = np.full(len(samples), -1, np.int32)
     for i, k in enumerate(group):
         number[plan.label == k] = i
-    axes = np.array([each.axis for each in chosen])
+    axes, serves = np.array([each.axis for each in chosen]), plan.serves[:, group]
+    first = np.where(number < 0, -1, _roomiest(ready, axes, serves, chosen[0]))
+    conditions = ready.setups[chosen[0].setup]
     found = between(
-        samples, held_at(axes, number, samples, chosen[0].cutter, ready.setups[chosen[0].setup]), chosen[0].cutter, ready.scene.part, ready.scene.orientation,
-        ready.setups[chosen[0].setup], budget=budget, most=most, beside=ready.inside_bodies,
-        fixed=Fixed(axes, plan.serves[:, group]),
+        samples, held_at(axes, first, samples, chosen[0].cutter, conditions), chosen[0].cutter, ready.scene.part,
+        ready.scene.orientation, conditions, budget=budget, most=most, beside=ready.inside_bodies,
+        fixed=Fixed(axes, serves),
     )  # fmt: skip
     cells = found.cells
     by_sample = np.bincount(cells.sample, cells.area, len(samples))
@@ -75,3 +86,13 @@ def _proved(ready: Prepared, plan: OperationPlan, group: list[int], budget: int,
         count = int((np.cumsum(size) < _MOST_OF * size.sum()).sum()) + 1 if len(size) else 0
         result.append(replace(each, proved=float(share), approaches=count))
     return result
+
+
+def _roomiest(ready: Prepared, axes: Floats, serves: NDArray[np.bool_], like: Operation) -> NDArray[np.int32]:
+    """Of axes (k, 3) that serve samples (n, k) the one with most room for the contact to move; -1 where none serves."""
+    samples, conditions = ready.samples, ready.setups[like.setup]
+    tensor = tensors(samples.normal, samples.direction_max, samples.curvature)
+    left = np.array([room(np.broadcast_to(axis, samples.normal.shape), samples.normal, tensor, like.cutter, conditions)
+                     for axis in axes]).T  # fmt: skip
+    left = np.where(serves, np.nan_to_num(left, nan=-np.inf, neginf=-1e300), -np.inf)
+    return np.where(serves.any(axis=1), left.argmax(axis=1), -1).astype(np.int32)

@@ -16,6 +16,7 @@ from plan_cutters.scene.conditions import Conditions, search_postures, tool_of
 from plan_cutters.scene.threads import CHUNK, in_chunks
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.cells import CellContacts, Field, quartered, tensors
+from plan_cutters.stages.room import roomiest
 
 #: Times that a cell is cut into four, at most.
 LEVELS = 6
@@ -28,6 +29,8 @@ _UPRIGHT = 1e-9
 _ALIKE = 0.25
 #: Contacts looked at between two looks at the work done.
 _BATCH = 4096
+#: Work of a probe: boxes.
+_PROBE = 50
 #: Work of laying out a contact, and a round of them, beside that of kernels: boxes looked at in the time.
 _CONTACT, _ROUND = 110, 11_000
 #: The gain is judged over at least so many of the last contacts.
@@ -230,14 +233,17 @@ def _served(contacts: CellContacts, site: Site, rooms: Sequence[float], upto: fl
         _among(site.fixed, contacts, tensor, outlook, site, upto)
         return outlook
     outer_tool, bends = conditions.outer_tool(cutter), 1.0 / cutter.radius
+    leant = np.zeros(len(contacts), bool)
     if not (outer_tool.mode[:, OFFSET_OF] > 0.0).any():
         # A ball gouges at every tilt or at none.
         bends = 0.0
+    else:
+        leant = _lean_more(contacts, tensor, outlook, np.flatnonzero((outlook > 0) & known), site, upto)
     for room in rooms:
         if site.work.looked >= upto:
             break
         # Where there is no posture there is none with more room.
-        open_rows = np.flatnonzero((outlook > 0) & _whole(contacts) & ~contacts.not_reached)
+        open_rows = np.flatnonzero((outlook > 0) & _whole(contacts) & ~contacts.not_reached & ~leant)
         # A posture with room to the local gouging bound: the search is told that the surface is more concave.
         curved = contacts.curvature + room * bends
         at = Contacts(contacts.point, contacts.normal, contacts.direction_max, curved)
@@ -251,6 +257,49 @@ def _served(contacts: CellContacts, site: Site, rooms: Sequence[float], upto: fl
             contacts.axis[rows], contacts.flat[rows], outlook[rows], known[rows] = found.axis[rows], False, new, True
             contacts.side[rows] = found.tilt_direction[rows]
     return outlook
+
+
+def _lean_more(
+    contacts: CellContacts, tensor: Floats, outlook: Outlook, rows: NDArray[np.intp], site: Site, upto: float
+) -> NDArray[np.bool_]:
+    """Try one posture more on cells that their own does not serve, with most room for the contact to move.
+
+    Returns those that keep it: their parts may be served by it, and there is none with more room.
+    """
+    leant = np.zeros(len(contacts), bool)
+    first, last = site.conditions.postures.rotation
+    # Where rotations are limited the search knows which there are.
+    if not len(rows) or site.work.looked >= upto or last - first <= 2.0 * np.pi - 1e-9:
+        return leant
+    axes, side = contacts.axis.copy(), contacts.side.copy()
+    some = contacts.of(rows)
+    axes[rows], side[rows] = roomiest(
+        some.normal, some.direction_max, tensor[rows], some.axis, site.cutter, site.conditions
+    )
+    rows = rows[(axes[rows] != contacts.axis[rows]).any(axis=1)]
+    rows = rows[_free(contacts, axes, side, site, rows)]
+    new = _cover(contacts, tensor, axes, np.zeros(len(axes), bool), site, rows, side)
+    better = new <= outlook[rows]
+    rows, new = rows[better], new[better]
+    contacts.axis[rows], contacts.side[rows], contacts.flat[rows], outlook[rows] = axes[rows], side[rows], False, new
+    leant[rows] = new != NEVER
+    return leant
+
+
+def _free(contacts: CellContacts, axes: Floats, side: Floats, site: Site, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """At which rows of contacts the cutter meets nothing with axes that lean to a side."""
+    from plan_cutters.kernels.search.search import probe
+
+    conditions, obstacles = site.conditions, site.conditions.obstacles
+    met, which = np.zeros(len(contacts), np.int32), np.zeros(len(contacts), np.int32)
+    tool = tool_of(conditions.outer_tool(site.cutter))
+    site.work.add(_PROBE * len(rows))
+
+    def probed(piece: NDArray[np.int64]) -> None:
+        probe(piece, contacts.point, contacts.normal, axes, side, tool, obstacles.tree, met, which)
+
+    in_chunks(probed, rows, conditions.jobs)
+    return np.asarray(met[rows] == -1)
 
 
 def _among(fixed: Fixed, contacts: CellContacts, tensor: Floats, outlook: Outlook, site: Site, upto: float) -> None:

@@ -11,27 +11,25 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from plan_cutters.kernels.area.moved_cutter import BODIES, Workspace, drawn_out, first_in_the_way, grown
 from plan_cutters.kernels.area.near import LIFT, MOST_TURN, STRETCH, extent, halvings, spared, too_steep
-from plan_cutters.kernels.area.zone import EXTENTS, Nose, begin, distance_of, held_below, look_round, near_by, seen
-from plan_cutters.kernels.codes import ARC, BOTTOM, COLUMNS, HIGH, KIND, LOW, NEVER, RADIUS, ROUND, SLOPE, TOP, WIDE
+from plan_cutters.kernels.area.zone import EXTENTS, Nose, begin, distance_of, held_below, look_round, seen
+from plan_cutters.kernels.codes import BOTTOM, COLUMNS, NEVER, TOP, WIDE
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.linear.vectors import cross, dot, perpendicular
-from plan_cutters.kernels.rows import Frame, Scratch
+from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import mode_at
 from plan_cutters.kernels.tool import hit
-from plan_cutters.kernels.tool.extrusion import drawn_hit
 from plan_cutters.kernels.tool.hit import BODY, HALF, OFFSET, A, P, X, Y
 
 #: The smallest patch that is thought of, as a share of the one at hand.
 _SMALLEST = 1.0 / 4.0
 #: Row of a distance within which a sixth of the nodes lie.
 _HALF_WAY = 8
-#: Bodies of a patch: the whole, and pieces of it along the tilt direction, 2, 6 and 18.
-_BODIES = 27
-#: Boxes in whose time a triangle is looked at, and nodes looked at in that of a box, about.
-_TRIANGLE, _NODES = 2, 6
+#: Nodes looked at in the time of a box, about.
+_NODES = 6
 #: How a patch is served: by a lean of a known side; in the dummy about the axis, whatever the side; as a plane across the axis,
-#: all on one side.
+#: all on one side, or along the axis.
 _LEANING, _ABOUT, _LEVEL = 0, 1, 2
 #: An axis is near the normal up to so many turns of the normal in the patch, and along it where both are no larger, rad.
 _NEAR, _ALONG = 4.0, 1e-9
@@ -73,141 +71,6 @@ class Sweeping(NamedTuple):
     chord: float
 
 
-class _Workspace(NamedTuple):
-    """This is a workspace for a contact: tilt direction f and t = n x f, bodies and their pieces, bounds of curvature, what
-    counts as near.
-    """
-
-    f: Any
-    t: Any
-    bodies: Any
-    pieces: Any
-    near: Any
-    seen: Any
-    scratch: Scratch
-
-
-@kernel
-def _grown(piece, out, radial, axial):
-    """Write pieces that hold these, moved by no more than `radial` across the axis and `axial` along it."""
-    for k in range(len(piece)):
-        for c in range(COLUMNS):
-            out[k, c] = piece[k, c]
-        out[k, LOW] -= axial
-        out[k, HIGH] += axial
-        if piece[k, KIND] == ARC:
-            both = np.sqrt(radial * radial + axial * axial)
-            out[k, ROUND] += both
-            out[k, BOTTOM] = max(out[k, LOW], piece[k, SLOPE] - out[k, ROUND])
-            out[k, TOP] = min(out[k, HIGH], piece[k, SLOPE] + out[k, ROUND])
-            out[k, WIDE] += both
-        else:
-            slope = piece[k, SLOPE]
-            out[k, RADIUS] += radial + (abs(slope) - slope) * axial
-            out[k, WIDE] += radial + (abs(slope) + slope) * axial
-            out[k, BOTTOM], out[k, TOP] = out[k, LOW], out[k, HIGH]
-
-
-@kernel
-def _bodies(body, piece, frame, h, pose, slides, grow, workspace, finest):
-    """Write the bodies of a contact that wanders by no more than h: the whole, then 2, 6 and 18 parts along f.
-
-    Each holds all moved cutters of its part (lemma B10).
-    Each holds those that it is cut into. `pose` is (sine, cosine) of the tilt. `slides` says how far the tool
-    moves along the tilt direction for a step along it and for a step across it; then the same across that direction; then how
-    much farther it may move across it. `grow` is the bound of any other motion. `body` is the body without wandering.
-    """
-    sine, cosine = pose
-    forth, back, slide, across, beside = slides
-    at = 0
-    for count in (1, 2, 6, 18):
-        if count > finest:
-            return
-        wide = h / count
-        for step in range(count):
-            shift = (2 * step + 1 - count) * wide
-            for k in range(BODY):
-                workspace.bodies[at, k] = body[k]
-            for k in range(3):
-                workspace.bodies[at, P + k] += shift * (forth * frame.f[k] - slide * frame.t[k])
-            workspace.bodies[at, HALF] = h * across + wide * abs(slide) + beside
-            along = wide * abs(forth) + h * back
-            _grown(piece, workspace.pieces[at], along * abs(cosine) + grow, along * sine + grow)
-            at += 1
-
-
-@kernel
-def _reaches(vertex, i, mask, workspace):
-    """Whether triangle i, which reaches into the whole, reaches into one of its finest parts."""
-    bodies, pieces, scratch = workspace.bodies, workspace.pieces, workspace.scratch
-    for half in range(2):
-        scratch.looked[0] += _TRIANGLE
-        if not drawn_hit(vertex, i, bodies[1 + half], pieces[1 + half], mask, scratch):
-            continue
-        for sixth in range(3 * half, 3 * half + 3):
-            scratch.looked[0] += _TRIANGLE
-            if not drawn_hit(vertex, i, bodies[3 + sixth], pieces[3 + sixth], mask, scratch):
-                continue
-            for last in range(3 * sixth, 3 * sixth + 3):
-                scratch.looked[0] += _TRIANGLE
-                if drawn_hit(vertex, i, bodies[9 + last], pieces[9 + last], mask, scratch):
-                    return True
-    return False
-
-
-@kernel
-def _below(vertex, i, frame, near):
-    """Whether triangle i is no deeper in flutes than allowed, for it is no higher over the tangent planes of the patch (B13)."""
-    p, n, _, _ = frame
-    for corner in range(3):
-        dx, dy, dz = vertex[i, corner, 0] - p[0], vertex[i, corner, 1] - p[1], vertex[i, corner, 2] - p[2]
-        height, away = dx * n[0] + dy * n[1] + dz * n[2], np.sqrt(dx * dx + dy * dy + dz * dz)
-        if not height + away * near[6] + near[7] <= near[8]:
-            return False
-    return True
-
-
-@kernel
-def _blocks(i, mask, nose, flutes, whole, frame, face, tree, triangle_face, workspace):
-    """Whether triangle i reaches into a piece of the moved cutter; into its nose only if it is not near."""
-    vertex = tree.vertex
-    workspace.scratch.looked[0] += _TRIANGLE
-    hit = drawn_hit(vertex, i, workspace.bodies[0], workspace.pieces[0], mask, workspace.scratch)
-    if hit & nose and near_by(vertex, triangle_face, i, frame, face, workspace.near):
-        hit &= ~nose
-    if hit & flutes and _below(vertex, i, frame, workspace.near):
-        hit &= ~flutes
-    return hit != 0 and (whole or _reaches(vertex, i, hit, workspace))
-
-
-@kernel
-def _first(hint, nose, flutes, whole, frame, face, tree, triangle_face, workspace):
-    """First triangle found that is in the way of the moved cutter, `hint` (-1: none) before others."""
-    vertex, box, depth = tree.vertex, tree.box, tree.depth
-    stack, masks, count, first, top = workspace.scratch.stack, workspace.scratch.masks, len(vertex), (1 << depth) - 1, 1
-    every = hit.everything(workspace.pieces[0])
-    if hint >= 0 and _blocks(hint, every, nose, flutes, whole, frame, face, tree, triangle_face, workspace):
-        return hint
-    stack[0], masks[0] = 0, every
-    while top > 0:
-        top -= 1
-        node = stack[top]
-        workspace.scratch.looked[0] += 1
-        mask = hit.alive(box, node, workspace.bodies[0], workspace.pieces[0], masks[top], 0.0)
-        if mask == 0:
-            continue
-        if node < first:
-            stack[top], masks[top] = 2 * node + 2, mask
-            stack[top + 1], masks[top + 1] = 2 * node + 1, mask
-            top += 2
-            continue
-        leaf = node - first
-        for i in range((count * leaf) >> depth, (count * (leaf + 1)) >> depth):
-            if _blocks(i, mask, nose, flutes, whole, frame, face, tree, triangle_face, workspace):
-                return i
-    return -1
-
-
 @kernel
 def _motion(row, patches, nodes, frame, sine, h, turn, offset, rise):
     """How a contact's cutter moves and turns about its axis as the contact wanders.
@@ -235,17 +98,28 @@ def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, 
     """Return the `outlook` of `cover` for a contact, and the triangle in the way, -1 if none; `blocker` is tested first.
 
     An axis near the normal that does not serve with a lean of a known side may serve about itself (lemma B11), and on a plane
-    across it all on one side (B12).
+    across it all on one side (B12). On a plane along the axis it shifts (B15).
     """
     first = _ABOUT if patches.flat[row] else _LEANING
     best, found = _by(first, row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace)
-    if first == _LEANING and sweeping.tool.mode[0, 0] > 0.0:
+    if first == _LEANING:
         for rule in (_ABOUT, _LEVEL):
             if best == 0:
                 break
+            if rule == _ABOUT and not sweeping.tool.mode[0, 0] > 0.0:
+                continue
             outlook, met = _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, found, body, workspace)
             best, found = min(best, outlook), met if met >= 0 else found
     return best, found
+
+
+@kernel
+def _longest(piece):
+    """Return a bound of the distance between any two points of a tool."""
+    low, high, wide = np.inf, -np.inf, 0.0
+    for k in range(len(piece)):
+        low, high, wide = min(low, piece[k, BOTTOM]), max(high, piece[k, TOP]), max(wide, piece[k, WIDE])
+    return high - low + 2.0 * wide
 
 
 @kernel
@@ -262,8 +136,8 @@ def _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, blocker,
         f[k] = a[k] - cosine * n[k]
     lean = np.sqrt(dot(f, f))
     sine = lean
-    upright = rule != _LEANING
-    if rule == _LEVEL:
+    upright, along = rule != _LEANING, rule == _LEVEL and abs(cosine) <= _ALONG
+    if rule == _LEVEL and not along:
         side = patches.side[row]
         length = np.sqrt(dot(side, side))
         # A side that is not known, or does not lie in the plane, is none.
@@ -287,6 +161,7 @@ def _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, blocker,
     if (
         upright
         and not flat
+        and not along
         and not (mode == 0 and low <= 0.0 and cosine > 0.0 and lean <= _NEAR * MOST_TURN and len(sweeping.dummy) > 0)
     ):
         return NEVER, -1
@@ -303,8 +178,8 @@ def _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, blocker,
     if not upright and not held_below(pose, 0.0, most[0, 0] - least, most[0, 2], most[0, 1] - least, 0.0, nose):
         return NEVER, -1
     if rule == _LEVEL:
-        # What a cutter that does not lean at all enters of a plane that leans this little.
-        depth -= 2.0 * offset * (2.0 * _ALONG)
+        # What a cutter that stands exactly enters of a plane that leans this little.
+        depth -= (_longest(tool.piece[mode]) if along else 2.0 * offset) * (2.0 * _ALONG)
     full, turn, lift, k_ff, k_tt, k_ft, psi, beside, rest = np.inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     # Bounds do not get smaller with distance: what does not hold nearby needs no look farther out.
     for last in (0, _HALF_WAY, EXTENTS - 1):
@@ -320,7 +195,7 @@ def _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, blocker,
                 return NEVER, -1
             if rule == _LEVEL and not turn <= _ALONG:
                 return 1, -1
-            if len(tool.mode) > 1 and not tilt + turn <= high:
+            if len(tool.mode) > 1 and not along and not tilt + turn <= high:
                 return 1, -1
         if not turn <= MOST_TURN or too_steep(pose, turn, upright, nose):
             return halvings(most, h, pose, upright, nose, depth, chord, near), -1
@@ -344,21 +219,23 @@ def _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, blocker,
         for k in range(BODY):
             workspace.bodies[0, k] = body[k]
         # What the contact and the centre of curvature move across the axis, and along it.
-        _grown(sweeping.dummy, workspace.pieces[0], h + rise * turn, lift + h * lean + rise * turn * (lean + turn))
+        grown(sweeping.dummy, workspace.pieces[0], h + rise * turn, lift + h * lean + rise * turn * (lean + turn))
     elif rule == _LEVEL:
         body[OFFSET] = offset
         grow = lift + (h + rise + 2.0 * offset) * 2.0 * _ALONG
-        _bodies(body, tool.piece[mode], frame, h, pose, (1.0, 0.0, 0.0, 1.0, 0.0), grow, workspace, 18)
+        drawn_out(body, tool.piece[mode], frame, h, pose, (1.0, 0.0, 0.0, 1.0, 0.0), grow, workspace, 18)
     else:
         body[OFFSET] = offset
         grow = 0.5 * abs(offset) * psi * psi + lift + rise * rest
         # The centre of curvature wanders less than the contact on a concave surface, and turns with the normal.
         lever = rise + (offset / sine if sine > 0.0 else 0.0)
         slides = (1.0 - rise * k_ff, rise * abs(k_ft), lever * k_ft, abs(1.0 - lever * k_tt), abs(offset) * beside)
-        _bodies(body, tool.piece[mode], frame, h, pose, slides, grow, workspace, 18)
+        drawn_out(body, tool.piece[mode], frame, h, pose, slides, grow, workspace, 18)
     exempt = sweeping.flutes if upright else sweeping.nose[mode]
     near[6], near[7], near[8] = turn, lift, depth
-    found = _first(blocker, exempt, sweeping.flutes, rule == _ABOUT, frame, face, tree, triangle_face, workspace)
+    found = first_in_the_way(
+        blocker, exempt, sweeping.flutes, rule == _ABOUT, frame, face, tree, triangle_face, workspace
+    )
     return 0 if found < 0 else 1, found
 
 
@@ -387,7 +264,7 @@ def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, outlook):
         How many boxes were looked at, and what else takes as long: triangles and nodes.
     """
     count = sweeping.tool.piece.shape[1]
-    workspace = _Workspace(np.empty(3), np.empty(3), np.empty((_BODIES, BODY)), np.empty((_BODIES, count, COLUMNS)), np.empty(9),
+    workspace = Workspace(np.empty(3), np.empty(3), np.empty((BODIES, BODY)), np.empty((BODIES, count, COLUMNS)), np.empty(9),
                            seen(), hit.scratch())  # fmt: skip
     body, blocker = np.empty(BODY), -1
     for row in rows:

@@ -39,15 +39,17 @@ def spots_of(result: Judged) -> tuple[list[Spot], dict[str, int]]:
     return found, more
 
 
+def turned_by(samples: Any, lean: Any) -> NDArray[np.int16]:
+    """Angles (n,) from `direction_max` to directions (n, 3) about the normal, in hundredths of degrees; 0 where there is none."""
+    known = np.isfinite(lean).all(axis=1)
+    lean, first, normal = (np.nan_to_num(a) for a in (lean, samples.direction_max, samples.normal))
+    angle = np.degrees(np.arctan2((lean * np.cross(normal, first)).sum(axis=1), (lean * first).sum(axis=1)))
+    return np.where(known, np.round(100 * angle), 0).astype(np.int16)
+
+
 def tilt_and_lean(samples: Any, reach: Verdicts) -> tuple[NDArray[np.uint16], NDArray[np.int16]]:
     """Postures found: tilts (n,), NO_TILT where there is none, and angles (n,) from `direction_max` to the lean, in hundredths of
     degrees."""
     known = np.isfinite(reach.tilt) & reach.reached
     tilt = np.where(known, np.round(100 * np.degrees(np.where(known, reach.tilt, 0.0))), NO_TILT).astype(np.uint16)
-    tilt_direction, first, normal = (
-        np.nan_to_num(a) for a in (reach.tilt_direction, samples.direction_max, samples.normal)
-    )
-    angle = np.degrees(
-        np.arctan2((tilt_direction * np.cross(normal, first)).sum(axis=1), (tilt_direction * first).sum(axis=1))
-    )
-    return tilt, np.where(known, np.round(100 * angle), 0).astype(np.int16)
+    return tilt, np.where(known, turned_by(samples, reach.tilt_direction), 0).astype(np.int16)

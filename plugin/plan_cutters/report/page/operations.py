@@ -15,6 +15,7 @@ from plan_cutters.document.palette import OPERATIONS, operation_colour
 from plan_cutters.domain.operations import OperationPlan
 from plan_cutters.report.page.arrays import Arrays
 from plan_cutters.report.page.encode import Stored
+from plan_cutters.report.page.facts import turned_by
 from plan_cutters.report.protocol import Judged
 from plan_cutters.report.story.line import Line
 from plan_cutters.report.story.numbers import percent
@@ -38,9 +39,12 @@ def key(plan: OperationPlan | OperationPlanEntry) -> str:
 
 
 def operation_arrays(result: Judged) -> Arrays:
-    """For each plan the operation of each sample, counted from 1; 0 is none."""
-    found = result.answers.operations
-    return {} if found is None else {f"operation.{key(plan)}": Stored.of(_numbers(plan)) for plan in found.plans}
+    """For each plan the operation of each sample, counted from 1, 0 is none; and where its tool leans."""
+    found, arrays = result.answers.operations, Arrays()
+    for plan in found.plans if found else ():
+        arrays[f"operation.{key(plan)}"] = Stored.of(_numbers(plan))
+        arrays[f"operation_lean.{key(plan)}"] = Stored.of(turned_by(result.samples, plan.lean))
+    return arrays
 
 
 def _numbers(plan: OperationPlan) -> Any:
@@ -59,6 +63,7 @@ def operations_of(result: Judged) -> dict[str, Any] | None:
                 "key": key(mine),
                 "name": each.name,
                 "array": f"operation.{key(mine)}",
+                "lean": f"operation_lean.{key(mine)}",
                 "operations": [
                     _operation(result.plan, one, k, row)
                     for k, (one, row) in enumerate(zip(each.operations, _shown_at(mine, result.samples), strict=True))
