@@ -114,40 +114,32 @@ def vise(shape: Any, setup: tuple[float, float, float], depth: float) -> Any:
 
 
 class Faces:
-    """Points of the faces of shapes, dense, and the faces themselves for more."""
+    """Points of the faces and edges of shapes, each with a step of its own, and the faces themselves for more."""
 
-    def __init__(self, shapes: list[Any]) -> None:
-        found, edges = [], []
-        for shape in shapes:
-            for kind, kept in ((TopAbs_FACE, found), (TopAbs_EDGE, edges)):
-                explorer = TopExp_Explorer(shape, kind)
-                while explorer.More():
-                    kept.append(explorer.Current())
-                    explorer.Next()
+    def __init__(self, shapes: list[tuple[Any, float]]) -> None:
         self.value, self.inside, self.span = [], [], []
         points, uvs, owner = [], [], []
-        for number, face in enumerate(TopoDS.Face_s(each) for each in found):
-            surface, trim = BRepAdaptor_Surface(face), BRepTopAdaptor_FClass2d(face, 1e-7)
-            low, high = np.array(BRepTools.UVBounds_s(face)).reshape(2, 2).T
-            self.value.append(surface.Value)
-            self.inside.append(trim.Perform)
-            self.span.append((low, high, steps := (high - low) / (self._lines(surface, low, high) - 1)))
-            grid = np.stack(np.meshgrid(*(np.arange(a, b + 0.5 * s, s) for a, b, s in zip(low, high, steps, strict=True)),
-                                        indexing="ij"), axis=-1).reshape(-1, 2)  # fmt: skip
-            kept = np.array([trim.Perform(gp_Pnt2d(*uv)) != TopAbs_OUT for uv in grid.tolist()], bool)
-            uvs.append(grid[kept])
-            points.append(self.at(number, grid[kept]))
-            owner.append(np.full(int(kept.sum()), number))
-        for edge in (TopoDS.Edge_s(each) for each in edges):
-            curve = BRepAdaptor_Curve(edge)
-            first, last = curve.FirstParameter(), curve.LastParameter()
-            if not np.isfinite([first, last]).all():
-                continue
-            rough = np.array([curve.Value(t).Coord() for t in np.linspace(first, last, 30)])
-            count = int(np.clip(4 * np.linalg.norm(np.diff(rough, axis=0), axis=1).sum() / STEP, 3, 4000))
-            points.append(np.array([curve.Value(t).Coord() for t in np.linspace(first, last, count)]))
-            uvs.append(np.full((count, 2), np.nan))
-            owner.append(np.full(count, -1))
+        for shape, step in shapes:
+            for face in (TopoDS.Face_s(each) for each in _parts(shape, TopAbs_FACE)):
+                surface, trim = BRepAdaptor_Surface(face), BRepTopAdaptor_FClass2d(face, 1e-7)
+                low, high = np.array(BRepTools.UVBounds_s(face)).reshape(2, 2).T
+                self.value.append(surface.Value)
+                self.inside.append(trim.Perform)
+                self.span.append((low, high, (high - low) / (self._lines(surface, low, high, step) - 1)))
+                grid = np.stack(np.meshgrid(*(np.arange(a, b + 0.5 * s, s) for a, b, s in zip(*self.span[-1], strict=True)),
+                                            indexing="ij"), axis=-1).reshape(-1, 2)  # fmt: skip
+                kept = np.array([trim.Perform(gp_Pnt2d(*uv)) != TopAbs_OUT for uv in grid.tolist()], bool)
+                uvs.append(grid[kept])
+                points.append(self.at(len(self.value) - 1, grid[kept]))
+                owner.append(np.full(int(kept.sum()), len(self.value) - 1))
+            for edge in (TopoDS.Edge_s(each) for each in _parts(shape, TopAbs_EDGE)):
+                curve = BRepAdaptor_Curve(edge)
+                first, last = curve.FirstParameter(), curve.LastParameter()
+                rough = np.array([curve.Value(t).Coord() for t in np.linspace(first, last, 30)])
+                count = int(np.clip(4 * np.linalg.norm(np.diff(rough, axis=0), axis=1).sum() / STEP, 3, 4000))
+                points.append(np.array([curve.Value(t).Coord() for t in np.linspace(first, last, count)]))
+                uvs.append(np.full((count, 2), np.nan))
+                owner.append(np.full(count, -1))
         self.point, self.uv, self.owner = np.concatenate(points), np.concatenate(uvs), np.concatenate(owner)
         # Boxes of points, each with the ball about its middle that holds them.
         key = np.unique(np.floor(self.point / BOX).astype(np.int64), axis=0, return_inverse=True)[1].ravel()
@@ -160,7 +152,7 @@ class Faces:
         self.ball = np.sqrt(np.maximum.reduceat(((self.point - self.middle[key]) ** 2).sum(axis=1), start))
 
     @staticmethod
-    def _lines(surface: Any, low: Floats, high: Floats) -> Ints:
+    def _lines(surface: Any, low: Floats, high: Floats, step: float) -> Ints:
         """Lines across a face each way, by the lengths of three curves."""
         counts = []
         for way in (0, 1):
@@ -170,7 +162,7 @@ class Faces:
                 uv[:, way] = np.linspace(low[way], high[way], 40)
                 line = np.array([surface.Value(*each).Coord() for each in uv.tolist()])
                 length = max(length, float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum()))
-            counts.append(int(np.clip(length / STEP, 3, LINES)) + 1)
+            counts.append(int(np.clip(length / step, 3, LINES)) + 1)
         return np.array(counts)
 
     def at(self, number: int, uv: Floats) -> Floats:
@@ -183,6 +175,15 @@ class Faces:
         return np.concatenate([np.arange(self.ends[k], self.ends[k + 1]) for k in middles] or [np.zeros(0, int)])
 
 
+def _parts(shape: Any, kind: Any) -> list[Any]:
+    """The faces or the edges of a shape."""
+    found, explorer = [], TopExp_Explorer(shape, kind)
+    while explorer.More():
+        found.append(explorer.Current())
+        explorer.Next()
+    return found
+
+
 class Posture:
     """A tool at a contact."""
 
@@ -191,10 +192,10 @@ class Posture:
         length = float(np.linalg.norm(across))
         lean = aside if length <= 1e-12 else across / length
         tilt = float(np.arctan2(length, normal @ axis))
-        # A flank that lies along the plane touches with its lower end.
+        # A bottom that lies on the plane touches with its rim, a flank that lies along it with its lower end.
         tilt = np.pi / 2 if abs(tilt - np.pi / 2) < 1e-8 else tilt
         self.tool, self.rest = tool, rest
-        self.tip, self.rows = tool.frame(contact, normal, lean, tilt, 0.0)
+        self.tip, self.rows = tool.frame(contact, normal, lean, tilt, np.pi / 4)
 
     def depth(self, points: Floats) -> Floats:
         """How deep points lie in what cuts, or nearer to the rest than its clearance, mm; minus the distance outside."""
@@ -202,7 +203,7 @@ class Posture:
         return np.asarray(self.tool.over(np.hypot(x, y), w, 0.0, self.rest))
 
     def deepest(self, faces: Faces) -> tuple[float, Ints]:
-        """The largest depth at the points of faces, and the points that lie within half a step of the tool or in it."""
+        """The largest depth at the points of faces, and the points that lie within a step of the tool or in it."""
         x, y, w = ((faces.middle - self.tip) @ self.rows.T).T
         reach = faces.ball - self.rest + STEP
         close = np.flatnonzero((w > -reach) & (w < self.tool.end + reach) & (np.hypot(x, y) < self.tool.wide + reach))
@@ -211,7 +212,7 @@ class Posture:
         if not len(points):
             return -np.inf, points
         depth = self.depth(faces.point[points])
-        kept = np.flatnonzero(depth > -0.5 * STEP)
+        kept = np.flatnonzero(depth > -STEP)
         return float(depth.max()), points[kept[np.argsort(-depth[kept])]]
 
     def closely(self, faces: Faces, points: Ints) -> float:
@@ -229,7 +230,9 @@ class Posture:
                 grid = uv + np.stack(np.meshgrid(*[np.linspace(-1, 1, NODES)] * 2), -1).reshape(-1, 2) * step
                 grid = np.clip(grid, low, high)
                 found = self.depth(faces.at(face, grid))
-                inside = (i for i in np.argsort(-found) if faces.inside[face](gp_Pnt2d(*grid[i].tolist())) != TopAbs_OUT)
+                inside = (
+                    i for i in np.argsort(-found) if faces.inside[face](gp_Pnt2d(*grid[i].tolist())) != TopAbs_OUT
+                )
                 first = next(inside, None)
                 if first is None:
                     break
@@ -254,7 +257,7 @@ def rejudged(case: Case, folder: Path) -> bool:
     tools = {entry.id: result.judged(entry.id) for entry in result.cutters}
     took = time.process_time() - began
     began = time.process_time()
-    obstacles = [Faces([part.shape, body]) for body in vises]
+    obstacles = [Faces([(part.shape, STEP), (body, 2 * STEP)]) for body in vises]
     references = {name: Reference(tool) for name, tool in tools.items()}
     tolerance, ok = result.plan.effective.tolerance_mm, True
     known: dict[tuple[Any, ...], tuple[float, Ints, Posture]] = {}
@@ -276,7 +279,7 @@ def rejudged(case: Case, folder: Path) -> bool:
             judged, deepest, looked = judged + len(rows), max(deepest, deep), looked + len(worst)
             if deep > tolerance:
                 ok = False
-                print(f"  WRONG: {operation.id} of {entry.name}, {deep:.4f} mm deep")
+                print(f"  WRONG: {operation.id} of {entry.name}, {deep:.4f} mm deep", flush=True)
         hit, tried = _refused(case, result, entry, made, (references, tools, obstacles))
         print(f"{case.file:30} {entry.name:14} {len(entry.operations):3} operations  {judged:6} samples  {looked:5} closely  "
               f"deepest {deepest:8.5f} mm of {tolerance:g}  refused: {hit} of {tried} deep", flush=True)  # fmt: skip
@@ -285,9 +288,7 @@ def rejudged(case: Case, folder: Path) -> bool:
     return ok
 
 
-def _put(
-    result: Result, references: Any, tools: dict[str, Cutter], name: str, row: int, axis: Floats
-) -> Posture:
+def _put(result: Result, references: Any, tools: dict[str, Cutter], name: str, row: int, axis: Floats) -> Posture:
     samples = result.samples
     return Posture(references[name], -(tools[name].clearance or 0.0), samples.point[row], samples.normal[row],
                    samples.direction_max[row], axis)  # fmt: skip

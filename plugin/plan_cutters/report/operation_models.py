@@ -93,12 +93,12 @@ def _fixtures(result: Judged) -> list[Drawn]:
     ready = result.ready
     if ready is None or ready.alike:
         return drawn_fixtures(result)
-    return [
-        Drawn(each.name, each.shown, rgb("fixture"), fixture_entry(each).model_copy(update={"setups": [k]}).model_dump(mode="json"),
-              f"fixtures of setup {k + 1}")
-        for k, conditions in enumerate(ready.setups)
-        for each in conditions.around.fixtures
-    ]  # fmt: skip
+    found = []
+    for k, conditions in enumerate(ready.setups):
+        for each in conditions.around.fixtures:
+            facts = fixture_entry(each).model_copy(update={"setups": [k]}).model_dump(mode="json")
+            found.append(Drawn(each.name, each.shown, rgb("fixture"), facts, f"fixtures of setup {k + 1}"))
+    return found
 
 
 def _entry(result: Judged, number: int) -> OperationPlanEntry:
