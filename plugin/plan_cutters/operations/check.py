@@ -128,7 +128,9 @@ def _weights(
     total = int(weight.sum())
     proved = -(-total // _UNIT)
     claimed = few["at_least"] if few["proof"] == "weights" else min(few["at_least"], proved)
-    used = sum(each["mode"] == "fixed" for plan in entry["plans"] if plan["name"] == "fewest" for each in plan["operations"])
+    used = sum(
+        each["mode"] == "fixed" for plan in entry["plans"] if plan["name"] == "fewest" for each in plan["operations"]
+    )
     if used > few["found"]:
         return Finding(False, f"The fewest operations are said to be {few['found']}, and there are {used}.")
     words = (f"The weights of {len(rows)} samples sum up to {total / _UNIT:.6f}; none of {len(angle)} candidates carries more "
@@ -153,7 +155,9 @@ def _plan(
             loose += len(rows)
             continue
         every = [operation["angles_deg"], *filter(None, [operation["other_angles_deg"]])]
-        turned = orientations[operation["setup"]].kinematics.axis(np.radians([[one[name] for name in names] for one in every]))
+        turned = orientations[operation["setup"]].kinematics.axis(
+            np.radians([[one[name] for name in names] for one in every])
+        )
         # Of other angles as they are rounded for a control; nan is near nothing.
         away = np.abs(turned - operation["axis"]).max(axis=1)
         if not (away <= [_SAME, *[_ROUNDED] * (len(every) - 1)]).all():
