@@ -32,12 +32,13 @@ _VERTICES, _TRIANGLES = 34962, 34963  # what a buffer view is for
 
 class Other(NamedTuple):
     """A body that is none of the part: its name, corners (n, 3, 3) mm in part coordinates counter-clockwise from outside, sRGB
-    colour, and facts for its node's `extras`."""
+    colour, facts for its node's `extras`, and the name of the node that it stands below."""
 
     name: str
     vertex: Floats
     rgb: tuple[float, float, float]
     extras: dict[str, Any]
+    below: str = "fixtures"
 
 
 class _Drawn(NamedTuple):
@@ -79,7 +80,7 @@ def write_gltf(
         One node and mesh for everything: `extras` of the node holds a list of the faces' facts, and each vertex its
         face number as `_FACE`.
     others : sequence of Other
-        Bodies beside the part, a node each below `fixtures`.
+        Bodies beside the part, a node each below those that they name.
 
     Returns
     -------
@@ -178,8 +179,10 @@ def _fill_merged(
 
 def _fill_others(glb: "_Glb", others: Sequence[Other]) -> None:
     """Bodies with flat facets; those without a facet have a node without a mesh."""
-    root = glb.node({"name": "fixtures"}) if others else 0
+    root: dict[str, int] = {}
     for other in others:
+        if other.below not in root:
+            root[other.below] = glb.node({"name": other.below})
         corner = (other.vertex * _METRE).astype(np.float32)
         normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]).astype(float)
         length = np.linalg.norm(normal, axis=1)
@@ -188,7 +191,7 @@ def _fill_others(glb: "_Glb", others: Sequence[Other]) -> None:
         unit = np.repeat(normal[kept] / length[kept, None], 3, axis=0)
         mesh = Mesh(points, unit, np.arange(len(points), dtype=np.uint32).reshape(-1, 3), np.zeros((len(points), 2)))
         drawn = glb.mesh(other.name, _draw(mesh, other.rgb) if kept.any() else None)
-        glb.node({"name": other.name, "extras": other.extras, **drawn}, root)
+        glb.node({"name": other.name, "extras": other.extras, **drawn}, root[other.below])
 
 
 class _Glb:

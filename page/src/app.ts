@@ -152,11 +152,21 @@ export class App {
     this.spot = row === null ? null : (spot ?? this.spotOf(row));
     this.posture = null;
     this.met = null;
-    this.machine.stand(this.operation?.setup ?? (row === null ? 0 : (this.samples.setup(this.cutter.id, row) ?? 0)));
+    this.stand(this.operation?.setup ?? (row === null ? 0 : (this.samples.setup(this.cutter.id, row) ?? 0)));
     this.emit("sample");
     this.emit("operation");
     if (spot) this.emit("spot");
     this.setPosture(row === null ? null : this.startPosture(row));
+  }
+
+  /** Let the part stand in a setup, among the fixtures there. */
+  private stand(setup: number): void {
+    this.machine.stand(setup);
+    if (this.drawn.setup === setup) return;
+    this.drawn.setup = setup;
+    this.part.stand();
+    this.clip?.stand();
+    this.stage.request();
   }
 
   private spotOf(row: number): Spot | null {

@@ -5,6 +5,7 @@ import type { App } from "./app.ts";
 import { closed } from "./closed.ts";
 import { colourOf } from "./colours.ts";
 import { button, el, figure } from "./dom.ts";
+import type { Owner } from "./mesh.ts";
 import type { Vec } from "./meta.ts";
 import { capMaterial, countingMaterial, shared } from "./shading.ts";
 import { axis, distance, mixed } from "./vectors.ts";
@@ -24,6 +25,8 @@ export class Clip {
   private readonly note = el("span", { class: "hint" });
   private readonly caps: Mesh[] = [];
   private readonly counters: Mesh[] = [];
+  /** Of each cap and its counter, an owner of what they cut. */
+  private readonly owners: Owner[] = [];
   private sign = 1;
   private built = false;
 
@@ -107,8 +110,15 @@ export class Clip {
         cap.quaternion.setFromUnitVectors(new Vector3(0, 0, 1), new Vector3(...normal));
       }
     }
-    for (const mesh of [...this.caps, ...this.counters]) mesh.visible = this.on;
+    this.stand();
     this.app.stage.request();
+  }
+
+  /** Cap what is there in the setup that is shown. */
+  stand(): void {
+    for (const meshes of [this.caps, this.counters]) {
+      meshes.forEach((mesh, i) => (mesh.visible = this.on && this.app.drawn.there(this.owners[i])));
+    }
   }
 
   /** Turn a bit over, pixel by pixel, for each surface behind the plane: where their number is odd the plane lies in a body. */
@@ -116,15 +126,18 @@ export class Clip {
     this.built = true;
     const { drawn, meta, stage } = this.app;
     const { low, high } = meta.part;
-    const all = drawn.triangle.length / 3;
     const open: string[] = [];
-    const bodies: [string, number, number, string][] = [
-      ["the part", 0, drawn.ofFaces, "#8f8577"],
-      ["a fixture", drawn.ofFaces, all - drawn.ofFaces, colourOf(meta, "fixture")],
-    ];
-    bodies.forEach(([name, first, count, colour], i) => {
+    const bodies: [string, number, number, string, Owner][] = [["the part", 0, drawn.ofFaces, "#8f8577", 0]];
+    // Fixtures of the same setups, which follow each other, are capped together.
+    const inSetups = (k: number): string => String(meta.fixtures[k].setups);
+    meta.fixtures.forEach(({ start, count }, k) => {
+      if (k > 0 && inSetups(k) === inSetups(k - 1)) bodies[bodies.length - 1][2] += count;
+      else bodies.push(["a fixture", start, count, colourOf(meta, "fixture"), -1 - k]);
+    });
+    bodies.forEach(([name, first, count, colour, of], i) => {
       if (!count) return;
-      const mine = (owner: number): boolean => (i === 0 ? owner >= 0 && !meta.faces[owner].ignored : owner < 0);
+      const mine = (owner: Owner): boolean =>
+        of >= 0 ? owner >= 0 && !meta.faces[owner].ignored : owner < 0 && inSetups(-1 - owner) === inSetups(-1 - of);
       if (!closed(drawn, mine)) {
         open.push(name);
         return;
@@ -133,6 +146,7 @@ export class Clip {
       const counter = new Mesh(geometry, countingMaterial());
       counter.renderOrder = 1 + 0.1 * i;
       this.counters.push(counter);
+      this.owners.push(of);
       const material = capMaterial(colour);
       material.stencilRef = 0;
       material.stencilFunc = NotEqualStencilFunc;

@@ -116,7 +116,7 @@ export class Probe {
     const key = `${solid.part}${near ? "!" : ""}`;
     const test = (triangle: number): boolean => {
       const belongs = owner[index[3 * triangle]];
-      if (belongs >= 0 && ignored[belongs]) return false;
+      if (belongs >= 0 ? ignored[belongs] : !this.drawn.there(belongs)) return false;
       for (let k = 0; k < 3; k++) {
         const at = 3 * index[3 * triangle + k];
         const dx = position[at] - tip[0];

@@ -19,6 +19,8 @@ export class Drawn {
   readonly triangle: Uint32Array;
   /** Triangles of faces; those of fixtures follow. */
   readonly ofFaces: number;
+  /** The setup whose fixtures are there, counted from 0; those of others are neither seen nor met. */
+  setup = 0;
   private made: MeshBVH | null = null;
 
   constructor(
@@ -55,6 +57,11 @@ export class Drawn {
     this.ofFaces = meta.faces.reduce((most, face) => Math.max(most, face.start + face.count), 0);
     meta.faces.forEach((face, i) => this.own(face, i));
     meta.fixtures.forEach((fixture, i) => this.own(fixture, -1 - i));
+  }
+
+  /** Whether an owner is there in the setup shown. */
+  there(owner: Owner): boolean {
+    return owner >= 0 || this.meta.fixtures[-1 - owner].setups.includes(this.setup);
   }
 
   /** Vertices of the part alone, three numbers each: what a picture is to show. */
@@ -119,8 +126,10 @@ export class Drawn {
     if (!name) return null;
     const face = this.meta.faces.findIndex((each) => each.id === name);
     if (face >= 0) return face;
-    const fixture = this.meta.fixtures.findIndex((each) => name === `fixture:${each.name}` || name === each.name);
-    return fixture >= 0 ? -1 - fixture : null;
+    const mine = this.meta.fixtures.map((each) => name === `fixture:${each.name}` || name === each.name);
+    // Fixtures of several setups may have one name.
+    const fixture = mine.findIndex((same, i) => same && this.there(-1 - i));
+    return fixture >= 0 ? -1 - fixture : mine.includes(true) ? -1 - mine.indexOf(true) : null;
   }
 
   /** The middle of what an owner covers, by its box. */

@@ -21,6 +21,8 @@ export interface Fixture {
   name: string;
   start: number;
   count: number;
+  /** Setups in which it stands, counted from 0. */
+  setups: number[];
 }
 
 /** Where a cutter touches: on the circle `offset` from its axis and `height` over its tip, with a radius of curvature. */

@@ -19,20 +19,27 @@ export class PartView {
   private readonly width: number;
   private readonly height: number;
 
-  constructor(drawn: Drawn, arrays: Arrays, check: string, fixture: string) {
+  private readonly fixtures: [Owner, Mesh][] = [];
+
+  constructor(private readonly drawn: Drawn, arrays: Arrays, check: string, fixture: string) {
     [this.width, this.height] = drawn.meta.atlas ?? [1, 1];
     this.index = drawn.meta.atlas ? arrays.get("atlas.index").values : [-1];
     this.texture = atlasTexture(this.width, this.height);
     this.material = partMaterial(check, fixture);
     this.material.uniforms.colours.value = this.texture;
     this.material.uniforms.size.value = new Vector2(this.width, this.height);
-    const all = drawn.triangle.length / 3;
-    for (const [first, count] of [
-      [0, drawn.ofFaces],
-      [drawn.ofFaces, all - drawn.ofFaces],
-    ]) {
-      if (count) this.group.add(new Mesh(drawn.geometry(first, count), this.material));
-    }
+    if (drawn.ofFaces) this.group.add(new Mesh(drawn.geometry(0, drawn.ofFaces), this.material));
+    drawn.meta.fixtures.forEach(({ start, count }, i) => {
+      const mesh = new Mesh(drawn.geometry(start, count), this.material);
+      this.fixtures.push([-1 - i, mesh]);
+      if (count) this.group.add(mesh);
+    });
+    this.stand();
+  }
+
+  /** Show the fixtures of the setup that is shown, and no others. */
+  stand(): void {
+    for (const [owner, mesh] of this.fixtures) mesh.visible = this.drawn.there(owner);
   }
 
   /** Colour every sample; where some are to stand out, fade the others. */

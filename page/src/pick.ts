@@ -29,7 +29,7 @@ export class Picker {
     const plane = shared.plane.value;
     const found = this.drawn.tree
       .raycast(this.caster.ray, DoubleSide)
-      .filter(({ point }) => plane.x * point.x + plane.y * point.y + plane.z * point.z <= plane.w)
+      .filter(({ face, point }) => face && this.drawn.there(this.drawn.owner[face.a]) && plane.x * point.x + plane.y * point.y + plane.z * point.z <= plane.w)
       .sort((a, b) => a.distance - b.distance)[0];
     if (!found?.face) return null;
     const { a, b, c } = found.face;
@@ -45,6 +45,7 @@ export class Picker {
   hidden(point: Vec, towards: Vec): boolean {
     const step = 1e-4 * this.stage.table.radius;
     const ray = new Ray(new Vector3(...plus(point, towards, step)), new Vector3(...towards));
-    return this.drawn.tree.raycastFirst(ray, DoubleSide) !== null;
+    const { owner, tree } = this.drawn;
+    return tree.raycast(ray, DoubleSide).some(({ face }) => face && this.drawn.there(owner[face.a]));
   }
 }

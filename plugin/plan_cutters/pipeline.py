@@ -43,7 +43,7 @@ from plan_cutters.scene.setups import conditions_of, places, with_setups
 from plan_cutters.scene.spacing import affordable, sampled
 from plan_cutters.scene.threads import part_of
 from plan_cutters.scene.work import Work
-from plan_cutters.stages.between import between
+from plan_cutters.stages.between import in_each
 from plan_cutters.stages.classify import classify, regions
 from plan_cutters.stages.decompose import march_differs
 from plan_cutters.stages.judge import judge
@@ -355,16 +355,18 @@ def assemble(
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
     best = selected or next((e.id for e in entries if not e.not_reached), None)
     budget = ready.options.contacts_between(len(ready.samples))
-    # Between samples one setup is looked at, whose fixtures and clamped faces would have to be those of all.
-    if best and budget and ready.alike:
+    if best and budget:
         with clock.stage("area"):
             ahead("cover.cover")
             cutter = next(c for c in ready.cutters if c.id == best)
             most = np.inf
             if searched is not None and ready.options.area_budget is None:
                 most = _WORK_LEAST + _WORK_SHARE * searched.looked + _WORK_SAMPLE * len(ready.samples)
-            served = between(ready.samples, judged[cutter].verdicts, cutter, ready.scene.part, ready.scene.orientation,
-                             ready.conditions, budget=budget, most=most, beside=ready.inside_bodies)  # fmt: skip
+            # Where all setups hold the part alike, what is free in one of them is free in all.
+            setups = ready.setups[:1] if ready.alike else ready.setups
+            which = np.minimum(judged[cutter].which, len(setups) - 1)
+            served = in_each(ready.samples, judged[cutter].verdicts, which, cutter, ready.scene.part, ready.scene.orientation,
+                             setups, budget=budget, most=most, beside=ready.inside_bodies)  # fmt: skip
         area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
                          short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
         entries = [

@@ -60,6 +60,41 @@ def test_a_turned_axis_is_found(ready, written):
     assert not holds(ready, document, arrays)
 
 
+@pytest.mark.parametrize("forged", ["beyond", "below"])
+def test_samples_given_to_operations_that_there_are_not_are_found(ready, written, forged):
+    document, arrays = written
+    label = arrays["operation"]
+    label[:5] = len(document["operations"]["plans"][0]["operations"]) if forged == "beyond" else -2
+    document["operations"]["plans"][0]["rest"]["samples"] += 5 * (forged == "below")
+    assert not holds(ready, document, arrays)
+
+
+@pytest.mark.parametrize(
+    ("word", "value"),
+    [("axis", [0.0, 0.6, 0.8]), ("axis", [float("nan")] * 3), ("setup", -1), ("setup", 1), ("samples", 1),
+     ("other_angles_deg", {"C": 1.0, "A": 1.0})],
+)  # fmt: skip
+def test_an_operation_that_contradicts_itself_is_found(ready, written, word, value):
+    document, arrays = written
+    document["operations"]["plans"][0]["operations"][0][word] = value
+    assert not holds(ready, document, arrays)
+
+
+def test_fewer_than_there_are_is_found(ready, written):
+    document, arrays = written
+    few = document["operations"]["fewest"]
+    few["found"] = few["at_least"] = few["found"] - 1
+    assert not holds(ready, document, arrays)
+
+
+def test_samples_of_simultaneous_motion_are_said_not_to_be_put_down(ready, written):
+    document, arrays = written
+    one = document["operations"]["plans"][0]["operations"][0]
+    one["mode"] = "simultaneous"
+    said = " ".join(each.words for each in check_operations(ready, document, arrays))
+    assert f"{one['samples']} of simultaneous motion were not put down" in said
+
+
 def test_samples_that_are_dropped_are_found(ready, written):
     document, arrays = written
     arrays["operation"][:5] = -1

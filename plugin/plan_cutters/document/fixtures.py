@@ -10,16 +10,21 @@ from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
 
 def fixture_entries(each: Sequence[Surroundings]) -> list[FixtureEntry]:
     """Fixtures of all setups, those of the first one first; what stands there in the same place is one entry."""
-    found: list[FixtureEntry] = []
+    return [fixture_entry(standing).model_copy(update={"setups": setups}) for standing, setups in standing_in(each)]
+
+
+def standing_in(each: Sequence[Surroundings]) -> list[tuple[PlacedFixture, list[int]]]:
+    """Placed fixtures of all setups, each with the setups in which it stands, in the order of `fixture_entries`."""
+    found: list[tuple[PlacedFixture, list[int]]] = []
+    known: list[FixtureEntry] = []
     for number, around in enumerate(each):
         for standing in around.fixtures:
             mine = fixture_entry(standing)
-            same = [k for k, known in enumerate(found) if known.model_copy(update={"setups": mine.setups}) == mine]
-            if number and same:
-                kept = found[same[0]]
-                found[same[0]] = kept.model_copy(update={"setups": [*kept.setups, number]})
+            if number and mine in known:
+                found[known.index(mine)][1].append(number)
             else:
-                found.append(mine.model_copy(update={"setups": [number]}))
+                found.append((standing, [number]))
+                known.append(mine)
     return found
 
 

@@ -36,7 +36,6 @@ def notes_of(ready: Prepared, entries: Sequence[CutterEntry]) -> list[Note]:
         *_of_spacing(ready),
         *_of_travel(options),
         *_of_area(entries, doubtful=around.doubtful),
-        *_of_no_area(ready),
     ]
 
 
@@ -140,12 +139,6 @@ def _of_area(entries: Sequence[CutterEntry], *, doubtful: bool) -> Iterator[Note
         if area.left_out:
             yield Note("area_unknown", f"The area of {', '.join(area.left_out)} is not known: it is not in the share that is "
                        "served.")  # fmt: skip
-
-
-def _of_no_area(ready: Prepared) -> Iterator[Note]:
-    if not ready.alike and ready.options.area_budget != 0:
-        yield Note("area_not_looked_at", "Nothing is proved between the samples, for the setups differ in fixtures or clamped "
-                   "faces: plan one setup by itself for that.")  # fmt: skip
 
 
 def _of_travel(options: Options) -> Iterator[Note]:

@@ -19,6 +19,8 @@ from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.setups import places
 
 _UNIT = 1_000_000
+#: Parts of unit axes that differ by less are the same; and where angles are rounded to 0.001 deg.
+_SAME, _ROUNDED = 1e-9, 1e-4
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,6 +130,11 @@ def _weights(
     total = int(weight.sum())
     proved = -(-total // _UNIT)
     claimed = few["at_least"] if few["proof"] == "weights" else min(few["at_least"], proved)
+    used = sum(
+        each["mode"] == "fixed" for plan in entry["plans"] if plan["name"] == "fewest" for each in plan["operations"]
+    )
+    if used > few["found"]:
+        return Finding(False, f"The fewest operations are said to be {few['found']}, and there are {used}.")
     words = (f"The weights of {len(rows)} samples sum up to {total / _UNIT:.6f}; none of {len(angle)} candidates carries more "
              f"than {most / _UNIT:.6f}: at least {proved} orientations are needed, the plan says {few['at_least']}"
              f"{' (by branch and bound, which is not checked)' * (few['proof'] == 'branch and bound')}.")  # fmt: skip
@@ -139,30 +146,43 @@ def _plan(
     cutters: Mapping[str, Cutter], orientations: list[Orientations],
 ) -> list[Finding]:  # fmt: skip
     """Each operation at its own samples, with the axis that its angles give."""
-    wrong, tested, simultaneous = 0, 0, 0
+    wrong, tested, loose, strange = 0, 0, 0, int(((label < -1) | (label >= len(plan["operations"]))).sum())
+    at_odds = []
     for k, operation in enumerate(plan["operations"]):
         rows = np.flatnonzero(label == k)
+        if operation["samples"] != len(rows) or operation["setup"] not in range(len(ready.setups)):
+            at_odds.append(operation["id"])
+            continue
         if not np.array_equal(rows, _of_regions(operation, len(label))):
             return [Finding(False, f"The {plan['name']} plan: the regions of {operation['id']} do not have the samples that "
                                    "operations.npz gives it.")]  # fmt: skip
         if operation["mode"] != "fixed":
-            simultaneous += len(rows)
+            loose += len(rows)
             continue
-        angle = np.radians([[operation["angles_deg"][name] for name in names]])
-        axis = orientations[operation["setup"]].kinematics.axis(angle)
+        every = [operation["angles_deg"], *filter(None, [operation["other_angles_deg"]])]
+        turned = orientations[operation["setup"]].kinematics.axis(
+            np.radians([[one[name] for name in names] for one in every])
+        )
+        # Of other angles as they are rounded for a control; nan is near nothing.
+        away = np.abs(turned - operation["axis"]).max(axis=1)
+        if not (away <= [_SAME, *[_ROUNDED] * (len(every) - 1)]).all():
+            at_odds.append(operation["id"])
+        axis = turned[:1]
         free, _ = served_by(rows, axis, ready.samples, cutters[operation["cutter"]], ready.setups[operation["setup"]])
         free &= ready.machinable[operation["setup"]][rows]
         wrong += int((~free[0]).sum())
         tested += len(rows)
     each = len([operation for operation in plan["operations"] if operation["mode"] == "fixed"])
-    words = (f"The {plan['name']} plan: each of {each} fixed operations was put down at its samples, {tested} in all; {wrong} of "
-             "them are not served.")  # fmt: skip
-    if simultaneous:
-        words += f" {simultaneous} samples of simultaneous motion were not tested."
-    served = Finding(wrong == 0, words)
+    served = Finding(wrong == 0, f"The {plan['name']} plan: each of {each} fixed operations was put down at its samples, "
+                                 f"{tested} in all; {wrong} of them are not served."
+                                 f"{f' {loose} of simultaneous motion were not put down.' if loose else ''}")  # fmt: skip
+    if at_odds:
+        served = Finding(False, f"The {plan['name']} plan contradicts itself in the axis, the angles, the setup or the number of "
+                                f"samples of {', '.join(map(str, at_odds))}.")  # fmt: skip
     rest = int((ready.finished & ((label < 0) | (label >= len(plan["operations"])))).sum())
-    whole = Finding(rest == plan["rest"]["samples"],
-                    f"The {plan['name']} plan leaves {rest} judged samples, and says {plan['rest']['samples']}.")  # fmt: skip
+    whole = Finding(rest == plan["rest"]["samples"] and not strange,
+                    f"The {plan['name']} plan leaves {rest} judged samples, and says {plan['rest']['samples']}"
+                    f"{f'; {strange} go with operations that there are not' if strange else ''}.")  # fmt: skip
     return [served, whole]
 
 

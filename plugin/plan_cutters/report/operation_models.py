@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from cad_io.arrays import Style
 from cad_io.split import split_by_turns
 from cad_io.write import write_gltf
+from cad_io.write.gltf import Other as Drawn
+from plan_cutters.document.fixtures import fixture_entry
 from plan_cutters.document.operations import OperationEntry, OperationPlanEntry
 from plan_cutters.document.palette import LABELS, MEANING, parts, rgb
 from plan_cutters.report.models import (
@@ -73,7 +75,7 @@ def write_operations_glb(result: Judged, split: Any, path: Path, *, number: int 
         known = found.model_dump(mode="json", include={"mode", "cutter", "setup", "axis", "angles_deg", "seconds"})
         return {"face": f"F{piece.face}", "plan": plan.name, "operation": found.id, **known}
 
-    write_gltf(split, path, _styles(result, plan), extras=extras, piece_extras=facts, others=drawn_fixtures(result))
+    write_gltf(split, path, _styles(result, plan), extras=extras, piece_extras=facts, others=_fixtures(result))
 
 
 def write_fastest_step(result: Judged, split: Any, path: Path, *, schema: str = "ap242") -> None:
@@ -100,6 +102,19 @@ def _place(result: Judged, name: str) -> int:
     operations = result.plan.operations
     assert operations is not None, "models of operations are written where these were asked for"
     return [str(each.name) for each in operations.plans].index(name)
+
+
+def _fixtures(result: Judged) -> list[Drawn]:
+    """The fixtures, those of each setup below a node of their own where setups differ in them."""
+    ready = result.ready
+    if ready is None or ready.alike:
+        return drawn_fixtures(result)
+    found = []
+    for k, conditions in enumerate(ready.setups):
+        for each in conditions.around.fixtures:
+            facts = fixture_entry(each).model_copy(update={"setups": [k]}).model_dump(mode="json")
+            found.append(Drawn(each.name, each.shown, rgb("fixture"), facts, f"fixtures of setup {k + 1}"))
+    return found
 
 
 def _entry(result: Judged, number: int) -> OperationPlanEntry:

@@ -6,7 +6,7 @@ most area may be gained for each contact, until that is too little or a budget o
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,9 +67,9 @@ class Between(Record):
 
     Attributes
     ----------
-    share : float
-        Of the area of all target faces whose area is known, sampled or not, 0 to 1, rounded down; without what surely lies
-        inside other bodies of the part.
+    served, whole : float
+        Proved area, mm2, and that of all target faces whose area is known, sampled or not, without what surely lies inside other
+        bodies of the part.
     contacts : int
         Contacts looked at, samples included.
     left : int
@@ -85,7 +85,8 @@ class Between(Record):
         Area of all cells about each sample, served or not, mm2.
     """
 
-    share: float
+    served: float
+    whole: float
     contacts: int
     left: int
     short: int
@@ -93,6 +94,12 @@ class Between(Record):
     unknown: tuple[int, ...]
     cells: Cells
     around: Floats
+
+    @property
+    def share(self) -> float:
+        """Give the share of the area that is proved, 0 to 1, rounded down."""
+        share = self.served / self.whole if self.whole > 0 else 0.0
+        return float(np.floor(1e6 * min(1.0, share + 1e-9)) / 1e6)
 
     @property
     def feasible(self) -> bool:
@@ -113,6 +120,7 @@ def between(
     work: Work | None = None,
     beside: NDArray[np.bool_] | None = None,
     fixed: Fixed | None = None,
+    own: NDArray[np.bool_] | None = None,
 ) -> Between:
     """Find the share of the target area over which a cutter's postures hold.
 
@@ -136,13 +144,18 @@ def between(
         Samples that are no surface of the finished part: cells about them are left out where all around them are such, too.
     fixed : Fixed, optional
         Each cell keeps the axis of its sample, or takes one of these that serve the sample: no other posture is searched.
+    own : (n + 1,) bool, optional
+        Samples whose cells are looked at, and behind them whether those about no sample are; the others are as if they were not
+        there, but `share` is of all the same.
     """
     targets = sorted({*np.unique(samples.face).tolist(), *(number for number, _ in samples.empty)})
     areas = {number: part.faces[number - 1].area for number in targets}
     unknown = tuple(number for number, area in areas.items() if not area > 0)
     whole = sum(area for area in areas.values() if area > 0)
     beside = np.zeros(len(samples), bool) if beside is None else beside
-    looked, left, short = int(((samples.unjudged < 0) & ~beside).sum()), int((~beside).sum()), 0
+    own = np.ones(len(samples) + 1, bool) if own is None else own
+    counted, short = own[:-1] & ~beside, 0
+    looked, left = int((counted & (samples.unjudged < 0)).sum()), int(counted.sum())
     work = Work() if work is None else work
     upto, around = work.looked + most, np.zeros(len(samples))
     sites, nodes, strips = list[Site](), list[CellContacts](), list[CellContacts]()
@@ -152,12 +165,14 @@ def between(
             continue  # which part of the surface it uses is not known well enough
         field, mine, bare = laid(part, orientation, samples, grid, verdicts, conditions)
         on_grid = grid.index[grid.index >= 0]
-        left -= int((~beside[on_grid]).sum())
+        left -= int(counted[on_grid].sum())
         if beside[on_grid].any():
             deep = _covered(field, grid, beside)
             for cells in (mine, bare):
                 whole -= float(cells.area[deep[tuple(cells.home.T)]].sum())
             mine, bare = (cells.of(~deep[tuple(cells.home.T)]) for cells in (mine, bare))
+        # Row -1, of no sample, is the last.
+        mine, bare = (cells.of(own[cells.sample]) for cells in (mine, bare))
         sites.append(Site(field, cutter, conditions, work, fixed))
         nodes.append(mine)
         strips.append(bare)
@@ -188,10 +203,50 @@ def between(
         looked += site.refine(budget * share // max(1, sum(wanted)), least, until)
         behind -= share
     left += int((~chosen).sum()) + sum(site.left for site in sites)
-    served = sum(site.served for site in sites) / whole if whole > 0 else 0.0
     return Between(
-        float(np.floor(1e6 * min(1.0, served + 1e-9)) / 1e6), looked, left, short + sum(site.short for site in sites),
+        sum(site.served for site in sites), whole, looked, left, short + sum(site.short for site in sites),
         sum(site.dropped for site in sites), unknown, _cells(sites), around,
+    )  # fmt: skip
+
+
+def in_each(
+    samples: SurfaceSamples, verdicts: Verdicts, which: Ints, cutter: Cutter, part: Part, orientation: Orientation,
+    setups: Sequence[Conditions], *, budget: int, most: float = np.inf, beside: NDArray[np.bool_] | None = None,
+) -> Between:  # fmt: skip
+    """The same over setups that hold the part differently: each cell among the obstacles of the setup that serves its sample.
+
+    Parameters
+    ----------
+    samples, verdicts, cutter, part, orientation, budget, most, beside
+        As for `between`; the verdicts are those over all setups.
+    which : (n,) int32
+        The setup that serves each sample, -1 for none: its cells go with the first setup, as those about no sample do.
+    setups : sequence of Conditions
+        The first one first.
+    """
+    place = np.append(np.maximum(which, 0), 0)
+    found = []
+    for k, conditions in enumerate(setups):
+        own = place == k
+        part_of_all = float(own[:-1].sum()) / max(1, len(samples))
+        found.append(between(
+            samples, verdicts, cutter, part, orientation, conditions, budget=int(budget * part_of_all), most=most * part_of_all,
+            beside=beside, own=own,
+        ) if own.any() else None)  # fmt: skip
+    return _joined([each for each in found if each is not None])
+
+
+def _joined(each: Sequence[Between]) -> Between:
+    """What was proved of cells that lie apart, in one."""
+    pieces, last = [], 0
+    for one in each:
+        pieces.append(replace(one.cells, piece=one.cells.piece + last))
+        last = int(pieces[-1].piece.max(initial=last - 1)) + 1
+    columns = ([getattr(cells, name) for cells in pieces] for name in Cells.__slots__)
+    return Between(
+        sum(one.served for one in each), each[0].whole, sum(one.contacts for one in each), sum(one.left for one in each),
+        sum(one.short for one in each), sum(one.dropped for one in each), each[0].unknown,
+        Cells(*map(np.concatenate, columns)), np.sum([one.around for one in each], axis=0),
     )  # fmt: skip
 
 

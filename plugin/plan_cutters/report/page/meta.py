@@ -19,7 +19,7 @@ from plan_cutters.domain.verdicts import WORDS
 from plan_cutters.report.page.atlas import Atlas
 from plan_cutters.report.page.facts import Spot
 from plan_cutters.report.page.operations import operations_of
-from plan_cutters.report.page.surface import Surface
+from plan_cutters.report.page.surface import Surface, fixtures_of
 from plan_cutters.report.protocol import Judged
 from plan_cutters.report.story.cutters import spot as sentence
 from plan_cutters.report.story.names import short_names
@@ -64,8 +64,8 @@ def meta_of(
         "atlas": [atlas.index.shape[1], atlas.index.shape[0]],
         "faces": [_face(entry, surface) for entry in plan.faces],
         "fixtures": [
-            {"name": standing.name, "start": surface.fixtures[i][0], "count": surface.fixtures[i][1]}
-            for i, standing in enumerate(result.conditions.around.fixtures)
+            {"name": standing.name, "start": surface.fixtures[i][0], "count": surface.fixtures[i][1], "setups": setups}
+            for i, (standing, setups) in enumerate(fixtures_of(result))
         ],
         "cutters": [
             _cutter(names[entry.id], entry, result.judged(entry.id), counts(result.reaches[entry.id].verdict))

@@ -8,8 +8,10 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from cad_io.write.render_mesh import Drawn, Mesh
+from plan_cutters.document.fixtures import standing_in
 from plan_cutters.report.page.atlas import NOWHERE, Atlas, placed_in
 from plan_cutters.report.protocol import Judged
+from plan_cutters.scene.surroundings import PlacedFixture
 
 #: First triangle and number of triangles.
 Range = tuple[int, int]
@@ -44,7 +46,7 @@ def surface_of(result: Judged, drawn: Drawn, atlas: Atlas) -> Surface:
         start += len(mesh.triangle)
         meshes.append(mesh)
         places.append(place)
-    for i, standing in enumerate(result.conditions.around.fixtures):
+    for i, (standing, _) in enumerate(fixtures_of(result)):
         mesh = _facets(standing.shown)
         fixtures[i] = (start, len(mesh.triangle))
         start += len(mesh.triangle)
@@ -59,6 +61,12 @@ def surface_of(result: Judged, drawn: Drawn, atlas: Atlas) -> Surface:
         faces,
         fixtures,
     )
+
+
+def fixtures_of(result: Judged) -> list[tuple[PlacedFixture, list[int]]]:
+    """The fixtures of all setups, those of the first one first, each with the setups in which it stands."""
+    setups = (result.conditions,) if result.ready is None else result.ready.setups
+    return standing_in([each.around for each in setups])
 
 
 def _facets(corner: Floats) -> Mesh:
