@@ -44,6 +44,8 @@ LINES, CLOSELY, PLACES = 600, 40, 4
 ROUNDS, NODES = 6, 9
 #: Pairs of samples and operations that do not serve them.
 REFUSED = 40
+#: Axes nearer to the normal than this stand upright, rad.
+UPRIGHT = 1e-4
 
 
 @dataclass(frozen=True)
@@ -268,9 +270,9 @@ def rejudged(case: Case, folder: Path) -> bool:
             axes = _axes(case, result, operation, rows)
             faces, found = obstacles[operation.setup], []
             for row, axis in zip(rows.tolist(), axes, strict=True):
-                key = (operation.cutter, operation.setup, tuple(axis), row)
+                key = (operation.cutter, operation.setup, tuple(axis), tuple(made.lean[row]), row)
                 if key not in known:
-                    put = _put(result, references, tools, operation.cutter, row, axis)
+                    put = _put(result, references, tools, operation.cutter, row, axis, made.lean[row])
                     known[key] = (*put.deepest(faces), put)
                 found.append(known[key])
             worst = sorted(found, key=lambda each: -each[0])[:CLOSELY]
@@ -288,10 +290,15 @@ def rejudged(case: Case, folder: Path) -> bool:
     return ok
 
 
-def _put(result: Result, references: Any, tools: dict[str, Cutter], name: str, row: int, axis: Floats) -> Posture:
+def _put(
+    result: Result, references: Any, tools: dict[str, Cutter], name: str, row: int, axis: Floats, lean: Floats | None = None
+) -> Posture:  # fmt: skip
     samples = result.samples
-    return Posture(references[name], -(tools[name].clearance or 0.0), samples.point[row], samples.normal[row],
-                   samples.direction_max[row], axis)  # fmt: skip
+    normal, aside = samples.normal[row], samples.direction_max[row]
+    # A cutter that stands upright touches with the side that is written, its bottom across the axis.
+    if lean is not None and np.isfinite(lean).all() and normal @ axis > np.cos(UPRIGHT):
+        normal, aside = axis, lean
+    return Posture(references[name], -(tools[name].clearance or 0.0), samples.point[row], normal, aside, axis)
 
 
 def _axes(case: Case, result: Result, operation: Any, rows: Ints) -> Floats:

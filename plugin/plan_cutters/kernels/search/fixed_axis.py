@@ -19,9 +19,10 @@ LEANS = 36
 
 
 @kernel
-def _stands(row, axis, contacts, low, high, tool, solids, leans, body, f, t, workspace, hint):
+def _stands(row, axis, contacts, low, high, tool, solids, leans, body, sides, workspace, hint):
     """Return how the tool stands free at a contact with an axis, as `served` writes it, and the triangle in its way last."""
     n, e1 = contacts.normal[row], contacts.direction_max[row]
+    f, t, x, y = sides[0], sides[1], sides[2], sides[3]
     cosine = min(1.0, max(-1.0, dot(axis, n)))
     for k in range(3):
         f[k] = axis[k] - cosine * n[k]
@@ -43,9 +44,10 @@ def _stands(row, axis, contacts, low, high, tool, solids, leans, body, f, t, wor
     # The bottom lies across the axis: about the contact the tool may be at any side.
     along = dot(axis, e1)
     for k in range(3):
-        t[k] = e1[k] - along * axis[k]
-    length = np.sqrt(dot(t, t))
-    x, y = t / length, np.empty(3)
+        x[k] = e1[k] - along * axis[k]
+    length = np.sqrt(dot(x, x))
+    for k in range(3):
+        x[k] /= length
     cross(axis, x, y)
     for number in range(leans):
         turn = 2.0 * np.pi * number / LEANS
@@ -97,7 +99,7 @@ def served(rows, axis, contacts, low, high, tool, solids, leans, lean):
     int
         How many times the tool was put down: where the surface faces the axis.
     """
-    body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
+    body, sides = np.empty(BODY), np.empty((4, 3))
     workspace = scratch()
     least, count, hint = np.cos(min(high, np.pi)) - 1e-9, 0, -1
     for i in range(len(rows)):
@@ -105,6 +107,6 @@ def served(rows, axis, contacts, low, high, tool, solids, leans, lean):
         if dot(axis, contacts.normal[rows[i]]) >= least:
             count += 1
             lean[i], hint = _stands(
-                rows[i], axis, contacts, low, high, tool, solids, leans, body, f, t, workspace, hint
+                rows[i], axis, contacts, low, high, tool, solids, leans, body, sides, workspace, hint
             )
     return count
