@@ -16,8 +16,8 @@ def write_operations(result: Judged, _split: object, path: Path) -> None:
 
     Of the first plan, and of others with `_` and their name behind the words: `operation` (n,) int16, an index into its
     operations, -1 for none; `strip_mm`, the width of a pass; `seconds`, nan without a feed; `exclusive`, that no other operation
-    serves it; `lean` (n, 3), where the tool leans, on a floor the side of its bottom that touches. `candidate_cutter` and `candidate_setup` (m,) are indices into the plan's cutters and setups, `candidate_angle`
-    (m, 2) is in degrees.
+    serves it; `lean` (n, 3), where the tool leans, on a floor the side of its bottom that touches. `candidate_cutter` and
+    `candidate_setup` (m,) are indices into the plan's cutters and setups, `candidate_angle` (m, 2) is in degrees.
     """
     found = result.answers.operations
     assert found is not None, "written where operations were asked for"
