@@ -19,7 +19,7 @@ outside() {
 }
 
 [ -x .venv/bin/python ] || python3 -m venv .venv
-extra=""
+extra="[batch]"
 [ "${1:-}" = dev ] && extra="[dev]"
 .venv/bin/python -m pip install --quiet --disable-pip-version-check --editable ".$extra"
 if ! .venv/bin/python -c "import OCP" 2>/dev/null; then
