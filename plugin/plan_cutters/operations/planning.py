@@ -21,7 +21,7 @@ from plan_cutters.operations.fastest import Costs, Problem, bounded, cheap, exch
 from plan_cutters.operations.fewest import FINEST, Search, search_fewest
 from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.over_all_axes import over_all_axes
-from plan_cutters.operations.plans import Task, best_area, considered, orientations_of, plan_with, small_pieces
+from plan_cutters.operations.plans import CRUMB, Task, best_area, considered, orientations_of, plan_with, small_pieces
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
 from plan_cutters.operations.rest_areas import allowed, by_size, largest_first, worths
@@ -80,7 +80,13 @@ def plan_operations(
             if len(task.cutters) > 1:
                 plans.append(_capped(task, "largest first", _by_habit(task, search, few)))
         plans = [proved(ready, each) for each in plans]
-    small = tuple(note for each in plans for note in small_pieces(each, ready.samples, options.overlap))
+    # What is said of the first plan is not said again of others that are the same.
+    others = [each for each in plans[1:] if not np.array_equal(each.label, plans[0].label)]
+    small = tuple(note for each in (plans[0], *others) for note in small_pieces(each, ready.samples, options.overlap))
+    turned = max(sum(each.mode == "fixed" for each in plan.operations) for plan in plans)
+    if options.most_operations is None and turned < len(few):
+        small += (f"Orientations that add less than {100 * CRUMB:g} % of the area each are left out of the plans; "
+                  f"--most-operations {len(few)} takes all.",)  # fmt: skip
     return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
                       task.probes.made, task.paths.feed, everywhere[0][task.cutters[0]].reason, timed, worth=worth,
                       notes=small, index_from=task.indexing.source)  # fmt: skip
@@ -146,9 +152,8 @@ def _stored(task: Task, rows: Rows) -> Columns:
 
 
 def _capped(task: Task, name: str, columns: Columns) -> OperationPlan:
-    most = task.ready.options.most_operations
-    if most is not None and len(columns) > most:
-        columns = best_area(task, columns, most)
+    kept = best_area(task, columns, task.ready.options.most_operations)
+    columns = kept if len(kept) < len(columns) else columns
     habit = name == "largest first"
     return plan_with(task, name, columns, (lambda serves: allowed(task, columns, serves)) if habit else None)
 

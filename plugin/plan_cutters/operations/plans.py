@@ -26,6 +26,8 @@ from plan_cutters.scene.preparation import Prepared
 Rows = NDArray[np.int64]
 #: Pieces of an operation smaller than so many squares of the overlap are joined to another operation, if one serves them.
 _SMALL = 4.0
+#: An orientation that adds less of the area is not worth its turn.
+CRUMB = 0.001
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -181,15 +183,21 @@ def small_pieces(plan: OperationPlan, samples: SurfaceSamples, overlap: float) -
             f"operation beside serves {them}.",)  # fmt: skip
 
 
-def best_area(task: Task, columns: Columns, most: int) -> Columns:
-    """Of some columns so many that serve most of the area, one after the other."""
+def best_area(task: Task, columns: Columns, most: int | None) -> Columns:
+    """Of some columns so many that serve most of the area, one after the other.
+
+    `most` None: as many as add each at least `CRUMB` of the area that all serve.
+    """
     serves, left = task.probes.table(task.rows, columns), np.nan_to_num(task.ready.samples.area[task.rows])
-    picked = list[int]()
-    for _ in range(min(most, len(columns))):
+    picked, least = list[int](), CRUMB * float(left @ serves.any(axis=1)) if most is None else -1.0
+    for _ in range(len(columns) if most is None else min(most, len(columns))):
         gain = left @ serves
         gain[picked] = -1.0
-        picked.append(int(gain.argmax()))
-        left = np.where(serves[:, picked[-1]], 0.0, left)
+        best = int(gain.argmax())
+        if picked and gain[best] < least:
+            break
+        picked.append(best)
+        left = np.where(serves[:, best], 0.0, left)
     return columns.of(np.array(picked, np.int64))
 
 
