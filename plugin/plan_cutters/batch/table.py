@@ -74,4 +74,4 @@ def _kind(annotation: Any) -> type:
         return _kind(kind)
     if annotation not in (str, int, float):
         raise TypeError(f"no column can hold {annotation}")
-    return annotation  # type: ignore[no-any-return]
+    return annotation
