@@ -27,11 +27,11 @@ def test_plain_lines_name_each_part_and_the_cause_of_a_failure():
     with (found := board())[0] as one:
         one.row(GOOD)
         one.row(BAD)
-        one.row(GOOD.model_copy(update={"status": "kept"}))
+        one.row(GOOD.model_copy(update={"status": "kept", "error": "not written: review.png"}))
     assert lines(found[1]) == [
         "blade: finished: Take flat end D12 x 60",
         "rim\\n\\x1b[2J: failed: rim.step: not a STEP file",
-        "blade: finished: Take flat end D12 x 60, kept from an earlier run",
+        "blade: finished: Take flat end D12 x 60; kept from an earlier run; not written: review.png",
         "3 of 3 parts done, 1 failed",
     ]
 
@@ -117,6 +117,17 @@ def test_a_stream_that_is_gone_ends_nothing(terminal):
     one.told(1, 0, 2)
     one.close()
     assert (one.done, one.failed) == (1, 1)
+
+
+@pytest.mark.parametrize("before", [True, False])
+def test_a_part_that_is_told_of_twice_counts_once(before):
+    one, text = board(total=3)
+    for done in (1, 2, 3):
+        steps = [lambda done=done: one.told(done, 3 - done, 3), lambda: one.row(GOOD)]
+        for step in steps if before else steps[::-1]:
+            step()
+    one.close()
+    assert lines(text)[-1] == "3 of 3 parts done"
 
 
 def test_threads_lose_no_part():

@@ -72,8 +72,10 @@ class _Shown(NamedTuple):
 
     row: PartRow
     outcome: Outcome
-    #: Of a part that failed its cause, else the headline; and what else is to be said of how it was made.
+    #: Of a part that failed its cause, else the headline; what went wrong all the same, as a file that was not written; and how
+    #: the answer came about.
     says: str
+    wrong: str
     made: str
     share: str
     reason: str
@@ -110,6 +112,7 @@ def _shown(row: PartRow) -> _Shown:
         row=row,
         outcome=found,
         says=cause(row) if found == "failed" else row.verdict,
+        wrong="" if found == "failed" else row.error or "",
         made=_made(row),
         share="" if row.share is None else numbers.percent(row.share, some=row.share > 0.0, whole=whole),
         reason=reason(row.reason) if row.reason else "",

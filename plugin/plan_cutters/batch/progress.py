@@ -46,6 +46,7 @@ class Board:
         self.quiet, self.total = quiet, total
         self.console = console or Screen(stderr=True, highlight=False, markup=False, emoji=False)
         self.done = self.running = self.failed = 0
+        self._rows = 0
         self._said: set[str] = set()
         self._began = self._spoke = time.monotonic()
         self._lock = threading.RLock()
@@ -63,21 +64,24 @@ class Board:
     def row(self, row: PartRow) -> None:
         """Show what came of a part."""
         with self._lock:
-            self.done += 1
+            self._rows += 1
+            self.done = max(self.done, self._rows)
             found = outcome(row)
             failed = found == "failed"
             self.failed += failed
             if failed:
                 self._print(f"{self._clock}{row.name}: failed: {cause(row)}")
             elif not self.quiet and self._bar is None and self._each:
-                kept = ", kept from an earlier run" if row.status == "kept" else ""
-                self._print(f"{self._clock}{row.name}: {OUTCOMES[found]}: {row.verdict}{kept}")
+                more = ["kept from an earlier run"] * (row.status == "kept") + [row.error] * bool(row.error)
+                self._print(f"{self._clock}{row.name}: {OUTCOMES[found]}: {'; '.join([row.verdict, *more])}")
             self._update()
 
     def told(self, done: int, running: int, total: int | None) -> None:
         """Take over counts from whoever knows them better: parts done, in work, and in all."""
         with self._lock:
-            self.done, self.running, self.total = done, running, self.total if total is None else total
+            # It may be told of a part before its row comes, or after.
+            self.done, self.running = max(done, self._rows), running
+            self.total = self.total if total is None else total
             self._update()
 
     def say(self, text: str) -> None:
