@@ -72,8 +72,9 @@ class Board:
             if failed:
                 self._print(f"{self._clock}{row.name}: failed: {cause(row)}")
             elif not self.quiet and self._bar is None and self._each:
-                more = ["kept from an earlier run"] * (row.status == "kept") + [row.error] * bool(row.error)
-                self._print(f"{self._clock}{row.name}: {OUTCOMES[found]}: {'; '.join([row.verdict, *more])}")
+                kept = "; kept from an earlier run" if row.status == "kept" else ""
+                wrong = f"; {row.error}" if row.error else ""
+                self._print(f"{self._clock}{row.name}: {OUTCOMES[found]}: {row.verdict}{kept}{wrong}")
             self._update()
 
     def told(self, done: int, running: int, total: int | None) -> None:
