@@ -131,7 +131,7 @@ rows_of_all_kinds = st.builds(
     reason=st.none() | st.sampled_from(["holder", "neck", "unheard_of"]),
     samples=st.none() | st.integers(0, 10**9),
     seconds=st.floats(),
-    page=st.none() | st.text(max_size=20),
+    page=st.none() | st.text(st.characters(), max_size=20),
     error=st.none() | st.text(max_size=20),
 )
 

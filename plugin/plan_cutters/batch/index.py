@@ -153,8 +153,11 @@ def _link(path: str | None) -> str:
     """
     if not path or path.startswith("/") or ".." in PurePosixPath(path).parts:
         return ""
-    # Bytes of a file's name that are no UTF-8 stay what they are.
-    return "./" + quote(path.encode("utf-8", "surrogateescape"))
+    try:
+        # Bytes of a file's name that are no UTF-8 stay what they are.
+        return "./" + quote(path.encode("utf-8", "surrogateescape"))
+    except UnicodeEncodeError:
+        return ""  # no file system has such a name
 
 
 def _clean(row: PartRow) -> PartRow:

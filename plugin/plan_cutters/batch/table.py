@@ -3,6 +3,7 @@
 import csv
 import io
 import math
+import re
 import types
 from collections.abc import Sequence
 from importlib.util import find_spec
@@ -12,7 +13,7 @@ from plan_cutters.batch.row import PartRow
 from plan_cutters.batch.summary import cause, outcome
 
 #: What a spreadsheet takes for the beginning of a formula (the wide forms too), or drops before one; and our own mark.
-_FORMULA = ("=", "+", "-", "@", "＝", "＋", "－", "＠", "\t", "\r", "\n", " ", "'")
+_FORMULA = re.compile(r"[=+\-@＝＋－＠'\s\x00-\x1f\x7f]")
 #: Outcome first, as it sums up status and code; then the fields of a row in their order. New ones are appended.
 _FIRST = ("name", "file", "outcome")
 
@@ -61,7 +62,7 @@ def parquet_of(rows: Sequence[PartRow]) -> bytes | None:
 
 
 def _guarded(cell: Any) -> Any:
-    return f"'{cell}" if isinstance(cell, str) and cell.startswith(_FORMULA) else cell
+    return f"'{cell}" if isinstance(cell, str) and _FORMULA.match(cell) else cell
 
 
 def _kind(annotation: Any) -> type:
