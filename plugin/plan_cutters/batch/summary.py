@@ -1,4 +1,4 @@
-"""What came of all parts, in numbers: `summary.json`, and its schema."""
+"""All parts summed up in numbers: `summary.json`, and its schema."""
 
 import json
 from collections import Counter
@@ -28,7 +28,7 @@ _OF_CODES: dict[int, Outcome] = {0: "finished", 1: "not_finished", 4: "not_sure"
 
 
 def outcome(row: PartRow) -> Outcome:
-    """What came of a part, in a word.
+    """Sum up a part in a word.
 
     >>> outcome(PartRow(name="a", file="a.step", status="kept", code=4))
     'not_sure'
@@ -76,7 +76,7 @@ class Parts(Counts):
 
 
 class CutterParts(Counts):
-    """What came of the parts of which a cutter is to be taken, or comes nearest."""
+    """A cutter is the one to take of so many parts, or comes nearest; by outcome."""
 
     cutter: str
 
@@ -110,7 +110,7 @@ class BatchRun(_Entry):
 
 
 class Summary(_Entry):
-    """What came of many parts: counts, the worst exit code, and the tables beside it."""
+    """A summary counts many parts, and has the worst exit code, the first failures and the tables beside it."""
 
     format: Literal["plan-cutters-batch"] = "plan-cutters-batch"
     format_version: int = FORMAT_VERSION

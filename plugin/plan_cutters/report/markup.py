@@ -1,4 +1,4 @@
-"""What every page of ours holds to: its texts, its data and its policy are safe whatever names in files hold."""
+"""Keep pages safe whatever names in files hold: their texts, their data and their policy."""
 
 import base64
 import hashlib
