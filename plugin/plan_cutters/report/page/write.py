@@ -1,21 +1,17 @@
 """The page as a file: data, tables and script in one, within its size."""
 
-import base64
-import hashlib
-import json
 import math
-import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import jinja2
 import numpy as np
 from markupsafe import Markup
 from numpy.typing import NDArray
 
 from cad_io.write.render_mesh import drawn
 from plan_cutters.document.model import Plan
+from plan_cutters.report.markup import embedded, policy, template
 from plan_cutters.report.page import arrays, tables
 from plan_cutters.report.page.arrays import Arrays
 from plan_cutters.report.page.atlas import atlas_of
@@ -158,10 +154,8 @@ def _together(each: Iterable[Arrays]) -> Arrays:
 
 def _rendered(meta: dict[str, Any], data: str, shown: dict[str, Any]) -> bytes:
     script, style = _asset("page.js"), _asset("page.css")
-    policy = (f"default-src 'none'; script-src '{_hash(script)}'; style-src '{_hash(style)}'; img-src data: blob:; "
-              "base-uri 'none'; form-action 'none'")  # fmt: skip
     return _TEMPLATE.render(
-        policy=policy,
+        policy=policy(script, style, "data: blob:"),
         script=Markup(script),
         style=Markup(style),
         meta=Markup(embedded(meta)),
@@ -170,37 +164,8 @@ def _rendered(meta: dict[str, Any], data: str, shown: dict[str, Any]) -> bytes:
     ).encode()
 
 
-def embedded(value: Any) -> str:
-    """JSON that may stand in a page: nothing in it ends the element or begins another one; null where a number is not finite."""
-    text = json.dumps(_finite(value), ensure_ascii=True, separators=(",", ":"), allow_nan=False)
-    return re.sub("[<>&]", lambda found: f"\\u{ord(found[0]):04x}", text)
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _finite(each) for key, each in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(each) for each in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
-def plain(value: Any) -> Any:
-    """A text in which a sign stands for each character that has no place in a page: controls, halves of surrogate pairs."""
-    if not isinstance(value, str) or isinstance(value, Markup):
-        return value
-    return _NO_TEXT.sub("\ufffd", value)
-
-
 def _asset(name: str) -> str:
     return (_HERE / name).read_text(encoding="utf-8")
 
 
-def _hash(text: str) -> str:
-    return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
-
-
-_NO_TEXT = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
-_TEMPLATE = jinja2.Environment(
-    loader=jinja2.FileSystemLoader(_HERE), autoescape=True, undefined=jinja2.StrictUndefined, finalize=plain,
-    trim_blocks=True, lstrip_blocks=True,
-).get_template("page.html.jinja")  # fmt: skip
+_TEMPLATE = template(_HERE / "page.html.jinja")

@@ -1,0 +1,178 @@
+"""The index of many parts: a page for people, tables for programs, and a summary, in the folder above theirs."""
+
+import hashlib
+import math
+from collections.abc import Callable, Mapping, Sequence
+from datetime import UTC, datetime
+from pathlib import Path, PurePosixPath
+from typing import Any, NamedTuple
+from urllib.parse import quote
+
+from markupsafe import Markup
+from pydantic_core import to_jsonable_python
+
+from plan_cutters.batch.row import PartRow
+from plan_cutters.batch.summary import OUTCOMES, BatchRun, Outcome, Summary, Table, cause, outcome, summary_of
+from plan_cutters.batch.table import csv_of, parquet_of
+from plan_cutters.document.build import versions
+from plan_cutters.report.markup import finite, plain, policy, template
+from plan_cutters.report.story import numbers
+from plan_cutters.report.story.cutters import reason
+
+PAGE, CSV, PARQUET, SUMMARY = "index.html", "index.csv", "index.parquet", "summary.json"
+_HERE = Path(__file__).parent
+
+
+def write_index(
+    rows: Sequence[PartRow],
+    put: Callable[[str, bytes], None],
+    *,
+    title: str,
+    seconds: float,
+    cluster: Mapping[str, object],
+) -> None:
+    """Write the index of all parts; all is made before anything is written, and the summary comes last.
+
+    Parameters
+    ----------
+    rows : sequence of PartRow
+        In any order: the tables have them by name, the page with failures on top.
+    put : callable
+        Called with the name of a file and its content; it lets the file appear whole or not at all, or raises.
+    title : str
+        What was planned, for people.
+    seconds : float
+        By the clock, of the whole run.
+    cluster : mapping
+        Where it ran, as words and numbers: what is no JSON is told by its `str`.
+    """
+    rows = sorted((_clean(row) for row in rows), key=lambda row: (row.name, row.file, row.key))
+    made = {CSV: csv_of(rows), PARQUET: parquet_of(rows)}
+    tables = {name: data for name, data in made.items() if data is not None}
+    summary = summary_of(
+        rows,
+        title=plain(title),
+        files={name.rpartition(".")[2]: _table(name, data) for name, data in tables.items()},
+        versions=versions(),
+        run=BatchRun(
+            time=datetime.now(UTC).isoformat(timespec="seconds"),
+            seconds=finite(float(seconds)),
+            seconds_of_parts=sum(row.seconds for row in rows if row.status != "kept" and math.isfinite(row.seconds)),
+            cluster=_facts(cluster),
+        ),
+    )
+    tables[PAGE] = page(rows, summary)
+    tables[SUMMARY] = (summary.model_dump_json(indent=2) + "\n").encode()
+    for name, data in tables.items():
+        put(name, data)
+
+
+class _Shown(NamedTuple):
+    """A row as the page has it: texts, and what they are sorted by where that is not the text."""
+
+    row: PartRow
+    outcome: Outcome
+    #: Of a part that failed its cause, else the headline; what went wrong all the same, as a file that was not written; and how
+    #: the answer came about.
+    says: str
+    wrong: str
+    made: str
+    share: str
+    reason: str
+    time: str
+    seconds: float
+    page: str
+    picture: str
+
+
+def page(rows: Sequence[PartRow], summary: Summary) -> bytes:
+    """The page: UTF-8, one file without its pictures and the pages of the parts, which it names relative to itself."""
+    worst = list(OUTCOMES)
+    shown = sorted(map(_shown, rows), key=lambda each: worst.index(each.outcome))
+    script, style = ((_HERE / name).read_text(encoding="utf-8") for name in ("index.js", "index.css"))
+    return _TEMPLATE.render(
+        policy=policy(script, style, "'self' file:"),
+        script=Markup(script),
+        style=Markup(style),
+        summary=summary,
+        rows=shown,
+        worst={word: place for place, word in enumerate(worst)},
+        outcomes=OUTCOMES,
+        of=summary.parts.model_dump(),
+        reason=reason,
+        time=_time,
+        w=numbers,
+    ).encode()
+
+
+def _shown(row: PartRow) -> _Shown:
+    found = outcome(row)
+    whole = row.share is not None and row.share >= 1.0
+    return _Shown(
+        row=row,
+        outcome=found,
+        says=cause(row) if found == "failed" else row.verdict,
+        wrong="" if found == "failed" else row.error or "",
+        made=_made(row),
+        share="" if row.share is None else numbers.percent(row.share, some=row.share > 0.0, whole=whole),
+        reason=reason(row.reason) if row.reason else "",
+        time=_time(row.seconds),
+        seconds=row.seconds if math.isfinite(row.seconds) else -1.0,
+        page=_link(row.page),
+        picture=_link(row.picture),
+    )
+
+
+def _made(row: PartRow) -> str:
+    """Whether the answer is an earlier one, and whether it took several tries."""
+    kept = ["kept from an earlier run"] if row.status == "kept" else []
+    again = [f"begun {row.tries} times"] if row.tries > 1 else []
+    return ", ".join([*kept, *again])
+
+
+def _time(seconds: float | None) -> str:
+    """Seconds for people.
+
+    >>> _time(0.04), _time(59.96), _time(3661.0), _time(None)
+    ('<0.1 s', '1:00 min', '1:01:01 h', '')
+    """
+    if seconds is None or not math.isfinite(seconds) or seconds < 0.0:
+        return ""
+    if seconds < 59.95:
+        return f"{seconds:.1f} s" if seconds >= 0.05 or seconds == 0.0 else "<0.1 s"
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{rest:02d} h" if hours else f"{minutes}:{rest:02d} min"
+
+
+def _link(path: str | None) -> str:
+    """A path below the index as a reference that cannot leave its folder, nor begin with a scheme; empty where there is none.
+
+    >>> _link("a b/review.html"), _link("javascript:alert(1)"), _link("../x"), _link("/etc/passwd"), _link(None)
+    ('./a%20b/review.html', './javascript%3Aalert%281%29', '', '', '')
+    """
+    if not path or path.startswith("/") or ".." in PurePosixPath(path).parts:
+        return ""
+    try:
+        # Bytes of a file's name that are no UTF-8 stay what they are.
+        return "./" + quote(path.encode("utf-8", "surrogateescape"))
+    except UnicodeEncodeError:
+        return ""  # no file system has such a name
+
+
+def _clean(row: PartRow) -> PartRow:
+    """The row without what has no place in a text file; links keep their bytes."""
+    texts = {name: plain(value) for name, value in row if name not in ("page", "picture")}
+    return row.model_copy(update=texts)
+
+
+def _facts(cluster: Mapping[str, object]) -> dict[str, Any]:
+    found = to_jsonable_python(dict(cluster), fallback=str, inf_nan_mode="constants")
+    return {plain(str(name)): plain(value) for name, value in finite(found).items()}
+
+
+def _table(name: str, data: bytes) -> Table:
+    return Table(name=name, sha256=hashlib.sha256(data).hexdigest())
+
+
+_TEMPLATE = template(_HERE / "index.html.jinja")

@@ -1,0 +1,157 @@
+"""How far all parts are: a bar on a terminal, plain lines elsewhere, always to standard error."""
+
+import contextlib
+import threading
+import time
+import unicodedata
+from typing import Any, Self
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.text import Text
+
+from plan_cutters.batch.row import PartRow
+from plan_cutters.batch.summary import OUTCOMES, cause, outcome
+
+#: Where there is no terminal, up to so many parts have a line each; of more, counts are told now and then.
+EACH = 200
+#: Seconds between two such lines: in the first minute, and later.
+_SOON, _LATER = 5.0, 30.0
+
+
+class Screen(Console):
+    """A console whose reader may go away: rich would end the process then."""
+
+    def on_broken_pipe(self) -> None:
+        self.quiet = True
+
+
+class Board:
+    """A board shows what came of parts, and how many there still are; several threads may use it.
+
+    Failures are always told, each in a line with its cause. It never raises for a stream that cannot be written to: the files
+    and the exit code say all.
+
+    Parameters
+    ----------
+    quiet : bool
+        Tell failures alone.
+    total : int, optional
+        Parts there are; None where that is not known yet.
+    console : Screen, optional
+        Where to; default standard error.
+    """
+
+    def __init__(self, quiet: bool, total: int | None, *, console: Screen | None = None) -> None:
+        self.quiet, self.total = quiet, total
+        self.console = console or Screen(stderr=True, highlight=False, markup=False, emoji=False)
+        self.done = self.running = self.failed = 0
+        self._rows = 0
+        self._said: set[str] = set()
+        self._began = self._spoke = time.monotonic()
+        self._lock = threading.RLock()
+        self._bar: Any = None
+        self._task: Any = None
+        if not quiet and self.console.is_terminal and not self.console.is_dumb_terminal:
+            self._draw()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def row(self, row: PartRow) -> None:
+        """Show what came of a part."""
+        with self._lock:
+            self._rows += 1
+            self.done = max(self.done, self._rows)
+            found = outcome(row)
+            failed = found == "failed"
+            self.failed += failed
+            if failed:
+                self._print(f"{self._clock}{row.name}: failed: {cause(row)}")
+            elif not self.quiet and self._bar is None and self._each:
+                kept = "; kept from an earlier run" if row.status == "kept" else ""
+                wrong = f"; {row.error}" if row.error else ""
+                self._print(f"{self._clock}{row.name}: {OUTCOMES[found]}: {row.verdict}{kept}{wrong}")
+            self._update()
+
+    def told(self, done: int, running: int, total: int | None) -> None:
+        """Take over counts from whoever knows them better: parts done, in work, and in all."""
+        with self._lock:
+            # It may be told of a part before its row comes, or after.
+            self.done, self.running = max(done, self._rows), running
+            self.total = self.total if total is None else total
+            self._update()
+
+    def say(self, text: str) -> None:
+        """Tell a line, once however often it is said: such as the address of the dashboard."""
+        with self._lock:
+            if not self.quiet and text not in self._said:
+                self._said.add(text)
+                self._print(text)
+
+    def close(self) -> None:
+        """Take the bar away, and tell the counts a last time where there is none."""
+        with self._lock:
+            bar, self._bar, quiet = self._bar, None, self.quiet
+            # What failed is told even later; counts are not.
+            self.quiet = True
+            if bar is not None:
+                with contextlib.suppress(OSError, ValueError):
+                    bar.stop()
+            elif not quiet:
+                self._print(f"{self._clock}{self._counts}")
+
+    @property
+    def _clock(self) -> str:
+        return "" if self._bar is not None else f"{time.monotonic() - self._began:7.1f} s  "
+
+    @property
+    def _each(self) -> bool:
+        """Whether each part has a line of its own."""
+        return max(self.total or 0, self.done) <= EACH
+
+    @property
+    def _counts(self) -> str:
+        of = f" of {self.total:,}" if self.total is not None else ""
+        rest = [f"{self.running:,} in work"] * bool(self.running) + [f"{self.failed:,} failed"] * bool(self.failed)
+        return ", ".join([f"{self.done:,}{of} parts done", *rest])
+
+    def _update(self) -> None:
+        if self.quiet:
+            return
+        if self._bar is not None:
+            with contextlib.suppress(OSError, ValueError):
+                self._bar.update(self._task, completed=self.done, total=self.total, description=self._counts)
+            return
+        now = time.monotonic()
+        if not self._each and now - self._spoke > (_SOON if now - self._began < 60.0 else _LATER):
+            self._spoke = now
+            self._print(f"{self._clock}{self._counts}")
+
+    def _print(self, line: str) -> None:
+        """One line, never wrapped: scripts look for it."""
+        with contextlib.suppress(OSError, ValueError, AttributeError):
+            self.console.print(Text(_clean(line)), soft_wrap=True)
+
+    def _draw(self) -> None:
+        words = TextColumn("{task.description}", markup=False)
+        self._bar = Progress(words, BarColumn(bar_width=20), TimeElapsedColumn(), TimeRemainingColumn(),
+                             console=self.console, transient=True)  # fmt: skip
+        with contextlib.suppress(OSError, ValueError):
+            self._bar.start()
+        self._task = self._bar.add_task(self._counts, total=self.total)
+
+
+def _clean(text: str) -> str:
+    r"""A text in one line, with what a terminal would obey written out; names of files may hold anything.
+
+    >>> _clean("rim\n\x1b[2Jgone")
+    'rim\\n\\x1b[2Jgone'
+    """
+    return "".join(
+        c.encode("unicode_escape").decode() if unicodedata.category(c) in ("Cc", "Cf", "Cs", "Zl", "Zp") else c
+        for c in text
+    )

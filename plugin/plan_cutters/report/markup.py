@@ -1,0 +1,55 @@
+"""Keep pages safe whatever names in files hold: their texts, their data and their policy."""
+
+import base64
+import hashlib
+import json
+import math
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import jinja2
+from markupsafe import Markup
+
+_NO_TEXT = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
+
+
+def plain(value: Any) -> Any:
+    """A text in which a sign stands for each character that has no place in a page: controls, halves of surrogate pairs."""
+    if not isinstance(value, str) or isinstance(value, Markup):
+        return value
+    return _NO_TEXT.sub("\ufffd", value)
+
+
+def embedded(value: Any) -> str:
+    """JSON that may stand in a page: nothing in it ends the element or begins another one; null where a number is not finite."""
+    text = json.dumps(finite(value), ensure_ascii=True, separators=(",", ":"), allow_nan=False)
+    return re.sub("[<>&]", lambda found: f"\\u{ord(found[0]):04x}", text)
+
+
+def finite(value: Any) -> Any:
+    """The value for JSON: None for each number in it that is not finite."""
+    if isinstance(value, Mapping):
+        return {key: finite(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [finite(each) for each in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def policy(script: str, style: str, images: str) -> str:
+    """The content security policy of a page: it runs this script, has this style, and loads nothing but such images."""
+    return (f"default-src 'none'; script-src '{_hash(script)}'; style-src '{_hash(style)}'; img-src {images}; "
+            "base-uri 'none'; form-action 'none'")  # fmt: skip
+
+
+def template(path: Path) -> jinja2.Template:
+    """A template of a page: what is put in is escaped, and cleaned as by `plain`; an unknown name is an error."""
+    return jinja2.Environment(
+        loader=jinja2.FileSystemLoader(path.parent), autoescape=True, undefined=jinja2.StrictUndefined, finalize=plain,
+        trim_blocks=True, lstrip_blocks=True,
+    ).get_template(path.name)  # fmt: skip
+
+
+def _hash(text: str) -> str:
+    return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()

@@ -1,0 +1,142 @@
+"""The board of many parts: what it writes on a terminal, and where there is none."""
+
+import io
+import threading
+
+import pytest
+
+from plan_cutters.batch.progress import EACH, Board, Screen
+from plan_cutters.batch.row import PartRow
+
+GOOD = PartRow(name="blade", file="blade.step", status="planned", code=0, verdict="Take flat end D12 x 60")
+BAD = PartRow(name="rim\n\x1b[2J", file="rim.step", status="failed", code=3, error="rim.step: not a STEP file")
+
+
+def board(quiet=False, total=3, *, terminal=False, width=200):
+    text = io.StringIO()
+    console = Screen(file=text, width=width, force_terminal=terminal, highlight=False, markup=False, emoji=False,
+                      _environ={"TERM": "xterm"})  # fmt: skip
+    return Board(quiet, total, console=console), text
+
+
+def lines(text):
+    return [line.partition(" s  ")[2] for line in text.getvalue().splitlines()]
+
+
+def test_plain_lines_name_each_part_and_the_cause_of_a_failure():
+    with (found := board())[0] as one:
+        one.row(GOOD)
+        one.row(BAD)
+        one.row(GOOD.model_copy(update={"status": "kept", "error": "not written: review.png"}))
+    assert lines(found[1]) == [
+        "blade: finished: Take flat end D12 x 60",
+        "rim\\n\\x1b[2J: failed: rim.step: not a STEP file",
+        "blade: finished: Take flat end D12 x 60; kept from an earlier run; not written: review.png",
+        "3 of 3 parts done, 1 failed",
+    ]
+
+
+def test_a_line_is_never_wrapped():
+    one, text = board(width=20)
+    one.row(BAD.model_copy(update={"error": "x" * 300}))
+    assert len(text.getvalue().splitlines()) == 1
+
+
+def test_quiet_tells_failures_alone_even_after_it_is_closed():
+    one, text = board(quiet=True)
+    one.say("dashboard: http://127.0.0.1:8787")
+    one.told(1, 2, 3)
+    one.row(GOOD)
+    one.close()
+    assert text.getvalue() == ""
+    one.row(BAD)
+    assert "not a STEP file" in text.getvalue()
+
+
+def test_of_many_parts_failures_and_counts_are_told():
+    one, text = board(total=EACH + 1)
+    for _ in range(EACH):
+        one.row(GOOD)
+    one.row(BAD)
+    one.close()
+    assert lines(text) == [
+        "rim\\n\\x1b[2J: failed: rim.step: not a STEP file",
+        f"{EACH + 1} of {EACH + 1} parts done, 1 failed",
+    ]
+
+
+def test_where_the_number_is_not_known_lines_stop_at_the_same_number():
+    one, text = board(total=None)
+    for _ in range(EACH + 50):
+        one.row(GOOD)
+    one.close()
+    assert len(lines(text)) == EACH + 1
+    assert lines(text)[-1] == f"{EACH + 50} parts done"
+
+
+def test_the_address_is_said_once():
+    one, text = board()
+    for _ in range(3):
+        one.say("dashboard: http://127.0.0.1:8787/status")
+    assert text.getvalue() == "dashboard: http://127.0.0.1:8787/status\n"
+
+
+def test_a_terminal_has_a_bar_and_lines_for_failures():
+    one, text = board(terminal=True)
+    one.told(0, 2, 3)
+    one.row(GOOD)
+    one.row(BAD)
+    one.say("dashboard: http://127.0.0.1:8787/status")
+    one._bar.refresh()
+    drawn = text.getvalue()
+    one.close()
+    assert "2 of 3 parts done, 2 in work, 1 failed" in drawn
+    assert "rim\\n\\x1b[2J: failed: rim.step: not a STEP file" in drawn
+    assert "blade" not in drawn
+    assert "8787" in drawn
+    # The bar is taken away, and the cursor is back.
+    assert "\x1b[?25h" not in drawn
+    assert "\x1b[?25h" in (before := text.getvalue())
+    one.close()
+    assert text.getvalue() == before
+
+
+class Broken(io.StringIO):
+    def write(self, text):
+        raise BrokenPipeError
+
+    def flush(self):
+        raise BrokenPipeError
+
+
+@pytest.mark.parametrize("terminal", [False, True])
+def test_a_stream_that_is_gone_ends_nothing(terminal):
+    one = Board(False, 2, console=Screen(file=Broken(), force_terminal=terminal))
+    one.say("hello")
+    one.row(BAD)
+    one.told(1, 0, 2)
+    one.close()
+    assert (one.done, one.failed) == (1, 1)
+
+
+@pytest.mark.parametrize("before", [True, False])
+def test_a_part_that_is_told_of_twice_counts_once(before):
+    one, text = board(total=3)
+    for done in (1, 2, 3):
+        steps = [lambda done=done: one.told(done, 3 - done, 3), lambda: one.row(GOOD)]
+        for step in steps if before else steps[::-1]:
+            step()
+    one.close()
+    assert lines(text)[-1] == "3 of 3 parts done"
+
+
+def test_threads_lose_no_part():
+    one, text = board(total=400)
+    threads = [threading.Thread(target=lambda: [one.row(BAD) for _ in range(50)]) for _ in range(8)]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join()
+    one.close()
+    assert len(lines(text)) == 401
+    assert lines(text)[-1] == "400 of 400 parts done, 400 failed"
