@@ -53,6 +53,7 @@ async def run(
     # Its name is one that the command itself uses; `end_with` kills it if this process is killed.
     begin = (f"from cad_io.lifetime import end_with; end_with({os.getpid()}); "
              f"from plan_cutters.command.entry import begin; begin({name!r})")  # fmt: skip
+    await tell(0.0, "starting")
     process = await anyio.open_process(
         [sys.executable, "-c", begin, *words[1:], *more], stdin=DEVNULL, cwd=cwd, env=_environment(limits),
         start_new_session=True,

@@ -1,10 +1,14 @@
 """What answers to agents take from a plan file. The whole model is not loaded here, for it loads the CAD kernel."""
 
+import re
+
 from pydantic import Field, ValidationError
 
 from plan_cutters.agents.answers import Entry, LeastSet, Missing, Samples, Value, Witness
 from plan_cutters.agents.limits import CallError
 
+#: A cutter by its radius or diameter, and its length.
+_PLAIN = re.compile(r"[rd][\d.]+(l[\d.]+)?")
 #: The version of plan files that is understood.
 _VERSION = 1
 
@@ -195,6 +199,9 @@ def chosen(name: str, known: list[tuple[str, str]]) -> str:
         lambda id, label: begins(id) or begins(label),
     ):
         found = [id for id, label in known if test(id, label)]
+        if len(found) > 1 and _PLAIN.fullmatch(text):
+            # R6 says no corner radius, as R6L80 does.
+            found = [id for id in found if "rc" not in id] or found
         if len(found) == 1:
             return found[0]
         if found:

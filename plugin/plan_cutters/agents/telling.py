@@ -242,7 +242,7 @@ def _helping(plan: PlanFile, cutter: Cutter, alone: bool, lost: bool) -> tuple[l
 
 def _in_the_way(witnesses: list[Witness]) -> list[InTheWay]:
     named = [w for w in witnesses if w.obstacle_face]
-    places = Counter((w.obstacle_face, w.reason) for w in named)
+    places = Counter((str(w.obstacle_face), w.reason) for w in named)
     depths = {
         key: [w.depth_mm for w in named if (w.obstacle_face, w.reason) == key and w.depth_mm is not None]
         for key in places
