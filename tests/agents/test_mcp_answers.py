@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcp import Client, types
 
+from plan_cutters.agents import child
 from plan_cutters.agents.limits import CallError, Limits
 from plan_cutters.agents.plan_file import PlanFile, chosen, plan_of
 from plan_cutters.agents.roots import Roots
@@ -216,6 +217,25 @@ def test_a_missing_extra_and_a_wrong_root_are_one_line(monkeypatch, tmp_path):
     assert said("--root", str(tmp_path / "none")).endswith("is no folder; give one with --root")
     monkeypatch.setattr(command, "find_spec", lambda name: None)
     assert said() == 'the extra is not installed: pip install "plan-cutters[mcp]"'
+
+
+def test_whoever_runs_a_service_allows_fewer_samples(monkeypatch):
+    from plan_cutters.errors import OptionError
+    from plan_cutters.scene.spacing import MOST, affordable
+
+    part, asked = SimpleNamespace(file="part.step"), SimpleNamespace(grid=100, spacing=None)
+    assert child._environment(Limits(samples=9_999))[MOST] == "9999"
+    affordable(part, [1], asked)
+    for said, why in (
+        ("9999", "at most 1e\\+04 are taken"),
+        ("many", "must be a whole number"),
+        ("-1", "must be a whole number"),
+    ):
+        monkeypatch.setenv(MOST, said)
+        with pytest.raises(OptionError, match=why):
+            affordable(part, [1], asked)
+    monkeypatch.setenv(MOST, "10000")
+    affordable(part, [1], asked)
 
 
 def test_an_internal_error_is_one_line(monkeypatch):

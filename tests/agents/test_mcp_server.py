@@ -4,6 +4,7 @@ import base64
 import functools
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -22,7 +23,7 @@ GROOVE, PEAKS = "v_groove.step", "peaks_and_valleys.step"
 #: The limit of tilt loses samples, and no library is needed for that.
 HELD = {"cutters": ["R6L80"], "machine": "tilt:20", "grid": 5}
 NAMES = ["plan_part", "posture_map", "explain_sample", "compare_cutters", "render"]
-LIMITS = ("--most-mb", "2", "--most-cutters", "3", "--most-samples", "10000", "--timeout", "200")
+LIMITS = ("--most-mb", "2", "--most-cutters", "2", "--most-samples", "10000", "--timeout", "200")
 
 
 class Server:
@@ -214,20 +215,21 @@ def test_what_is_wrong_or_too_large_is_one_line(server):
     assert "is no file" in server.refused("plan_part", part="pipe.step")
     assert "no such file" in server.refused("plan_part", part="none.step")
     assert "is no name of a file" in server.refused("plan_part", part="a\0b")
-    assert "at most 3 in a call" in server.refused("plan_part", part=GROOVE, cutters=["R1L20"] * 4)
+    assert "at most 2 in a call" in server.refused("plan_part", part=GROOVE, cutters=["R1L20"] * 4)
     assert "is a root itself" in server.refused("plan_part", part=GROOVE, out=".")
     assert "is no plan of plan-cutters" in server.refused("explain_sample", plan="none.json", cutter="R6", face="F1")
     assert "either `face` or `point`" in server.refused("explain_sample", part=GROOVE, cutter="R6L80")
     assert "cuters: Extra inputs" in server.refused("plan_part", part=GROOVE, cuters=["R6L80"])
     assert "there is no tool 'plan'" in server.refused("plan", part=GROOVE)
-    assert "lists 4 cutters, and this server judges at most 3" in server.refused(
+    assert "lists 3 cutters, and this server judges at most 2" in server.refused(
         "plan_part", part=GROOVE, library="shop.toml"
     )
-    assert "at most 1e+04 are taken" in server.refused("plan_part", part=GROOVE, cutters=["R6L80"], grid=200)
+    (server.root / "bad.step").write_text("no part")
+    assert server.refused("plan_part", part="bad.step").startswith(f"{server.root}/bad.step: ")
 
 
 def running(root):
-    """Command lines of processes that work for this root, but for the server's own."""
+    """Numbers of processes that work for this root, but for the server's own."""
     found = []
     for each in Path("/proc").glob("[0-9]*/cmdline"):
         try:
@@ -235,7 +237,7 @@ def running(root):
         except OSError:
             continue
         if any(str(root) in word for word in words) and "mcp" not in words:
-            found.append(words)
+            found.append(int(each.parent.name))
     return found
 
 
@@ -251,6 +253,28 @@ def test_a_cancelled_call_ends_its_process_and_leaves_no_file(server):
     until(lambda: not running(server.root))
     assert sorted(os.listdir(server.root)) == before
     assert server.call("explain_sample", plan="out/plan.json", cutter="R6", face="F1")["format_version"] == 1
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="processes are looked up as Linux lists them")
+def test_a_crash_of_the_kernel_is_an_error_of_one_call(server):
+    call = server.begin("plan_part", part=GROOVE, cutters=["R6L80"], grid=61)
+    until(lambda: len(running(server.root)) == 2)  # the command, and the child that it guards
+    os.kill(max(running(server.root)), signal.SIGSEGV)
+    found = call.result(200)
+    assert found.is_error
+    assert "the CAD kernel crashed (SIGSEGV" in found.content[0].text
+    assert server.call("plan_part", part=GROOVE, cutters=["R6L80"], grid=3)["selected"] == "R6L80"
+
+
+@pytest.mark.slow
+def test_a_point_of_a_part_is_explained_with_all_its_postures(server):
+    found = server.call("explain_sample", part=PEAKS, cutter="R8L90", point=[0, 0, -21.9], within_mm=5, grid=9)
+    assert found["postures"]["face"] == found["face"] == "F1"
+    assert found["witnesses"]
+    assert found["told"].startswith("At the point, on F1, ")
+    assert "10000" in LIMITS
+    assert "at most 1e+04 are taken" in server.refused("plan_part", part=GROOVE, cutters=["R6L80"], grid=200)
 
 
 def until(holds, seconds=60.0):

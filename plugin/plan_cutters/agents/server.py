@@ -133,12 +133,23 @@ def _question(tool: Tool, arguments: dict[str, Any]) -> Any:
         ) from None
 
 
+def _schema(model: Any, **more: Any) -> Any:
+    """The schema of a model without the titles that only repeat names: an agent reads every word."""
+
+    def plain(each: Any) -> Any:
+        if isinstance(each, dict):
+            return {key: plain(value) for key, value in each.items() if key != "title" or not isinstance(value, str)}
+        return [plain(value) for value in each] if isinstance(each, list) else each
+
+    return plain(model.model_json_schema(**more))
+
+
 def _declared(tool: Tool) -> "types.Tool":
     import mcp.types as types
 
     return types.Tool(
         name=tool.name, title=tool.title, description=tool.description,
-        input_schema=tool.question.model_json_schema(), output_schema=tool.answer.model_json_schema(mode="serialization"),
+        input_schema=_schema(tool.question), output_schema=_schema(tool.answer, mode="serialization"),
         annotations=types.ToolAnnotations(read_only_hint=not tool.writes, destructive_hint=tool.writes, idempotent_hint=True,
                                           open_world_hint=False),
     )  # fmt: skip

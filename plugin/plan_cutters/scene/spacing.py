@@ -69,9 +69,17 @@ def sampled(
     return Sampled(sample(part, orientation, grid=options.grid, spacing=spacing, faces=faces, at=at), spacing, coarser)
 
 
+def _most() -> int:
+    """Samples that may be taken here."""
+    said = os.environ.get(MOST, "") or str(MOST_SAMPLES)
+    if not said.isdecimal():
+        raise OptionError(f"{MOST} in the environment must be a whole number, not {said!r}")
+    return min(MOST_SAMPLES, int(said))
+
+
 def affordable(part: Part, faces: Sequence[int], options: Options) -> None:
     """Refuse to sample more than memory holds, before it is tried."""
-    wanted, most = 0.0, min(MOST_SAMPLES, int(os.environ.get(MOST, MOST_SAMPLES)))
+    wanted, most = 0.0, _most()
     if options.grid is not None:
         wanted = len(faces) * float(options.grid) ** 2
     elif options.spacing is not None:
