@@ -52,7 +52,7 @@ def read(**more):
     return plan_of(json.dumps(made_plan(**more)), "plan.json")
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(st.integers(1, 90), st.integers(1, 60), st.integers(6_000, 60_000))
 def test_an_answer_is_short_and_says_how_much_it_leaves_out(cutters, faces, characters):
     plan = read(cutters=cutters, faces=faces)

@@ -15,7 +15,7 @@ Value = float | tuple[float, ...] | tuple[str, ...] | str | None
 
 
 class Entry(BaseModel):
-    """What is not told here is left out of a plan file."""
+    """An entry takes its fields from a plan file, and leaves the others."""
 
     model_config = ConfigDict(frozen=True, extra="ignore")
 
@@ -114,7 +114,7 @@ class Answer(Entry):
 
 
 class OfPlan(Answer):
-    """What an answer about a plan has."""
+    """An answer about a plan has these fields."""
 
     exit_code: int = Field(description="as of the command: 0 a cutter finishes, 1 none does, 4 not all could be judged")
     selected: str | None = Field(description="id of the cutter to take")

@@ -1,4 +1,4 @@
-"""What a call may cost at most: whoever starts the server says it, whoever calls does not."""
+"""Limits of a call: whoever starts the server sets them, whoever calls does not."""
 
 from dataclasses import dataclass
 

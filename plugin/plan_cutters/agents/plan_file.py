@@ -1,4 +1,4 @@
-"""What answers to agents take from a plan file. The whole model is not loaded here, for it loads the CAD kernel."""
+"""Answers to agents take these fields from a plan file. The whole model is not loaded here, for it loads the CAD kernel."""
 
 import re
 

@@ -24,7 +24,7 @@ class Question(BaseModel):
 
 
 class Conditions(Question):
-    """What cutters are judged under."""
+    """Cutters are judged under these conditions."""
 
     library: Path | None = Field(
         default=None, description="a tool library, in a root: its tools are judged in place of `cutters`"

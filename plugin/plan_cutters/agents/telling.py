@@ -68,7 +68,7 @@ def compared(plan: PlanFile, code: int, most: int) -> Comparison:
 
 
 def pictured(plan: PlanFile, code: int, most: int) -> Picture:
-    """What is to be seen in a picture."""
+    """Describe a picture: whose verdicts it shows, and its colours."""
     legend = {colour: plan.legend_words.get(word, word) for word, colour in plan.legend.items()}
     return Picture(**_of_plan(plan, code, most), shown=plan.shown, legend=legend)
 
@@ -227,7 +227,7 @@ def _told_reason(code: str, share: float) -> Reason:
 
 
 def _helping(plan: PlanFile, cutter: Cutter, alone: bool, lost: bool) -> tuple[list[Help], About, str]:
-    """What would help, which faces that is about, and why there is nothing."""
+    """Give the changes that would help, the faces that they are about, and why there are none."""
     if cutter.mend is not None:
         found = helps(cutter.mend)
         why = "" if found else cutter.mend.why or "no change that was tried gains anything"

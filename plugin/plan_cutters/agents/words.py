@@ -9,7 +9,7 @@ from plan_cutters.errors import PlanError
 
 
 class Room:
-    """What a call may read and write, and what it may cost.
+    """A call may read and write here, and cost so much.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What `--json` of the commands beside `plan` writes: these models make the schemas that the outputs are checked against.
+"""Outputs of `--json` of the commands beside `plan`: these models make the schemas that the outputs are checked against.
 
 Lengths in mm, angles in degrees, part coordinates. A version is raised where something changes its meaning or goes; what is added
 raises none.
@@ -124,7 +124,7 @@ class LibraryOutput(Frozen):
 
 
 class ToolsOutput(Frozen):
-    """What was understood of tool libraries (`plan-cutters tools --json`)."""
+    """Tool libraries as they were understood (`plan-cutters tools --json`)."""
 
     format: Literal["plan-cutters-tools"] = "plan-cutters-tools"
     format_version: int = FORMAT_VERSION
@@ -176,7 +176,7 @@ class MachineOutput(Frozen):
 
 
 class MachinesOutput(Frozen):
-    """What was understood of machines (`plan-cutters machines --json`)."""
+    """Machines as they were understood (`plan-cutters machines --json`)."""
 
     format: Literal["plan-cutters-machines"] = "plan-cutters-machines"
     format_version: int = FORMAT_VERSION
