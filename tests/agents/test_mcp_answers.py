@@ -14,7 +14,7 @@ from plan_cutters.agents import child
 from plan_cutters.agents.limits import CallError, Limits
 from plan_cutters.agents.plan_file import PlanFile, chosen, plan_of
 from plan_cutters.agents.roots import Roots
-from plan_cutters.agents.server import made
+from plan_cutters.agents.server import made, service_of
 from plan_cutters.agents.telling import compared, explained, percent, planned
 from plan_cutters.agents.tools import fitting
 from plan_cutters.command import mcp as command
@@ -190,7 +190,7 @@ def test_roots_of_the_client(tmp_path, mode, own, more, offered, allowed):
     (tmp_path / "own").mkdir()
     (tmp_path / "theirs").mkdir()
     (tmp_path / "theirs/plan.json").write_text(json.dumps(made_plan()))
-    server = made([str(tmp_path / "own")] if own else [], Limits(), client_roots=more)
+    server = made(service_of([str(tmp_path / "own")] if own else [], Limits(), client_roots=more))
 
     async def roots(context):
         return types.ListRootsResult(roots=[types.Root(uri=f"file://{tmp_path}/theirs")])

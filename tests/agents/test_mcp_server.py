@@ -293,3 +293,15 @@ def test_nothing_but_the_protocol_is_on_standard_output(tmp_path):
     assert done.returncode == 0
     for line in done.stdout.splitlines():
         assert json.loads(line)["jsonrpc"] == "2.0"
+
+
+def test_a_signal_ends_a_server_that_waits_for_its_client(tmp_path):
+    """The client holds standard input open, and says nothing."""
+    words = [sys.executable, "-m", "plan_cutters", "mcp", "--root", str(tmp_path)]
+    hello = {"jsonrpc": "2.0", "id": 1, "method": "initialize", "params": {
+        "protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "test", "version": "1"}}}  # fmt: skip
+    with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=ENV, text=True) as process:
+        print(json.dumps(hello), file=process.stdin, flush=True)
+        assert json.loads(process.stdout.readline())["result"]["serverInfo"]["name"] == "plan-cutters"
+        process.terminate()
+        assert process.wait(30) == 130

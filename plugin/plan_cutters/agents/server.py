@@ -3,8 +3,9 @@
 import base64
 import json
 import logging
+import signal
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -46,6 +47,7 @@ class Service:
     def __init__(self, roots: Roots, limits: Limits, *, client_roots: bool) -> None:
         self.roots, self.limits, self.client_roots = roots, limits, client_roots
         self._turns: anyio.CapacityLimiter | None = None
+        self._working: set[anyio.CancelScope] = set()
 
     async def list_tools(self, context: Any, params: Any) -> "types.ListToolsResult":
         import mcp.types as types
@@ -63,7 +65,14 @@ class Service:
             roots = await self._roots(context, params)
             if not isinstance(roots, Roots):
                 return roots
-            reply = await self._answered(tool, asked, roots, context)
+            with anyio.CancelScope() as scope:
+                self._working.add(scope)
+                try:
+                    reply = await self._answered(tool, asked, roots, context)
+                finally:
+                    self._working.discard(scope)
+            if scope.cancelled_caught:
+                raise CallError("the server was ended")
         except PlanError as error:
             return _failed(str(error))
         except TimeoutError:
@@ -76,6 +85,13 @@ class Service:
         if reply.picture is not None:
             content.append(types.ImageContent(data=base64.b64encode(reply.picture).decode(), mime_type="image/png"))
         return types.CallToolResult(content=content, structured_content=reply.answer)
+
+    async def end(self) -> None:
+        """Cancel all calls, and wait until nothing of them is left."""
+        for scope in tuple(self._working):
+            scope.cancel()
+        while self._working:
+            await anyio.sleep(0.02)
 
     async def _answered(self, tool: Tool, asked: Any, roots: Roots, context: Any) -> Reply:
         if self._turns is None:
@@ -161,35 +177,46 @@ def _failed(line: str) -> "types.CallToolResult":
     return types.CallToolResult(content=[types.TextContent(text=" ".join(line.split())[:2000])], is_error=True)
 
 
-def made(folders: Sequence[str], limits: Limits, *, client_roots: bool) -> "Server[Any]":
-    """The server of some roots.
+def service_of(folders: Sequence[str], limits: Limits, *, client_roots: bool) -> Service:
+    """The service of some roots.
 
     Raises
     ------
     CallError
         A root is no folder.
     """
+    return Service(Roots.of(folders), limits, client_roots=client_roots or not folders)
+
+
+def made(service: Service) -> "Server[Any]":
+    """The server of a service."""
     from mcp.server.lowlevel import Server
 
-    service = Service(Roots.of(folders), limits, client_roots=client_roots or not folders)
     return Server("plan-cutters", version=__version__, instructions=_INSTRUCTIONS, on_list_tools=service.list_tools,
                   on_call_tool=service.call_tool)  # fmt: skip
 
 
-def serve(folders: Sequence[str], limits: Limits, *, client_roots: bool) -> None:
+def serve(service: Service, interrupted: Callable[[], None]) -> None:
     """Serve over standard input and output until the client closes them.
 
-    Raises
-    ------
-    CallError
-        A root is no folder.
+    `interrupted` ends this process, once a signal has asked for that and all calls are ended: what waits for standard input
+    cannot be ended otherwise.
     """
     from mcp.server.stdio import stdio_server
 
-    server = made(folders, limits, client_roots=client_roots)
+    server = made(service)
+
+    async def listen() -> None:
+        with anyio.open_signal_receiver(signal.SIGINT, signal.SIGTERM) as signals:
+            async for _ in signals:
+                await service.end()
+                interrupted()
 
     async def main() -> None:
-        async with stdio_server() as (read, write):
-            await server.run(read, write, server.create_initialization_options())
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(listen)
+            async with stdio_server() as (read, write):
+                await server.run(read, write, server.create_initialization_options())
+            tasks.cancel_scope.cancel()
 
     anyio.run(main)

@@ -1,7 +1,6 @@
 """`plan-cutters mcp`: the tools of agents over the Model Context Protocol."""
 
 import os
-import signal
 import sys
 from collections.abc import Sequence
 from importlib.util import find_spec
@@ -13,6 +12,7 @@ from plan_cutters.command.codes import run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.values import Folder
+from plan_cutters.command.worker import INTERRUPTED
 
 _SELF = "plan-cutters mcp"
 
@@ -86,7 +86,7 @@ def command(roots: tuple[str, ...], **given: Any) -> int:
     if sys.stdin is None or sys.stdout is None:
         raise OptionError("standard input or output is closed: a client talks over them")
     from plan_cutters.agents.limits import Limits
-    from plan_cutters.agents.server import serve
+    from plan_cutters.agents.server import serve, service_of
 
     limits = Limits(file_mb=given["most_mb"], samples=given["most_samples"], cutters=given["most_cutters"],
                     seconds=given["timeout"], characters=given["most_characters"], calls=given["calls"],
@@ -95,9 +95,7 @@ def command(roots: tuple[str, ...], **given: Any) -> int:
         import logging
 
         logging.basicConfig(level=logging.DEBUG)
-    # A client that ends us asks by this signal: processes of calls end with us, and in order.
-    signal.signal(signal.SIGTERM, lambda *_: signal.raise_signal(signal.SIGINT))
-    serve(roots, limits, client_roots=given["client_roots"])
+    serve(service_of(roots, limits, client_roots=given["client_roots"]), lambda: os._exit(INTERRUPTED))
     # A thread may still wait for standard input.
     sys.stdout.flush()
     os._exit(0)
