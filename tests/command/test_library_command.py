@@ -9,6 +9,7 @@ import pytest
 from plan_cutters.library import read_library
 from tests.support.forked import run as run_copied
 from tests.support.places import ROOT
+from tests.support.schemas import valid
 from tests.support.tool_files import HOLDER, ID, fusion, write_bit, write_json
 
 CALL = "from plan_cutters.command.tools import main; main()"
@@ -34,7 +35,7 @@ def test_a_table_says_what_was_understood_and_what_was_not(tmp_path):
 def test_json_has_all_of_it(tmp_path):
     path = write_json(tmp_path / "a.json", [fusion(number=4), fusion("drill", number=5), fusion(number=6)])
     done = run(path, "--json")
-    (library,) = json.loads(done.stdout)["libraries"]
+    (library,) = valid("tools", json.loads(done.stdout))["libraries"]
     assert [cutter["numbers"] for cutter in library["cutters"]] == [[4, 6]]
     assert [entry["cutter"] for entry in library["entries"]] == [ID, None, ID]
     assert library["entries"][1]["unused"].startswith('type "drill"')
@@ -68,7 +69,7 @@ def test_assumptions_and_holders_from_files(tmp_path):
     assert "--holder" in done.stderr
     done = run(bit, "--assume-stickout", 40, "--holder", holder, "--json")
     assert done.returncode == 0
-    assert json.loads(done.stdout)["libraries"][0]["cutters"][0]["id"] == "R3L40F12S3HR12:15L20+R20L10"
+    assert valid("tools", json.loads(done.stdout))["libraries"][0]["cutters"][0]["id"] == "R3L40F12S3HR12:15L20+R20L10"
 
 
 @pytest.mark.parametrize("words", [["none.tools"], ["a.json", "--holder", "R15"], ["a.json", "--assume-stickout", "-3"],

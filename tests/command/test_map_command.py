@@ -21,6 +21,7 @@ from plan_cutters.domain.intervals import without
 from plan_cutters.report.drawing.posture_map import CAUSES, forbidden
 from plan_cutters.report.drawing.sheet import DPI, figure, fitting, write
 from tests.support.forked import run as run_copied
+from tests.support.schemas import valid
 
 GROOVE = "samples/v_groove.step"
 
@@ -38,7 +39,7 @@ def test_the_seed_s_first_example(capsys, tmp_path):
     code, text, err = run(capsys, GROOVE, "--at", "0,0,0", "--cutter", "R8L90", "--rotation", "0:40", "--rotation-step", "20",
                           "--tolerance", "0", "-o", str(out), "--json", "-")  # fmt: skip
     assert (code, err) == (0, "")
-    found = json.loads(text)
+    found = valid("map", json.loads(text))
     assert found["face"] == "F2"
     assert found["off_mm"] == pytest.approx(0.0, abs=1e-9)
     ((low, high),) = found["rotations"][0]["free"]

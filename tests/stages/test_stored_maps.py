@@ -19,6 +19,7 @@ from plan_cutters.errors import OptionError
 from plan_cutters.library.read import read_library
 from plan_cutters.scene import question
 from tests.support.places import SAMPLES
+from tests.support.schemas import valid
 
 PART = str(SAMPLES / "pocket_top.step")
 CUTTER = "R4L40"
@@ -164,7 +165,7 @@ def test_the_command_answers_what_it_can(file, found, capsys):
     for words in ([], ["--tolerance", "0.01"], ["--faces", "sculptured,blends"], ["--cutter", CUTTER], ["--grid", "7"],
                   ["--fixture", "box:5,5,5@0,0,60"], ["--rotation-step", "20"], ["--jobs", "1"]):  # fmt: skip
         code, line = told(PART, "--postures", file, "--json", "-", *words)
-        answer = json.loads(capsys.readouterr().out.partition("\n}\n")[0] + "}")
+        answer = valid("stored", json.loads(capsys.readouterr().out.partition("\n}\n")[0] + "}"))
         assert line == ""
         assert code == (1 if answer["samples"]["inaccessible"] else 4 if answer["samples"]["undecided"] else 0)
         assert sum(answer["samples"].values()) == len(found.samples)

@@ -17,6 +17,7 @@ SUBCOMMANDS = {
     "stored": ("stored_maps", "Judge another machine or setup by the posture maps of a plan."),
     "tools": ("tools", "List the tools of a library as they are understood."),
     "machines": ("machines", "List the built-in machines, or show how a machine file is understood."),
+    "mcp": ("mcp", "Serve these questions to agents, by the Model Context Protocol."),
 }
 
 

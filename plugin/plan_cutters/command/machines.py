@@ -73,7 +73,8 @@ def command(machines: tuple[str, ...], **given: Any) -> int:
     if read and not lines and given["to_toml"] is not None:
         write(Path(given["to_toml"]), import_module("plan_cutters.machines").to_toml(read[0]))
     if given["as_json"]:
-        hand_out(json.dumps({"machines": found}, indent=2, ensure_ascii=False) + "\n")
+        said = {"format": "plan-cutters-machines", "format_version": 1, "machines": found}
+        hand_out(json.dumps(said, indent=2, ensure_ascii=False) + "\n")
     else:
         with paper(200) as console:
             if not machines:

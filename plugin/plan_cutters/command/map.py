@@ -233,7 +233,8 @@ def _facts(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: 
     )
     none = [None if math.isnan(x) else math.degrees(x) for x in found.local_gouge.tolist()]
     return {
-        "format": "plan-cutters-map", "part": Path(given["part"]).name, "face": face, "point": found.point.tolist(),
+        "format": "plan-cutters-map", "format_version": 1,
+        "part": Path(given["part"]).name, "face": face, "point": found.point.tolist(),
         "off_mm": off, "normal": found.normal.tolist(), "direction_max": found.direction_max.tolist(),
         "curvature": found.curvature.tolist(), "cutter": cutter.id, "machine": given["machine"],
         "setup": given["setup"],

@@ -121,7 +121,8 @@ def stored(part: str | None, postures: str, options: "Options", given: dict[str,
     counts = {word: int((verdict == code).sum()) for code, word in WORDS.items()}
     inside = int(np.count_nonzero(maps.inside))
     if given["json_out"] == "-":
-        answer = {"format": "plan-cutters-stored", "part": part and Path(part).name, "cutter": maps.cutter,
+        answer = {"format": "plan-cutters-stored", "format_version": 1, "part": part and Path(part).name,
+                  "cutter": maps.cutter,
                   "machine": options.machine.name, "setup": setup, "samples": counts, "inside_bodies": inside,
                   "missing": list(missing), "unjudged_faces": list(unjudged), "asked": dict(maps.about)}  # fmt: skip
         terminal.hand_out(json.dumps(answer, indent=2) + "\n")

@@ -93,7 +93,12 @@ def command(files: tuple[str, ...], **given: Any) -> int:
         if given["draw"] is not None:
             _draw(found, Path(given["draw"]))
     if given["as_json"]:
-        hand_out(json.dumps({"libraries": [_plain(library) for library in found]}, indent=2, ensure_ascii=False) + "\n")
+        said = {
+            "format": "plan-cutters-tools",
+            "format_version": 1,
+            "libraries": [_plain(library) for library in found],
+        }
+        hand_out(json.dumps(said, indent=2, ensure_ascii=False) + "\n")
     else:
         with paper(200) as console:
             for library in found:
@@ -118,7 +123,8 @@ def _holders(files: tuple[str, ...], given: dict[str, Any]) -> int:
         plain = [
             {"word": word, "name": each.name, "id": each.id, "bore": each.bore} for word, each in standard().items()
         ]
-        hand_out(json.dumps({"holders": plain}, indent=2) + "\n")
+        said = {"format": "plan-cutters-holders", "format_version": 1, "holders": plain}
+        hand_out(json.dumps(said, indent=2) + "\n")
         return 0
     lines = [
         "Collet chucks as outer bounds, from the nose up to the gauge line; mm. A chuck of another length: hsk63a-er32x120.",

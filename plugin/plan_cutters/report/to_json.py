@@ -34,6 +34,16 @@ def schema_text() -> str:
     return json.dumps(schema(), indent=2) + "\n"
 
 
+def schemas() -> dict[str, str]:
+    """Texts of all schemas that are made from models, by the names of their files in the package."""
+    from plan_cutters.document.outputs import OUTPUTS
+
+    draft = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
+    others = {name: {**draft, **kind.model_json_schema(mode="serialization")} for name, kind in OUTPUTS.items()}
+    found = {"plan": schema(), **others}
+    return {f"{name}.schema.json": json.dumps(each, indent=2) + "\n" for name, each in found.items()}
+
+
 def write_plan(plan: "Plan", path: Path) -> None:
     """Write the plan, whole or not at all."""
     _write(dumps(plan), path)
@@ -76,4 +86,5 @@ def explain(path: Path, cause: str) -> tuple[str, ...]:
 
 
 if __name__ == "__main__":
-    (Path(__file__).parent.parent / "plan.schema.json").write_text(schema_text(), encoding="utf-8")
+    for file, text in schemas().items():
+        (Path(__file__).parent.parent / file).write_text(text, encoding="utf-8")

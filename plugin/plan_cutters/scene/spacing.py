@@ -1,5 +1,6 @@
 """Samples of the target faces, and how dense they are where nobody said: from the curvature, the smallest cutter and a budget."""
 
+import os
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
@@ -16,6 +17,8 @@ Spacing = float | dict[int, float] | None
 
 #: Samples that a plan may take.
 MOST_SAMPLES = 5_000_000
+#: Environment variable by which whoever runs a service allows fewer.
+MOST = "PLAN_CUTTERS_MOST_SAMPLES"
 #: Samples that a default plan may take, in all.
 BUDGET = 40_000
 #: Share of the smallest radius, and turn of the normal (rad), between neighbouring samples.
@@ -66,16 +69,24 @@ def sampled(
     return Sampled(sample(part, orientation, grid=options.grid, spacing=spacing, faces=faces, at=at), spacing, coarser)
 
 
+def _most() -> int:
+    """Samples that may be taken here."""
+    said = os.environ.get(MOST, "") or str(MOST_SAMPLES)
+    if not said.isdecimal():
+        raise OptionError(f"{MOST} in the environment must be a whole number, not {said!r}")
+    return min(MOST_SAMPLES, int(said))
+
+
 def affordable(part: Part, faces: Sequence[int], options: Options) -> None:
     """Refuse to sample more than memory holds, before it is tried."""
-    wanted = 0.0
+    wanted, most = 0.0, _most()
     if options.grid is not None:
         wanted = len(faces) * float(options.grid) ** 2
     elif options.spacing is not None:
         wanted = sum(part.faces[n - 1].area for n in faces) / options.spacing / options.spacing
-    if wanted > MOST_SAMPLES:
+    if wanted > most:
         raise OptionError(
-            f"that would take about {wanted:.2g} samples, at most {MOST_SAMPLES:.0e} are taken: sample more coarsely, "
+            f"that would take about {wanted:.2g} samples, at most {most:.0e} are taken: sample more coarsely, "
             "or choose faces with --faces",
             file=part.file,
         )

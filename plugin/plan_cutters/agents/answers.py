@@ -1,0 +1,260 @@
+"""The answers to an agent: their fields are the output schemas of the tools, and what of a plan file they are made of.
+
+Lengths are mm, angles deg, part coordinates; shares are of an area, 0 to 1. A list that was cut says how much it leaves out.
+"""
+
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+FORMAT_VERSION = 1
+Vector = tuple[float, float, float]
+#: Which faces a change was judged on.
+About = Literal["this face", "all faces of the plan", "nothing"]
+Value = float | tuple[float, ...] | tuple[str, ...] | str | None
+
+
+class Entry(BaseModel):
+    """An entry takes its fields from a plan file, and leaves the others."""
+
+    model_config = ConfigDict(frozen=True, extra="ignore")
+
+
+class Posture(Entry):
+    tilt: float
+    rotation: float
+    axis: Vector
+
+
+class Witness(Entry):
+    """A place that is not reached, with the posture that comes nearest."""
+
+    point: Vector
+    face: str
+    verdict: Literal["inaccessible", "undecided"] = "inaccessible"
+    reason: str = Field(description="code, as in `reasons`")
+    obstacle_face: str | None = Field(
+        default=None, description="in the way at the best posture: a face, or `fixture:NAME`"
+    )
+    obstacle_point: Vector | None = None
+    best_posture: Posture | None = None
+    depth_mm: float | None = Field(default=None, description="how deep the obstacle is in the tool at the best posture")
+    samples: int = Field(default=1, description="that it stands for")
+    inside_bodies: bool = False
+
+
+class Reason(Entry):
+    """Why something is not reached."""
+
+    code: str = Field(description="stable: docs/json.md lists all")
+    name: str
+    meaning: str
+    try_first: str = Field(description="a rule of thumb, not computed: what was computed is in `would_help`")
+    share: float = Field(description="of the area in question that is lost by it")
+
+
+class Help(Entry):
+    """A change that was judged, not guessed: with it so much more is reached."""
+
+    what: str
+    things: list[str] = Field(description="codes of what is changed: radius, stick_out, setup, ...")
+    finishes: bool | None = Field(description="whether all is reached then; null: not decided")
+    lost_before: float | None = None
+    lost_after: float | None = None
+    gained_samples: int | None = None
+    option: str | None = Field(default=None, description="words of the command line that do it")
+
+
+class Lost(Entry):
+    """A face of which a cutter loses something."""
+
+    face: str
+    share: float = Field(description="of the face that is not reached")
+    reason: str | None = Field(description="code of the reason by which most is lost")
+
+
+class CutterAnswer(Entry):
+    id: str
+    name: str
+    feasible: bool | None = Field(description="whether it reaches every judged sample; null: not decided")
+    seen: bool = Field(description="false: samples are too far apart for this cutter, so `feasible` says little")
+    reached: float
+    inaccessible: float
+    undecided: float
+    lost_by: dict[str, float] = Field(description="code of a reason -> share of the area")
+    faces: list[Lost] = Field(description="the worst first")
+    more_faces: int = 0
+    next: Help | None = Field(default=None, description="the step that gains most, where `mend` was asked for")
+
+
+class Missing(Entry):
+    """An obstacle that is missing or guessed: while there is one, nothing is feasible beyond doubt."""
+
+    face: str | None = None
+    name: str = ""
+    why: str
+
+
+class Note(Entry):
+    code: str
+    text: str
+
+
+class Samples(Entry):
+    count: int
+    max_gap_mm: float | None = None
+    unjudged: int = 0
+    inside_bodies: int = 0
+
+
+class Answer(Entry):
+    format_version: int = FORMAT_VERSION
+    part: str
+    told: str = Field(description="the answer in sentences")
+
+
+class OfPlan(Answer):
+    """An answer about a plan has these fields."""
+
+    exit_code: int = Field(description="as of the command: 0 a cutter finishes, 1 none does, 4 not all could be judged")
+    selected: str | None = Field(description="id of the cutter to take")
+    samples: Samples
+    cutters: list[CutterAnswer] = Field(description="those that reach most first")
+    more_cutters: int = 0
+    not_judged: list[Note] = Field(
+        default=[], description="target faces that could not be judged, and why: `code` is the face"
+    )
+    more_not_judged: int = 0
+    missing: list[Missing] = Field(default=[])
+    more_missing: int = 0
+
+
+class PlanAnswer(OfPlan):
+    format: Literal["plan-cutters-agent-plan"] = "plan-cutters-agent-plan"
+    notes: list[Note] = Field(description="what these verdicts do not say")
+    more_notes: int = 0
+    files: dict[str, str] = Field(default={}, description="format -> path, where `out` was given")
+    not_written: dict[str, str] = Field(default={})
+
+
+class FaceRow(Entry):
+    """A face on which cutters differ."""
+
+    face: str
+    reached: dict[str, float] = Field(description="cutter -> share of the face that it reaches")
+
+
+class Run(Entry):
+    cutter: str
+    setup: Vector
+    share: float
+    samples: int = 0
+
+
+class LeastSet(Entry):
+    runs: list[Run]
+    share: float
+    left_share: float = 0.0
+    proven: bool = False
+
+
+class Comparison(OfPlan):
+    format: Literal["plan-cutters-agent-comparison"] = "plan-cutters-agent-comparison"
+    differ: list[FaceRow] = Field(
+        description="faces of which cutters reach different shares, the widest difference first"
+    )
+    more_differ: int = 0
+    together: LeastSet | None = Field(
+        default=None, description="the fewest of them that reach all that any of them reaches"
+    )
+
+
+class RotationRow(Entry):
+    deg: float
+    free: list[tuple[float, float]] = Field(description="free tilts")
+    undecided: list[tuple[float, float]]
+    local_gouge_below: float | None = Field(description="least tilt that the surface itself allows; null: none")
+    forbidden: dict[str, list[tuple[float, float]]] = Field(description="code of a cause -> tilts; causes overlap")
+
+
+class Postures(Entry):
+    """All postures of a cutter at a point."""
+
+    point: Vector = Field(description="the nearest point of the part")
+    face: str
+    off_mm: float = Field(description="from the point that was asked for")
+    normal: Vector
+    direction_max: Vector = Field(description="rotation 0")
+    certified: bool = Field(description="free tilts are safe for the true surface, to the tolerance")
+    free_share: float = Field(description="of the postures searched")
+    undecided_share: float
+    forbidden: dict[str, float] = Field(description="code of a cause -> share of the postures; causes overlap")
+    rotations: list[RotationRow]
+    more_rotations: int = 0
+    missing: int = Field(default=0, description="obstacles that are missing or guessed")
+
+
+class MapAnswer(Answer):
+    format: Literal["plan-cutters-agent-map"] = "plan-cutters-agent-map"
+    cutter: str
+    exit_code: int = Field(description="0 some tilt is free, 1 none is, 4 none is surely free")
+    postures: Postures
+
+
+class Sample(Entry):
+    """The sample of the plan that is nearest to the point."""
+
+    point: Vector
+    distance_mm: float
+    face: str
+    verdict: str
+    reason: str | None
+    axis: Vector | None = Field(description="tool axis that was found")
+
+
+class InTheWay(Entry):
+    face: str = Field(description="a face, or `fixture:NAME`")
+    reason: str
+    depth_mm: float | None = Field(description="the deepest")
+    places: int = Field(description="witnesses that name it")
+
+
+class Explanation(Answer):
+    format: Literal["plan-cutters-agent-explanation"] = "plan-cutters-agent-explanation"
+    cutter: str
+    face: str
+    reached: bool | None = Field(
+        description="every judged sample of the face; null: what is left is undecided, or cannot be judged"
+    )
+    lost_share: float = Field(description="of the face")
+    counts: dict[str, int] = Field(description="samples of the face by verdict")
+    reasons: list[Reason] = Field(description="the one that loses most first")
+    in_the_way: list[InTheWay]
+    more_in_the_way: int = 0
+    witnesses: list[Witness] = Field(description="worst spots, the deepest first; with a point, the nearest first")
+    more_witnesses: int = 0
+    would_help: list[Help] = Field(description="changes that gain something, the best first")
+    more_would_help: int = 0
+    help_is_about: About = "nothing"
+    no_help: str = Field(default="", description="why `would_help` is empty")
+    postures: Postures | None = Field(default=None, description="at the point, where a part was given")
+    sample: Sample | None = Field(
+        default=None, description="nearest to the point, where a plan with samples.npz was given"
+    )
+    missing: list[Missing] = Field(default=[])
+    more_missing: int = 0
+
+
+class Picture(OfPlan):
+    format: Literal["plan-cutters-agent-picture"] = "plan-cutters-agent-picture"
+    shown: str = Field(description="id of the cutter whose verdicts are shown")
+    legend: dict[str, str] = Field(description="colour -> what it means")
+
+
+def first(entries: list[Any], most: int) -> tuple[list[Any], int]:
+    """The first of a list, and how many more there are.
+
+    >>> first([1, 2, 3], 2)
+    ([1, 2], 1)
+    """
+    return entries[:most], max(0, len(entries) - most)

@@ -1,0 +1,149 @@
+"""The questions of an agent: their fields are the input schemas of the tools."""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+#: Words of the command line are short.
+Word = Annotated[str, Field(min_length=1, max_length=300)]
+Path = Annotated[str, Field(min_length=1, max_length=4000)]
+Point = Annotated[tuple[float, float, float], Field(description="x, y, z in part coordinates, mm")]
+_NUMBER = r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?"
+Axis = Annotated[str, Field(pattern=rf"^([+-]?[xyzXYZ]|auto|{_NUMBER},{_NUMBER},{_NUMBER})$", max_length=200)]
+Face = Annotated[
+    str, Field(pattern=r"^F[1-9]\d{0,6}$", description="as `F12`: faces are numbered as the CAD kernel lists them")
+]
+#: Files that a plan may write.
+Format = Literal["json", "step", "glb", "merged", "npz", "html", "png", "csv", "vtk", "regions"]
+
+
+class Question(BaseModel):
+    """A question has these fields and no others: a word that is mistyped must not be lost."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class Conditions(Question):
+    """Cutters are judged under these conditions."""
+
+    library: Path | None = Field(
+        default=None, description="a tool library, in a root: its tools are judged in place of `cutters`"
+    )
+    holder: Word | None = Field(
+        default=None, description="of cutters without one: er32, hsk63a-er32, D30L30, none, or a file with a holder"
+    )
+    machine: Word = Field(
+        default="unlimited", description="unlimited, tilt:DEG, a built-in machine, or a machine file in a root"
+    )
+    fixtures: list[Word] = Field(
+        default=[],
+        max_length=50,
+        description="bodies in the way: FILE@X,Y,Z[,RX,RY,RZ][:UNIT], box:X,Y,Z@..., cylinder:R,H@..., table",
+    )
+    ignore: list[Word] = Field(default=[], max_length=50, description="faces that are neither machined nor obstacles")
+    unit: Literal["um", "mm", "cm", "m", "km", "mil", "in", "ft"] | None = Field(
+        default=None, description="if the file states a wrong one"
+    )
+    flip: bool = Field(default=False, description="machine the other side of open shells")
+    tolerance_mm: float = Field(default=0.01, gt=0.0, le=10.0, description="gouge tolerance")
+    allowance_mm: float = Field(default=0.0, ge=-100.0, le=100.0, description="stock left on the surface")
+    holder_clearance_mm: float = Field(
+        default=0.0, ge=0.0, le=1000.0, description="room asked of neck, shank and holder"
+    )
+
+
+class Sampling(Question):
+    """How densely a surface is looked at: by default from its curvature and the smallest cutter."""
+
+    grid: int | None = Field(default=None, ge=2, le=2000, description="so many samples a side and face")
+    spacing_mm: float | None = Field(default=None, gt=0.0, description="largest distance of neighbouring samples")
+
+    @model_validator(mode="after")
+    def _one(self) -> Self:
+        if self.grid is not None and self.spacing_mm is not None:
+            raise ValueError("give `grid` or `spacing_mm`, not both")
+        return self
+
+
+class PartQuestion(Conditions, Sampling):
+    """A part, its cutters and what they are judged under."""
+
+    part: Path = Field(description="STEP, IGES or BREP, in a root")
+    cutters: list[Word] = Field(
+        default=[], max_length=200,
+        description="D12L80 (diameter, length from tip to holder) or R6L80 (radius); rc1 corner radius (rc6: ball), T5 taper, "
+        "F20 flutes, N11x40 neck, S12 shank; without any, the built-in tool set is judged",
+    )  # fmt: skip
+    setup: list[Axis] = Field(
+        default=["0,0,1"], min_length=1, max_length=12,
+        description="directions of the part along the machine's spindle: +z, -y, or x,y,z; every cutter is judged in each",
+    )  # fmt: skip
+    faces: Word = Field(
+        default="sculptured,blends", description="faces to machine: sculptured, blends, all, F3,7-12, name:REGEX"
+    )
+
+
+class PlanQuestion(PartQuestion):
+    """Which cutters finish a part?"""
+
+    answers: list[Literal["stick-out", "radius", "mend", "mend-all"]] = Field(
+        default=[],
+        description="more questions: how short each cutter can be held, the largest ends, and what would help",
+    )
+    out: Path | None = Field(default=None, description="folder in a root for files; without it, none is written")
+    formats: list[Format] = Field(default=["json"], min_length=1, description="of these files")
+
+
+class CompareQuestion(PartQuestion):
+    """How do some cutters differ on a part?"""
+
+    @model_validator(mode="after")
+    def _several(self) -> Self:
+        if len(self.cutters) == 1 and self.library is None:
+            raise ValueError("one cutter is compared with nothing: give two or more in `cutters`, or a `library`")
+        return self
+
+
+class ExplainQuestion(Conditions, Sampling):
+    """Why does a cutter not reach a face or a point, and what would help?"""
+
+    part: Path | None = Field(default=None, description="STEP, IGES or BREP, in a root: it is judged now")
+    plan: Path | None = Field(default=None, description="or a plan.json in a root: what it says is told, in a moment")
+    cutter: Word = Field(
+        description="R6L80 and so on; an id, a name or their beginning (R6) where that is one of the plan or library"
+    )
+    face: Face | None = None
+    point: Point | None = Field(default=None, description="instead of a face: x, y, z in part coordinates, mm")
+    within_mm: float = Field(default=1.0, gt=0.0, le=1000.0, description="how far the point may be from the surface")
+    setup: list[Axis] = Field(default=["0,0,1"], min_length=1, max_length=12, description="as of `plan_part`")
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Self:
+        if (self.part is None) == (self.plan is None):
+            raise ValueError("give either `part` or `plan`")
+        if (self.face is None) == (self.point is None):
+            raise ValueError("give either `face` or `point`")
+        if self.plan is not None and (
+            beside := self.model_fields_set - {"plan", "cutter", "face", "point", "within_mm"}
+        ):
+            raise ValueError(
+                f"`{min(beside)}` is asked of a part, and a plan has its own: leave it out, or give `part`"
+            )
+        return self
+
+
+class MapQuestion(Conditions):
+    """Which postures of a cutter are free at a point?"""
+
+    part: Path = Field(description="STEP, IGES or BREP, in a root")
+    cutter: Word = Field(description="R6L80 and so on; with `library` the id or the name of a tool there")
+    point: Point
+    within_mm: float = Field(default=1.0, gt=0.0, le=1000.0, description="how far the point may be from the surface")
+    setup: Axis = Field(default="0,0,1", description="direction of the part along the spindle")
+    tilt_deg: tuple[float, float] = Field(default=(0.0, 90.0), description="tilts to search, from the normal")
+    rotation_step_deg: float = Field(default=10.0, ge=1.0, le=360.0, description="step between rotations")
+    picture: bool = Field(default=False, description="also draw it: tilt against rotation")
+
+
+class RenderQuestion(PartQuestion):
+    """How does the part look with the verdicts of a cutter?"""

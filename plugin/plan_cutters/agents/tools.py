@@ -1,0 +1,350 @@
+"""The tools: each takes a question, has the command work on it, and makes an answer that is no longer than is allowed."""
+
+import contextlib
+import json
+import shutil
+from collections.abc import Awaitable, Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import anyio.to_thread
+
+from plan_cutters.agents.answers import (
+    Answer,
+    Comparison,
+    Explanation,
+    MapAnswer,
+    Picture,
+    PlanAnswer,
+    Sample,
+    Vector,
+)
+from plan_cutters.agents.child import Onlooker, run
+from plan_cutters.agents.limits import CallError
+from plan_cutters.agents.plan_file import PlanFile, chosen, cutter_of, plan_of
+from plan_cutters.agents.postures import postures_of
+from plan_cutters.agents.requests import (
+    CompareQuestion,
+    Conditions,
+    ExplainQuestion,
+    MapQuestion,
+    PartQuestion,
+    PlanQuestion,
+    Question,
+    RenderQuestion,
+)
+from plan_cutters.agents.telling import compared, explained, percent, pictured, planned
+from plan_cutters.agents.words import Room
+from plan_cutters.errors import CutterError
+
+#: How long lists may be, until the answer is short enough.
+_LENGTHS = (60, 30, 12, 5, 2, 0)
+#: Largest picture that is handed over, bytes.
+_PICTURE = 8 << 20
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """An answer as JSON, and a picture (PNG) where there is one."""
+
+    answer: dict[str, Any]
+    picture: bytes | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A call that is worked on: what it may touch, a folder of its own that goes with it, and who is told of its progress."""
+
+    room: Room
+    cwd: Path
+    tell: Onlooker
+
+    async def plan(self, words: Sequence[str]) -> tuple[PlanFile, int]:
+        """Plan a part; the plan and the exit code."""
+        ended = await run(["plan", *words, "--json=-"], self.cwd, self.room.limits, self.tell)
+        return plan_of(ended.output, "the plan"), ended.code
+
+    async def map(self, asked: MapQuestion, most: int, spec: str | None = None) -> tuple[bytes, int]:
+        """Map the postures at a point; the map as JSON and the exit code."""
+        words = [
+            *self.room.map(asked),
+            *([f"--cutter={spec}"] if spec else []),
+            "--json=-",
+            f"--out={self.cwd / 'map.png'}",
+        ]
+        ended = await run(["map", *words], self.cwd, self.room.limits, self.tell)
+        return ended.output, ended.code
+
+    async def tools_of(self, library: str) -> list[tuple[str, str]]:
+        """Id and name of each cutter of a library that may be judged.
+
+        Raises
+        ------
+        CallError
+            There are too many.
+        """
+        ended = await run(
+            ["tools", self.room.file(library), "--json"], self.cwd, self.room.limits, self.tell, answers=(0,)
+        )
+        found = [
+            (each["id"], next(iter(each["names"]), ""))
+            for one in json.loads(ended.output)["libraries"]
+            for each in one["cutters"]
+        ]
+        if len(found) > self.room.limits.cutters:
+            raise CallError(f"lists {len(found)} cutters, and this server judges at most {self.room.limits.cutters} in a call: "
+                            "make a library of those in question", file=library)  # fmt: skip
+        return found
+
+
+@dataclass(frozen=True, slots=True)
+class Tool:
+    """A tool by its name: what it is for, the models of question and answer, and its work."""
+
+    name: str
+    title: str
+    description: str
+    question: type[Question]
+    answer: type[Answer]
+    work: Callable[[Any, Call], Awaitable[Reply]]
+    writes: bool = False
+
+
+def fitting(make: Callable[[int], Answer], characters: int, picture: bytes | None = None) -> Reply:
+    """The answer with the longest lists with which it is short enough.
+
+    Raises
+    ------
+    CallError
+        It is too long even without them.
+    """
+    for most in _LENGTHS:
+        answer = make(most)
+        if len(answer.model_dump_json()) <= characters:
+            return Reply(answer.model_dump(mode="json"), picture)
+    raise CallError(
+        f"the answer has more than {characters} characters even without its lists: ask about fewer faces or cutters"
+    )
+
+
+async def plan_part(asked: PlanQuestion, call: Call) -> Reply:
+    """Plan a part, into a folder where one is named."""
+    words = await _part(asked, call)
+    words += [f"--answers={','.join(asked.answers)}"] if asked.answers else []
+    if asked.out is None:
+        plan, code = await call.plan(words)
+        files = {}
+    else:
+        out = call.room.roots.folder(asked.out)
+        formats = ",".join(dict.fromkeys(("json", *asked.formats)))
+        with _whole(out):
+            plan, code = await call.plan([*words, f"--out={out}", f"--formats={formats}"])
+        files = {"json": str(out / "plan.json"), **{name: str(out / each.name) for name, each in plan.files.items()}}
+    return fitting(lambda most: planned(plan, code, most, files), call.room.limits.characters)
+
+
+async def compare_cutters(asked: CompareQuestion, call: Call) -> Reply:
+    """Judge some cutters and tell them apart."""
+    plan, code = await call.plan(await _part(asked, call))
+    return fitting(lambda most: compared(plan, code, most), call.room.limits.characters)
+
+
+async def render(asked: RenderQuestion, call: Call) -> Reply:
+    """Draw the part with the verdicts of the cutter that the plan selects, or that reaches most."""
+    out = call.cwd / "review"
+    plan, code = await call.plan([*await _part(asked, call), f"--out={out}", "--formats=json,png"])
+    picture = out / "review.png"
+    if not picture.is_file():
+        raise CallError(plan.not_written.get("png", "the picture was not written"), file=plan.part.file)
+    if picture.stat().st_size > _PICTURE:
+        raise CallError(f"the picture has more than {_PICTURE >> 20} MB", file=plan.part.file)
+    return fitting(lambda most: pictured(plan, code, most), call.room.limits.characters, picture.read_bytes())
+
+
+async def posture_map(asked: MapQuestion, call: Call) -> Reply:
+    """Map all postures of a cutter at a point."""
+    if asked.library is not None:
+        await call.tools_of(asked.library)
+    spec = await _spec(asked.cutter, asked, call) if asked.library is None else None
+    output, code = await call.map(asked, 0, spec)
+    picture = (call.cwd / "map.png").read_bytes() if asked.picture else None
+    part, cutter = Path(asked.part).name, json.loads(output)["cutter"]
+
+    def make(most: int) -> Answer:
+        found = postures_of(output, asked.tilt_deg, most)
+        free = (
+            f"{percent(found.free_share)} of the postures searched are free, {percent(found.undecided_share)} undecided"
+        )
+        told = f"{cutter} at ({', '.join(f'{x:.6g}' for x in found.point)}) on {found.face}: {free}."
+        return MapAnswer(part=part, told=told, cutter=cutter, exit_code=code, postures=found)
+
+    return fitting(make, call.room.limits.characters, picture)
+
+
+async def explain_sample(asked: ExplainQuestion, call: Call) -> Reply:
+    """Say why a cutter does not reach a face or a point, and what would help."""
+    postures: bytes | None = None
+    sample = None
+    if asked.plan is not None:
+        path = Path(call.room.file(asked.plan))
+        plan = plan_of(await anyio.to_thread.run_sync(path.read_bytes), asked.plan)
+        cutter, face = cutter_of(plan, asked.cutter), asked.face
+        if asked.point is not None:
+            sample = await anyio.to_thread.run_sync(_nearest, asked.plan, plan, cutter.id, asked, call.room)
+            face = sample.face
+    else:
+        plan, name, face, postures = await _judged(asked, call)
+        cutter = cutter_of(plan, name)
+    if face is None:
+        raise CallError("which place? give a face or a point")
+
+    def make(most: int) -> Answer:
+        found = None if postures is None else postures_of(postures, (0.0, 90.0), min(most, 12))
+        return explained(plan, cutter, face, most, point=asked.point, postures=found, sample=sample)
+
+    return fitting(make, call.room.limits.characters)
+
+
+async def _judged(asked: ExplainQuestion, call: Call) -> tuple[PlanFile, str, str, bytes | None]:
+    """Judge the face in question with the cutter in question: the plan, the cutter, the face, and the map at the point."""
+    if asked.part is None:
+        raise CallError("give either `part` or `plan`")
+    spec = await _spec(asked.cutter, asked, call)
+    face, postures = asked.face, None
+    under = {name: getattr(asked, name) for name in Conditions.model_fields if name != "library"}
+    if asked.point is not None:
+        if asked.setup[0] == "auto":
+            raise CallError("setup: `auto` proposes one for a plan; for a point, name the direction")
+        at = MapQuestion(
+            part=asked.part, cutter=spec, point=asked.point, within_mm=asked.within_mm, setup=asked.setup[0], **under
+        )
+        postures, _ = await call.map(at, 0)
+        face = json.loads(postures)["face"]
+    one = PartQuestion(part=asked.part, cutters=[spec], setup=asked.setup, faces=face or "", grid=asked.grid,
+                       spacing_mm=asked.spacing_mm, **under)  # fmt: skip
+    plan, _ = await call.plan([*call.room.part(one), "--answers=mend"])
+    # An id may have been given a holder.
+    return plan, plan.cutters[0].id, face or "", postures
+
+
+async def _part(asked: PartQuestion, call: Call) -> list[str]:
+    """Words of a question about a part, once it is known that its cutters are not too many."""
+    words = call.room.part(asked)
+    if asked.library is not None:
+        await call.tools_of(asked.library)
+    return words
+
+
+async def _spec(name: str, asked: Conditions, call: Call) -> str:
+    """A cutter by words, where a tool of a library or of the built-in set may be meant."""
+    from plan_cutters.domain.cutter import Cutter
+
+    if asked.library is None:
+        try:
+            Cutter.parse(name)
+        except CutterError as error:
+            from plan_cutters.domain.default_tools import builtin
+
+            known = [(each.id, each.name) for each in builtin()]
+            try:
+                return chosen(name, known)
+            except CallError as other:
+                raise CallError(f"{error.cause}; or the built-in set is meant: {other.cause}") from None
+        return name
+    mine = chosen(name, await call.tools_of(asked.library))
+    try:
+        if Cutter.parse(mine).id == mine:
+            return mine
+    except CutterError:
+        pass
+    raise CallError(f"{mine} has no form that words can say: plan the part with the library, `faces` and `answers`, and ask with "
+                    "`plan`", file=asked.library)  # fmt: skip
+
+
+def _nearest(file: str, plan: PlanFile, cutter: str, asked: ExplainQuestion, room: Room) -> Sample:
+    """The sample of a plan that is nearest to the point in question."""
+    import numpy as np
+
+    from plan_cutters.domain.verdicts import NO_REASON, WORDS
+    from plan_cutters.files.arrays import Archive
+
+    if "npz" not in plan.files:
+        raise CallError(
+            "has no samples.npz beside it, so a point cannot be looked up: give a face, or plan with the format npz",
+            file=file,
+        )
+    beside = str(Path(file).parent / plan.files["npz"].name)
+    with Archive(room.file(beside), "samples", CallError) as archive:
+        names = ("point", "face", f"verdict_{cutter}", f"reason_{cutter}", f"axis_{cutter}")
+        if any(name not in archive.headers for name in names):
+            raise archive.fault(f"without {cutter}")
+        points, faces, verdicts, reasons, axes = (archive.read(name) for name in names)
+    if (
+        points.ndim != 2
+        or points.shape[1:] != (3,)
+        or not len(points)
+        or any(len(a) != len(points) for a in (faces, verdicts, reasons, axes))
+    ):
+        raise CallError("its arrays do not belong together: plan the part again", file=beside)
+    off = np.linalg.norm(points - np.array(asked.point), axis=1)
+    row = int(np.nanargmin(off))
+    most, face = max(asked.within_mm, plan.samples.max_gap_mm or 0.0), f"F{int(faces[row])}"
+    if not off[row] <= most:
+        raise CallError(f"the nearest sample is {off[row]:.4g} mm from the point, on {face}; give a point within {most:.3g} mm "
+                        "of one, or a face", file=file)  # fmt: skip
+    axis: Vector | None = tuple(axes[row].tolist()) if np.isfinite(axes[row]).all() else None
+    code = int(reasons[row])
+    return Sample(
+        point=tuple(points[row].tolist()), distance_mm=float(off[row]), face=face,
+        verdict=WORDS.get(int(verdicts[row]), "unknown"), axis=axis,
+        reason=None if code == NO_REASON or code >= len(plan.reasons) else plan.reasons[code],
+    )  # fmt: skip
+
+
+@contextlib.contextmanager
+def _whole(out: Path) -> Iterator[None]:
+    """Take a folder away again that a call has made and not finished: its plan may be there, and models not."""
+    before = out.exists()
+    try:
+        yield
+    except BaseException:
+        # Another run may have begun there; its lock says so.
+        if not before and not out.with_name(f".{out.name}.lock").exists():
+            shutil.rmtree(out, ignore_errors=True)
+        raise
+
+
+TOOLS = (
+    Tool(
+        "plan_part", "Which cutters finish a part",
+        "Judge cutters on a part (STEP, IGES, BREP) without any toolpath: which finish its sculptured faces without gouging or "
+        "collision, what each one reaches, where and why the others fail. Writes files only where `out` is given. Takes seconds "
+        "to minutes.",
+        PlanQuestion, PlanAnswer, plan_part, writes=True,
+    ),
+    Tool(
+        "posture_map", "All postures at a point",
+        "Map the free tilts of one cutter at one point of a part, rotation by rotation, and what forbids the others.",
+        MapQuestion, MapAnswer, posture_map,
+    ),
+    Tool(
+        "explain_sample", "Why a cutter does not reach a face or point, and what would help",
+        "Say in one call why a cutter does not reach a face (F12) or a point: reasons with codes, the worst places, what is in "
+        "the way, and which changes would help by how much, each of them judged. Give `part` to judge it now, or `plan` (a "
+        "plan.json) to read what is known.",
+        ExplainQuestion, Explanation, explain_sample,
+    ),
+    Tool(
+        "compare_cutters", "How cutters differ on a part",
+        "Judge several cutters on a part: what each one reaches, on which faces they differ, and the fewest of them that reach "
+        "all that any of them reaches.",
+        CompareQuestion, Comparison, compare_cutters,
+    ),
+    Tool(
+        "render", "A picture of the verdicts",
+        "Draw a part in four views (PNG), coloured by the verdicts of the cutter that is selected, or that reaches most: give "
+        "one cutter to see its verdicts.",
+        RenderQuestion, Picture, render,
+    ),
+)  # fmt: skip

@@ -1,0 +1,105 @@
+"""Questions as words of the command: every file that one names lies in a root, and is no larger than is allowed."""
+
+from pathlib import Path
+
+from plan_cutters.agents.limits import CallError, Limits
+from plan_cutters.agents.requests import Conditions, MapQuestion, PartQuestion, Sampling
+from plan_cutters.agents.roots import Roots
+from plan_cutters.errors import PlanError
+
+
+class Room:
+    """A call may read and write here, and cost so much.
+
+    Parameters
+    ----------
+    roots : Roots
+    limits : Limits
+    """
+
+    def __init__(self, roots: Roots, limits: Limits) -> None:
+        self.roots, self.limits = roots, limits
+
+    def file(self, text: str) -> str:
+        """The path of a file that may be read."""
+        return str(self.roots.file(text, self.limits.file_mb))
+
+    def conditions(self, asked: Conditions) -> list[str]:
+        """Words for what cutters are judged under, without the cutters."""
+        found = [f"--tolerance={asked.tolerance_mm!r}", f"--allowance={asked.allowance_mm!r}",
+                 f"--holder-clearance={asked.holder_clearance_mm!r}", f"--machine={self._machine(asked.machine)}"]  # fmt: skip
+        found += [f"--cutters={self.file(asked.library)}"] if asked.library is not None else []
+        found += [f"--holder={self._holder(asked.holder)}"] if asked.holder is not None else []
+        found += [f"--fixture={self._fixture(each)}" for each in asked.fixtures]
+        found += [f"--ignore={each}" for each in asked.ignore]
+        found += [f"--unit={asked.unit}"] if asked.unit is not None else []
+        return found + ["--flip"] * asked.flip
+
+    def sampling(self, asked: Sampling) -> list[str]:
+        """Words for how densely a surface is looked at; the area between the samples is not."""
+        found = ["--area-budget=0"]
+        found += [f"--grid={asked.grid}"] if asked.grid is not None else []
+        return found + ([f"--spacing={asked.spacing_mm!r}"] if asked.spacing_mm is not None else [])
+
+    def part(self, asked: PartQuestion) -> list[str]:
+        """Words for a part, its cutters and their conditions."""
+        if len(asked.cutters) > self.limits.cutters:
+            raise CallError(
+                f"cutters: {len(asked.cutters)} are given, and this server judges at most {self.limits.cutters} in a call"
+            )
+        found = [self.file(asked.part), *self.conditions(asked), *self.sampling(asked), f"--faces={asked.faces}"]
+        found += [f"--cutter={each}" for each in asked.cutters]
+        return found + [f"--setup={each}" for each in asked.setup]
+
+    def map(self, asked: MapQuestion) -> list[str]:
+        """Words for a posture map."""
+        low, high = asked.tilt_deg
+        at = ",".join(repr(x) for x in asked.point)
+        return [self.file(asked.part), *self.conditions(asked), f"--at={at}", f"--within={asked.within_mm!r}",
+                f"--cutter={asked.cutter}", f"--setup={asked.setup}", f"--tilt={low!r}:{high!r}",
+                f"--rotation-step={asked.rotation_step_deg!r}"]  # fmt: skip
+
+    def _machine(self, text: str) -> str:
+        from plan_cutters.domain.machine import builtin_machines
+
+        if text == "unlimited" or text.startswith("tilt:") or text in builtin_machines():
+            return text
+        return self._marked(text)
+
+    def _holder(self, text: str) -> str:
+        from plan_cutters.domain.holder import Holder
+
+        if text.strip().lower() == "none":
+            return "none"
+        try:
+            Holder.parse(text)
+        except PlanError as error:
+            if not _is_path(text):
+                raise CallError(str(error)) from None
+            return self._marked(text)
+        # A word that is a holder is read as one, whatever file there is.
+        return text
+
+    def _marked(self, text: str) -> str:
+        """A file, or `FILE#MORE` where no file has the whole name."""
+        file, mark, more = text.rpartition("#")
+        if mark and not self.roots.confined(text).exists():
+            return f"{self.file(file)}#{more}"
+        return self.file(text)
+
+    def _fixture(self, text: str) -> str:
+        from dataclasses import replace
+
+        from plan_cutters.domain.fixture import Fixture
+
+        fixture = Fixture.parse(text)
+        if fixture.kind:
+            return text
+        placed = replace(fixture, source=self.file(fixture.source), placement=fixture.placement)
+        # Placement and unit are said, so that nothing in the path of a root is taken for them.
+        where = ",".join(repr(x) for x in placed.placement)
+        return f"{placed.source}@{where}{f':{placed.unit}' if placed.unit else ''}"
+
+
+def _is_path(text: str) -> bool:
+    return "/" in text or "\\" in text or "#" in text or Path(text).suffix != ""

@@ -1,0 +1,250 @@
+"""What stands between the protocol and the command: roots, lengths of answers, names of cutters, and the client's own roots."""
+
+import json
+from types import SimpleNamespace
+
+import anyio
+import pytest
+from click.testing import CliRunner
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mcp import Client, types
+
+from plan_cutters.agents import child
+from plan_cutters.agents.limits import CallError, Limits
+from plan_cutters.agents.plan_file import PlanFile, chosen, plan_of
+from plan_cutters.agents.roots import Roots
+from plan_cutters.agents.server import made, service_of
+from plan_cutters.agents.telling import compared, explained, percent, planned
+from plan_cutters.agents.tools import fitting
+from plan_cutters.command import mcp as command
+
+
+def made_plan(cutters=3, faces=4, **more):
+    """A plan in which each cutter loses half of each face, the first of them nothing."""
+
+    def of(i):
+        counts = {"accessible": 2, "inaccessible": 0 if i == 0 else 2}
+        share = {"accessible": 1.0 if i == 0 else 0.5, "inaccessible": 0.0 if i == 0 else 0.5,
+                 "lost_by": {} if i == 0 else {"rear_gouge": 0.5}}  # fmt: skip
+        lost = {**counts, "area_share": share}
+        known = {"reason": "rear_gouge", "obstacle_face": "F1"}
+        witnesses = [
+            {**known, "point": [0, 0, k], "face": f"F{k + 1}", "depth_mm": k} for k in range(faces if i else 0)
+        ]
+        names = [f"F{k + 1}" for k in range(faces)]
+        return {
+            "id": f"R{i + 1}L80",
+            "feasible": i == 0,
+            "faces": dict.fromkeys(names, lost),
+            "witnesses": witnesses,
+            **lost,
+        }
+
+    return {
+        "format": "plan-cutters-plan", "format_version": 1, "part": {"file": "part.step"}, "samples": {"count": 4 * faces},
+        "faces": [{"id": f"F{k + 1}", "target": True, "samples": 4, "area_mm2": 1.0} for k in range(faces)],
+        "cutters": [of(i) for i in range(cutters)], "notes": ["a"], "note_codes": ["no_holder"], **more,
+    }  # fmt: skip
+
+
+def read(**more):
+    return plan_of(json.dumps(made_plan(**more)), "plan.json")
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.integers(1, 90), st.integers(1, 60), st.integers(6_000, 60_000))
+def test_an_answer_is_short_and_says_how_much_it_leaves_out(cutters, faces, characters):
+    plan = read(cutters=cutters, faces=faces)
+    for make in (lambda most: planned(plan, 0, most, {}), lambda most: compared(plan, 0, most)):
+        found = fitting(make, characters).answer
+        assert len(json.dumps(found, separators=(",", ":"))) <= characters
+        assert len(found["cutters"]) + found["more_cutters"] == cutters
+        for each in found["cutters"]:
+            assert len(each["faces"]) + each["more_faces"] == (0 if each["id"] == "R1L80" else faces)
+        if "differ" in found:
+            assert len(found["differ"]) + found["more_differ"] == (faces if cutters > 1 else 0)
+
+
+def test_an_answer_that_cannot_be_short_is_refused():
+    with pytest.raises(CallError, match="even without its lists"):
+        fitting(lambda most: planned(read(), 0, most, {}), 300)
+
+
+def test_silence_is_not_an_answer():
+    """A face that nobody sampled is neither reached nor lost; obstacles that are missing make a yes unsure."""
+    plan = read()
+    first, second = plan.cutters[:2]
+    assert explained(plan, first, "F1", 9).reached is True
+    assert explained(plan, second, "F1", 9).reached is False
+    missing = read(missing=[{"face": "F9", "why": "not meshed"}])
+    assert explained(missing, missing.cutters[0], "F1", 9).reached is None
+    bare = made_plan()
+    bare["faces"][0] |= {"unjudged": "no normal"}
+    del bare["cutters"][0]["faces"]["F1"]
+    plan = PlanFile.model_validate(bare)
+    found = explained(plan, plan.cutters[0], "F1", 9)
+    assert (found.reached, found.told) == (None, "F1 could not be judged: no normal.")
+    bare["faces"][0] |= {"target": False}
+    plan = PlanFile.model_validate(bare)
+    with pytest.raises(CallError, match="obstacle only"):
+        explained(plan, plan.cutters[0], "F1", 9)
+
+
+def test_the_deepest_witness_comes_first_and_with_a_point_the_nearest():
+    data = made_plan(faces=1)
+    data["cutters"][1]["witnesses"] = [
+        {"point": [x, 0, 0], "face": "F1", "reason": "collision", "depth_mm": depth}
+        for x, depth in ((0, 1), (5, 3), (9, None))
+    ]
+    plan = PlanFile.model_validate(data)
+    assert [w.point[0] for w in explained(plan, plan.cutters[1], "F1", 9).witnesses] == [5, 0, 9]
+    found = explained(plan, plan.cutters[1], "F1", 2, point=(8.0, 0.0, 0.0))
+    assert ([w.point[0] for w in found.witnesses], found.more_witnesses) == ([9, 5], 1)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"format_version": 2}, "of version 2"),
+        ({"format": "x"}, "is x"),
+        ({"cutters": []}, "cutters: "),
+        ({"faces": 3}, "faces: "),
+    ],
+)
+def test_what_is_no_plan_is_refused(change, words):
+    with pytest.raises(CallError, match=words):
+        plan_of(json.dumps(made_plan() | change), "plan.json")
+
+
+def test_a_cutter_is_meant_by_the_beginning_of_its_name():
+    known = [
+        ("R6L80F30", "flat"),
+        ("R6L80rc1F30", "bull"),
+        ("R6.5L80", ""),
+        ("R60L90", ""),
+        ("R2L9rc1", "mould"),
+        ("R3L9rc1", "mould"),
+    ]
+    assert chosen("R6", known) == chosen("R6L80", known) == "R6L80F30"
+    assert chosen("r60", known) == "R60L90"
+    assert chosen("bull", known) == "R6L80rc1F30"
+    for name, why in (("mould", "2 cutters may be meant"), ("R7", "no cutter is called"), ("R6L8", "no cutter")):
+        with pytest.raises(CallError, match=why):
+            chosen(name, known)
+
+
+@given(st.floats(0, 1))
+def test_a_share_in_words_is_neither_none_nor_all_where_something_is_left(share):
+    said = percent(share)
+    assert (said == "0 %") == (share == 0)
+    assert (said == "100 %") == (share == 1)
+
+
+def test_a_path_counts_by_where_it_ends(tmp_path):
+    for name in ("in", "in/deep", "out"):
+        (tmp_path / name).mkdir()
+    for name in ("in/a", "in/deep/b", "out/c"):
+        (tmp_path / name).write_text("x")
+    (tmp_path / "in/up").symlink_to(tmp_path / "out")
+    (tmp_path / "in/back").symlink_to(tmp_path / "in/deep")
+    (tmp_path / "in/round").symlink_to(tmp_path / "in/round")
+    roots = Roots.of([tmp_path / "in"])
+    for name in ("a", "deep/../a", "back/b", str(tmp_path / "in/a"), str(tmp_path / "out/../in/a"), "new/folder"):
+        assert roots.confined(name).is_relative_to(tmp_path / "in")
+    for name in (
+        "../out/c",
+        "up/c",
+        "up/new",
+        str(tmp_path / "out/c"),
+        str(tmp_path),
+        "back/../../a/../../out",
+        f"{tmp_path}/inside",
+    ):
+        with pytest.raises(CallError, match="outside the roots"):
+            roots.confined(name)
+    with pytest.raises(CallError):
+        roots.file("round", 1)
+    with pytest.raises(CallError, match="there is no root"):
+        Roots(()).confined("a")
+    with pytest.raises(CallError, match="is no folder"):
+        Roots.of([tmp_path / "in/a"])
+    uris = [
+        f"file://{tmp_path}/in",
+        f"file://{tmp_path}/none",
+        "https://host/x",
+        "file://other/x",
+        f"file://{tmp_path}/in/a",
+    ]
+    assert Roots.of_client(uris) == roots
+
+
+@pytest.mark.parametrize("mode", ["auto", "legacy"])
+@pytest.mark.parametrize(("own", "more", "offered", "allowed"), [
+    (False, False, True, True),   # without roots of its own, the client's count
+    (True, False, True, False),   # with them, a client cannot widen them
+    (True, True, True, True),     # unless the one who starts the server says so
+    (False, False, False, False),
+])  # fmt: skip
+def test_roots_of_the_client(tmp_path, mode, own, more, offered, allowed):
+    (tmp_path / "own").mkdir()
+    (tmp_path / "theirs").mkdir()
+    (tmp_path / "theirs/plan.json").write_text(json.dumps(made_plan()))
+    server = made(service_of([str(tmp_path / "own")] if own else [], Limits(), client_roots=more))
+
+    async def roots(context):
+        return types.ListRootsResult(roots=[types.Root(uri=f"file://{tmp_path}/theirs")])
+
+    async def asked():
+        async with Client(server, mode=mode, list_roots_callback=roots if offered else None) as client:
+            question = {"plan": str(tmp_path / "theirs/plan.json"), "cutter": "R2", "face": "F1"}
+            return await client.call_tool("explain_sample", question)
+
+    found = anyio.run(asked)
+    assert found.is_error is not allowed
+    if allowed:
+        assert found.structured_content["reasons"][0]["code"] == "rear_gouge"
+    else:
+        assert ("outside the roots" if own else "there is no root") in found.content[0].text
+
+
+def test_a_missing_extra_and_a_wrong_root_are_one_line(monkeypatch, tmp_path):
+    def said(*words):
+        with pytest.raises(Exception) as error:  # noqa: PT011
+            CliRunner().invoke(command.command, words, catch_exceptions=False)
+        return str(error.value)
+
+    assert said("--root", str(tmp_path / "none")).endswith("is no folder; give one with --root")
+    monkeypatch.setattr(command, "find_spec", lambda name: None)
+    assert said() == 'the extra is not installed: pip install "plan-cutters[mcp]"'
+
+
+def test_whoever_runs_a_service_allows_fewer_samples(monkeypatch):
+    from plan_cutters.errors import OptionError
+    from plan_cutters.scene.spacing import MOST, affordable
+
+    part, asked = SimpleNamespace(file="part.step"), SimpleNamespace(grid=100, spacing=None)
+    assert child._environment(Limits(samples=9_999))[MOST] == "9999"
+    affordable(part, [1], asked)
+    for said, why in (
+        ("9999", "at most 1e\\+04 are taken"),
+        ("many", "must be a whole number"),
+        ("-1", "must be a whole number"),
+    ):
+        monkeypatch.setenv(MOST, said)
+        with pytest.raises(OptionError, match=why):
+            affordable(part, [1], asked)
+    monkeypatch.setenv(MOST, "10000")
+    affordable(part, [1], asked)
+
+
+def test_an_internal_error_is_one_line(monkeypatch):
+    from plan_cutters.agents import server as module
+
+    def broken(*_):
+        raise RuntimeError("a\nb")
+
+    monkeypatch.setattr(module, "_question", broken)
+    service = module.Service(Roots(()), Limits(), client_roots=False)
+    found = anyio.run(service.call_tool, None, SimpleNamespace(name="render", arguments={}))
+    assert (found.is_error, found.content[0].text) == (True, "internal error (RuntimeError: a b)")

@@ -1,0 +1,307 @@
+"""The server over standard input and output, with the SDK's own client: each tool, refusals, and a call that is cancelled."""
+
+import base64
+import functools
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import CancelledError
+from pathlib import Path
+
+import jsonschema
+import pytest
+from anyio.from_thread import start_blocking_portal
+from mcp import Client, StdioServerParameters
+
+from tests.support.forked import ENV
+from tests.support.places import SAMPLES
+
+GROOVE, PEAKS = "v_groove.step", "peaks_and_valleys.step"
+#: The limit of tilt loses samples, and no library is needed for that.
+HELD = {"cutters": ["R6L80"], "machine": "tilt:20", "grid": 5}
+NAMES = ["plan_part", "posture_map", "explain_sample", "compare_cutters", "render"]
+LIMITS = ("--most-mb", "2", "--most-cutters", "2", "--most-samples", "10000", "--timeout", "200")
+
+
+class Server:
+    """A running server, whose client lives in a thread of its own."""
+
+    def __init__(self, root, portal, client, tools):
+        self.root, self.portal, self.client, self.tools = root, portal, client, tools
+        self.told = []
+
+    def begin(self, name, /, **arguments):
+        async def tell(done, total, words):
+            self.told.append((name, done, words))
+
+        return self.portal.start_task_soon(
+            functools.partial(self.client.call_tool, name, arguments, progress_callback=tell)
+        )
+
+    def answer(self, call):
+        """The answer of a call, which is as its schema says, and the same as text."""
+        found = call.result(200)
+        assert not found.is_error, found.content[0].text
+        assert json.loads(found.content[0].text) == found.structured_content
+        return found.structured_content
+
+    def call(self, name, /, **arguments):
+        found = self.answer(self.begin(name, **arguments))
+        jsonschema.validate(found, self.tools[name].output_schema)
+        return found
+
+    def refused(self, name, /, **arguments):
+        """The line of a call that is refused."""
+        found = self.begin(name, **arguments).result(200)
+        assert (found.is_error, found.structured_content, len(found.content)) == (True, None, 1)
+        (line,) = found.content[0].text.splitlines()
+        assert "Traceback" not in line
+        return line
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    root = tmp_path_factory.mktemp("root")
+    for name in (GROOVE, PEAKS, "shop.toml"):
+        (root / name).write_bytes((SAMPLES / name).read_bytes())
+    words = ["-m", "plan_cutters", "mcp", "--root", str(root), *LIMITS]
+    with start_blocking_portal() as portal, open(os.devnull, "w") as nowhere:
+        from mcp.client.stdio import stdio_client
+
+        given = StdioServerParameters(
+            command=sys.executable, args=words, env={"PYTHONPATH": ENV["PYTHONPATH"]}, cwd=str(root)
+        )
+        client = Client(stdio_client(given, errlog=nowhere))
+        with portal.wrap_async_context_manager(client):
+            listed = portal.call(client.list_tools).tools
+            yield Server(root, portal, client, {each.name: each for each in listed})
+
+
+@pytest.fixture(scope="module")
+def planned(server):
+    """A plan with its files, made while another call works; both answers."""
+    plan = server.begin("plan_part", part=GROOVE, out="out", formats=["npz"], **HELD)
+    posture = server.begin(
+        "posture_map", part=GROOVE, cutter="R8L90", point=[0, 0, 0], rotation_step_deg=90, picture=True
+    )
+    return server.answer(plan), posture.result(200)
+
+
+def test_the_tools_say_what_they_take_and_give(server):
+    assert list(server.tools) == NAMES
+    for each in server.tools.values():
+        for schema in (each.input_schema, each.output_schema):
+            jsonschema.Draft202012Validator.check_schema(schema)
+            assert schema["type"] == "object"
+        assert each.input_schema["additionalProperties"] is False
+        assert each.annotations.read_only_hint is (each.name != "plan_part")
+
+
+def test_two_calls_work_at_once_and_tell_how_far_they_are(server, planned):
+    told = [name for name, _, _ in server.told]
+    assert set(told) >= {"plan_part", "posture_map"}
+    # The one began before the other had ended.
+    assert told.index("posture_map") < max(i for i, name in enumerate(told) if name == "plan_part")
+    seconds = [done for name, done, _ in server.told if name == "plan_part"]
+    assert seconds == sorted(set(seconds))
+    assert any("judging" in words for _, _, words in server.told)
+
+
+def test_a_plan_is_what_its_file_says(server, planned):
+    found, _ = planned
+    plan = json.loads((server.root / "out/plan.json").read_text())
+    assert found["exit_code"] == 1
+    assert found["selected"] is plan["selected"] is None
+    (mine,), (cutter,) = found["cutters"], plan["cutters"]
+    assert mine["lost_by"] == cutter["area_share"]["lost_by"]
+    assert mine["reached"] == pytest.approx(
+        1 - cutter["area_share"]["inaccessible"] - cutter["area_share"]["undecided"]
+    )
+    assert [note["code"] for note in found["notes"]][: len(plan["note_codes"])] == plan["note_codes"]
+    assert found["files"] == {"json": f"{server.root}/out/plan.json", "npz": f"{server.root}/out/samples.npz"}
+    assert sorted(os.listdir(server.root / "out")) == ["plan.json", "samples.npz"]
+
+
+def test_a_map_is_answered_with_its_picture(planned):
+    _, reply = planned
+    found = reply.structured_content
+    assert (found["cutter"], found["postures"]["face"], found["exit_code"]) == ("R8L90", "F2", 0)
+    shares = found["postures"]
+    assert 0 < shares["free_share"] < 1
+    width = sum(high - low for row in shares["rotations"] for low, high in row["free"]) / 90 / len(shares["rotations"])
+    assert shares["free_share"] == pytest.approx(width, abs=1e-3)
+    assert base64.b64decode(reply.content[1].data).startswith(b"\x89PNG")
+
+
+def test_a_plan_that_is_there_is_explained_by_face_and_by_point(server, planned):
+    plan = json.loads((server.root / "out/plan.json").read_text())
+    (cutter,) = plan["cutters"]
+    face = max(cutter["faces"], key=lambda name: cutter["faces"][name]["area_share"]["inaccessible"])
+    found = server.call("explain_sample", plan="out/plan.json", cutter="R6", face=face)
+    assert (found["cutter"], found["face"], found["reached"]) == ("R6L80", face, False)
+    assert {each["code"]: each["share"] for each in found["reasons"]} == cutter["faces"][face]["area_share"]["lost_by"]
+    assert found["no_help"].startswith("the plan was made without --answers mend")
+    witness = next(each for each in cutter["witnesses"] if each["face"] == face)
+    at = server.call("explain_sample", plan="out/plan.json", cutter="R6", point=witness["point"])
+    assert at["sample"]["distance_mm"] == pytest.approx(0.0, abs=1e-9)
+    assert (at["sample"]["verdict"], at["sample"]["reason"]) == (witness["verdict"], witness["reason"])
+    assert at["witnesses"][0]["point"] == witness["point"]
+    assert "mm from the point" in server.refused("explain_sample", plan="out/plan.json", cutter="R6", point=[0, 0, 900])
+    assert "no cutter is called 'R5'" in server.refused("explain_sample", plan="out/plan.json", cutter="R5", face=face)
+    assert "there is no such face" in server.refused("explain_sample", plan="out/plan.json", cutter="R6", face="F99")
+
+
+def test_why_not_and_what_would_help_is_one_call(server):
+    found = server.call("explain_sample", part=PEAKS, cutter="R8L90", face="F1", grid=9)
+    assert found["reached"] is False
+    assert sum(each["share"] for each in found["reasons"]) == pytest.approx(found["lost_share"])
+    assert found["help_is_about"] == "this face"
+    best = found["would_help"][0]
+    assert best["lost_after"] < best["lost_before"] == pytest.approx(found["lost_share"])
+    assert best["option"].startswith("--cutter R")
+    for word in ("R8L90 does not reach", "F1", "rear gouge", "What would help: ", best["option"]):
+        assert word in found["told"]
+
+
+def test_cutters_are_compared_on_the_faces_on_which_they_differ(server):
+    found = server.call("compare_cutters", part=PEAKS, cutters=["R12L90", "R4L90"], grid=7)
+    assert [each["id"] for each in found["cutters"]] == ["R4L90", "R12L90"]
+    (row,) = found["differ"]
+    assert row["reached"] == {each["id"]: pytest.approx(each["reached"]) for each in found["cutters"]}
+    assert "one cutter is compared with nothing" in server.refused("compare_cutters", part=PEAKS, cutters=["R4L90"])
+
+
+def test_a_picture_is_rendered_and_nothing_is_left(server):
+    before = sorted(os.listdir(server.root))
+    reply = server.begin("render", part=GROOVE, **HELD).result(200)
+    assert not reply.is_error
+    assert reply.structured_content["shown"] == "R6L80"
+    assert base64.b64decode(reply.content[1].data).startswith(b"\x89PNG")
+    assert sorted(os.listdir(server.root)) == before
+
+
+def test_what_lies_outside_is_refused(server, tmp_path):
+    (tmp_path / "plan.json").write_text("{}")
+    os.symlink(tmp_path, server.root / "away")
+    os.symlink(SAMPLES / GROOVE, server.root / "link.step")
+    try:
+        for name in (
+            "/etc/passwd",
+            "../x.step",
+            "away/plan.json",
+            "link.step",
+            str(SAMPLES / GROOVE),
+            f"./../{SAMPLES.name}/x",
+        ):
+            assert "lies outside the roots" in server.refused("plan_part", part=name), name
+            assert "lies outside the roots" in server.refused("explain_sample", plan=name, cutter="R6", face="F1"), name
+        for word in ("out", "library", "holder", "machine"):
+            assert "lies outside the roots" in server.refused("plan_part", part=GROOVE, **{word: "away/x.toml"}), word
+        assert "lies outside the roots" in server.refused("plan_part", part=GROOVE, fixtures=["../vise.stl@0,0,-20"])
+    finally:
+        (server.root / "away").unlink()
+        (server.root / "link.step").unlink()
+
+
+def test_what_is_wrong_or_too_large_is_one_line(server):
+    with open(server.root / "huge.step", "wb") as file:
+        file.truncate(3_000_000)
+    os.mkfifo(server.root / "pipe.step")
+    (server.root / "none.json").write_text('{"format": "plan-cutters-plan"}')
+    assert "at most 2 MB" in server.refused("plan_part", part="huge.step")
+    assert "is no file" in server.refused("plan_part", part="pipe.step")
+    assert "no such file" in server.refused("plan_part", part="none.step")
+    assert "is no name of a file" in server.refused("plan_part", part="a\0b")
+    assert "at most 2 in a call" in server.refused("plan_part", part=GROOVE, cutters=["R1L20"] * 4)
+    assert "is a root itself" in server.refused("plan_part", part=GROOVE, out=".")
+    assert "is no plan of plan-cutters" in server.refused("explain_sample", plan="none.json", cutter="R6", face="F1")
+    assert "either `face` or `point`" in server.refused("explain_sample", part=GROOVE, cutter="R6L80")
+    assert "cuters: Extra inputs" in server.refused("plan_part", part=GROOVE, cuters=["R6L80"])
+    assert "there is no tool 'plan'" in server.refused("plan", part=GROOVE)
+    assert "lists 3 cutters, and this server judges at most 2" in server.refused(
+        "plan_part", part=GROOVE, library="shop.toml"
+    )
+    (server.root / "bad.step").write_text("no part")
+    assert server.refused("plan_part", part="bad.step").startswith(f"{server.root}/bad.step: ")
+
+
+def running(root):
+    """Numbers of processes that work for this root, but for the server's own."""
+    found = []
+    for each in Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            words = each.read_bytes().decode(errors="replace").split("\0")
+        except OSError:
+            continue
+        if any(str(root) in word for word in words) and "mcp" not in words:
+            found.append(int(each.parent.name))
+    return found
+
+
+@pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="processes are looked up as Linux lists them")
+def test_a_cancelled_call_ends_its_process_and_leaves_no_file(server):
+    before = sorted(os.listdir(server.root))
+    server.told.clear()
+    call = server.begin("plan_part", part=GROOVE, cutters=["R6L80"], grid=41, out="never", formats=["step", "html"])
+    until(lambda: any(words == "starting" for _, _, words in server.told) and running(server.root))
+    call.cancel()
+    with pytest.raises(CancelledError):
+        call.result(60)
+    until(lambda: not running(server.root))
+    assert sorted(os.listdir(server.root)) == before
+    assert server.call("explain_sample", plan="out/plan.json", cutter="R6", face="F1")["format_version"] == 1
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="processes are looked up as Linux lists them")
+def test_a_crash_of_the_kernel_is_an_error_of_one_call(server):
+    call = server.begin("plan_part", part=GROOVE, cutters=["R6L80"], grid=61)
+    until(lambda: len(running(server.root)) == 2)  # the command, and the child that it guards
+    os.kill(max(running(server.root)), signal.SIGSEGV)
+    found = call.result(200)
+    assert found.is_error
+    assert "the CAD kernel crashed (SIGSEGV" in found.content[0].text
+    assert server.call("plan_part", part=GROOVE, cutters=["R6L80"], grid=3)["selected"] == "R6L80"
+
+
+@pytest.mark.slow
+def test_a_point_of_a_part_is_explained_with_all_its_postures(server):
+    found = server.call("explain_sample", part=PEAKS, cutter="R8L90", point=[0, 0, -21.9], within_mm=5, grid=9)
+    assert found["postures"]["face"] == found["face"] == "F1"
+    assert found["witnesses"]
+    assert found["told"].startswith("At the point, on F1, ")
+    assert "10000" in LIMITS
+    assert "at most 1e+04 are taken" in server.refused("plan_part", part=GROOVE, cutters=["R6L80"], grid=200)
+
+
+def until(holds, seconds=60.0):
+    end = time.monotonic() + seconds
+    while not holds():
+        assert time.monotonic() < end
+        time.sleep(0.05)
+
+
+def test_nothing_but_the_protocol_is_on_standard_output(tmp_path):
+    """A client that goes away ends the server; a line that is no message is answered as one, or not at all."""
+    done = subprocess.run(
+        [sys.executable, "-m", "plan_cutters", "mcp", "--root", str(tmp_path)], input="no message\n", env=ENV,
+        capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0
+    for line in done.stdout.splitlines():
+        assert json.loads(line)["jsonrpc"] == "2.0"
+
+
+def test_a_signal_ends_a_server_that_waits_for_its_client(tmp_path):
+    """The client holds standard input open, and says nothing."""
+    words = [sys.executable, "-m", "plan_cutters", "mcp", "--root", str(tmp_path)]
+    hello = {"jsonrpc": "2.0", "id": 1, "method": "initialize", "params": {
+        "protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "test", "version": "1"}}}  # fmt: skip
+    with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=ENV, text=True) as process:
+        print(json.dumps(hello), file=process.stdin, flush=True)
+        assert json.loads(process.stdout.readline())["result"]["serverInfo"]["name"] == "plan-cutters"
+        process.terminate()
+        assert process.wait(30) == 130

@@ -1,0 +1,60 @@
+"""What programs rely on: schemas of all outputs, and lists of codes, are what the models and the code say."""
+
+import json
+import re
+from typing import get_args
+
+import pytest
+
+from plan_cutters.document.outputs import OUTPUTS
+from plan_cutters.domain.change import MEANS
+from plan_cutters.domain.notes import NoteCode
+from plan_cutters.domain.reasons import REASONS
+from plan_cutters.domain.verdicts import WORDS
+from plan_cutters.kernels import codes
+from plan_cutters.report.to_json import schemas
+from tests.support.forked import run
+from tests.support.places import ROOT, SAMPLES
+from tests.support.schemas import valid
+
+PAGE = (ROOT / "docs/json.md").read_text(encoding="utf-8")
+
+
+def listed(title):
+    """The rows of the table under a heading: code and meaning."""
+    return dict(
+        re.findall(r"^\| `(\w+)` \| (.*) \|$", PAGE.partition(f"\n## {title}\n")[2].partition("\n## ")[0], re.MULTILINE)
+    )
+
+
+@pytest.mark.parametrize("file", ["plan.schema.json", *(f"{name}.schema.json" for name in OUTPUTS)])
+def test_a_schema_is_that_of_its_model_and_is_told(file):
+    assert (ROOT / "plugin/plan_cutters" / file).read_text() == schemas()[file], (
+        "run: python -m plan_cutters.report.to_json"
+    )
+    assert f"`{file}`" in PAGE
+
+
+def test_codes_are_listed_as_the_code_has_them():
+    assert listed("Codes of reasons") == {each.code: each.sentence for each in REASONS.values()}
+    assert set(listed("Codes of reasons")) == set(codes.REASONS)
+    assert set(listed("Codes of notes")) == set(get_args(NoteCode))
+    assert set(listed("Codes of verdicts")) == set(WORDS.values())
+    assert list(listed("Codes of changes")) == list(MEANS)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("tools", ["tools", SAMPLES / "shop.toml", "--json"]),
+        ("tools", ["tools", "--cutter", "D12L80", "--json"]),
+        ("holders", ["tools", "--list-holders", "--json"]),
+        ("machines", ["machines", "--json"]),
+        ("machines", ["machines", "trunnion-ac", "tilt:30", "unlimited", "--json"]),
+        ("machines", ["machines", "trunnion-ac", "--angles", "0.3,0,1", "--axis", "A=30", "--json"]),
+    ],
+)
+def test_an_output_is_as_its_schema_says(tmp_path, name, words):
+    done = run(*words[1:], cwd=tmp_path, command=f"plan-cutters-{words[0]}")
+    assert (done.returncode, done.stderr) == (0, "")
+    valid(name, json.loads(done.stdout))
