@@ -7,6 +7,7 @@ import math
 import os
 import sys
 from collections.abc import Sequence
+from dataclasses import fields
 from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,9 +24,9 @@ _NOT_BUILT = {
 }
 #: Parameters of the commands that `Options` names otherwise.
 NAMED = {"cutter": "cutters", "cutters": "libraries", "fixture": "fixtures"}
-#: Options that count in a plan of operations alone, with their defaults: without one they must not be ignored.
-OF_OPERATIONS = {"feed": None, "scallop": 0.01, "stepover": 0.75, "index_step": None, "index_time": None, "change_time": 20.0,
-                  "setup_time": 300.0, "overlap": 2.0, "most_operations": None}  # fmt: skip
+#: Options that count in a plan of operations alone: without one they must not be ignored.
+OF_OPERATIONS = ("feed", "scallop", "stepover", "index_step", "index_time", "change_time", "setup_time", "overlap",
+                 "most_operations")  # fmt: skip
 #: Bytes of memory below which nothing can be planned.
 LEAST_MEMORY = 2e9
 
@@ -119,7 +120,11 @@ def refuse_unasked(given: dict[str, Any]) -> None:
 
     if given["operations"] is not None or given["check_operations"] is not None:
         return
-    for name, default in OF_OPERATIONS.items():
+    from plan_cutters.options import Options
+
+    defaults = {each.name: each.default for each in fields(Options)}
+    for name in OF_OPERATIONS:
+        default = defaults[name]
         if given.get(name, default) != default:
             word = f"--{name.replace('_', '-')}"
             raise OptionError(f"{word} is about a plan of operations: give it with --operations, or leave it out")
