@@ -34,6 +34,12 @@ def headline(found: PlanDifference) -> str:
     return f"{found.name}: {doubt}{said}."
 
 
+def mark_of(found: PlanDifference) -> str:
+    """A few words for what became of a part."""
+    words = [word for word in ("lost", "won") if getattr(found, word)] or ["nothing lost"]
+    return " and ".join(words) + ("" if found.comparable else ", not comparable")
+
+
 def choice(found: PlanDifference) -> str:
     """Which cutter is to be taken, where another one was."""
     old, new = found.selected
