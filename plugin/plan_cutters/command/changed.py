@@ -148,21 +148,27 @@ def command(asked: tuple[str, ...], **given: Any) -> int:
 
 
 def _compared(part: Changed, began: str, head: str, asked: Sequence[str], cache: Path, out: Path) -> Row:
-    """Plan a part as it was and as it is; what cannot be planned is told in the row."""
+    """Plan a part as it was and as it is; what cannot be planned is told in the row. A part that is gone is not planned."""
+    if part.new is None:
+        return Row(part)
     from plan_cutters.comparison.folders import PLAN, read_plan
     from plan_cutters.comparison.plans import compare
     from plan_cutters.comparison.states import unreachable
 
     found: dict[str, Path] = {}
     why: dict[str, str] = {}
-    for side, at, path in (("before", began, part.old), ("after", head, part.new)):
+    known: dict[bytes, Path] = {}
+    for side, at, path in (("after", head, part.new), ("before", began, part.old)):
         if path is None:
             continue
         say(f"{path}: {'as it was' if side == 'before' else 'as it is'}")
         try:
-            kept = _planned(content(at, path), Path(path).name, asked, cache)
+            data = content(at, path)
+            # A part that was only renamed is planned once.
+            known[data] = kept = known.get(data) or _planned(data, Path(path).name, asked, cache)
             found[side] = out / side / part.name
-            shutil.copytree(kept, found[side], dirs_exist_ok=True)
+            shutil.rmtree(found[side], ignore_errors=True)
+            shutil.copytree(kept, found[side])
         except PlanError as fault:
             why[side] = str(fault) if fault.file == path else f"{path}: {fault}"
     plans = {side: read_plan(folder / PLAN) for side, folder in found.items()}
@@ -231,11 +237,11 @@ def _links(rows: Sequence[Row], branch: str) -> dict[Path, str]:
 
 
 def _summary(rows: Sequence[Row], rule: str, failing: Sequence[Row], links: dict[Path, str], began: str) -> str:
+    if not rows:
+        return f"## plan-cutters\n\nNo part changed since {began[:12]}.\n"
     from plan_cutters.comparison.markdown import escaped, section, table
     from plan_cutters.report.story.numbers import count
 
-    if not rows:
-        return f"## plan-cutters\n\nNo part changed since {began[:12]}.\n"
     lines = ["## plan-cutters", ""]
     many = count(len(rows), "part")
     said = f"{len(failing)} of {many} fail" if failing else f"{many} changed, none fails"
