@@ -1,4 +1,4 @@
-"""What git knows of a repository: which parts changed, their bytes, and a branch for pictures."""
+"""Ask git about a repository: which parts changed, their bytes, and a branch for pictures."""
 
 import os
 import re

@@ -1,4 +1,4 @@
-"""What became of one plan in another one, as written: one pydantic model is the form of `diff --json` and its JSON Schema."""
+"""The comparison as written: one pydantic model is the form of `diff --json`, and its JSON Schema."""
 
 import json
 from pathlib import Path

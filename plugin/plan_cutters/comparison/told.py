@@ -1,4 +1,4 @@
-"""What is told of a comparison, once: sentences and rows of tables, which the terminal and Markdown lay out."""
+"""A comparison is told here, once: sentences and rows of tables, which the terminal and Markdown lay out."""
 
 from collections.abc import Iterator
 
