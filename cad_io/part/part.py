@@ -133,6 +133,7 @@ class Part:
         with translated("measuring the part", error=ReadError, file=file):
             boxes = np.array([face_box(face, tight=False) for face in self._faces])
             finite = np.isfinite(boxes).all(axis=(1, 2))
+            self._centres = boxes.mean(axis=1)
             if not finite.any():
                 raise ReadError("no face has a finite size: nothing can be judged", file=file)
             farthest = float(np.abs(boxes[finite]).max())
@@ -231,6 +232,11 @@ class Part:
     def _box(self) -> tuple[Floats, Floats]:
         with translated("measuring the part", error=ReadError, file=self.file):
             return _box(self._faces, self.aside)
+
+    def centre(self, number: int) -> tuple[float, float, float] | None:
+        """Middle of the kernel's quick box around a face, mm; None where it has no finite size."""
+        x, y, z = self._centres[self._checked(number) - 1].tolist()
+        return (x, y, z) if np.isfinite((x, y, z)).all() else None
 
     @cached_property
     def middle(self) -> Floats:

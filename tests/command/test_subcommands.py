@@ -84,7 +84,7 @@ def test_each_help_begins_with_an_imperative():
             assert not re.search(r"\bwhat\b", first, re.IGNORECASE)
 
 
-@pytest.mark.parametrize("name", ["map", "stored", "tools", "machines", "mcp"])
+@pytest.mark.parametrize("name", ["map", "stored", "batch", "diff", "changed", "tools", "machines", "mcp"])
 def test_help_loads_neither_numpy_nor_the_kernel(tmp_path, name):
     code = f"import sys; sys.argv = ['x', {name!r}, '--help']\nfrom plan_cutters.command.entry import plan_cutters\n"
     code += "try: plan_cutters()\nexcept SystemExit: pass\n"

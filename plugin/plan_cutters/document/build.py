@@ -180,6 +180,7 @@ def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen) -> list[Fa
                 target=face.number in chosen,
                 ignored=face.number in ignored,
                 area_mm2=face.area,
+                centre_mm=part.centre(face.number),
                 component=component[face.number],
                 samples=int(mine.sum()),
                 gap_mm=gaps.get(face.number),

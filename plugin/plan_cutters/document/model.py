@@ -120,6 +120,11 @@ class FaceEntry(Frozen):
     target: bool
     ignored: bool = Field(default=False, description="neither a target nor an obstacle")
     area_mm2: float
+    centre_mm: Vector | None = Field(
+        default=None,
+        description="middle of a box around it, by which it is known again in another plan; null where it has no finite size, "
+        "and in older files",
+    )
     component: str = Field(description="names of the instances in the file down to the product that it belongs to")
     samples: int
     gap_mm: float | None = Field(

@@ -1,0 +1,330 @@
+"""`plan-cutters changed`: the parts that changed in a repository, planned as they were and as they are, and compared."""
+
+import hashlib
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
+
+from plan_cutters import __version__
+from plan_cutters.command.codes import run
+from plan_cutters.command.help_groups import Command, heading
+from plan_cutters.command.option_groups import ENDED, options
+from plan_cutters.command.repository import Changed, changed, content, publish
+from plan_cutters.command.terminal import error, hand_out, say
+from plan_cutters.command.values import Folder
+from plan_cutters.errors import OptionError, PlanError
+
+if TYPE_CHECKING:
+    from plan_cutters.comparison.model import PlanDifference
+
+_SELF = "plan-cutters changed"
+#: Rules by which the command fails, each one stricter than the one before it.
+RULES = ("none", "lost", "unreachable", "not-comparable")
+#: Options of a plan that this command gives itself.
+_OURS = (
+    "-o",
+    "--out",
+    "--formats",
+    "--json",
+    "--quiet",
+    "--postures",
+    "--check-operations",
+    "--help",
+    "-h",
+    "--version",
+)
+_FORMATS = "json,html,png"
+_PLANNED = (0, 1, 4)
+
+_commits, _output, _rules = heading("Commits"), heading("Output"), heading("Rule")
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A part that changed: its folders of plans before and after, the difference, or why there is none."""
+
+    part: Changed
+    before: Path | None = None
+    after: Path | None = None
+    difference: "PlanDifference | None" = None
+    #: Target faces as it is that no cutter reaches whole.
+    unreachable: tuple[str, ...] = ()
+    #: Why it could not be planned as it is, or as it was.
+    failed: str = ""
+    unread: str = ""
+
+    def breaks(self, rule: str) -> bool:
+        """Whether the part fails by a rule."""
+        at = RULES.index(rule)
+        lost = self.difference is not None and self.difference.lost
+        doubtful = bool(self.unread) or (self.difference is not None and not self.difference.comparable)
+        return (
+            (at >= 1 and (lost or bool(self.failed))) or (at >= 2 and bool(self.unreachable)) or (at >= 3 and doubtful)
+        )
+
+
+@click.command(
+    cls=Command,
+    examples=(
+        (f"{_SELF} --base origin/main", "The parts of this branch, with the cutters that are built in:"),
+        (f"{_SELF} --base main --fail-on lost -- --cutters shop.toml", "With options of a plan after --:"),
+    ),
+    codes=(
+        ("0", "no part fails by the rule"),
+        ("1", "a part fails by the rule"),
+        ("2", "the command line or the repository is wrong"),
+        ENDED,
+    ),
+)
+@click.argument("asked", nargs=-1, metavar="[-- OPTION...]")
+@_commits(
+    "--base",
+    metavar="COMMIT",
+    help="Compare with where HEAD began on this.  [default: the pull request's base, of GITHUB_BASE_REF]",
+)
+@_commits("--head", default="HEAD", metavar="COMMIT", help="The commit to look at.  [default: HEAD]")
+@_commits("--staged", is_flag=True, help="Look at what is staged for the next commit, in place of a commit.")
+@_rules(
+    "--fail-on",
+    type=click.Choice(RULES),
+    default="lost",
+    help="lost: a face or cutter is lost, or a part cannot be planned; unreachable: or no cutter reaches some face whole; "
+    "not-comparable: or plans are not comparable; none: never.  [default: lost]",
+)
+@_output(
+    "-o",
+    "--out",
+    type=Folder("DIR"),
+    default="plan-cutters-changed",
+    help="Plans before and after, summary.md and changed.json.  [default: plan-cutters-changed]",
+)
+@_output(
+    "--cache", type=Folder("DIR"), help="Plans of earlier runs, by content; parts that are there are not planned again."
+)
+@_output(
+    "--pictures-branch", metavar="NAME", help="Push pictures to this branch of origin and show them in the summary."
+)
+@options("debug")
+def command(asked: tuple[str, ...], **given: Any) -> int:
+    """Find the parts (STEP, IGES, BREP) that changed since COMMIT, and show which faces and cutters were lost.
+
+    Each part is planned as it was and as it is, with the same options: those after --. The summary is Markdown, on standard
+    output and in the file that GITHUB_STEP_SUMMARY names.
+    """  # fmt: skip
+    for word in asked:
+        if word.partition("=")[0] in _OURS or re.match("-o.", word):
+            raise OptionError(f"{word} cannot stand after --: this command gives it itself")
+    base = given["base"] or (f"origin/{ref}" if (ref := os.environ.get("GITHUB_BASE_REF")) else "")
+    if not base:
+        raise OptionError("compare with which commit? give --base, as --base origin/main")
+    began, head, parts = changed(base, None if given["staged"] else given["head"])
+    out = Path(given["out"])
+    with tempfile.TemporaryDirectory() as aside:
+        cache = Path(given["cache"] or aside)
+        rows = [_compared(part, began, head, asked, cache, out) for part in parts]
+    links: dict[Path, str] = {}
+    if given["pictures_branch"] and rows:
+        try:
+            links = _links(rows, given["pictures_branch"])
+        except PlanError as fault:
+            error(f"{_SELF}: pictures are in {out} alone: {fault}")
+    failing = [row for row in rows if row.breaks(given["fail_on"])]
+    text = _summary(rows, given["fail_on"], failing, links, began)
+    _hand_on(rows, out, text, failing)
+    for row in rows:
+        for line in filter(None, (row.failed, row.unread)):
+            error(f"{_SELF}: {line}")
+    return 1 if failing else 0
+
+
+def _compared(part: Changed, began: str, head: str, asked: Sequence[str], cache: Path, out: Path) -> Row:
+    """Plan a part as it was and as it is; what cannot be planned is told in the row. A part that is gone is not planned."""
+    if part.new is None:
+        return Row(part)
+    from plan_cutters.comparison.folders import PLAN, read_plan
+    from plan_cutters.comparison.plans import compare
+    from plan_cutters.comparison.states import unreachable
+
+    found: dict[str, Path] = {}
+    why: dict[str, str] = {}
+    known: dict[bytes, Path] = {}
+    for side, at, path in (("after", head, part.new), ("before", began, part.old)):
+        if path is None:
+            continue
+        say(f"{path}: {'as it was' if side == 'before' else 'as it is'}")
+        try:
+            data = content(at, path)
+            # A part that was only renamed is planned once.
+            known[data] = kept = known.get(data) or _planned(data, Path(path).name, asked, cache)
+            found[side] = out / side / part.name
+            shutil.rmtree(found[side], ignore_errors=True)
+            shutil.copytree(kept, found[side])
+        except PlanError as fault:
+            why[side] = str(fault) if fault.file == path else f"{path}: {fault}"
+    plans = {side: read_plan(folder / PLAN) for side, folder in found.items()}
+    both = len(plans) == 2
+    return Row(
+        part, found.get("before"), found.get("after"),
+        difference=compare(plans["before"], plans["after"], name=part.name) if both else None,
+        unreachable=tuple(unreachable(plans["after"])) if "after" in plans else (),
+        failed=why.get("after", ""), unread=why.get("before", ""),
+    )  # fmt: skip
+
+
+def _planned(data: bytes, name: str, asked: Sequence[str], cache: Path) -> Path:
+    """The folder of a plan of some bytes in the cache, planned unless it is there.
+
+    Raises
+    ------
+    PlanError
+        It cannot be planned.
+    """
+    kept = cache / _key(data, name, asked)
+    if (kept / "plan.json").is_file():
+        return kept
+    cache.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=cache, prefix=".") as folder:
+        part, made = Path(folder) / name, Path(folder) / "plan"
+        part.write_bytes(data)
+        words = [sys.executable, "-m", "plan_cutters", "plan", f"{part.absolute()}", *asked,
+                 "-o", f"{made.absolute()}", "--formats", _FORMATS, "--quiet"]  # fmt: skip
+        done = subprocess.run(
+            words, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False, errors="replace"
+        )
+        if done.returncode not in _PLANNED or not (made / "plan.json").is_file():
+            said = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
+            raise PlanError(said[-1].removeprefix("plan-cutters: ").replace(f"{part.absolute()}: ", ""))
+        # Whole or not at all: another run may keep the same content at the same time.
+        if not kept.exists():
+            os.replace(made, kept)
+    return kept
+
+
+def _key(data: bytes, name: str, asked: Sequence[str]) -> str:
+    """Of all that a plan is made of: the part, the options, every file beside those that options name, and the version."""
+    digest = hashlib.sha256()
+    for each in (__version__.encode(), _FORMATS.encode(), name.encode(errors="surrogateescape"), data):
+        digest.update(hashlib.sha256(each).digest())
+    for word in asked:
+        digest.update(hashlib.sha256(word.encode(errors="surrogateescape")).digest())
+        # FILE@x,y,z, FILE:inch, FILE#C,A, --option=FILE; setup files name others beside them.
+        for text in {word, word.partition("=")[2]}:
+            path = next((p for p in (Path(text), *(Path(text.partition(c)[0]) for c in "@#:")) if p.is_file()), None)
+            beside = sorted(each for each in path.parent.iterdir() if each.is_file()) if path else ()
+            for file in beside:
+                digest.update(hashlib.sha256(file.name.encode(errors="surrogateescape") + file.read_bytes()).digest())
+    return digest.hexdigest()
+
+
+def _links(rows: Sequence[Row], branch: str) -> dict[Path, str]:
+    """Addresses of the pictures of folders, once they are pushed."""
+    data = {folder: (folder / "review.png").read_bytes() for row in rows for folder in (row.before, row.after)
+            if folder is not None and (folder / "review.png").is_file()}  # fmt: skip
+    names = {folder: f"{hashlib.sha256(each).hexdigest()[:32]}.png" for folder, each in data.items()}
+    made = publish({names[folder]: each for folder, each in data.items()}, branch, "origin")
+    where = f"{os.environ.get('GITHUB_SERVER_URL', '')}/{os.environ.get('GITHUB_REPOSITORY', '')}/raw/{made}"
+    return {folder: f"{where}/{name}" for folder, name in names.items()}
+
+
+def _summary(rows: Sequence[Row], rule: str, failing: Sequence[Row], links: dict[Path, str], began: str) -> str:
+    if not rows:
+        return f"## plan-cutters\n\nNo part changed since {began[:12]}.\n"
+    from plan_cutters.comparison.markdown import escaped, section, table
+    from plan_cutters.report.story.numbers import count
+
+    lines = ["## plan-cutters", ""]
+    many = count(len(rows), "part")
+    said = f"{len(failing)} of {many} fail" if failing else f"{many} changed, none fails"
+    lines += [f"**{said}** by the rule `{rule}`, since {began[:12]}."]
+    lines += table(
+        ("", "part", "how", "result", "reached before", "reached now"), (_line(row, row in failing) for row in rows)
+    )
+    for row in rows:
+        if row.difference is not None and not row.difference.same:
+            lines += ["", *section(row.difference)]
+        if row.unreachable:
+            many = f" and {len(row.unreachable) - 20} more" if len(row.unreachable) > 20 else ""
+            lines += [
+                "",
+                f"No cutter reaches all of {', '.join(row.unreachable[:20])}{many} of {escaped(row.part.name)}.",
+            ]
+        shown = [
+            (side, links[folder]) for side, folder in (("before", row.before), ("now", row.after)) if folder in links
+        ]
+        lines += [line for side, link in shown for line in ("", f"![{escaped(row.part.name)} {side}]({link})")]
+    if not links:
+        lines += ["", "Pictures and review pages are in the artifact of this job."]
+    return "\n".join(lines) + "\n"
+
+
+def _line(row: Row, fails: bool) -> tuple[str, ...]:
+    from plan_cutters.comparison.told import mark_of
+
+    said = row.failed or row.unread or (mark_of(row.difference) if row.difference else "")
+    return (
+        "fails" if fails else "",
+        row.part.name,
+        row.part.how,
+        said,
+        *(_bar(folder) for folder in (row.before, row.after)),
+    )
+
+
+def _bar(folder: Path | None) -> str:
+    """What the best cutter reaches of a part, drawn with letters: it needs no picture."""
+    from plan_cutters.comparison.folders import PLAN, read_plan
+    from plan_cutters.comparison.states import reached
+
+    if folder is None:
+        return "-"
+    share = max((reached(cutter) for cutter in read_plan(folder / PLAN).cutters), default=0.0)
+    # Full only where all is reached.
+    full = 10 if share == 1.0 else min(9, int(10 * share))
+    return f"{'█' * full}{'░' * (10 - full)} {100 * share if share == 1.0 else min(99.9, 100 * share):.3g} %"
+
+
+def _hand_on(rows: Sequence[Row], out: Path, text: str, failing: Sequence[Row]) -> None:
+    """The summary and the facts, for people, for the job and for its next steps."""
+    out.mkdir(parents=True, exist_ok=True)
+    facts = {"format": "plan-cutters-changed", "format_version": 1, "parts": list(_facts(rows, failing))}
+    (out / "summary.md").write_text(text, encoding="utf-8")
+    (out / "changed.json").write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
+    hand_out(text)
+    outputs = {
+        "parts": len(rows),
+        "lost": sum(row.breaks("lost") for row in rows),
+        "failing": len(failing),
+        "folder": out,
+    }
+    told = "".join(f"{name}={value}\n" for name, value in outputs.items())
+    for variable, what in (("GITHUB_STEP_SUMMARY", text), ("GITHUB_OUTPUT", told)):
+        if os.environ.get(variable):
+            with open(os.environ[variable], "a", encoding="utf-8") as file:
+                file.write(what)
+
+
+def _facts(rows: Sequence[Row], failing: Sequence[Row]) -> Iterator[dict[str, Any]]:
+    for row in rows:
+        yield {
+            "part": row.part.name,
+            "how": row.part.how,
+            "fails": row in failing,
+            "error": row.failed or row.unread or None,
+            "unreachable": list(row.unreachable),
+            "difference": None if row.difference is None else json.loads(row.difference.model_dump_json()),
+        }
+
+
+def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
+    """Run the command."""
+    run(command, name, args)

@@ -1,0 +1,129 @@
+"""`plan-cutters diff`: what was lost and won between two plans, or two folders of them."""
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
+
+from plan_cutters.command.codes import USAGE, run
+from plan_cutters.command.help_groups import Command, heading
+from plan_cutters.command.option_groups import ENDED, options
+from plan_cutters.command.terminal import clean, error, hand_out, paper
+from plan_cutters.command.values import File, Words
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from plan_cutters.comparison.model import PlanDifference
+
+_SELF = "plan-cutters diff"
+#: Something was lost; two plans that cannot be compared are as a wrong command line.
+LOST, NOT_COMPARABLE = 1, USAGE
+_COLOURS = {"lost": "bold red", "won": "green", "lost and won": "bold red"}
+
+_output, _rules = heading("Output"), heading("Comparison")
+
+
+def asked_words() -> Sequence[str]:
+    from plan_cutters.comparison.model import ASKED
+
+    return ASKED
+
+
+@click.command(
+    cls=Command,
+    examples=(
+        (f"{_SELF} before-plan after-plan", "What a change of the part costs:"),
+        (f"{_SELF} monday friday --markdown", "Two folders of many plans, as Markdown:"),
+    ),
+    codes=(
+        ("0", "nothing was lost"),
+        ("1", "a face or a cutter lost, or a plan is in OLD alone"),
+        ("2", "the plans are not comparable, cannot be read, or the command line is wrong"),
+        ENDED,
+    ),
+)
+@click.argument("old", type=File("OLD"))
+@click.argument("new", type=File("NEW"))
+@_output("--json", "as_json", is_flag=True, help="All differences, as JSON on standard output.")
+@_output("--markdown", "as_markdown", is_flag=True, help="The same tables as Markdown, for the summary of a job.")
+@_rules(
+    "--slack",
+    type=click.FloatRange(0.0, 100.0),
+    default=0.1,
+    metavar="PERCENT",
+    help="Shares of an area that differ by no more are the same: samples of a changed part lie in other places.  "
+    "[default: 0.1]",
+)
+@_rules(
+    "--despite",
+    type=Words("LIST", asked_words, listed=True),
+    default="",
+    help="Compare although these differ: unit, faces, sampling, postures, tolerance, clearance, machine, setup, fixtures.",
+)
+@options("debug")
+def command(old: str, new: str, **given: Any) -> int:
+    """Show which faces and cutters were lost or won from plan OLD to plan NEW.
+
+    OLD and NEW are plan.json files, the folders of two plans, or two folders of many plans, which are paired by name.
+    A face whose number shifted is known again by its place, area and name; one that is not known again is told.
+    """
+    from plan_cutters.comparison.folders import compare_folders
+    from plan_cutters.errors import OptionError
+
+    if given["as_json"] and given["as_markdown"]:
+        raise OptionError("--json and --markdown both write standard output: give one of them")
+    despite = [word.strip() for word in given["despite"].split(",") if word.strip()]
+    for word in despite:
+        if word not in asked_words():
+            raise OptionError(f"--despite {word!r} is not known; give some of {','.join(asked_words())}")
+    found = compare_folders(Path(old), Path(new), slack=given["slack"] / 100.0, despite=despite)
+    if given["as_json"]:
+        hand_out(found.model_dump_json(indent=2) + "\n")
+    elif given["as_markdown"]:
+        from plan_cutters.comparison.markdown import markdown
+
+        hand_out(markdown(found))
+    else:
+        from plan_cutters.comparison.told import apart, verdict
+
+        with paper(120) as console:
+            for each in found.plans:
+                _show(each, console)
+            for line in (*apart(found), verdict(found)):
+                console.print(clean(line), soft_wrap=True)
+    for line in found.unread if given["as_json"] or given["as_markdown"] else ():
+        error(f"{_SELF}: {line}")
+    return NOT_COMPARABLE if not found.comparable else LOST if found.lost else 0
+
+
+def _show(found: "PlanDifference", console: "Console") -> None:
+    from rich.table import Table
+    from rich.text import Text
+
+    from plan_cutters.comparison.told import CUTTERS, FACES, change, choice, cutter_rows, face_rows, headline, known
+
+    def say(text: str, style: str = "") -> None:
+        console.print(Text(clean(text), style), soft_wrap=True)
+
+    say(headline(found), "bold")
+    for line in found.why_not:
+        say(f"  not comparable: {line}", "bold yellow")
+    for line in filter(None, (choice(found), known(found))):
+        say(f"  {line}")
+    for each in found.changes:
+        if not each.hinders:
+            say(f"  {change(each)}")
+    for names, rows in ((FACES, list(face_rows(found))), (CUTTERS, list(cutter_rows(found)))):
+        if rows:
+            table = Table(*names)
+            for row in rows:
+                table.add_row(Text(row[0], _COLOURS.get(row[0], "")), *(Text(clean(cell)) for cell in row[1:]))
+            console.print(table)
+
+
+def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
+    """Run the command."""
+    run(command, name, sys.argv[1:] if args is None else args)

@@ -1,0 +1,75 @@
+"""A comparison as Markdown, for the summary of a job in CI."""
+
+import unicodedata
+from collections.abc import Iterable, Iterator, Sequence
+
+from plan_cutters.comparison.model import Comparison, PlanDifference
+from plan_cutters.comparison.told import (
+    CUTTERS,
+    FACES,
+    apart,
+    change,
+    choice,
+    cutter_rows,
+    face_rows,
+    headline,
+    known,
+    verdict,
+)
+
+#: Rows of a table; a summary of GitHub may have one MiB.
+MOST_ROWS = 100
+#: What Markdown, or the HTML that it may hold, would take as its own.
+_OWN = frozenset("\\`*_{}[]<>()#+!|~&@$")
+
+
+def markdown(found: Comparison) -> str:
+    """The comparison in Markdown: a section for each pair of plans that differ, and a sentence for the others."""
+    same = [each for each in found.plans if each.same]
+    lines = [f"**{verdict(found)}**", ""]
+    for each in found.plans:
+        if not each.same:
+            lines += [*section(each), ""]
+    lines += [f"- {escaped(line)}" for line in apart(found)]
+    if same:
+        lines += ["", f"Nothing changed: {', '.join(escaped(each.name) for each in same)}."]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def section(found: PlanDifference) -> Iterator[str]:
+    """The lines of one pair of plans."""
+    yield f"### {escaped(headline(found))}"
+    yield ""
+    for line in found.why_not:
+        yield f"- **Not comparable:** {escaped(line)}"
+    for line in filter(None, (choice(found), known(found))):
+        yield f"- {escaped(line)}"
+    for each in found.changes:
+        if not each.hinders:
+            yield f"- {escaped(change(each))}"
+    yield from table(FACES, face_rows(found))
+    yield from table(CUTTERS, cutter_rows(found))
+
+
+def table(names: Sequence[str], rows: Iterable[Sequence[str]]) -> Iterator[str]:
+    """A table with a blank line before it; nothing where there is no row."""
+    found = list(rows)
+    if not found:
+        return
+    yield ""
+    yield f"| {' | '.join(name or ' ' for name in names)} |"
+    yield f"|{' --- |' * len(names)}"
+    yield from (f"| {' | '.join(escaped(cell) or ' ' for cell in row)} |" for row in found[:MOST_ROWS])
+    if len(found) > MOST_ROWS:
+        yield ""
+        yield f"and {len(found) - MOST_ROWS} more: `--json` has all."
+
+
+def escaped(text: str) -> str:
+    r"""A text that Markdown shows as it stands; names in files may hold anything.
+
+    >>> escaped("a|b <img>\n*c*")
+    'a\\|b \\<img\\>\\\\n\\*c\\*'
+    """
+    plain = "".join(c.encode("unicode_escape").decode() if unicodedata.category(c)[0] == "C" else c for c in text)
+    return "".join(f"\\{c}" if c in _OWN else c for c in plain)

@@ -1,0 +1,227 @@
+"""Compare two plans: what was asked, which faces and which cutters lost or won."""
+
+import math
+from collections import Counter
+from collections.abc import Collection, Iterable
+from typing import Any
+
+from plan_cutters.comparison.matching import match_cutters, match_faces
+from plan_cutters.comparison.model import ASKED, Change, CutterDifference, FaceDifference, FaceState, PlanDifference
+from plan_cutters.comparison.states import (
+    cutter_falls,
+    cutter_state,
+    face_state,
+    falls,
+    reached_whole,
+    unreachable,
+)
+from plan_cutters.document.model import CutterEntry, FaceEntry, Plan
+from plan_cutters.report.story.names import called
+
+#: Shares of an area that differ by no more are the same: samples of a changed part lie in other places.
+SLACK = 0.001
+#: Entries of a cutter that say how it is made.
+_FORM = (
+    "radius",
+    "corner_radius",
+    "length",
+    "shape",
+    "taper_deg",
+    "flutes_mm",
+    "holder",
+    "stages",
+    "allowance_mm",
+    "clearance_mm",
+)
+
+
+def compare(
+    old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despite: Collection[str] = ()
+) -> PlanDifference:
+    """Compare two plans; the same plan twice gives no difference, and in reverse order what was lost is won.
+
+    Parameters
+    ----------
+    old, new : Plan
+    name : str
+        Of both.
+    slack : float
+        Shares, 0 to 1, that differ by no more are the same.
+    despite : collection of str
+        Codes of `model.ASKED`: the plans are compared although these differ.
+    """
+    changes = list(_changes(old, new, despite))
+    pairs = match_faces(old, new)
+    tools = match_cutters(old, new)
+    why_not = [f"{each.what} differs: {each.old} -> {each.new}" for each in changes if each.hinders]
+    if not pairs:
+        why_not.append("no face of the old plan is known again in the new one: they seem to be of two parts")
+    if not tools:
+        why_not.append("no cutter of the old plan is known again in the new one")
+    faces = [
+        *(_face(old, a, new, b, how, slack) for a, b, how in pairs),
+        *(_gone(old, face) for face in _rest(old.faces, [a.id for a, _, _ in pairs])),
+        *(_added(new, face) for face in _rest(new.faces, [b.id for _, b, _ in pairs])),
+    ]
+    cutters = [
+        *(_cutter(old, a, new, b, how, pairs, slack) for a, b, how in tools),
+        *(_one_sided(old, c, None) for c in _rest(old.cutters, [a.id for a, _, _ in tools])),
+        *(_one_sided(new, None, c) for c in _rest(new.cutters, [b.id for _, b, _ in tools])),
+    ]
+    told_faces = sorted((each for each in faces if each is not None), key=_place)
+    told_cutters = sorted((each for each in cutters if each is not None), key=_id)
+    told: list[FaceDifference | CutterDifference] = [*told_faces, *told_cutters]
+    return PlanDifference(
+        name=name,
+        comparable=not why_not,
+        why_not=why_not,
+        changes=changes,
+        selected=(taken(old), taken(new)),
+        matched=dict(sorted(Counter(str(how) for _, _, how in pairs).items())),
+        faces=told_faces,
+        cutters=told_cutters,
+        unreachable=unreachable(new),
+        lost=any(each.lost for each in told),
+        won=any(each.won for each in told),
+    )
+
+
+def taken(plan: Plan) -> str | None:
+    """The cutter to take."""
+    return plan.selected or plan.selected_over_setups
+
+
+def _changes(old: Plan, new: Plan, despite: Collection[str]) -> Iterable[Change]:
+    """Differences of what was asked, then of other things that may be the cause of differences."""
+    then, now = _asked(old), _asked(new)
+    for what, (mine, theirs) in {word: (then[word], now[word]) for word in ASKED}.items():
+        if mine != theirs:
+            proposed = what == "setup" and old.setup_proposal is not None and new.setup_proposal is not None
+            yield Change(what=what, old=_text(mine), new=_text(theirs), hinders=what not in despite and not proposed)
+    others: tuple[tuple[str, Any, Any], ...] = (
+        ("part", (old.part.sha256 or "")[:12], (new.part.sha256 or "")[:12]),
+        ("tools", sorted(c.id for c in old.cutters), sorted(c.id for c in new.cutters)),
+        ("version", old.versions.get("plan_cutters"), new.versions.get("plan_cutters")),
+        ("missing", len(old.missing), len(new.missing)),
+    )
+    for what, mine, theirs in others:
+        if mine != theirs:
+            yield Change(what=what, old=_text(mine), new=_text(theirs))
+
+
+def _asked(plan: Plan) -> dict[str, Any]:
+    """Answers to what differs here are answers to two questions; by the codes of `model.ASKED`."""
+    e = plan.effective
+    return {
+        "unit": e.unit,
+        "faces": (e.faces, *e.ignore, *(["flip"] if e.flip else [])),
+        "sampling": {"grid": e.grid, "spacing": e.spacing_mm}.get(e.sampled_by, "default"),
+        "postures": (*e.tilt_deg, *e.rotation_deg, e.rotation_step_deg),
+        "tolerance": round(e.tolerance_mm, 9),
+        "clearance": (e.allowance_mm, e.holder_clearance_mm),
+        "machine": (plan.machine.name, plan.machine.tilt_limit_deg,
+                    *((a.name, a.carries, a.direction, a.limits_deg) for a in plan.machine.rotary or ())),
+        "setup": [(e.setup, e.placement), *zip(e.other_setups, e.other_placements or [None] * len(e.other_setups), strict=False)],
+        "fixtures": [(f.name, f.sha256, f.unit, f.placement, tuple(f.setups)) for f in plan.fixtures],
+    }  # fmt: skip
+
+
+def _text(value: Any) -> str:
+    """A value in a line, its middle left out where it is long."""
+    if isinstance(value, list | tuple):
+        text = ", ".join(_text(each) for each in value) or "none"
+    else:
+        text = "none" if value in (None, "") else f"{value:.9g}" if isinstance(value, float) else str(value)
+    return text if len(text) <= 120 else f"{text[:57]} ... {text[-57:]}"
+
+
+def _rest(entries: Iterable[Any], known: Collection[str]) -> list[Any]:
+    found = set(known)
+    return [each for each in entries if each.id not in found]
+
+
+def _face(old: Plan, a: FaceEntry, new: Plan, b: FaceEntry, how: Any, slack: float) -> FaceDifference | None:
+    """A face that both have; None where its answer is the same."""
+    was, now = face_state(old, a), face_state(new, b)
+    loses, wins = falls(was, now, slack), falls(now, was, slack)
+    # Which cutters reach all of it is told with each cutter.
+    if not (loses or wins) and (was.reach, was.reason) == (now.reach, now.reason):
+        return None
+    return _told(b, old=a.id, new=b.id, matched_by=how, was=was, now=now, lost=loses, won=wins)
+
+
+def _gone(plan: Plan, face: FaceEntry) -> FaceDifference:
+    was = face_state(plan, face)
+    return _told(face, old=face.id, was=was, lost=False, won=_open(was))
+
+
+def _added(plan: Plan, face: FaceEntry) -> FaceDifference:
+    now = face_state(plan, face)
+    return _told(face, new=face.id, now=now, lost=_open(now), won=False)
+
+
+def _open(state: FaceState) -> bool:
+    """Whether a face is a target that is not reached whole."""
+    return state.reach not in ("reached", "not asked", "inside other bodies")
+
+
+def _told(face: FaceEntry, **found: Any) -> FaceDifference:
+    """A face as the last plan has it that has it."""
+    area = face.area_mm2 if math.isfinite(face.area_mm2) else None
+    return FaceDifference(
+        name=face.name, kind=face.kind or face.shape, area_mm2=area, centre_mm=face.centre_mm, **found
+    )
+
+
+def _cutter(
+    old: Plan, a: CutterEntry, new: Plan, b: CutterEntry, how: Any, pairs: Iterable[tuple[FaceEntry, FaceEntry, Any]],
+    slack: float,
+) -> CutterDifference | None:  # fmt: skip
+    """A cutter that both have; None where its form and its answer are the same."""
+    was, now = cutter_state(old, a), cutter_state(new, b)
+    lost, won = list[tuple[str, str]](), list[tuple[str, str]]()
+    for mine, theirs, _ in pairs:
+        if mine.target and theirs.target:
+            before, after = reached_whole(a.faces.get(mine.id)), reached_whole(b.faces.get(theirs.id))
+            if before != after:
+                (lost if before else won).append((mine.id, theirs.id))
+    forms = [(name, _form(a, name), _form(b, name)) for name in _FORM]
+    changes = [Change(what=name, old=before, new=after) for name, before, after in forms if before != after]
+    loses = cutter_falls(was, now, slack) or bool(lost)
+    wins = cutter_falls(now, was, slack) or bool(won)
+    if not (loses or wins or changes):
+        return None
+    return CutterDifference(name=called(b), matched_by=how, was=was, now=now, changes=changes, faces_lost=lost,
+                            faces_won=won, lost=loses, won=wins)  # fmt: skip
+
+
+def _form(cutter: CutterEntry, name: str) -> str:
+    if name != "stages":
+        return _text(getattr(cutter, name))
+    return _text(
+        [
+            f"{s.part} R{s.radius_mm:.6g}-{s.upper_radius_mm:.6g} x {s.length_mm:.6g} from {s.low_mm:.6g}"
+            for s in cutter.stages
+        ]
+    )
+
+
+def _one_sided(plan: Plan, gone: CutterEntry | None, added: CutterEntry | None) -> CutterDifference:
+    """A cutter that one plan has: one that finished the part is lost with its going, and won with its coming."""
+    was = None if gone is None else cutter_state(plan, gone)
+    now = None if added is None else cutter_state(plan, added)
+    either = gone or added
+    assert either is not None
+    return CutterDifference(name=called(either), matched_by=None, was=was, now=now, changes=[], faces_lost=[], faces_won=[],
+                            lost=was is not None and bool(was.finishes), won=now is not None and bool(now.finishes))  # fmt: skip
+
+
+def _place(face: FaceDifference) -> tuple[int, int]:
+    number, other = (int(each[1:]) if each else 0 for each in (face.new or face.old, face.old))
+    return number, other
+
+
+def _id(cutter: CutterDifference) -> str:
+    state = cutter.now or cutter.was
+    assert state is not None
+    return state.id

@@ -1,0 +1,147 @@
+"""A comparison is told here, once: sentences and rows of tables, which the terminal and Markdown lay out."""
+
+from collections.abc import Iterator
+
+from plan_cutters.comparison.model import (
+    Change,
+    Comparison,
+    CutterDifference,
+    CutterState,
+    FaceDifference,
+    FaceState,
+    PlanDifference,
+)
+from plan_cutters.domain.reasons import REASONS
+from plan_cutters.report.story.numbers import area, count, percent
+
+FACES = ("", "face", "kind", "area", "was", "now")
+CUTTERS = ("", "cutter", "was", "now", "faces lost", "faces won", "changed")
+_FINISHES = {True: "finishes", False: "fails", None: "not sure"}
+#: Names of faces in a cell, at most.
+_MOST = 6
+
+
+def headline(found: PlanDifference) -> str:
+    """One sentence on two plans."""
+    if found.same:
+        return f"{found.name}: nothing changed."
+    told = [
+        *_counted(found, "lost"),
+        *_counted(found, "won"),
+    ]
+    said = "; ".join(told) if told else "nothing lost and nothing won"
+    doubt = "" if found.comparable else "not comparable; "
+    return f"{found.name}: {doubt}{said}."
+
+
+def mark_of(found: PlanDifference) -> str:
+    """A few words for what became of a part."""
+    words = [word for word in ("lost", "won") if getattr(found, word)] or ["nothing lost"]
+    return " and ".join(words) + ("" if found.comparable else ", not comparable")
+
+
+def choice(found: PlanDifference) -> str:
+    """Which cutter is to be taken, where another one was."""
+    old, new = found.selected
+    return "" if old == new else f"The cutter to take was {old or 'none'} and is {new or 'none'}."
+
+
+def known(found: PlanDifference) -> str:
+    """How faces were known again, where numbers did not say."""
+    if found.same:
+        return ""
+    how = {name: number for name, number in found.matched.items() if name != "same file"}
+    sides = (("old", [f for f in found.faces if f.new is None]), ("new", [f for f in found.faces if f.old is None]))
+    alone = [f"{count(len(faces), 'face')} of the {word} plan alone" for word, faces in sides if faces]
+    if not how and not alone:
+        return ""
+    said = ", ".join(f"{number} by {name}" for name, number in how.items())
+    return f"Faces known again: {'; '.join([said or 'all by number', *alone])}."
+
+
+def change(each: Change) -> str:
+    """A change in a line."""
+    return f"{each.what}: {each.old} -> {each.new}"
+
+
+def face_rows(found: PlanDifference) -> Iterator[tuple[str, ...]]:
+    """A row of FACES for each face whose answer differs."""
+    for f in found.faces:
+        name = f" {f.name}" if f.name else ""
+        size = "not known" if f.area_mm2 is None else area(f.area_mm2)
+        yield mark(f), f"{called(f.old, f.new)}{name}", f.kind, size, _reach(f.was, "-"), _reach(f.now, "-")
+
+
+def cutter_rows(found: PlanDifference) -> Iterator[tuple[str, ...]]:
+    """A row of CUTTERS for each cutter whose answer or form differs."""
+    for c in found.cutters:
+        changed = ", ".join(change(each) for each in c.changes)
+        yield mark(c), c.name, _state(c.was), _state(c.now), _faces(c.faces_lost), _faces(c.faces_won), changed
+
+
+def mark(each: FaceDifference | CutterDifference) -> str:
+    """A word for what became of a face or cutter."""
+    if each.lost and each.won:
+        return "lost and won"
+    if each.lost or each.won:
+        return "lost" if each.lost else "won"
+    return "new" if each.was is None else "gone" if each.now is None else "changed"
+
+
+def called(old: str | None, new: str | None) -> str:
+    """Both ids of a face, one where they agree.
+
+    >>> called("F3", "F3"), called("F3", "F4"), called(None, "F4")
+    ('F3', 'F3 -> F4', 'F4')
+    """
+    return (new or old or "") if old is None or new is None or old == new else f"{old} -> {new}"
+
+
+def apart(found: Comparison) -> Iterator[str]:
+    """Lines on plans that were not compared."""
+    yield from (f"{name}: only in {found.old}; it counts as lost." for name in found.only_old)
+    yield from (f"{name}: only in {found.new}; it counts as won." for name in found.only_new)
+    yield from (f"{line}." for line in found.unread)
+
+
+def verdict(found: Comparison) -> str:
+    """One sentence on the whole."""
+    if not found.comparable:
+        return "Not comparable: what is said above may have other causes than the part."
+    if found.lost:
+        return "Something was lost."
+    return "Nothing was lost." if found.won else "Nothing was lost or won."
+
+
+def _counted(found: PlanDifference, word: str) -> Iterator[str]:
+    for what, entries in (("face", found.faces), ("cutter", found.cutters)):
+        number = sum(getattr(each, word) for each in entries)
+        if number:
+            yield f"{count(number, what)} {word}"
+
+
+def _reach(state: FaceState | None, none: str) -> str:
+    if state is None:
+        return none
+    share = f" {_percent(state.share)}" if state.reach in ("partly", "undecided") else ""
+    return f"{state.reach}{share}{_why(state.reason)}"
+
+
+def _state(state: CutterState | None) -> str:
+    return "-" if state is None else f"{_FINISHES[state.finishes]} {_percent(state.share)}{_why(state.reason)}"
+
+
+def _percent(share: float) -> str:
+    return percent(share, some=share > 0.0, whole=share == 1.0)
+
+
+def _why(reason: str | None) -> str:
+    if reason is None:
+        return ""
+    return f" ({REASONS[reason].name if reason in REASONS else reason})"
+
+
+def _faces(pairs: list[tuple[str, str]]) -> str:
+    names = [called(*pair) for pair in pairs]
+    more = f" and {len(names) - _MOST} more" if len(names) > _MOST else ""
+    return ", ".join(names[:_MOST]) + more

@@ -1,0 +1,219 @@
+"""The parts that a branch changes: the action's own step, run in a local repository with the variables of a job."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import cadquery as cq
+import pytest
+import yaml
+
+from plan_cutters.command.changed import RULES, Row
+from plan_cutters.command.repository import Changed, changed, content
+from plan_cutters.errors import PlanError
+from tests.support.forked import ENV
+from tests.support.places import ROOT
+
+ACTION = yaml.safe_load((ROOT / "action.yml").read_text(encoding="utf-8"))
+POINTER = "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n"
+OPTIONS = "--faces all --grid 3 --area-budget 0\n--cutter 'R3L20' --holder R15L30"
+
+
+def git(*words):
+    author = ["-c", "user.name=t", "-c", "user.email=t@localhost", "-c", "init.defaultBranch=main"]
+    return subprocess.run(["git", *author, *words], check=True, capture_output=True, text=True).stdout.strip()
+
+
+def part(path, deep):
+    """A block with a slot as wide as a cutter, and so deep."""
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    body = cq.Workplane().box(40, 40, 40).cut(cq.Workplane().box(40, 10, deep).translate((0, 0, 20 - deep / 2)))
+    cq.exporters.export(body, str(path))
+
+
+@pytest.fixture(scope="module")
+def repository(tmp_path_factory):
+    """A branch that deepens a slot, renames, deletes and adds parts, and the commit that it began at."""
+    folder = tmp_path_factory.mktemp("repository")
+    before = Path.cwd()
+    os.chdir(folder)
+    try:
+        git("init", "-q")
+        part("parts/slot.step", 8)
+        part("old.step", 6)
+        shutil.copy("old.step", "gone.stp")
+        Path("gone.stp").write_text(Path("gone.stp").read_text() + "/* another file */\n" * 400)
+        Path("notes.txt").write_text("no part")
+        git("add", "-A")
+        git("commit", "-qm", "base")
+        base = git("rev-parse", "HEAD")
+        part("parts/slot.step", 34)
+        Path("sub").mkdir()
+        git("mv", "old.step", "sub/a name.step")
+        git("rm", "-q", "gone.stp")
+        Path("large.STEP").write_text(POINTER)
+        Path("notes.txt").write_text("still no part")
+        git("add", "-A")
+        git("commit", "-qm", "head")
+        git("clone", "-q", "--bare", ".", "../remote.git") if not Path("../remote.git").exists() else None
+        git("remote", "add", "origin", str(folder.parent / "remote.git"))
+    finally:
+        os.chdir(before)
+    return folder, base
+
+
+def step(folder, base, temp, **inputs):
+    """Run the action's step as a runner does: what it wrote to the summary and the outputs."""
+    (mine,) = [each for each in ACTION["runs"]["steps"] if each.get("id") == "changed"]
+    given = {name: each.get("default", "") for name, each in ACTION["inputs"].items()} | {"base": base} | inputs
+    assert set(mine["env"].values()) <= {f"${{{{ inputs.{name} }}}}" for name in given}
+    env = {key: given[value.removeprefix("${{ inputs.").removesuffix(" }}")] for key, value in mine["env"].items()}
+    (temp / "plan-cutters/bin").mkdir(parents=True, exist_ok=True)
+    program = temp / "plan-cutters/bin/plan-cutters"
+    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m plan_cutters "$@"\n')
+    program.chmod(0o755)
+    for name in ("summary", "output"):
+        (temp / name).unlink(missing_ok=True)
+    job = {"RUNNER_TEMP": str(temp), "GITHUB_STEP_SUMMARY": str(temp / "summary"), "GITHUB_OUTPUT": str(temp / "output"),
+           "GITHUB_SERVER_URL": "https://forge.test", "GITHUB_REPOSITORY": "us/parts",
+           "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}  # fmt: skip
+    done = subprocess.run(["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", mine["run"]], cwd=folder,
+                          env=ENV | job | env, capture_output=True, text=True, check=False)  # fmt: skip
+    outputs = (
+        dict(line.split("=", 1) for line in (temp / "output").read_text().splitlines())
+        if (temp / "output").exists()
+        else {}
+    )
+    return done, (temp / "summary").read_text() if (temp / "summary").exists() else "", outputs
+
+
+@pytest.fixture(scope="module")
+def ran(repository, tmp_path_factory):
+    temp = tmp_path_factory.mktemp("runner")
+    return temp, step(*repository, temp, options=OPTIONS, **{"pictures-branch": "pictures"})
+
+
+def test_the_action_tells_what_a_branch_loses(repository, ran):
+    temp, (done, summary, outputs) = ran
+    assert done.returncode == 1, done.stderr
+    assert outputs == {"parts": "4", "lost": "2", "failing": "2", "folder": str(temp / "plan-cutters-changed")}
+    told = {
+        each["part"]: each for each in json.loads((temp / "plan-cutters-changed/changed.json").read_text())["parts"]
+    }
+    assert {name: each["how"] for name, each in told.items()} == {
+        "gone.stp": "deleted", "large.STEP": "added", "parts/slot.step": "changed", "sub/a name.step": "renamed from old.step",
+    }  # fmt: skip
+    assert [name for name, each in told.items() if each["fails"]] == ["large.STEP", "parts/slot.step"]
+    assert told["parts/slot.step"]["difference"]["lost"]
+    assert told["parts/slot.step"]["unreachable"]
+    assert not told["sub/a name.step"]["difference"]["lost"]
+    lines = [line for line in done.stderr.splitlines() if line.startswith("plan-cutters changed: ")]
+    assert lines == [
+        "plan-cutters changed: large.STEP: is a pointer of Git LFS, not the part: check it out with lfs: true"
+    ]
+    assert "| fails | parts/slot.step | changed | lost" in summary
+    assert "renamed from old.step" in summary
+    assert not (temp / "plan-cutters-changed/before/gone.stp").exists()
+    assert (temp / "plan-cutters-changed/after/sub/a name.step/review.html").is_file()
+
+
+def test_pictures_are_on_their_branch_and_in_the_summary(repository, ran):
+    _, (_, summary, _) = ran
+    remote = repository[0].parent / "remote.git"
+    made = git("-C", str(remote), "rev-parse", "pictures")
+    names = git("-C", str(remote), "ls-tree", "--name-only", made).split()
+    assert names
+    for name in names:
+        assert f"(https://forge.test/us/parts/raw/{made}/{name})" in summary
+    assert git("-C", str(repository[0]), "status", "--porcelain") == ""
+
+
+def test_what_was_planned_is_not_planned_again(repository, ran):
+    """Without a change of content the plans of the cache are taken, byte for byte; the rule alone makes the code."""
+    temp, (_, summary, _) = ran
+    kept = {path: path.stat().st_mtime_ns for path in (temp / "plan-cutters-plans").rglob("plan.json")}
+    assert len(kept) == 3
+    done, again, _ = step(*repository, temp, options=OPTIONS, **{"pictures-branch": "pictures", "fail-on": "none"})
+    assert done.returncode == 0
+    assert {path: path.stat().st_mtime_ns for path in (temp / "plan-cutters-plans").rglob("plan.json")} == kept
+    assert [line for line in again.splitlines() if "F" in line] == [
+        line.replace("| fails |", "|   |") for line in summary.splitlines() if "F" in line
+    ]
+
+
+def test_a_branch_without_parts_passes(repository, tmp_path):
+    done, summary, outputs = step(repository[0], "HEAD", tmp_path)
+    assert (done.returncode, outputs["parts"]) == (0, "0")
+    assert "No part changed" in summary
+
+
+def command(words, folder, **environment):
+    """Run it in a process of its own: it starts others."""
+    return subprocess.run([sys.executable, "-m", "plan_cutters", "changed", *words], cwd=folder, env=ENV | environment,
+                          capture_output=True, text=True, check=False)  # fmt: skip
+
+
+def test_mistakes_are_one_line(repository, tmp_path):
+    folder, base = repository
+    for words, said in (
+        (["--base", "nowhere"], "'nowhere' is not in this repository"),
+        (["--base", base, "--", "-o", "there"], "-o cannot stand after --"),
+        ([], "give --base"),
+        (["--base", base, "--fail-on", "rain"], "'rain'"),
+    ):
+        done = command(words, folder)
+        assert (done.returncode, done.stdout) == (2, "")
+        (line,) = done.stderr.splitlines()
+        assert line.startswith("plan-cutters changed: ")
+        assert said in line
+    done = command(["--base", "HEAD"], tmp_path, GIT_CEILING_DIRECTORIES=str(tmp_path.parent))
+    assert (done.returncode, len(done.stderr.splitlines())) == (2, 1)
+
+
+def test_what_is_staged_is_found_before_the_commit(tmp_path, monkeypatch):
+    """The hook of pre-commit looks at the index, not at files that are not added."""
+    monkeypatch.chdir(tmp_path)
+    git("init", "-q")
+    Path("a.step").write_text("one")
+    git("add", "a.step")
+    git("commit", "-qm", "one")
+    Path("a.step").write_text("two")
+    assert changed("HEAD", None)[2] == []
+    git("add", "a.step")
+    Path("a.step").write_text("three")
+    _, until, found = changed("HEAD", None)
+    assert found == [Changed("a.step", "a.step")]
+    assert content(until, "a.step") == b"two"
+    (hook,) = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text())
+    assert hook["entry"].split() == ["plan-cutters", "changed", "--base", "HEAD", "--staged"]
+    Path("a.step").write_text(POINTER)
+    git("add", "a.step")
+    with pytest.raises(PlanError, match="pointer of Git LFS"):
+        content(changed("HEAD", None)[1], "a.step")
+
+
+def test_each_rule_is_stricter_than_the_one_before():
+    lost, unread = Row(Changed("a", "a"), failed="x"), Row(Changed("a", "a"), unread="x")
+    open_face = Row(Changed(None, "a"), unreachable=("F1",))
+    assert [[row.breaks(rule) for rule in RULES] for row in (lost, open_face, unread)] == [
+        [False, True, True, True], [False, False, True, True], [False, False, False, True],
+    ]  # fmt: skip
+    assert set(RULES) == set(
+        ACTION["inputs"]["fail-on"]["description"].partition(" (")[0].replace(" or ", ", ").split(", ")
+    )
+
+
+def test_the_image_is_slim_and_not_root():
+    """Its build step is that of `.ci/installed.py`: the package and its declared requirements alone."""
+    lines = (ROOT / "Dockerfile").read_text(encoding="utf-8").splitlines()
+    users = [line.split()[1] for line in lines if line.startswith("USER ")]
+    assert users
+    assert users[-1] not in ("root", "0")
+    assert all("slim" in line for line in lines if line.startswith("FROM "))
+    kept = {line[1:] for line in (ROOT / ".dockerignore").read_text().splitlines() if line.startswith("!")}
+    assert {"plugin", "cad_io", "pyproject.toml", "README.md", "LICENSE"} == kept
+    setup = (ROOT / "setup.sh").read_text(encoding="utf-8")
+    assert all(name in "\n".join(lines) and name in setup for name in ("libgl1", "libx11-6"))
