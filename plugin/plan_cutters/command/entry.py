@@ -17,6 +17,7 @@ SUBCOMMANDS = {
     "stored": ("stored_maps", "Judge another machine or setup by the posture maps of a plan."),
     "tools": ("tools", "List the tools of a library as they are understood."),
     "machines": ("machines", "List the built-in machines, or show how a machine file is understood."),
+    "batch": ("batch", "Plan many parts, on this machine or on a cluster."),
 }
 
 
@@ -61,8 +62,9 @@ def begin(name: str, words: Sequence[str] | None = None) -> None:
         if f"_{name.replace('-', '_').upper()}_COMPLETE" in os.environ:
             import_module("plan_cutters.command.completion").main(name)
         if subcommand(name) == "plan":
-            from plan_cutters.command.worker import begin_early
+            from plan_cutters.command.worker import begin_early, follow_parent
 
+            follow_parent()  # where a batch began it
             begin_early(words)
         module_of(name).main(words, name)
     except KeyboardInterrupt:

@@ -7,6 +7,7 @@ import math
 import os
 import sys
 from collections.abc import Sequence
+from dataclasses import fields
 from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,13 +20,13 @@ if TYPE_CHECKING:
 
 #: Options of the interface that later versions will have: asked for now, they must not be ignored.
 _NOT_BUILT = {
-    "cluster": "clusters are not used yet; --jobs gives threads on this machine",
+    "cluster": "a cluster plans many parts: plan-cutters batch PART... --out DIR --cluster ADDRESS",
 }
 #: Parameters of the commands that `Options` names otherwise.
 NAMED = {"cutter": "cutters", "cutters": "libraries", "fixture": "fixtures"}
-#: Options that count in a plan of operations alone, with their defaults: without one they must not be ignored.
-OF_OPERATIONS = {"feed": None, "scallop": 0.01, "stepover": 0.75, "index_step": None, "index_time": 5.0, "change_time": 20.0,
-                  "setup_time": 300.0, "overlap": 2.0, "most_operations": None}  # fmt: skip
+#: Options that count in a plan of operations alone: without one they must not be ignored.
+OF_OPERATIONS = ("feed", "scallop", "stepover", "index_step", "index_time", "change_time", "setup_time", "overlap",
+                 "most_operations")  # fmt: skip
 #: Bytes of memory below which nothing can be planned.
 LEAST_MEMORY = 2e9
 
@@ -119,7 +120,11 @@ def refuse_unasked(given: dict[str, Any]) -> None:
 
     if given["operations"] is not None or given["check_operations"] is not None:
         return
-    for name, default in OF_OPERATIONS.items():
+    from plan_cutters.options import Options
+
+    defaults = {each.name: each.default for each in fields(Options)}
+    for name in OF_OPERATIONS:
+        default = defaults[name]
         if given.get(name, default) != default:
             word = f"--{name.replace('_', '-')}"
             raise OptionError(f"{word} is about a plan of operations: give it with --operations, or leave it out")
@@ -129,8 +134,10 @@ def _faults(parts: Sequence[str]) -> list[CadIoError]:
     """Why parts cannot be read, as far as their first bytes tell."""
     from cad_io.read.sniff import kind
 
+    from plan_cutters.batch.handing import holds_part
+
     found: list[CadIoError] = []
-    for part in parts:
+    for part in () if holds_part() else parts:
         try:
             kind(part)
         except CadIoError as error:
@@ -184,9 +191,11 @@ def _fixture(file: str) -> None:
 
 def options_of(given: dict[str, Any]) -> "Options":
     """The options of a plan, from the words of the command line; a PlanError for what has no meaning."""
+    from plan_cutters.batch import handing
     from plan_cutters.options import Options
 
-    return Options(**words_of(given))
+    # A batch has looked at its words already, perhaps on another machine.
+    return handing.options() or Options(**words_of(given))
 
 
 def words_of(given: dict[str, Any]) -> dict[str, Any]:
