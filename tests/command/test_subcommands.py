@@ -74,7 +74,7 @@ def test_the_help_of_each_says_its_exit_codes_and_loads_no_kernel(tmp_path, name
 
 def test_each_help_begins_with_an_imperative():
     """As docstrings do: no sentence is a question in disguise."""
-    verbs = {"Find", "Draw", "Judge", "List", "Show"}
+    verbs = {"Find", "Draw", "Judge", "List", "Show", "Plan"}
     for name, (_, told) in entry.SUBCOMMANDS.items():
         command = entry.module_of(f"plan-cutters {name}").command
         for text in (told, command.help):
@@ -84,7 +84,7 @@ def test_each_help_begins_with_an_imperative():
             assert not re.search(r"\bwhat\b", first, re.IGNORECASE)
 
 
-@pytest.mark.parametrize("name", ["map", "stored", "tools", "machines"])
+@pytest.mark.parametrize("name", ["map", "stored", "tools", "machines", "batch"])
 def test_help_loads_neither_numpy_nor_the_kernel(tmp_path, name):
     code = f"import sys; sys.argv = ['x', {name!r}, '--help']\nfrom plan_cutters.command.entry import plan_cutters\n"
     code += "try: plan_cutters()\nexcept SystemExit: pass\n"

@@ -10,5 +10,10 @@ def write_index(
     rows: Sequence[PartRow], put: Callable[[str, bytes], None], *, title: str, seconds: float, cluster: Mapping[str, object]
 ) -> None:  # fmt: skip
     """Write the index of all parts."""
-    content = {"title": title, "seconds": seconds, "cluster": dict(cluster), "parts": [row.model_dump() for row in rows]}
+    content = {
+        "title": title,
+        "seconds": seconds,
+        "cluster": dict(cluster),
+        "parts": [row.model_dump() for row in rows],
+    }
     put("summary.json", json.dumps(content, indent=1).encode())

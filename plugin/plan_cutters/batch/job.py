@@ -75,7 +75,7 @@ class Fault:
 
 @dataclass(frozen=True)
 class Handed:
-    """The settings of a part, ready to travel: pickled options, and the files of its fixtures by the names that they have there."""
+    """The settings of a part, ready to travel: pickled options, and the files of fixtures by the names that these have there."""
 
     options: bytes
     files: tuple[tuple[str, bytes], ...]

@@ -54,7 +54,13 @@ def settings_key(settings: Settings, there: Handed) -> str:
     """
     options = {each.name: getattr(settings.options, each.name) for each in fields(settings.options)}
     del options["jobs"]
-    asked = [options, sorted(settings.formats), settings.step_schema, version(), [_installed(name) for name in _COUNTED]]
+    asked = [
+        options,
+        sorted(settings.formats),
+        settings.step_schema,
+        version(),
+        [_installed(name) for name in _COUNTED],
+    ]
     found = hashlib.sha256(_plain(asked))
     for name, data in there.files:
         found.update(_framed(name.encode()) + _framed(data))

@@ -93,7 +93,9 @@ def plan_many(
 
     if isinstance(parts, str | os.PathLike):
         raise OptionError("parts is one path: give a list of parts, or use the command `batch` for folders")
-    settings = Settings(Options.of({"jobs": 1, **options}), tuple(dict.fromkeys(("json", *read_formats(",".join(formats))))))
+    settings = Settings(
+        Options.of({"jobs": 1, **options}), tuple(dict.fromkeys(("json", *read_formats(",".join(formats)))))
+    )
     store = None if out is None else Store(os.fspath(out))
     token = store.begin() if store else ""
     with contextlib.ExitStack() as stack:
@@ -118,7 +120,9 @@ def _jobs(parts: Iterable[Any], settings: Settings, terms: "Terms", faults: list
     """Jobs of parts as they are asked for; those that cannot be planned are put aside."""
     names: set[str] = set()
     for number, given in enumerate(parts, 1):
-        name, part = given if isinstance(given, tuple) and len(given) == 2 and isinstance(given[0], str) else (None, given)
+        name, part = (
+            given if isinstance(given, tuple) and len(given) == 2 and isinstance(given[0], str) else (None, given)
+        )
         is_file = isinstance(part, str | PurePath)
         file = str(part) if is_file else f"part {number}"
         name = name or (Path(file).stem if is_file else f"part-{number}")
@@ -134,9 +138,13 @@ def _jobs(parts: Iterable[Any], settings: Settings, terms: "Terms", faults: list
                 own, packed = _packed(part, settings)
                 yield Job(name, file, own, packed)
         except PlanError as error:
-            faults.append(Fault(f"{name} ({number})" if name.casefold() in names else name, file, str(error), USAGE).row)
+            faults.append(
+                Fault(f"{name} ({number})" if name.casefold() in names else name, file, str(error), USAGE).row
+            )
         except Exception as error:
-            faults.append(Fault(name, file, f"{file}: {' '.join(str(error).split()) or type(error).__name__}", UNREADABLE).row)
+            faults.append(
+                Fault(name, file, f"{file}: {' '.join(str(error).split()) or type(error).__name__}", UNREADABLE).row
+            )
 
 
 def _packed(part: Any, settings: Settings) -> tuple[Settings, bytes]:

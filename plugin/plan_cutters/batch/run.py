@@ -150,7 +150,12 @@ def outcomes(
 
 
 def handed_out(
-    client: Any, tasks: Iterator[Any], function: Callable[[Any], Any], *, board: Told | None = None, total: int | None = None
+    client: Any,
+    tasks: Iterator[Any],
+    function: Callable[[Any], Any],
+    *,
+    board: Told | None = None,
+    total: int | None = None,
 ) -> Iterator[tuple[Any, Any]]:
     """Work on tasks on a cluster, a bounded number at a time; each with its result, or the exception that it ended in.
 

@@ -1,4 +1,4 @@
-"""Where parts come from: files, folders, globs and lists, here or at a URL. Names are made from paths alone, so that they stay."""
+"""Where parts come from: files, folders, globs and lists, here or at a URL. Names are made from paths alone, so they stay."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -36,7 +36,9 @@ class Source:
     place: str = ""
 
 
-def sources(words: Sequence[str], out: str, manifest: Callable[[str], Sequence[Source | Fault]]) -> list[Source | Fault]:
+def sources(
+    words: Sequence[str], out: str, manifest: Callable[[str], Sequence[Source | Fault]]
+) -> list[Source | Fault]:
     """The parts that are meant, in the order of the words and, within each, of the names.
 
     Parameters
@@ -85,7 +87,9 @@ def _listed(word: str, base: str, files: Sequence[str], fs: Any, nothing: str) -
     if not files:
         return [Fault(word, word, f"{word}: {nothing}")]
     whole = "://" in word
-    return [Source(_stem(file[len(base) :].lstrip("/")), fs.unstrip_protocol(file) if whole else file) for file in files]
+    return [
+        Source(_stem(file[len(base) :].lstrip("/")), fs.unstrip_protocol(file) if whole else file) for file in files
+    ]
 
 
 def _stem(path: str) -> str:
@@ -124,10 +128,9 @@ def _named_once(found: Sequence[Source | Fault]) -> list[Source | Fault]:
     checked: list[Source | Fault] = []
     for each in found:
         if isinstance(each, Source) and (why := _unusable(each, names[each.name.casefold()])):
-            name = each.name if len(names[each.name.casefold()]) == 1 else PurePosixPath(each.file).name
-            for name in (name, each.file, *(f"{each.file} ({n})" for n in range(2, len(found) + 2))):
-                if name not in taken:
-                    break
+            short = each.name if len(names[each.name.casefold()]) == 1 else PurePosixPath(each.file).name
+            tried = (short, each.file, *(f"{each.file} ({n})" for n in range(2, len(found) + 2)))
+            name = next(name for name in tried if name not in taken)
             each = Fault(name, each.file, f"{each.place or each.file}: {why}", USAGE)
             taken.add(name)
         checked.append(each)

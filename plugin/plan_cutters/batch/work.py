@@ -1,4 +1,4 @@
-"""A task of a batch: one part, on a worker. The command does the work in a child process, so that a crash or hang costs that part."""
+"""A task of a batch: one part, on a worker. The command works in a child process, so that a crash or hang costs that part."""
 
 import functools
 import os
@@ -278,8 +278,6 @@ def _row(task: Task, content: bytes, key: str, code: int, seconds: float) -> Par
     from plan_cutters.document.model import Plan
 
     plan = Plan.model_validate_json(content)
-    row = row_of(
-        plan, name=task.name, file=task.file, code=code, key=key, folder=task.folder, seconds=seconds
-    )
+    row = row_of(plan, name=task.name, file=task.file, code=code, key=key, folder=task.folder, seconds=seconds)
     missing = "; ".join(f"{name}: {why}" for name, why in plan.not_written.items())
     return row.model_copy(update={"error": f"not written: {missing}"}) if missing else row

@@ -23,7 +23,15 @@ if TYPE_CHECKING:
 
 _SELF = "plan-cutters batch"
 #: Groups of options that a part of a manifest may have of its own.
-_OF_A_PART = {"Cutters", "Machine and setup", "Faces", "Sampling and tolerances", "Postures", "Answers", "Plan of operations"}
+_OF_A_PART = {
+    "Cutters",
+    "Machine and setup",
+    "Faces",
+    "Sampling and tolerances",
+    "Postures",
+    "Answers",
+    "Plan of operations",
+}
 #: The picture is what the table shows of a part.
 _FORMATS = (*DEFAULT_FORMATS, "png")
 
@@ -38,12 +46,15 @@ _many = heading("Many parts")
         (f"{_SELF} 's3://shop/in/*.step' --out s3://shop/plans", "From a bucket to a bucket:"),
         (f"{_SELF} parts --out plans --cluster tcp://10.0.0.5:8786", "On a running Dask cluster:"),
     ),
-    codes=(*((code, what) for code, what in CODES if code != "130"), ("130", "interrupted; parts that are done are kept")),
+    codes=(
+        *((code, what) for code, what in CODES if code != "130"),
+        ("130", "interrupted; parts that are done are kept"),
+    ),
 )
 @click.argument("sources", nargs=-1, required=True, metavar="SRC...", type=File("SRC"))
 @options(
-    "cutter", "cutters", "holder", "assume_stickout", "skip_bad", "list_cutters", "machine", "setup", "fixture", "faces", "ignore",
-    "flip", "unit", "spacing", "grid", "area_budget", "tolerance", "allowance", "holder_clearance", "tilt", "rotation",
+    "cutter", "cutters", "holder", "assume_stickout", "skip_bad", "list_cutters", "machine", "setup", "fixture", "faces",
+    "ignore", "flip", "unit", "spacing", "grid", "area_budget", "tolerance", "allowance", "holder_clearance", "tilt", "rotation",
     "rotation_step", "posture_maps", "map_budget",
 )  # fmt: skip
 @options(
@@ -117,7 +128,9 @@ def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", given: di
         except OSError as error:
             from plan_cutters.errors import PlanError
 
-            raise PlanError(f"cannot write there ({error.strerror}); give another with --out", file=given["out"]) from None
+            raise PlanError(
+                f"cannot write there ({error.strerror}); give another with --out", file=given["out"]
+            ) from None
     board = Board(given["quiet"], len(parts))
     code = FEASIBLE
     try:
@@ -144,7 +157,9 @@ def _foreseen(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms") -> i
     code = FEASIBLE
     for row in foreseen(parts, out, terms):
         word = {"planned": "would be planned", "kept": "is done", "failed": "cannot be planned"}[row.status]
-        terminal.hand_out(f"{terminal.clean(row.name)}: {word}{f': {terminal.clean(row.error)}' if row.error else ''}\n")
+        terminal.hand_out(
+            f"{terminal.clean(row.name)}: {word}{f': {terminal.clean(row.error)}' if row.error else ''}\n"
+        )
         code = max(code, row.code if row.status == "failed" else FEASIBLE)
     return code
 
@@ -216,5 +231,3 @@ def _settings(given: dict[str, Any]) -> "Settings":
     look_at(asked)
     formats = _FORMATS if given["formats"] is None else read_formats(given["formats"])
     return Settings(asked, tuple(dict.fromkeys(("json", *formats))), given["step_schema"], given["read_timeout"])
-
-

@@ -46,7 +46,8 @@ def one_part(
         gc.freeze()
         gc.enable()
         clock = Clock(watch.tell, began=began)
-        result = run(handing.part() if handing.holds_part() else part, options, clock, read_timeout=given["read_timeout"], at=report_work, ahead=ahead,
+        source = handing.part() if handing.holds_part() else part
+        result = run(source, options, clock, read_timeout=given["read_timeout"], at=report_work, ahead=ahead,
                      aside=aside)  # fmt: skip
         document = result.plan
         if out is None:

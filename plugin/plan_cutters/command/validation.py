@@ -133,7 +133,6 @@ def refuse_unasked(given: dict[str, Any]) -> None:
 def _faults(parts: Sequence[str]) -> list[CadIoError]:
     """Why parts cannot be read, as far as their first bytes tell."""
     from cad_io.read.sniff import kind
-
     from plan_cutters.batch.handing import holds_part
 
     found: list[CadIoError] = []
