@@ -11,7 +11,9 @@ import time
 import psutil
 import pytest
 
-from tests.support.forked import ENV, run
+from plan_cutters.command import batch as of_many
+from plan_cutters.command.codes import guarded, invoked
+from tests.support.forked import ENV
 from tests.support.places import ROOT
 
 GROOVE = (ROOT / "samples/v_groove.step").read_bytes()
@@ -27,8 +29,17 @@ def parts(tmp_path):
     return folder
 
 
-def batch(*words, cwd):
-    return run("batch", *words, cwd=cwd)
+@pytest.fixture
+def batch(monkeypatch, capsys):
+    """Run the command in this process: what it is refused for starts none."""
+
+    def run(*words, cwd):
+        monkeypatch.chdir(cwd)
+        code, line = guarded(lambda: (invoked(of_many.command, "plan-cutters batch", words), ""), False)
+        out, err = capsys.readouterr()
+        return subprocess.CompletedProcess(words, code, out, err + (f"{line}\n" if line else ""))
+
+    return run
 
 
 def started(*words, cwd):
@@ -52,7 +63,7 @@ def planning(processes):
     return False
 
 
-def test_nothing_to_plan_is_one_line(tmp_path):
+def test_nothing_to_plan_is_one_line(batch, tmp_path):
     (tmp_path / "empty").mkdir()
     done = batch("empty", "--out", "out", cwd=tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
@@ -62,7 +73,7 @@ def test_nothing_to_plan_is_one_line(tmp_path):
     assert not (tmp_path / "out").exists()
 
 
-def test_each_bad_part_of_a_manifest_is_one_line_and_the_others_go_on(parts):
+def test_each_bad_part_of_a_manifest_is_one_line_and_the_others_go_on(batch, parts):
     (parts / "all.toml").write_text(
         "[[part]]\nfile='a.step'\n[[part]]\nfile='b.step'\ngrit=5\n[[part]]\nfile='c.step'\ngrid='many'\n"
         "[[part]]\nfile='gone.step'\n[[part]]\nfile='c.step'\nname='d'\ntolerance=-1\n"
@@ -73,9 +84,9 @@ def test_each_bad_part_of_a_manifest_is_one_line_and_the_others_go_on(parts):
     assert done.stdout.splitlines() == [
         "a: would be planned",
         "b: cannot be planned: all.toml:5: no option of a part is called grit; grid?",
-        "c: cannot be planned: all.toml:6: 'many' is not a valid integer.",
+        "c: cannot be planned: all.toml:6: Invalid value for '--grid': 'many' is not a valid integer.",
         "gone: cannot be planned: all.toml:9: no such file: gone.step",
-        "d: cannot be planned: all.toml:11: tolerance -1 must lie between 1e-05 and 10 mm",
+        "d: cannot be planned: all.toml:11: tolerance -1 must lie between 0.0001 and 10 mm",
         "e: cannot be planned: all.toml:15: flip is true or false, not 'perhaps'",
         "f: cannot be planned: all.toml:19: faces takes one value, not a list",
     ]
@@ -95,7 +106,7 @@ def test_each_bad_part_of_a_manifest_is_one_line_and_the_others_go_on(parts):
         (["--postures", "x.npz"], "No such option"),
     ],
 )
-def test_wrong_words_are_one_line(parts, words, said):
+def test_wrong_words_are_one_line(batch, parts, words, said):
     done = batch("a.step", "--out", "out", *words, cwd=parts)
     assert (done.returncode, done.stdout) == (2, "")
     assert said in done.stderr
@@ -103,7 +114,7 @@ def test_wrong_words_are_one_line(parts, words, said):
     assert not list(parts.glob("out/*"))
 
 
-def test_an_output_that_cannot_be_written_is_one_line(parts):
+def test_an_output_that_cannot_be_written_is_one_line(batch, parts):
     done = batch("a.step", "--out", "b.step", cwd=parts)
     assert (done.returncode, len(done.stderr.splitlines())) == (2, 1)
     assert "b.step" in done.stderr

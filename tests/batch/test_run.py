@@ -173,9 +173,9 @@ def test_versions_that_differ_are_refused_with_both_named(client, tmp_path, monk
     assert "0.1 where the batch was begun" in found.row.error
     assert cluster.differs({"numba": "1", "dask": "2"}, {"numba": "1", "dask": "3"}) == "dask 3, this machine 2"
     cluster._same(client)
-    import plan_cutters
-
-    monkeypatch.setattr(plan_cutters, "__version__", "9.9")
+    said = client.get_versions(packages=["plan_cutters", "numba"])
+    said["client"]["packages"]["plan_cutters"] = "9.9"
+    monkeypatch.setattr(client, "get_versions", lambda packages: said)
     with pytest.raises(PlanError, match=r"worker tcp://\S+ has plan-cutters 0\.1\.0, this machine 9\.9"):
         cluster._same(client)
 

@@ -1,4 +1,4 @@
-"""What is to be planned: a part with its settings, or the reason for which it cannot be."""
+"""Each part of a batch has its settings, or the reason for which it cannot be planned."""
 
 import contextlib
 import copy

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Planned:
-    """What came of one of many parts.
+    """A result holds what came of one of many parts.
 
     Attributes
     ----------

@@ -75,7 +75,7 @@ class Task:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of a part: its row, and its files where the worker could not write them."""
+    """An outcome holds the row of a part, and its files where the worker could not write them."""
 
     row: PartRow
     files: Mapping[str, bytes]
