@@ -236,3 +236,23 @@ def test_workers_by_cores_and_memory():
     assert memory >= cluster.LEAST_MEMORY
     assert cluster.workers_of(3, 2e9, 1) == (3, 2_000_000_000)
     assert cluster.workers_of(None, 1e15, 1)[0] == 1
+
+
+def test_a_full_disk_on_a_worker_is_one_line(tmp_path, monkeypatch):
+    from pathlib import Path
+
+    from plan_cutters.batch import work as works
+
+    def full(*words):
+        raise OSError(28, "No space left on device")
+
+    out = Store(str(tmp_path / "out"))
+    (job,) = jobs(tmp_path, "a")
+    there, key = Terms().of(job.settings)
+    task = works.Task(job.name, job.file, None, None, there, (), key, out.root_url, out.begin(), False, None, {})
+    monkeypatch.setattr(works, "_ready", lambda: "")
+    monkeypatch.setattr(Path, "write_bytes", full)
+    row = works.work(task).row
+    assert (row.status, row.code) == ("failed", 2)
+    assert "No space left on device" in row.error
+    assert out.row("a-plan") is None

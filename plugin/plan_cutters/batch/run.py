@@ -1,6 +1,7 @@
 """The run of a batch: parts are handed out, a bounded number at a time, and rows come back as they are made."""
 
 import itertools
+import os
 import queue
 import secrets
 import time
@@ -116,15 +117,17 @@ def outcomes(
         total = len(jobs)
     versions = keys.versions()
     travels = out is not None and store.in_memory(out.url)
-    where = None if out is None or travels else out.url
+    where = None if out is None or travels else out.root_url
     faulty: list[Outcome] = []
 
     def tasks() -> Iterator[Task]:
         for job in jobs:
             try:
                 there, key = terms.of(job.settings)
-                task = Task(job.name, job.file, store.read(job.file) if store.in_memory(job.file) else None, job.part, there,
-                            _words(job.settings, terms), key, where, token, terms.force, terms.timeout, versions)  # fmt: skip
+                data = store.read(job.file) if store.in_memory(job.file) else None
+                task = Task(job.name, job.file, data, job.part, there,
+                            _words(job.settings, terms), key, where, token, terms.force, terms.timeout, versions,
+                            job.file if "://" in job.file else os.path.abspath(job.file))  # fmt: skip
                 if travels and out is not None and not terms.force and (row := _kept(task, out)):
                     faulty.append(Outcome(row, {}))
                     continue

@@ -15,6 +15,7 @@ from typing import Any
 
 from plan_cutters.batch.row import PartRow
 from plan_cutters.errors import PlanError
+from plan_cutters.files.lock import Lock
 
 #: In the folder of a part that is done: its row, and the sizes of its files.
 MARKER = "done.json"
@@ -101,6 +102,8 @@ class Store:
         self._fs, root = file_system(url)
         self.local = type(self._fs).__name__ == "LocalFileSystem"
         self.root = os.path.abspath(root) if self.local else root.rstrip("/")
+        self._token = ""
+        self._lock: Lock | None = None
 
     @property
     def root_url(self) -> str:
@@ -110,21 +113,38 @@ class Store:
     def begin(self) -> str:
         """Make sure that files can be written, and drop what a run that was killed left unfinished; a token for workers.
 
+        On this machine nobody else can begin there until `end`. Called again, it gives the same token.
+
         Raises
         ------
         PlanError
-            Nothing can be written there.
+            Nothing can be written there, or another run writes there.
         """
-        token = secrets.token_hex(8)
-        if self.local:
-            shutil.rmtree(Path(self.root, _ASIDE), ignore_errors=True)
-        self.put(f"{_ASIDE}/token", token.encode())
-        return token
+        if not self._token:
+            if self.local:
+                try:
+                    Path(self.root).mkdir(parents=True, exist_ok=True)
+                    self._lock = Lock(Path(self.root))
+                except OSError as error:
+                    raise PlanError(cause(error, "written"), file=self.url) from None
+                shutil.rmtree(Path(self.root, _ASIDE), ignore_errors=True)
+            token = secrets.token_hex(8)
+            try:
+                self.put(f"{_ASIDE}/token", token.encode())
+            except PlanError:
+                self.end()
+                raise
+            self._token = token
+        return self._token
 
     def end(self) -> None:
-        """Leave nothing but what was made."""
-        with contextlib.suppress(Exception):
-            self._fs.rm(self._at(_ASIDE), recursive=True)
+        """Leave nothing but the files of parts and the table, and let others write there."""
+        if self._token:
+            with contextlib.suppress(Exception):
+                self._fs.rm(self._at(_ASIDE), recursive=True)
+        if self._lock is not None:
+            self._lock.release()
+        self._token, self._lock = "", None
 
     def seen(self, token: str) -> bool:
         """Whether this process sees the folder in which the batch was begun."""

@@ -52,6 +52,8 @@ class Task:
         Seconds for the part.
     versions : mapping
         Of where the batch was begun.
+    source : str
+        The file as workers find it, in whatever folder they run.
     """
 
     name: str
@@ -66,6 +68,8 @@ class Task:
     force: bool
     timeout: float | None
     versions: Mapping[str, str]
+
+    source: str = ""
 
     @property
     def folder(self) -> str:
@@ -99,7 +103,7 @@ def work(task: Task) -> Outcome:
             return failed(f"{_here()}: this worker does not see {task.store}: give a folder that all machines share, or a URL",
                           USAGE)  # fmt: skip
         try:
-            data = task.part or (store.read(task.file) if task.data is None else task.data)
+            data = task.part or (store.read(task.source or task.file) if task.data is None else task.data)
         except PlanError as error:
             return failed(str(error), UNREADABLE)
         key = keys.key(keys.checksum(data), task.settings)

@@ -3,13 +3,12 @@
 import functools
 import os
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
 from plan_cutters.command import terminal
-from plan_cutters.command.codes import FEASIBLE, INTERRUPTED, run
+from plan_cutters.command.codes import FEASIBLE, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import CODES, options
 from plan_cutters.command.values import File, Words
@@ -118,19 +117,8 @@ def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", given: di
     from plan_cutters.batch import cluster
     from plan_cutters.batch.progress import Board
     from plan_cutters.batch.run import run_batch
-    from plan_cutters.files.lock import Lock
 
-    lock = None
-    if out.local:
-        try:
-            Path(out.root).mkdir(parents=True, exist_ok=True)
-            lock = Lock(Path(out.root))
-        except OSError as error:
-            from plan_cutters.errors import PlanError
-
-            raise PlanError(
-                f"cannot write there ({error.strerror}); give another with --out", file=given["out"]
-            ) from None
+    out.begin()  # what is wrong with it is said before any worker is started
     board = Board(given["quiet"], len(parts))
     code = FEASIBLE
     try:
@@ -146,9 +134,8 @@ def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", given: di
                 board.row(row)
     finally:
         board.close()
-        if lock is not None:
-            lock.release()
-    return INTERRUPTED if code == INTERRUPTED else code
+        out.end()
+    return code
 
 
 def _foreseen(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms") -> int:
@@ -194,6 +181,8 @@ def _parts(words: Sequence[str], given: dict[str, Any]) -> "list[Job | Fault]":
 
 def _values(source: "Source", own: Mapping[str, click.Parameter]) -> tuple[tuple[str, Any], ...]:
     """The options of a part as the command line would have them: each takes the place of the one for all parts."""
+    from plan_cutters.errors import OptionError
+
     found = []
     near = os.path.dirname(source.place) if "://" not in source.place else ""
     for word, value in source.options.items():
@@ -201,10 +190,10 @@ def _values(source: "Source", own: Mapping[str, click.Parameter]) -> tuple[tuple
         several = value if isinstance(value, list) else [value]
         if isinstance(option, click.Option) and option.is_flag:
             if str(value).lower() not in ("true", "false", "1", "0", "yes", "no"):
-                raise click.BadParameter(f"{word} is true or false, not {value!r}")
+                raise OptionError(f"{word} is true or false, not {value!r}")
             taken: Any = str(value).lower() in ("true", "1", "yes")
         elif not option.multiple and isinstance(value, list):
-            raise click.BadParameter(f"{word} takes one value, not a list")
+            raise OptionError(f"{word} takes one value, not a list")
         else:
             files = isinstance(option.type, Words) and option.type.files
             words = [_beside(str(each), near) if files or word == "setup" else str(each) for each in several]
