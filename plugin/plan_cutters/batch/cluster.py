@@ -3,6 +3,7 @@
 import contextlib
 import logging
 import os
+import signal
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -67,13 +68,28 @@ def opened(address: str | None, workers: int = 1) -> Iterator[Any]:
 
 @contextlib.contextmanager
 def _local(distributed: Any, workers: int) -> Iterator[Any]:
-    # Memory is that of the children, which dask does not see: it is limited there.
-    with (
-        distributed.LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, memory_limit=0,
-                                 dashboard_address=":0", silence_logs=logging.CRITICAL) as cluster,
-        distributed.Client(cluster) as client,
-    ):  # fmt: skip
-        yield client
+    with contextlib.ExitStack() as stack:
+        with _deaf():
+            # Memory is that of the children, which dask does not see: it is limited there.
+            cluster = stack.enter_context(
+                distributed.LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, memory_limit=0,
+                                         dashboard_address=":0", silence_logs=logging.CRITICAL)
+            )  # fmt: skip
+        yield stack.enter_context(distributed.Client(cluster))
+
+
+@contextlib.contextmanager
+def _deaf() -> Iterator[None]:
+    """Start processes that ignore an interrupt from the terminal: it is for this one, which ends them."""
+    try:
+        before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    except ValueError:  # not the main thread
+        yield
+        return
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 @contextlib.contextmanager
