@@ -24,6 +24,7 @@ _HOME = {
     "Scene": "scene.scene",
     "PostureRange": "domain.posture",
     "plan": "pipeline",
+    "plan_many": "batch.many",
     "Result": "result",
     "posture_map": "point",
     "PostureMap": "stages.posture_map",

@@ -1,5 +1,6 @@
 """What type checkers see of the names that `__init__.py` hands on lazily."""
 
+from plan_cutters.batch.many import plan_many
 from plan_cutters.document.model import Plan
 from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.cutter import Cutter
@@ -42,5 +43,6 @@ __all__ = [
     "Stage",
     "__version__",
     "plan",
+    "plan_many",
     "posture_map",
 ]

@@ -74,7 +74,7 @@ def test_the_help_of_each_says_its_exit_codes_and_loads_no_kernel(tmp_path, name
 
 def test_each_help_begins_with_an_imperative():
     """As docstrings do: no sentence is a question in disguise."""
-    verbs = {"Find", "Draw", "Judge", "List", "Show", "Serve"}
+    verbs = {"Find", "Draw", "Judge", "List", "Show", "Serve", "Plan"}
     for name, (_, told) in entry.SUBCOMMANDS.items():
         command = entry.module_of(f"plan-cutters {name}").command
         for text in (told, command.help):

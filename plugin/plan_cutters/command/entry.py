@@ -19,6 +19,7 @@ SUBCOMMANDS = {
     "changed": ("changed", "Find the parts that changed in a git repository, and compare their plans."),
     "tools": ("tools", "List the tools of a library as they are understood."),
     "machines": ("machines", "List the built-in machines, or show how a machine file is understood."),
+    "batch": ("batch", "Plan many parts, on this machine or on a cluster."),
     "mcp": ("mcp", "Serve these questions to agents, by the Model Context Protocol."),
 }
 
@@ -64,8 +65,9 @@ def begin(name: str, words: Sequence[str] | None = None) -> None:
         if f"_{name.replace('-', '_').upper()}_COMPLETE" in os.environ:
             import_module("plan_cutters.command.completion").main(name)
         if subcommand(name) == "plan":
-            from plan_cutters.command.worker import begin_early
+            from plan_cutters.command.worker import begin_early, follow_parent
 
+            follow_parent()  # where a batch began it
             begin_early(words)
         module_of(name).main(words, name)
     except KeyboardInterrupt:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from plan_cutters.batch import handing
 from plan_cutters.command import terminal
 from plan_cutters.command.codes import code_of
 from plan_cutters.command.progress import Display, Teller
@@ -45,7 +46,8 @@ def one_part(
         gc.freeze()
         gc.enable()
         clock = Clock(watch.tell, began=began)
-        result = run(part, options, clock, read_timeout=given["read_timeout"], at=report_work, ahead=ahead,
+        source = handing.part() if handing.holds_part() else part
+        result = run(source, options, clock, read_timeout=given["read_timeout"], at=report_work, ahead=ahead,
                      aside=aside)  # fmt: skip
         document = result.plan
         if out is None:

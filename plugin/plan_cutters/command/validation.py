@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 #: Options of the interface that later versions will have: asked for now, they must not be ignored.
 _NOT_BUILT = {
-    "cluster": "clusters are not used yet; --jobs gives threads on this machine",
+    "cluster": "a cluster plans many parts: plan-cutters batch PART... --out DIR --cluster ADDRESS",
 }
 #: Parameters of the commands that `Options` names otherwise.
 NAMED = {"cutter": "cutters", "cutters": "libraries", "fixture": "fixtures"}
@@ -133,9 +133,10 @@ def refuse_unasked(given: dict[str, Any]) -> None:
 def _faults(parts: Sequence[str]) -> list[CadIoError]:
     """Why parts cannot be read, as far as their first bytes tell."""
     from cad_io.read.sniff import kind
+    from plan_cutters.batch.handing import holds_part
 
     found: list[CadIoError] = []
-    for part in parts:
+    for part in () if holds_part() else parts:
         try:
             kind(part)
         except CadIoError as error:
@@ -189,9 +190,11 @@ def _fixture(file: str) -> None:
 
 def options_of(given: dict[str, Any]) -> "Options":
     """The options of a plan, from the words of the command line; a PlanError for what has no meaning."""
+    from plan_cutters.batch import handing
     from plan_cutters.options import Options
 
-    return Options(**words_of(given))
+    # A batch has looked at its words already, perhaps on another machine.
+    return handing.options() or Options(**words_of(given))
 
 
 def words_of(given: dict[str, Any]) -> dict[str, Any]:

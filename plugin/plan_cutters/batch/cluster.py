@@ -1,0 +1,161 @@
+"""Where the parts are planned: workers of this machine, or a cluster that runs already."""
+
+import contextlib
+import logging
+import os
+import signal
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from plan_cutters.batch import keys
+from plan_cutters.errors import PlanError
+
+#: Bytes of memory for a part where nothing else is said, at least, and the share of a machine's memory that all parts may take.
+LEAST_MEMORY, _SHARE = 4_000_000_000, 0.75
+#: Seconds in which a scheduler must answer, and its first worker join.
+_ANSWER, _JOIN = 5, 30
+
+
+def workers_of(count: int | None, memory: float | None, threads: int) -> tuple[int, int]:
+    """How many workers this machine has room for, and the bytes of memory of each.
+
+    Parameters
+    ----------
+    count : int, optional
+        As asked for; default by cores and memory.
+    memory : float, optional
+        Bytes for a part.
+    threads : int
+        Of a part.
+    """
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    try:
+        whole = int(_SHARE * os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    except (AttributeError, ValueError, OSError):
+        whole = LEAST_MEMORY * cores
+    count = count or max(1, min(cores // threads, int(whole // (memory or LEAST_MEMORY))))
+    return count, int(memory or max(LEAST_MEMORY, whole // count))
+
+
+@contextlib.contextmanager
+def opened(address: str | None, workers: int = 1) -> Iterator[Any]:
+    """A client of a cluster: the one of an address or a scheduler's file, or workers of this machine that end with the block.
+
+    Raises
+    ------
+    PlanError
+        There is no scheduler, it has no workers, or versions differ.
+    """
+    try:
+        import distributed
+    except ImportError:
+        raise PlanError('the package distributed is not there: pip install "plan-cutters[batch]"') from None
+    # What goes wrong is said here, once; dask's own lines would only surround it.
+    logger = logging.getLogger("distributed")
+    before = logger.level
+    logger.setLevel(logging.CRITICAL)
+    try:
+        with contextlib.ExitStack() as stack:
+            if address is None:
+                client = stack.enter_context(_local(distributed, workers))
+            else:
+                client = stack.enter_context(_reached(distributed, address))
+                _same(client)
+            yield client
+    finally:
+        logger.setLevel(before)
+
+
+@contextlib.contextmanager
+def _local(distributed: Any, workers: int) -> Iterator[Any]:
+    with contextlib.ExitStack() as stack:
+        with _deaf():
+            # Memory is that of the children, which dask does not see: it is limited there.
+            cluster = stack.enter_context(
+                distributed.LocalCluster(n_workers=workers, threads_per_worker=1, processes=True, memory_limit=0,
+                                         dashboard_address=":0", silence_logs=logging.CRITICAL)
+            )  # fmt: skip
+        yield stack.enter_context(distributed.Client(cluster))
+
+
+@contextlib.contextmanager
+def _deaf() -> Iterator[None]:
+    """Start processes that ignore an interrupt from the terminal: it is for this one, which ends them."""
+    try:
+        before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    except ValueError:  # not the main thread
+        yield
+        return
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+@contextlib.contextmanager
+def _reached(distributed: Any, address: str) -> Iterator[Any]:
+    words: dict[str, Any] = {"address": address}
+    if os.path.isfile(address):
+        words = {"scheduler_file": address}
+    elif "://" not in address:
+        raise PlanError("no such file, and no address as tcp://HOST:8786", file=f"--cluster {address}")
+    try:
+        client = distributed.Client(**words, timeout=_ANSWER)
+    except (OSError, ValueError, TypeError) as error:
+        why = "it did not answer" if isinstance(error, TimeoutError) or not str(error) else "it cannot be reached"
+        raise PlanError(f"{why} within {_ANSWER} s: does the scheduler run, and can this machine reach it?",
+                        file=f"--cluster {address}") from None  # fmt: skip
+    except Exception as error:
+        raise PlanError(f"no scheduler ({type(error).__name__})", file=f"--cluster {address}") from None
+    try:
+        try:
+            client.wait_for_workers(1, timeout=_JOIN)
+        except TimeoutError:
+            raise PlanError(f"the scheduler has no worker, and none joined within {_JOIN} s: start some",
+                            file=f"--cluster {address}") from None  # fmt: skip
+        yield client
+    finally:
+        client.close()
+
+
+def _same(client: Any) -> None:
+    """An error where a worker has other versions than this process."""
+    found = client.get_versions(packages=["plan_cutters", "numba"])
+    for where, worker in found["workers"].items():
+        if fault := differs(_flat(found["client"]), _flat(worker)):
+            raise PlanError(f"worker {where} has {fault}: install the same on both")
+
+
+def _flat(said: Mapping[str, Any]) -> dict[str, str]:
+    packages, host = dict(said["packages"]), said.get("host", {})
+    python = host.get("python") or packages.get("python")
+    return {shown: str(python if name == "python" else packages.get(name)) for shown, name in keys.COMPARED.items()}
+
+
+def differs(client: Mapping[str, str], worker: Mapping[str, str]) -> str:
+    """The first version that differs, with both named; empty where none does.
+
+    >>> differs({"numba": "0.62.0"}, {"numba": "0.61.2"})
+    'numba 0.61.2, this machine 0.62.0'
+    """
+    for name, here in client.items():
+        if worker.get(name) != here:
+            there = worker.get(name)
+            return f"{name if there not in (None, 'None') else f'no {name}'} {there}, this machine {here}".replace(
+                " None,", ","
+            )
+    return ""
+
+
+def facts(client: Any) -> dict[str, object]:
+    """Say of a cluster what the table names: its address, workers and threads, and where dask shows it."""
+    threads = client.nthreads()
+    return {"address": client.scheduler.address, "workers": len(threads), "threads": sum(threads.values()),
+            "dashboard": dashboard(client)}  # fmt: skip
+
+
+def dashboard(client: Any) -> str | None:
+    """Address of the dashboard; None where dask has none, since bokeh is not there."""
+    from importlib.util import find_spec
+
+    return str(client.dashboard_link) if find_spec("bokeh") and client.dashboard_link else None

@@ -1,0 +1,150 @@
+"""Each part of a batch has its settings, or the reason for which it cannot be planned."""
+
+import contextlib
+import copy
+import pickle
+from dataclasses import dataclass, replace
+from pathlib import PurePath, PureWindowsPath
+from typing import Any
+
+from plan_cutters.batch.row import PartRow
+from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.placement import Placement
+from plan_cutters.errors import OptionError
+from plan_cutters.options import Options
+
+#: Exit codes of a batch: as of a single plan (`docs/command.md`).
+USAGE, UNREADABLE = 2, 3
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How a part is planned, resolved on the machine where the batch was begun: no worker reads a library or a machine file.
+
+    Attributes
+    ----------
+    options : Options
+    formats : tuple of str
+        Of `report.folder.FORMATS`; `json` is among them, for the table is made from it.
+    step_schema : str
+    read_timeout : float
+        Seconds that reading may take.
+    """
+
+    options: Options
+    formats: tuple[str, ...] = ("json",)
+    step_schema: str = "ap242"
+    read_timeout: float = 120.0
+
+
+@dataclass(frozen=True)
+class Job:
+    """A part to plan.
+
+    Attributes
+    ----------
+    name : str
+        Among all parts: its folder below the output is `<name>-plan`.
+    file : str
+        Path or URL.
+    settings : Settings
+    part : bytes, optional
+        The pickled `cad_io.Part`, where it is no file.
+    """
+
+    name: str
+    file: str
+    settings: Settings
+    part: bytes | None = None
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A part that cannot be planned, or a source that holds none: `why` is one line, with the place where it was asked for."""
+
+    name: str
+    file: str
+    why: str
+    code: int = USAGE
+
+    @property
+    def row(self) -> PartRow:
+        """Its line of the table."""
+        return PartRow(name=self.name, file=self.file, status="failed", code=self.code, error=self.why, tries=0)
+
+
+@dataclass(frozen=True)
+class Handed:
+    """The settings of a part, ready to travel: pickled options, and the files of fixtures by the names that these have there."""
+
+    options: bytes
+    files: tuple[tuple[str, bytes], ...]
+
+
+def handed(options: Options) -> Handed:
+    """Pack options for another machine, with the content of the files that fixtures are read from.
+
+    Raises
+    ------
+    OptionError
+        A fixture's file cannot be read, or faces are given as objects, which belong to one process.
+    """
+    files: dict[str, bytes] = {}
+    names: dict[str, str] = {}
+
+    def moved(fixture: Fixture) -> Fixture:
+        if fixture.kind or not isinstance(fixture.source, str):
+            return fixture
+        if fixture.source not in names:
+            name = PurePath(PureWindowsPath(fixture.source).name).name
+            while name in files:
+                name = f"_{name}"
+            try:
+                with open(fixture.source, "rb") as opened:
+                    files[name] = opened.read()
+            except OSError as error:
+                raise OptionError(f"cannot be read: {error.strerror}", file=fixture.source) from None
+            names[fixture.source] = name
+        # A copy past the checks: they looked at the same words.
+        return _with(fixture, source=names[fixture.source])
+
+    def placed(place: Placement | None) -> Placement | None:
+        return None if place is None else _with(place, fixtures=tuple(map(moved, place.fixtures)))
+
+    there = _with(options, fixtures=tuple(map(moved, options.fixtures)), placement=placed(options.placement),
+                  other_placements=tuple(map(placed, options.other_placements)))  # fmt: skip
+    try:
+        packed = pickle.dumps(there, protocol=5)
+    except Exception as error:
+        raise OptionError(
+            f"faces and fixtures that are objects of another program cannot travel to a worker ({type(error).__name__}): "
+            "give numbers, words or files"
+        ) from None
+    return Handed(packed, tuple(sorted(files.items())))
+
+
+def _with(record: Any, **values: Any) -> Any:
+    made = copy.copy(record)
+    for name, value in values.items():
+        object.__setattr__(made, name, value)
+    return made
+
+
+def faced(job: Settings, part: Any) -> Settings:
+    """Settings whose faces are numbers, for a part that is an object: its faces cannot be named in another process."""
+    from plan_cutters.scene.faces import face_numbers
+
+    options = job.options
+    changed: dict[str, Any] = {}
+    for word in ("faces", "ignore"):
+        value = getattr(options, word)
+        if value is None or isinstance(value, str) or not value or _plain(value):
+            continue
+        changed[word] = ",".join(f"F{n}" for n in face_numbers(part, value))
+    return replace(job, options=_with(options, **changed)) if changed else job
+
+
+def _plain(value: Any) -> bool:
+    with contextlib.suppress(TypeError):
+        return all(isinstance(each, str | int) for each in value)
+    return False

@@ -1,0 +1,154 @@
+"""Many parts from Python: `plan_many` gives results as they come."""
+
+import contextlib
+import os
+import pickle
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path, PurePath
+from typing import TYPE_CHECKING, Any
+
+from plan_cutters.batch.job import UNREADABLE, USAGE, Fault, Job, Settings, faced
+from plan_cutters.batch.row import PartRow
+from plan_cutters.errors import OptionError, PlanError
+
+if TYPE_CHECKING:
+    from plan_cutters.batch.run import Terms
+    from plan_cutters.document.model import Plan
+
+
+@dataclass(frozen=True)
+class Planned:
+    """A result holds what came of one of many parts.
+
+    Attributes
+    ----------
+    row : PartRow
+        Its line of the table: `name`, `code`, `cutter`, `share`, `error` and so on.
+    files : dict
+        Its files by name, where no output was named.
+    """
+
+    row: PartRow
+    files: dict[str, bytes] = field(default_factory=dict, repr=False)
+    _out: str | None = field(default=None, repr=False)
+
+    @property
+    def plan(self) -> "Plan | None":
+        """The plan document; None where the part failed: then `row.error` says why."""
+        from plan_cutters.batch.store import read
+        from plan_cutters.document.model import Plan
+
+        if self.row.folder is None or self.row.status == "failed":
+            return None
+        content = self.files.get("plan.json") or read(f"{self._out}/{self.row.folder}/plan.json")
+        return Plan.model_validate_json(content)
+
+
+def plan_many(
+    parts: Iterable[Any], client: Any = None, *, out: str | os.PathLike[str] | None = None,
+    formats: Sequence[str] = ("json",), force: bool = False, timeout_part: float | None = None,
+    limit_memory: float | None = None, **options: Any,
+) -> Iterator[Planned]:  # fmt: skip
+    """Plan many parts, each in a process of its own; results as they come, a failed part among them.
+
+    Parameters
+    ----------
+    parts : iterable
+        Paths, URLs, or objects as `plan` takes them (CadQuery, build123d, `cad_io.Part`). Of objects, the name is their place:
+        `part-1`. A pair (name, part) gives another name. They are asked for as they are needed.
+    client : distributed.Client, optional
+        Of a running cluster; default workers of this machine, as many as its cores and memory allow, for this call.
+    out : path or URL, optional
+        Folder for the files; a part that is done there with the same key is not planned again. Default: results hold their files.
+    formats : sequence of str
+        As `Result.write` takes them; `json` is always among them.
+    force : bool
+        Plan what is done, too.
+    timeout_part : float, optional
+        Seconds for a part.
+    limit_memory : float, optional
+        GB for a part.
+    **options
+        As of `plan`; `jobs` is 1 unless it is given.
+
+    Yields
+    ------
+    Planned
+
+    Raises
+    ------
+    PlanError
+        An option has no meaning, the output cannot be written, or there is no cluster.
+
+    Notes
+    -----
+    Workers of this machine are started with `spawn`, as dask does: a script calls this below `if __name__ == "__main__":`.
+    """
+    from plan_cutters.batch import cluster
+    from plan_cutters.batch.run import Terms, outcomes
+    from plan_cutters.batch.store import Store
+    from plan_cutters.options import Options
+    from plan_cutters.report.folder import read_formats
+
+    if isinstance(parts, str | os.PathLike):
+        raise OptionError("parts is one path: give a list of parts, or use the command `batch` for folders")
+    settings = Settings(
+        Options.of({"jobs": 1, **options}), tuple(dict.fromkeys(("json", *read_formats(",".join(formats)))))
+    )
+    store = None if out is None else Store(os.fspath(out))
+    token = store.begin() if store else ""
+    with contextlib.ExitStack() as stack:
+        if store:
+            stack.callback(store.end)
+        memory = None if limit_memory is None else limit_memory * 1e9
+        if client is None:
+            count, memory = cluster.workers_of(None, memory, settings.options.jobs)
+            client = stack.enter_context(cluster.opened(None, count))
+        faults: list[PartRow] = []
+        terms = Terms(force, timeout_part, memory)
+        jobs = _jobs(parts, settings, terms, faults)
+        for outcome in outcomes(jobs, client, terms, out=store, token=token):
+            yield Planned(outcome.row, dict(outcome.files), None if store is None else store.root_url)
+            while faults:
+                yield Planned(faults.pop(0))
+        for row in faults:
+            yield Planned(row)
+
+
+def _jobs(parts: Iterable[Any], settings: Settings, terms: "Terms", faults: list[PartRow]) -> Iterator[Job]:
+    """Jobs of parts as they are asked for; those that cannot be planned are put aside."""
+    names: set[str] = set()
+    for number, given in enumerate(parts, 1):
+        name, part = (
+            given if isinstance(given, tuple) and len(given) == 2 and isinstance(given[0], str) else (None, given)
+        )
+        is_file = isinstance(part, str | PurePath)
+        file = str(part) if is_file else f"part {number}"
+        name = name or (Path(file).stem if is_file else f"part-{number}")
+        try:
+            if name.casefold() in names:
+                raise OptionError(f"has the name {name!r}, as an earlier part: give pairs (name, part)", file=file)
+            if name in ("", ".", "..") or "/" in name or "\\" in name or not name.isprintable():
+                raise OptionError(f"the name {name!r} cannot be a folder's", file=file)
+            names.add(name.casefold())
+            if is_file:
+                yield Job(name, file, settings)
+            else:
+                own, packed = _packed(part, settings)
+                yield Job(name, file, own, packed)
+        except PlanError as error:
+            faults.append(
+                Fault(f"{name} ({number})" if name.casefold() in names else name, file, str(error), USAGE).row
+            )
+        except Exception as error:
+            faults.append(
+                Fault(name, file, f"{file}: {' '.join(str(error).split()) or type(error).__name__}", UNREADABLE).row
+            )
+
+
+def _packed(part: Any, settings: Settings) -> tuple[Settings, bytes]:
+    from cad_io import read_part
+
+    found = read_part(part, settings.options.unit)
+    return faced(settings, found), pickle.dumps(found, protocol=5)

@@ -1,0 +1,262 @@
+"""The run of a batch: parts are handed out, a bounded number at a time, and rows come back as they are made."""
+
+import itertools
+import os
+import queue
+import secrets
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, Protocol
+
+from plan_cutters.batch import cluster as clusters
+from plan_cutters.batch import keys, store
+from plan_cutters.batch.job import UNREADABLE, USAGE, Fault, Handed, Job, Settings, handed
+from plan_cutters.batch.row import PartRow
+from plan_cutters.batch.work import Outcome, Task, kept, work
+from plan_cutters.errors import PlanError
+
+#: Tasks in flight for each thread of the cluster, and at least so many: the next one is there when a thread is free.
+_AHEAD, _LEAST = 2, 8
+#: How often a quiet run looks around, s, and how long its scheduler may be gone before it is given up.
+_LOOK, _GONE = 1.0, 20.0
+
+
+class Told(Protocol):
+    """Who is told how far a run is: `batch.progress.Board`."""
+
+    def told(self, done: int, running: int, total: int | None) -> None:
+        """So many parts are done and so many are with workers, of all."""
+
+    def say(self, text: str) -> None:
+        """A line for people."""
+
+
+@dataclass
+class Terms:
+    """On what terms parts are planned.
+
+    Attributes
+    ----------
+    force : bool
+        Plan what is done, too.
+    timeout : float, optional
+        Seconds for a part.
+    memory : float, optional
+        Bytes for a part.
+    """
+
+    force: bool = False
+    timeout: float | None = None
+    memory: float | None = None
+    packed: dict[int, tuple[Settings, Handed, str]] = field(default_factory=dict)
+
+    def of(self, settings: Settings) -> tuple[Handed, str]:
+        """Settings as they travel, and their key: made once for all parts that share them."""
+        found = self.packed.get(id(settings))
+        if found is None:
+            there = handed(settings.options)
+            # The settings are kept with it, so that no other ones get their number.
+            found = self.packed[id(settings)] = (settings, there, keys.settings_key(settings, there))
+        return found[1], found[2]
+
+
+def run_batch(
+    parts: Sequence[Job | Fault], client: Any, out: store.Store, terms: Terms, *, board: Told | None = None,
+    title: str = "plan-cutters batch",
+) -> Iterator[PartRow]:  # fmt: skip
+    """Plan parts on a cluster, and write the table of all when the last one is done.
+
+    Parameters
+    ----------
+    parts : sequence of (Job or Fault)
+    client : distributed.Client
+    out : Store
+    terms : Terms
+    board : Told, optional
+    title : str
+        Of the table.
+
+    Yields
+    ------
+    PartRow
+        As they come, one for each part, the failed ones too.
+
+    Raises
+    ------
+    PlanError
+        The output cannot be written.
+    """
+    from plan_cutters.batch.index import write_index
+
+    began = time.monotonic()
+    token = out.begin()
+    rows: list[PartRow] = []
+    try:
+        facts = clusters.facts(client)
+        faults = [part for part in parts if isinstance(part, Fault)]
+        jobs = [part for part in parts if isinstance(part, Job)]
+        for fault in faults:
+            rows.append(fault.row)
+            yield fault.row
+        for outcome in outcomes(jobs, client, terms, out=out, token=token, board=board):
+            rows.append(outcome.row)
+            yield outcome.row
+        rows.sort(key=lambda row: row.name)
+        write_index(rows, out.put, title=title, seconds=time.monotonic() - began, cluster=facts)
+    finally:
+        out.end()
+
+
+def outcomes(
+    jobs: Iterable[Job], client: Any, terms: Terms, *, out: store.Store | None = None, token: str = "",
+    board: Told | None = None, total: int | None = None,
+) -> Iterator[Outcome]:  # fmt: skip
+    """Plan parts on a cluster; outcomes as they come. Without `out`, the files come with them."""
+    if total is None and isinstance(jobs, Sequence):
+        total = len(jobs)
+    versions = keys.versions()
+    travels = out is not None and store.in_memory(out.url)
+    where = None if out is None or travels else out.root_url
+    faulty: list[Outcome] = []
+
+    def tasks() -> Iterator[Task]:
+        for job in jobs:
+            try:
+                there, key = terms.of(job.settings)
+                data = store.read(job.file) if store.in_memory(job.file) else None
+                task = Task(job.name, job.file, data, job.part, there,
+                            _words(job.settings, terms), key, where, token, terms.force, terms.timeout, versions,
+                            job.file if "://" in job.file else os.path.abspath(job.file))  # fmt: skip
+                if travels and out is not None and not terms.force and (row := _kept(task, out)):
+                    faulty.append(Outcome(row, {}))
+                    continue
+            except PlanError as error:
+                faulty.append(Outcome(_failed(job, str(error), USAGE), {}))
+                continue
+            yield task
+
+    for task, found in handed_out(client, tasks(), work, board=board, total=total):
+        if isinstance(found, BaseException):
+            yield Outcome(_failed(task, _lost(task, found), UNREADABLE), {})
+        elif travels and out is not None and found.files:
+            try:
+                out.publish(task.folder, dict(found.files), found.row)
+                yield replace(found, files={})
+            except PlanError as error:
+                yield Outcome(_failed(task, str(error), USAGE), {})
+        else:
+            yield found
+        while faulty:
+            yield faulty.pop()
+    yield from faulty
+
+
+def handed_out(
+    client: Any,
+    tasks: Iterator[Any],
+    function: Callable[[Any], Any],
+    *,
+    board: Told | None = None,
+    total: int | None = None,
+) -> Iterator[tuple[Any, Any]]:
+    """Work on tasks on a cluster, a bounded number at a time; each with its result, or the exception that it ended in.
+
+    What is asked of dask never grows with the number of tasks, so that neither this process nor the scheduler does. A task
+    whose worker is lost goes to another one (dask's `allowed-failures`); what the function raises is not tried again.
+    """
+    from distributed import Future
+
+    run, count = secrets.token_hex(4), itertools.count()
+    ready: queue.SimpleQueue[Future] = queue.SimpleQueue()
+    flying: dict[Future, Any] = {}
+    done, most, looked, gone, begun_all = 0, _LEAST, 0.0, 0.0, False
+    try:
+        while True:
+            if not gone and time.monotonic() - looked > _LOOK:
+                most, looked = max(_LEAST, _AHEAD * _threads(client)), time.monotonic()
+            while not begun_all and len(flying) < most and not gone:
+                task = next(tasks, None)
+                if task is None:
+                    begun_all = True
+                    break
+                future = client.submit(function, task, key=f"plan-{run}-{next(count)}", pure=False, retries=0)
+                flying[future] = task
+                future.add_done_callback(ready.put)
+            if board is not None:
+                board.told(done, len(flying), total)
+            if not flying:
+                return
+            try:
+                future = ready.get(timeout=_LOOK)
+            except queue.Empty:
+                gone = 0.0 if client.status == "running" else gone or time.monotonic()
+                if client.status == "closed" or (gone and time.monotonic() - gone > _GONE):
+                    break
+                continue
+            if future not in flying:
+                continue
+            task, found = flying.pop(future), _result(future)
+            future.release()
+            done += 1
+            yield task, found
+        for task in itertools.chain(flying.values(), tasks):
+            yield task, ConnectionError("the scheduler was lost: run the same command again, what is done is kept")
+    finally:
+        if flying and client.status == "running":
+            client.cancel(list(flying))
+
+
+def _threads(client: Any) -> int:
+    try:
+        return sum(client.nthreads().values())
+    except Exception:  # a scheduler that is gone is looked after elsewhere
+        return 0
+
+
+def _result(future: Any) -> Any:
+    try:
+        return future.result(timeout=60)
+    except Exception as error:
+        return error
+
+
+def _lost(task: Task, error: BaseException) -> str:
+    name = type(error).__name__
+    if name == "KilledWorker":
+        return f"{task.file}: the worker ended at this part, and others after it (killed, or out of memory): it is left out"
+    if name in ("CancelledError", "FutureCancelledError"):
+        return f"{task.file}: the scheduler was lost: run the same command again, what is done is kept"
+    return f"{task.file}: {' '.join(str(error).split()) or name}"
+
+
+def _failed(job: Job | Task, why: str, code: int) -> PartRow:
+    return PartRow(name=job.name, file=job.file, status="failed", code=code, error=why)
+
+
+def _words(settings: Settings, terms: Terms) -> tuple[str, ...]:
+    words = ["--formats", ",".join(settings.formats), "--step-schema", settings.step_schema, "--read-timeout",
+             repr(settings.read_timeout)]  # fmt: skip
+    return (*words, *(() if terms.memory is None else ("--memory", repr(terms.memory / 1e9))))
+
+
+def _kept(task: Task, out: store.Store) -> PartRow | None:
+    data = task.part or (store.read(task.file) if task.data is None else task.data)
+    return kept(out, task.folder, keys.key(keys.checksum(data), task.settings), task.name, task.file)
+
+
+def foreseen(parts: Iterable[Job | Fault], out: store.Store, terms: Terms) -> Iterator[PartRow]:
+    """Say of each part what a run would do, and do nothing: `planned` with no verdict yet, `kept` or `failed`."""
+    for part in parts:
+        if isinstance(part, Fault):
+            yield part.row
+            continue
+        try:
+            there, key = terms.of(part.settings)
+            task = Task(part.name, part.file, None, part.part, there, (), key, out.url, "", False, None, {})
+            row = None if terms.force else _kept(task, out)
+            if row is None:
+                store.read(part.file) if part.part is None and terms.force else None
+            yield row or PartRow(name=part.name, file=part.file, status="planned", code=0, tries=0)
+        except PlanError as error:
+            yield _failed(part, str(error), UNREADABLE)

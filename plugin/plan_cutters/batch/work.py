@@ -1,0 +1,287 @@
+"""A task of a batch: one part, on a worker. The command works in a child process, so that a crash or hang costs that part."""
+
+import functools
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from plan_cutters.batch import handing, keys, store
+from plan_cutters.batch.job import UNREADABLE, USAGE, Handed
+from plan_cutters.batch.row import PartRow
+from plan_cutters.errors import PlanError
+
+PLAN = "plan.json"
+#: Exit codes with which a plan is there.
+_PLANNED = (0, 1, 4)
+#: How often a child is looked after, s, and how long it may take to end in order.
+_LOOK, _GRACE = 0.1, 2.0
+#: Most characters of an error that are handed on.
+_LONGEST = 600
+
+
+@dataclass(frozen=True)
+class Task:
+    """All that a worker needs for a part.
+
+    Attributes
+    ----------
+    name, file : str
+        As of the `Job`.
+    data : bytes, optional
+        Content of the file, where workers cannot read it.
+    part : bytes, optional
+        The pickled part, where it is no file.
+    handed : Handed
+    words : tuple of str
+        Of the command line, for what is no option of the plan.
+    settings : str
+        `keys.settings_key`.
+    store : str, optional
+        URL of the output; None: the files come back with the row.
+    token : str
+        Lies in the output: a worker that does not see it writes elsewhere.
+    force : bool
+    timeout : float, optional
+        Seconds for the part.
+    versions : mapping
+        Of where the batch was begun.
+    source : str
+        The file as workers find it, in whatever folder they run.
+    """
+
+    name: str
+    file: str
+    data: bytes | None
+    part: bytes | None
+    handed: Handed
+    words: tuple[str, ...]
+    settings: str
+    store: str | None
+    token: str
+    force: bool
+    timeout: float | None
+    versions: Mapping[str, str]
+
+    source: str = ""
+
+    @property
+    def folder(self) -> str:
+        """Its folder below the output."""
+        return f"{self.name}-plan"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """An outcome holds the row of a part, and its files where the worker could not write them."""
+
+    row: PartRow
+    files: Mapping[str, bytes]
+
+
+def work(task: Task) -> Outcome:
+    """Plan a part: never raises, for the task would be tried again elsewhere with the same end."""
+    began = time.monotonic()
+
+    def failed(why: str, code: int, key: str = "") -> Outcome:
+        line = " ".join(why.split())[:_LONGEST]
+        return Outcome(PartRow(name=task.name, file=task.file, key=key, status="failed", code=code, error=line,
+                               seconds=time.monotonic() - began), {})  # fmt: skip
+
+    key = ""
+    try:
+        if why := _unfit(task.versions):
+            return failed(why, USAGE)
+        output = None if task.store is None else store.Store(task.store)
+        if output is not None and not output.seen(task.token):
+            return failed(f"{_here()}: this worker does not see {task.store}: give a folder that all machines share, or a URL",
+                          USAGE)  # fmt: skip
+        try:
+            data = task.part or (store.read(task.source or task.file) if task.data is None else task.data)
+        except PlanError as error:
+            return failed(str(error), UNREADABLE)
+        key = keys.key(keys.checksum(data), task.settings)
+        if output is not None and not task.force and (row := kept(output, task.folder, key, task.name, task.file)):
+            return Outcome(row, {})
+        with tempfile.TemporaryDirectory(prefix="plan-", dir=_scratch(), ignore_cleanup_errors=True) as name:
+            folder = Path(name)
+            code, line = _planned(task, data, folder)
+            made = _files(folder / "out")
+            if code not in _PLANNED or PLAN not in made:
+                return failed(line or f"ended with exit code {code} and no plan", code if code > 1 else UNREADABLE, key)
+            row = _row(task, made[PLAN].read_bytes(), key, code, time.monotonic() - began)
+            if output is None:
+                return Outcome(row, {name: path.read_bytes() for name, path in made.items()})
+            output.publish(task.folder, made, row)
+        return Outcome(row, {})
+    except PlanError as error:
+        return failed(str(error), USAGE, key)
+    except OSError as error:
+        return failed(f"{_here()}: {error.strerror or error}", USAGE, key)
+    except Exception as error:
+        return failed(f"internal error ({type(error).__name__}: {error})", UNREADABLE, key)
+
+
+def kept(output: store.Store, folder: str, key: str, name: str, file: str) -> PartRow | None:
+    """The row of an earlier run with the same key; None where there is none, or its files have changed."""
+    row = output.row(folder)
+    if row is None or row.key != key:
+        return None
+    return row.model_copy(update={"status": "kept", "name": name, "file": file, "tries": 0})
+
+
+def _unfit(versions: Mapping[str, str]) -> str:
+    """Why this worker cannot plan as the others do; empty where it can."""
+    for name, here in keys.versions().items():
+        if name in versions and versions[name] != here:
+            return (f"{_here()}: {name} {here} on this worker, {versions[name]} where the batch was begun: "
+                    "install the same on both")  # fmt: skip
+    return _ready()
+
+
+@functools.cache
+def _ready() -> str:
+    """Make sure, once a worker, that the CAD kernel loads here and that there is machine code; why not."""
+    loaded = subprocess.run(
+        [sys.executable, "-P", "-c", "import OCP"], capture_output=True, text=True, check=False, errors="replace"
+    )
+    if loaded.returncode:
+        why = (loaded.stderr.strip().splitlines() or ["it crashed"])[-1]
+        return f"{_here()}: the CAD kernel cannot be loaded ({why}): install it, libgl1 on Debian"
+    from plan_cutters.files.lock import Lock
+    from plan_cutters.kernels.jit import at_hand
+
+    # The first of the workers of a machine compiles for all of them.
+    place = Path(tempfile.gettempdir(), f"plan-cutters-compiling-{getattr(os, 'getuid', int)()}")
+    while at_hand("search.search") is False:
+        try:
+            lock = Lock(place)
+        except PlanError:
+            time.sleep(0.5)
+            continue
+        try:
+            if at_hand("search.search") is False:
+                environment = {**os.environ, handing.PARENT: str(os.getpid())}
+                code = "import plan_cutters.command.background_compile as b; b.follow_parent(); b.compile_all(False)"
+                made = subprocess.run(
+                    [sys.executable, "-P", "-c", code], env=environment, capture_output=True, check=False
+                )
+                if made.returncode:
+                    break  # each part compiles for itself, and says what is wrong
+        finally:
+            lock.release()
+    return ""
+
+
+def _here() -> str:
+    return os.uname().nodename if hasattr(os, "uname") else "worker"
+
+
+def _worker() -> Any:
+    """The dask worker that this runs on; None outside of one."""
+    try:
+        from distributed import get_worker
+
+        return get_worker()
+    except (ImportError, ValueError):
+        return None
+
+
+def _scratch() -> str | None:
+    """The worker's folder, which dask clears when the worker was killed."""
+    worker = _worker()
+    return None if worker is None else str(worker.local_directory)
+
+
+def _wanted() -> Callable[[], bool]:
+    """Whether somebody still waits for this task: whoever began the batch may be gone, and dask stops no thread."""
+    worker = _worker()
+    if worker is None:
+        return lambda: True
+    from distributed.worker import thread_state
+
+    name = thread_state.key
+
+    def wanted() -> bool:
+        state = worker.state.tasks.get(name)
+        return state is not None and state.state == "executing"
+
+    return wanted
+
+
+def _planned(task: Task, data: bytes, folder: Path) -> tuple[int, str]:
+    """Run the command in a folder; its exit code, and the last line that it said."""
+    name = PurePosixPath(task.file.replace("\\", "/")).name or "part"
+    if task.part is None:
+        (folder / name).write_bytes(data)
+    for file, content in task.handed.files:
+        if (folder / file).exists():
+            return USAGE, f"{task.file}: a fixture's file is called like the part: rename one"
+        (folder / file).write_bytes(content)
+    (folder / ".handed").write_bytes(handing.packed(task.handed.options, task.part))
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PLAN_CUTTERS_")}
+    environment |= {handing.FILE: str(folder / ".handed"), handing.PARENT: str(os.getpid())}
+    words = [sys.executable, "-P", "-m", "plan_cutters", "plan", f"./{name}", "-o", "out", "--quiet", *task.words]
+    wanted = _wanted()
+    with open(folder / ".said", "wb") as said:
+        child = subprocess.Popen(words, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=said, stderr=said,
+                                 start_new_session=True)  # fmt: skip
+    try:
+        ends = time.monotonic() + (task.timeout or float("inf"))
+        while True:
+            try:
+                code = child.wait(_LOOK)
+                break
+            except subprocess.TimeoutExpired:
+                if time.monotonic() > ends:
+                    _end(child)
+                    return UNREADABLE, (f"{task.file}: not planned within {task.timeout:g} s: sample more coarsely "
+                                        "(--spacing), or give more time (--timeout-part)")  # fmt: skip
+                if not wanted():
+                    _end(child)
+                    return 130, f"{task.file}: interrupted"
+    finally:
+        _end(child)
+    said_last = (folder / ".said").read_text(encoding="utf-8", errors="replace").strip().splitlines()
+    line = said_last[-1] if said_last else ""
+    if code < 0:
+        return UNREADABLE, f"{task.file}: the process was killed ({signal.Signals(-code).name}): out of memory, perhaps"
+    line = line.removeprefix("plan-cutters: ")
+    return code, line if task.file in line else line.replace(f"./{name}", task.file)
+
+
+def _end(child: "subprocess.Popen[bytes]") -> None:
+    """Leave nothing of it running: asked once, so that it ends its own child, then killed."""
+    if child.poll() is not None:
+        return
+    child.terminate()
+    try:
+        child.wait(_GRACE)
+    except subprocess.TimeoutExpired:
+        child.kill()
+        child.wait()
+
+
+def _files(folder: Path) -> dict[str, Path]:
+    """Files of a plan, the plan itself last."""
+    found = {each.relative_to(folder).as_posix(): each for each in sorted(folder.rglob("*")) if each.is_file()}
+    return {name: path for name, path in found.items() if name != PLAN} | {
+        name: path for name, path in found.items() if name == PLAN
+    }
+
+
+def _row(task: Task, content: bytes, key: str, code: int, seconds: float) -> PartRow:
+    """The line of the table that a plan makes; what could not be written beside it is said there."""
+    from plan_cutters.batch.rows_of_plans import row_of
+    from plan_cutters.document.model import Plan
+
+    plan = Plan.model_validate_json(content)
+    row = row_of(plan, name=task.name, file=task.file, code=code, key=key, folder=task.folder, seconds=seconds)
+    missing = "; ".join(f"{name}: {why}" for name, why in plan.not_written.items())
+    return row.model_copy(update={"error": f"not written: {missing}"}) if missing else row

@@ -1,0 +1,222 @@
+"""`plan-cutters batch`: many parts on the workers of this machine or of a cluster, and a table of all."""
+
+import functools
+import os
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
+
+from plan_cutters.command import terminal
+from plan_cutters.command.codes import FEASIBLE, run
+from plan_cutters.command.help_groups import Command, heading
+from plan_cutters.command.option_groups import CODES, options
+from plan_cutters.command.values import File, Words
+from plan_cutters.report.folder import DEFAULT_FORMATS
+
+if TYPE_CHECKING:
+    from plan_cutters.batch.job import Fault, Job, Settings
+    from plan_cutters.batch.run import Terms
+    from plan_cutters.batch.sources import Source
+    from plan_cutters.batch.store import Store
+
+_SELF = "plan-cutters batch"
+#: Groups of options that a part of a manifest may have of its own.
+_OF_A_PART = {
+    "Cutters",
+    "Machine and setup",
+    "Faces",
+    "Sampling and tolerances",
+    "Postures",
+    "Answers",
+    "Plan of operations",
+}
+#: The picture is what the table shows of a part.
+_FORMATS = (*DEFAULT_FORMATS, "png")
+
+_many = heading("Many parts")
+
+
+@click.command(
+    cls=Command,
+    examples=(
+        (f"{_SELF} parts --out plans --cutters shop.tools", "All parts in a folder, with your tools:"),
+        (f"{_SELF} parts.toml --out plans --timeout-part 600", "Parts with options of their own, ten minutes each:"),
+        (f"{_SELF} 's3://shop/in/*.step' --out s3://shop/plans", "From a bucket to a bucket:"),
+        (f"{_SELF} parts --out plans --cluster tcp://10.0.0.5:8786", "On a running Dask cluster:"),
+    ),
+    codes=(
+        *((code, what) for code, what in CODES if code != "130"),
+        ("130", "interrupted; parts that are done are kept"),
+    ),
+)
+@click.argument("sources", nargs=-1, required=True, metavar="SRC...", type=File("SRC"))
+@options(
+    "cutter", "cutters", "holder", "assume_stickout", "skip_bad", "list_cutters", "machine", "setup", "fixture", "faces",
+    "ignore", "flip", "unit", "spacing", "grid", "area_budget", "tolerance", "allowance", "holder_clearance", "tilt", "rotation",
+    "rotation_step", "posture_maps", "map_budget",
+)  # fmt: skip
+@options(
+    "step_schema", "quiet",
+    out={"required": True, "help": "Folder or URL for the table of all parts, and the folder NAME-plan of each."},
+    formats={"help": "As of a single plan; json is always among them, for the table is made of it.  "
+             f"[default: {','.join(_FORMATS)}]"},
+)  # fmt: skip
+@options(
+    "answers", "length_over_radius", "operations", "feed", "scallop", "stepover", "index_step", "index_time", "change_time",
+    "setup_time", "overlap", "most_operations",
+)  # fmt: skip
+@_many("--cluster", metavar="tcp://HOST:PORT|FILE", type=Words("ADDRESS", files=True),
+       help="Scheduler of a running Dask cluster, or its scheduler file.  [default: workers of this machine]")  # fmt: skip
+@_many("--workers", type=click.IntRange(min=1), metavar="N",
+       help="Workers of this machine, each for one part at a time.  [default: by its cores and memory]")  # fmt: skip
+@_many("--timeout-part", type=float, metavar="S", help="Seconds for a part; one that takes longer has failed.")
+@_many("--limit-memory", type=float, metavar="GB",
+       help="Most memory of a part.  [default: an equal share of 3/4 of this machine's, at least 4]")  # fmt: skip
+@_many("--force", is_flag=True, help="Plan again what is done already.")
+@_many("--dry-run", is_flag=True, help="Say what would be planned, and do nothing.")
+@options("read_timeout", "debug", jobs={"help": "Threads of each part.  [default: 1]"})
+def command(sources: tuple[str, ...], **given: Any) -> int:
+    """Plan many parts: files, folders, globs, lists, and manifests (TOML, CSV) with options of each part; here or at URLs.
+
+    Each part is planned in a process of its own on a Dask cluster. What is done is not done again: not after an interrupt, nor
+    after parts are added. A part that fails is a row of the table, with its cause.
+    """
+    from plan_cutters.batch.job import Fault
+    from plan_cutters.batch.run import Terms
+    from plan_cutters.batch.store import Store
+    from plan_cutters.errors import OptionError
+
+    parts = _parts(sources, given)
+    if all(isinstance(part, Fault) for part in parts):
+        for part in parts:
+            _told(part.row.error or "")  # type: ignore[union-attr]
+        return max(part.row.code for part in parts)  # type: ignore[union-attr]
+    memory = None if given["limit_memory"] is None else given["limit_memory"] * 1e9
+    for word in ("timeout_part", "limit_memory", "read_timeout"):
+        if given[word] is not None and not 0.0 < given[word] < 1e9:
+            raise OptionError(f"--{word.replace('_', '-')} must be a positive number")
+    if memory is not None and memory < 2e9:
+        raise OptionError("--limit-memory must be at least 2 GB")
+    if given["cluster"] is not None and given["workers"] is not None:
+        raise OptionError("--workers is about this machine: leave it out with --cluster")
+    out = Store(given["out"])
+    terms = Terms(given["force"], given["timeout_part"], memory)
+    if given["dry_run"]:
+        return _foreseen(parts, out, terms)
+    return _all(parts, out, terms, given)
+
+
+def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
+    """Run the command."""
+    run(command, name, args)
+
+
+def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", given: dict[str, Any]) -> int:
+    """Plan them under the eyes of a board; the largest exit code."""
+    from plan_cutters.batch import cluster
+    from plan_cutters.batch.progress import Board
+    from plan_cutters.batch.run import run_batch
+
+    out.begin()  # what is wrong with it is said before any worker is started
+    board = Board(given["quiet"], len(parts))
+    code = FEASIBLE
+    try:
+        count, share = cluster.workers_of(given["workers"], terms.memory, given["jobs"] or 1)
+        if given["cluster"] is None:
+            terms.memory = share
+        with cluster.opened(given["cluster"], count) as client:
+            facts = cluster.facts(client)
+            board.say(f"{len(parts)} parts on {facts['workers']} workers of {facts['address']}"
+                      + (f"; dashboard {facts['dashboard']}" if facts["dashboard"] else ""))  # fmt: skip
+            for row in run_batch(parts, client, out, terms, board=board, title=" ".join(given["title"])):
+                code = max(code, row.code)
+                board.row(row)
+    finally:
+        board.close()
+        out.end()
+    return code
+
+
+def _foreseen(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms") -> int:
+    from plan_cutters.batch.run import foreseen
+
+    code = FEASIBLE
+    for row in foreseen(parts, out, terms):
+        word = {"planned": "would be planned", "kept": "is done", "failed": "cannot be planned"}[row.status]
+        terminal.hand_out(
+            f"{terminal.clean(row.name)}: {word}{f': {terminal.clean(row.error)}' if row.error else ''}\n"
+        )
+        code = max(code, row.code if row.status == "failed" else FEASIBLE)
+    return code
+
+
+def _told(line: str) -> None:
+    terminal.error(f"{_SELF}: {line}")
+
+
+def _parts(words: Sequence[str], given: dict[str, Any]) -> "list[Job | Fault]":
+    """Jobs of all that is meant, with the settings of each."""
+    from plan_cutters.batch.job import Fault, Job
+    from plan_cutters.batch.manifest import manifest
+    from plan_cutters.batch.sources import sources
+    from plan_cutters.errors import PlanError
+
+    given["title"] = words
+    own = {p.opts[0][2:]: p for p in command.params if getattr(p, "group", "") in _OF_A_PART and p.expose_value}
+    settled = functools.cache(lambda key: _settings({**given, **dict(key)}))
+    settled(())
+    found: list[Job | Fault] = []
+    for each in sources(words, given["out"], lambda file: manifest(file, sorted(own))):
+        if isinstance(each, Fault):
+            found.append(each)
+            continue
+        try:
+            found.append(Job(each.name, each.file, settled(_values(each, own))))
+        except (PlanError, click.BadParameter) as error:
+            why = error.format_message() if isinstance(error, click.BadParameter) else str(error)
+            found.append(Fault(each.name, each.file, f"{each.place}: {why}"))
+    return found
+
+
+def _values(source: "Source", own: Mapping[str, click.Parameter]) -> tuple[tuple[str, Any], ...]:
+    """The options of a part as the command line would have them: each takes the place of the one for all parts."""
+    from plan_cutters.errors import OptionError
+
+    found = []
+    near = os.path.dirname(source.place) if "://" not in source.place else ""
+    for word, value in source.options.items():
+        option = own[word.replace("_", "-")]
+        several = value if isinstance(value, list) else [value]
+        if isinstance(option, click.Option) and option.is_flag:
+            if str(value).lower() not in ("true", "false", "1", "0", "yes", "no"):
+                raise OptionError(f"{word} is true or false, not {value!r}")
+            taken: Any = str(value).lower() in ("true", "1", "yes")
+        elif not option.multiple and isinstance(value, list):
+            raise OptionError(f"{word} takes one value, not a list")
+        else:
+            files = isinstance(option.type, Words) and option.type.files
+            words = [_beside(str(each), near) if files or word == "setup" else str(each) for each in several]
+            taken = option.type_cast_value(click.Context(command), words if option.multiple else words[0])
+        found.append((str(option.name), taken))
+    return tuple(found)
+
+
+def _beside(word: str, folder: str) -> str:
+    """A file's name as the manifest has it, which is beside the manifest: the same from here."""
+    file, at, rest = word.partition("@")
+    there = os.path.join(folder, file)
+    return f"{there}{at}{rest}" if folder and file and not os.path.isabs(file) and os.path.exists(there) else word
+
+
+def _settings(given: dict[str, Any]) -> "Settings":
+    """The settings of parts, from the words of the command line: what is wrong with them is said before anything is begun."""
+    from plan_cutters.batch.job import Settings
+    from plan_cutters.command.validation import look_at, options_of, refuse_unasked
+    from plan_cutters.report.folder import read_formats
+
+    refuse_unasked({**given, "check_operations": None})
+    asked = options_of({**given, "jobs": given["jobs"] or 1})
+    look_at(asked)
+    formats = _FORMATS if given["formats"] is None else read_formats(given["formats"])
+    return Settings(asked, tuple(dict.fromkeys(("json", *formats))), given["step_schema"], given["read_timeout"])

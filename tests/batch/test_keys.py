@@ -1,0 +1,94 @@
+"""Keys: what changes a result changes the key, and nothing else does."""
+
+import os
+import subprocess
+import sys
+from dataclasses import replace
+
+import pytest
+
+from plan_cutters import Options
+from plan_cutters.batch import keys
+from plan_cutters.batch.job import Settings, handed
+from plan_cutters.errors import OptionError
+from tests.support.places import ROOT
+
+
+def key(formats=("json",), schema="ap242", timeout=120.0, **options):
+    settings = Settings(Options(**options), formats, schema, timeout)
+    return keys.settings_key(settings, handed(settings.options))
+
+
+PLAIN = key(cutters="R6L80")
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        {"cutters": "R6L81"},
+        {"cutters": ["R6L80", "R8L80"]},
+        {"cutters": "R6L80", "tolerance": 0.02},
+        {"cutters": "R6L80", "machine": "tilt:60"},
+        {"cutters": "R6L80", "machine": "trunnion-ac"},
+        {"cutters": "R6L80", "fixtures": "box:1,2,3"},
+        {"cutters": "R6L80", "setup": "+x"},
+        {"cutters": "R6L80", "other_setups": ["+x"]},
+        {"cutters": "R6L80", "holder": "R15L30"},
+        {"cutters": "R6L80", "faces": "all"},
+        {"cutters": "R6L80", "formats": ("json", "png")},
+        {"cutters": "R6L80", "schema": "ap214"},
+    ],
+)
+def test_what_changes_a_result_changes_the_key(other):
+    assert key(**other) != PLAIN
+
+
+def test_what_changes_none_does_not():
+    assert key(cutters=("R6L80",), jobs=2, timeout=5.0) == PLAIN
+    assert key(cutters="R6L80", formats=("json", "glb")) == key(cutters="R6L80", formats=("glb", "json"))
+
+
+def test_the_content_of_fixtures_and_libraries_counts(tmp_path):
+    vise = tmp_path / "vise.stl"
+    vise.write_bytes((ROOT / "samples/v_groove.step").read_bytes())
+    one = key(fixtures=str(vise))
+    assert key(fixtures=str(vise)) == one
+    vise.write_bytes(b"other")
+    assert key(fixtures=str(vise)) != one
+    vise.unlink()
+    with pytest.raises(OptionError, match="No such file"):
+        key(fixtures=str(vise))
+
+
+def test_fixtures_travel_under_names_of_their_own(tmp_path):
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "vise.stl").write_bytes(folder.encode())
+    options = Options(fixtures=[str(tmp_path / "a/vise.stl"), f"{tmp_path / 'b/vise.stl'}@0,0,9", "table"])
+    there = handed(options)
+    assert dict(there.files) == {"vise.stl": b"a", "_vise.stl": b"b"}
+    assert options.fixtures[0].source == str(tmp_path / "a/vise.stl")
+
+
+def test_every_process_makes_the_same_key():
+    code = (
+        "from plan_cutters import Options\nfrom plan_cutters.batch import keys\n"
+        "from plan_cutters.batch.job import Settings, handed\n"
+        "s = Settings(Options(cutters='R6L80', machine='trunnion-ac', holder='er32'))\n"
+        "print(keys.settings_key(s, handed(s.options)))"
+    )
+    environment = {**os.environ, "PYTHONHASHSEED": "7", "PYTHONPATH": f"{ROOT / 'plugin'}{os.pathsep}{ROOT}"}
+    said = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
+    ).stdout
+    assert said.strip() == key(cutters="R6L80", machine="trunnion-ac", holder="er32")
+
+
+def test_a_part_has_the_key_of_its_content():
+    a, b = keys.checksum(b"a"), keys.checksum(b"b")
+    assert len({keys.key(a, PLAIN), keys.key(b, PLAIN), keys.key(a, "other")}) == 3
+
+
+def test_settings_are_frozen():
+    settings = Settings(Options(cutters="R6L80"))
+    assert replace(settings, formats=("json", "png")) != settings
