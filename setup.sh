@@ -18,18 +18,28 @@ outside() {
     $sudo apt-get update -qq && $sudo apt-get install -y -qq --no-install-recommends "$@" >/dev/null
 }
 
-[ -x .venv/bin/python ] || python3 -m venv .venv
+late=""
+if [ ! -x .venv/bin/python ]; then
+    python3 -m venv .venv
+    late=--no-compile
+fi
 extra="[batch]"
 [ "${1:-}" = dev ] && extra="[dev]"
-.venv/bin/python -m pip install --quiet --disable-pip-version-check --editable ".$extra"
+# For the tests, into node_modules and page/node_modules: the Khronos validator of GLB files, and what the review page is built with.
+# They come while Python's packages do.
+if [ "${1:-}" = dev ]; then
+    { npm install --silent --no-audit --no-fund --no-package-lock && npm ci --prefix page --silent --no-audit --no-fund; } &
+    node=$!
+fi
+.venv/bin/python -m pip install --quiet --disable-pip-version-check $late --editable ".$extra"
+# Pip makes byte code on one core: in a new .venv all of them do. A file that is no Python of this version is no mistake of ours.
+[ -z "$late" ] || .venv/bin/python -m compileall -qq -j 0 .venv/lib/python3*/site-packages || true
 if ! .venv/bin/python -c "import OCP" 2>/dev/null; then
     outside "the CAD kernel links libGL and libX11, although nothing is drawn" libgl1 libx11-6
     .venv/bin/python -c "import OCP"
 fi
-# For the tests, into node_modules and page/node_modules: the Khronos validator of GLB files, and what the review page is built with.
 if [ "${1:-}" = dev ]; then
-    npm install --silent --no-audit --no-fund --no-package-lock
-    npm ci --prefix page --silent --no-audit --no-fund
+    wait "$node"
     if ! command -v chromium >/dev/null; then
         outside "the tests of the review page need a browser" chromium ||
             echo "setup.sh: no chromium could be installed: tests of the review page will be skipped" >&2

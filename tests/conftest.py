@@ -2,14 +2,31 @@
 
 What a module of tests has planned once for all of them is then planned in one process only. The longest files begin, so that no
 process is left alone with one of them at the end; what needs kernels that no one has compiled yet begins beside what needs none.
+What has been imported stays to the end: the collector of garbage passes over it.
 """
 
+import gc
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+# A machine that is busy with something else is no fault; what else holds here, as in CI, stays.
+settings.register_profile("suite", settings(), deadline=None)
+settings.load_profile("suite")
 
 #: Files of tests that begin, in this order; the others follow by name.
 FIRST = ("ahead", "machine_files", "cli", "feel", "files")
+
+
+def pytest_sessionstart():
+    gc.disable()
+
+
+def pytest_collection_finish():
+    """Keep what was imported and collected out of every later search for garbage, and whole in copies of this process."""
+    gc.freeze()
+    gc.enable()
 
 
 def pytest_collection_modifyitems(items):

@@ -194,9 +194,10 @@ def test_asked_twice_it_ends_at_once(tmp_path):
 
 @pytest.mark.parametrize("number", ["TERM", "KILL"])
 def test_a_time_limit_from_outside_ends_it_all(tmp_path, number):
-    """`timeout` sends to the command and its group: the worker is in neither."""
-    with Run(tmp_path, "measure:", wrapped=("timeout", "-s", number, "12")) as run:
+    """`timeout` sends to the command and its group: the worker is in neither. Its own alarm is its limit come early."""
+    with Run(tmp_path, "measure:", wrapped=("timeout", "-s", number, "600")) as run:
         run.until_stuck()
+        run.process.send_signal(signal.SIGALRM)
         assert run.process.wait(timeout=30) in (124, 137, -9)
         run.gone_within(SOON)
 

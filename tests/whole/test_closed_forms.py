@@ -93,7 +93,7 @@ def test_plane_with_a_wall(a, radius, length):
 def test_cylinder_trough(rho, radius):
     """Half a cylinder, contact on its bottom line: sin(tilt) >= R / rho across and along; leaning across, the generator
     through the contact meets the trough's edge at 45 deg."""
-    part = shapes.shell(shapes.trough(rho, 300))
+    part = shapes.shell(shapes.trough(rho, 120))
     found, (across, along) = free(part, Cutter.flat(radius=radius, length=90), [0, 90])
     least = math.degrees(math.asin(radius / rho))
     assert found.curvature == pytest.approx([1 / rho, 0], abs=1e-9)
