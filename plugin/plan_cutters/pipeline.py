@@ -46,7 +46,7 @@ from plan_cutters.scene.work import Work
 from plan_cutters.stages.between import in_each
 from plan_cutters.stages.classify import classify, regions
 from plan_cutters.stages.decompose import march_differs
-from plan_cutters.stages.judge import judge
+from plan_cutters.stages.judge import Judge, judge
 from plan_cutters.stages.other_setups import in_setup
 from plan_cutters.stages.posture_maps import posture_maps
 from plan_cutters.stages.reasons import Reasons
@@ -115,16 +115,16 @@ vars(plan)["__signature__"] = _signature()
 
 def run(
     part: Any, options: Options, clock: Clock, *, read_timeout: float = TIMEOUT, at: At = lambda whose, face: None,
-    ahead: Callable[[str], None] = lambda entry: None, aside: Mapping[int, str] | None = None,
+    ahead: Callable[[str], None] = lambda entry: None, aside: Mapping[int, str] | None = None, judged: Judge = judge,
 ) -> Result:  # fmt: skip
     """`plan` with its options gathered.
 
     `read_timeout` is the most seconds that a faulty file may take to read; `at` is told whose work goes on at which face;
     `ahead` waits for the machine code of an entry that is made meanwhile; `aside` says by number why faces are not to be worked
-    on at all.
+    on at all; `judged` gives the verdicts of each cutter in the first setup, as `judge` would.
     """
     if options.propose:
-        again = partial(run, read_timeout=read_timeout, at=at, ahead=ahead)
+        again = partial(run, read_timeout=read_timeout, at=at, ahead=ahead, judged=judged)
         return plan_proposed(
             partial(prepare, part, read_timeout=read_timeout, at=at, ahead=ahead, aside=aside), again, options, clock
         )
@@ -138,27 +138,27 @@ def run(
             # In the order of rank, whatever the order of work.
             earlier = {c: here[c] for c in ready.cutters if c in here}
             began = time.perf_counter()
-            here[cutter] = judge(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell,
-                                 work=searched)  # fmt: skip
+            here[cutter] = judged(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell,
+                                  work=searched)  # fmt: skip
             seconds[cutter] = time.perf_counter() - began
     elsewhere = [(axis, _elsewhere(ready, here, k, clock)) for k, axis in enumerate(options.other_setups, 1)]
-    judged = _judged(ready, here, elsewhere, seconds, clock)
-    answers = ask(ready, {cutter: each.here for cutter, each in judged.items()}, clock.stage, elsewhere)
+    told = _judged(ready, here, elsewhere, seconds, clock)
+    answers = ask(ready, {cutter: each.here for cutter, each in told.items()}, clock.stage, elsewhere)
     if options.operations is not None:
         from plan_cutters.operations.planning import plan_operations
 
         everywhere = [
-            {c: each.here for c, each in judged.items()},
-            *({c: found[c.id] for c in judged} for _, found in elsewhere),
+            {c: each.here for c, each in told.items()},
+            *({c: found[c.id] for c in told} for _, found in elsewhere),
         ]
         answers = replace(answers, operations=plan_operations(ready, everywhere, answers.least_set, clock.stage))
-    result = assemble(ready, judged, clock, started, answers, elsewhere, searched, ahead)
+    result = assemble(ready, told, clock, started, answers, elsewhere, searched, ahead)
     if not options.posture_maps:
         return result
     with clock.stage("maps") as tell:
         ahead("free_map.free_map")
         cutter = next(c for c in ready.cutters if c.id == result.shown)
-        verdicts = judged[cutter].here
+        verdicts = told[cutter].here
         if ready.conditions.machine.limited:
             verdicts = judge(replace(ready, conditions=ready.conditions.machineless), cutter)
         maps = posture_maps(

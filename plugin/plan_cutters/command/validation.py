@@ -17,10 +17,6 @@ from plan_cutters.command.entry import SUBCOMMANDS
 if TYPE_CHECKING:
     from plan_cutters.options import Options
 
-#: Options of the interface that later versions will have: asked for now, they must not be ignored.
-_NOT_BUILT = {
-    "cluster": "clusters are not used yet; --jobs gives threads on this machine",
-}
 #: Parameters of the commands that `Options` names otherwise.
 NAMED = {"cutter": "cutters", "cutters": "libraries", "fixture": "fixtures"}
 #: Options that count in a plan of operations alone, with their defaults: without one they must not be ignored.
@@ -75,9 +71,6 @@ def _words(parts: Sequence[str], given: dict[str, Any]) -> None:
     from plan_cutters.errors import OptionError
     from plan_cutters.report.folder import read_formats
 
-    for name, why in _NOT_BUILT.items():
-        if given[name] not in (None, (), False):
-            raise OptionError(f"--{name.replace('_', '-')}: {why}")
     if given["formats"] is not None:
         read_formats(given["formats"])
     if given["json_out"] not in (None, "-"):
@@ -95,6 +88,8 @@ def _words(parts: Sequence[str], given: dict[str, Any]) -> None:
             raise OptionError(
                 f"--setup auto plans what it proposes, and --{name.replace('_', '-')} plans nothing: name the setup"
             )
+        if given[name] is not None and (word := next((w for w in ("cluster", "verdicts") if given[w] is not None), "")):
+            raise OptionError(f"--{word} is about planning, and --{name.replace('_', '-')} plans nothing: leave one of them out")
     refuse_unasked(given)
     if given["check_operations"] is not None and len(parts) > 1:
         raise OptionError("--check-operations is about one part")
