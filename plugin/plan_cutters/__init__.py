@@ -23,7 +23,7 @@ _HOME = {
     "Options": "options",
     "Scene": "scene.scene",
     "PostureRange": "domain.posture",
-    "plan": "pipeline",
+    "plan": "batch.one",
     "Result": "result",
     "posture_map": "point",
     "PostureMap": "stages.posture_map",

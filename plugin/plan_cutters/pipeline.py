@@ -60,7 +60,9 @@ _WORK_SHARE, _WORK_LEAST, _WORK_SAMPLE = 0.5, 2e7, 2000.0
 _MANY_FACES, _SAMPLING = 12, 60.0
 
 
-def plan(part: Any, *, progress: Progress | None = None, **options: Unpack[PlanOptions]) -> Result:
+def plan(
+    part: Any, *, progress: Progress | None = None, judged: Judge = judge, **options: Unpack[PlanOptions]
+) -> Result:
     """Judge each cutter on the target faces of a part.
 
     Parameters
@@ -70,6 +72,8 @@ def plan(part: Any, *, progress: Progress | None = None, **options: Unpack[PlanO
         faces and tolerance with it.
     progress : callable, optional
         Called with the stage, the number of pieces done, and the number of all pieces.
+    judged : callable, optional
+        Gives the verdicts of each cutter as `stages.judge.judge` does: `plan_cutters.plan` has `client` and `verdicts` for it.
     **options
         Every attribute of `Options`, by its name: `cutters="R6L80"`, `grid=201`, `machine="tilt:60"`.
 
@@ -98,7 +102,7 @@ def plan(part: Any, *, progress: Progress | None = None, **options: Unpack[PlanO
     if progress is not None and not callable(progress):
         raise OptionError(f"progress must be a function of (stage, done, total), not {shown(progress)}")
     given = {**part.options, **options} if isinstance(part, Scene) else options
-    return run(part, Options.of(given), Clock(progress))
+    return run(part, Options.of(given), Clock(progress), judged=judged)
 
 
 def _signature() -> inspect.Signature:
@@ -106,7 +110,7 @@ def _signature() -> inspect.Signature:
     types, defaults = get_type_hints(PlanOptions), inspect.signature(Options).parameters.values()
     options = [each.replace(kind=each.KEYWORD_ONLY, annotation=types[each.name]) for each in defaults]
     return inspect.Signature(
-        [*list(inspect.signature(plan).parameters.values())[:2], *options], return_annotation=Result
+        [*list(inspect.signature(plan).parameters.values())[:3], *options], return_annotation=Result
     )
 
 
@@ -121,7 +125,7 @@ def run(
 
     `read_timeout` is the most seconds that a faulty file may take to read; `at` is told whose work goes on at which face;
     `ahead` waits for the machine code of an entry that is made meanwhile; `aside` says by number why faces are not to be worked
-    on at all; `judged` gives the verdicts of each cutter in the first setup, as `judge` would.
+    on at all; `judged` gives the verdicts of each cutter in each setup, as `judge` does.
     """
     if options.propose:
         again = partial(run, read_timeout=read_timeout, at=at, ahead=ahead, judged=judged)
@@ -141,7 +145,7 @@ def run(
             here[cutter] = judged(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell,
                                   work=searched)  # fmt: skip
             seconds[cutter] = time.perf_counter() - began
-    elsewhere = [(axis, _elsewhere(ready, here, k, clock)) for k, axis in enumerate(options.other_setups, 1)]
+    elsewhere = [(axis, _elsewhere(ready, here, k, clock, judged)) for k, axis in enumerate(options.other_setups, 1)]
     told = _judged(ready, here, elsewhere, seconds, clock)
     answers = ask(ready, {cutter: each.here for cutter, each in told.items()}, clock.stage, elsewhere)
     if options.operations is not None:
@@ -183,12 +187,14 @@ def run(
     return replace(result, plan=clock.stamp(document), maps=maps, answers=answers)
 
 
-def _elsewhere(ready: Prepared, here: Mapping[Cutter, Verdicts], setup: int, clock: Clock) -> dict[str, Verdicts]:
+def _elsewhere(
+    ready: Prepared, here: Mapping[Cutter, Verdicts], setup: int, clock: Clock, judged: Judge
+) -> dict[str, Verdicts]:
     """Find the verdicts of each cutter in another setup."""
     found = {}
     for cutter, verdicts in here.items():
         with clock.stage("setups") as tell:
-            found[cutter.id] = in_setup(ready, cutter, setup, verdicts, progress=tell)
+            found[cutter.id] = in_setup(ready, cutter, setup, verdicts, progress=tell, judged=judged)
     return found
 
 
