@@ -142,7 +142,7 @@ class Rows:
                     key=f"judge {cutter.id}-{token}-{first}", pure=False,
                 )  # fmt: skip
                 asked[future] = first, last
-            for future in as_completed(list(asked)):
+            for future in as_completed(list(asked), loop=self._client.loop):
                 if future.cancelled() or future.status == "lost":
                     continue
                 try:

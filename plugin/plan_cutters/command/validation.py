@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 #: Parameters of the commands that `Options` names otherwise.
 NAMED = {"cutter": "cutters", "cutters": "libraries", "fixture": "fixtures"}
 #: Options that count in a plan of operations alone, with their defaults: without one they must not be ignored.
-OF_OPERATIONS = {"feed": None, "scallop": 0.01, "stepover": 0.75, "index_step": None, "index_time": 5.0, "change_time": 20.0,
+OF_OPERATIONS = {"feed": None, "scallop": 0.01, "stepover": 0.75, "index_step": None, "index_time": None, "change_time": 20.0,
                   "setup_time": 300.0, "overlap": 2.0, "most_operations": None}  # fmt: skip
 #: Bytes of memory below which nothing can be planned.
 LEAST_MEMORY = 2e9
