@@ -1,5 +1,6 @@
 """A part that is cut into rows and handed out is judged as in a single run, bit for bit."""
 
+import itertools
 import os
 import pickle
 import signal
@@ -55,7 +56,9 @@ def single(ready):
         work = Work()
         found[cutter] = judge(ready, cutter, known=known, work=work), known, work.looked
     assert any((known.verdict != UNJUDGED).any() for _, known, _ in found.values())
-    assert {ACCESSIBLE, INTERFERENCE_FREE} <= {v for verdicts, _, _ in found.values() for v in np.unique(verdicts.verdict).tolist()}
+    assert {ACCESSIBLE, INTERFERENCE_FREE} <= {
+        v for verdicts, _, _ in found.values() for v in np.unique(verdicts.verdict).tolist()
+    }
     return found
 
 
@@ -70,8 +73,10 @@ def test_however_it_is_cut_the_verdicts_and_the_work_are_those_of_one_run(client
     judged = Rows(client, large=0, block=block)
     for cutter in sorted(single, key=lambda c: c.id, reverse=reverse):
         verdicts, known, looked = single[cutter]
-        work, steps = Work(), []
-        assert judged(ready, cutter, known=known, progress=lambda *at: steps.append(at), work=work) == verdicts
+        work = Work()
+        steps: list[tuple[int, int]] = []
+        tell = lambda *at, steps=steps: steps.append(at)  # noqa: E731
+        assert judged(ready, cutter, known=known, progress=tell, work=work) == verdicts
         assert work.looked == looked
         pieces = -(-len(ready.samples) // (CHUNK * -(-block // CHUNK)))
         assert steps == [(k, pieces) for k in range(1, pieces + 1)]
@@ -84,14 +89,15 @@ def test_any_pieces_of_a_ground_are_judged_as_the_whole(ready, single, places):
     ground = pickle.loads(pickle.dumps(Ground.of(ready)))
     ends = sorted({0, n, *(min(n, CHUNK * each) for each in places)})
     for cutter, (whole, known, _) in single.items():
-        for first, last in zip(ends, ends[1:], strict=False):
+        for first, last in itertools.pairwise(ends):
             here = np.arange(first, last)
             assert judge(ground.block(first, last), cutter, known=known.of(here)) == whole.of(here)
 
 
 def test_a_ground_holds_no_shape_of_the_kernel(ready):
     packed = pickle.dumps(Ground.of(ready))
-    assert b"OCP" not in packed and b"TopoDS" not in packed
+    assert b"OCP" not in packed
+    assert b"TopoDS" not in packed
     assert b"cad_io.part.part" not in packed  # a Part would bring its shape
 
 
@@ -139,7 +145,8 @@ def test_what_judging_raises_is_raised(client, ready, monkeypatch):
 def test_a_worker_of_another_version_is_refused(ready):
     answer = judged_block("t", b"", 0, 1, ready.cutters[0], None, "plan-cutters 9.9")
     assert isinstance(answer, str)
-    assert "9.9" in answer and cut.made_by() in answer
+    assert "9.9" in answer
+    assert cut.made_by() in answer
 
 
 def test_another_version_is_one_line(client, ready, monkeypatch):
@@ -220,5 +227,12 @@ def test_a_worker_that_is_killed_costs_nothing(ready, single):
 
 
 def test_the_columns_of_verdicts_are_all_handed_back():
-    assert [each.name for each in fields(Verdicts)] == ["verdict", "axis", "tilt_direction", "tilt", "rotation", "reason"]
+    assert [each.name for each in fields(Verdicts)] == [
+        "verdict",
+        "axis",
+        "tilt_direction",
+        "tilt",
+        "rotation",
+        "reason",
+    ]
     assert Cutter.parse("R6L80") == pickle.loads(pickle.dumps(Cutter.parse("R6L80")))
