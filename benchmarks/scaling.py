@@ -4,10 +4,10 @@
     python benchmarks/scaling.py rows [--grid 1000] [--workers 1 2]
     python benchmarks/scaling.py queue [--parts 100000] [--seconds 0.1] [--threads 32]
 
-`parts`: CAD files of FOLDER and of `samples`, again and again until there are so many, each planned as its own part by workers of
-one thread; nothing is written but tables. `rows`: one part of GRID x GRID samples and six cutters, judged by this process on one
-thread and by workers of one thread; verdicts must be equal. `queue`: parts that only wait, handed out to a scheduler and workers in
-processes of their own; memory of this process and of the scheduler on the way.
+`parts`: CAD files of FOLDER and of `samples`, again and again until there are so many, planned one by one by workers of one
+thread. `rows`: one part of GRID x GRID samples and six cutters, judged by this process on one thread and by workers of
+one thread; verdicts must be equal. `queue`: parts that only wait, handed out to a scheduler and workers in processes of their own; memory of
+this process and of the scheduler on the way.
 
 Clocks tell little on a busy machine: processor seconds of the workers stand beside them. Machine code is made before.
 """
@@ -84,7 +84,8 @@ def parts(folder: Path, count: int, workers: list[int]) -> None:
         inside = sum(row.seconds for row in rows)
         first = first or count / clock
         failed = sum(row.status == "failed" for row in rows)
-        print(f"{each} workers: {clock:.1f} s, {count / clock:.3f} parts/s ({count / clock / first:.2f} times), processor {used:.1f} s, "
+        print(f"{each} workers: {clock:.1f} s, {count / clock:.3f} parts/s ({count / clock / first:.2f} times), "
+              f"processor {used:.1f} s, "
               f"not within a part {100 * (1 - inside / (each * clock)):.1f} %, failed {failed}")  # fmt: skip
 
 
@@ -107,8 +108,9 @@ def rows(grid: int, workers: list[int]) -> None:
     packing = time.perf_counter() - began
     began = time.perf_counter()
     pickle.loads(packed).conditions.around.build(1)
-    print(f"{len(part.samples)} samples x {len(part.cutters)} cutters; prepared in {prepared:.2f} s; ground {len(packed) / 1e6:.1f} MB, "
-          f"packed in {packing:.2f} s, unpacked with its tree in {time.perf_counter() - began:.2f} s")  # fmt: skip
+    print(f"{len(part.samples)} samples x {len(part.cutters)} cutters; prepared in {prepared:.2f} s; "
+          f"ground {len(packed) / 1e6:.1f} MB, packed in {packing:.2f} s, "
+          f"unpacked with its tree in {time.perf_counter() - began:.2f} s")  # fmt: skip
 
     def judged(how):  # type: ignore[no-untyped-def]
         found, work = {}, Work()
@@ -131,8 +133,8 @@ def rows(grid: int, workers: list[int]) -> None:
         if found != alone:
             raise SystemExit("verdicts or work differ")
         first = first or clock
-        print(f"{each} workers: {clock:.1f} s ({first / clock:.2f} times), processor of workers {used:.1f} s, of this process {here:.1f} s, "
-              f"memory of a worker {peak / 1e6:.0f} MB at most; equal")  # fmt: skip
+        print(f"{each} workers: {clock:.1f} s ({first / clock:.2f} times), processor of workers {used:.1f} s, "
+              f"of this process {here:.1f} s, memory of a worker {peak / 1e6:.0f} MB at most; equal")  # fmt: skip
 
 
 def peak_of() -> int:
@@ -167,21 +169,22 @@ def queue(count: int, seconds: float, threads: int) -> None:
                 client.wait_for_workers(2)
                 wait(client.map(rest, [(k, 0.0) for k in range(100)], pure=False))
                 scheduler, here = psutil.Process(begun[0].pid), psutil.Process()
-                began, done, seen = time.perf_counter(), 0, set()
+                began, seen = time.perf_counter(), set()
                 used = spent_by(scheduler), spent_by(here)
                 print(
                     f"{count} parts of {seconds:g} s, 2 workers of {threads} threads: at most {2 * threads / seconds:.0f} parts/s"
                 )
-                for _, found in handed_out(client, ((k, seconds) for k in range(count)), rest, total=count):
+                tasks = ((k, seconds) for k in range(count))
+                for done, (_, found) in enumerate(handed_out(client, tasks, rest, total=count), 1):
                     if isinstance(found, BaseException):
                         raise found
                     seen.add(found[0])
-                    done += 1
                     if done in {count // 100, count // 10, count // 4, count // 2, count}:
                         clock = time.perf_counter() - began
                         print(f"{done:7} after {clock:6.1f} s, {done / clock:6.0f} parts/s, memory: scheduler "
-                              f"{scheduler.memory_info().rss / 1e6:.0f} MB, client {here.memory_info().rss / 1e6:.0f} MB, processor: "
-                              f"scheduler {spent_by(scheduler) - used[0]:.1f} s, client {spent_by(here) - used[1]:.1f} s",
+                              f"{scheduler.memory_info().rss / 1e6:.0f} MB, client {here.memory_info().rss / 1e6:.0f} MB, "
+                              f"processor: scheduler {spent_by(scheduler) - used[0]:.1f} s, "
+                              f"client {spent_by(here) - used[1]:.1f} s",
                               flush=True)  # fmt: skip
                 if len(seen) != count:
                     raise SystemExit(f"{count - len(seen)} parts are lost")

@@ -102,7 +102,7 @@ def test_a_ground_holds_no_shape_of_the_kernel(ready):
 
 
 def test_a_plan_is_the_same_with_its_area_bound_and_other_setups_and_fixtures(client, tmp_path):
-    asked = ASKED | {"grid": 33, "other_setups": [(0, 1, 1)], "fixtures": "table"}
+    asked = ASKED | {"grid": 25, "other_setups": [(0, 1, 1)], "fixtures": "table"}
     one = run(PART, Options.of(asked), Clock())
     other = run(PART, Options.of(asked), Clock(), judged=Rows(client, large=0, block=CHUNK))
     assert told(one) == told(other)

@@ -3,6 +3,7 @@
 import pickle
 import secrets
 import threading
+import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import fields
@@ -25,8 +26,9 @@ from plan_cutters.stages.judge import judge
 LARGE = 20_000
 #: Tasks for each thread of the cluster, so that all of them end at about the same time, and the most samples of one.
 _EACH, _MOST = 6, 32 * CHUNK
-#: How often what was lost with its worker is handed out again; a task that ends worker after worker is stopped by the scheduler.
-_ROUNDS = 5
+#: How often what was lost with its worker is handed out again, and after how many seconds; a task that ends worker after
+#: worker is stopped by the scheduler.
+_ROUNDS, _PAUSE = 5, 0.2
 #: Seconds in which a scheduler must answer and have a worker.
 _PATIENCE = 20.0
 #: Grounds that a worker keeps unpacked, the last ones, by their tokens.
@@ -94,6 +96,7 @@ class Rows:
             # What the workers held of the ground is lost with them.
             self._there = None
             self._require_scheduler()
+            time.sleep(_PAUSE)
         else:
             raise PlanError(
                 "the cluster loses its workers again and again: look into their logs; their memory may be too small"
@@ -131,8 +134,12 @@ class Rows:
 
         self._require_scheduler()
         if self._there is None:
-            # Bytes: unpacked by each worker itself, arrays can be written and are what kernels were compiled for.
-            self._there = self._client.scatter(self._packed, broadcast=True, hash=False)
+            try:
+                self._client.wait_for_workers(1, timeout=_PATIENCE)
+                # Bytes: unpacked by each worker itself, arrays can be written and are what kernels were compiled for.
+                self._there = self._client.scatter(self._packed, broadcast=True, hash=False)
+            except OSError:  # a worker ended meanwhile, or all of them did and none came back
+                return
         token = secrets.token_hex(4)
         asked = {}
         try:
