@@ -5,9 +5,9 @@
     python benchmarks/scaling.py queue [--parts 100000] [--seconds 0.1] [--threads 32]
 
 `parts`: CAD files of FOLDER and of `samples`, again and again until there are so many, planned one by one by workers of one
-thread. `rows`: one part of GRID x GRID samples and six cutters, judged by this process on one thread and by workers of
-one thread; verdicts must be equal. `queue`: parts that only wait, handed out to a scheduler and workers in processes of their own; memory of
-this process and of the scheduler on the way.
+thread. `rows`: one part of GRID x GRID samples and six cutters, judged by this process on one thread and by workers of one
+thread; verdicts must be equal. `queue`: parts that only wait, handed out to a scheduler and workers in processes of their
+own; memory of this process and of the scheduler on the way.
 
 Clocks tell little on a busy machine: processor seconds of the workers stand beside them. Machine code is made before.
 """
