@@ -22,8 +22,8 @@ from plan_cutters.scene.threads import CHUNK
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.judge import judge
 
-#: Samples from which on one cutter is judged by a cluster: below, it takes about as long as to hand the ground out.
-LARGE = 20_000
+#: Samples from which on a cluster judges: fewer take a second a cutter or less, about as long as to hand the ground out.
+LARGE = 100_000
 #: Tasks for each thread of the cluster, so that all of them end at about the same time, and the most samples of one.
 _EACH, _MOST = 6, 32 * CHUNK
 #: How often what was lost with its worker is handed out again, and after how many seconds; a task that ends worker after
