@@ -42,6 +42,12 @@ def plan(
         The part cannot be read or holds no surface to judge.
     PlanError
         An option has no meaning, or the cluster cannot judge.
+
+    Examples
+    --------
+    >>> result = plan("samples/v_groove.step", cutters=["R6L80", "R2L30"], grid=9, area_budget=0)
+    >>> result.selected
+    'R6L80'
     """
     return pipeline.plan(part, progress=progress, judged=judging(client, verdicts), **options)
 

@@ -89,7 +89,9 @@ def _words(parts: Sequence[str], given: dict[str, Any]) -> None:
                 f"--setup auto plans what it proposes, and --{name.replace('_', '-')} plans nothing: name the setup"
             )
         if given[name] is not None and (word := next((w for w in ("cluster", "verdicts") if given[w] is not None), "")):
-            raise OptionError(f"--{word} is about planning, and --{name.replace('_', '-')} plans nothing: leave one of them out")
+            raise OptionError(
+                f"--{word} is about planning, and --{name.replace('_', '-')} plans nothing: leave one of them out"
+            )
     refuse_unasked(given)
     if given["check_operations"] is not None and len(parts) > 1:
         raise OptionError("--check-operations is about one part")
