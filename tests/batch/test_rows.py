@@ -164,8 +164,8 @@ def test_what_is_lost_with_a_worker_is_handed_out_again(client, ready, single, m
 
     def submit(*given, **more):
         future = real(*given, **more)
-        rounds.append(more["key"])
-        if len(rounds) in (2, 5):
+        rounds.append(more["key"])  # the ground is the first of each round
+        if len(rounds) in (3, 6):
             client.cancel([future])
         return future
 
@@ -173,7 +173,7 @@ def test_what_is_lost_with_a_worker_is_handed_out_again(client, ready, single, m
     assert judged(ready, cutter, known=known, work=work) == verdicts
     assert work.looked == looked  # none is counted twice
     pieces = -(-len(ready.samples) // CHUNK)
-    assert pieces < len(rounds) <= pieces + 2
+    assert pieces + 1 < len(rounds) <= pieces + 6
 
 
 def test_losing_workers_for_ever_is_an_error(client, ready, monkeypatch):

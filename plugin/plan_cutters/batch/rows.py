@@ -30,7 +30,7 @@ _EACH, _MOST = 6, 32 * CHUNK
 #: worker is stopped by the scheduler.
 _ROUNDS, _PAUSE = 5, 0.2
 #: Seconds in which a scheduler must answer and have a worker.
-_PATIENCE = 20.0
+_PATIENCE = 10.0
 #: Grounds that a worker keeps unpacked, the last ones, by their tokens.
 _KEPT = 2
 _grounds: dict[str, Ground] = {}
@@ -129,17 +129,16 @@ class Rows:
         self, blocks: list[Block], cutter: Cutter, known: Verdicts | None
     ) -> Iterator[tuple[Block, tuple[Verdicts, int]]]:
         """What workers find at blocks, in the order in which it comes, without what is lost."""
+        from dask import config
         from distributed import as_completed
         from distributed.scheduler import KilledWorker
 
         self._require_scheduler()
         if self._there is None:
-            try:
-                self._client.wait_for_workers(1, timeout=_PATIENCE)
-                # Bytes: unpacked by each worker itself, arrays can be written and are what kernels were compiled for.
-                self._there = self._client.scatter(self._packed, broadcast=True, hash=False)
-            except OSError:  # a worker ended meanwhile, or all of them did and none came back
-                return
+            # A task of its own and not scattered: the scheduler makes it again when its workers are lost, and scattering hangs
+            # when a worker ends meanwhile. Bytes: unpacked by each worker itself, arrays can be written, as kernels want them.
+            with config.set({"distributed.admin.large-graph-warning-threshold": "1TB"}):
+                self._there = self._client.submit(bytes, self._packed, key=f"ground-{secrets.token_hex(8)}", pure=False)
         token = secrets.token_hex(4)
         asked = {}
         try:
