@@ -23,7 +23,7 @@ _HOME = {
     "Options": "options",
     "Scene": "scene.scene",
     "PostureRange": "domain.posture",
-    "plan": "pipeline",
+    "plan": "batch.one",
     "plan_many": "batch.many",
     "Result": "result",
     "posture_map": "point",

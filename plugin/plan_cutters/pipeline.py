@@ -46,7 +46,7 @@ from plan_cutters.scene.work import Work
 from plan_cutters.stages.between import in_each
 from plan_cutters.stages.classify import classify, regions
 from plan_cutters.stages.decompose import march_differs
-from plan_cutters.stages.judge import judge
+from plan_cutters.stages.judge import Judge, judge
 from plan_cutters.stages.other_setups import in_setup
 from plan_cutters.stages.posture_maps import posture_maps
 from plan_cutters.stages.reasons import Reasons
@@ -60,7 +60,9 @@ _WORK_SHARE, _WORK_LEAST, _WORK_SAMPLE = 0.5, 2e7, 2000.0
 _MANY_FACES, _SAMPLING = 12, 60.0
 
 
-def plan(part: Any, *, progress: Progress | None = None, **options: Unpack[PlanOptions]) -> Result:
+def plan(
+    part: Any, *, progress: Progress | None = None, judged: Judge = judge, **options: Unpack[PlanOptions]
+) -> Result:
     """Judge each cutter on the target faces of a part.
 
     Parameters
@@ -70,6 +72,8 @@ def plan(part: Any, *, progress: Progress | None = None, **options: Unpack[PlanO
         faces and tolerance with it.
     progress : callable, optional
         Called with the stage, the number of pieces done, and the number of all pieces.
+    judged : callable, optional
+        Gives the verdicts of each cutter as `stages.judge.judge` does: `plan_cutters.plan` has `client` and `verdicts` for it.
     **options
         Every attribute of `Options`, by its name: `cutters="R6L80"`, `grid=201`, `machine="tilt:60"`.
 
@@ -98,7 +102,7 @@ def plan(part: Any, *, progress: Progress | None = None, **options: Unpack[PlanO
     if progress is not None and not callable(progress):
         raise OptionError(f"progress must be a function of (stage, done, total), not {shown(progress)}")
     given = {**part.options, **options} if isinstance(part, Scene) else options
-    return run(part, Options.of(given), Clock(progress))
+    return run(part, Options.of(given), Clock(progress), judged=judged)
 
 
 def _signature() -> inspect.Signature:
@@ -106,7 +110,7 @@ def _signature() -> inspect.Signature:
     types, defaults = get_type_hints(PlanOptions), inspect.signature(Options).parameters.values()
     options = [each.replace(kind=each.KEYWORD_ONLY, annotation=types[each.name]) for each in defaults]
     return inspect.Signature(
-        [*list(inspect.signature(plan).parameters.values())[:2], *options], return_annotation=Result
+        [*list(inspect.signature(plan).parameters.values())[:3], *options], return_annotation=Result
     )
 
 
@@ -115,16 +119,16 @@ vars(plan)["__signature__"] = _signature()
 
 def run(
     part: Any, options: Options, clock: Clock, *, read_timeout: float = TIMEOUT, at: At = lambda whose, face: None,
-    ahead: Callable[[str], None] = lambda entry: None, aside: Mapping[int, str] | None = None,
+    ahead: Callable[[str], None] = lambda entry: None, aside: Mapping[int, str] | None = None, judged: Judge = judge,
 ) -> Result:  # fmt: skip
     """`plan` with its options gathered.
 
     `read_timeout` is the most seconds that a faulty file may take to read; `at` is told whose work goes on at which face;
     `ahead` waits for the machine code of an entry that is made meanwhile; `aside` says by number why faces are not to be worked
-    on at all.
+    on at all; `judged` gives the verdicts of each cutter in each setup, as `judge` does.
     """
     if options.propose:
-        again = partial(run, read_timeout=read_timeout, at=at, ahead=ahead)
+        again = partial(run, read_timeout=read_timeout, at=at, ahead=ahead, judged=judged)
         return plan_proposed(
             partial(prepare, part, read_timeout=read_timeout, at=at, ahead=ahead, aside=aside), again, options, clock
         )
@@ -138,27 +142,27 @@ def run(
             # In the order of rank, whatever the order of work.
             earlier = {c: here[c] for c in ready.cutters if c in here}
             began = time.perf_counter()
-            here[cutter] = judge(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell,
-                                 work=searched)  # fmt: skip
+            here[cutter] = judged(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell,
+                                  work=searched)  # fmt: skip
             seconds[cutter] = time.perf_counter() - began
-    elsewhere = [(axis, _elsewhere(ready, here, k, clock)) for k, axis in enumerate(options.other_setups, 1)]
-    judged = _judged(ready, here, elsewhere, seconds, clock)
-    answers = ask(ready, {cutter: each.here for cutter, each in judged.items()}, clock.stage, elsewhere)
+    elsewhere = [(axis, _elsewhere(ready, here, k, clock, judged)) for k, axis in enumerate(options.other_setups, 1)]
+    told = _judged(ready, here, elsewhere, seconds, clock)
+    answers = ask(ready, {cutter: each.here for cutter, each in told.items()}, clock.stage, elsewhere)
     if options.operations is not None:
         from plan_cutters.operations.planning import plan_operations
 
         everywhere = [
-            {c: each.here for c, each in judged.items()},
-            *({c: found[c.id] for c in judged} for _, found in elsewhere),
+            {c: each.here for c, each in told.items()},
+            *({c: found[c.id] for c in told} for _, found in elsewhere),
         ]
         answers = replace(answers, operations=plan_operations(ready, everywhere, answers.least_set, clock.stage))
-    result = assemble(ready, judged, clock, started, answers, elsewhere, searched, ahead)
+    result = assemble(ready, told, clock, started, answers, elsewhere, searched, ahead)
     if not options.posture_maps:
         return result
     with clock.stage("maps") as tell:
         ahead("free_map.free_map")
         cutter = next(c for c in ready.cutters if c.id == result.shown)
-        verdicts = judged[cutter].here
+        verdicts = told[cutter].here
         if ready.conditions.machine.limited:
             verdicts = judge(replace(ready, conditions=ready.conditions.machineless), cutter)
         maps = posture_maps(
@@ -183,12 +187,14 @@ def run(
     return replace(result, plan=clock.stamp(document), maps=maps, answers=answers)
 
 
-def _elsewhere(ready: Prepared, here: Mapping[Cutter, Verdicts], setup: int, clock: Clock) -> dict[str, Verdicts]:
+def _elsewhere(
+    ready: Prepared, here: Mapping[Cutter, Verdicts], setup: int, clock: Clock, judged: Judge
+) -> dict[str, Verdicts]:
     """Find the verdicts of each cutter in another setup."""
     found = {}
     for cutter, verdicts in here.items():
         with clock.stage("setups") as tell:
-            found[cutter.id] = in_setup(ready, cutter, setup, verdicts, progress=tell)
+            found[cutter.id] = in_setup(ready, cutter, setup, verdicts, progress=tell, judged=judged)
     return found
 
 

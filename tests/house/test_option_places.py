@@ -35,7 +35,7 @@ def test_type_checkers_see_the_options():
 
 def test_people_see_each_option_with_its_default():
     shown = inspect.signature(plan).parameters
-    assert list(shown) == ["part", "progress", *(each.name for each in fields(Options))]
+    assert list(shown) == ["part", "progress", "client", "verdicts", *(each.name for each in fields(Options))]
     for name, each in inspect.signature(Options).parameters.items():
         assert shown[name].kind is inspect.Parameter.KEYWORD_ONLY
         assert shown[name].default is each.default

@@ -1,9 +1,11 @@
 """One part: planned, written, summarised."""
 
 import gc
+import logging
 import time
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +20,7 @@ from plan_cutters.report.story.names import called
 if TYPE_CHECKING:
     from plan_cutters.document.model import Plan
     from plan_cutters.options import Options
+    from plan_cutters.stages.judge import Judge
 
 
 def one_part(
@@ -47,8 +50,9 @@ def one_part(
         gc.enable()
         clock = Clock(watch.tell, began=began)
         source = handing.part() if handing.holds_part() else part
-        result = run(source, options, clock, read_timeout=given["read_timeout"], at=report_work, ahead=ahead,
-                     aside=aside)  # fmt: skip
+        with _judging(given) as judged:
+            result = run(source, options, clock, read_timeout=given["read_timeout"], at=report_work, ahead=ahead,
+                         aside=aside, judged=judged)  # fmt: skip
         document = result.plan
         if out is None:
             watch.summarise(document)
@@ -82,6 +86,31 @@ def _compiling(options: "Options", quiet: bool) -> Callable[[str], None]:
     if wait is not None and not quiet:
         terminal.say("Compiling for this machine, once: the first plan takes about half a minute longer.")
     return wait or (lambda entry: None)
+
+
+@contextmanager
+def _judging(given: dict[str, Any]) -> "Iterator[Judge]":
+    """What judges the cutters, with the cluster and the kept verdicts that were asked for; it says what came of these."""
+    from plan_cutters.batch.one import judging
+
+    with ExitStack() as stack:
+        client = None
+        if given["cluster"] is not None:
+            from plan_cutters.batch.rows import connected
+
+            # What goes wrong is said once, as an error of this part.
+            logging.getLogger("distributed").setLevel(logging.CRITICAL)
+            client = stack.enter_context(connected(given["cluster"]))
+        judged = judging(client, given["verdicts"])
+        yield judged
+    if given["verdicts"] is not None:
+        from plan_cutters.batch.verdicts import Kept
+
+        assert isinstance(judged, Kept)
+        for fault in judged.faults:
+            terminal.error(f"plan-cutters: {fault}")
+        if not given["quiet"]:
+            terminal.say(f"Verdicts: {judged.found} kept from before, {judged.judged} judged now.")
 
 
 class Onlooker:

@@ -301,7 +301,17 @@ _OPTIONS = (
         help="Check the plan of operations in a plan.json, with the part and the options that it was made with; write nothing.",
     ),
     _run("--jobs", type=int, metavar="N", help="Threads.  [default: all cores]"),
-    _run("--cluster", metavar="ADDRESS", hidden=True),
+    _run(
+        "--cluster",
+        metavar="ADDRESS",
+        help="A running Dask scheduler, as tcp://HOST:8786, whose workers judge the samples of a large part, too.",
+    ),
+    _run(
+        "--verdicts",
+        type=Folder("DIR"),
+        help="Folder or URL (s3://..., memory://...) in which the verdicts of each cutter are kept: with another cutter, only "
+        "that one is judged.",
+    ),
     _run(
         "--read-timeout",
         type=float,

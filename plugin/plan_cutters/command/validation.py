@@ -18,10 +18,6 @@ from plan_cutters.command.entry import SUBCOMMANDS
 if TYPE_CHECKING:
     from plan_cutters.options import Options
 
-#: Options of the interface that later versions will have: asked for now, they must not be ignored.
-_NOT_BUILT = {
-    "cluster": "a cluster plans many parts: plan-cutters batch PART... --out DIR --cluster ADDRESS",
-}
 #: Parameters of the commands that `Options` names otherwise.
 NAMED = {"cutter": "cutters", "cutters": "libraries", "fixture": "fixtures"}
 #: Options that count in a plan of operations alone: without one they must not be ignored.
@@ -76,9 +72,6 @@ def _words(parts: Sequence[str], given: dict[str, Any]) -> None:
     from plan_cutters.errors import OptionError
     from plan_cutters.report.folder import read_formats
 
-    for name, why in _NOT_BUILT.items():
-        if given[name] not in (None, (), False):
-            raise OptionError(f"--{name.replace('_', '-')}: {why}")
     if given["formats"] is not None:
         read_formats(given["formats"])
     if given["json_out"] not in (None, "-"):
@@ -95,6 +88,10 @@ def _words(parts: Sequence[str], given: dict[str, Any]) -> None:
         if given[name] is not None and any(str(each).lower() == "auto" for each in given["setup"]):
             raise OptionError(
                 f"--setup auto plans what it proposes, and --{name.replace('_', '-')} plans nothing: name the setup"
+            )
+        if given[name] is not None and (word := next((w for w in ("cluster", "verdicts") if given[w] is not None), "")):
+            raise OptionError(
+                f"--{word} is about planning, and --{name.replace('_', '-')} plans nothing: leave one of them out"
             )
     refuse_unasked(given)
     if given["check_operations"] is not None and len(parts) > 1:

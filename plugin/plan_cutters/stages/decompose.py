@@ -50,7 +50,8 @@ def decompose(
     def tested(piece: NDArray[np.int64]) -> int:
         return int(dummy_clear(piece, contacts, *shape, solids, interference_free))
 
-    looked = in_chunks(tested, asked, conditions.jobs)
+    # In fixed pieces, so that the work counted does not depend on how samples are divided, either.
+    looked = in_chunks(tested, asked, conditions.jobs, fixed=True)
     if work is not None:
         work.add(looked)
     return interference_free

@@ -2,12 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import CONVEX, FIXTURE, INSIDE, Verdicts
+from plan_cutters.scene.ground import Ground
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import with_company
 from plan_cutters.scene.work import Work
@@ -15,8 +17,17 @@ from plan_cutters.stages.access import access
 from plan_cutters.stages.decompose import decompose
 
 
+class Judge(Protocol):
+    """`judge`, and whatever gives the same verdicts in another way."""
+
+    def __call__(
+        self, ready: Prepared, cutter: Cutter, rows: NDArray[np.int64] | None = None, known: Verdicts | None = None,
+        *, progress: Callable[[int, int], None] | None = None, work: Work | None = None,
+    ) -> Verdicts: ...  # fmt: skip
+
+
 def judge(
-    ready: Prepared,
+    ready: Prepared | Ground,
     cutter: Cutter,
     rows: NDArray[np.int64] | None = None,
     known: Verdicts | None = None,
@@ -28,7 +39,7 @@ def judge(
 
     Parameters
     ----------
-    ready : Prepared
+    ready : Prepared or Ground
     cutter : Cutter
     rows : (m,) int64, optional
         Samples, ascending. However they are divided, each gets the same answer, bit for bit: the search of its neighbours is

@@ -7,7 +7,7 @@ from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import ACCESSIBLE, Verdicts, blank
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress
-from plan_cutters.stages.judge import judge
+from plan_cutters.stages.judge import Judge, judge
 
 
 def in_setup(
@@ -17,6 +17,7 @@ def in_setup(
     verdicts: Verdicts,
     *,
     progress: Progress | None = None,
+    judged: Judge = judge,
 ) -> Verdicts:
     """Find the verdicts of a cutter in another setup.
 
@@ -28,6 +29,10 @@ def in_setup(
         Its number, from 1. The side of open faces stays as it is.
     verdicts : Verdicts
         Its verdicts in the setup of `ready`.
+    progress : callable, optional
+        Called with the number of pieces of work that are done, and the number of all.
+    judged : callable, optional
+        Gives verdicts as `judge` does.
     """
     there = ready.there(setup)
     conditions, known = there.conditions, blank(len(ready.samples))
@@ -39,4 +44,4 @@ def in_setup(
     rows = rows[:0] if few else rows[machine.allows(verdicts.axis[rows], frame_of(conditions.setup, conditions.x))]
     known.verdict[rows] = ACCESSIBLE
     known.take_posture(rows, verdicts)
-    return judge(there, cutter, known=known.freeze(), progress=progress)
+    return judged(there, cutter, known=known.freeze(), progress=progress)

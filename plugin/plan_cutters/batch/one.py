@@ -1,0 +1,78 @@
+"""One part, whose cutters are judged by the workers of a cluster, or were judged before."""
+
+import inspect
+from typing import Any, Unpack
+
+from plan_cutters import pipeline
+from plan_cutters.document.clock import Progress
+from plan_cutters.options import PlanOptions
+from plan_cutters.result import Result
+from plan_cutters.stages.judge import Judge, judge
+
+
+def plan(
+    part: Any,
+    *,
+    progress: Progress | None = None,
+    client: Any = None,
+    verdicts: str | None = None,
+    **options: Unpack[PlanOptions],
+) -> Result:
+    """Judge each cutter on the target faces of a part, as `pipeline.plan` does, which says more of parts and options.
+
+    Parameters
+    ----------
+    part : Part, Scene, path, TopoDS_Shape, CadQuery or build123d object, or a list of shapes
+    progress : callable, optional
+        Called with the stage, the number of pieces done, and the number of all pieces.
+    client : distributed.Client, optional
+        Of a Dask cluster, whose workers judge the samples of a large part. The result is the same, bit for bit.
+    verdicts : str, optional
+        Folder or URL in which the verdicts of each cutter are kept (`batch.verdicts.Kept`).
+    **options
+        Every attribute of `Options`, by its name.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    CadIoError
+        The part cannot be read or holds no surface to judge.
+    PlanError
+        An option has no meaning, or the cluster cannot judge.
+
+    Examples
+    --------
+    >>> result = plan("samples/v_groove.step", cutters=["R6L80", "R2L30"], grid=9, area_budget=0)
+    >>> result.selected
+    'R6L80'
+    """
+    return pipeline.plan(part, progress=progress, judged=judging(client, verdicts), **options)
+
+
+def judging(client: Any = None, verdicts: str | None = None) -> Judge:
+    """What judges with a cluster, with kept verdicts, with both, or with neither."""
+    judged: Judge = judge
+    if client is not None:
+        from plan_cutters.batch.rows import Rows
+
+        judged = Rows(client)
+    if verdicts is not None:
+        from plan_cutters.batch.verdicts import Kept
+
+        judged = Kept(verdicts, judged)
+    return judged
+
+
+def _signature() -> inspect.Signature:
+    """The signature of `plan` for people, with every option."""
+    own, whole = inspect.signature(plan).parameters, inspect.signature(pipeline.plan).parameters
+    options = [each for name, each in whole.items() if name not in ("part", "progress", "judged")]
+    return inspect.Signature(
+        [each for each in own.values() if each.kind is not each.VAR_KEYWORD] + options, return_annotation=Result
+    )
+
+
+vars(plan)["__signature__"] = _signature()

@@ -1,0 +1,308 @@
+"""Verdicts that are kept, cutter by cutter: what was judged before, on the same ground, is not judged again."""
+
+import contextlib
+import functools
+import hashlib
+import json
+import os
+import secrets
+import zlib
+from collections.abc import Callable, Iterator
+from dataclasses import fields, is_dataclass, replace
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.verdicts import NO_REASON, REASONS, UNJUDGED, WORDS, Verdicts
+from plan_cutters.errors import PlanError
+from plan_cutters.scene.ground import Ground
+from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.question import METHOD
+from plan_cutters.scene.work import Work
+from plan_cutters.stages.judge import Judge, judge
+
+#: The first line of an entry.
+_MAGIC = b"plan-cutters verdicts 1\n"
+#: Columns as they are written, one after the other, by their types and numbers a sample.
+_COLUMNS = {"verdict": ("u1", ()), "axis": ("<f8", (3,)), "tilt_direction": ("<f8", (3,)), "tilt": ("<f8", ()),
+            "rotation": ("<i4", ()), "reason": ("u1", ())}  # fmt: skip
+_A_SAMPLE = sum(np.dtype(kind).itemsize * (shape or (1,))[0] for kind, shape in _COLUMNS.values())
+#: Rooms on whose sources verdicts depend, and the packages.
+_ROOMS, _PACKAGES = ("domain", "kernels", "scene", "stages"), ("numba", "numpy", "scipy")
+#: The end of an entry's name.
+_SUFFIX = ".verdicts"
+
+
+class Kept:
+    """Judge as `stages.judge.judge` does, but for what stands in a folder already; what is judged is put there.
+
+    An entry belongs to the ground (samples, obstacles, machine, setup, postures, tolerance), the cutter and this program. Beside
+    that, verdicts depend on those that follow from the other cutters of the plan (`nesting.handed`): the entry that was found
+    with the same ones comes first, and is what judging would give, bit for bit. Where there is none, an entry of the same
+    cutter that was found among other cutters serves: its postures are as safe, and need not be the same ones.
+
+    Parameters
+    ----------
+    where : str
+        Folder, or URL that fsspec knows.
+    otherwise : Judge, optional
+        Judges what is not there.
+
+    Attributes
+    ----------
+    found, judged : int
+        How many verdicts were taken from there, and how many were not.
+    faults : list of str
+        One line for each entry that is damaged or cannot be read or written. The plan does not depend on it.
+
+    Raises
+    ------
+    PlanError
+        A package is missing, or the URL has no meaning.
+    """
+
+    def __init__(self, where: str, otherwise: Judge = judge) -> None:
+        self._folder: _Local | _Remote = _Remote(where) if "://" in where else _Local(where)
+        self._where, self._otherwise = where, otherwise
+        self._of: tuple[Any, ...] = ()
+        self._ground = b""
+        self.found = self.judged = 0
+        self.faults: list[str] = []
+
+    def __call__(
+        self,
+        ready: Prepared,
+        cutter: Cutter,
+        rows: NDArray[np.int64] | None = None,
+        known: Verdicts | None = None,
+        *,
+        progress: Callable[[int, int], None] | None = None,
+        work: Work | None = None,
+    ) -> Verdicts:
+        """Find the verdicts of a cutter; parameters and result as of `judge`. The work is that of the run that judged."""
+        if rows is not None:
+            return self._otherwise(ready, cutter, rows, known, progress=progress, work=work)
+        own = hashlib.sha256(self._digest(ready) + _digest(replace(cutter, name=""))).hexdigest()
+        name = _digest(None if known is None or (known.verdict == UNJUDGED).all() else _stated(known)).hex()[:32]
+        n = len(ready.samples)
+        for entry in self._entries(own, name):
+            if (unpacked := self._read(own, entry, n)) is not None:
+                verdicts, looked = unpacked
+                self.found += 1
+                break
+        else:
+            counted = Work()
+            verdicts = self._otherwise(ready, cutter, known=known, progress=progress, work=counted)
+            looked = counted.looked
+            self.judged += 1
+            self._write(own, name, packed(verdicts, looked, own))
+        if work is not None:
+            work.add(looked)
+        return verdicts
+
+    def _digest(self, ready: Prepared) -> bytes:
+        """The checksum of a ground and of this program; taken once for the cutters of a setup."""
+        of = (ready.samples, ready.surface_class, ready.inside, ready.held, ready.conditions)
+        if len(of) != len(self._of) or any(one is not other for one, other in zip(of, self._of, strict=True)):
+            ground = Ground.of(ready)
+            # Names change nothing.
+            machine = replace(ground.conditions.machine, name="", notes=())
+            ground = replace(ground, conditions=replace(ground.conditions, machine=machine))
+            self._of, self._ground = of, _digest((ground, made_by()))
+        return self._ground
+
+    def _entries(self, own: str, name: str) -> Iterator[str]:
+        """Names of the entries of a cutter: the one that was found among the same cutters first."""
+        yield name
+        try:
+            others = self._folder.names(f"{own[:2]}/{own}")
+        except Exception as error:
+            self._fault(own, "cannot be read", error)
+            return
+        yield from sorted(each for each in others if each != name)
+
+    def _read(self, own: str, name: str, n: int) -> tuple[Verdicts, int] | None:
+        try:
+            content = self._folder.get(_place(own, name))
+        except Exception as error:
+            self._fault(own, "cannot be read", error)
+            return None
+        if content is None:
+            return None
+        try:
+            return unpacked(content, n, own)
+        except (ValueError, TypeError, LookupError, OverflowError, RecursionError, MemoryError, zlib.error) as error:
+            self._fault(own, "is damaged and not used", error)
+            return None
+
+    def _write(self, own: str, name: str, content: bytes) -> None:
+        try:
+            self._folder.put(_place(own, name), content)
+        except Exception as error:
+            self._fault(own, "cannot be written", error)
+
+    def _fault(self, own: str, what: str, error: BaseException) -> None:
+        why = " ".join(str(getattr(error, "strerror", None) or error).split())[:120] or type(error).__name__
+        self.faults.append(f"{self._where}: kept verdicts {own[:12]}: {what} ({why})")
+
+
+def packed(verdicts: Verdicts, looked: int, key: str) -> bytes:
+    """Write verdicts, the work that they took and the key that they belong to as one entry."""
+    columns = b"".join(
+        np.ascontiguousarray(getattr(verdicts, name), kind).tobytes() for name, (kind, _) in _COLUMNS.items()
+    )
+    content = zlib.compress(columns, 1)
+    head = {"key": key, "samples": len(verdicts.verdict), "looked": looked}
+    said = json.dumps(head, sort_keys=True).encode()
+    return _MAGIC + hashlib.sha256(said + content).hexdigest().encode() + b"\n" + said + b"\n" + content
+
+
+def unpacked(entry: bytes, n: int, key: str) -> tuple[Verdicts, int]:
+    """Read what `packed` wrote for n samples and a key.
+
+    Raises
+    ------
+    ValueError
+        It is no such entry, belongs to something else, or is damaged.
+    """
+    if not entry.startswith(_MAGIC):
+        raise ValueError("no entry of verdicts")
+    checksum, _, rest = entry[len(_MAGIC) :].partition(b"\n")
+    said, _, content = rest.partition(b"\n")
+    if hashlib.sha256(said + content).hexdigest().encode() != checksum:
+        raise ValueError("its checksum differs")
+    head = json.loads(said)
+    looked = head["looked"]
+    if head["key"] != key or head["samples"] != n or type(looked) is not int or looked < 0:
+        raise ValueError("it belongs to something else")
+    unpacker = zlib.decompressobj()
+    columns = unpacker.decompress(content, n * _A_SAMPLE + 1)
+    if len(columns) != n * _A_SAMPLE or not unpacker.eof:
+        raise ValueError("it has another length than its samples")
+    arrays, place = [], 0
+    for kind, shape in _COLUMNS.values():
+        size = n * np.dtype(kind).itemsize * (shape or (1,))[0]
+        arrays.append(np.frombuffer(columns[place : place + size], kind).reshape(n, *shape).copy())
+        place += size
+    verdicts = Verdicts(*arrays)
+    words, reasons = list(WORDS), [*range(len(REASONS)), NO_REASON]
+    if not (np.isin(verdicts.verdict, words).all() and np.isin(verdicts.reason, reasons).all()):
+        raise ValueError("it holds verdicts that there are not")
+    return verdicts, looked
+
+
+@functools.cache
+def made_by() -> str:
+    """Version of what verdicts follow from: the number of the program, a checksum of the sources that judge, packages."""
+    import plan_cutters
+
+    home, found = Path(str(plan_cutters.__file__)).parent, hashlib.sha256()
+    for room in _ROOMS:
+        for source in sorted((home / room).rglob("*.py")):
+            found.update(source.relative_to(home).as_posix().encode() + b"\0" + source.read_bytes())
+    packages = " ".join(f"{name} {metadata.version(name)}" for name in _PACKAGES)
+    return f"plan-cutters {plan_cutters.__version__}, method {METHOD}, sources {found.hexdigest()[:12]}, {packages}"
+
+
+def _place(own: str, name: str) -> str:
+    return f"{own[:2]}/{own}/{name}{_SUFFIX}"
+
+
+def _stated(known: Verdicts) -> dict[str, Any]:
+    return {each.name: getattr(known, each.name) for each in fields(known)}
+
+
+def _digest(value: Any) -> bytes:
+    """SHA-256 of a value: of equal values in every process the same, of others another one."""
+    found = hashlib.sha256()
+    _feed(found, value)
+    return found.digest()
+
+
+def _feed(found: Any, value: Any) -> None:
+    match value:
+        case None | bool() | int() | float() | str():
+            found.update(f"{type(value).__name__} {value!r};".encode())
+        case np.generic():
+            _feed(found, value.item())
+        case np.ndarray():
+            found.update(f"array {value.dtype.str} {value.shape};".encode())
+            found.update(np.ascontiguousarray(value).data)
+        case tuple() | list():
+            found.update(f"list {len(value)};".encode())
+            for each in value:
+                _feed(found, each)
+        case dict():
+            _feed(found, [(key, value[key]) for key in sorted(value)])
+        case _ if is_dataclass(value) and not isinstance(value, type):
+            found.update(f"{type(value).__qualname__};".encode())
+            # Trees and the like are made of the fields, and not fields themselves.
+            _feed(found, [(each.name, getattr(value, each.name)) for each in fields(value) if each.compare])
+        case _:
+            raise TypeError(f"verdicts cannot be kept by a {type(value).__name__}")
+
+
+class _Local:
+    """A folder of this machine."""
+
+    def __init__(self, where: str) -> None:
+        if not where:
+            raise PlanError("--verdicts: the folder has no name")
+        self._root = Path(where)
+
+    def get(self, name: str) -> bytes | None:
+        try:
+            return (self._root / name).read_bytes()
+        except (FileNotFoundError, NotADirectoryError):
+            return None
+
+    def put(self, name: str, content: bytes) -> None:
+        path = self._root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        # Several runs may write the same entry at a time.
+        aside = path.with_name(f".{path.name}-{secrets.token_hex(4)}")
+        try:
+            aside.write_bytes(content)
+            os.replace(aside, path)
+        finally:
+            with contextlib.suppress(OSError):
+                aside.unlink(missing_ok=True)
+
+    def names(self, folder: str) -> list[str]:
+        return [path.name.removesuffix(_SUFFIX) for path in (self._root / folder).glob(f"[!.]*{_SUFFIX}")]
+
+
+class _Remote:
+    """A folder of a file system of fsspec: there a file is put as a whole."""
+
+    def __init__(self, where: str) -> None:
+        try:
+            from fsspec.core import url_to_fs
+        except ImportError:
+            raise PlanError('needs the package fsspec: pip install "plan-cutters[batch]"', file=where) from None
+        try:
+            self._fs, root = url_to_fs(where)
+        except Exception as error:
+            raise PlanError(f"--verdicts: no such place ({' '.join(str(error).split())[:120]})", file=where) from None
+        self._root = root.rstrip("/")
+
+    def get(self, name: str) -> bytes | None:
+        try:
+            return bytes(self._fs.cat_file(f"{self._root}/{name}"))
+        except FileNotFoundError:
+            return None
+
+    def put(self, name: str, content: bytes) -> None:
+        self._fs.pipe_file(f"{self._root}/{name}", content)
+
+    def names(self, folder: str) -> list[str]:
+        try:
+            listed = self._fs.ls(f"{self._root}/{folder}", detail=False, refresh=True)
+        except FileNotFoundError:
+            return []
+        names = [str(each).rpartition("/")[2] for each in listed]
+        return [each.removesuffix(_SUFFIX) for each in names if each.endswith(_SUFFIX)]

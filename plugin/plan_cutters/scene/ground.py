@@ -1,0 +1,61 @@
+"""The ground on which a cutter is judged: arrays alone, without shapes of the CAD kernel, and whole pieces of it."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io import SurfaceSamples
+from cad_io.arrays import Ints, Record
+from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.surroundings import Surroundings
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Ground(Record):
+    """The ground holds all that the verdicts of a cutter in one setup depend on, beside the cutter; it can be pickled.
+
+    Attributes
+    ----------
+    samples : SurfaceSamples
+        Points, normals, directions, curvatures and whether they are judged; nothing else is filled.
+    surface_class : (n,) uint8
+    inside, shut : (n,) int32
+        As `Prepared` has them.
+    clamped : (n,) bool
+    conditions : Conditions
+        With one thread, and obstacles without the files that they came from.
+    """
+
+    samples: SurfaceSamples
+    surface_class: NDArray[np.uint8]
+    inside: Ints
+    shut: Ints
+    clamped: NDArray[np.bool_]
+    conditions: Conditions
+
+    @classmethod
+    def of(cls, ready: Prepared) -> "Ground":
+        """The ground of a part that is ready, in its first setup."""
+        none = np.zeros(0, np.int32)
+        samples = replace(
+            ready.samples, uv=np.zeros((0, 2)), face=none, area=np.zeros(0), neighbours=np.zeros((0, 2), np.int32), reasons=(),
+            grids=(), empty=(), face_gaps=(),
+        )  # fmt: skip
+        conditions = replace(ready.conditions, jobs=1, around=_bare(ready.conditions.around))
+        return cls(samples, ready.surface_class, ready.inside, ready.shut, ready.clamped, conditions)
+
+    def block(self, first: int, last: int) -> "Ground":
+        """The samples from `first`, which begins a piece (`threads.CHUNK`), to `last`, which ends one or all: views."""
+        rows = slice(first, last)
+        arrays = ("point", "normal", "direction_max", "curvature", "unjudged")
+        samples = replace(self.samples, **{name: getattr(self.samples, name)[rows] for name in arrays})
+        return Ground(samples, self.surface_class[rows], self.inside[rows], self.shut[rows], self.clamped[rows],
+                      self.conditions)  # fmt: skip
+
+
+def _bare(around: Surroundings) -> Surroundings:
+    """The same obstacles without what is told of them."""
+    alone = None if around.alone is None else _bare(around.alone)
+    return replace(around, missing=(), on_bodies=(), lost=(), fixtures=(), alone=alone)
