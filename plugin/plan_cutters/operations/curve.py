@@ -53,7 +53,7 @@ def curve(
         order, bound = _order(table, weight, most), None
     chosen = np.flatnonzero(np.isin(columns.key, fewest.columns.of(fewest.chosen).key))
     own = chosen[_order(table[chosen], weight, most)]
-    ways = [probes.table(rows, columns.of(each)) for each in (np.array(order, np.int64), own)]
+    ways = [probes.kept(rows, columns.of(each)) for each in (np.array(order, np.int64), own)]
     steps = []
     for k in range(most):
         share = min(1.0, max(float(size[way[:, : k + 1].any(axis=1)].sum()) for way in ways) / max(whole, 1e-300))

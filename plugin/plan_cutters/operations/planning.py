@@ -79,10 +79,11 @@ def plan_operations(
             plans.append(_capped(task, "fastest", columns))
             if len(task.cutters) > 1:
                 plans.append(_capped(task, "largest first", _by_habit(task, search, few)))
-        plans = [proved(ready, each) for each in plans]
-    # What is said of the first plan is not said again of others that are the same.
-    others = [each for each in plans[1:] if not np.array_equal(each.label, plans[0].label)]
-    small = tuple(note for each in (plans[0], *others) for note in small_pieces(each, ready.samples, options.overlap))
+        # What was found of the first plan is neither sought nor said again of others that are the same.
+        first, others = proved(ready, plans[0]), [each for each in plans[1:] if not each.like(plans[0])]
+        again = {each.name: proved(ready, each) for each in others}
+        plans = [first, *(again.get(each.name, replace(first, name=each.name)) for each in plans[1:])]
+    small = tuple(note for each in (first, *others) for note in small_pieces(each, ready.samples, options.overlap))
     turned = max(sum(each.mode == "fixed" for each in plan.operations) for plan in plans)
     if options.most_operations is None and turned < len(few):
         small += (f"Orientations that add less than {100 * CRUMB:g} % of the area each are left out of the plans; "
@@ -194,12 +195,12 @@ def _checked(
     bool
         Whether the choice serves all samples.
     """
-    wanted = np.setdiff1d(task.rows, search.alone)
     while True:
         columns, problem, area = _timed(task, search, fewest)
         known = np.flatnonzero(np.isin(columns.key, fewest.key))
         chosen, rounds = choose(problem, known), rounds - 1
-        left = wanted[~task.probes.table(wanted, columns.of(chosen)).any(axis=1)]
+        served = task.probes.kept(task.rows, columns.of(chosen)).any(axis=1)
+        left = np.setdiff1d(task.rows[~served], search.alone)
         if not len(left):
             return columns, problem, area, chosen, known, True
         search.require(left[:: max(1, len(left) // 120)])

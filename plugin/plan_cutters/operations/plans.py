@@ -73,7 +73,7 @@ def plan_with(
     n, overlap = len(samples), task.ready.options.overlap
     area, edge = np.nan_to_num(samples.area), samples.neighbours
     serves, width = np.zeros((n, len(columns)), bool), np.full((n, len(columns)), np.nan)
-    serves[rows] = task.probes.table(rows, columns)
+    serves[rows] = task.probes.kept(rows, columns)
     width[rows] = widths(columns, rows, samples, task.cutters, task.paths, serves[rows])
     cost = np.full((n, len(columns)), np.inf)
     cost[rows] = costs_of(columns, width[rows], serves[rows], area[rows], task.cutters, task.paths)
@@ -188,7 +188,7 @@ def best_area(task: Task, columns: Columns, most: int | None) -> Columns:
 
     `most` None: as many as add each at least `CRUMB` of the area that all serve.
     """
-    serves, left = task.probes.table(task.rows, columns), np.nan_to_num(task.ready.samples.area[task.rows])
+    serves, left = task.probes.kept(task.rows, columns), np.nan_to_num(task.ready.samples.area[task.rows])
     picked, least = list[int](), CRUMB * float(left @ serves.any(axis=1)) if most is None else -1.0
     for _ in range(len(columns) if most is None else min(most, len(columns))):
         gain = left @ serves

@@ -37,6 +37,8 @@ class Probes:
         outside: Sequence[NDArray[np.bool_]],
     ) -> None:  # fmt: skip
         self.samples, self.cutters, self.setups, self.outside, self.made = samples, cutters, setups, outside, 0
+        self._kept: dict[str, NDArray[np.bool_]] = {}
+        self._kept_rows: Rows = np.zeros(0, np.int64)
 
     def table(self, rows: Rows, columns: Columns) -> NDArray[np.bool_]:
         """Where each column serves: (rows, columns)."""
@@ -49,6 +51,16 @@ class Probes:
                 found[np.ix_(mine, open_)] = free
                 self.made += made
         return found.T
+
+    def kept(self, rows: Rows, columns: Columns) -> NDArray[np.bool_]:
+        """As `table`, for columns that are asked for again and again at the same rows."""
+        if not np.array_equal(rows, self._kept_rows):
+            self._kept, self._kept_rows = {}, rows
+        keys = columns.key.tolist()
+        new = np.array([k for k, key in enumerate(keys) if key not in self._kept], np.int64)
+        if len(new):
+            self._kept |= dict(zip((keys[k] for k in new.tolist()), self.table(rows, columns.of(new)).T, strict=True))
+        return np.array([self._kept[key] for key in keys], bool).reshape(len(keys), len(rows)).T
 
     def one(self, rows: Rows, columns: Columns, which: int) -> NDArray[np.bool_]:
         """Where one column serves: (rows,)."""
