@@ -18,6 +18,8 @@ from plan_cutters.batch.row import PartRow
 from plan_cutters.errors import PlanError
 
 PLAN = "plan.json"
+#: Folder of the output with the verdicts of each cutter on each part.
+VERDICTS = ".verdicts"
 #: Exit codes with which a plan is there.
 _PLANNED = (0, 1, 4)
 #: How often a child is looked after, s, and how long it may take to end in order.
@@ -228,6 +230,9 @@ def _planned(task: Task, data: bytes, folder: Path) -> tuple[int, str]:
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PLAN_CUTTERS_")}
     environment |= {handing.FILE: str(folder / ".handed"), handing.PARENT: str(os.getpid())}
     words = [sys.executable, "-P", "-m", "plan_cutters", "plan", f"./{name}", "-o", "out", "--quiet", *task.words]
+    if task.store is not None:
+        # A cutter that joins later is judged alone: the verdicts of the others are there.
+        words += ["--verdicts", f"{task.store.rstrip('/')}/{VERDICTS}"]
     wanted = _wanted()
     with open(folder / ".said", "wb") as said:
         child = subprocess.Popen(words, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=said, stderr=said,

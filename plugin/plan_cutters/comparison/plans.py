@@ -96,6 +96,8 @@ def _changes(old: Plan, new: Plan, despite: Collection[str]) -> Iterable[Change]
     then, now = _asked(old), _asked(new)
     for what, (mine, theirs) in {word: (then[word], now[word]) for word in ASKED}.items():
         if mine != theirs:
+            if what == "machine" and mine[0] != theirs[0]:
+                mine, theirs = mine[0], theirs[0]
             proposed = what == "setup" and old.setup_proposal is not None and new.setup_proposal is not None
             yield Change(what=what, old=_text(mine), new=_text(theirs), hinders=what not in despite and not proposed)
     others: tuple[tuple[str, Any, Any], ...] = (
