@@ -15,6 +15,7 @@ from plan_cutters.batch import cluster, keys
 from plan_cutters.batch.job import Fault, Job, Settings
 from plan_cutters.batch.run import Terms, foreseen, handed_out, outcomes, run_batch
 from plan_cutters.batch.store import Store
+from plan_cutters.batch.work import VERDICTS
 from plan_cutters.errors import PlanError
 from tests.support.places import ROOT
 
@@ -89,7 +90,11 @@ def test_rows_come_what_is_done_is_kept_and_a_broken_part_costs_itself(client, t
     assert rows["broken"].error.startswith(str(tmp_path / "broken.step"))
     assert rows["a"].share == 1.0
     assert "D12" in rows["a"].cutter
-    assert sorted(each.name for each in (tmp_path / "out").iterdir() if each.is_dir()) == ["a-plan", "deep-plan"]
+    assert sorted(each.name for each in (tmp_path / "out").iterdir() if each.is_dir()) == [
+        VERDICTS,
+        "a-plan",
+        "deep-plan",
+    ]
     assert (tmp_path / "out/summary.json").is_file()
     plan = json.loads((tmp_path / "out/a-plan/plan.json").read_text())
     assert plan["part"]["file"] == "a.step"

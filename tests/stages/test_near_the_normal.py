@@ -70,17 +70,19 @@ def cap():
 def test_a_plane_beside_a_wall_is_served_on_one_side(side):
     """A wall along Y at one side of a plane, tool radius 2.5: with the axis upright the cutter stands on one side all over.
 
-    Its bottom centre lies against the first principal direction, X here: a wall there leaves it what is farther than two
-    radii, and one on the other side leaves it all.
+    Its bottom centre lies against the first principal direction, X here, unless a wall is there: then it lies on another side,
+    and cells whose samples have different sides are served one by one.
     """
     base = shapes.plane((-10, 10), (-12, 12))
     wall = shapes.plane((-12, 12), (0, 30), (10.0 * side, 0, 0), (-side, 0, 0), (0, 1, 0))
     cutter = Cutter.flat(radius=2.5, length=40)
     found, geometry, whole = served(read_part(shapes.shell(base, wall)), cutter, budget=20_000, spacing=1.0, faces="1",
                                     axes=UP[None], tolerance=0.01)  # fmt: skip
-    (towards,) = {tuple(np.round(each, 9)) for each in found.cells.side}
-    free = towards[0] * side > 0
-    assert abs(towards[0]) == 1
-    assert found.share == pytest.approx(1.0 if free else 15.0 / 20.0, abs=0.01)
-    assert found.share <= (1.0 if free else 15.011 / 20.0)
+    middle = found.cells.uv - cutter.radius * found.cells.side[:, :2]
+    past = np.maximum(0.0, np.abs(middle[:, 1]) - 12.0)
+    assert (np.hypot(10.0 - side * middle[:, 0], past) >= cutter.radius - 0.011).all()
+    first = np.abs(found.cells.side[:, 0] - 1.0) < 1e-9
+    assert first.any()
+    assert first.all() == (side == 1)
+    assert found.share == pytest.approx(1.0) if side == 1 else 15.0 / 20.0 < found.share < 1.0
     assert deepest(found, geometry, whole, cutter, dense(whole, 0.25), 300, np.random.default_rng(0)) < 0.01 + 2e-3

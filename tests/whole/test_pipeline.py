@@ -122,7 +122,7 @@ def test_records_print_their_shapes_and_compare_by_their_numbers():
 
 def test_an_option_is_declared_once():
     words = [each.name for each in fields(Options)]
-    assert list(inspect.signature(plan).parameters) == ["part", "progress", *words]
+    assert list(inspect.signature(plan).parameters) == ["part", "progress", "client", "verdicts", *words]
     with pytest.raises(OptionError, match="no option is called tolerence; tolerance"):
         plan(SAMPLES / "v_groove.step", tolerence=0.1)
     with pytest.raises(OptionError, match="no option is called x"):

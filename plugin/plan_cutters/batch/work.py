@@ -107,7 +107,7 @@ def work(task: Task) -> Outcome:
         try:
             data = task.part or (store.read(task.source or task.file) if task.data is None else task.data)
         except PlanError as error:
-            return failed(str(error), UNREADABLE)
+            return failed(str(error).replace(task.source or task.file, task.file), UNREADABLE)
         key = keys.key(keys.checksum(data), task.settings)
         if output is not None and not task.force and (row := kept(output, task.folder, key, task.name, task.file)):
             return Outcome(row, {})

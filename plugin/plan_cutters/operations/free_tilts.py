@@ -12,6 +12,8 @@ Rows = NDArray[np.int64]
 #: Between rotations of maps that have one alone, rad.
 _ALONE = math.radians(10.0)
 _ROUNDING = 1e-9
+#: Places between rotations nearer to one than this are on it, in steps.
+_NODE = 1e-7
 
 
 def cells_of(maps: PostureMaps) -> Rows:
@@ -42,9 +44,11 @@ def holding(maps: PostureMaps, row: Rows, tilt: Floats, rotation: Floats) -> Row
     """The free intervals (p, 2) that hold tilts at samples (p,), at the two rotations beside `rotation`; -1 where none does."""
     k = len(maps.rotations)
     place = rotation / step_of(maps)
+    # A rotation of the maps has that one on both sides, however it was rounded.
+    place = np.where(np.abs(place - np.round(place)) < _NODE, np.round(place), place)
     if full_turn(maps):
-        low = np.floor(place).astype(np.int64) % k
-        high, beyond = (low + 1) % k, np.zeros(len(place), bool)
+        low, high = np.floor(place).astype(np.int64) % k, np.ceil(place).astype(np.int64) % k
+        beyond = np.zeros(len(place), bool)
     else:
         # Past its ends a part of a turn says nothing, but for half a step.
         turn = 2.0 * math.pi / step_of(maps)

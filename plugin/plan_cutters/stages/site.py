@@ -237,7 +237,7 @@ def _served(contacts: CellContacts, site: Site, rooms: Sequence[float], upto: fl
     if not (outer_tool.mode[:, OFFSET_OF] > 0.0).any():
         # A ball gouges at every tilt or at none.
         bends = 0.0
-    else:
+    elif len(outer_tool.mode) == 1:  # room is that of one end: a lens or barrel would be laid on another one
         leant = _lean_more(contacts, tensor, outlook, np.flatnonzero((outlook > 0) & known), site, upto)
     for room in rooms:
         if site.work.looked >= upto:
