@@ -25,13 +25,18 @@ def version() -> str:
     import cad_io
     import plan_cutters
 
+    found = sources(*(Path(str(module.__file__)).parent for module in (cad_io, plan_cutters)))
+    return f"{plan_cutters.__version__}+{found}"
+
+
+def sources(*folders: Path) -> str:
+    """A short checksum of all Python sources in some folders, with their names."""
     found = hashlib.sha256()
-    for module in (cad_io, plan_cutters):
-        home = Path(str(module.__file__)).parent
+    for home in folders:
         for source in sorted(home.rglob("*.py")):
-            found.update(source.relative_to(home).as_posix().encode())
-            found.update(source.read_bytes())
-    return f"{plan_cutters.__version__}+{found.hexdigest()[:12]}"
+            found.update(_framed(f"{home.name}/{source.relative_to(home).as_posix()}".encode()))
+            found.update(_framed(source.read_bytes()))
+    return found.hexdigest()[:12]
 
 
 def versions() -> dict[str, str]:

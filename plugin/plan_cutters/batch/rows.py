@@ -111,8 +111,8 @@ class Rows:
 
     def _take(self, ready: Prepared) -> None:
         """Pack the ground of a part and a setup, unless it is the one before: known by its arrays, not by what holds them."""
-        of = (ready.samples, ready.surface_class, ready.inside, ready.held, ready.conditions)
-        if len(of) == len(self._of) and all(one is other for one, other in zip(of, self._of, strict=True)):
+        of = Ground.made_of(ready)
+        if Ground.same(of, self._of):
             return
         self._of, self._token, self._there = of, secrets.token_hex(8), None
         self._packed = pickle.dumps(Ground.of(ready), protocol=5)

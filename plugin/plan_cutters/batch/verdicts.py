@@ -16,6 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from plan_cutters.batch.keys import sources
+from plan_cutters.batch.store import file_system
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import NO_REASON, REASONS, UNJUDGED, WORDS, Verdicts
 from plan_cutters.errors import PlanError
@@ -106,8 +108,8 @@ class Kept:
 
     def _digest(self, ready: Prepared) -> bytes:
         """The checksum of a ground and of this program; taken once for the cutters of a setup."""
-        of = (ready.samples, ready.surface_class, ready.inside, ready.held, ready.conditions)
-        if len(of) != len(self._of) or any(one is not other for one, other in zip(of, self._of, strict=True)):
+        of = Ground.made_of(ready)
+        if not Ground.same(of, self._of):
             ground = Ground.of(ready)
             # Names change nothing.
             machine = replace(ground.conditions.machine, name="", notes=())
@@ -200,12 +202,10 @@ def made_by() -> str:
     """Version of what verdicts follow from: the number of the program, a checksum of the sources that judge, packages."""
     import plan_cutters
 
-    home, found = Path(str(plan_cutters.__file__)).parent, hashlib.sha256()
-    for room in _ROOMS:
-        for source in sorted((home / room).rglob("*.py")):
-            found.update(source.relative_to(home).as_posix().encode() + b"\0" + source.read_bytes())
+    home = Path(str(plan_cutters.__file__)).parent
+    found = sources(*(home / room for room in _ROOMS))
     packages = " ".join(f"{name} {metadata.version(name)}" for name in _PACKAGES)
-    return f"plan-cutters {plan_cutters.__version__}, method {METHOD}, sources {found.hexdigest()[:12]}, {packages}"
+    return f"plan-cutters {plan_cutters.__version__}, method {METHOD}, sources {found}, {packages}"
 
 
 def _place(own: str, name: str) -> str:
@@ -281,13 +281,9 @@ class _Remote:
 
     def __init__(self, where: str) -> None:
         try:
-            from fsspec.core import url_to_fs
-        except ImportError:
-            raise PlanError('needs the package fsspec: pip install "plan-cutters[batch]"', file=where) from None
-        try:
-            self._fs, root = url_to_fs(where)
-        except Exception as error:
-            raise PlanError(f"--verdicts: no such place ({' '.join(str(error).split())[:120]})", file=where) from None
+            self._fs, root = file_system(where)
+        except PlanError as error:
+            raise PlanError(f"--verdicts {error}") from None
         self._root = root.rstrip("/")
 
     def get(self, name: str) -> bytes | None:

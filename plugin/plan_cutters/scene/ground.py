@@ -35,6 +35,16 @@ class Ground(Record):
     clamped: NDArray[np.bool_]
     conditions: Conditions
 
+    @staticmethod
+    def made_of(ready: Prepared) -> tuple[object, ...]:
+        """Return the objects that the ground of a part follows from: while these are the same ones, so is the ground."""
+        return ready.samples, ready.surface_class, ready.inside, ready.held, ready.conditions
+
+    @staticmethod
+    def same(one: tuple[object, ...], other: tuple[object, ...]) -> bool:
+        """Whether two grounds are made of the same objects, which no copy of an equal one is."""
+        return len(one) == len(other) and all(mine is theirs for mine, theirs in zip(one, other, strict=True))
+
     @classmethod
     def of(cls, ready: Prepared) -> "Ground":
         """The ground of a part that is ready, in its first setup."""
