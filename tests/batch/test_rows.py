@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 import plan_cutters
 from plan_cutters import Cutter, Options, PlanError
 from plan_cutters.batch import rows as cut
-from plan_cutters.batch.rows import Rows, connected, judged_block
+from plan_cutters.batch.rows import Rows, judged_block
 from plan_cutters.document.clock import Clock
 from plan_cutters.domain.nesting import handed
 from plan_cutters.domain.verdicts import ACCESSIBLE, INTERFERENCE_FREE, UNJUDGED, Verdicts
@@ -187,23 +187,6 @@ def test_losing_workers_for_ever_is_an_error(client, ready, monkeypatch):
     monkeypatch.setattr(client, "submit", submit)
     with pytest.raises(PlanError, match="again and again"):
         Rows(client, large=0)(ready, ready.cutters[0])
-
-
-def test_nobody_at_an_address_is_one_line(monkeypatch):
-    monkeypatch.setattr(cut, "_PATIENCE", 0.3)
-    with pytest.raises(PlanError, match="no scheduler answers") as caught, connected("tcp://127.0.0.1:9"):
-        pass
-    assert "\n" not in str(caught.value)
-
-
-def test_a_scheduler_without_workers_is_one_line(monkeypatch):
-    monkeypatch.setattr(cut, "_PATIENCE", 0.3)
-    with (
-        LocalCluster(n_workers=0, processes=False, dashboard_address=":0") as cluster,
-        pytest.raises(PlanError, match="no workers"),
-        connected(cluster.scheduler_address),
-    ):
-        pass
 
 
 @pytest.mark.slow

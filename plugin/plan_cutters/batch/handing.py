@@ -1,4 +1,4 @@
-"""How options and a part come to the command in a worker's child: in a file that its parent names, not in words.
+"""How options, a part and a cluster come to the command in a worker's child: in a file that its parent names, not in words.
 
 Only the environment names it, for a pickle must come from nobody but ourselves.
 """
@@ -6,6 +6,7 @@ Only the environment names it, for a pickle must come from nobody but ourselves.
 import functools
 import os
 import pickle
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -18,9 +19,28 @@ FILE = "PLAN_CUTTERS_HANDED"
 PARENT = "PLAN_CUTTERS_PARENT"
 
 
-def packed(options: bytes, part: bytes | None) -> bytes:
+@dataclass(frozen=True)
+class Offer:
+    """What a task of a batch offers to the process that plans its part.
+
+    Attributes
+    ----------
+    scheduler : str
+        Address.
+    turn : str
+        One part of a worker has it at a time: memory of a worker is not for several large parts.
+    said : str
+        The file that says to the task that the offer is taken: it gives its place at the worker to another part.
+    """
+
+    scheduler: str
+    turn: str
+    said: str
+
+
+def packed(options: bytes, part: bytes | None, offer: Offer | None = None) -> bytes:
     """The content of the file."""
-    return pickle.dumps({"options": options, "part": part}, protocol=5)
+    return pickle.dumps({"options": options, "part": part, "offer": offer}, protocol=5)
 
 
 def options() -> "Options | None":
@@ -37,6 +57,11 @@ def part() -> "Part":
     """The part that was handed: this loads the CAD kernel."""
     found: Part = pickle.loads(_content()["part"])
     return found
+
+
+def offer() -> Offer | None:
+    """The cluster that is lent to this process; None where there is none."""
+    return _content()["offer"] if FILE in os.environ else None
 
 
 @functools.cache

@@ -124,10 +124,8 @@ def _shown(row: PartRow) -> _Shown:
 
 
 def _made(row: PartRow) -> str:
-    """Whether the answer is an earlier one, and whether it took several tries."""
-    kept = ["kept from an earlier run"] if row.status == "kept" else []
-    again = [f"begun {row.tries} times"] if row.tries > 1 else []
-    return ", ".join([*kept, *again])
+    """Whether the answer is an earlier one."""
+    return "kept from an earlier run" if row.status == "kept" else ""
 
 
 def _time(seconds: float | None) -> str:

@@ -70,7 +70,7 @@ class Fault:
     @property
     def row(self) -> PartRow:
         """Its line of the table."""
-        return PartRow(name=self.name, file=self.file, status="failed", code=self.code, error=self.why, tries=0)
+        return PartRow(name=self.name, file=self.file, status="failed", code=self.code, error=self.why)
 
 
 @dataclass(frozen=True)

@@ -52,9 +52,9 @@ def plan(
     return pipeline.plan(part, progress=progress, judged=judging(client, verdicts), **options)
 
 
-def judging(client: Any = None, verdicts: str | None = None) -> Judge:
-    """What judges with a cluster, with kept verdicts, with both, or with neither."""
-    judged: Judge = judge
+def judging(client: Any = None, verdicts: str | None = None, otherwise: Judge | None = None) -> Judge:
+    """What judges with a cluster, with kept verdicts, with both, or with neither: then `otherwise`."""
+    judged: Judge = otherwise or judge
     if client is not None:
         from plan_cutters.batch.rows import Rows
 

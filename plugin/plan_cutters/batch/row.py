@@ -40,8 +40,6 @@ class PartRow(BaseModel):
         The review page and the picture, below the output, where they were written.
     error : str, optional
         One line: file, face, cause, what to try.
-    tries : int
-        How many times it was begun in this run.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -63,4 +61,3 @@ class PartRow(BaseModel):
     page: str | None = None
     picture: str | None = None
     error: str | None = None
-    tries: int = 1

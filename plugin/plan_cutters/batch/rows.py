@@ -5,7 +5,6 @@ import secrets
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
 from dataclasses import fields
 from typing import Any
 
@@ -29,8 +28,9 @@ _EACH, _MOST = 6, 32 * CHUNK
 #: How often what was lost with its worker is handed out again, and after how many seconds; a task that ends worker after
 #: worker is stopped by the scheduler.
 _ROUNDS, _PAUSE = 5, 0.2
-#: Seconds in which a scheduler must answer and have a worker.
-_PATIENCE = 10.0
+_AWAY = "the scheduler went away: start it, or leave --cluster out"
+#: Before the parts that wait: whoever judges in rows is in the midst of a part.
+_FIRST = 1
 #: Grounds that a worker keeps unpacked, the last ones, by their tokens.
 _KEPT = 2
 _grounds: dict[str, Ground] = {}
@@ -120,7 +120,10 @@ class Rows:
     def _blocks(self, n: int) -> Iterator[Block]:
         size = self._block
         if size is None:
-            threads = sum(self._client.nthreads().values())
+            try:
+                threads = sum(self._client.nthreads().values())
+            except OSError:
+                raise PlanError(_AWAY) from None
             size = min(_MOST, -(-n // (_EACH * max(1, threads))))
         size = CHUNK * max(1, -(-size // CHUNK))
         return ((first, min(first + size, n)) for first in range(0, n, size))
@@ -145,7 +148,7 @@ class Rows:
             for first, last in blocks:
                 future = self._client.submit(
                     judged_block, self._token, self._there, first, last, cutter, _part(known, first, last), made_by(),
-                    key=f"judge {cutter.id}-{token}-{first}", pure=False,
+                    key=f"judge {cutter.id}-{token}-{first}", pure=False, priority=_FIRST,
                 )  # fmt: skip
                 asked[future] = first, last
             for future in as_completed(list(asked), loop=self._client.loop):
@@ -165,7 +168,7 @@ class Rows:
 
     def _require_scheduler(self) -> None:
         if self._client.status != "running":
-            raise PlanError("the scheduler went away: start it, or leave --cluster out")
+            raise PlanError(_AWAY)
 
 
 def judged_block(
@@ -205,33 +208,6 @@ def judged_block(
         block = _grounds[token].block(first, last)
     work = Work()
     return judge(block, cutter, known=known, work=work), work.looked
-
-
-@contextmanager
-def connected(address: str) -> Iterator[Any]:
-    """Give a client of a running scheduler that has workers.
-
-    Raises
-    ------
-    PlanError
-        A package is missing, or nobody answers there.
-    """
-    try:
-        from distributed import Client
-    except ImportError:
-        raise PlanError('--cluster needs the package distributed: pip install "plan-cutters[batch]"') from None
-    try:
-        client = Client(address, timeout=_PATIENCE, set_as_default=False)
-    except Exception as error:
-        why = " ".join(str(error).split())[:120] or type(error).__name__
-        raise PlanError(f"no scheduler answers ({why}): start one with `dask scheduler`, or leave --cluster out",
-                        file=address) from None  # fmt: skip
-    with client:
-        try:
-            client.wait_for_workers(1, timeout=_PATIENCE)
-        except TimeoutError:
-            raise PlanError("the scheduler has no workers: start some with `dask worker`", file=address) from None
-        yield client
 
 
 def _part(known: Verdicts | None, first: int, last: int) -> Verdicts | None:

@@ -24,7 +24,6 @@ def row_of(
     status: Status = "planned",
     folder: str | None = None,
     seconds: float | None = None,
-    tries: int = 1,
 ) -> PartRow:
     """Sum up a plan in a line.
 
@@ -32,7 +31,7 @@ def row_of(
     ----------
     plan : Plan
         As written: its `files` say which of the page and the picture there are.
-    name, file, key, status, tries
+    name, file, key, status
         As in `PartRow`.
     code : int
         The exit code that the plan asks for.
@@ -67,7 +66,6 @@ def row_of(
         folder=folder,
         page=written.get("html"),
         picture=written.get("png"),
-        tries=tries,
     )
 
 

@@ -257,6 +257,6 @@ def foreseen(parts: Iterable[Job | Fault], out: store.Store, terms: Terms) -> It
             row = None if terms.force else _kept(task, out)
             if row is None:
                 store.read(part.file) if part.part is None and terms.force else None
-            yield row or PartRow(name=part.name, file=part.file, status="planned", code=0, tries=0)
+            yield row or PartRow(name=part.name, file=part.file, status="planned", code=0)
         except PlanError as error:
             yield _failed(part, str(error), UNREADABLE)

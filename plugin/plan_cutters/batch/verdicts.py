@@ -8,7 +8,7 @@ import os
 import secrets
 import zlib
 from collections.abc import Callable, Iterator
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import fields, replace
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.batch.keys import sources
+from plan_cutters.batch.digest import digest, sources
 from plan_cutters.batch.store import file_system
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import NO_REASON, REASONS, UNJUDGED, WORDS, Verdicts
@@ -88,8 +88,8 @@ class Kept:
         """Find the verdicts of a cutter; parameters and result as of `judge`. The work is that of the run that judged."""
         if rows is not None:
             return self._otherwise(ready, cutter, rows, known, progress=progress, work=work)
-        own = hashlib.sha256(self._digest(ready) + _digest(replace(cutter, name=""))).hexdigest()
-        name = _digest(None if known is None or (known.verdict == UNJUDGED).all() else _stated(known)).hex()[:32]
+        own = hashlib.sha256(self._digest(ready) + digest(replace(cutter, name=""))).hexdigest()
+        name = digest(None if known is None or (known.verdict == UNJUDGED).all() else _stated(known)).hex()[:32]
         n = len(ready.samples)
         for entry in self._entries(own, name):
             if (unpacked := self._read(own, entry, n)) is not None:
@@ -114,7 +114,7 @@ class Kept:
             # Names change nothing.
             machine = replace(ground.conditions.machine, name="", notes=())
             ground = replace(ground, conditions=replace(ground.conditions, machine=machine))
-            self._of, self._ground = of, _digest((ground, made_by()))
+            self._of, self._ground = of, digest((ground, made_by()))
         return self._ground
 
     def _entries(self, own: str, name: str) -> Iterator[str]:
@@ -214,36 +214,6 @@ def _place(own: str, name: str) -> str:
 
 def _stated(known: Verdicts) -> dict[str, Any]:
     return {each.name: getattr(known, each.name) for each in fields(known)}
-
-
-def _digest(value: Any) -> bytes:
-    """SHA-256 of a value: of equal values in every process the same, of others another one."""
-    found = hashlib.sha256()
-    _feed(found, value)
-    return found.digest()
-
-
-def _feed(found: Any, value: Any) -> None:
-    match value:
-        case None | bool() | int() | float() | str():
-            found.update(f"{type(value).__name__} {value!r};".encode())
-        case np.generic():
-            _feed(found, value.item())
-        case np.ndarray():
-            found.update(f"array {value.dtype.str} {value.shape};".encode())
-            found.update(np.ascontiguousarray(value).data)
-        case tuple() | list():
-            found.update(f"list {len(value)};".encode())
-            for each in value:
-                _feed(found, each)
-        case dict():
-            _feed(found, [(key, value[key]) for key in sorted(value)])
-        case _ if is_dataclass(value) and not isinstance(value, type):
-            found.update(f"{type(value).__qualname__};".encode())
-            # Trees and the like are made of the fields, and not fields themselves.
-            _feed(found, [(each.name, getattr(value, each.name)) for each in fields(value) if each.compare])
-        case _:
-            raise TypeError(f"verdicts cannot be kept by a {type(value).__name__}")
 
 
 class _Local:

@@ -102,7 +102,8 @@ def work(task: Task) -> Outcome:
             return failed(why, USAGE)
         output = None if task.store is None else store.Store(task.store)
         if output is not None and not output.seen(task.token):
-            return failed(f"{_here()}: this worker does not see {task.store}: give a folder that all machines share, or a URL",
+            return failed(f"{_here()}: this worker does not see {task.store} (give a folder that all machines share, or a URL), "
+                          "or another batch has begun there since",
                           USAGE)  # fmt: skip
         try:
             data = task.part or (store.read(task.source or task.file) if task.data is None else task.data)
@@ -135,7 +136,7 @@ def kept(output: store.Store, folder: str, key: str, name: str, file: str) -> Pa
     row = output.row(folder)
     if row is None or row.key != key:
         return None
-    return row.model_copy(update={"status": "kept", "name": name, "file": file, "tries": 0})
+    return row.model_copy(update={"status": "kept", "name": name, "file": file})
 
 
 def _unfit(versions: Mapping[str, str]) -> str:
@@ -212,9 +213,26 @@ def _wanted() -> Callable[[], bool]:
 
     def wanted() -> bool:
         state = worker.state.tasks.get(name)
-        return state is not None and state.state == "executing"
+        return state is not None and state.state in ("executing", "long-running")
 
     return wanted
+
+
+def _offered(folder: Path) -> handing.Offer | None:
+    """The cluster of this worker, for a part that turns out to be large; None where another process cannot reach it."""
+    worker = _worker()
+    if worker is None or not worker.scheduler.address.startswith("tcp://"):
+        return None
+    return handing.Offer(
+        worker.scheduler.address, str(Path(worker.local_directory, "large-part")), str(folder / ".lent")
+    )
+
+
+def _make_room() -> None:
+    """Give this task's place at the worker to another one: it only waits while others judge for it."""
+    from distributed import secede
+
+    secede()
 
 
 def _planned(task: Task, data: bytes, folder: Path) -> tuple[int, str]:
@@ -226,7 +244,8 @@ def _planned(task: Task, data: bytes, folder: Path) -> tuple[int, str]:
         if (folder / file).exists():
             return USAGE, f"{task.file}: a fixture's file is called like the part: rename one"
         (folder / file).write_bytes(content)
-    (folder / ".handed").write_bytes(handing.packed(task.handed.options, task.part))
+    offer = _offered(folder)
+    (folder / ".handed").write_bytes(handing.packed(task.handed.options, task.part, offer))
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PLAN_CUTTERS_")}
     environment |= {handing.FILE: str(folder / ".handed"), handing.PARENT: str(os.getpid())}
     words = [sys.executable, "-P", "-m", "plan_cutters", "plan", f"./{name}", "-o", "out", "--quiet", *task.words]
@@ -237,6 +256,7 @@ def _planned(task: Task, data: bytes, folder: Path) -> tuple[int, str]:
     with open(folder / ".said", "wb") as said:
         child = subprocess.Popen(words, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=said, stderr=said,
                                  start_new_session=True)  # fmt: skip
+    lent = False
     try:
         ends = time.monotonic() + (task.timeout or float("inf"))
         while True:
@@ -251,6 +271,9 @@ def _planned(task: Task, data: bytes, folder: Path) -> tuple[int, str]:
                 if not wanted():
                     _end(child)
                     return 130, f"{task.file}: interrupted"
+                if offer is not None and not lent and os.path.exists(offer.said):
+                    _make_room()
+                    lent = True
     finally:
         _end(child)
     said_last = (folder / ".said").read_text(encoding="utf-8", errors="replace").strip().splitlines()

@@ -1,11 +1,10 @@
 """One part: planned, written, summarised."""
 
 import gc
-import logging
 import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -96,12 +95,15 @@ def _judging(given: dict[str, Any]) -> "Iterator[Judge]":
     with ExitStack() as stack:
         client = None
         if given["cluster"] is not None:
-            from plan_cutters.batch.rows import connected
+            from plan_cutters.batch import cluster
 
-            # What goes wrong is said once, as an error of this part.
-            logging.getLogger("distributed").setLevel(logging.CRITICAL)
-            client = stack.enter_context(connected(given["cluster"]))
-        judged = judging(client, given["verdicts"])
+            client = stack.enter_context(cluster.opened(given["cluster"]))
+        lent = None
+        if (offer := handing.offer()) is not None:
+            from plan_cutters.batch.lending import Lent
+
+            lent = stack.enter_context(closing(Lent(offer)))
+        judged = judging(client, given["verdicts"], lent)
         yield judged
     if given["verdicts"] is not None:
         from plan_cutters.batch.verdicts import Kept
