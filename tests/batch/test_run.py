@@ -5,6 +5,7 @@ import json
 import os
 import threading
 import time
+from typing import ClassVar
 
 import fsspec
 import psutil
@@ -13,9 +14,10 @@ import pytest
 from plan_cutters import Options, plan_many
 from plan_cutters.batch import cluster, keys
 from plan_cutters.batch.job import Fault, Job, Settings
+from plan_cutters.batch.row import PartRow
 from plan_cutters.batch.run import Terms, foreseen, handed_out, outcomes, run_batch
 from plan_cutters.batch.store import Store
-from plan_cutters.batch.work import VERDICTS
+from plan_cutters.batch.work import VERDICTS, Outcome
 from plan_cutters.errors import PlanError
 from tests.support.places import ROOT
 
@@ -220,6 +222,40 @@ def test_what_is_in_flight_is_bounded_and_an_error_is_not_tried_again(client):
     assert all(
         isinstance(result, ValueError) if task % 50 == 7 else result == task / 2 for task, result in found.items()
     )
+
+
+def _picky(task):
+    """On a worker without what it takes, each task ends at once."""
+    from distributed import get_worker
+
+    unfit, number = task
+    address = get_worker().address
+    row = PartRow(name=f"{number}", file="", status="failed", code=2, error="no kernel")
+    if address in unfit:
+        return Outcome(row, {}, unfit=address)
+    time.sleep(0.05)
+    return Outcome(row.model_copy(update={"status": "planned"}), {})
+
+
+def test_a_worker_that_can_plan_nothing_is_left_out_and_fails_no_part(client):
+    class Board:
+        lines: ClassVar[list[str]] = []
+
+        def told(self, *_):
+            pass
+
+        def say(self, text):
+            self.lines.append(text)
+
+    first, second = client.nthreads()
+    found = [each for _, each in handed_out(client, iter([((first,), k) for k in range(40)]), _picky, board=Board())]
+    assert {each.row.name for each in found} == {f"{k}" for k in range(40)}
+    assert {each.row.status for each in found} == {"planned"}
+    assert set(Board.lines) == {f"worker {first} is left out: no kernel"}
+    # Where all are like that, each part says why.
+    found = [each for _, each in handed_out(client, iter([((first, second), k) for k in range(9)]), _picky)]
+    assert len(found) == 9
+    assert {each.row.status for each in found} == {"failed"}
 
 
 def test_no_scheduler_is_one_line_within_seconds(tmp_path):

@@ -50,20 +50,30 @@ def opened(address: str | None, workers: int = 1) -> Iterator[Any]:
         import distributed
     except ImportError:
         raise PlanError('the package distributed is not there: pip install "plan-cutters[batch]"') from None
-    # What goes wrong is said here, once; dask's own lines would only surround it.
-    logger = logging.getLogger("distributed")
-    before = logger.level
-    logger.setLevel(logging.CRITICAL)
+    with contextlib.ExitStack() as stack:
+        stack.enter_context(_quiet())
+        if address is None:
+            client = stack.enter_context(_local(distributed, workers))
+        else:
+            client = stack.enter_context(_reached(distributed, address))
+            _same(client)
+        yield client
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep the lines and tracebacks of dask from people: what goes wrong is said here, once."""
+    # Dask gives some of its loggers levels of their own.
+    loggers = [logging.getLogger(name) for name in ("distributed", *logging.root.manager.loggerDict)
+               if name.partition(".")[0] == "distributed"]  # fmt: skip
+    before = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL)
     try:
-        with contextlib.ExitStack() as stack:
-            if address is None:
-                client = stack.enter_context(_local(distributed, workers))
-            else:
-                client = stack.enter_context(_reached(distributed, address))
-                _same(client)
-            yield client
+        yield
     finally:
-        logger.setLevel(before)
+        for logger, level in zip(loggers, before, strict=True):
+            logger.setLevel(level)
 
 
 @contextlib.contextmanager

@@ -163,7 +163,8 @@ def handed_out(
     """Work on tasks on a cluster, a bounded number at a time; each with its result, or the exception that it ended in.
 
     What is asked of dask never grows with the number of tasks, so that neither this process nor the scheduler does. A task
-    whose worker is lost goes to another one (dask's `allowed-failures`); what the function raises is not tried again.
+    whose worker is lost goes to another one (dask's `allowed-failures`); what the function raises is not tried again. A worker
+    that is unfit (`Outcome.unfit`) gets no more tasks as long as there are others: it would fail them all in no time.
     """
     from distributed import Future
 
@@ -171,18 +172,25 @@ def handed_out(
     ready: queue.SimpleQueue[Future] = queue.SimpleQueue()
     flying: dict[Future, Any] = {}
     done, most, looked, gone, begun_all = 0, _LEAST, 0.0, 0.0, False
+    unfit: set[str] = set()
+
+    def hand(task: Any) -> None:
+        fit = [each for each in _threads(client) if each not in unfit] if unfit else None
+        future = client.submit(function, task, key=f"plan-{run}-{next(count)}", pure=False, retries=0, workers=fit or None,
+                               allow_other_workers=bool(fit))  # fmt: skip
+        flying[future] = task
+        future.add_done_callback(ready.put)
+
     try:
         while True:
             if not gone and time.monotonic() - looked > _LOOK:
-                most, looked = max(_LEAST, _AHEAD * _threads(client)), time.monotonic()
+                most, looked = max(_LEAST, _AHEAD * sum(_threads(client).values())), time.monotonic()
             while not begun_all and len(flying) < most and not gone:
                 task = next(tasks, None)
                 if task is None:
                     begun_all = True
                     break
-                future = client.submit(function, task, key=f"plan-{run}-{next(count)}", pure=False, retries=0)
-                flying[future] = task
-                future.add_done_callback(ready.put)
+                hand(task)
             if board is not None:
                 board.told(done, len(flying), total)
             if not flying:
@@ -198,6 +206,13 @@ def handed_out(
                 continue
             task, found = flying.pop(future), _result(future)
             future.release()
+            if where := getattr(found, "unfit", ""):
+                unfit.add(where)
+                if any(each not in unfit for each in _threads(client)):
+                    if board is not None:
+                        board.say(f"worker {where} is left out: {found.row.error}")
+                    hand(task)
+                    continue
             done += 1
             yield task, found
         for task in itertools.chain(flying.values(), tasks):
@@ -207,11 +222,12 @@ def handed_out(
             client.cancel(list(flying))
 
 
-def _threads(client: Any) -> int:
+def _threads(client: Any) -> dict[str, int]:
+    """How many threads each worker has."""
     try:
-        return sum(client.nthreads().values())
+        return dict(client.nthreads())
     except Exception:  # a scheduler that is gone is looked after elsewhere
-        return 0
+        return {}
 
 
 def _result(future: Any) -> Any:

@@ -8,7 +8,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -81,10 +81,19 @@ class Task:
 
 @dataclass(frozen=True)
 class Outcome:
-    """An outcome holds the row of a part, and its files where the worker could not write them."""
+    """An outcome holds the row of a part, and its files where the worker could not write them.
+
+    Attributes
+    ----------
+    row : PartRow
+    files : mapping
+    unfit : str
+        Address of the worker where no part can be planned, whatever it is: `row.error` says why. The part is for another one.
+    """
 
     row: PartRow
     files: Mapping[str, bytes]
+    unfit: str = ""
 
 
 def work(task: Task) -> Outcome:
@@ -96,15 +105,18 @@ def work(task: Task) -> Outcome:
         return Outcome(PartRow(name=task.name, file=task.file, key=key, status="failed", code=code, error=line,
                                seconds=time.monotonic() - began), {})  # fmt: skip
 
+    def unfit(why: str) -> Outcome:
+        worker = _worker()
+        return replace(failed(why, USAGE), unfit="" if worker is None else str(worker.address))
+
     key = ""
     try:
         if why := _unfit(task.versions):
-            return failed(why, USAGE)
+            return unfit(why)
         output = None if task.store is None else store.Store(task.store)
         if output is not None and not output.seen(task.token):
-            return failed(f"{_here()}: this worker does not see {task.store} (give a folder that all machines share, or a URL), "
-                          "or another batch has begun there since",
-                          USAGE)  # fmt: skip
+            return unfit(f"{_here()}: this worker does not see {task.store} (give a folder that all machines share, or a URL), "
+                          "or another batch has begun there since")  # fmt: skip
         try:
             data = task.part or (store.read(task.source or task.file) if task.data is None else task.data)
         except PlanError as error:
