@@ -1,6 +1,6 @@
 """What do more workers bring, and what does the scheduler cost? Points a, b and d of `docs/scaling.md`.
 
-    python benchmarks/scaling.py parts FOLDER [--parts 200] [--workers 1 2]
+    python benchmarks/scaling.py parts FOLDER [--parts 200] [--grid 31] [--workers 1 2]
     python benchmarks/scaling.py rows [--grid 1000] [--workers 1 2]
     python benchmarks/scaling.py queue [--parts 100000] [--seconds 0.1] [--threads 32]
 
@@ -62,7 +62,7 @@ def spent() -> float:
     return sum(os.times()[:4])
 
 
-def parts(folder: Path, count: int, workers: list[int]) -> None:
+def parts(folder: Path, count: int, grid: int, workers: list[int]) -> None:
     """(a) Many parts: rate, and the share of the threads' time that is not spent on a part."""
     from plan_cutters import plan_many
 
@@ -72,12 +72,12 @@ def parts(folder: Path, count: int, workers: list[int]) -> None:
     named = [
         (f"{k:03}-{file.stem}", str(file)) for k, file in enumerate(itertools.islice(itertools.cycle(files), count))
     ]
-    print(f"{count} parts of {len(files)} files, {len(OPTIONS['cutters'])} cutters, grid {OPTIONS['grid']}")  # type: ignore[arg-type]
+    print(f"{count} parts of {len(files)} files, {len(OPTIONS['cutters'])} cutters, grid {grid}", flush=True)  # type: ignore[arg-type]
     first = 0.0
     for each in workers:
         with local(each) as client, tempfile.TemporaryDirectory() as out:
             before, began = sum(client.run(spent).values()), time.perf_counter()
-            rows = [found.row for found in plan_many(named, client, out=out, **OPTIONS)]
+            rows = [found.row for found in plan_many(named, client, out=out, **OPTIONS | {"grid": grid})]
             clock, used = time.perf_counter() - began, sum(client.run(spent).values()) - before
         if len(rows) != count or len({row.name for row in rows}) != count:
             raise SystemExit(f"{count} parts, {len(rows)} rows")
@@ -86,7 +86,7 @@ def parts(folder: Path, count: int, workers: list[int]) -> None:
         failed = sum(row.status == "failed" for row in rows)
         print(f"{each} workers: {clock:.1f} s, {count / clock:.3f} parts/s ({count / clock / first:.2f} times), "
               f"processor {used:.1f} s, "
-              f"not within a part {100 * (1 - inside / (each * clock)):.1f} %, failed {failed}")  # fmt: skip
+              f"not within a part {100 * (1 - inside / (each * clock)):.1f} %, failed {failed}", flush=True)  # fmt: skip
 
 
 def rows(grid: int, workers: list[int]) -> None:
@@ -192,7 +192,10 @@ def queue(count: int, seconds: float, threads: int) -> None:
             for each in reversed(begun):
                 each.terminate()
             for each in begun:
-                each.wait()
+                try:
+                    each.wait(10)
+                except subprocess.TimeoutExpired:  # a worker may wait for a scheduler that has gone
+                    each.kill()
 
 
 def spent_by(process: psutil.Process) -> float:
@@ -205,6 +208,7 @@ def main() -> None:
     many = what.add_parser("parts")
     many.add_argument("folder", type=Path)
     many.add_argument("--parts", type=int, default=200)
+    many.add_argument("--grid", type=int, default=31)
     one = what.add_parser("rows")
     one.add_argument("--grid", type=int, default=1000)
     for each in (many, one):
@@ -216,7 +220,7 @@ def main() -> None:
     given = parser.parse_args()
     match given.what:
         case "parts":
-            parts(given.folder, given.parts, given.workers)
+            parts(given.folder, given.parts, given.grid, given.workers)
         case "rows":
             rows(given.grid, given.workers)
         case "queue":
