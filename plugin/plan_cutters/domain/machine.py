@@ -1,8 +1,9 @@
 """Machines: which tool axes can be taken, by a plain limit about the setup axis or by rotary axes with their limits."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,10 +11,12 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from plan_cutters.domain.axis import Axis, Carried, direction_of
 from plan_cutters.domain.checks import items, number, radians, shown
+from plan_cutters.domain.degrees import Angle, degrees_too
 from plan_cutters.domain.kinematics import PARALLEL, Kinematics
 from plan_cutters.errors import MachineError
 
 
+@degrees_too({"tilt_limit": Angle(0.0, 180.0)}, error=MachineError)
 @dataclass(frozen=True, slots=True)
 class Machine:
     """A machine as far as the tool axis goes.
@@ -22,7 +25,7 @@ class Machine:
     ----------
     name : str
     tilt_limit : float, optional
-        Largest angle between tool axis and setup axis, rad; None for no limit.
+        Largest angle between tool axis and setup axis, rad, or as `tilt_limit_deg`; None for no limit.
     axes : tuple of Axis
         From the part over the bed to the tool: those that carry the part first, the one next to the part as the first of all.
         None: any tool axis within `tilt_limit`.
@@ -40,6 +43,20 @@ class Machine:
     tool_axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
     notes: tuple[str, ...] = ()
     fixed: bool = False
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            name: str = "unlimited",
+            tilt_limit: float | None = None,
+            axes: Sequence[Axis] = (),
+            tool_axis: Sequence[float] | Floats = ...,
+            notes: Sequence[str] = (),
+            fixed: bool = False,
+            *,
+            tilt_limit_deg: float | None = None,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str):
