@@ -153,8 +153,8 @@ class PostureMaps(Record):
             turns = turns[(self.rotations >= first - _END) & (self.rotations <= last + _END)]
         if not len(turns):
             raise OptionError("the posture maps have none of the rotations asked for")
-        plane = plane_of(setup)
-        z, across = (setup, None) if plane is None else plane
+        own: Any = plane_of(setup) or (setup, None)
+        z, across = own
         return self._laid(machine_given(machine), Placement(z, across if x is None else x), turns, (low, high), jobs)
 
     def asked(self, part: str | os.PathLike[str] | Part | None = None, **options: Unpack[PlanOptions]) -> Verdicts:
