@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters import Cutter, Machine, Options, PostureMap, PostureRange, posture_map
+from plan_cutters import Axis, Cutter, Machine, Options, PostureMap, PostureRange, posture_map
 from plan_cutters.domain.degrees import Angle, in_radians
 from plan_cutters.errors import CutterError, MachineError, OptionError
 from plan_cutters.option_types import ANGLES
@@ -110,6 +110,19 @@ def test_what_has_no_meaning_is_told_in_the_unit_that_it_was_given_in(make, erro
         make()
     assert " rad" not in str(found.value).replace(" radi", "")
     assert "\n" not in str(found.value)
+
+
+def test_rotary_axes_of_machines():
+    turning = {"limits_deg": [-30, 120], "rate_deg": 90}
+    assert Axis.rotary("A", "part", (1, 0, 0), **turning) == Axis(
+        "A", "rotary", "part", (1, 0, 0), (math.radians(-30), math.radians(120)), rate=math.pi / 2
+    )
+    assert Axis.rotary("C", "tool", (0, 0, 1), limits_deg=(-math.inf, math.inf)).limits is None
+    for words, error in (({"limits_deg": (120, -30)}, "must run upwards"), ({"limits_deg": 30}, "its limits in degrees must be"),
+                         ({"limits_deg": (0, math.nan)}, "nan"), ({"rate_deg": 0}, "its rate must be positive"),
+                         ({"rate_deg": math.nan}, "its rate in degrees a second must be a number, not nan")):  # fmt: skip
+        with pytest.raises(MachineError, match=error):
+            Axis.rotary("A", "part", (1, 0, 0), **words)
 
 
 def test_people_see_the_words():

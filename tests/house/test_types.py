@@ -56,6 +56,15 @@ def found(tmp_path_factory):
     return lines
 
 
+def test_editors_find_the_sources_that_setup_installed():
+    paths = Path(sysconfig.get_path("purelib")) / "plan_cutters_sources.pth"
+    if not paths.exists():
+        pytest.skip("this environment was not made by setup.sh")
+    roots = [Path(line) for line in paths.read_text().splitlines()]
+    typed = {path.parent for root in roots for path in root.glob("*/py.typed")}
+    assert typed == {ROOT / "plugin/plan_cutters", ROOT / "cad_io"}
+
+
 def marked(text, mark):
     return {number for number, line in enumerate(text.splitlines(), 1) if mark in line}
 

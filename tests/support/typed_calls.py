@@ -12,6 +12,7 @@ from typing import Any, assert_type
 from cad_io import Part, SurfaceSamples, read_part
 from cad_io.arrays import Floats
 from plan_cutters import (
+    Axis,
     Cutter,
     Machine,
     Options,
@@ -77,6 +78,7 @@ def degrees(part: Scene) -> None:
     assert_type(found.axis(0, tilt_deg=30), Floats)
     PostureRange(tilt_deg=(0, 60), step_deg=5)
     Machine("tilting", tilt_limit_deg=30)
+    Machine("table", axes=[Axis.rotary("A", "part", (1, 0, 0), limits_deg=(-30, 120), rate_deg=90)])
     Cutter(6, 80, taper_deg=3)
     Cutter.flat(diameter=12, length=80, taper_deg=3)
     Cutter.ball(diameter=12, length=80)
@@ -116,6 +118,7 @@ def wrong(part: Scene, result: Result) -> None:
     Cutter.flat(radus=6, length=80)  # type: ignore[call-arg]
     Cutter.flat(radius=6, length=80, shank=6)  # type: ignore[call-arg]
     Cutter.ball(diameter="12", length=80)  # type: ignore[arg-type]
+    Axis.rotary("A", "table", (1, 0, 0))  # type: ignore[arg-type]
     Machine(tilt_limit_degrees=30)  # type: ignore[call-arg]
     result.slected  # type: ignore[attr-defined]  # noqa: B018
     result.plan.cuters  # type: ignore[attr-defined]  # noqa: B018

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.axis import Axis, Carried, direction_of
+from plan_cutters.domain.axis import Axis, direction_of
 from plan_cutters.domain.checks import items, number, radians, shown
 from plan_cutters.domain.degrees import Angle, degrees_too
 from plan_cutters.domain.kinematics import PARALLEL, Kinematics
@@ -200,22 +200,22 @@ class Machine:
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
 
-def _rotary(name: str, carries: Carried, direction: tuple[float, float, float], low: float, high: float) -> Axis:
-    limits = None if math.isinf(low) else (math.radians(low), math.radians(high))
-    return Axis(name, "rotary", carries, direction, limits)
-
-
 def builtin_machines() -> dict[str, Machine]:
     """By their names; angles of the tool relative to the part, degrees, in the names' order of axes."""
-    inf = math.inf
     table: dict[str, tuple[Axis, ...]] = {
         "3-axis": (),
-        "4-axis-a": (_rotary("A", "part", X, -inf, inf),),
-        "3+2": (_rotary("C", "part", Z, -inf, inf), _rotary("A", "part", X, -110.0, 110.0)),
-        "trunnion-ac": (_rotary("C", "part", Z, -inf, inf), _rotary("A", "part", X, -30.0, 120.0)),
-        "trunnion-bc": (_rotary("C", "part", Z, -inf, inf), _rotary("B", "part", Y, -110.0, 110.0)),
-        "head-table-bc": (_rotary("C", "part", Z, -inf, inf), _rotary("B", "tool", Y, -100.0, 100.0)),
-        "head-head-ca": (_rotary("C", "tool", Z, -360.0, 360.0), _rotary("A", "tool", X, -110.0, 110.0)),
-        "nutating-bc": (_rotary("C", "part", Z, -inf, inf), _rotary("B", "tool", (0.0, 1.0, 1.0), -180.0, 180.0)),
+        "4-axis-a": (Axis.rotary("A", "part", X),),
+        "3+2": (Axis.rotary("C", "part", Z), Axis.rotary("A", "part", X, limits_deg=(-110.0, 110.0))),
+        "trunnion-ac": (Axis.rotary("C", "part", Z), Axis.rotary("A", "part", X, limits_deg=(-30.0, 120.0))),
+        "trunnion-bc": (Axis.rotary("C", "part", Z), Axis.rotary("B", "part", Y, limits_deg=(-110.0, 110.0))),
+        "head-table-bc": (Axis.rotary("C", "part", Z), Axis.rotary("B", "tool", Y, limits_deg=(-100.0, 100.0))),
+        "head-head-ca": (
+            Axis.rotary("C", "tool", Z, limits_deg=(-360.0, 360.0)),
+            Axis.rotary("A", "tool", X, limits_deg=(-110.0, 110.0)),
+        ),
+        "nutating-bc": (
+            Axis.rotary("C", "part", Z),
+            Axis.rotary("B", "tool", (0.0, 1.0, 1.0), limits_deg=(-180.0, 180.0)),
+        ),
     }
     return {name: Machine(name, axes=axes, fixed=not axes) for name, axes in table.items()}
