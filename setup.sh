@@ -32,6 +32,8 @@ if [ "${1:-}" = dev ]; then
     node=$!
 fi
 .venv/bin/python -m pip install --quiet --disable-pip-version-check $late --editable ".$extra"
+# Editors and type checkers do not run the import hook that pip installs for two roots: they read paths.
+printf '%s\n' "$PWD/plugin" "$PWD" >"$(.venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/plan_cutters_sources.pth"
 # Pip makes byte code on one core: in a new .venv all of them do. A file that is no Python of this version is no mistake of ours.
 [ -z "$late" ] || .venv/bin/python -m compileall -qq -j 0 .venv/lib/python3*/site-packages || true
 if ! .venv/bin/python -c "import OCP" 2>/dev/null; then

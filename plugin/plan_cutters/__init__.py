@@ -3,12 +3,6 @@
 Names are handed on lazily: importing the package loads neither the CAD kernel nor the compiler.
 """
 
-from importlib import import_module
-
-TYPE_CHECKING = False  # `typing` itself takes time that the command has not: an interrupt then would be a traceback
-if TYPE_CHECKING:
-    from typing import Any
-
 __version__ = "0.1.0"
 
 _HOME = {
@@ -40,7 +34,14 @@ _HOME = {
 __all__ = ["__version__", *sorted(_HOME)]
 
 
-def __getattr__(name: str) -> "Any":
+def __getattr__(name: str) -> object:
     if name not in _HOME:
         raise AttributeError(f"module 'plan_cutters' has no attribute {name!r}")
+    from importlib import import_module
+
     return getattr(import_module(f"plan_cutters.{_HOME[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    """All names, for completion: those that nobody has asked for yet are not in the module."""
+    return sorted({*globals(), *__all__})

@@ -1,18 +1,19 @@
 """The options of a plan, each with its default, are defined here."""
 
+import inspect
 import math
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from difflib import get_close_matches
-from typing import Any, TypedDict
+from typing import TYPE_CHECKING, Any, Unpack
 
-from cad_io.arrays import Floats
 from cad_io.units import UNITS
 from plan_cutters.domain.answers import answers_of
 from plan_cutters.domain.checks import choice, flag, number, shown, whole
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.default_tools import builtin
+from plan_cutters.domain.degrees import degrees_too
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.machine import Machine
@@ -22,6 +23,7 @@ from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import OptionError
 from plan_cutters.library.records import Entry, Library, libraries_of
 from plan_cutters.machines.given_setups import setups_given, without
+from plan_cutters.option_types import ANGLES, PlanOptions
 
 #: Gouge tolerances that can be asked for, mm.
 LEAST_TOLERANCE, MOST_TOLERANCE = 1e-4, 10.0
@@ -53,66 +55,10 @@ def cores() -> int:
 _BETWEEN, _MOST_BETWEEN = 24, 100_000
 
 
-Direction = str | os.PathLike[str] | Placement | Sequence[float] | Floats
-Range = Sequence[float] | Floats
-
-
-class PointOptions(TypedDict, total=False):
-    """Options of one point, of a scene and of a plan, as a caller may give them: `Options` says what each means."""
-
-    setup: Direction
-    flip: bool
-    ignore: Any
-    fixtures: Any
-
-
-class SceneOptions(PointOptions, total=False):
-    """Options of a scene and of a plan."""
-
-    tolerance: float
-
-
-class PlanOptions(SceneOptions, total=False):
-    """Options of a plan: the names are those of `Options`, the types those that it takes, not those that it keeps."""
-
-    cutters: Cutter | str | Library | Sequence[Cutter | str] | None
-    libraries: Library | Sequence[Library] | None
-    holder: Holder | str | None
-    allowance: float
-    holder_clearance: float
-    machine: Machine | str | os.PathLike[str] | None
-    other_setups: Sequence[Direction]
-    faces: Any
-    grid: int | None
-    spacing: float | None
-    tilt: Range
-    rotation: Range
-    rotation_step: float
-    jobs: int | None
-    area_budget: int | None
-    posture_maps: bool
-    map_budget: int | None
-    answers: str | Sequence[str]
-    length_over_radius: float
-    operations: str | None
-    feed: float | None
-    scallop: float
-    stepover: float
-    index_step: float | None
-    index_time: float | None
-    change_time: float
-    setup_time: float
-    overlap: float
-    most_operations: int | None
-    unit: str | None
-    placement: Placement | None
-    other_placements: Sequence[Placement | None]
-    propose: bool
-
-
+@degrees_too(ANGLES)
 @dataclass(frozen=True, slots=True)
 class Options:
-    """Options of a plan. Lengths mm, angles rad.
+    """Options of a plan. Lengths mm, angles rad; degrees as `tilt_deg`, `rotation_deg`, `rotation_step_deg`, `index_step_deg`.
 
     Attributes
     ----------
@@ -128,9 +74,10 @@ class Options:
     machine : Machine
         May be given as a text: `tilt:60`, the name of a built-in one, or a machine file.
     setup : tuple of float
-        Direction of the part along the machine's spindle at zero angles; kept with length 1. May be given as a word (`+z`, `-y`),
-        a Placement or a setup file: of the last two it is kept as `placement`, too, and its fixtures are added to `fixtures`.
-        `auto` proposes setups (`propose`).
+        Direction of the part along the machine's spindle at zero angles; kept with length 1. May be given as a word (`Z`, `-y`),
+        an axis of build123d, a Placement, a setup file, or a plane of build123d or CadQuery, whose normal it is and whose X
+        is the machine's: its origin says nothing. Of the last three it is kept as `placement`, too, and fixtures of the first
+        two are added to `fixtures`. `auto` proposes setups (`propose`).
     other_setups : tuple of (float, float, float)
         More setup axes, in which every cutter is judged as well; the sides of open faces stay those of `setup`. May be given in
         the same ways, with fixtures and clamped faces of their own.
@@ -247,6 +194,10 @@ class Options:
     other_placements: tuple[Placement | None, ...] = ()
     propose: bool = False
 
+    if TYPE_CHECKING:
+
+        def __init__(self, **options: Unpack[PlanOptions]) -> None: ...
+
     def __post_init__(self) -> None:
         self._check_kinds()
         if self.grid is not None and self.spacing is not None:
@@ -360,7 +311,7 @@ class Options:
     @classmethod
     def of(cls, words: Mapping[str, Any]) -> "Options":
         """Options from their names; OptionError for a name that is none."""
-        known = [each.name for each in fields(cls)]
+        known = list(inspect.signature(cls).parameters)
         for word in words:
             if word not in known:
                 near = get_close_matches(word, known, 1)

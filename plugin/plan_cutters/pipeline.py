@@ -1,12 +1,11 @@
 """The order of the stages: part in, plan out. Nothing else knows it."""
 
 import datetime
-import inspect
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Unpack, get_type_hints
+from typing import Any, Unpack
 
 import numpy as np
 
@@ -28,9 +27,11 @@ from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.nesting import handed, order
 from plan_cutters.domain.over_setups import over_setups
+from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.domain.verdicts import CONVEX, UNJUDGED, Verdicts
 from plan_cutters.errors import OptionError, UnjudgeableError
-from plan_cutters.options import Options, PlanOptions
+from plan_cutters.option_types import PlanOptions
+from plan_cutters.options import Options
 from plan_cutters.proposal import plan_proposed
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import contacts_of, warm
@@ -60,6 +61,7 @@ _WORK_SHARE, _WORK_LEAST, _WORK_SAMPLE = 0.5, 2e7, 2000.0
 _MANY_FACES, _SAMPLING = 12, 60.0
 
 
+@spelled_out(PlanOptions, Options)
 def plan(
     part: Any, *, progress: Progress | None = None, judged: Judge = judge, **options: Unpack[PlanOptions]
 ) -> Result:
@@ -75,7 +77,8 @@ def plan(
     judged : callable, optional
         Gives the verdicts of each cutter as `stages.judge.judge` does: `plan_cutters.plan` has `client` and `verdicts` for it.
     **options
-        Every attribute of `Options`, by its name: `cutters="R6L80"`, `grid=201`, `machine="tilt:60"`.
+        Every attribute of `Options`, by its name: `cutters="R6L80"`, `grid=201`, `machine="tilt:60"`; angles in degrees, too:
+        `tilt_deg=(0, 60)`.
 
     Returns
     -------
@@ -103,18 +106,6 @@ def plan(
         raise OptionError(f"progress must be a function of (stage, done, total), not {shown(progress)}")
     given = {**part.options, **options} if isinstance(part, Scene) else options
     return run(part, Options.of(given), Clock(progress), judged=judged)
-
-
-def _signature() -> inspect.Signature:
-    """The signature of `plan` for people: `help` would show `**options: Unpack[PlanOptions]`, without a name or a default."""
-    types, defaults = get_type_hints(PlanOptions), inspect.signature(Options).parameters.values()
-    options = [each.replace(kind=each.KEYWORD_ONLY, annotation=types[each.name]) for each in defaults]
-    return inspect.Signature(
-        [*list(inspect.signature(plan).parameters.values())[:3], *options], return_annotation=Result
-    )
-
-
-vars(plan)["__signature__"] = _signature()
 
 
 def run(

@@ -1,23 +1,27 @@
 """The order of the steps for one point: part and point in, posture map out."""
 
-from collections.abc import Sequence
+import os
 from dataclasses import replace
 from numbers import Real
 from typing import Any, Unpack
 
 import numpy as np
 
-from cad_io.arrays import Floats
 from cad_io.sample import locate
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.checks import number, numbers, radians
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.degrees import Angle, in_radians
+from plan_cutters.domain.host_axes import Heading
 from plan_cutters.domain.intervals import complement
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement
-from plan_cutters.domain.posture import PostureRange
+from plan_cutters.domain.posture import PostureRange, Range
+from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.errors import OptionError
-from plan_cutters.options import PointOptions, machine_given
+from plan_cutters.machines.given_setups import setups_given
+from plan_cutters.option_types import PointOptions
+from plan_cutters.options import Options, machine_given
 from plan_cutters.scene.conditions import tools
 from plan_cutters.scene.scene import Scene
 from plan_cutters.stages.posture_map import SETTLED, Ask, PostureMap, moved, posture_map_of
@@ -30,16 +34,19 @@ _FIRST_CHORD, _FINER, _ROUNDS = 2e-3, 0.2, 6
 _TRIANGLES = 600_000
 
 
+@spelled_out(PointOptions, Options)
 def posture_map(
     part: Any,
     *,
-    point: Sequence[float],
+    point: Range,
     cutter: Cutter | str,
-    rotations: Sequence[float] | Floats,
-    tilt: tuple[float, float] = (0.0, np.pi / 2),
-    machine: Machine | str | None = None,
+    rotations: float | Range | None = None,
+    tilt: Range | None = None,
+    machine: Machine | str | os.PathLike[str] | None = None,
     tolerance: float | None = None,
-    x: Sequence[float] | None = None,
+    x: Heading | None = None,
+    rotations_deg: float | Range | None = None,
+    tilt_deg: Range | None = None,
     **scene: Unpack[PointOptions],
 ) -> PostureMap:
     """Find the free tilt intervals of a cutter at a point of a part.
@@ -54,8 +61,10 @@ def posture_map(
         A text as `R6L80`.
     rotations : sequence of float
         rad, from the direction of the largest curvature; at most a full turn either way.
-    tilt : tuple of float
-        Range, rad, within 0 to pi.
+    tilt : tuple of float, optional
+        Range, rad, within 0 to pi. Default: 0 to pi/2.
+    rotations_deg, tilt_deg : optional
+        The same in degrees.
     machine : Machine or str, optional
         A text as `tilt:60` (degrees), the name of a built-in one, or a machine file. Default: no axis limit.
     tolerance : float, optional
@@ -64,7 +73,8 @@ def posture_map(
     x : (3,) float, optional
         Direction of the part along the machine's X, as `Placement` has it.
     **scene
-        `setup`, `flip`, `ignore` and `fixtures`, as `Scene.of` takes them; the point is not projected to ignored faces.
+        `setup`, `flip`, `ignore` and `fixtures`, as in `Options`; the point is not projected to ignored faces. A setup file, a
+        Placement or a host's plane as the setup brings its X, unless `x` is given, and its fixtures.
 
     Raises
     ------
@@ -83,9 +93,15 @@ def posture_map(
     """
     cutter, machine = Cutter.of(cutter), machine_given(machine)
     place = numbers(point, "point", 3)
-    each = (rotations,) if isinstance(rotations, Real) else rotations
+    angles = in_radians(
+        {"rotations": rotations, "rotations_deg": rotations_deg}, {"rotations": Angle(-360.0, 360.0, "several")}
+    )
+    if (wanted := angles["rotations"]) is None:
+        raise OptionError("give rotations, in radians, or rotations_deg, in degrees")
+    each = (wanted,) if isinstance(wanted, Real) else wanted
     turns = [radians(turn, "rotation", 2 * np.pi) for turn in numbers(each, "rotations")]
-    low, high = PostureRange(tilt=tilt).tilt
+    low, high = (PostureRange(tilt_deg=tilt_deg) if tilt is None else PostureRange(tilt=tilt, tilt_deg=tilt_deg)).tilt
+    scene, x = _placed(part, scene, x)
     wanted = (part.asked if isinstance(part, Scene) else 0.01) if tolerance is None else number(tolerance, "tolerance")
     if not (wanted >= 0 and cutter.large_enough(wanted)):
         raise OptionError(f"tolerance {wanted:g} mm must lie between 0 and a quarter of the cutter's radius and length")
@@ -94,8 +110,7 @@ def posture_map(
     contact = locate(stage.part, stage.orientation, place, ignore=stage.ignored)
     across = None
     if x is not None:
-        first, second, third = numbers(x, "x", 3)
-        across = np.array(Placement(stage.setup, (first, second, third)).x)
+        across = np.array(Placement(stage.setup, x).x)
     ask = Ask(contact, cutter, np.array(turns), (low, high), machine, np.array(stage.setup), across)
     if wanted > 0:
         around = stage.surround()
@@ -124,3 +139,18 @@ def posture_map(
             break
     assert before is not None
     return before
+
+
+def _placed(part: Any, scene: PointOptions, x: Any) -> tuple[PointOptions, Any]:
+    """The options of a scene with the setup as its axis alone, and the machine's X, with what more the setup says."""
+    if "setup" not in scene:
+        return scene, x
+    own = part.fixtures if isinstance(part, Scene) else ()
+    known = setups_given(scene["setup"], None, (), (), scene.get("fixtures", own), propose=False)
+    if known["propose"]:
+        raise OptionError("setup auto is for a whole plan: name the setup")
+    place = known["placement"]
+    found: PointOptions = {**scene, "setup": known["setup"]}
+    if place is not None and place.fixtures:
+        found["fixtures"] = known["fixtures"]
+    return found, place.x if x is None and place is not None else x

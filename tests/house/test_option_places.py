@@ -3,29 +3,37 @@
 import ast
 import inspect
 import math
+import os
 import re
+import subprocess
+import sys
 from dataclasses import fields
+from importlib import import_module
 from pathlib import Path
 from typing import Unpack, get_type_hints
 
 import pytest
 
+import cad_io
 import plan_cutters
-from plan_cutters import Options, PostureMaps, Scene, plan, posture_map
+from plan_cutters import Options, PostureMaps, Scene, plan, plan_many, posture_map
 from plan_cutters.command import cli, entry, stored_maps
 from plan_cutters.command import map as of_a_point
 from plan_cutters.command.validation import NAMED, words_of
 from plan_cutters.document.model import Effective
-from plan_cutters.options import PlanOptions, PointOptions, SceneOptions
+from plan_cutters.option_types import ANGLES, PlanOptions, PointOptions, SceneOptions
 from tests.support.places import ROOT
 
 WORDS = {each.name for each in fields(Options)}
+#: Words for angles may also be given in degrees.
+DEGREES = {f"{word}_deg" for word in ANGLES}
 
 
 def test_type_checkers_see_the_options():
-    assert set(get_type_hints(PlanOptions)) == WORDS
+    assert set(get_type_hints(PlanOptions)) == WORDS | DEGREES
+    assert set(ANGLES) <= WORDS
     for function, words in ((plan, PlanOptions), (PostureMaps.asked, PlanOptions), (Scene.of, SceneOptions),
-                            (posture_map, PointOptions)):  # fmt: skip
+                            (posture_map, PointOptions), (plan_many, PlanOptions)):  # fmt: skip
         assert Unpack[words] in get_type_hints(function).values()
     # Whatever mypy is to check of each option is in this file.
     said = ast.parse((ROOT / "tests/support/typed_calls.py").read_text())
@@ -35,21 +43,39 @@ def test_type_checkers_see_the_options():
 
 def test_people_see_each_option_with_its_default():
     shown = inspect.signature(plan).parameters
-    assert list(shown) == ["part", "progress", "client", "verdicts", *(each.name for each in fields(Options))]
+    own = ["part", "progress", "client", "verdicts"]
+    assert list(shown) == [*own, *(each.name for each in fields(Options)), *(f"{word}_deg" for word in ANGLES)]
     for name, each in inspect.signature(Options).parameters.items():
         assert shown[name].kind is inspect.Parameter.KEYWORD_ONLY
         assert shown[name].default is each.default
         assert shown[name].annotation == get_type_hints(PlanOptions)[name]
 
 
-def test_the_stub_has_the_names_that_are_handed_on():
-    package = Path(plan_cutters.__file__)
-    assert (package.parent / "py.typed").is_file()
-    stub = ast.parse(package.with_suffix(".pyi").read_text())
-    found = {name.name: each.module for each in stub.body if isinstance(each, ast.ImportFrom) for name in each.names}
-    assert found == {name: f"plan_cutters.{home}" for name, home in plan_cutters._HOME.items()}
+@pytest.mark.parametrize("package", [plan_cutters, cad_io], ids=lambda each: each.__name__)
+def test_the_stub_has_the_names_that_are_handed_on(package):
+    path = Path(package.__file__)
+    assert (path.parent / "py.typed").is_file()
+    stub = ast.parse(path.with_suffix(".pyi").read_text())
+    assert {name.name for each in stub.body if isinstance(each, ast.ImportFrom) for name in each.names} == set(
+        package._HOME
+    )
+    for each in stub.body:
+        if isinstance(each, ast.ImportFrom):
+            for name in each.names:
+                assert getattr(import_module(each.module), name.name) is getattr(package, name.name)
     (names,) = [ast.literal_eval(each.value) for each in stub.body if isinstance(each, ast.Assign)]
-    assert sorted(names) == sorted(plan_cutters.__all__)
+    assert sorted(names) == sorted(package.__all__)
+
+
+def test_completion_offers_names_that_nobody_has_asked_for_yet():
+    code = "import plan_cutters, cad_io; print(*dir(plan_cutters), '|', *dir(cad_io))"
+    done = subprocess.run([sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": f"{ROOT / 'plugin'}{os.pathsep}{ROOT}"},
+                          capture_output=True, text=True, check=True)  # fmt: skip
+    ours, theirs = (set(each.split()) for each in done.stdout.split("|"))
+    assert set(plan_cutters.__all__) <= ours
+    assert set(cad_io.__all__) <= theirs
+    # What completion shows beside them is the module's own: no names that it happens to use.
+    assert {each for each in ours - set(plan_cutters.__all__) if not each.startswith("_")} == set()
 
 
 def test_every_option_can_be_given_on_the_command_line():

@@ -6,11 +6,14 @@ import pickle
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from plan_cutters.batch.job import UNREADABLE, USAGE, Fault, Job, Settings, faced
 from plan_cutters.batch.row import PartRow
+from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.errors import OptionError, PlanError
+from plan_cutters.option_types import PlanOptions
+from plan_cutters.options import Options
 
 if TYPE_CHECKING:
     from plan_cutters.batch.run import Terms
@@ -45,10 +48,11 @@ class Planned:
         return Plan.model_validate_json(content)
 
 
+@spelled_out(PlanOptions, Options)
 def plan_many(
     parts: Iterable[Any], client: Any = None, *, out: str | os.PathLike[str] | None = None,
     formats: Sequence[str] = ("json",), force: bool = False, timeout_part: float | None = None,
-    limit_memory: float | None = None, **options: Any,
+    limit_memory: float | None = None, **options: Unpack[PlanOptions],
 ) -> Iterator[Planned]:  # fmt: skip
     """Plan many parts, each in a process of its own; results as they come, a failed part among them.
 
@@ -88,7 +92,6 @@ def plan_many(
     from plan_cutters.batch import cluster
     from plan_cutters.batch.run import Terms, outcomes
     from plan_cutters.batch.store import Store
-    from plan_cutters.options import Options
     from plan_cutters.report.folder import read_formats
 
     if isinstance(parts, str | os.PathLike):

@@ -1,15 +1,17 @@
 """One part, whose cutters are judged by the workers of a cluster, or were judged before."""
 
-import inspect
 from typing import Any, Unpack
 
 from plan_cutters import pipeline
 from plan_cutters.document.clock import Progress
-from plan_cutters.options import PlanOptions
+from plan_cutters.domain.signatures import spelled_out
+from plan_cutters.option_types import PlanOptions
+from plan_cutters.options import Options
 from plan_cutters.result import Result
 from plan_cutters.stages.judge import Judge, judge
 
 
+@spelled_out(PlanOptions, Options)
 def plan(
     part: Any,
     *,
@@ -30,7 +32,7 @@ def plan(
     verdicts : str, optional
         Folder or URL in which the verdicts of each cutter are kept (`batch.verdicts.Kept`).
     **options
-        Every attribute of `Options`, by its name.
+        Every attribute of `Options`, by its name; angles in degrees, too: `tilt_deg=(0, 60)`.
 
     Returns
     -------
@@ -64,15 +66,3 @@ def judging(client: Any = None, verdicts: str | None = None, otherwise: Judge | 
 
         judged = Kept(verdicts, judged)
     return judged
-
-
-def _signature() -> inspect.Signature:
-    """The signature of `plan` for people, with every option."""
-    own, whole = inspect.signature(plan).parameters, inspect.signature(pipeline.plan).parameters
-    options = [each for name, each in whole.items() if name not in ("part", "progress", "judged")]
-    return inspect.Signature(
-        [each for each in own.values() if each.kind is not each.VAR_KEYWORD] + options, return_annotation=Result
-    )
-
-
-vars(plan)["__signature__"] = _signature()

@@ -1,7 +1,7 @@
 """All entries of the plan file derive from the class of this module."""
 
 from collections.abc import Sequence
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ Vector = tuple[float, float, float]
 class Frozen(BaseModel):
     """An entry of the plan: its fields and no others."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid")
 
 
 _Entry = TypeVar("_Entry", bound=Frozen)

@@ -1,9 +1,11 @@
 """One axis of a machine: rotary or linear, what it carries, its direction and its limits."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
+from cad_io.arrays import Floats
 from plan_cutters.domain.checks import items, number, shown
 from plan_cutters.errors import MachineError
 
@@ -40,6 +42,38 @@ class Axis:
     limits: tuple[float, float] | None = None
     point: tuple[float, float, float] = (0.0, 0.0, 0.0)
     rate: float | None = None
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            name: str,
+            kind: Kind,
+            carries: Carried,
+            direction: Sequence[float] | Floats,
+            limits: Sequence[float] | Floats | None = None,
+            point: Sequence[float] | Floats = ...,
+            rate: float | None = None,
+        ) -> None: ...
+
+    @classmethod
+    def rotary(
+        cls, name: str, carries: Carried, direction: Sequence[float] | Floats, *,
+        limits_deg: Sequence[float] | Floats | None = None, point: Sequence[float] | Floats = (0.0, 0.0, 0.0),
+        rate_deg: float | None = None,
+    ) -> "Axis":  # fmt: skip
+        """A rotary axis by its limits in degrees and its largest speed in degrees a second.
+
+        >>> Axis.rotary("A", "part", (1, 0, 0), limits_deg=(-90, 90)).limits
+        (-1.5707963267948966, 1.5707963267948966)
+        """
+        limits = rate = None
+        if limits_deg is not None:
+            low, high = numbers_of(limits_deg, f"axis {name}: its limits in degrees", 2)
+            limits = math.radians(low), math.radians(high)
+        if rate_deg is not None:
+            rate = math.radians(number(rate_deg, f"axis {name}: its rate in degrees a second", error=MachineError))
+        return cls(name, "rotary", carries, direction, limits, point, rate)
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name.strip():

@@ -75,12 +75,14 @@ def items(value: Any, what: str, of: str, *, error: type[OptionError] = OptionEr
         raise error(f"{what} must be a list of {of}, not {shown(value)}") from None
 
 
-def numbers(value: Any, what: str, count: int | None = None) -> tuple[float, ...]:
+def numbers(
+    value: Any, what: str, count: int | None = None, *, error: type[OptionError] = OptionError
+) -> tuple[float, ...]:
     """Real numbers, `count` of them if that is given."""
     of = "numbers" if count is None else f"{count} numbers"
-    found = tuple(number(each, what) for each in items(value, what, of))
+    found = tuple(number(each, what, error=error) for each in items(value, what, of, error=error))
     if count is not None and len(found) != count:
-        raise OptionError(f"{what} must be a list of {of}, not of {len(found)}")
+        raise error(f"{what} must be a list of {of}, not of {len(found)}")
     return found
 
 

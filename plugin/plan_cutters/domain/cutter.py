@@ -3,16 +3,20 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any, Unpack
 
+from cad_io.arrays import Floats
 from plan_cutters.domain.checks import items
-from plan_cutters.domain.dimensions import Dimensions, points_of
-from plan_cutters.domain.holder import Holder, Segment, text_of
+from plan_cutters.domain.degrees import Angle, degrees_too
+from plan_cutters.domain.dimensions import AboveTip, Attributes, Dimensions, Shape, points_of
+from plan_cutters.domain.holder import Holder, Segment, positive, text_of
 from plan_cutters.domain.shapes import Part, check, flute_length, stages
+from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.domain.spec import dimensions, written
 from plan_cutters.errors import CutterError
 
 
+@degrees_too({"taper": Angle(-90.0, 90.0)}, error=CutterError)
 @dataclass(frozen=True, slots=True)
 class Cutter(Dimensions):
     """A cutter that can be judged: a solid of revolution, from its tip to the end of its holder; see `Dimensions`.
@@ -23,54 +27,102 @@ class Cutter(Dimensions):
         No such cutter can exist.
     """
 
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            radius: float,
+            length: float,
+            corner_radius: float = 0.0,
+            name: str = "",
+            *,
+            shape: Shape = "end",
+            arc_radius: float = 0.0,
+            arc_height: float = 0.0,
+            outline: Sequence[Sequence[float]] | Floats = (),
+            **more: Unpack[AboveTip],
+        ) -> None: ...
+
     def __post_init__(self) -> None:
         Dimensions.__post_init__(self)
         check(self, self.id)
 
     @classmethod
-    def flat(cls, *, radius: float, length: float, **more: Any) -> "Cutter":
-        """A flat-end cutter, lengths in mm; `more`: any other attribute."""
-        return cls(radius, length, **more)
+    @spelled_out(Attributes, Dimensions)
+    def flat(
+        cls, *, radius: float | None = None, diameter: float | None = None, length: float, **more: Unpack[Attributes]
+    ) -> "Cutter":
+        """A flat-end cutter by its radius or its diameter, lengths in mm; `more`: any other attribute.
+
+        >>> Cutter.flat(diameter=12, length=80).id, Cutter.flat(radius=6, length=80, taper_deg=3).id
+        ('R6L80', 'R6L80T3')
+        """
+        return cls(_radius(radius, diameter), length, **more)
 
     @classmethod
-    def bull(cls, *, radius: float, corner_radius: float, length: float, **more: Any) -> "Cutter":
+    @spelled_out(Attributes, Dimensions)
+    def bull(
+        cls, *, radius: float | None = None, diameter: float | None = None, corner_radius: float, length: float,
+        **more: Unpack[Attributes],
+    ) -> "Cutter":  # fmt: skip
         """A bull nose."""
-        return cls(radius, length, corner_radius, **more)
+        return cls(_radius(radius, diameter), length, corner_radius, **more)
 
     @classmethod
-    def ball(cls, *, radius: float, length: float, **more: Any) -> "Cutter":
+    @spelled_out(Attributes, Dimensions)
+    def ball(
+        cls, *, radius: float | None = None, diameter: float | None = None, length: float, **more: Unpack[Attributes]
+    ) -> "Cutter":
         """A ball end."""
-        return cls(radius, length, radius, **more)
+        ball = _radius(radius, diameter)
+        return cls(ball, length, ball, **more)
 
     @classmethod
-    def lollipop(cls, *, radius: float, neck_radius: float, length: float, **more: Any) -> "Cutter":
+    @spelled_out(Attributes, Dimensions)
+    def lollipop(
+        cls, *, radius: float | None = None, diameter: float | None = None, neck_radius: float | None = None,
+        neck_diameter: float | None = None, length: float, **more: Unpack[Attributes],
+    ) -> "Cutter":  # fmt: skip
         """A ball on a neck, which goes on up to its length."""
-        return cls(radius, length, radius, shape="lollipop", shank_radius=neck_radius, **more)
+        ball, neck = _radius(radius, diameter), _radius(neck_radius, neck_diameter, "neck ")
+        rest: dict[str, Any] = {**more}
+        return cls(ball, length, ball, shape="lollipop", shank_radius=neck, **rest)
 
     @classmethod
-    def barrel(cls, *, radius: float, flank_radius: float, length: float, height: float | None = None,
-               tip_radius: float = 0.0, **more: Any) -> "Cutter":  # fmt: skip
+    @spelled_out(Attributes, Dimensions)
+    def barrel(
+        cls, *, radius: float | None = None, diameter: float | None = None, flank_radius: float, length: float,
+        height: float | None = None, tip_radius: float = 0.0, **more: Unpack[Attributes],
+    ) -> "Cutter":  # fmt: skip
         """A barrel: its flank is an arc of a large radius, widest (`radius`) at a height over the tip.
 
         With a tip radius a ball is the tip, to which the flank is tangent: then the height follows.
         """
+        widest = _radius(radius, diameter)
         if tip_radius:
-            inner, outer = flank_radius - radius, flank_radius - tip_radius
+            inner, outer = flank_radius - widest, flank_radius - tip_radius
             if not 0 <= inner <= outer:
                 raise CutterError(f"a flank of radius {flank_radius:g} is tangent to no tip of radius {tip_radius:g} under a "
-                                  f"cutter of radius {radius:g}")  # fmt: skip
+                                  f"cutter of radius {widest:g}")  # fmt: skip
             height = tip_radius + math.sqrt(outer**2 - inner**2)
         elif height is None:
             raise CutterError("a barrel needs the height of its widest place, or the radius of its tip")
-        return cls(radius, length, tip_radius, shape="barrel", arc_radius=flank_radius, arc_height=height, **more)
+        return cls(widest, length, tip_radius, shape="barrel", arc_radius=flank_radius, arc_height=height, **more)
 
     @classmethod
-    def lens(cls, *, radius: float, bottom_radius: float, corner_radius: float, length: float, **more: Any) -> "Cutter":
+    @spelled_out(Attributes, Dimensions)
+    def lens(
+        cls, *, radius: float | None = None, diameter: float | None = None, bottom_radius: float, corner_radius: float,
+        length: float, **more: Unpack[Attributes],
+    ) -> "Cutter":  # fmt: skip
         """A lens: its bottom is an arc of a large radius about the axis, with a corner of a small one."""
-        return cls(radius, length, corner_radius, shape="lens", arc_radius=bottom_radius, **more)
+        return cls(_radius(radius, diameter), length, corner_radius, shape="lens", arc_radius=bottom_radius, **more)
 
     @classmethod
-    def form(cls, outline: Sequence[tuple[float, float]], *, length: float, **more: Any) -> "Cutter":
+    @spelled_out(Attributes, Dimensions)
+    def form(
+        cls, outline: Sequence[Sequence[float]] | Floats, *, length: float, **more: Unpack[Attributes]
+    ) -> "Cutter":
         """Any revolved outline of points (radius, height), from the tip to the end of the flutes."""
         points = points_of(outline)
         return cls(max((r for r, _ in points), default=0.0), length, shape="form", outline=points, **more)
@@ -151,3 +203,14 @@ class Cutter(Dimensions):
             clearance=clearance if self.clearance is None and clearance else self.clearance,
             holder=self.holder or holder,
         )
+
+
+def _radius(radius: float | None, diameter: float | None, of: str = "") -> float:
+    """A radius, mm, from itself or from the diameter."""
+    if diameter is None:
+        if radius is None:
+            raise CutterError(f"a cutter needs its {of}radius or its {of}diameter")
+        return radius
+    if radius is not None:
+        raise CutterError(f"{of}radius and {of}diameter of a cutter are one dimension: give one of them")
+    return positive(diameter, f"cutter {of}diameter") / 2

@@ -1,8 +1,9 @@
 """A tool assembly in numbers: what a cutter is made of, each number by itself a possible one."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, TypedDict
 
 from plan_cutters.domain.checks import items, name, number, shown
 from plan_cutters.domain.holder import Holder, Segment, positive
@@ -11,6 +12,25 @@ from plan_cutters.errors import CutterError
 #: Kinds of cutting part: an end mill, straight or tapered; a ball on a neck; a flank of a large arc; a bottom of one; points.
 Shape = Literal["end", "lollipop", "barrel", "lens", "form"]
 _SHAPES = ("end", "lollipop", "barrel", "lens", "form")
+
+
+class AboveTip(TypedDict, total=False):
+    """Attributes of a cutter beside the radii of its tip, as a caller may give them: `Dimensions` says what each means."""
+
+    taper: float
+    taper_deg: float | None
+    flutes: float | None
+    neck: Segment | Sequence[Segment] | None
+    shank_radius: float | None
+    holder: Holder | str | None
+    allowance: float | None
+    clearance: float | None
+
+
+class Attributes(AboveTip, total=False):
+    """The same with the name of a cutter."""
+
+    name: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +49,8 @@ class Dimensions:
     name : str
         For people; the id is made from the dimensions.
     taper : float
-        Half angle, rad: positive where the radius grows from the tip up, negative for a dovetail.
+        Half angle, rad (of a `Cutter` also `taper_deg`, degrees): positive where the radius grows from the tip up, negative
+        for a dovetail.
     flutes : float, optional
         Height over the tip up to which it cuts, mm. None: up to the first stage above, or all of its length.
     neck : Segment or tuple of Segment, optional

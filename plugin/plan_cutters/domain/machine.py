@@ -1,19 +1,22 @@
 """Machines: which tool axes can be taken, by a plain limit about the setup axis or by rotary axes with their limits."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.axis import Axis, Carried, direction_of
+from plan_cutters.domain.axis import Axis, direction_of
 from plan_cutters.domain.checks import items, number, radians, shown
+from plan_cutters.domain.degrees import Angle, degrees_too
 from plan_cutters.domain.kinematics import PARALLEL, Kinematics
 from plan_cutters.errors import MachineError
 
 
+@degrees_too({"tilt_limit": Angle(0.0, 180.0)}, error=MachineError)
 @dataclass(frozen=True, slots=True)
 class Machine:
     """A machine as far as the tool axis goes.
@@ -22,7 +25,7 @@ class Machine:
     ----------
     name : str
     tilt_limit : float, optional
-        Largest angle between tool axis and setup axis, rad; None for no limit.
+        Largest angle between tool axis and setup axis, rad, or as `tilt_limit_deg`; None for no limit.
     axes : tuple of Axis
         From the part over the bed to the tool: those that carry the part first, the one next to the part as the first of all.
         None: any tool axis within `tilt_limit`.
@@ -40,6 +43,20 @@ class Machine:
     tool_axis: tuple[float, float, float] = (0.0, 0.0, 1.0)
     notes: tuple[str, ...] = ()
     fixed: bool = False
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            name: str = "unlimited",
+            tilt_limit: float | None = None,
+            axes: Sequence[Axis] = (),
+            tool_axis: Sequence[float] | Floats = ...,
+            notes: Sequence[str] = (),
+            fixed: bool = False,
+            *,
+            tilt_limit_deg: float | None = None,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str):
@@ -183,22 +200,22 @@ class Machine:
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
 
-def _rotary(name: str, carries: Carried, direction: tuple[float, float, float], low: float, high: float) -> Axis:
-    limits = None if math.isinf(low) else (math.radians(low), math.radians(high))
-    return Axis(name, "rotary", carries, direction, limits)
-
-
 def builtin_machines() -> dict[str, Machine]:
     """By their names; angles of the tool relative to the part, degrees, in the names' order of axes."""
-    inf = math.inf
     table: dict[str, tuple[Axis, ...]] = {
         "3-axis": (),
-        "4-axis-a": (_rotary("A", "part", X, -inf, inf),),
-        "3+2": (_rotary("C", "part", Z, -inf, inf), _rotary("A", "part", X, -110.0, 110.0)),
-        "trunnion-ac": (_rotary("C", "part", Z, -inf, inf), _rotary("A", "part", X, -30.0, 120.0)),
-        "trunnion-bc": (_rotary("C", "part", Z, -inf, inf), _rotary("B", "part", Y, -110.0, 110.0)),
-        "head-table-bc": (_rotary("C", "part", Z, -inf, inf), _rotary("B", "tool", Y, -100.0, 100.0)),
-        "head-head-ca": (_rotary("C", "tool", Z, -360.0, 360.0), _rotary("A", "tool", X, -110.0, 110.0)),
-        "nutating-bc": (_rotary("C", "part", Z, -inf, inf), _rotary("B", "tool", (0.0, 1.0, 1.0), -180.0, 180.0)),
+        "4-axis-a": (Axis.rotary("A", "part", X),),
+        "3+2": (Axis.rotary("C", "part", Z), Axis.rotary("A", "part", X, limits_deg=(-110.0, 110.0))),
+        "trunnion-ac": (Axis.rotary("C", "part", Z), Axis.rotary("A", "part", X, limits_deg=(-30.0, 120.0))),
+        "trunnion-bc": (Axis.rotary("C", "part", Z), Axis.rotary("B", "part", Y, limits_deg=(-110.0, 110.0))),
+        "head-table-bc": (Axis.rotary("C", "part", Z), Axis.rotary("B", "tool", Y, limits_deg=(-100.0, 100.0))),
+        "head-head-ca": (
+            Axis.rotary("C", "tool", Z, limits_deg=(-360.0, 360.0)),
+            Axis.rotary("A", "tool", X, limits_deg=(-110.0, 110.0)),
+        ),
+        "nutating-bc": (
+            Axis.rotary("C", "part", Z),
+            Axis.rotary("B", "tool", (0.0, 1.0, 1.0), limits_deg=(-180.0, 180.0)),
+        ),
     }
     return {name: Machine(name, axes=axes, fixed=not axes) for name, axes in table.items()}

@@ -3,17 +3,17 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cad_io.arrays import Floats
 from plan_cutters.domain.checks import items, numbers, shown
 from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.host_axes import Direction, Heading
 from plan_cutters.domain.posture import unit
 from plan_cutters.errors import OptionError
 
-Direction = tuple[float, float, float]
 #: Directions whose angle has a smaller sine are parallel.
 _PARALLEL = 1e-6
 #: Lengths beyond this, mm, are rather a mistake.
@@ -58,6 +58,18 @@ class Placement:
     clamped: tuple[str, ...] = ()
     fixtures: tuple[Fixture, ...] = ()
     file: str = ""
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            z: Heading = ...,
+            x: Heading | None = None,
+            origin: Sequence[float] | Floats | None = None,
+            clamped: str | Sequence[str] = ...,
+            fixtures: Any = ...,
+            file: str = "",
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         z = unit(self.z, "setup axis")

@@ -2,21 +2,31 @@
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cad_io.arrays import Floats
 from plan_cutters.domain.checks import number, numbers, pair, radians, shown
+from plan_cutters.domain.degrees import Angle, degrees_too
+from plan_cutters.domain.host_axes import vector_of
 from plan_cutters.errors import OptionError
 
 _RIGHT, _FULL = math.pi / 2, 2 * math.pi
 _ROUNDING = 1e-9
+#: A range as callers give it.
+Range = Sequence[float] | Floats
+#: What tilts, rotations and their steps may be in degrees.
+TILTS, ROTATIONS, STEP = Angle(0.0, 180.0, "range"), Angle(-360.0, 360.0, "range"), Angle(0.1, 360.0)
 
 
+@degrees_too({"tilt": TILTS, "rotation": ROTATIONS, "step": STEP})
 @dataclass(frozen=True, slots=True)
 class PostureRange:
-    """Tilts from `tilt[0]` to `tilt[1]` at rotations from `rotation[0]` to `rotation[1]`, `step` apart. Radians.
+    """Tilts from `tilt[0]` to `tilt[1]` at rotations from `rotation[0]` to `rotation[1]`, `step` apart. Radians; degrees as
+    `tilt_deg`, `rotation_deg` and `step_deg`.
 
     Beyond a right angle a tool touches with the upper half of a ball, if it has one.
     A full turn does not repeat its first rotation; a part of a turn has both its ends, evenly shared at most `step` apart.
@@ -28,6 +38,19 @@ class PostureRange:
     tilt: tuple[float, float] = (0.0, _RIGHT)
     rotation: tuple[float, float] = (0.0, _FULL)
     step: float = math.radians(10)
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            tilt: Range = ...,
+            rotation: Range = ...,
+            step: float = ...,
+            *,
+            tilt_deg: Range | None = None,
+            rotation_deg: Range | None = None,
+            step_deg: float | None = None,
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         tilt, rotation = pair(self.tilt, "tilt range"), pair(self.rotation, "rotation range")
@@ -99,14 +122,14 @@ def along(text: str) -> tuple[float, float, float] | None:
     return x, y, z
 
 
-def unit(vector: tuple[float, float, float] | str, what: str) -> Floats:
-    """The direction of a vector, or of a word as `along` has it; OptionError if it has none."""
+def unit(vector: Any, what: str) -> Floats:
+    """The direction (3,) of a vector, of a word as `along` has it, or of a host's axis; OptionError if it has none."""
     if isinstance(vector, str):
         named = along(vector)
         if named is None:
             raise OptionError(f"{what} {shown(vector)} is no direction: give +x, -x, +y, -y, +z, -z, or three numbers")
         vector = named
-    v = np.array(numbers(vector, what, 3))
+    v = np.array(numbers(vector_of(vector), what, 3))
     largest = float(np.abs(v).max())
     if not 0.0 < largest < math.inf:
         raise OptionError(f"{what} must be three numbers x,y,z that are finite and not all zero")

@@ -7,6 +7,7 @@ from typing import Any
 
 from plan_cutters.domain.checks import items, shown
 from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.host_axes import plane_of
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import along, unit
 from plan_cutters.errors import OptionError
@@ -91,11 +92,18 @@ def _own(
 
 
 def _setup(given: Any, placed: Placement | None) -> tuple[tuple[float, float, float], Placement | None]:
-    """A setup axis, and what more is known of the setup: a word as `+z` is an axis, another text or path a setup file."""
+    """A setup axis, and what more is known of the setup.
+
+    A word as `+z` is an axis, another text or path a setup file; a host's plane says where the machine's X points, too.
+    """
     if isinstance(given, os.PathLike) or (isinstance(given, str) and along(given) is None):
         from plan_cutters.machines.setups import read_setup
 
         given = read_setup(given)
+    if (plane := plane_of(given)) is not None:
+        if placed is not None:
+            raise OptionError("a plane and a placement were given for one setup: give one of them")
+        given = Placement(*plane)
     if isinstance(given, Placement):
         return given.z, given
     x, y, z = unit(given, "setup axis").tolist()

@@ -12,9 +12,13 @@ from cad_io.part.orient import orient
 from cad_io.tessellate.triangles import At
 from plan_cutters.domain.checks import flag, number
 from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.host_axes import plane_of
+from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import unit
+from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.errors import OptionError
-from plan_cutters.options import MOST_TOLERANCE, Options, SceneOptions
+from plan_cutters.option_types import SceneOptions
+from plan_cutters.options import MOST_TOLERANCE, Options
 from plan_cutters.scene.faces import ignored_faces, ignored_words
 from plan_cutters.scene.fixtures import Kept, joined, packable, read
 from plan_cutters.scene.obstacles import CHORD_ASKED
@@ -68,6 +72,7 @@ class Scene(Record):
     _memory: _Memory = field(default_factory=_Memory, init=False, compare=False)
 
     @classmethod
+    @spelled_out(SceneOptions, Options)
     def of(cls, part: Any, **options: Unpack[SceneOptions]) -> "Scene":
         """The scene of a part; of a scene, itself.
 
@@ -100,6 +105,9 @@ class Scene(Record):
         tolerance, flip = number(given["tolerance"], "tolerance"), flag(given["flip"], "flip")
         if not 0 < tolerance <= MOST_TOLERANCE:
             raise OptionError(f"tolerance {tolerance:g} must lie between 0 and {MOST_TOLERANCE:g} mm")
+        if isinstance(given["setup"], Placement) or plane_of(given["setup"]) is not None:
+            raise OptionError("a scene keeps the setup axis alone, and a placement or plane says more: give its z here, and "
+                              "itself to plan")  # fmt: skip
         setup: Any = tuple(unit(given["setup"], "setup axis").tolist())
         fixtures = Fixture.each_of(given["fixtures"])
         if isinstance(part, Scene):
@@ -133,9 +141,20 @@ class Scene(Record):
         )
 
     # The former names, for scripts: the program itself asks `surround` and `turned_faces`.
-    around = property(lambda self: self.surround())
-    tolerance = property(lambda self: self.surround().tolerance(self.asked))
-    turned = property(lambda self: self.turned_faces())
+    @property
+    def around(self) -> Surroundings:
+        """As `surround` gives them."""
+        return self.surround()
+
+    @property
+    def tolerance(self) -> float:
+        """The tolerance that can be kept, mm: `asked`, or what the triangles allow."""
+        return self.surround().tolerance(self.asked)
+
+    @property
+    def turned(self) -> tuple[str, ...]:
+        """As `turned_faces` gives them."""
+        return self.turned_faces()
 
     @property
     def options(self) -> dict[str, Any]:

@@ -12,9 +12,11 @@ from cad_io import SurfaceSamples, Triangles
 from cad_io.arrays import Floats, Record
 from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.degrees import Angle, in_radians
 from plan_cutters.domain.intervals import common, complement, join, without
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.posture import PostureRange, tilt_direction
+from plan_cutters.errors import OptionError
 from plan_cutters.kernels.codes import FLUTES, HOLDER, NECK, SHANK, TILT_FROM, TILT_TO
 from plan_cutters.scene.conditions import ranges_of, tool_of
 from plan_cutters.scene.obstacles import Obstacles, halved
@@ -92,8 +94,11 @@ class PostureMap(Record):
     chord_error: float
     settled: bool
 
-    def axis(self, i: int, tilt: float) -> Floats:
-        """Unit tool axis at `rotations[i]` and a tilt (rad), in part coordinates."""
+    def axis(self, i: int, tilt: float | None = None, *, tilt_deg: float | None = None) -> Floats:
+        """Unit tool axis at `rotations[i]` and a tilt, rad or degrees, in part coordinates."""
+        tilt = in_radians({"tilt": tilt, "tilt_deg": tilt_deg}, {"tilt": Angle(-180.0, 180.0)})["tilt"]
+        if tilt is None:
+            raise OptionError("give a tilt, in radians, or tilt_deg, in degrees")
         f = tilt_direction(self.normal, self.direction_max, float(self.rotations[i]))
         return np.cos(tilt) * self.normal + np.sin(tilt) * f
 

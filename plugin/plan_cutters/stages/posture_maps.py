@@ -12,14 +12,18 @@ from numpy.typing import NDArray
 from cad_io import Part
 from cad_io.arrays import Floats, Record, SurfaceSamples
 from plan_cutters.domain.assembly import Assembly
+from plan_cutters.domain.checks import pair
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.degrees import in_radians
+from plan_cutters.domain.host_axes import Heading, HostPlane, plane_of
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement, frame_of
-from plan_cutters.domain.posture import tilt_direction
+from plan_cutters.domain.posture import Range, tilt_direction
 from plan_cutters.domain.verdicts import INACCESSIBLE, INTERFERENCE_FREE, REASONS, UNDECIDED, UNJUDGED, Verdicts, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.kernels.rows import Ranges
-from plan_cutters.options import Options, PlanOptions, machine_given
+from plan_cutters.option_types import ANGLES, PlanOptions
+from plan_cutters.options import Options, machine_given
 from plan_cutters.scene.conditions import Conditions, contacts_of, found_of, require_finite, rotary_of, tool_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.question import checksum, refuse_others, require_side, setup_of, turns_of, words_of
@@ -102,8 +106,10 @@ class PostureMaps(Record):
                 object.__setattr__(self, each.name, kept)
 
     def within(
-        self, machine: Any = None, setup: Any = (0.0, 0.0, 1.0), *, tilt: tuple[float, float] | None = None,
-        rotation: tuple[float, float] | None = None, jobs: int = 1, x: Any = None,
+        self, machine: Machine | str | os.PathLike[str] | None = None,
+        setup: Heading | HostPlane = (0.0, 0.0, 1.0), *, tilt: Range | None = None,
+        rotation: Range | None = None, jobs: int = 1, x: Heading | None = None,
+        tilt_deg: Range | None = None, rotation_deg: Range | None = None,
     ) -> Verdicts:  # fmt: skip
         """Find the verdicts of the cutter on another machine, or in another setup, without a new search.
 
@@ -112,9 +118,11 @@ class PostureMaps(Record):
         machine : Machine or str, optional
             A name or a file will do. No limit by default.
         setup : (float, float, float)
-            Direction of the part along the machine's spindle at zero angles.
+            Direction of the part along the machine's spindle at zero angles: a word, a host's axis, or its plane with an X.
         tilt, rotation : (float, float), optional
             Ranges within those of the maps, rad; rotations from the first to the second.
+        tilt_deg, rotation_deg : (float, float), optional
+            The same in degrees.
         jobs : int
             Threads.
         x : (float, float, float), optional
@@ -132,16 +140,22 @@ class PostureMaps(Record):
             A range lies beyond that of the maps; the machine has fewer than two rotary axes, so that it needs other rotations;
             or the setup would turn the side of open faces.
         """
-        low, high = self.tilt if tilt is None else tilt
+        asked = in_radians(
+            {"tilt": tilt, "rotation": rotation, "tilt_deg": tilt_deg, "rotation_deg": rotation_deg}, ANGLES
+        )
+        tilt, rotation = asked["tilt"], asked["rotation"]
+        low, high = self.tilt if tilt is None else pair(tilt, "tilt range")
         if not self.tilt[0] - _END <= low <= high <= self.tilt[1] + _END:
             raise OptionError("the tilts asked for lie beyond those of the posture maps")
         turns = np.arange(len(self.rotations))
         if rotation is not None:
-            first, last = rotation
+            first, last = pair(rotation, "rotation range")
             turns = turns[(self.rotations >= first - _END) & (self.rotations <= last + _END)]
         if not len(turns):
             raise OptionError("the posture maps have none of the rotations asked for")
-        return self._laid(machine_given(machine), Placement(setup, x), turns, (low, high), jobs)
+        own: Any = plane_of(setup) or (setup, None)
+        z, across = own
+        return self._laid(machine_given(machine), Placement(z, across if x is None else x), turns, (low, high), jobs)
 
     def asked(self, part: str | os.PathLike[str] | Part | None = None, **options: Unpack[PlanOptions]) -> Verdicts:
         """Find the verdicts of a plan with these options, as far as the maps tell.
@@ -163,7 +177,8 @@ class PostureMaps(Record):
         OptionError
             The maps are of another part, or do not answer an option, which it names.
         """
-        asked, given = Options.of(options), set(options)
+        words = in_radians(options, ANGLES)
+        asked, given = Options.of(words), set(words)
         if part is not None and (not self.part or checksum(part) != self.part):
             name = getattr(part, "file", None) if isinstance(part, Part) else os.fspath(part)
             raise OptionError(f"these maps are of another part than {Path(name or 'this one').name}: plan again")

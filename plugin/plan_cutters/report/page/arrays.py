@@ -33,7 +33,7 @@ def sample_arrays(result: Judged, low: Floats, high: Floats) -> Arrays:
     """The samples, and what each cutter reaches of them."""
     samples, normal = result.samples, octahedral(result.samples.normal, FINE)
     number = np.uint16 if samples.face.max(initial=0) < 1 << 16 else np.uint32
-    found = {
+    found: dict[str, NDArray[Any]] = {
         "sample.point": placed(np.nan_to_num(samples.point), low, high),
         "sample.normal": normal,
         "sample.direction": turned(samples.direction_max, unfolded(normal, FINE)),
