@@ -19,11 +19,6 @@ outside() {
     $sudo apt-get update -qq && $sudo apt-get install -y -qq --no-install-recommends "$@" >/dev/null
 }
 
-late=""
-if [ ! -x .venv/bin/python ]; then
-    python3 -m venv .venv
-    late=--no-compile
-fi
 extra="batch"
 dev=""
 for word; do
@@ -33,6 +28,11 @@ for word; do
         *) echo "setup.sh: unknown word $word: give dev, cadquery or build123d, or nothing" >&2 && exit 2 ;;
     esac
 done
+late=""
+if [ ! -x .venv/bin/python ]; then
+    python3 -m venv .venv
+    late=--no-compile
+fi
 # For the tests, into node_modules and page/node_modules: the Khronos validator of GLB files, and what the review page is built with.
 # They come while Python's packages do.
 if [ -n "$dev" ]; then
