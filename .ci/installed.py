@@ -35,7 +35,6 @@ def main() -> None:
         outside.mkdir()
         shutil.copy(ROOT / "samples/v_groove.step", outside)
         env = own(folder)
-        # Code is the same on all machines, byte code need not be made for one run; the interpreter is this one.
         run(tool("uv"), "tool", "install", "--quiet", "--python", sys.executable, wheel, cwd=outside, env=env)
         python = folder / "tools" / "plan-cutters" / "bin" / "python"
         run(tool("uv"), "pip", "check", "--quiet", "--python", python, cwd=outside, env=env)
@@ -55,13 +54,9 @@ def main() -> None:
 
 
 def own(folder: Path) -> dict[str, str]:
-    """The environment of a user: no folder of the checkout is on the path, and tools are installed below `folder`.
-
-    What was compiled before is found by the content of the sources.
-    """
+    """The environment variables of a user: no folder of the checkout is on the path, and tools are installed below `folder`."""
     inherited = {key: value for key, value in os.environ.items() if not key.startswith(("PYTHON", "UV_TOOL", "PIPX_"))}
     places = {"UV_TOOL_DIR": "tools", "UV_TOOL_BIN_DIR": "bin", "PIPX_HOME": "pipx", "PIPX_BIN_DIR": "pipx-bin"}
-    # A link from the cache costs no room and no time, where the cache lies on the same disk.
     return {
         **inherited,
         **{key: str(folder / place) for key, place in places.items()},
@@ -112,7 +107,7 @@ def same(what: str, found: set[str], asked: set[str]) -> None:
 
 
 def shown(wheel: Path) -> None:
-    """End where a field is empty that a package index shows, or the README has a link that leads nowhere from there."""
+    """End where a field is empty that a package index shows."""
     with zipfile.ZipFile(wheel) as archive:
         (path,) = (name for name in archive.namelist() if name.endswith(".dist-info/METADATA"))
         about = message_from_string(archive.read(path).decode())

@@ -8,7 +8,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from cad_io.errors import CadIoError
 from plan_cutters.document.model import Plan
 from plan_cutters.errors import PlanError
 from plan_cutters.report.markup import plain, template
@@ -63,7 +62,7 @@ def card(result: Judged, *, height: int = HEIGHT) -> str:
     def made(what: str, make: Callable[[], str]) -> str:
         try:
             return make()
-        except (CadIoError, PlanError, ValueError, MemoryError) as error:
+        except Exception as error:  # whatever fails in the kernel or on the disk must not hide the verdicts
             missing.append(f"The {what} could not be made: {error or type(error).__name__}")
             return ""
 
