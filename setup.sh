@@ -1,5 +1,6 @@
 #!/bin/sh
-# Make .venv and install plan-cutters into it; `sh setup.sh dev` adds what the tests and linters need.
+# Make .venv and install plan-cutters into it, with CadQuery and build123d for scripts; `sh setup.sh dev` adds what the tests and
+# linters need, `sh setup.sh alone` leaves the two hosts out, two thirds of all bytes.
 # Packages of the system are installed only where one is missing, and only after a line that says which one and why.
 set -eu
 cd "$(dirname "$0")"
@@ -18,20 +19,25 @@ outside() {
     $sudo apt-get update -qq && $sudo apt-get install -y -qq --no-install-recommends "$@" >/dev/null
 }
 
+dev=""
+case "$*" in
+    "") extra="batch,cadquery,build123d" ;;
+    dev) extra="dev" dev=yes ;;
+    alone) extra="batch" ;;
+    *) echo "setup.sh: unknown words $*: give dev or alone, or nothing" >&2 && exit 2 ;;
+esac
 late=""
 if [ ! -x .venv/bin/python ]; then
     python3 -m venv .venv
     late=--no-compile
 fi
-extra="[batch]"
-[ "${1:-}" = dev ] && extra="[dev]"
 # For the tests, into node_modules and page/node_modules: the Khronos validator of GLB files, and what the review page is built with.
 # They come while Python's packages do.
-if [ "${1:-}" = dev ]; then
+if [ -n "$dev" ]; then
     { npm install --silent --no-audit --no-fund --no-package-lock && npm ci --prefix page --silent --no-audit --no-fund; } &
     node=$!
 fi
-.venv/bin/python -m pip install --quiet --disable-pip-version-check $late --editable ".$extra"
+.venv/bin/python -m pip install --quiet --disable-pip-version-check $late --editable ".[$extra]"
 # Editors and type checkers do not run the import hook that pip installs for two roots: they read paths.
 printf '%s\n' "$PWD/plugin" "$PWD" >"$(.venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/plan_cutters_sources.pth"
 # Pip makes byte code on one core: in a new .venv all of them do. A file that is no Python of this version is no mistake of ours.
@@ -40,7 +46,12 @@ if ! .venv/bin/python -c "import OCP" 2>/dev/null; then
     outside "the CAD kernel links libGL and libX11, although nothing is drawn" libgl1 libx11-6
     .venv/bin/python -c "import OCP"
 fi
-if [ "${1:-}" = dev ]; then
+# Both flavours of the kernel install the same files, in any order: CadQuery needs those of the full one.
+full=$(.venv/bin/python -m pip freeze --all --disable-pip-version-check | grep "^cadquery-ocp==" || true)
+if [ -n "$full" ] && ! .venv/bin/python -c "import OCP.IVtkOCC" 2>/dev/null; then
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps "$full"
+fi
+if [ -n "$dev" ]; then
     wait "$node"
     if ! command -v chromium >/dev/null; then
         outside "the tests of the review page need a browser" chromium ||

@@ -1,25 +1,25 @@
-"""Build sdist and wheel, install the wheel in a clean environment, and plan a sample there, outside the checkout.
+"""Build sdist and wheel, install the wheel as its users do, in clean environments, and plan a sample there, outside the checkout.
 
-The clean environment holds the wheel and, as links, the files of just those distributions that the wheel declares (and theirs
-in turn) in the versions of the development environment: what is imported and not declared is missing there. To load all of
-them anew would take longer than everything else in `.ci/run`.
+`uv tool install` loads what the wheel declares, and nothing else: what is imported and not declared is missing there. `pipx run`
+then finds it in the cache of uv. Both leave nothing behind but that cache.
 """
 
 import os
 import shutil
 import subprocess
 import sys
-import sysconfig
 import tarfile
 import tempfile
 import zipfile
-from importlib.metadata import Distribution, distribution
+from email import message_from_string
 from pathlib import Path
-
-from packaging.requirements import Requirement
 
 ROOT = Path(__file__).resolve().parent.parent
 OURS = ("plan_cutters/", "cad_io/")
+#: What an environment with the wheel may take, MB, and who must not be in it (`docs/install.md`).
+MOST_MB, NOT_THERE = 900, ("cadquery", "build123d", "vtk", "casadi", "pandas", "dask")
+#: What a package index shows.
+SHOWN = ("Author", "Summary", "License-Expression", "Keywords", "Classifier", "Project-URL", "Requires-Python")
 
 
 def main() -> None:
@@ -30,33 +30,44 @@ def main() -> None:
         (wheel,), (sdist,) = folder.glob("*.whl"), folder.glob("*.tar.gz")
         same("sdist", in_sdist(sdist), tracked())
         same("wheel", in_wheel(wheel), {path.removeprefix("plugin/") for path in tracked() if packaged(path)})
-        python = clean(folder / "clean", wheel)
+        shown(wheel)
         outside = folder / "outside"
         outside.mkdir()
         shutil.copy(ROOT / "samples/v_groove.step", outside)
-        # No folder of the checkout is on the path; what was compiled before is found by the content of the sources.
-        env = {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")}
+        env = own(folder)
+        run(tool("uv"), "tool", "install", "--quiet", "--python", sys.executable, wheel, cwd=outside, env=env)
+        python = folder / "tools" / "plan-cutters" / "bin" / "python"
+        run(tool("uv"), "pip", "check", "--quiet", "--python", python, cwd=outside, env=env)
+        megabytes = small(python.parent.parent)
         where = "import plan_cutters, cad_io; print(plan_cutters.__file__, cad_io.__file__)"
         for path in run(python, "-c", where, cwd=outside, env=env).split():
             assert Path(path).is_relative_to(folder), f"{path} is not the installed one"
-        command = python.parent / "plan-cutters"
-        run(
-            command,
-            "v_groove.step",
-            "--cutter",
-            "R8L90",
-            "--grid",
-            "5",
-            "--area-budget",
-            "0",
-            cwd=outside,
-            env=env,
-            quiet=True,
-        )
+        command = folder / "bin" / "plan-cutters"
+        words = ["--cutter", "R8L90", "--grid", "5", "--area-budget", "0"]
+        run(command, "v_groove.step", *words, cwd=outside, env=env)
         made = {path.name for path in (outside / "v_groove-plan").iterdir()}
         assert made == {"plan.json", "review.html", "annotated.step", "annotated.glb", "samples.npz"}, made
         run(command, "diff", "v_groove-plan", "v_groove-plan/plan.json", cwd=outside, env=env)
-        print(f"{wheel.name}: {len(in_wheel(wheel))} files, planned a sample in a clean environment")
+        said = run(tool("pipx"), "run", "--spec", wheel, "plan-cutters", "--version", cwd=outside, env=env)
+        assert wheel.name.split("-")[1] in said, said
+        print(f"{wheel.name}: {len(in_wheel(wheel))} files, planned a sample in an environment of {megabytes} MB")
+
+
+def own(folder: Path) -> dict[str, str]:
+    """The environment variables of a user: no folder of the checkout is on the path, and tools are installed below `folder`."""
+    inherited = {key: value for key, value in os.environ.items() if not key.startswith(("PYTHON", "UV_TOOL", "PIPX_"))}
+    places = {"UV_TOOL_DIR": "tools", "UV_TOOL_BIN_DIR": "bin", "PIPX_HOME": "pipx", "PIPX_BIN_DIR": "pipx-bin"}
+    return {
+        **inherited,
+        **{key: str(folder / place) for key, place in places.items()},
+        "PIPX_DEFAULT_BACKEND": "uv",
+        "PATH": os.pathsep.join([str(Path(sys.executable).parent), inherited.get("PATH", "")]),
+    }
+
+
+def tool(name: str) -> Path:
+    """A command of the development environment."""
+    return Path(sys.executable).parent / name
 
 
 def run(*words: object, cwd: Path, env: dict[str, str] | None = None, quiet: bool = False) -> str:
@@ -95,38 +106,27 @@ def same(what: str, found: set[str], asked: set[str]) -> None:
         sys.exit(f"{what}: missing {sorted(asked - found)}, not tracked by git {sorted(found - asked)}")
 
 
-def closure() -> dict[str, Distribution]:
-    """Distributions that ours declares without extras, and theirs in turn, with the extras that each asks for."""
-    found: dict[str, Distribution] = {}
-    seen, left = set(), [("plan-cutters", frozenset[str]())]
-    while left:
-        name, extras = each = left.pop()
-        if each in seen:
-            continue
-        seen.add(each)
-        found[name] = distribution(name)
-        for text in found[name].requires or ():
-            need = Requirement(text)
-            if need.marker is None or any(need.marker.evaluate({"extra": extra}) for extra in ("", *extras)):
-                left.append((need.name.lower(), frozenset(need.extras)))
-    del found["plan-cutters"]
-    return found
+def shown(wheel: Path) -> None:
+    """End where a field is empty that a package index shows."""
+    with zipfile.ZipFile(wheel) as archive:
+        (path,) = (name for name in archive.namelist() if name.endswith(".dist-info/METADATA"))
+        about = message_from_string(archive.read(path).decode())
+    if empty := [field for field in SHOWN if not about[field]]:
+        sys.exit(f"wheel: the metadata lack {empty}")
+    if about["Author"] != "the plan-cutters developers":
+        sys.exit(f"wheel: the author is {about['Author']}")
 
 
-def clean(folder: Path, wheel: Path) -> Path:
-    """Make an environment with the wheel and, as links, what it declares; its Python."""
-    run(sys.executable, "-m", "venv", folder, cwd=ROOT)
-    python = folder / "bin" / "python"
-    site = Path(run(python, "-c", "import sysconfig; print(sysconfig.get_paths()['purelib'])", cwd=folder).strip())
-    ours = Path(sysconfig.get_paths()["purelib"])
-    for each in closure().values():
-        for top in {file.parts[0] for file in each.files or () if file.parts[0] not in ("..", "__pycache__")}:
-            if (ours / top).exists() and not (site / top).exists():
-                (site / top).symlink_to(ours / top)
-    # Its own requirements must be met by what is there: `pip check` looks at their versions.
-    run(python, "-m", "pip", "install", "--quiet", "--no-deps", "--no-index", wheel, cwd=folder)
-    run(python, "-m", "pip", "check", cwd=folder)
-    return python
+def small(environment: Path) -> int:
+    """Size of an environment, MB; end where it is too large, or has what nobody needs."""
+    (packages,) = environment.glob("lib/python3*/site-packages")
+    if there := [name for name in NOT_THERE if (packages / name).exists()]:
+        sys.exit(f"{there}: what was not asked for was installed")
+    size = sum(path.stat().st_size for path in environment.rglob("*") if path.is_file() and not path.is_symlink())
+    megabytes = round(size / 1e6)
+    if megabytes > MOST_MB:
+        sys.exit(f"the environment has {megabytes} MB, {MOST_MB} were to be enough")
+    return megabytes
 
 
 if __name__ == "__main__":

@@ -56,6 +56,24 @@ def main() -> None:
             "table", "--formats", "png", "-o", str(out / "sheet"))  # fmt: skip
         shutil.copy(out / "sheet" / "review.png", PICTURES / "sheet.png")
         _page(out / "p" / "review.html", PICTURES / "review.png")
+        _card(out / "card.html", PICTURES / "notebook.png")
+
+
+def _card(page: Path, picture: Path) -> None:
+    """The card of the notebook's result, as a notebook shows it, with its page opened."""
+    from plan_cutters import Cutter, plan
+
+    ball = Cutter.ball(radius=8, length=20, flutes=16.0, shank_radius=8.0, holder="R25L40")
+    result = plan(ROOT / "samples/v_groove.step", cutters=[ball, "R3L40"], spacing=6, area_budget=0)
+    page.write_text(f"<!doctype html><meta charset=utf-8>{result._repr_html_()}", encoding="utf-8")
+    with sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=shutil.which("chromium"), args=_CHROMIUM)
+        tab = browser.new_page(viewport={"width": 1000, "height": 1600})
+        tab.goto(page.as_uri())
+        tab.click("summary")
+        tab.wait_for_timeout(5000)
+        tab.screenshot(path=str(picture))
+        browser.close()
 
 
 def _readme(lines: list[str]) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,9 @@ from plan_cutters.scene.faces import face_numbers
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
 from plan_cutters.stages.posture_maps import PostureMaps
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -115,9 +118,13 @@ class Result:
     @cached_property
     def clearances(self) -> Clearances:
         """How far the cutter `shown` keeps from everything at the postures found, where it does not cut."""
+        return self.clearances_of(self.shown)
+
+    def clearances_of(self, cutter: str) -> Clearances:
+        """The same for a cutter, by its id."""
         setups = (self.conditions,) if self.ready is None else self.ready.setups
         return clearances_over(
-            self.samples, self.judged(), self.reaches[self.shown], setups, self.served_in.get(self.shown)
+            self.samples, self.judged(cutter), self.reaches[cutter], setups, self.served_in.get(cutter)
         )
 
     @property
@@ -230,6 +237,72 @@ class Result:
             doubtful=doubtful,
             inside=self.inside_bodies,
         )
+
+    def summary(self) -> str:
+        """The plan in words, as many lines: `print(result.summary())`.
+
+        It says which cutter to take, or that none finishes; a line for each cutter; what is not reached and why; what makes it
+        unsure.
+
+        Examples
+        --------
+        >>> from plan_cutters import plan
+        >>> result = plan("samples/v_groove.step", cutters=["R6L80", "R2L30"], grid=9, area_budget=0)
+        >>> print(result.summary().splitlines()[0])
+        Take flat end D12 x 80 for v_groove.step: ... It is the largest of 2 cutters that reaches every sample.
+        """
+        from plan_cutters.report.notebook import text_of
+
+        return text_of(self.plan)
+
+    def show(self, *, height: int = 640) -> Path | None:
+        """Show the review page: in a notebook below the cell, `height` pixels high, else in a browser.
+
+        Returns
+        -------
+        Path or None
+            The file that the browser shows, in the folder for temporary files, where it stays; None in a notebook.
+
+        Raises
+        ------
+        CadIoError
+            The kernel cannot mesh the part.
+        PlanError
+            No browser is found; the message names the file.
+        """
+        from plan_cutters.report.notebook import show
+
+        return show(self, height)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows of a result: headline, table, picture, and the review page to be opened."""
+        from plan_cutters.report.notebook import card
+
+        return card(self)
+
+    def to_dataframe(
+        self, of: Literal["samples", "faces", "cutters"] = "samples", cutter: str | None = None
+    ) -> "DataFrame":
+        """A table of pandas, with units at the end of names; what is not known is nan or None.
+
+        Parameters
+        ----------
+        of : str
+            `samples`: the columns of `axes.csv`, a row for each sample. `faces`: a row for each face of the part, with counts and
+            shares of area by verdict, the main reason and the deepest collision. `cutters`: a row for each cutter.
+        cutter : str, optional
+            Id of the cutter that samples and faces are about; default the one `shown`.
+
+        Raises
+        ------
+        OptionError
+            There is no such table or cutter.
+        PlanError
+            Pandas is not installed.
+        """
+        from plan_cutters.report.frames import frame
+
+        return frame(self, of, cutter)
 
     def to_json(self, path: str | Path) -> None:
         """Write the plan alone."""

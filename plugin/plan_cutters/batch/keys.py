@@ -11,7 +11,7 @@ from plan_cutters.batch.job import Handed, Settings
 
 #: Packages whose results may differ from version to version: they count in a key, and must be the same on all machines.
 COMPARED = {"plan-cutters": "plan_cutters", "python": "python", "numba": "numba", "dask": "dask"}
-_COUNTED = ("cadquery-ocp", "numba", "numpy", "scipy", "shapely")
+_COUNTED = ("cadquery-ocp-proxy", "numba", "numpy", "scipy", "shapely")
 
 
 @functools.cache
@@ -27,7 +27,7 @@ def version() -> str:
 def versions() -> dict[str, str]:
     """The versions that must be the same on all machines of a batch."""
     return {"plan-cutters": version(), "python": platform.python_version(),
-            **{name: _installed(name) for name in ("numba", "dask", "distributed", "cadquery-ocp")}}  # fmt: skip
+            **{name: _installed(name) for name in ("numba", "dask", "distributed", "cadquery-ocp-proxy")}}  # fmt: skip
 
 
 def _installed(name: str) -> str:

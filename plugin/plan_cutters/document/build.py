@@ -194,7 +194,7 @@ def versions() -> dict[str, str]:
     """Versions of what the plan was made with."""
     from importlib.metadata import version
 
-    names = {"cadquery-ocp": "occt", "numba": "numba", "numpy": "numpy", "scipy": "scipy", "trimesh": "trimesh"}
+    names = {"cadquery-ocp-proxy": "occt", "numba": "numba", "numpy": "numpy", "scipy": "scipy", "trimesh": "trimesh"}
     found = {label: version(name) for name, label in names.items()}
     return {"plan_cutters": __version__, **found, "python": platform.python_version()}
 

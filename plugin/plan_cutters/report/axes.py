@@ -46,11 +46,11 @@ class Column:
         return [f"{stem}_{axis}{dash}{unit}" for axis in "xyz"]
 
 
-def columns(result: Judged) -> list[Column]:
-    """The columns, in their order, a row for each sample in the order of `samples.npz`."""
-    samples, name = result.samples, result.shown
+def columns(result: Judged, cutter_id: str | None = None) -> list[Column]:
+    """The columns, in their order, a row for each sample in the order of `samples.npz`; default of the cutter shown."""
+    samples, name = result.samples, cutter_id or result.shown
     verdicts, cutter = result.reaches[name], result.judged(name)
-    near = result.clearances
+    near = result.clearances if name == result.shown else result.clearances_of(name)
     around = result.conditions.around
     n = len(samples)
     rotation = np.degrees(rotations_of(samples.normal, samples.direction_max, verdicts.tilt_direction))
@@ -77,12 +77,12 @@ def columns(result: Judged) -> list[Column]:
     if name in result.served_in:
         setups = range(len(result.elsewhere) + 1)
         found.append(Column("setup", result.served_in[name], words={-1: "", **{k: str(k) for k in setups}}))
-    return found + _machine(result)
+    return found + _machine(result, name)
 
 
-def _machine(result: Judged) -> list[Column]:
+def _machine(result: Judged, name: str) -> list[Column]:
     """Positions of the machine's axes: those to take, then the rotary ones of the other solution; linear ones where judged."""
-    name, machine = result.shown, result.conditions.machine
+    machine = result.conditions.machine
     if result.kinematics is None:
         return []
     angles, taken = result.rotary(name)

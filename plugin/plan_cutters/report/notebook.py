@@ -1,0 +1,159 @@
+"""A result where people work: as text in a terminal of Python, as a card in a notebook, as a page in a browser."""
+
+import base64
+import sys
+import tempfile
+import webbrowser
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from plan_cutters.document.model import Plan
+from plan_cutters.errors import PlanError
+from plan_cutters.report.markup import plain, template
+from plan_cutters.report.page.write import LARGEST_WITHOUT, page
+from plan_cutters.report.protocol import Judged
+from plan_cutters.report.story.cutters import FEASIBLE
+from plan_cutters.report.story.numbers import VERDICTS
+from plan_cutters.report.story.story import Story, story_of
+
+#: Height of the page in a notebook, pixels.
+HEIGHT = 640
+#: Verdicts as a column calls them.
+_COLUMNS = {word: "free" if word == "interference_free" else word for word in VERDICTS}
+#: Narrowest column of the table of text: room for `>99.9 %`.
+_NARROWEST = 8
+_TEMPLATE = template(Path(__file__).parent / "notebook.html.jinja")
+
+
+class _Chip(NamedTuple):
+    """How the headline stands out: a sign, for those who see no colour, and the colours of paper and ink."""
+
+    sign: str
+    paper: str
+    ink: str
+
+
+_CHIPS = {
+    True: _Chip("✓", "#00664b", "#ffffff"),
+    False: _Chip("✗", "#a33c00", "#ffffff"),
+    None: _Chip("?", "#f0e442", "#000000"),
+}
+
+
+def text_of(plan: Plan) -> str:
+    """The plan in words: what to take and why, what makes it unsure, a line for each cutter, what is not reached."""
+    story = story_of(plan)
+    headline = story.headline
+    lines = [f"{headline.title}{headline.about}. {headline.why}", *_told(story), "", *_table(story), ""]
+    lines += [each.left for each in story.cutters if each.left]
+    more = (*story.setups, *story.operations, *story.answers, *story.notes)
+    lines += [f"{line.mark} {line.text}{line.typed}".lstrip() for line in more if not line.minor]
+    return "\n".join(plain(line).rstrip() for line in lines).strip() + "\n"
+
+
+def card(result: Judged, *, height: int = HEIGHT) -> str:
+    """The result as HTML for a notebook: headline, what makes it unsure, table, picture, and the review page to be opened.
+
+    The page stands in a frame of its own, whose script reaches nothing of the notebook. What cannot be made is named.
+    """
+    story, missing = story_of(result.plan), list[str]()
+
+    def made(what: str, make: Callable[[], str]) -> str:
+        try:
+            return make()
+        except Exception as error:  # whatever fails in the kernel or on the disk must not hide the verdicts
+            missing.append(f"The {what} could not be made: {error or type(error).__name__}")
+            return ""
+
+    picture = made("picture", lambda: _picture(result))
+    framed = made("review page", lambda: page(result, largest=LARGEST_WITHOUT).decode())
+    return _rendered(result, story, height, picture=picture, page=framed, missing=missing)
+
+
+def show(result: Judged, height: int = HEIGHT) -> Path | None:
+    """Show the review page: in a notebook below the cell, else in a browser, from a file in the folder for temporary files.
+
+    Returns
+    -------
+    Path or None
+        The file, which stays there; None in a notebook.
+
+    Raises
+    ------
+    PlanError
+        No browser is found; the message names the file.
+    """
+    data = page(result, maps=result.maps)
+    if _in_notebook():
+        from IPython.display import HTML, display
+
+        display(HTML(_rendered(result, story_of(result.plan), height, page=data.decode(), opened=True)))
+        return None
+    path = Path(tempfile.mkdtemp(prefix="plan-cutters-")) / "review.html"
+    path.write_bytes(data)
+    if not webbrowser.open(path.as_uri()):
+        raise PlanError(
+            "no browser was found to show this page: open it yourself, or name one in BROWSER", file=str(path)
+        )
+    return path
+
+
+def _in_notebook() -> bool:
+    """Whether this process is the kernel of a notebook: a terminal of IPython shows no HTML."""
+    ipython = sys.modules.get("IPython")
+    shell = ipython.get_ipython() if ipython else None
+    return getattr(shell, "kernel", None) is not None
+
+
+def _told(story: Story) -> list[str]:
+    """What is said beside the headline: surface that is none, the scope, and all doubts."""
+    doubts = [f"{line.mark} {line.text}" for lines in story.doubts.values() for line in lines]
+    return [*story.inside, *story.proposal, *story.in_short, *story.scope, *story.between, *doubts]
+
+
+def _table(story: Story) -> list[str]:
+    """A line for each cutter, in columns that are as wide as they must be; `>` marks the one to take."""
+    rows = [["cutter", "finishes", *_COLUMNS.values()]]
+    rows += [
+        [plain(each.name), FEASIBLE[each.feasible], *(each.shares[word] for word in _COLUMNS)] for each in story.cutters
+    ]
+    wide = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    marks = [" ", *(">" if each.id == story.taken else " " for each in story.cutters)]
+    return [
+        f"{mark} {row[0]:<{wide[0]}}  {row[1]:<{wide[1]}}  "
+        + "  ".join(f"{cell:>{max(width, _NARROWEST)}}" for cell, width in zip(row[2:], wide[2:], strict=True))
+        for mark, row in zip(marks, rows, strict=True)
+    ]
+
+
+def _picture(result: Judged) -> str:
+    """The sheet of `review.png`, in base64."""
+    from plan_cutters.report.drawing.part import write_png
+    from plan_cutters.report.models import split_result
+
+    with tempfile.TemporaryDirectory(prefix="plan-cutters-") as folder:
+        path = Path(folder) / "review.png"
+        write_png(result, split_result(result), path)
+        return base64.b64encode(path.read_bytes()).decode()
+
+
+def _rendered(
+    result: Judged, story: Story, height: int, *, page: str, picture: str = "", missing: list[str] | None = None,
+    opened: bool = False,
+) -> str:  # fmt: skip
+    cutters: list[dict[str, Any]] = [
+        {
+            "id": each.id,
+            "name": each.name,
+            "finishes": FEASIBLE[each.feasible],
+            "shares": [each.shares[word] for word in _COLUMNS],
+            "reason": each.reason,
+        }
+        for each in story.cutters
+    ]
+    return _TEMPLATE.render(
+        chip=_CHIPS[story.headline.good], headline=story.headline, told=_told(story), columns=list(_COLUMNS.values()),
+        cutters=cutters, taken=story.taken, shown=story.names[result.shown], picture=picture, page=page, open=opened,
+        file=result.plan.part.file, height=int(height), missing=missing or [],
+    )  # fmt: skip
