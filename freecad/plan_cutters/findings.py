@@ -1,0 +1,211 @@
+"""The panel of a result: verdict, legend, worst spots that the view flies to."""
+
+from __future__ import annotations
+
+import os
+
+import FreeCAD as App
+import FreeCADGui as Gui
+
+from . import camera, model, objects, remembered, windows
+from .windows import QtCore, QtGui
+
+#: Sign and word of a verdict about a cutter, and its colour.
+VERDICTS = {
+    True: ("✔", "finishes", "#007a58"),
+    False: ("✘", "does not finish", "#b34700"),
+    None: ("?", "not decided", "#6b6400"),
+}
+_CLOSE = QtGui.QDialogButtonBox.Close
+
+
+def chosen_group():
+    """The plan that is selected in the active document, else its newest."""
+    document = App.ActiveDocument
+    groups = objects.plans(document) if document else []
+    if not groups:
+        raise model.Refused("no plan is shown in this document: plan first")
+    selected = {each.Name for each in Gui.Selection.getSelection(document.Name)}
+    for group in groups:
+        if group.Name in selected or selected & {each.Name for each in group.OutListRecursive}:
+            return group
+    return groups[-1]
+
+
+def open_review(group) -> None:
+    """Open the review page of a plan in the browser."""
+    path = objects.result_of(group).review()
+    if not path or not os.path.exists(path):
+        raise model.Refused("the review page of this plan is not there any more: plan again")
+    QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(path))
+
+
+def clear(document) -> None:
+    """Take away all plans of a document."""
+    objects.clear(document)
+
+
+def _percent(share: float) -> str:
+    if 0 < share < 0.001:
+        return "< 0.1 %"
+    if 0.999 < share < 1:
+        return "> 99.9 %"
+    return f"{100 * share:.3g} %"
+
+
+class Findings:
+    """The panel: FreeCAD shows the widgets of `form` and calls the methods in mixed case."""
+
+    def __init__(self, group) -> None:
+        self.group, self.result = group, objects.result_of(group)
+        self._seen, self._spots = None, []
+        self.form = [self._verdict_box(), self._legend_box(), self._spots_box()]
+        self._fill(self.result.shown()["id"])
+
+    # The boxes.
+
+    def _verdict_box(self):
+        box, layout = windows.box("Result", "results")
+        self._chip = QtGui.QLabel()
+        self._chip.setObjectName("chip")
+        layout.addRow(self._chip)
+        self._headline = windows.words(self.result.headline(), "headline")
+        layout.addRow(self._headline)
+        self._stale = windows.words("", "stale")
+        self._stale.setStyleSheet("color: #b34700; font-weight: bold")
+        layout.addRow(self._stale)
+        entries = []
+        for each in self.result.plan["cutters"]:
+            sign = VERDICTS[each["feasible"]][0]
+            entries.append((f"{sign} {each['name'] or each['id']}", each["id"]))
+        self._cutters = windows.combo(entries, self.result.shown()["id"])
+        self._cutters.setObjectName("cutters")
+        self._cutters.currentIndexChanged.connect(lambda *_: self._other_cutter())
+        layout.addRow("Cutter", self._cutters)
+        return box
+
+    def _legend_box(self):
+        box, self._legend = windows.box("Legend: share of the area")
+        return box
+
+    def _spots_box(self):
+        box, layout = windows.box("Worst spots")
+        self._list = QtGui.QTreeWidget()
+        self._list.setObjectName("spots")
+        self._list.setHeaderLabels(["Face", "Why", "In the way", "Deep"])
+        self._list.setRootIsDecorated(False)
+        self._list.setMinimumHeight(120)
+        self._list.currentItemChanged.connect(lambda *_: self._fly())
+        self._list.itemClicked.connect(lambda *_: self._fly())
+        layout.addRow(self._list)
+        self._told = windows.words("", "told")
+        layout.addRow(self._told)
+        self._tool = QtGui.QCheckBox("Show the tool there")
+        self._tool.setChecked(remembered.load().show_tool)
+        self._tool.toggled.connect(self._tool_wanted)
+        layout.addRow(self._tool)
+        whole = windows.button("Whole part", lambda: Gui.SendMsgToActiveView("ViewFit"), "Fit all in the view")
+        page = windows.button("Review page", self._page, "Open the plan's page in a browser")
+        away = windows.button("Remove", self._remove, "Take this plan away and show the body again")
+        layout.addRow(windows.row(whole, page, away))
+        return box
+
+    # What is shown.
+
+    def _fill(self, cutter: str) -> None:
+        entry = next(each for each in self.result.plan["cutters"] if each["id"] == cutter)
+        sign, word, colour = VERDICTS[entry["feasible"]]
+        selected = " · selected" if cutter == self.result.plan["selected"] else ""
+        self._chip.setText(f"{sign} {word}{selected}")
+        self._chip.setStyleSheet(f"background: {colour}; color: white; font-weight: bold; padding: 4px; border-radius: 4px")
+        while self._legend.rowCount():
+            self._legend.removeRow(0)
+        for code, words, rgb in self.result.legend():
+            share = entry["area_share"].get(code)
+            text = words if share is None else f"{words}: {_percent(share)}"
+            self._legend.addRow(windows.swatch(rgb), windows.words(text, f"legend_{code}"))
+        self._spots = self.result.spots(cutter)
+        self._list.blockSignals(True)
+        self._list.clear()
+        for spot in self._spots:
+            depth = f"{spot.depth_mm:.2f} mm" if spot.depth_mm else ""
+            item = QtGui.QTreeWidgetItem([spot.face, spot.reason.replace("_", " "), spot.obstacle, depth])
+            for column in range(4):
+                item.setToolTip(column, spot.text)
+            self._list.addTopLevelItem(item)
+        for column in range(4):
+            self._list.resizeColumnToContents(column)
+        self._list.setCurrentItem(None)
+        self._list.blockSignals(False)
+        self._told.setText("Click a spot: the view flies there." if self._spots else "No sample is lost with this cutter.")
+        self.look_again()
+
+    def look_again(self) -> None:
+        """Say whether the body was changed since it was planned."""
+        why = objects.stale(self.group)
+        self._stale.setText(why)
+        self._stale.setVisible(bool(why))
+
+    def _other_cutter(self) -> None:
+        cutter = windows.chosen(self._cutters)
+        self.group = objects.show(self.group.Document, self.result, cutter)
+        self._fill(cutter)
+
+    def _fly(self) -> None:
+        place = self._list.indexOfTopLevelItem(self._list.currentItem())
+        if place < 0:
+            return
+        spot = self._spots[place]
+        self._told.setText(spot.text)
+        if self._tool.isChecked() and spot.axis is not None:
+            objects.put_tool(self.group, spot)
+        body = self.group.Document.getObject(self.result.body)
+        view = Gui.getDocument(self.group.Document.Name).ActiveView
+        if body is None or not hasattr(view, "setCamera"):
+            return
+        if self._seen is None:
+            self._seen = camera.Seen(model.shape_of(body))
+        entry = next(each for each in self.result.plan["cutters"] if each["id"] == spot.cutter)
+        self._seen.fly(view, spot, entry["radius"])
+
+    def _tool_wanted(self, on: bool) -> None:
+        kept = remembered.load()
+        remembered.save(remembered.Choices(**{**kept.__dict__, "show_tool": on}))
+        if on:
+            self._fly()
+        else:
+            objects.hide_tool(self.group)
+
+    def _page(self) -> None:
+        try:
+            open_review(self.group)
+        except model.Refused as error:
+            windows.complain(str(error))
+
+    def _remove(self) -> None:
+        document = self.group.Document
+        QtCore.QTimer.singleShot(0, lambda: (Gui.Control.closeDialog(), clear(document)))
+
+    # FreeCAD's side of the panel.
+
+    def getStandardButtons(self) -> int:
+        return windows.code(_CLOSE)
+
+    def reject(self) -> bool:
+        return True
+
+    def isAllowedAlterSelection(self) -> bool:
+        return True
+
+    def isAllowedAlterView(self) -> bool:
+        return True
+
+    def isAllowedAlterDocument(self) -> bool:
+        return True
+
+
+def open_panel(group=None) -> Findings:
+    """Show the panel of a plan, by default of the one that is selected."""
+    panel = Findings(group or chosen_group())
+    Gui.Control.showDialog(panel)
+    return panel
