@@ -38,15 +38,15 @@ def command() -> list[str]:
     return [found]
 
 
-def words(job: model.Job, folder: str) -> tuple[list[str], str]:
+def words(job: model.Job, folder: str) -> tuple[list[str], dict[str, str]]:
     """Write what a job needs into a folder.
 
     Returns
     -------
     words : list of str
         The command with its options, but for where the answer goes.
-    fingerprint : str
-        Of the body as it was written.
+    fingerprints : dict of str
+        Of the body and the fixtures as they were written, by their names.
     """
     thing = model.thing_of(job.document, job.body)
     shape = model.shape(thing)
@@ -55,7 +55,7 @@ def words(job: model.Job, folder: str) -> tuple[list[str], str]:
         raise model.Refused(f"{thing.Label} has no Face{wrong[0]}: it has {len(shape.Faces)} faces")
     if not (math.isfinite(job.allowance) and job.allowance >= 0.0):
         raise model.Refused(f"the allowance must be 0 mm or more, not {job.allowance:g}")
-    source = exported(thing, shape, folder)
+    source, fingerprints = exported(thing, shape, folder), {job.body: model.fingerprint(shape)}
     found = [*command(), *job.options]
     found += _tools(job, folder)
     if job.machine:
@@ -68,10 +68,12 @@ def words(job: model.Job, folder: str) -> tuple[list[str], str]:
         fixture = model.thing_of(job.document, name)
         if name == job.body:
             raise model.Refused(f"{fixture.Label} is the body itself: it cannot be a fixture, too")
-        found += ["--fixture", exported(fixture, model.shape(fixture), folder)]
+        held = model.shape(fixture)
+        fingerprints[name] = model.fingerprint(held)
+        found += ["--fixture", exported(fixture, held, folder)]
     if job.faces:
         found += ["--faces", ",".join(f"F{number}" for number in job.faces)]
-    return [*found, source], model.fingerprint(shape)
+    return [*found, source], fingerprints
 
 
 def exported(thing, shape, folder: str) -> str:

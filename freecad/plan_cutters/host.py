@@ -77,7 +77,7 @@ def container_placement(thing) -> Any:
 
 def shape_of(thing) -> Any:
     """The shape of an object or link where it stands in the document; its faces keep their numbers."""
-    shape = Part.getShape(thing).copy()
+    shape = Part.getShape(thing).copy(False)
     shape.Placement = container_placement(thing).multiply(shape.Placement)
     return shape
 
@@ -109,6 +109,13 @@ def paint(thing, colour: tuple[float, float, float], transparency: int = 0) -> N
     if view is not None and hasattr(view, "ShapeColor"):
         view.ShapeColor = colour
         view.Transparency = transparency
+
+
+def paint_faces(thing, colours: list[tuple[float, float, float]]) -> None:
+    """Give each face of an object its colour, where there is a window."""
+    view = getattr(thing, "ViewObject", None)
+    if view is not None and hasattr(view, "DiffuseColor"):
+        view.DiffuseColor = colours
 
 
 def visible(thing, on: bool | None = None) -> bool:

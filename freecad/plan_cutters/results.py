@@ -86,8 +86,8 @@ class Result:
         `plan.json`.
     job : model.Job
         What was asked.
-    fingerprint : str
-        Of the body as it was planned.
+    fingerprints : dict of str
+        Of the body and the fixtures as they were planned, by their names.
     paths : dict of str
         Where its files are, by the word in `files` of the plan: `npz`, `html`, `step`, `operations_step`, and `json`.
     folder : str
@@ -96,7 +96,7 @@ class Result:
 
     plan: dict[str, Any]
     job: model.Job
-    fingerprint: str = ""
+    fingerprints: dict[str, str] = field(default_factory=dict)
     paths: dict[str, str] = field(default_factory=dict)
     folder: str = ""
 
@@ -250,11 +250,11 @@ def read(folder: str) -> Result:
     out = os.path.join(folder, "plan")
     with open(os.path.join(folder, JOB), encoding="utf-8") as file:
         asked = json.load(file)
-    fingerprint = asked.pop("fingerprint")
+    fingerprints = asked.pop("fingerprints")
     plan = parsed(os.path.join(out, "plan.json"))
     paths = {word: os.path.join(out, entry["name"]) for word, entry in plan["files"].items()}
     paths = {word: path for word, path in paths.items() if os.path.isfile(path)}
-    return Result(plan, model.job_of(asked), fingerprint, {**paths, "json": os.path.join(out, "plan.json")}, folder)
+    return Result(plan, model.job_of(asked), fingerprints, {**paths, "json": os.path.join(out, "plan.json")}, folder)
 
 
 def parsed(path: str) -> dict[str, Any]:

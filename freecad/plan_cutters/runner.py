@@ -194,9 +194,9 @@ class Run(_Watched):
         super().__init__(on_progress, on_done, on_error)
 
     def _words(self) -> list[str]:
-        words, fingerprint = files.words(self.job, self.folder)
+        words, fingerprints = files.words(self.job, self.folder)
         with open(os.path.join(self.folder, results.JOB), "w", encoding="utf-8") as file:
-            json.dump({**dataclasses.asdict(self.job), "fingerprint": fingerprint}, file)
+            json.dump({**dataclasses.asdict(self.job), "fingerprints": fingerprints}, file)
         # Behind the options of the user: the last one of a kind counts.
         return [*words, "--out", os.path.join(self.folder, "plan"), "--formats", files.FORMATS]
 

@@ -1,0 +1,1 @@
+"""FreeCAD runs this when its window starts."""
