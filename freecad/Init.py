@@ -10,5 +10,5 @@ import sys
 import freecad
 
 for each in sys.path:
-    if each not in freecad.__path__ and os.path.isfile(os.path.join(each, "plan_cutters", "init_gui.py")):
+    if each not in freecad.__path__ and os.path.isfile(os.path.join(each, "plan_cutters", "watch.py")):
         freecad.__path__.append(each)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import math
 import os
@@ -9,10 +10,13 @@ import re
 import shlex
 import shutil
 
-from . import host, model
+from . import host, model, results
 
 #: Of the plan, what the workbench shows.
 FORMATS = "json,html,npz,step"
+#: Options that say how one point is judged, too, and take a word; and those that take none.
+OF_A_POINT = ("--fixture", "--ignore", "--unit", "--tolerance", "--holder-clearance", "--tilt", "--rotation")
+FLAGS = ("--flip",)
 
 
 def command() -> list[str]:
@@ -49,7 +53,7 @@ def words(job: model.Job, folder: str) -> tuple[list[str], dict[str, str]]:
         Of the body and the fixtures as they were written, by their names.
     """
     thing = model.thing_of(job.document, job.body)
-    shape = model.shape(thing)
+    shape = model.shape_of(thing)
     wrong = [number for number in job.faces if not 1 <= number <= len(shape.Faces)]
     if wrong:
         raise model.Refused(f"{thing.Label} has no Face{wrong[0]}: it has {len(shape.Faces)} faces")
@@ -68,12 +72,28 @@ def words(job: model.Job, folder: str) -> tuple[list[str], dict[str, str]]:
         fixture = model.thing_of(job.document, name)
         if name == job.body:
             raise model.Refused(f"{fixture.Label} is the body itself: it cannot be a fixture, too")
-        held = model.shape(fixture)
+        held = model.shape_of(fixture)
         fingerprints[name] = model.fingerprint(held)
         found += ["--fixture", exported(fixture, held, folder)]
     if job.faces:
         found += ["--faces", ",".join(f"F{number}" for number in job.faces)]
     return [*found, source], fingerprints
+
+
+def of_one_point(result: results.Result) -> model.Job:
+    """The job of a posture map under the conditions of a plan."""
+    job, options, words = result.job, [], list(result.job.options)
+    while words:
+        word = words.pop(0)
+        name, joined, _ = word.partition("=")
+        if name in FLAGS:
+            options.append(word)
+        elif name in OF_A_POINT:
+            options += [word] if joined or not words else [word, words.pop(0)]
+    setup = job.setup
+    if setup == "auto":
+        setup = ",".join(repr(value) for value in result.plan["effective"]["setup"])
+    return dataclasses.replace(job, faces=(), tools=model.Tools(), options=tuple(options), setup=setup)
 
 
 def exported(thing, shape, folder: str) -> str:

@@ -141,11 +141,11 @@ def planned(thing):
         if parent.Tip is not thing:
             raise Refused(f"{thing.Label} is not the last step of {parent.Label}: select faces of the body as it is shown")
         thing = parent
-    shape(thing)
+    shape_of(thing)
     return thing
 
 
-def shape(thing):
+def shape_of(thing):
     """The shape of an object where it stands in the document."""
     found = host.shape_of(thing)
     if found.isNull() or not found.Faces:

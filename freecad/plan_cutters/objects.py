@@ -17,6 +17,7 @@ FILES = {
     "json": "PlanFile",
     "npz": "SamplesFile",
     "html": "ReviewFile",
+    "step": "ModelFile",
     "operations_step": "OperationsFile",
     "fastest_step": "FastestFile",
 }
@@ -86,13 +87,14 @@ def show(document, result: results.Result, cutter: str = ""):
     if changed:
         raise model.Refused(f"{changed} while it was planned: plan again")
     thing = model.thing_of(document.Name, result.job.body)
-    if len(result.plan["faces"]) != len(model.shape(thing).Faces):
+    if len(result.plan["faces"]) != len(model.shape_of(thing).Faces):
         raise model.Refused(
-            f"the plan has {len(result.plan['faces'])} faces, {thing.Label} has {len(model.shape(thing).Faces)}: their numbers differ"
+            f"the plan has {len(result.plan['faces'])} faces, {thing.Label} has {len(model.shape_of(thing).Faces)}: their numbers differ"
         )
     entry = result.shown(cutter)
     with step(document, "Plan cutters"):
-        seen = [_taken_away(document, each) for each in plans(document) if result_of(each).job.body == thing.Name]
+        old = [each for each in plans(document) if json.loads(getattr(each, JOB))["body"] == thing.Name]
+        seen = host.visible(thing) or any(each.BodyWasVisible and not each.OutOfDate for each in old)
         group = document.addObject("App::DocumentObjectGroup", "Plan")
         group.Label = f"{thing.Label}: {entry['id']}"
         asked = {**dataclasses.asdict(result.job), "fingerprints": result.fingerprints}
@@ -101,13 +103,16 @@ def show(document, result: results.Result, cutter: str = ""):
         _note(group, "String", "Headline", result.headline(), "The verdict")
         _note(group, "StringList", "Summary", result.summary(), "What the plan says")
         _note(group, "String", "OutOfDate", "", "Why the colours were dropped")
-        _note(group, "Bool", "BodyWasVisible", any(seen) or host.visible(thing))
+        _note(group, "Bool", "BodyWasVisible", seen)
         for word, name in FILES.items():
             if word in result.paths:
                 _note(group, "FileIncluded", name, result.paths[word], "A file of the plan")
-        for word, (faces, numbers) in pieces.by_verdict(result, model.shape(thing), entry["id"]).items():
+        for word, (faces, numbers) in pieces.by_verdict(result, model.shape_of(thing), entry["id"]).items():
             group.addObject(_verdict(document, result, word, faces, numbers))
         operations.add(document, group, result)
+        # Last, for the files may be those of the earlier plan.
+        for each in old:
+            _taken_away(document, each)
         host.visible(thing, False)
     document.recompute()
     result.discard()
@@ -160,7 +165,7 @@ def _changed(result: results.Result) -> str:
     for name, print_ in result.fingerprints.items():
         try:
             thing = model.thing_of(result.job.document, name)
-            if model.fingerprint(model.shape(thing)) != print_:
+            if model.fingerprint(model.shape_of(thing)) != print_:
                 return f"{thing.Label} was changed"
         except model.Refused as error:
             return str(error)
@@ -186,18 +191,16 @@ def clear(document) -> int:
     return len(groups)
 
 
-def _taken_away(document, group) -> bool:
-    """Remove a group with all in it, and show its body as before; whether that is seen then."""
-    seen = _shown_again(group)
+def _taken_away(document, group) -> None:
+    """Remove a group with all in it, and show its body as before."""
+    _shown_again(group)
     _removed(document, [*_within(group), group.Name])
-    return seen
 
 
-def _shown_again(group) -> bool:
-    if group.BodyWasVisible:
+def _shown_again(group) -> None:
+    if group.BodyWasVisible and not group.OutOfDate:
         with contextlib.suppress(model.Refused):
             host.visible(body_of(group), True)
-    return bool(group.BodyWasVisible)
 
 
 def _within(group) -> list[str]:
@@ -260,11 +263,11 @@ def put_tool(group, spot: results.Spot | results.Sample):
     return found
 
 
-def tool_away(group) -> None:
+def hide_tool(group) -> None:
     """Take the tool of a group away."""
     names = [each.Name for each in group.Group if getattr(each, ROLE, "") == "tool"]
     if names:
-        with step(group.Document, "Tool away"):
+        with step(group.Document, "Hide tool"):
             _removed(group.Document, names)
 
 
@@ -291,5 +294,5 @@ def active(document) -> object | None:
 
 
 __all__ = [
-    "active", "body_of", "clear", "drop", "nearest", "plans", "put_tool", "repaint", "result_of", "show", "stale", "tool_away",
+    "active", "body_of", "clear", "drop", "nearest", "plans", "put_tool", "repaint", "result_of", "show", "stale", "hide_tool",
 ]  # fmt: skip

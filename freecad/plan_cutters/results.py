@@ -100,6 +100,16 @@ class Result:
     paths: dict[str, str] = field(default_factory=dict)
     folder: str = ""
 
+    @property
+    def document(self) -> str:
+        """Name of the document."""
+        return self.job.document
+
+    @property
+    def body(self) -> str:
+        """Name of what was planned."""
+        return self.job.body
+
     def shown(self, cutter: str = "") -> dict[str, Any]:
         """A cutter of the plan; by default the selected one, else the one that reaches most."""
         wanted = cutter or self.plan["selected"]

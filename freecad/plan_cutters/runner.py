@@ -224,7 +224,7 @@ class Map(_Watched):
         result, point, cutter = self._given
         if self._stale:
             raise model.Refused(self._stale)
-        words, _ = files.words(dataclasses.replace(result.job, faces=(), options=(), tools=model.Tools()), self.folder)
+        words, _ = files.words(files.of_one_point(result), self.folder)
         at = ",".join(f"{value:.12g}" for value in point)
         place = len(files.command())
         return [

@@ -1,1 +1,0 @@
-"""FreeCAD runs this when its window starts."""
