@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
+import math
 from dataclasses import dataclass, field
+from typing import Any
+
+import FreeCAD as App
+
+from . import host
 
 
 class Refused(Exception):
@@ -11,7 +18,7 @@ class Refused(Exception):
 
 @dataclass(frozen=True)
 class Tools:
-    """Tools to judge; without any the program's default tool set.
+    """Tools to judge; without any, the program's default tool set.
 
     Parameters
     ----------
@@ -69,22 +76,145 @@ class Job:
     options: tuple[str, ...] = ()
 
 
+def job_of(entry: dict[str, Any]) -> Job:
+    """A job from what `dataclasses.asdict` made of it, in JSON."""
+    fixed = {name: tuple(value) if isinstance(value, list) else value for name, value in entry.items()}
+    tools = {name: tuple(value) if isinstance(value, list) else value for name, value in entry["tools"].items()}
+    return Job(**{**fixed, "tools": Tools(**tools)})
+
+
 def picked(selection) -> tuple[str, str, tuple[int, ...]]:
-    """Names of document and body, and face numbers, of a selection (entries of `Gui.Selection.getSelectionEx()`)."""
+    """Names of document and body, and face numbers, of a selection.
+
+    Parameters
+    ----------
+    selection : list
+        Entries of `Gui.Selection.getSelectionEx()`, or of all documents, `getSelectionEx("*")`.
+
+    Raises
+    ------
+    Refused
+        It is not one body or faces of one body.
+    """
+    documents = {entry.Object.Document.Name for entry in selection}
+    if len(documents) > 1:
+        raise Refused(f"the selection lies in {len(documents)} documents: select in one of them")
     if len(selection) != 1:
         raise Refused(f"select one body, or faces of one body; selected are {len(selection)} objects")
-    entry = selection[0]
-    faces = sorted(int(name.rpartition(".")[2][4:]) for name in entry.SubElementNames if "Face" in name)
-    if entry.SubElementNames and not faces:
+    thing, names = selection[0].Object, list(selection[0].SubElementNames)
+    owners = {name.rpartition(".")[0] for name in names}
+    if len(owners) > 1:
+        raise Refused(f"select faces of one body; selected are faces of {len(owners)}")
+    owner = owners.pop() if owners else ""
+    if owner:
+        thing = _within(thing, owner)
+    elements = [name.rpartition(".")[2] for name in names if name and not name.endswith(".")]
+    faces = sorted({int(name[4:]) for name in elements if name.startswith("Face")})
+    if len(faces) < len(set(elements)):
         raise Refused("select faces or the whole body, not edges or points")
-    return entry.Object.Document.Name, entry.Object.Name, tuple(faces)
+    return thing.Document.Name, planned(thing).Name, tuple(faces)
 
 
-def axis(thing, element: str = "") -> str:
-    """The setup axis `x,y,z` of a picked face, edge, line or coordinate system."""
-    raise Refused(f"{thing.Label} {element} has no axis")
+def _within(thing, path: str):
+    """The object that a selection's path within a container ends at."""
+    for name in filter(None, path.split(".")):
+        if thing.isDerivedFrom("App::Link"):
+            raise Refused(f"select the link {thing.Label} itself in the tree: its faces belong to another object")
+        thing = thing.Document.getObject(name) or thing
+    return thing
+
+
+def planned(thing):
+    """The object that is planned where this one was picked: the body of its last step.
+
+    Raises
+    ------
+    Refused
+        It holds no faces, or is a step that others follow.
+    """
+    if host.is_container(thing):
+        raise Refused(f"{thing.Label} is a container: select a body in it")
+    if thing.isDerivedFrom("Mesh::Feature"):
+        raise Refused(f"{thing.Label} is a mesh: select a body with CAD faces")
+    parent = thing.getParentGeoFeatureGroup()
+    if parent is not None and parent.isDerivedFrom("PartDesign::Body"):
+        if parent.Tip is not thing:
+            raise Refused(f"{thing.Label} is not the last step of {parent.Label}: select faces of the body as it is shown")
+        thing = parent
+    shape_of(thing)
+    return thing
+
+
+def shape_of(thing):
+    """The shape of an object where it stands in the document."""
+    found = host.shape_of(thing)
+    if found.isNull() or not found.Faces:
+        raise Refused(f"{thing.Label} holds no faces: select a body")
+    return found
+
+
+def thing_of(document: str, name: str):
+    """An object by the names of its document and of itself."""
+    if document not in App.listDocuments():
+        raise Refused(f"the document {document} was closed")
+    thing = App.getDocument(document).getObject(name)
+    if thing is None:
+        raise Refused(f"{name} is no longer in the document {document}")
+    return thing
+
+
+def fingerprint(found) -> str:
+    """A text that differs between shapes that differ: all vertices, and each face's area and centre, to 9 digits.
+
+    Triangles and names are no part of it, because looking at a body or computing it again changes them.
+    """
+    words = [f"{len(found.Faces)}"]
+    for each in (*found.Vertexes, *found.Faces):
+        at = each.Point if hasattr(each, "Point") else each.CenterOfMass
+        words += [f"{round(value, 6) + 0.0:.9g}" for value in (*at, getattr(each, "Area", 0.0))]
+    return hashlib.sha256(" ".join(words).encode()).hexdigest()
+
+
+def axis(thing, element: str = "", reverse: bool = False) -> str:
+    """The setup axis `x,y,z` of a picked face, edge, line or coordinate system, in the document's coordinates.
+
+    A plane face gives its normal out of the material; a round face or edge its axis; an object alone its Z axis, or the
+    direction of its only edge.
+    """
+    name = element.rpartition(".")[2]
+    if name:
+        found = _direction(host.shape_of(thing).getElement(name))
+    else:
+        try:
+            edges = [] if host.is_container(thing) else host.shape_of(thing).Edges
+        except (AttributeError, ValueError):
+            edges = []
+        if len(edges) == 1:
+            found = _direction(edges[0])
+        elif hasattr(thing, "Placement"):
+            turned = host.container_placement(thing).multiply(thing.Placement)
+            found = turned.Rotation.multVec(App.Vector(0, 0, 1))
+        else:
+            found = None
+    if found is None or not math.isfinite(found.Length) or found.Length < 1e-9:
+        raise Refused(f"{thing.Label} {name}".strip() + " has no axis: pick a plane or round face, a straight or round edge")
+    found = found.normalize() * (-1.0 if reverse else 1.0)
+    return ",".join(f"{round(value, 12) + 0.0:.12g}" for value in found)
+
+
+def _direction(element):
+    """The direction that a face or an edge has, None where it has none."""
+    if element.ShapeType == "Face":
+        if element.Surface.TypeId == "Part::GeomPlane":
+            low, high, left, right = element.ParameterRange
+            return element.normalAt((low + high) / 2, (left + right) / 2)
+        return getattr(element.Surface, "Axis", None)
+    if element.ShapeType == "Edge":
+        curve = element.Curve
+        return getattr(curve, "Direction", None) or getattr(curve, "Axis", None)
+    return None
 
 
 def bits(document) -> list[tuple[str, str]]:
     """Names and labels of the tool bits of a document that the program can be given."""
-    return []
+    return [(each.Name, each.Label) for each in document.Objects if host.bit_shape(each)]
