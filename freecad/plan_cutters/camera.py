@@ -114,11 +114,12 @@ class Seen:
                 pass
         return App.Vector(*spot.axis) if spot.axis else App.Vector(0, 0, 1)
 
-    def fly(self, view, spot, radius) -> None:
-        """Show a spot in a view, with some `radius` (mm, of the cutter) around it."""
+    def fly(self, view, spot, radius, length) -> None:
+        """Show a spot in a view, with room for a tool of some radius and stick-out (mm) above it."""
         point, normal = App.Vector(*spot.point), self.normal(spot)
         axis = App.Vector(*spot.axis) if spot.axis else normal
-        width = min(max(16 * radius, self._size / 6), 1.2 * self._size)
+        width = min(max(12 * radius, self._size / 6, 1.6 * length), 1.5 * self._size)
         candidates = directions(normal, axis, view.getViewDirection() * -1)
         chosen = clear_of(self._mesh, point, candidates, self._size / 200)
-        view.setCamera(placed(point, chosen, axis, width, view.getCameraType() == "Perspective"))
+        # The tool stands above the spot: so that goes below the middle.
+        view.setCamera(placed(point + axis * (width / 4), chosen, axis, width, view.getCameraType() == "Perspective"))

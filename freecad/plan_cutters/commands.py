@@ -38,6 +38,12 @@ def _review() -> None:
     findings.open_review(findings.chosen_group())
 
 
+def _job() -> None:
+    from . import findings
+
+    findings.make_job(findings.chosen_group())
+
+
 def _clear() -> None:
     from . import findings
 
@@ -71,13 +77,17 @@ class Command:
 
 COMMANDS = {
     "PlanCutters_Plan": Command(
-        "Plan cutters…", "Say which cutters can finish the selected body or faces", "plan", _plan, _document_open
+        "Plan cutters…", "Say which cutters can finish the selected body or faces", "plan_cutters", _plan, _document_open
     ),
     "PlanCutters_Results": Command(
         "Results…", "Legend, cutters and worst spots of a plan in this document", "results", _results,
         lambda: _plan_shown() and not Gui.Control.activeDialog(),
     ),
     "PlanCutters_Review": Command("Review page", "Open the plan's review page in a browser", "review", _review, _plan_shown),
+    "PlanCutters_Job": Command(
+        "CAM job of the operations", "A job with the tool controllers, and work planes, of a plan that has operations",
+        "operations", _job, lambda: _plan_shown() and not Gui.Control.activeDialog(),
+    ),
     "PlanCutters_Clear": Command(
         "Remove results", "Take away what plans show in this document; the bodies are shown again", "clear", _clear,
         lambda: _plan_shown() and not Gui.Control.activeDialog(),

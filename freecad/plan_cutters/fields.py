@@ -49,14 +49,14 @@ class PartBox:
     def __init__(self, picker: Picker, choices: Choices, changed) -> None:
         self._picker, self._changed = picker, changed
         self.document, self.body, self.faces = "", "", ()
-        self.form, layout = windows.box("Part and faces")
+        self.form, layout = windows.box("Part and faces", "part")
         self._name = windows.words("none: select a body", "body")
-        layout.addRow("Body", windows.row(self._name, windows.button("Take selection", self.take, "The body selected now")))
+        layout.addRow("Body", windows.row(self._name, windows.button("Take", self.take, "Take the body, or faces, selected now")))
         self._kind = windows.combo(FACES, choices.faces)
         self._kind.setObjectName("faces")
         layout.addRow("Machine", self._kind)
         self._list = windows.words("", "picked")
-        self.pick = windows.button("Pick faces", self._picking, "Click faces in the view, more of them with Ctrl", True)
+        self.pick = windows.button("Pick", self._picking, "Click faces in the view, more of them with Ctrl", True)
         self._line = QtGui.QWidget()
         line = windows.row(self._list, self.pick)
         line.setContentsMargins(0, 0, 0, 0)
@@ -68,7 +68,7 @@ class PartBox:
         """Take the body, and the faces, that are selected now."""
         import FreeCADGui as Gui
 
-        selection = Gui.Selection.getSelectionEx()
+        selection = Gui.Selection.getSelectionEx("*")
         if not selection and quiet:
             return self._tell()
         try:
@@ -129,20 +129,19 @@ class ToolsBox:
 
     def __init__(self, document, choices: Choices, changed) -> None:
         self._changed = changed
-        self.form, layout = windows.box("Tools")
+        self.form, layout = windows.box("Tools", "tools")
         self._list = QtGui.QListWidget()
         self._list.setObjectName("tools")
-        self._list.setMaximumHeight(110)
+        windows.narrow(self._list).setFixedHeight(74)
         self._list.setToolTip("Tick what is judged. Nothing ticked: the program's own set of usual metric sizes. Del takes away.")
         layout.addRow(self._list)
         self._typed = QtGui.QLineEdit()
         self._typed.setObjectName("typed")
         self._typed.setPlaceholderText("D12L80, R6L80rc6…")
         self._typed.setToolTip("Diameter D or radius R, stick-out L, corner radius rc: R6L80rc6 is a ball end. Enter adds it.")
-        self._typed.returnPressed.connect(self._add_typed)
-        layout.addRow(
-            windows.row(self._typed, windows.button("Add", self._add_typed), windows.button("Library…", self._add_library))
-        )
+        self._typed.editingFinished.connect(self._add_typed)
+        layout.addRow("Add", windows.narrow(self._typed))
+        layout.addRow("", windows.button("Tool library…", self._add_library, "Fusion, HSMWorks, FreeCAD or TOML"))
         self._holder = windows.combo(HOLDERS, choices.holder, editable=True)
         self._holder.setObjectName("holder")
         self._holder.setToolTip("Of the tools that have none: a name as er32, R15L30 (radius, length), or a file")
@@ -171,10 +170,13 @@ class ToolsBox:
         self._list.addItem(item)
 
     def _add_typed(self) -> None:
-        for word in self._typed.text().replace(",", " ").replace(";", " ").split():
-            self._add("spec", word, word, True)
+        words = self._typed.text().replace(",", " ").replace(";", " ").split()
         self._typed.clear()
-        self._changed()
+        for word in words:
+            if word not in self._entries("spec", False):
+                self._add("spec", word, word, True)
+        if words:
+            self._changed()
 
     def _add_library(self) -> None:
         for path in QtGui.QFileDialog.getOpenFileNames(self.form, "Tool libraries", "", LIBRARIES)[0]:
@@ -219,7 +221,7 @@ class MachineBox:
     def __init__(self, picker: Picker, choices: Choices, changed) -> None:
         self._picker, self._changed = picker, changed
         self._axis, self._axis_name, self._fixtures = "", "", []
-        self.form, layout = windows.box("Machine and setup")
+        self.form, layout = windows.box("Machine and setup", "settings")
         self._machine = windows.combo(MACHINES, choices.machine, editable=True)
         self._machine.setObjectName("machine")
         self._machine.setToolTip("A machine that the program knows, tilt:45, or a machine file")
@@ -251,7 +253,7 @@ class MachineBox:
         self._more.setObjectName("more")
         self._more.setPlaceholderText("--spacing 2 --answers mend")
         self._more.setToolTip("More options of plan-cutters, as in a terminal")
-        layout.addRow("More", self._more)
+        layout.addRow("More", windows.narrow(self._more))
         self._setup.currentIndexChanged.connect(lambda *_: self._setup_chosen())
         self._machine.currentTextChanged.connect(lambda *_: changed())
         self._more.textChanged.connect(lambda *_: changed())

@@ -12,7 +12,7 @@ class PlanCutters(Gui.Workbench):
 
     MenuText = "Plan cutters"
     ToolTip = "Says which cutters can finish the picked faces, before any toolpath exists"
-    Icon = icons.path("plan")
+    Icon = icons.path("plan_cutters")
 
     def Initialize(self) -> None:
         """Called when the workbench is opened for the first time."""

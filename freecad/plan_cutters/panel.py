@@ -20,7 +20,7 @@ class Panel:
         self._run, self._buttons, self._ready = None, None, False
         choices = remembered.load()
         self.picker = Picker()
-        status, layout = windows.box("Plan cutters", "plan")
+        status, layout = windows.box("Plan cutters", "plan_cutters")
         self.status = windows.words(name="status")
         self.bar = QtGui.QProgressBar()
         self.bar.setVisible(False)
@@ -36,7 +36,7 @@ class Panel:
     def job(self) -> model.Job:
         """What is asked for now."""
         if not self.part.body:
-            raise model.Refused("select the body to machine, or faces of it, and press “Take selection”")
+            raise model.Refused("select the body to machine, or faces of it, and press “Take”")
         kind, options = self.part.kind(), self.machine.options()
         if kind == "picked" and not self.part.faces:
             raise model.Refused("no face is picked: click faces in the view")
@@ -101,7 +101,7 @@ class Panel:
             each.setEnabled(not running)
 
     def _progress(self, words: str, fraction: float | None) -> None:
-        self.status.setText(words)
+        self.status.setText(words[:1].upper() + words[1:])
         self.bar.setRange(0, 0 if fraction is None else 1000)
         if fraction is not None:
             self.bar.setValue(round(1000 * fraction))
@@ -113,13 +113,14 @@ class Panel:
 
     def _failed(self, line: str) -> None:
         self._end()
-        self.status.setText(line)
+        self.status.setText(line[:1].upper() + line[1:])
         App.Console.PrintError(f"plan-cutters: {line}\n")
 
     def _done(self, result) -> None:
         try:
             group = objects.show(App.getDocument(result.document), result)
         except Exception as error:  # whatever the document has against it: nothing is silent
+            result.discard()
             self._failed(str(error) or type(error).__name__)
             return
         self._end()

@@ -48,7 +48,7 @@ class Picker:
 
     def _changed(self) -> None:
         if self._take is not None and not self._quiet:
-            self._take(Gui.Selection.getSelectionEx())
+            self._take(Gui.Selection.getSelectionEx("*"))
 
     def addSelection(self, *_: Any) -> None:
         self._changed()

@@ -32,7 +32,7 @@ def words(text: str = "", name: str = "") -> Any:
     label.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
     # Long words, as ids of cutters, must not make the panel wider.
     label.setSizePolicy(QtGui.QSizePolicy.Ignored, QtGui.QSizePolicy.Preferred)
-    label.setMinimumWidth(80)
+    label.setMinimumWidth(60)
     return label
 
 
@@ -41,12 +41,20 @@ def button(text: str, work: Callable[..., None], hint: str = "", pressed: bool =
     made = QtGui.QPushButton(text)
     made.setToolTip(hint)
     made.setAutoDefault(False)
+    made.setStyleSheet("QPushButton { padding: 3px 8px; min-width: 20px }")
     made.setCheckable(pressed)
     if pressed:
         made.toggled.connect(work)
     else:
         made.clicked.connect(lambda *_: work())
     return made
+
+
+def narrow(widget: Any) -> Any:
+    """A widget that is as wide as the panel leaves it: the panel of a small screen is 230 pixels wide."""
+    widget.setSizePolicy(QtGui.QSizePolicy.Ignored, QtGui.QSizePolicy.Fixed)
+    widget.setMinimumWidth(70)
+    return widget
 
 
 def row(*parts: Any) -> Any:
@@ -67,7 +75,7 @@ def box(title: str, icon: str = "") -> tuple[Any, Any]:
         widget.setWindowIcon(QtGui.QIcon(icons.path(icon)))
     layout = QtGui.QFormLayout(widget)
     layout.setFieldGrowthPolicy(QtGui.QFormLayout.AllNonFixedFieldsGrow)
-    layout.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
+    layout.setContentsMargins(6, 6, 6, 6)
     return widget, layout
 
 
@@ -78,9 +86,12 @@ def combo(entries: list[tuple[str, str]], value: str, editable: bool = False) ->
         made.addItem(text, data)
     made.setEditable(editable)
     made.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
-    made.setMinimumContentsLength(8)
     choose(made, value)
-    return made
+    if editable:
+        # Of a long entry its beginning is read, not its end.
+        made.currentIndexChanged.connect(lambda *_: made.lineEdit().setCursorPosition(0))
+        made.lineEdit().setCursorPosition(0)
+    return narrow(made)
 
 
 def choose(made: Any, value: str) -> None:
@@ -110,7 +121,7 @@ def length(value: float, nothing: str = "", name: str = "") -> Any:
     made.setSuffix(" mm")
     made.setSpecialValueText(nothing)
     made.setValue(value)
-    return made
+    return narrow(made)
 
 
 def swatch(colour: tuple[float, float, float]) -> Any:
@@ -120,3 +131,15 @@ def swatch(colour: tuple[float, float, float]) -> Any:
     label = QtGui.QLabel()
     label.setPixmap(picture)
     return label
+
+
+def show_picture(picture: Any, title: str) -> Any:
+    """A window with a picture, which stays until it is closed."""
+    window = QtGui.QDialog(Gui.getMainWindow())
+    window.setWindowTitle(title)
+    window.setAttribute(QtCore.Qt.WA_DeleteOnClose)
+    label = QtGui.QLabel()
+    label.setPixmap(picture.scaled(900, 700, QtCore.Qt.KeepAspectRatio, QtCore.Qt.SmoothTransformation))
+    QtGui.QVBoxLayout(window).addWidget(label)
+    window.show()
+    return window
