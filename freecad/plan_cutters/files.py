@@ -9,6 +9,7 @@ import os
 import re
 import shlex
 import shutil
+from typing import Any
 
 from . import host, model, results
 
@@ -94,6 +95,38 @@ def of_one_point(result: results.Result) -> model.Job:
     if setup == "auto":
         setup = ",".join(repr(value) for value in result.plan["effective"]["setup"])
     return dataclasses.replace(job, faces=(), tools=model.Tools(), options=tuple(options), setup=setup)
+
+
+def library(cutter: dict[str, Any], folder: str) -> str:
+    """A tool library with one cutter of a plan, whose id need not be a word that the program reads.
+
+    Raises
+    ------
+    Refused
+        The plan does not hold all of its shape.
+    """
+    if cutter["shape"] != "end":
+        raise model.Refused(f"the plan does not say the whole shape of {cutter['id']}: ask the program for its posture maps")
+    parts: dict[str, list[dict[str, float]]] = {"neck": [], "shank": [], "holder": []}
+    for stage in cutter["stages"]:
+        parts[stage["part"]].append(stage)
+    rows = {
+        word: [[stage["radius_mm"], stage["length_mm"], stage["upper_radius_mm"]] for stage in stages] for word, stages in parts.items()
+    }
+    corner, taper = cutter["corner_radius"], cutter["taper_deg"]
+    kind = "taper" if taper > 0 else "dovetail" if taper < 0 else "flat" if not corner else "ball" if corner == cutter["radius"] else "bull"
+    lines = [
+        'unit = "mm"', "[[tool]]", f"name = {json.dumps(cutter['id'])}", f'type = "{kind}"', f"DC = {2.0 * cutter['radius']!r}",
+        *([f"RE = {corner!r}"] if corner else []), *([f"TA = {abs(taper)!r}"] if taper else []),
+        f"LCF = {cutter['flutes_mm'] or 'rest'!r}", f"LPR = {cutter['length']!r}", *([f"neck = {rows['neck']}"] if rows["neck"] else []),
+        f"DMM = {2.0 * rows['shank'][0][0] if rows['shank'] else 'same'!r}",
+        f"holder = {{ stages = {rows['holder']} }}" if rows["holder"] else 'holder = "none"',
+        f"allowance = {cutter['allowance_mm']!r}", f"clearance = {cutter['clearance_mm']!r}",
+    ]  # fmt: skip
+    path = os.path.join(folder, "tool.toml")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("\n".join([*lines, ""]))
+    return path
 
 
 def exported(thing, shape, folder: str) -> str:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import json
+import shutil
 from collections.abc import Iterator
 
 import Part
 
-from . import host, model, operations, pieces, results, tool
+from . import host, model, operations, pieces, results, runner, tool
 
 #: The property that tells a group of ours, and those that hold files of the plan.
 JOB = "PlanJob"
@@ -92,6 +93,8 @@ def show(document, result: results.Result, cutter: str = ""):
             f"the plan has {len(result.plan['faces'])} faces, {thing.Label} has {len(model.shape_of(thing).Faces)}: their numbers differ"
         )
     entry = result.shown(cutter)
+    if not result.folder:
+        result = _copied(result)
     with step(document, "Plan cutters"):
         old = [each for each in plans(document) if json.loads(getattr(each, JOB))["body"] == thing.Name]
         seen = host.visible(thing) or any(each.BodyWasVisible and not each.OutOfDate for each in old)
@@ -117,6 +120,13 @@ def show(document, result: results.Result, cutter: str = ""):
     document.recompute()
     result.discard()
     return group
+
+
+def _copied(result: results.Result) -> results.Result:
+    """The same with files of its own: a document would move those that are in another group."""
+    folder = runner.folder()
+    paths = {word: shutil.copy(path, folder) for word, path in result.paths.items()}
+    return dataclasses.replace(result, paths=paths, folder=folder)
 
 
 def _verdict(document, result: results.Result, word: str, faces, numbers):

@@ -112,8 +112,7 @@ class _Watched:
 
     def __init__(self, on_progress, on_done, on_error) -> None:
         self.state = "running"  # then done, failed or cancelled
-        self.folder = tempfile.mkdtemp(prefix="plan-cutters-")
-        _folders.add(self.folder)
+        self.folder = folder()
         self._tell = (on_progress, on_done, on_error)
         self._process: Process | None = None
         self._fault = ""
@@ -214,7 +213,7 @@ class Map(_Watched):
     """
 
     def __init__(self, group, point, cutter: str, on_progress, on_done, on_error) -> None:
-        from . import objects
+        from . import objects  # which shows what a run answers
 
         self._given = objects.result_of(group), tuple(point), cutter
         self._stale = objects.stale(group)
@@ -225,10 +224,11 @@ class Map(_Watched):
         if self._stale:
             raise model.Refused(self._stale)
         words, _ = files.words(files.of_one_point(result), self.folder)
+        entry = result.shown(cutter)
         at = ",".join(f"{value:.12g}" for value in point)
         place = len(files.command())
         return [
-            *words[:place], "map", *words[place:], "--at", at, "--cutter", cutter or result.shown()["id"],
+            *words[:place], "map", *words[place:], "--at", at, "--cutters", files.library(entry, self.folder), "--cutter", entry["id"],
             "--out", os.path.join(self.folder, "map.png"), "--json", "-",
         ]  # fmt: skip
 
@@ -239,6 +239,13 @@ class Map(_Watched):
             return {"picture": os.path.join(self.folder, "map.png"), "json": json.loads(process.output()), "folder": self.folder}
         except ValueError:
             raise model.Refused("the program drew no posture map that can be read") from None
+
+
+def folder() -> str:
+    """A temporary folder, gone when FreeCAD ends if not before."""
+    made = tempfile.mkdtemp(prefix="plan-cutters-")
+    _folders.add(made)
+    return made
 
 
 def removed(folder: str) -> None:
