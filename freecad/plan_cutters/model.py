@@ -139,7 +139,9 @@ def planned(thing):
     parent = thing.getParentGeoFeatureGroup()
     if parent is not None and parent.isDerivedFrom("PartDesign::Body"):
         if parent.Tip is not thing:
-            raise Refused(f"{thing.Label} is not the last step of {parent.Label}: select faces of the body as it is shown")
+            raise Refused(
+                f"{thing.Label} is not the last step of {parent.Label}: select faces of the body as it is shown"
+            )
         thing = parent
     shape_of(thing)
     return thing
@@ -178,8 +180,8 @@ def fingerprint(found) -> str:
 def axis(thing, element: str = "", reverse: bool = False) -> str:
     """The setup axis `x,y,z` of a picked face, edge, line or coordinate system, in the document's coordinates.
 
-    A plane face gives its normal out of the material; a round face or an edge its axis, so that its largest component is positive;
-    an object alone its Z axis, or the axis of its only edge.
+    A plane face gives its normal out of the material; a round face or an edge its axis, so that its largest component is
+    positive; an object alone its Z axis, or the axis of its only edge.
     """
     name = element.rpartition(".")[2]
     if name:
@@ -197,7 +199,9 @@ def axis(thing, element: str = "", reverse: bool = False) -> str:
         else:
             found = None
     if found is None or not math.isfinite(found.Length) or found.Length < 1e-9:
-        raise Refused(f"{thing.Label} {name}".strip() + " has no axis: pick a plane or round face, a straight or round edge")
+        raise Refused(
+            f"{thing.Label} {name}".strip() + " has no axis: pick a plane or round face, a straight or round edge"
+        )
     found = found.normalize() * (-1.0 if reverse else 1.0)
     return ",".join(f"{round(value, 12) + 0.0:.12g}" for value in found)
 

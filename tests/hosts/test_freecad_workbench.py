@@ -1,14 +1,22 @@
 """The workbench for FreeCAD, in FreeCAD's own Python: from picked faces to coloured objects, saved, undone, and out of date."""
 
 import ast
+import json
 import math
 import shutil
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from plan_cutters import Cutter
+from plan_cutters.domain.outline import outline, points
+from plan_cutters.domain.shapes import flute_length, modes
+from plan_cutters.domain.travel import tips
+from plan_cutters.domain.verdicts import blank
+from plan_cutters.library import read_library
 from tests.support.freecad_host import CONSOLE, run
 from tests.support.places import ROOT
 
@@ -98,8 +106,8 @@ def told(group):
     axes = [[list(each.Placement.Rotation.multVec(V(0, 0, 1))), each.Label] for each in frames]
     shown = objects.result_of(group)
     return dict(verdicts=verdicts, axes=axes, label=group.Label, headline=group.Headline, summary=list(group.Summary),
-                stale=objects.stale(group), review=open(shown.review(), encoding="utf-8").read(15), state=group.OutOfDate,
-                children=[each.Label for each in group.Group])
+                stale=objects.stale(group), review=open(shown.review(), encoding="utf-8").read(15),
+                missing=list(group.NotShown))
 
 found["areas"] = [face.Area for face in thing.Shape.Faces]
 found["shown"] = told(group)
@@ -112,9 +120,10 @@ for spot in (spots[0], objects.nearest(group, body.Faces[top - 1].Vertexes[0].Po
     shape = objects.put_tool(group, spot).Shape
     contact = Part.Vertex(*spot.point)
     tools.append(dict(
-        verdict=getattr(spot, "verdict", "lost"), far=shape.distToShape(contact)[0], contact=body.distToShape(contact)[0],
-        common=shape.common(body).Volume, height=shape.BoundBox.DiagonalLength, angles=[dict(each) for each in getattr(spot, "angles", ())],
-        parts=[solid.Volume for solid in shape.Solids], axis=list(spot.axis), tools=sum(each.Name == "Plan_tool" for each in group.Group),
+        verdict=getattr(spot, "verdict", "lost"), far=shape.distToShape(contact)[0],
+        contact=body.distToShape(contact)[0], common=shape.common(body).Volume, axis=list(spot.axis),
+        angles=[dict(each) for each in getattr(spot, "angles", ())], parts=[solid.Volume for solid in shape.Solids],
+        tools=sum(each.Name == "Plan_tool" for each in group.Group),
     ))
 found["tools"], found["depths"] = tools, [spot.depth_mm for spot in spots]
 objects.hide_tool(group)
@@ -132,7 +141,7 @@ drawn = []
 drawing = runner.Map(group, objects.result_of(group).spots()[0].point, "", lambda *news: None, drawn.append, drawn.append)
 assert drawing.wait(120) == "done", drawn
 with open(drawn[0]["picture"], "rb") as file:
-    found["map"] = [file.read(4).hex(), drawn[0]["json"]["cutter"], drawn[0]["json"]["tolerance_mm"], drawn[0]["json"]["machine"]]
+    found["map"] = [file.read(4).hex(), *(drawn[0]["json"][word] for word in ("cutter", "tolerance_mm", "machine"))]
 runner.removed(drawing.folder)
 fresh = objects.show(document, objects.result_of(group))
 found["fresh"], found["plans"] = told(fresh), len(objects.plans(document))
@@ -161,7 +170,8 @@ def moved(name):
 found["edits"] = [edited(name, moved(name)) for name in ("Block", "Cell", "Vise")]
 found["nothing"] = edited("nothing", lambda: document.Block.touch())
 steps = document.UndoCount
-found["cleared"] = [objects.clear(document), document.UndoCount - steps, sorted(each.Name for each in document.Objects) == sorted(before)]
+count = objects.clear(document)
+found["cleared"] = [count, document.UndoCount - steps, sorted(each.Name for each in document.Objects) == sorted(before)]
 found["left_at_last"] = left()
 """
 )
@@ -209,12 +219,21 @@ def test_verdicts_lie_on_the_faces_that_they_name(work):
         assert (verdict == "check") == (int(name[1:]) not in work["job"][2])
         assert colour == pytest.approx([v / 255 for v in bytes.fromhex(work["plan"]["legend"][verdict][1:])], abs=0.003)
     assert list(areas.values()) == pytest.approx(work["areas"], rel=1e-3)
-    assert {"check", "inaccessible"} <= {row[0] for row in work["shown"]["verdicts"]}
+    seen = {(name, verdict) for verdict, name, *_ in work["shown"]["verdicts"] if verdict != "check"}
+    unseen = {
+        (name, word) for name, *words, _, _ in map(str.split, work["shown"]["missing"]) for word in ["_".join(words)]
+    }
+    (cutter,) = work["plan"]["cutters"]
+    words = ("inaccessible", "undecided", "unjudged", "accessible", "interference_free")
+    judged = {(face, word) for face, counts in cutter["faces"].items() for word in words if counts[word]}
+    assert judged == seen | unseen
+    assert not seen & unseen
+    assert {"inaccessible", "accessible"} <= {word for _, word in judged}
     assert work["shown"]["summary"][0] == work["shown"]["headline"]
 
 
 def test_the_tool_stands_where_the_plan_says(work):
-    """It keeps the allowance from its contact, cuts into the body where the plan says so, and into nothing where it is reached."""
+    """It keeps the allowance from its contact; it cuts into the body where the plan says so, and not where that is reached."""
     lost, reached = work["tools"]
     assert work["depths"] == sorted(work["depths"], reverse=True)
     assert work["depths"][0] > 0.1
@@ -300,9 +319,13 @@ def failed(text, then=None):
 
 write = "os.mkdir(out); file = open(out + '/plan.json', 'w'); "
 found["programs"] = dict(
-    wrong=failed("sys.stderr.write('    1.0 s  starting\\\\nplan-cutters: the part\\\\n  holds nothing\\\\n    9.0 s  ending\\\\n'); sys.exit(3)"),
-    silent=failed("sys.exit(7)"), killed=failed("os.kill(os.getpid(), 9)"), none=failed("pass"), torn=failed(write + "file.write('{')"),
-    other=failed(write + "json.dump([1], file)"), newer=failed(write + "json.dump(dict(format='plan-cutters-plan', format_version=2), file)"),
+    wrong=failed(
+        "sys.stderr.write('    1.0 s  starting\\\\nplan-cutters: the part\\\\n  holds nothing\\\\n    9.0 s  ending\\\\n')\\n"
+        "sys.exit(3)"
+    ),
+    silent=failed("sys.exit(7)"), killed=failed("os.kill(os.getpid(), 9)"), none=failed("pass"),
+    torn=failed(write + "file.write('{')"), other=failed(write + "json.dump([1], file)"),
+    newer=failed(write + "json.dump(dict(format='plan-cutters-plan', format_version=2), file)"),
 )
 
 # A cancelled plan takes what it started with it.
@@ -335,8 +358,8 @@ document.addObject("Part::Feature", "Empty")
 mesh = document.addObject("Mesh::Feature", "Scan")
 found["asked"] = dict(
     closed=asked(document="gone"), gone=asked(body="Gone"), empty=asked(body="Empty"), face=asked(faces=(99,)),
-    itself=asked(fixtures=("Block",)), fixture=asked(fixtures=("Empty",)), allowance=asked(allowance=-1.0), nan=asked(allowance=float("nan")),
-    bit=asked(tools=model.Tools(bits=("Vise",))),
+    itself=asked(fixtures=("Block",)), fixture=asked(fixtures=("Empty",)), allowance=asked(allowance=-1.0),
+    nan=asked(allowance=float("nan")), bit=asked(tools=model.Tools(bits=("Vise",))),
 )
 os.environ["PLAN_CUTTERS"] = os.path.join(os.getcwd(), "missing")
 found["asked"]["missing"] = asked()
@@ -362,13 +385,17 @@ last.Length = 30
 document.recompute()
 pick = model.picked
 found["picked"] = dict(
-    nothing=line_of(pick, []), two=line_of(pick, [entry(thing), entry(vise)]), documents=line_of(pick, [entry(thing), entry(far)]),
+    nothing=line_of(pick, []), two=line_of(pick, [entry(thing), entry(vise)]),
+    documents=line_of(pick, [entry(thing), entry(far)]),
     edge=line_of(pick, [entry(thing, "Edge1")]), mixed=line_of(pick, [entry(thing, "Face1", "Edge1")]),
     container=line_of(pick, [entry(document.Cell)]), cells=line_of(pick, [entry(cell_link)]), mesh=line_of(pick, [entry(mesh)]),
     empty=line_of(pick, [entry(document.Empty)]), step=line_of(pick, [entry(first, "Face1")]),
     through=line_of(pick, [entry(cell_link, "Block.Face1")]),
 )
-found["taken"] = [pick([entry(link, "Face3", "Face1")]), pick([entry(last, "Face2")]), pick([entry(body)]), pick([entry(document.Cell, "Block.Face2")])]
+found["taken"] = [
+    pick([entry(link, "Face3", "Face1")]), pick([entry(last, "Face2")]), pick([entry(body)]),
+    pick([entry(document.Cell, "Block.Face2")]),
+]
 found["link"] = list(model.shape_of(link).BoundBox.Center)
 
 # Axes.
@@ -394,13 +421,86 @@ found["late"].append(line_of(objects.show, document, late))
 document.removeObject("Block")
 found["late"].append(line_of(objects.show, document, late))
 found["none"] = [objects.clear(document), objects.plans(document), left()]
+
+# Cutters of a plan: as shapes, at postures, and as libraries.
+asked = types.SimpleNamespace(plan=dict(effective=dict(allowance_mm=0.5, holder_clearance_mm=0.25)))
+found["cutters"] = []
+for case in json.load(open(os.environ["CASES"])):
+    cutter = case["cutter"]
+    row = dict(tips=[tool.tip(cutter, *posture) for posture in case["postures"]])
+    found["cutters"].append(row)
+    try:
+        shape, parts = tool.assembly(cutter)
+    except ValueError as error:
+        row["why"] = str(error)
+        continue
+    whole = shape.Solids[0].multiFuse(shape.Solids[1:]) if len(shape.Solids) > 1 else shape
+    row.update(volume=whole.Volume, low=whole.BoundBox.ZMin, high=whole.BoundBox.ZMax, parts=parts)
+    os.makedirs(cutter["id"])
+    row["library"] = line_of(files.library, asked, cutter, cutter["id"])
 """
 )
 
+SPECS = (
+    "R6L80",
+    "R6L80rc2",
+    "R6L80rc6",
+    "R3L60rc1T5F20S8HR10L5+R20L30",
+    "R5L40F10N4x12S6HR15:25L30",
+    "D8L30rc1F6N3x5N3.5:4x4S5",
+)
+CUTTERS = (
+    *(Cutter.parse(spec) for spec in SPECS),
+    replace(Cutter.parse("R4L30F9S3HR20L10"), taper=-0.2),
+    replace(Cutter.parse("R6L50rc1HR20L10"), allowance=0.3, clearance=1.0),
+    Cutter.lollipop(radius=5, neck_radius=3, length=30),
+    Cutter.barrel(radius=5, flank_radius=80, height=10, flutes=20.0, length=40),
+)
+
+
+def postures(cutter, count=12):
+    """Contacts at which a cutter may touch: points, normals, axes and tilt directions; the first one is not tilted."""
+    random = np.random.default_rng(7)
+    normal, side = random.normal(size=(2, count, 3))
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    lean = np.cross(normal, side)
+    lean /= np.linalg.norm(lean, axis=1)[:, None]
+    tilt = random.uniform(0.0, min(each.high for each in modes(cutter)), count) * (np.arange(count) > 0)
+    axis = np.cos(tilt)[:, None] * normal + np.sin(tilt)[:, None] * lean
+    return random.uniform(-50, 50, (count, 3)), normal, axis, lean, tilt
+
+
+def entry(cutter):
+    """The dimensions of a cutter, as a plan has them."""
+    stages = [
+        dict(part=part, low_mm=low, length_mm=each.length, radius_mm=each.radius, upper_radius_mm=each.upper_radius)
+        for part, low, each in cutter.stages
+    ]
+    return dict(
+        id=cutter.id, shape=cutter.shape, radius=cutter.radius, corner_radius=cutter.corner_radius, stages=stages,
+        taper_deg=math.degrees(cutter.taper), length=cutter.length, flutes_mm=flute_length(cutter),
+        allowance_mm=cutter.allowance or 0.0, clearance_mm=cutter.clearance or 0.0,
+    )  # fmt: skip
+
 
 @pytest.fixture(scope="module")
-def bad(tmp_path_factory):
-    return planned(BAD, tmp_path_factory.mktemp("freecad"), whole=False, PLAIN_PYTHON=sys.executable)
+def session(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("freecad")
+    cases = [
+        dict(
+            cutter=entry(cutter),
+            postures=[[row.tolist() for row in rows] for rows in zip(*postures(cutter)[:4], strict=True)],
+        )
+        for cutter in CUTTERS
+    ]
+    (folder / "cases.json").write_text(json.dumps(cases))
+    more = {"PLAIN_PYTHON": sys.executable, "CASES": str(folder / "cases.json")}
+    return planned(BAD, folder, whole=False, **more), folder
+
+
+@pytest.fixture(scope="module")
+def bad(session):
+    return session[0]
 
 
 def test_a_program_that_gives_no_plan_is_a_line(bad):
@@ -467,7 +567,12 @@ def test_selections_that_are_no_body_are_a_line(bad):
     }
     assert all(bad["picked"][word].startswith(start) for word, start in starts.items()), bad["picked"]
     assert bad["picked"].keys() == starts.keys()
-    assert bad["taken"] == [["work", "Twin", [1, 3]], ["work", "Body", [2]], ["work", "Body", []], ["work", "Block", [2]]]
+    assert bad["taken"] == [
+        ["work", "Twin", [1, 3]],
+        ["work", "Body", [2]],
+        ["work", "Body", []],
+        ["work", "Block", [2]],
+    ]
 
 
 def test_a_link_is_planned_where_it_stands(bad):
@@ -495,6 +600,60 @@ def test_a_late_result_is_refused(bad):
     assert bad["none"] == [0, [], []]
 
 
+def test_tips_are_those_of_the_program(bad):
+    """At random contacts; a shape that the plan does not hold has none."""
+    for cutter, row in zip(CUTTERS, bad["cutters"], strict=True):
+        point, normal, axis, lean, tilt = postures(cutter)
+        if cutter.shape == "barrel":
+            assert row["tips"] == [None] * len(point)
+            continue
+        one = blank(len(point))
+        one.axis[:], one.tilt_direction[:], one.tilt[:] = axis, lean, tilt
+        assert np.allclose(row["tips"], tips(cutter, point, normal, one.freeze()), atol=1e-9), cutter.id
+
+
+def test_assemblies_have_the_volume_of_their_outline(bad):
+    for cutter, row in zip(CUTTERS, bad["cutters"], strict=True):
+        if cutter.shape == "barrel":
+            assert row["why"] == "a barrel cutter is not drawn here: the review page shows it"
+            continue
+        (r0, h0), (r1, h1) = (ends.T for ends in pairs(points(outline(cutter), 1e-6)))
+        volume = math.pi / 3.0 * float(((h1 - h0) * (r0 * r0 + r0 * r1 + r1 * r1)).sum())
+        assert row["volume"] == pytest.approx(volume, rel=1e-5), cutter.id
+        assert (row["low"], row["high"]) == pytest.approx((0.0, outline(cutter).height), abs=1e-6)
+
+
+def pairs(polyline):
+    return polyline[:-1], polyline[1:]
+
+
+def test_a_library_of_one_cutter_is_that_cutter(bad, session):
+    """Its own allowance and clearance where these are not those of the whole plan."""
+    for cutter, row in zip(CUTTERS, bad["cutters"], strict=True):
+        if cutter.shape != "end":
+            assert row.get("library", "") is not None
+            continue
+        path = session[1] / cutter.id / "tool.toml"
+        (mine,) = read_library(path)
+        holder = replace(cutter.holder, name="") if cutter.holder else None
+        theirs = replace(
+            cutter, name=cutter.id, allowance=cutter.allowance or 0.0, clearance=cutter.clearance or 0.0, holder=holder
+        )
+        assert shown(mine) == shown(theirs)
+
+
+def shown(cutter):
+    """Everything that a verdict depends on, to rounding of degrees."""
+    found = entry(cutter)
+    del found["id"]
+    numbers = [
+        found.pop(word)
+        for word in ("radius", "corner_radius", "taper_deg", "length", "flutes_mm", "allowance_mm", "clearance_mm")
+    ]
+    rows = [tuple(each.values()) for each in found.pop("stages")]
+    return [round(each, 9) for each in numbers], rows, found
+
+
 def test_the_workbench_imports_nothing_of_the_program():
     """FreeCAD's own Python runs it: what it imports is FreeCAD's, the standard library's, or its own."""
     folder = ROOT / "freecad" / "plan_cutters"
@@ -507,5 +666,3 @@ def test_the_workbench_imports_nothing_of_the_program():
     sizes = {path.name: len(path.read_text().splitlines()) for path in folder.glob("*.py")}
     assert sizes
     assert all(lines <= 400 for lines in sizes.values()), sizes
-
-
