@@ -9,6 +9,7 @@ import os
 import re
 import shlex
 import shutil
+from typing import Any
 
 from . import host, model, results
 
@@ -20,7 +21,7 @@ FLAGS = ("--flip",)
 
 
 def command() -> list[str]:
-    """The program as a list of words: from the settings, the environment, the search path or where tools are installed for a user.
+    """The program as a list of words: by the settings, the environment, the search path, or where a user's tools are.
 
     Raises
     ------
@@ -96,6 +97,48 @@ def of_one_point(result: results.Result) -> model.Job:
     return dataclasses.replace(job, faces=(), tools=model.Tools(), options=tuple(options), setup=setup)
 
 
+def library(result: results.Result, cutter: dict[str, Any], folder: str) -> str:
+    """Write a tool library with one cutter of a plan, whose id need not be a word that the program reads; its path.
+
+    Raises
+    ------
+    Refused
+        The plan does not hold all of its shape.
+    """
+    if cutter["shape"] != "end":
+        raise model.Refused(
+            f"the plan does not hold the whole shape of {cutter['id']}: ask the program for its posture maps"
+        )
+    parts: dict[str, list[dict[str, float]]] = {"neck": [], "shank": [], "holder": []}
+    for stage in cutter["stages"]:
+        parts[stage["part"]].append(stage)
+    sizes = ("radius_mm", "length_mm", "upper_radius_mm")
+    rows = {word: [[stage[size] for size in sizes] for stage in stages] for word, stages in parts.items()}
+    asked = result.plan["effective"]
+    own = {
+        "allowance": (cutter["allowance_mm"], asked["allowance_mm"]),
+        "clearance": (cutter["clearance_mm"], asked["holder_clearance_mm"]),
+    }
+    corner, taper = cutter["corner_radius"], cutter["taper_deg"]
+    if taper:
+        kind = "taper" if taper > 0 else "dovetail"
+    else:
+        kind = "flat" if not corner else "ball" if corner == cutter["radius"] else "bull"
+    lines = [
+        'unit = "mm"', "[[tool]]", f"name = {json.dumps(cutter['id'])}", f'type = "{kind}"', f"DC = {2.0 * cutter['radius']!r}",
+        *([f"RE = {corner!r}"] if corner else []), *([f"TA = {abs(taper)!r}"] if taper else []),
+        f"LCF = {cutter['flutes_mm'] or 'rest'!r}", f"LPR = {cutter['length']!r}",
+        *([f"neck = {rows['neck']}"] if rows["neck"] else []),
+        f"DMM = {2.0 * rows['shank'][0][0] if rows['shank'] else 'same'!r}",
+        f"holder = {{ stages = {rows['holder']} }}" if rows["holder"] else 'holder = "none"',
+        *(f"{word} = {mine!r}" for word, (mine, all_have) in own.items() if mine != all_have),
+    ]  # fmt: skip
+    path = os.path.join(folder, "tool.toml")
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("\n".join([*lines, ""]))
+    return path
+
+
 def exported(thing, shape, folder: str) -> str:
     """A shape as a file named after its object."""
     base = re.sub(r"[^A-Za-z0-9_-]+", "_", thing.Label).strip("_") or "part"
@@ -119,7 +162,13 @@ def _tools(job: model.Job, folder: str) -> list[str]:
         if not kind:
             raise model.Refused(f"{bit.Label} is no tool bit")
         path = os.path.join(folder, f"bit{number}.fctb")
-        entry = {"version": 2, "name": bit.Label, "shape": f"{kind}.fcstd", "parameter": host.lengths(bit), "attribute": {}}
+        entry = {
+            "version": 2,
+            "name": bit.Label,
+            "shape": f"{kind}.fcstd",
+            "parameter": host.lengths(bit),
+            "attribute": {},
+        }
         with open(path, "w", encoding="utf-8") as file:
             json.dump(entry, file)
         found += ["--cutters", path]

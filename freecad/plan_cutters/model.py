@@ -139,7 +139,9 @@ def planned(thing):
     parent = thing.getParentGeoFeatureGroup()
     if parent is not None and parent.isDerivedFrom("PartDesign::Body"):
         if parent.Tip is not thing:
-            raise Refused(f"{thing.Label} is not the last step of {parent.Label}: select faces of the body as it is shown")
+            raise Refused(
+                f"{thing.Label} is not the last step of {parent.Label}: select faces of the body as it is shown"
+            )
         thing = parent
     shape_of(thing)
     return thing
@@ -178,8 +180,8 @@ def fingerprint(found) -> str:
 def axis(thing, element: str = "", reverse: bool = False) -> str:
     """The setup axis `x,y,z` of a picked face, edge, line or coordinate system, in the document's coordinates.
 
-    A plane face gives its normal out of the material; a round face or edge its axis; an object alone its Z axis, or the
-    direction of its only edge.
+    A plane face gives its normal out of the material; a round face or an edge its axis, so that its largest component is
+    positive; an object alone its Z axis, or the axis of its only edge.
     """
     name = element.rpartition(".")[2]
     if name:
@@ -197,22 +199,23 @@ def axis(thing, element: str = "", reverse: bool = False) -> str:
         else:
             found = None
     if found is None or not math.isfinite(found.Length) or found.Length < 1e-9:
-        raise Refused(f"{thing.Label} {name}".strip() + " has no axis: pick a plane or round face, a straight or round edge")
+        raise Refused(
+            f"{thing.Label} {name}".strip() + " has no axis: pick a plane or round face, a straight or round edge"
+        )
     found = found.normalize() * (-1.0 if reverse else 1.0)
     return ",".join(f"{round(value, 12) + 0.0:.12g}" for value in found)
 
 
 def _direction(element):
     """The direction that a face or an edge has, None where it has none."""
-    if element.ShapeType == "Face":
-        if element.Surface.TypeId == "Part::GeomPlane":
-            low, high, left, right = element.ParameterRange
-            return element.normalAt((low + high) / 2, (left + right) / 2)
-        return getattr(element.Surface, "Axis", None)
-    if element.ShapeType == "Edge":
-        curve = element.Curve
-        return getattr(curve, "Direction", None) or getattr(curve, "Axis", None)
-    return None
+    if element.ShapeType == "Face" and element.Surface.TypeId == "Part::GeomPlane":
+        low, high, left, right = element.ParameterRange
+        return element.normalAt((low + high) / 2, (left + right) / 2)
+    form = {"Face": "Surface", "Edge": "Curve"}.get(element.ShapeType)
+    form = getattr(element, form) if form else None
+    found = getattr(form, "Direction", None) or getattr(form, "Axis", None)
+    # Its sense is how it happened to be drawn.
+    return found * -1.0 if found is not None and max(found, key=abs) < 0.0 else found
 
 
 def bits(document) -> list[tuple[str, str]]:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import json
+import shutil
 from collections.abc import Iterator
 
 import Part
 
-from . import host, model, operations, pieces, results, tool
+from . import host, model, operations, pieces, results, runner, tool
 
 #: The property that tells a group of ours, and those that hold files of the plan.
 JOB = "PlanJob"
@@ -88,13 +89,15 @@ def show(document, result: results.Result, cutter: str = ""):
         raise model.Refused(f"{changed} while it was planned: plan again")
     thing = model.thing_of(document.Name, result.job.body)
     if len(result.plan["faces"]) != len(model.shape_of(thing).Faces):
-        raise model.Refused(
-            f"the plan has {len(result.plan['faces'])} faces, {thing.Label} has {len(model.shape_of(thing).Faces)}: their numbers differ"
-        )
+        raise model.Refused(f"the plan has {len(result.plan['faces'])} faces, {thing.Label} another number of them")
     entry = result.shown(cutter)
+    if not result.folder:
+        result = _copied(result)
     with step(document, "Plan cutters"):
         old = [each for each in plans(document) if json.loads(getattr(each, JOB))["body"] == thing.Name]
         seen = host.visible(thing) or any(each.BodyWasVisible and not each.OutOfDate for each in old)
+        for each in old:
+            _taken_away(document, each)
         group = document.addObject("App::DocumentObjectGroup", "Plan")
         group.Label = f"{thing.Label}: {entry['id']}"
         asked = {**dataclasses.asdict(result.job), "fingerprints": result.fingerprints}
@@ -107,16 +110,27 @@ def show(document, result: results.Result, cutter: str = ""):
         for word, name in FILES.items():
             if word in result.paths:
                 _note(group, "FileIncluded", name, result.paths[word], "A file of the plan")
-        for word, (faces, numbers) in pieces.by_verdict(result, model.shape_of(thing), entry["id"]).items():
+        found = pieces.by_verdict(result, model.shape_of(thing), entry["id"])
+        for word, (faces, numbers) in found.items():
             group.addObject(_verdict(document, result, word, faces, numbers))
+        missing = pieces.not_shown(result, found, entry["id"])
+        _note(group, "StringList", "NotShown", missing, "Verdicts on a face that no object shows")
+        if missing:
+            host.warn(
+                f"without a colour of their own, for they are too small or whole faces are coloured: {', '.join(missing)}"
+            )
         operations.add(document, group, result)
-        # Last, for the files may be those of the earlier plan.
-        for each in old:
-            _taken_away(document, each)
         host.visible(thing, False)
     document.recompute()
     result.discard()
     return group
+
+
+def _copied(result: results.Result) -> results.Result:
+    """The same with files of its own: a document would move those that are in another group."""
+    folder = runner.folder()
+    paths = {word: shutil.copy(path, folder) for word, path in result.paths.items()}
+    return dataclasses.replace(result, paths=paths, folder=folder)
 
 
 def _verdict(document, result: results.Result, word: str, faces, numbers):
@@ -128,7 +142,13 @@ def _verdict(document, result: results.Result, word: str, faces, numbers):
     _note(thing, "String", ROLE, "verdict")
     _note(thing, "String", "Verdict", word, "Code in plan.json")
     _note(thing, "Color", "Colour", colour, "In the legend")
-    _note(thing, "StringList", "Faces", [f"F{number}" for number in numbers], "Face of the body, of each face of this object")
+    _note(
+        thing,
+        "StringList",
+        "Faces",
+        [f"F{number}" for number in numbers],
+        "Face of the body, of each face of this object",
+    )
     host.paint(thing, colour)
     return thing
 
@@ -257,7 +277,9 @@ def put_tool(group, spot: results.Spot | results.Sample):
             counts = [len(solid.Faces) for solid in found.Shape.Solids]
             host.paint_faces(found, [tool.COLOURS[part] for part, count in zip(parts, counts) for _ in range(count)])
         if spot.tip is None:
-            raise model.Refused(f"where the tip of {spot.cutter} is cannot be told from the plan: the review page shows it")
+            raise model.Refused(
+                f"where the tip of {spot.cutter} is cannot be told from the plan: the review page shows it"
+            )
         found.Placement = tool.placement(spot.tip, spot.axis)
         host.visible(found, True)
     return found
@@ -291,8 +313,3 @@ def active(document) -> object | None:
     """The newest plan of a document whose colours are shown; None where there is none."""
     found = [group for group in plans(document) if not group.OutOfDate]
     return found[-1] if found else None
-
-
-__all__ = [
-    "active", "body_of", "clear", "drop", "nearest", "plans", "put_tool", "repaint", "result_of", "show", "stale", "hide_tool",
-]  # fmt: skip

@@ -73,14 +73,16 @@ def make_job(group, word: str = MODELS[0]):
             raise model.Refused(str(error)) from None
         planes = {}
         for entry, each in zip(plan["operations"], [each for each in holder.Group if hasattr(each, "Mode")]):
-            planes.update({entry["id"]: child for child in each.Group if "_plane" in child.Name})
+            planes[entry["id"]] = next((child for child in each.Group if "_plane" in child.Name), None)
         taken = {
             entry["id"]: [place for place, name in enumerate(names) if name is not None and name[1] == entry["id"]]
             for entry in plan["operations"]
         }
         order = [place for place, name in enumerate(names) if name is not None]
         document.recompute()
-        job = macro.tried_job(document, result.plan, plan, (part, planes, taken, {place: n for n, place in enumerate(order, 1)}))
+        job = macro.tried_job(
+            document, result.plan, plan, (part, planes, taken, {place: n for n, place in enumerate(order, 1)})
+        )
         if job is None:
             raise model.Refused("this FreeCAD made no CAM job: the report view says why")
         host.visible(part, False)

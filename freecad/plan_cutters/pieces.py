@@ -31,6 +31,17 @@ def by_verdict(result: results.Result, shape, cutter: str) -> dict[str, tuple[li
     return found
 
 
+def not_shown(result: results.Result, found: dict[str, tuple[list, list[int]]], cutter: str) -> list[str]:
+    """Verdicts of samples of a face that no piece of it has, as `F3 inaccessible (4 samples)`; worst first."""
+    counts = result.shown(cutter)["faces"]
+    return [
+        f"{face} {word.replace('_', ' ')} ({mine[word]} samples)"
+        for word in results.WORST_FIRST
+        for face, mine in counts.items()
+        if mine.get(word) and int(face[1:]) not in found.get(word, ([], []))[1]
+    ]
+
+
 def _of_model(result: results.Result, count: int) -> list[tuple[int, str, object]] | None:
     """Number, verdict and face of each piece of the annotated model; None where that is not about all faces."""
     if "step" not in result.paths:
@@ -46,5 +57,7 @@ def _of_model(result: results.Result, count: int) -> list[tuple[int, str, object
         host.warn(str(error))
         return None
     rows = [(name[0], name[1], face) for name, face in zip(names, faces) if name is not None]
-    known = {row[0] for row in rows} == set(range(1, count + 1)) and {row[1] for row in rows} <= set(result.plan["legend"])
+    known = {row[0] for row in rows} == set(range(1, count + 1)) and {row[1] for row in rows} <= set(
+        result.plan["legend"]
+    )
     return rows if known else None

@@ -141,11 +141,11 @@ class Result:
             worst = sorted(each["by_reason"].items(), key=lambda item: -item[1])
             lost = ", ".join(f"{name.replace('_', ' ')} {count}" for name, count in worst if count)
             finishes = {True: "yes", False: "no", None: "not decided"}[each["feasible"]]
-            lines.append(
-                f"{'*' if each['id'] == plan['selected'] else ' '} {each['id']}: finishes {finishes}, reaches {reached} of {judged} "
-                f"samples{'; lost: ' + lost if lost else ''}{'; undecided: %d' % each['undecided'] if each['undecided'] else ''}"
-                f"{'; not judged: %d' % each['unjudged'] if each['unjudged'] else ''}"
-            )
+            line = f"{'*' if each['id'] == plan['selected'] else ' '} {each['id']}: finishes {finishes}"
+            line += f", reaches {reached} of {judged} samples"
+            line += f"; lost: {lost}" if lost else ""
+            line += "".join(f"; {word}: {each[word]}" for word in ("undecided", "unjudged") if each[word])
+            lines.append(line)
         lines += [f"Warning: {text}" for text in plan["part"]["warnings"]]
         lines += [f"Note: {text}" for text in plan["notes"]]
         return lines
@@ -184,10 +184,8 @@ class Result:
         text = " ".join(filter(None, words)) + (f", {depth:.3g} mm deep" if depth is not None else "")
         if entry["verdict"] == "undecided":
             text += " (undecided)"
-        return Spot(
-            cutter["id"], number, entry["face"], tuple(entry["point"]), axis, tip, entry["reason"], entry["obstacle_face"] or "", depth,
-            text,
-        )  # fmt: skip
+        point, obstacle = tuple(entry["point"]), entry["obstacle_face"] or ""
+        return Spot(cutter["id"], number, entry["face"], point, axis, tip, entry["reason"], obstacle, depth, text)
 
     @functools.cached_property
     def _arrays(self) -> dict[str, Any] | None:
@@ -229,7 +227,9 @@ class Result:
         first = int(taken[row])
         rows = [both[row][first], *(each for place, each in enumerate(both[row]) if place != first)]
         return tuple(
-            {name: round(float(value), 6) + 0.0 for name, value in zip(names, each)} for each in rows if all(each == each)
+            {name: round(float(value), 6) + 0.0 for name, value in zip(names, each)}
+            for each in rows
+            if all(each == each)
         )
 
     def review(self) -> str:
@@ -273,9 +273,12 @@ def parsed(path: str) -> dict[str, Any]:
         with open(path, encoding="utf-8") as file:
             plan = json.load(file)
     except (OSError, ValueError):
-        raise model.Refused("the program wrote no plan: give options of plan-cutters alone, no files of parts") from None
+        raise model.Refused(
+            "the program wrote no plan: give options of plan-cutters alone, no files of parts"
+        ) from None
     if not isinstance(plan, dict) or plan.get("format") != FORMAT:
         raise model.Refused("the program wrote no plan of plan-cutters")
     if plan.get("format_version") != VERSION:
-        raise model.Refused(f"the plan has the format {plan.get('format_version')}, this workbench reads {VERSION}: update the add-on")
+        version = plan.get("format_version")
+        raise model.Refused(f"the plan has the format {version}, this workbench reads {VERSION}: update the add-on")
     return plan

@@ -40,8 +40,8 @@ class Process:
             own_group = {"creationflags": getattr(subprocess, "CREATE_NO_WINDOW", 0)}
         try:
             self.popen = subprocess.Popen(
-                words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=host.environment(), cwd=folder,
-                encoding="utf-8", errors="replace", **own_group,
+                words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8",
+                errors="replace", env=host.environment(), cwd=folder, **own_group,
             )  # fmt: skip
         except (OSError, ValueError) as error:
             raise model.Refused(f"{words[0]} cannot be started: {getattr(error, 'strerror', error)}") from None
@@ -82,7 +82,8 @@ class Process:
         lines = [line.strip() for line in self.lines if line.strip() and not _PROGRESS.match(line)]
         named = [place for place, line in enumerate(lines) if line.startswith("plan-cutters")]
         text = " ".join(lines[named[-1] :] if named else lines[-1:])
-        return re.sub(r"^plan-cutters[\w ]*: ", "", text) or f"the program ended with code {self.popen.returncode} and said nothing"
+        text = re.sub(r"^plan-cutters[\w ]*: ", "", text)
+        return text or f"the program ended with code {self.popen.returncode} and said nothing"
 
     def output(self) -> str:
         """Its standard output."""
@@ -112,8 +113,7 @@ class _Watched:
 
     def __init__(self, on_progress, on_done, on_error) -> None:
         self.state = "running"  # then done, failed or cancelled
-        self.folder = tempfile.mkdtemp(prefix="plan-cutters-")
-        _folders.add(self.folder)
+        self.folder = folder()
         self._tell = (on_progress, on_done, on_error)
         self._process: Process | None = None
         self._fault = ""
@@ -177,10 +177,10 @@ class _Watched:
 class Run(_Watched):
     """A plan in the background.
 
-    It starts when it is made. `on_progress(words, fraction)` has the stage and how much of it is done, 0 to 1, or None where that
-    is not known. `on_done(result)` or `on_error(line)` ends it, exactly one of them and never while it is made. With a window
-    they are called from its own loop; without, by `wait` or `poll`. The files of a result are in a folder for the time being, until
-    `objects.show` took them into the document or `result.discard()`.
+    It starts when it is made. `on_progress(words, fraction)` has the stage and how much of it is done, 0 to 1, or None where
+    that is not known. `on_done(result)` or `on_error(line)` ends it, exactly one of them and never while it is made. With a
+    window they are called from its own loop; without, by `wait` or `poll`. The files of a result are in a temporary folder,
+    until `objects.show` took them into the document or `result.discard()` took them away.
     """
 
     def __init__(
@@ -209,12 +209,12 @@ class Run(_Watched):
 class Map(_Watched):
     """The posture map of one cutter at a picked point, in the background; as `Run`.
 
-    `on_done(found)` has `picture`, the path of a PNG in the temporary folder, which `removed(folder)` takes away, and `json`, what
-    `plan-cutters map --json -` says.
+    `on_done(found)` has `picture`, the path of a PNG in the temporary `folder`, which `removed(folder)` takes away, and `json`,
+    the answer of `plan-cutters map --json -`.
     """
 
     def __init__(self, group, point, cutter: str, on_progress, on_done, on_error) -> None:
-        from . import objects
+        from . import objects  # which shows what a run answers
 
         self._given = objects.result_of(group), tuple(point), cutter
         self._stale = objects.stale(group)
@@ -225,20 +225,29 @@ class Map(_Watched):
         if self._stale:
             raise model.Refused(self._stale)
         words, _ = files.words(files.of_one_point(result), self.folder)
+        entry = result.shown(cutter)
         at = ",".join(f"{value:.12g}" for value in point)
         place = len(files.command())
         return [
-            *words[:place], "map", *words[place:], "--at", at, "--cutter", cutter or result.shown()["id"],
-            "--out", os.path.join(self.folder, "map.png"), "--json", "-",
+            *words[:place], "map", *words[place:], "--at", at, "--cutter", entry["id"],
+            "--cutters", files.library(result, entry, self.folder), "--out", os.path.join(self.folder, "map.png"), "--json", "-",
         ]  # fmt: skip
 
     def _answer(self, process: Process) -> dict[str, Any]:
         if process.popen.returncode not in PLANNED:
             raise model.Refused(process.fault())
         try:
-            return {"picture": os.path.join(self.folder, "map.png"), "json": json.loads(process.output()), "folder": self.folder}
+            found = json.loads(process.output())
+            return {"picture": os.path.join(self.folder, "map.png"), "json": found, "folder": self.folder}
         except ValueError:
             raise model.Refused("the program drew no posture map that can be read") from None
+
+
+def folder() -> str:
+    """A temporary folder, gone when FreeCAD ends if not before."""
+    made = tempfile.mkdtemp(prefix="plan-cutters-")
+    _folders.add(made)
+    return made
 
 
 def removed(folder: str) -> None:

@@ -1,7 +1,7 @@
 """Where a tool stands at a posture, and its assembly as a shape.
 
-A cutter touches with a circle around its axis, on which the centres of its corner lie (`corner_radius`; a point for a ball, the
-edge itself for a flat end). That centre is `corner_radius` + allowance from the contact along the normal, and so the tip is known.
+The centres of a cutter's corner lie on a circle around its axis: a point for a ball, the edge itself for a flat end. At a contact
+one of them is `corner_radius` + allowance away along the normal, and so the tip is known.
 """
 
 from __future__ import annotations
@@ -13,7 +13,12 @@ import FreeCAD as App
 import Part
 
 #: Colours of the parts of an assembly.
-COLOURS = {"flutes": (0.55, 0.60, 0.65), "neck": (0.45, 0.50, 0.55), "shank": (0.45, 0.50, 0.55), "holder": (0.25, 0.27, 0.30)}
+COLOURS = {
+    "flutes": (0.55, 0.60, 0.65),
+    "neck": (0.45, 0.50, 0.55),
+    "shank": (0.45, 0.50, 0.55),
+    "holder": (0.25, 0.27, 0.30),
+}
 #: Shapes of cutters whose dimensions in the plan say all.
 DRAWN = ("end", "lollipop")
 

@@ -1,4 +1,4 @@
-"""Plans that are out of date lose their colours at once: after each computation of a document, each undo, and when one is opened."""
+"""Plans that are out of date lose their colours: when a document was computed, at an undo, and when one is opened."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ class Watch:
         self._busy = False
 
     def slotRecomputedDocument(self, document) -> None:
-        self.check(document)
+        # Links may lead from another document to this one.
+        for each in App.listDocuments().values():
+            self.check(each)
 
     def slotUndoDocument(self, document) -> None:
         self.check(document)
@@ -53,7 +55,8 @@ class Watch:
         for name in json.loads(getattr(group, objects.JOB))["fingerprints"]:
             thing = group.Document.getObject(name)
             if thing is not None:
-                now += [name, Part.getShape(thing).hashCode(), str(host.container_placement(thing))]
+                shape = Part.getShape(thing)
+                now += [name, shape.isNull() or shape.hashCode(), str(host.container_placement(thing))]
         moved, self._seen[key] = self._seen.get(key) != tuple(now), tuple(now)
         return moved
 
