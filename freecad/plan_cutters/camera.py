@@ -55,6 +55,10 @@ def clear_of(mesh, point, candidates, skin):
     return candidates[-1]
 
 
+def _numbers(*values):
+    return " ".join(f"{value:.9g}" for value in values)
+
+
 def placed(point, towards, up, width, perspective):
     """A camera as the text that a view takes.
 
@@ -79,9 +83,9 @@ def placed(point, towards, up, width, perspective):
     eye = point + towards * away
     lines = [
         "#Inventor V2.1 ascii", "", "PerspectiveCamera {" if perspective else "OrthographicCamera {",
-        "  viewportMapping ADJUST_CAMERA", "  position %.9g %.9g %.9g" % tuple(eye),
-        "  orientation %.9g %.9g %.9g %.9g" % (*turn.Axis, turn.Angle), "  aspectRatio 1", "  focalDistance %.9g" % away,
-        "  heightAngle %.9g" % angle if perspective else "  height %.9g" % width, "}", "",
+        "  viewportMapping ADJUST_CAMERA", f"  position {_numbers(*eye)}", f"  orientation {_numbers(*turn.Axis, turn.Angle)}",
+        "  aspectRatio 1", f"  focalDistance {_numbers(away)}",
+        f"  heightAngle {_numbers(angle)}" if perspective else f"  height {_numbers(width)}", "}", "",
     ]  # fmt: skip
     return "\n".join(lines)
 

@@ -39,15 +39,15 @@ def _review() -> None:
 
 
 def _job() -> None:
-    from . import findings
+    from . import findings, operations
 
-    findings.make_job(findings.chosen_group())
+    operations.make_job(findings.chosen_group())
 
 
 def _clear() -> None:
-    from . import findings
+    from . import objects
 
-    findings.clear(App.ActiveDocument)
+    objects.clear(App.ActiveDocument)
 
 
 def _settings() -> None:

@@ -7,7 +7,7 @@ import os
 import FreeCAD as App
 import FreeCADGui as Gui
 
-from . import camera, model, objects, operations, remembered, runner, windows
+from . import camera, model, objects, remembered, runner, windows
 from .windows import QtCore, QtGui
 
 #: Sign and word of a verdict about a cutter, and its colour.
@@ -18,7 +18,7 @@ VERDICTS = {
 }
 #: Verdicts that the legend has even where nothing has them.
 ALWAYS = ("accessible", "undecided", "inaccessible")
-#: The panel that was opened last.
+#: The panel that is open.
 LAST: Findings | None = None
 _CLOSE = QtGui.QDialogButtonBox.Close
 
@@ -44,11 +44,6 @@ def open_review(group) -> None:
     QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(path))
 
 
-def clear(document) -> None:
-    """Take away all plans of a document."""
-    objects.clear(document)
-
-
 def _percent(share: float) -> str:
     if 0 < share < 0.001:
         return "< 0.1 %"
@@ -68,11 +63,6 @@ def sentence(sample) -> str:
     return " ".join(words).replace(" ;", ";")
 
 
-def make_job(group) -> None:
-    """A CAM job of the operations of a plan."""
-    operations.make_job(group)
-
-
 class Findings:
     """The panel: FreeCAD shows the widgets of `form` and calls the methods in mixed case."""
 
@@ -84,6 +74,7 @@ class Findings:
         self._cutters.currentIndexChanged.connect(lambda *_: self._other_cutter())
         self._fill(group.Cutter)
         Gui.Selection.addObserver(self)
+        App.addDocumentObserver(self)
 
     # The boxes.
 
@@ -92,7 +83,7 @@ class Findings:
         self._chip = QtGui.QLabel()
         self._chip.setObjectName("chip")
         layout.addRow(self._chip)
-        self._headline = windows.words(self.result.headline(), "headline")
+        self._headline = windows.words("", "headline")
         layout.addRow(self._headline)
         self._stale = windows.words("", "stale")
         self._stale.setStyleSheet("color: #b34700; font-weight: bold")
@@ -118,17 +109,19 @@ class Findings:
         self._list.setRootIsDecorated(False)
         self._list.setIndentation(0)
         self._list.setToolTip("mm: how deep what is in the way reaches into the tool")
-        windows.narrow(self._list).setFixedHeight(130)
+        windows.narrow(self._list).setFixedHeight(110)
         self._list.currentItemChanged.connect(lambda *_: self._fly())
         self._list.itemClicked.connect(lambda *_: self._fly())
-        layout.addRow(self._list)
         self._told = windows.words("", "told")
         layout.addRow(self._told)
+        layout.addRow(self._list)
         self._tool = QtGui.QCheckBox("Show the tool there")
         self._tool.setChecked(remembered.load().show_tool)
         self._tool.toggled.connect(self._tool_wanted)
         layout.addRow(self._tool)
-        self._map = windows.button("Posture map", self._draw_map, "All postures of the cutter at the spot shown, or at the last click")
+        self._map = windows.button(
+            "Posture map", self._draw_map, "All postures of the cutter at the spot shown, or at the last click"
+        )
         self._map.setEnabled(False)
         layout.addRow(windows.row(self._map))
         whole = windows.button("Whole part", lambda: Gui.SendMsgToActiveView("ViewFit"), "Fit all in the view")
@@ -145,7 +138,15 @@ class Findings:
         sign, word, colour = VERDICTS[entry["feasible"]]
         selected = " · selected" if cutter == self.result.plan["selected"] else ""
         self._chip.setText(f"{sign} {word}{selected}")
-        self._chip.setStyleSheet(f"background: {colour}; color: white; font-weight: bold; padding: 4px; border-radius: 4px")
+        self._chip.setStyleSheet(
+            f"background: {colour}; color: white; font-weight: bold; padding: 4px; border-radius: 4px"
+        )
+        line = self.result.headline()
+        if cutter != self.result.shown()["id"]:
+            line = (
+                f"{line.partition('; the colours show ')[0]}; the colours show {cutter}, each face by its worst verdict"
+            )
+        self._headline.setText(line[:1].upper() + line[1:])
         while self._legend.rowCount():
             self._legend.removeRow(0)
         shown = {getattr(each, "Verdict", "") for each in self.group.Group}
@@ -168,7 +169,11 @@ class Findings:
             self._list.resizeColumnToContents(column)
         self._list.setCurrentItem(None)
         self._list.blockSignals(False)
-        self._told.setText("Click a spot: the view flies there. Or click a face: what is known there." if self._spots else "No sample is lost with this cutter. Click a face: what is known there.")
+        self._told.setText(
+            "Click a spot: the view flies there. Or click a face: what is known there."
+            if self._spots
+            else "No sample is lost with this cutter. Click a face: what is known there."
+        )
         self.look_again()
 
     def look_again(self) -> None:
@@ -177,12 +182,43 @@ class Findings:
         self._stale.setText(why)
         self._stale.setVisible(bool(why))
 
+    # FreeCAD tells what happens to documents, before it is done with it.
+
+    def slotRecomputedDocument(self, _document) -> None:
+        QtCore.QTimer.singleShot(0, self._follow)
+
+    slotUndoDocument = slotRedoDocument = slotDeletedDocument = slotRecomputedDocument
+
+    def _follow(self) -> None:
+        """Follow the document: the plan may be gone, or be about another cutter again."""
+        if LAST is not self:
+            return
+        if self.result.document not in App.listDocuments():
+            self.leave()
+            Gui.Control.closeDialog()
+            return
+        groups = objects.plans(App.getDocument(self.result.document))
+        mine = [each for each in groups if objects.result_of(each).body == self.result.body]
+        for each in self.form:
+            each.setEnabled(bool(mine))
+        if not mine:
+            self._told.setText("The plan is no longer in the document.")
+            return
+        self.group = mine[-1]
+        if self.group.Cutter != windows.chosen(self._cutters):
+            self._cutters.blockSignals(True)
+            windows.choose(self._cutters, self.group.Cutter)
+            self._cutters.blockSignals(False)
+            self._fill(self.group.Cutter)
+        self.look_again()
+
     def _other_cutter(self) -> None:
         cutter = windows.chosen(self._cutters)
         try:
             self.group = objects.show(self.group.Document, self.result, cutter)
         except model.Refused as error:
             self._told.setText(str(error))
+            self._follow()
             return
         self.result = objects.result_of(self.group)
         self._fill(cutter)
@@ -275,7 +311,7 @@ class Findings:
     def _remove(self) -> None:
         document = self.group.Document
         self.leave()
-        QtCore.QTimer.singleShot(0, lambda: (Gui.Control.closeDialog(), clear(document)))
+        QtCore.QTimer.singleShot(0, lambda: (Gui.Control.closeDialog(), objects.clear(document)))
 
     # FreeCAD's side of the panel.
 
@@ -288,7 +324,12 @@ class Findings:
 
     def leave(self) -> None:
         """Forget the view; a map that is being drawn is given up."""
+        global LAST
+        if LAST is not self:
+            return
+        LAST = None
         Gui.Selection.removeObserver(self)
+        App.removeDocumentObserver(self)
         if self._drawing is not None:
             self._drawing.cancel()
 

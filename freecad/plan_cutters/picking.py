@@ -10,8 +10,8 @@ import FreeCADGui as Gui
 class Picker:
     """The row that takes what is selected, if one does.
 
-    A row mirrors FreeCAD's selection: a click is one thing, a click with Ctrl one more. What the row had is selected again when it
-    takes over, so that picking can go on later.
+    A row mirrors FreeCAD's selection: a click is one thing, a click with Ctrl one more. What the row had is selected again when
+    it takes over, so that picking can go on later.
     """
 
     def __init__(self) -> None:

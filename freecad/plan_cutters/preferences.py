@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 
 import FreeCADGui as Gui
 
-from . import host
+from . import host, icons
 
 
 class Page:
@@ -19,7 +20,9 @@ class Page:
         layout = qt.QFormLayout(self.form)
         self._command = qt.QLineEdit()
         self._command.setPlaceholderText(shutil.which("plan-cutters") or "plan-cutters is not on the search path")
-        self._command.setToolTip("Path of plan-cutters, or a command with words; empty: as it is found on the search path")
+        self._command.setToolTip(
+            "Path of plan-cutters, or a command with words; empty: as it is found on the search path"
+        )
         find = qt.QPushButton("Find…")
         find.clicked.connect(lambda *_: self._find())
         line = qt.QHBoxLayout()
@@ -48,4 +51,6 @@ class Page:
 
 def register() -> None:
     """Add the page to FreeCAD's preferences."""
+    # FreeCAD looks there for the picture of the page, `preferences-plan_cutters`.
+    Gui.addIconPath(os.path.dirname(icons.path("plan_cutters")))
     Gui.addPreferencePage(Page, "Plan cutters")
