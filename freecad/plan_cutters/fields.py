@@ -5,8 +5,6 @@ from __future__ import annotations
 import os
 import shlex
 
-import FreeCAD as App
-
 from . import model, windows
 from .picking import Picker
 from .remembered import Choices
@@ -117,9 +115,12 @@ class PartBox:
         return self._tell()
 
     def _tell(self) -> None:
-        thing = App.getDocument(self.document).getObject(self.body) if self.body else None
-        if thing is not None:
-            self._name.setText(thing.Label)
+        if self.body:
+            try:
+                self._name.setText(model.thing_of(self.document, self.body).Label)
+            except model.Refused as error:
+                self._name.setText(str(error))
+                self.document, self.body, self.faces = "", "", ()
         self._line.setVisible(self.kind() == "picked")
         if self.faces:
             self._list.setText(", ".join(f"Face{number}" for number in self.faces))
@@ -302,13 +303,14 @@ class MachineBox:
         if not selection:
             return
         entry = selection[0]
-        element = entry.SubElementNames[0] if entry.SubElementNames else ""
+        owner, _, element = (entry.SubElementNames or ("",))[0].rpartition(".")
         try:
-            self._axis = model.axis(entry.Object, element)
+            thing = model._within(entry.Object, owner)
+            self._axis = model.axis(thing, element)
         except model.Refused as error:
             self._axis_words.setText(str(error))
             return
-        self._axis_name = f"{entry.Object.Label} {element}".strip()
+        self._axis_name = f"{thing.Label} {element}".strip()
         self.pick_axis.setChecked(False)
 
     def _picking_fixtures(self, on: bool) -> None:
@@ -316,14 +318,19 @@ class MachineBox:
             self._picker.give(
                 self.pick_fixtures,
                 self._fixtures_taken,
-                [(each.Document.Name, each.Name, "") for each in self._fixtures],
+                [(document, name, "") for document, name, _ in self._fixtures],
             )
         else:
             self._picker.stop(self.pick_fixtures)
         self._tell()
 
     def _fixtures_taken(self, selection) -> None:
-        self._fixtures = [entry.Object for entry in selection]
+        try:
+            names = [model.picked([entry])[:2] for entry in selection]
+            self._fixtures = [(*each, model.thing_of(*each).Label) for each in dict.fromkeys(names)]
+        except model.Refused as error:
+            self._bodies.setText(str(error))
+            return
         self._tell()
 
     def _tell(self) -> None:
@@ -333,7 +340,7 @@ class MachineBox:
             self._axis_words.setText(f"{self._axis_name}: {self._axis}")
         else:
             self._axis_words.setText("nothing is picked yet")
-        names = ", ".join(each.Label for each in self._fixtures)
+        names = ", ".join(label for _, _, label in self._fixtures)
         self._bodies.setText(names or ("click what holds the part" if self.pick_fixtures.isChecked() else "none"))
         self._changed()
 
@@ -346,12 +353,15 @@ class MachineBox:
             raise model.Refused("no spindle direction is picked: click a flat face, a straight edge or an axis")
         return self._axis
 
-    def fixtures(self, body: str) -> tuple[str, ...]:
+    def fixtures(self, document: str, body: str) -> tuple[str, ...]:
         """Names of the bodies in the way."""
-        names = tuple(each.Name for each in self._fixtures)
-        if body in names:
-            raise model.Refused("the body that is planned is picked as a fixture, too")
-        return names
+        for each in self._fixtures:
+            if each[0] != document:
+                raise model.Refused(f"the fixture {each[2]} lies in another document than the body")
+            if each[1] == body:
+                raise model.Refused("the body that is planned is picked as a fixture, too")
+            model.thing_of(*each[:2])
+        return tuple(name for _, name, _ in self._fixtures)
 
     def machine(self) -> str:
         """The machine as the program has it; empty: any tool axis."""

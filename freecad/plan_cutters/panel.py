@@ -37,6 +37,7 @@ class Panel:
         """What is asked for now."""
         if not self.part.body:
             raise model.Refused("select the body to machine, or faces of it, and press “Take”")
+        model.thing_of(self.part.document, self.part.body)
         kind, options = self.part.kind(), self.machine.options()
         if kind == "picked" and not self.part.faces:
             raise model.Refused("no face is picked: click faces in the view")
@@ -45,7 +46,8 @@ class Panel:
         return model.Job(
             document=self.part.document, body=self.part.body, faces=self.part.faces if kind == "picked" else (),
             tools=self.tools.tools(), machine=self.machine.machine(), setup=self.machine.setup(),
-            fixtures=self.machine.fixtures(self.part.body), allowance=self.machine.allowance(), options=options,
+            fixtures=self.machine.fixtures(self.part.document, self.part.body), allowance=self.machine.allowance(),
+            options=options,
         )  # fmt: skip
 
     def _changed(self) -> None:

@@ -168,7 +168,8 @@ def window(tmp_path_factory):
     shutil.copytree(ROOT / "freecad", addon, ignore=shutil.ignore_patterns("__pycache__"))
     # Others on this machine may plan at the same time.
     (folder / "tmp").mkdir()
-    found = run(["xvfb-run", "-a", "-s", "-screen 0 1366x768x24", "freecad"], SESSION, folder, HOME=str(user), TMPDIR=str(folder / "tmp"),
+    display = ["xvfb-run", "-a", "-s", "-screen 0 1366x768x24"]
+    found = run([*display, "freecad"], SESSION, folder, HOME=str(user), TMPDIR=str(folder / "tmp"),
                 QTWEBENGINE_DISABLE_SANDBOX="1", LIBGL_ALWAYS_SOFTWARE="1")  # fmt: skip
     assert "remembered" in found, (folder / "found.json").read_text()
     return found, folder
