@@ -98,11 +98,11 @@ class Findings:
         return box
 
     def _legend_box(self):
-        box, self._legend = windows.box("Legend: share of the area")
+        box, self._legend = windows.box("Legend: share of the area", "results")
         return box
 
     def _spots_box(self):
-        box, layout = windows.box("Worst spots")
+        box, layout = windows.box("Worst spots", "map")
         self._list = QtGui.QTreeWidget()
         self._list.setObjectName("spots")
         self._list.setHeaderLabels(["Face", "Why", "In the way", "mm"])
