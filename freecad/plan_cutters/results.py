@@ -8,7 +8,7 @@ import os
 from dataclasses import dataclass, field
 from typing import Any
 
-from . import model, tool
+from . import arrays, model, tool
 
 #: The question, beside the folder of its plan.
 JOB = "job.json"
@@ -174,9 +174,9 @@ class Result:
 
     def _spot(self, cutter: dict[str, Any], number: int, entry: dict[str, Any]) -> Spot:
         posture, axis, tip = entry["best_posture"], None, None
-        arrays, row = self._arrays, entry.get("sample")
-        if posture and arrays is not None and row is not None:
-            normal, direction = arrays["normal"][row], arrays["direction_max"][row]
+        samples, row = self._arrays, entry.get("sample")
+        if posture and samples is not None and row is not None and 0 <= row < len(samples["normal"]):
+            normal, direction = samples["normal"][row], samples["direction_max"][row]
             axis = tuple(posture["axis"])
             tip = tool.tip(cutter, entry["point"], normal, axis, direction)
         depth = entry["depth_mm"]
@@ -191,30 +191,30 @@ class Result:
     def _arrays(self) -> dict[str, Any] | None:
         """Arrays of samples.npz; None where this FreeCAD has no numpy, or the file is missing or torn."""
         try:
-            import numpy
-
-            with numpy.load(self.paths["npz"], allow_pickle=False) as file:
-                return {name: file[name] for name in file.files}
+            found = arrays.read(self.paths["npz"])
         except (ImportError, KeyError, OSError, ValueError):
             return None
+        words = [f"{word}_{each}" for each in self.cutters() for word in ("verdict", "axis", "lean", "reason")]
+        whole = {len(found.get(word, ())) for word in ("point", "normal", "direction_max", "face", *words)}
+        return found if whole == {self.plan["samples"]["count"]} else None
 
     def nearest(self, point, cutter: str = "") -> Sample:
         """The sample nearest to a point (mm), and its posture for a cutter."""
-        arrays, entry = self._arrays, self.shown(cutter)
-        if arrays is None:
+        samples, entry = self._arrays, self.shown(cutter)
+        if samples is None:
             raise model.Refused("the samples of this plan cannot be read: plan again")
-        apart = ((arrays["point"] - tuple(point)) ** 2).sum(axis=1)
+        apart = ((samples["point"] - tuple(point)) ** 2).sum(axis=1)
         row, mine = int(apart.argmin()), entry["id"]
-        verdict = VERDICTS.get(int(arrays[f"verdict_{mine}"][row]), "unjudged")
-        axis = tuple(float(value) for value in arrays[f"axis_{mine}"][row])
+        verdict = VERDICTS.get(int(samples[f"verdict_{mine}"][row]), "unjudged")
+        axis = tuple(float(value) for value in samples[f"axis_{mine}"][row])
         known = all(value == value for value in axis)  # not a number is none
-        at = tuple(float(value) for value in arrays["point"][row])
-        lean = arrays[f"lean_{mine}"][row]
-        tip = tool.tip(entry, at, arrays["normal"][row], axis, lean) if known else None
+        at = tuple(float(value) for value in samples["point"][row])
+        lean = samples[f"lean_{mine}"][row]
+        tip = tool.tip(entry, at, samples["normal"][row], axis, lean) if known else None
         reached = verdict in ("accessible", "interference_free")
-        reason = "" if reached or verdict == "unjudged" else self.plan["reasons"][int(arrays[f"reason_{mine}"][row])]
+        reason = "" if reached or verdict == "unjudged" else self.plan["reasons"][int(samples[f"reason_{mine}"][row])]
         return Sample(
-            mine, f"F{int(arrays['face'][row])}", at, float(apart[row]) ** 0.5, verdict, reason, axis if known else None, tip,
+            mine, f"F{int(samples['face'][row])}", at, float(apart[row]) ** 0.5, verdict, reason, axis if known else None, tip,
             self._angles(mine, row),
         )  # fmt: skip
 

@@ -1,10 +1,12 @@
 """The workbench for FreeCAD, in FreeCAD's own Python: from picked faces to coloured objects, saved, undone, and out of date."""
 
 import ast
+import io
 import json
 import math
 import shutil
 import sys
+import zipfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -422,6 +424,15 @@ document.removeObject("Block")
 found["late"].append(line_of(objects.show, document, late))
 found["none"] = [objects.clear(document), objects.plans(document), left()]
 
+# Arrays from anybody.
+from freecad.plan_cutters import arrays
+found["arrays"] = {}
+for name in sorted(os.listdir("arrays")):
+    try:
+        found["arrays"][name] = {word: each.tolist() for word, each in arrays.read(os.path.join("arrays", name)).items()}
+    except (OSError, ValueError) as error:
+        found["arrays"][name] = type(error).__name__
+
 # Cutters of a plan: as shapes, at postures, and as libraries.
 asked = types.SimpleNamespace(plan=dict(effective=dict(allowance_mm=0.5, holder_clearance_mm=0.25)))
 found["cutters"] = []
@@ -494,6 +505,17 @@ def session(tmp_path_factory):
         for cutter in CUTTERS
     ]
     (folder / "cases.json").write_text(json.dumps(cases))
+    (folder / "arrays").mkdir()
+    np.savez(folder / "arrays" / "good.npz", a=np.arange(6.0).reshape(2, 3), b=np.array([True, False]))
+    np.savez(folder / "arrays" / "pickled.npz", a=np.array([{}], dtype=object))
+    whole = (folder / "arrays" / "good.npz").read_bytes()
+    (folder / "arrays" / "cut.npz").write_bytes(whole[: len(whole) // 2])
+    (folder / "arrays" / "empty.npz").write_bytes(b"")
+    for name, shape in (("short", (2, 4)), ("long", (2, 2)), ("huge", (2**40,)), ("negative", (-1, 3))):
+        header = io.BytesIO()
+        np.lib.format.write_array_header_1_0(header, {"descr": "<f8", "fortran_order": False, "shape": shape})
+        with zipfile.ZipFile(folder / "arrays" / f"{name}.npz", "w") as file:
+            file.writestr("a.npy", header.getvalue() + np.arange(6.0).tobytes())
     more = {"PLAIN_PYTHON": sys.executable, "CASES": str(folder / "cases.json")}
     return planned(BAD, folder, whole=False, **more), folder
 
@@ -652,6 +674,14 @@ def shown(cutter):
     ]
     rows = [tuple(each.values()) for each in found.pop("stages")]
     return [round(each, 9) for each in numbers], rows, found
+
+
+def test_arrays_are_numbers_or_refused(bad):
+    found = bad["arrays"]
+    assert found.pop("good.npz") == {"a": [[0, 1, 2], [3, 4, 5]], "b": [True, False]}
+    assert found == dict.fromkeys(
+        (f"{name}.npz" for name in ("cut", "empty", "huge", "long", "negative", "pickled", "short")), "ValueError"
+    )
 
 
 def test_the_workbench_imports_nothing_of_the_program():
