@@ -484,24 +484,30 @@ def postures(cutter, count=12):
 def entry(cutter):
     """The dimensions of a cutter, as a plan has them."""
     stages = [
-        dict(part=part, low_mm=low, length_mm=each.length, radius_mm=each.radius, upper_radius_mm=each.upper_radius)
+        {
+            "part": part,
+            "low_mm": low,
+            "length_mm": each.length,
+            "radius_mm": each.radius,
+            "upper_radius_mm": each.upper_radius,
+        }
         for part, low, each in cutter.stages
     ]
-    return dict(
-        id=cutter.id, shape=cutter.shape, radius=cutter.radius, corner_radius=cutter.corner_radius, stages=stages,
-        taper_deg=math.degrees(cutter.taper), length=cutter.length, flutes_mm=flute_length(cutter),
-        allowance_mm=cutter.allowance or 0.0, clearance_mm=cutter.clearance or 0.0,
-    )  # fmt: skip
+    return {
+        "id": cutter.id, "shape": cutter.shape, "radius": cutter.radius, "corner_radius": cutter.corner_radius, "stages": stages,
+        "taper_deg": math.degrees(cutter.taper), "length": cutter.length, "flutes_mm": flute_length(cutter),
+        "allowance_mm": cutter.allowance or 0.0, "clearance_mm": cutter.clearance or 0.0,
+    }  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def session(tmp_path_factory):
     folder = tmp_path_factory.mktemp("freecad")
     cases = [
-        dict(
-            cutter=entry(cutter),
-            postures=[[row.tolist() for row in rows] for rows in zip(*postures(cutter)[:4], strict=True)],
-        )
+        {
+            "cutter": entry(cutter),
+            "postures": [[row.tolist() for row in rows] for rows in zip(*postures(cutter)[:4], strict=True)],
+        }
         for cutter in CUTTERS
     ]
     (folder / "cases.json").write_text(json.dumps(cases))
