@@ -1,0 +1,351 @@
+"""The panel of a result: verdict, legend, worst spots that the view flies to."""
+
+from __future__ import annotations
+
+import os
+
+import FreeCAD as App
+import FreeCADGui as Gui
+
+from . import camera, model, objects, remembered, runner, windows
+from .windows import QtCore, QtGui
+
+#: Sign and word of a verdict about a cutter, and its colour.
+VERDICTS = {
+    True: ("✔", "finishes", "#007a58"),
+    False: ("✘", "does not finish", "#b34700"),
+    None: ("?", "not decided", "#6b6400"),
+}
+#: Verdicts that the legend has even where nothing has them.
+ALWAYS = ("accessible", "undecided", "inaccessible")
+#: The panel that is open.
+LAST: Findings | None = None
+_CLOSE = QtGui.QDialogButtonBox.Close
+
+
+def chosen_group():
+    """The plan that is selected in the active document, else its newest."""
+    document = App.ActiveDocument
+    groups = objects.plans(document) if document else []
+    if not groups:
+        raise model.Refused("no plan is shown in this document: plan first")
+    selected = {each.Name for each in Gui.Selection.getSelection(document.Name)}
+    for group in groups:
+        if group.Name in selected or selected & {each.Name for each in group.OutListRecursive}:
+            return group
+    return groups[-1]
+
+
+def open_review(group) -> None:
+    """Open the review page of a plan in the browser."""
+    path = objects.result_of(group).review()
+    if not path or not os.path.exists(path):
+        raise model.Refused("the review page of this plan is not there any more: plan again")
+    QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(path))
+
+
+def _percent(share: float) -> str:
+    if 0 < share < 0.001:
+        return "< 0.1 %"
+    if 0.999 < share < 1:
+        return "> 99.9 %"
+    return f"{100 * share:.3g} %"
+
+
+def sentence(sample) -> str:
+    """What is known of a sample, with the angles of the machine: of the solution taken, then of the other one."""
+    words = [f"{sample.face}, {sample.away_mm:.2g} mm from the click: {sample.verdict.replace('_', ' ')}"]
+    if sample.reason:
+        words.append(f"for {sample.reason.replace('_', ' ')}")
+    angles = [" ".join(f"{name} {value:g}°" for name, value in each.items()) for each in sample.angles]
+    if angles:
+        words.append("; " + ", or ".join(angles))
+    return " ".join(words).replace(" ;", ";")
+
+
+class Findings:
+    """The panel: FreeCAD shows the widgets of `form` and calls the methods in mixed case."""
+
+    def __init__(self, group) -> None:
+        self.group, self.result = group, objects.result_of(group)
+        self._seen, self._spots, self._here, self._drawing = None, [], None, None
+        self.form = [self._verdict_box(), self._legend_box(), self._spots_box()]
+        windows.choose(self._cutters, group.Cutter)
+        self._cutters.currentIndexChanged.connect(lambda *_: self._other_cutter())
+        self._fill(group.Cutter)
+        Gui.Selection.addObserver(self)
+        App.addDocumentObserver(self)
+
+    # The boxes.
+
+    def _verdict_box(self):
+        box, layout = windows.box("Result", "results")
+        self._chip = QtGui.QLabel()
+        self._chip.setObjectName("chip")
+        layout.addRow(self._chip)
+        self._headline = windows.words("", "headline")
+        layout.addRow(self._headline)
+        self._stale = windows.words("", "stale")
+        self._stale.setStyleSheet("color: #b34700; font-weight: bold")
+        layout.addRow(self._stale)
+        entries = []
+        for each in self.result.plan["cutters"]:
+            sign = VERDICTS[each["feasible"]][0]
+            entries.append((f"{sign} {each['name'] or each['id']}", each["id"]))
+        self._cutters = windows.combo(entries, self.result.shown()["id"])
+        self._cutters.setObjectName("cutters")
+        layout.addRow("Cutter", self._cutters)
+        return box
+
+    def _legend_box(self):
+        box, self._legend = windows.box("Legend: share of the area", "results")
+        return box
+
+    def _spots_box(self):
+        box, layout = windows.box("Worst spots", "map")
+        self._list = QtGui.QTreeWidget()
+        self._list.setObjectName("spots")
+        self._list.setHeaderLabels(["Face", "Why", "In the way", "mm"])
+        self._list.setRootIsDecorated(False)
+        self._list.setIndentation(0)
+        self._list.setToolTip("mm: how deep what is in the way reaches into the tool")
+        windows.narrow(self._list).setFixedHeight(110)
+        self._list.currentItemChanged.connect(lambda *_: self._fly())
+        self._list.itemClicked.connect(lambda *_: self._fly())
+        self._told = windows.words("", "told")
+        layout.addRow(self._told)
+        layout.addRow(self._list)
+        self._tool = QtGui.QCheckBox("Show the tool there")
+        self._tool.setChecked(remembered.load().show_tool)
+        self._tool.toggled.connect(self._tool_wanted)
+        layout.addRow(self._tool)
+        self._map = windows.button(
+            "Posture map", self._draw_map, "All postures of the cutter at the spot shown, or at the last click"
+        )
+        self._map.setEnabled(False)
+        layout.addRow(windows.row(self._map))
+        whole = windows.button("Whole part", lambda: Gui.SendMsgToActiveView("ViewFit"), "Fit all in the view")
+        page = windows.button("Review page", self._page, "Open the plan's page in a browser")
+        away = windows.button("Remove", self._remove, "Take this plan away and show the body again")
+        layout.addRow(windows.row(whole, page))
+        layout.addRow(windows.row(away))
+        return box
+
+    # What is shown.
+
+    def _fill(self, cutter: str) -> None:
+        entry = self.result.shown(cutter)
+        sign, word, colour = VERDICTS[entry["feasible"]]
+        selected = " · selected" if cutter == self.result.plan["selected"] else ""
+        self._chip.setText(f"{sign} {word}{selected}")
+        self._chip.setStyleSheet(
+            f"background: {colour}; color: white; font-weight: bold; padding: 4px; border-radius: 4px"
+        )
+        line = self.result.headline()
+        if cutter != self.result.shown()["id"]:
+            line = (
+                f"{line.partition('; the colours show ')[0]}; the colours show {cutter}, each face by its worst verdict"
+            )
+        self._headline.setText(line[:1].upper() + line[1:])
+        while self._legend.rowCount():
+            self._legend.removeRow(0)
+        shown = {getattr(each, "Verdict", "") for each in self.group.Group}
+        for code, words, rgb in self.result.legend():
+            share = entry["area_share"].get(code)
+            if code not in shown and not share and code not in ALWAYS:
+                continue
+            text = words if share is None else f"{words}: {_percent(share)}"
+            self._legend.addRow(windows.swatch(rgb), windows.words(text, f"legend_{code}"))
+        self._spots = self.result.spots(cutter)
+        self._list.blockSignals(True)
+        self._list.clear()
+        for spot in self._spots:
+            depth = f"{spot.depth_mm:.2f}" if spot.depth_mm is not None else ""
+            item = QtGui.QTreeWidgetItem([spot.face, spot.reason.replace("_", " "), spot.obstacle, depth])
+            for column in range(4):
+                item.setToolTip(column, spot.text)
+            self._list.addTopLevelItem(item)
+        for column in range(4):
+            self._list.resizeColumnToContents(column)
+        self._list.setCurrentItem(None)
+        self._list.blockSignals(False)
+        self._told.setText(
+            "Click a spot: the view flies there. Or click a face: what is known there."
+            if self._spots
+            else "No sample is lost with this cutter. Click a face: what is known there."
+        )
+        self.look_again()
+
+    def look_again(self) -> None:
+        """Say whether the body was changed since it was planned."""
+        why = objects.stale(self.group)
+        self._stale.setText(why)
+        self._stale.setVisible(bool(why))
+
+    # FreeCAD tells what happens to documents, before it is done with it.
+
+    def slotRecomputedDocument(self, _document) -> None:
+        QtCore.QTimer.singleShot(0, self._follow)
+
+    slotUndoDocument = slotRedoDocument = slotDeletedDocument = slotRecomputedDocument
+
+    def _follow(self) -> None:
+        """Follow the document: the plan may be gone, or be about another cutter again."""
+        if LAST is not self:
+            return
+        if self.result.document not in App.listDocuments():
+            self.leave()
+            Gui.Control.closeDialog()
+            return
+        groups = objects.plans(App.getDocument(self.result.document))
+        mine = [each for each in groups if objects.result_of(each).body == self.result.body]
+        for each in self.form:
+            each.setEnabled(bool(mine))
+        if not mine:
+            self._told.setText("The plan is no longer in the document.")
+            return
+        self.group = mine[-1]
+        if self.group.Cutter != windows.chosen(self._cutters):
+            self._cutters.blockSignals(True)
+            windows.choose(self._cutters, self.group.Cutter)
+            self._cutters.blockSignals(False)
+            self._fill(self.group.Cutter)
+        self.look_again()
+
+    def _other_cutter(self) -> None:
+        cutter = windows.chosen(self._cutters)
+        try:
+            self.group = objects.show(self.group.Document, self.result, cutter)
+        except model.Refused as error:
+            self._told.setText(str(error))
+            self._follow()
+            return
+        self.result = objects.result_of(self.group)
+        self._fill(cutter)
+
+    def _fly(self) -> None:
+        place = self._list.indexOfTopLevelItem(self._list.currentItem())
+        if place < 0:
+            return
+        spot = self._spots[place]
+        self._at(spot, spot.text)
+        view = Gui.getDocument(self.group.Document.Name).ActiveView
+        if not hasattr(view, "setCamera"):
+            return
+        try:
+            if self._seen is None:
+                self._seen = camera.Seen(model.shape_of(objects.body_of(self.group)))
+        except model.Refused as error:
+            self._told.setText(str(error))
+            return
+        entry = self.result.shown(spot.cutter)
+        self._seen.fly(view, spot, entry["radius"], entry["length"])
+
+    def _at(self, spot, words: str) -> None:
+        """Say what is known at a spot or sample, and put the tool there."""
+        self._here, self._told_words = spot, words
+        self._map.setEnabled(self._drawing is None)
+        if self._tool.isChecked():
+            try:
+                if spot.axis is None:
+                    objects.hide_tool(self.group)
+                    words += " — no posture is known here: no tool is shown"
+                else:
+                    objects.put_tool(self.group, spot)
+            except model.Refused as error:
+                words += f" — {error}"
+        self._told.setText(words)
+        self.look_again()
+
+    def addSelection(self, document, thing, _element, point) -> None:
+        """A click in the view (FreeCAD calls this): the sample nearest to it."""
+        shown = {each.Name for each in self.group.Group if getattr(each, "Verdict", "")}
+        if document != self.group.Document.Name or thing.rpartition(".")[2] not in shown:
+            return
+        try:
+            sample = objects.nearest(self.group, point)
+        except model.Refused as error:
+            self._told.setText(str(error))
+            return
+        self._list.setCurrentItem(None)
+        self._at(sample, sentence(sample))
+
+    def _draw_map(self) -> None:
+        if self._here is None or self._drawing is not None:
+            return
+        self._map.setEnabled(False)
+        self._map.setText("drawing…")
+        self._drawing = runner.Map(
+            self.group, self._here.point, self.group.Cutter, lambda *_: None, self._map_drawn, self._map_failed
+        )
+
+    def _map_ended(self) -> None:
+        self._drawing = None
+        self._map.setText("Posture map")
+        self._map.setEnabled(True)
+
+    def _map_drawn(self, found) -> None:
+        self._map_ended()
+        picture = QtGui.QPixmap(found["picture"])
+        runner.removed(found["folder"])
+        windows.show_picture(picture, f"Postures of {self.group.Cutter} at {self._here.face}")
+
+    def _map_failed(self, line: str) -> None:
+        self._map_ended()
+        self._told.setText(line)
+
+    def _tool_wanted(self, on: bool) -> None:
+        kept = remembered.load()
+        remembered.save(remembered.Choices(**{**kept.__dict__, "show_tool": on}))
+        if on:
+            self._fly()
+        else:
+            objects.hide_tool(self.group)
+
+    def _page(self) -> None:
+        try:
+            open_review(self.group)
+        except model.Refused as error:
+            windows.complain(str(error))
+
+    def _remove(self) -> None:
+        document = self.group.Document
+        self.leave()
+        QtCore.QTimer.singleShot(0, lambda: (Gui.Control.closeDialog(), objects.clear(document)))
+
+    # FreeCAD's side of the panel.
+
+    def getStandardButtons(self) -> int:
+        return windows.code(_CLOSE)
+
+    def reject(self) -> bool:
+        self.leave()
+        return True
+
+    def leave(self) -> None:
+        """Forget the view; a map that is being drawn is given up."""
+        global LAST
+        if LAST is not self:
+            return
+        LAST = None
+        Gui.Selection.removeObserver(self)
+        App.removeDocumentObserver(self)
+        if self._drawing is not None:
+            self._drawing.cancel()
+
+    def isAllowedAlterSelection(self) -> bool:
+        return True
+
+    def isAllowedAlterView(self) -> bool:
+        return True
+
+    def isAllowedAlterDocument(self) -> bool:
+        return True
+
+
+def open_panel(group=None) -> Findings:
+    """Show the panel of a plan, by default of the one that is selected."""
+    global LAST
+    LAST = Findings(group or chosen_group())
+    Gui.Control.showDialog(LAST)
+    return LAST

@@ -1,0 +1,182 @@
+"""The task panel: asks for a job, runs it in the background, and hands the result to `findings`."""
+
+from __future__ import annotations
+
+import FreeCAD as App
+import FreeCADGui as Gui
+
+from . import findings, model, objects, remembered, runner, windows
+from .fields import MachineBox, PartBox, ToolsBox
+from .picking import Picker
+from .windows import QtCore, QtGui
+
+_PLAN, _CLOSE = QtGui.QDialogButtonBox.Apply, QtGui.QDialogButtonBox.Close
+
+
+class Panel:
+    """The panel: FreeCAD shows the widgets of `form` and calls the methods in mixed case."""
+
+    def __init__(self) -> None:
+        self._run, self._buttons, self._ready = None, None, False
+        choices = remembered.load()
+        self.picker = Picker()
+        status, layout = windows.box("Plan cutters", "plan_cutters")
+        self.status = windows.words(name="status")
+        self.bar = QtGui.QProgressBar()
+        self.bar.setVisible(False)
+        layout.addRow(self.status)
+        layout.addRow(self.bar)
+        self.part = PartBox(self.picker, choices, self._changed)
+        self.tools = ToolsBox(App.ActiveDocument, choices, self._changed)
+        self.machine = MachineBox(self.picker, choices, self._changed)
+        self.form = [status, self.part.form, self.tools.form, self.machine.form]
+        self._ready = True
+        self.part.take(quiet=True)
+
+    def job(self) -> model.Job:
+        """What is asked for now."""
+        if not self.part.body:
+            raise model.Refused("select the body to machine, or faces of it, and press “Take”")
+        model.thing_of(self.part.document, self.part.body)
+        kind, options = self.part.kind(), self.machine.options()
+        if kind == "picked" and not self.part.faces:
+            raise model.Refused("no face is picked: click faces in the view")
+        if kind == "all":
+            options = ("--faces", "all", *options)
+        return model.Job(
+            document=self.part.document, body=self.part.body, faces=self.part.faces if kind == "picked" else (),
+            tools=self.tools.tools(), machine=self.machine.machine(), setup=self.machine.setup(),
+            fixtures=self.machine.fixtures(self.part.document, self.part.body), allowance=self.machine.allowance(),
+            options=options,
+        )  # fmt: skip
+
+    def _changed(self) -> None:
+        if not self._ready or self._run is not None:
+            return
+        try:
+            job = self.job()
+        except model.Refused as error:
+            self.status.setText(str(error)[:1].upper() + str(error)[1:] + ".")
+            self._offer(False)
+            return
+        count = len(job.faces)
+        kinds = {"all": "all faces", "picked": f"{count} face{'s' * (count != 1)}"}
+        what = kinds.get(self.part.kind(), "free-form faces and fillets")
+        label = App.getDocument(job.document).getObject(job.body).Label
+        self.status.setText(
+            f"{label}: {what}; {self.tools.summary()}; {job.machine or 'any tool axis'}; spindle {job.setup}."
+        )
+        self._offer(True)
+
+    def _offer(self, ready: bool) -> None:
+        if self._buttons is not None:
+            plan = self._buttons.button(_PLAN)
+            plan.setText("Plan" if self._run is None else "Cancel")
+            plan.setEnabled(ready)
+
+    def start(self) -> None:
+        """Plan in the background."""
+        self.picker.stop()
+        for each in (self.part.pick, self.machine.pick_axis, self.machine.pick_fixtures):
+            each.setChecked(False)
+        Gui.Selection.clearSelection()
+        try:
+            job = self.job()
+            self._remember()
+            self._watch(True)
+            self._run = runner.Run(job, self._progress, self._done, self._failed)
+        except model.Refused as error:
+            self._watch(False)
+            self.status.setText(str(error))
+            return
+        self._offer(True)
+
+    def _remember(self) -> None:
+        kept = remembered.load()
+        remembered.save(remembered.Choices(
+            faces=self.part.kind() if self.part.kind() != "picked" else kept.faces, show_tool=kept.show_tool,
+            **self.tools.choices(), **self.machine.choices(),
+        ))  # fmt: skip
+
+    def _watch(self, running: bool) -> None:
+        self.bar.setVisible(running)
+        self.bar.setRange(0, 0)
+        for each in self.form[1:]:
+            each.setEnabled(not running)
+
+    def _progress(self, words: str, fraction: float | None) -> None:
+        self.status.setText(words[:1].upper() + words[1:])
+        self.bar.setRange(0, 0 if fraction is None else 1000)
+        if fraction is not None:
+            self.bar.setValue(round(1000 * fraction))
+
+    def _end(self) -> None:
+        self._run = None
+        self._watch(False)
+        self._changed()
+
+    def _failed(self, line: str) -> None:
+        self._end()
+        self.status.setText(line[:1].upper() + line[1:])
+        App.Console.PrintError(f"plan-cutters: {line}\n")
+
+    def _done(self, result) -> None:
+        try:
+            group = objects.show(App.getDocument(result.document), result)
+        except Exception as error:  # whatever the document has against it: nothing is silent
+            result.discard()
+            self._failed(str(error) or type(error).__name__)
+            return
+        self._end()
+        # FreeCAD closes one panel before it opens another one, and this is called out of the first.
+        QtCore.QTimer.singleShot(0, lambda: self._hand_over(group))
+
+    def _hand_over(self, group) -> None:
+        self._leave()
+        Gui.Control.closeDialog()
+        findings.open_panel(group)
+
+    def _leave(self) -> None:
+        self.picker.close()
+        if self._run is not None:
+            run, self._run = self._run, None
+            run.cancel()
+
+    # FreeCAD's side of the panel.
+
+    def getStandardButtons(self) -> int:
+        return windows.code(_PLAN | _CLOSE)
+
+    def modifyStandardButtons(self, buttons) -> None:
+        self._buttons = buttons
+        self._changed()
+
+    def clicked(self, which) -> None:
+        if windows.code(which) != windows.code(_PLAN):
+            return
+        if self._run is None:
+            self.start()
+        else:
+            self._run.cancel()
+
+    def reject(self) -> bool:
+        self._leave()
+        return True
+
+    def isAllowedAlterSelection(self) -> bool:
+        return True
+
+    def isAllowedAlterView(self) -> bool:
+        return True
+
+    def isAllowedAlterDocument(self) -> bool:
+        return True
+
+
+def open_panel() -> Panel:
+    """Show the panel, with what is selected now."""
+    if App.ActiveDocument is None:
+        raise model.Refused("no document is open")
+    panel = Panel()
+    Gui.Control.showDialog(panel)
+    return panel

@@ -1,0 +1,284 @@
+"""What the program answered, read from its files."""
+
+from __future__ import annotations
+
+import functools
+import json
+import os
+from dataclasses import dataclass, field
+from typing import Any
+
+from . import arrays, model, tool
+
+#: The question, beside the folder of its plan.
+JOB = "job.json"
+FORMAT, VERSION = "plan-cutters-plan", 1
+#: A face or sample of several verdicts has the first of these.
+WORST_FIRST = ("inaccessible", "undecided", "unjudged", "accessible", "interference_free")
+#: Verdicts by their number in samples.npz.
+VERDICTS = {0: "inaccessible", 1: "accessible", 2: "interference_free", 3: "undecided", 255: "unjudged"}
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A worst spot: a sample that a cutter does not reach.
+
+    Parameters
+    ----------
+    cutter : str
+        Id of the cutter.
+    number : int
+        Its place in the cutter's list of witnesses.
+    face : str
+        `F3`.
+    point : tuple of float
+        mm, in the document's coordinates.
+    axis, tip : tuple of float, optional
+        Unit tool axis of the nearest posture tried, and where the tip is then, mm; None where the tool cannot be shown.
+    reason : str
+        Code of the reason.
+    obstacle : str
+        What is in the way, as `F7` or `fixture:vise`; empty where nothing is named.
+    depth_mm : float, optional
+        How deep the obstacle reaches into the tool; None where it was not tried.
+    text : str
+        One line for people.
+    """
+
+    cutter: str
+    number: int
+    face: str
+    point: tuple[float, float, float]
+    axis: tuple[float, float, float] | None
+    tip: tuple[float, float, float] | None
+    reason: str
+    obstacle: str
+    depth_mm: float | None
+    text: str
+
+
+@dataclass(frozen=True)
+class Sample:
+    """What the plan knows of the sample nearest to a picked point, for one cutter; vectors as in `Spot`.
+
+    `angles` are the machine's rotary angles in degrees by their axes: of the solution that is taken, then of the other one; empty
+    where the machine has none or no posture is known.
+    """
+
+    cutter: str
+    face: str
+    point: tuple[float, float, float]
+    away_mm: float
+    verdict: str
+    reason: str
+    axis: tuple[float, float, float] | None
+    tip: tuple[float, float, float] | None
+    angles: tuple[dict[str, float], ...]
+
+
+@dataclass(frozen=True)
+class Result:
+    """A plan with its files.
+
+    Parameters
+    ----------
+    plan : dict
+        `plan.json`.
+    job : model.Job
+        What was asked.
+    fingerprints : dict of str
+        Of the body and the fixtures as they were planned, by their names.
+    paths : dict of str
+        Where its files are, by the word in `files` of the plan: `npz`, `html`, `step`, `operations_step`, and `json`.
+    folder : str
+        The temporary folder that holds them; empty where a document does.
+    """
+
+    plan: dict[str, Any]
+    job: model.Job
+    fingerprints: dict[str, str] = field(default_factory=dict)
+    paths: dict[str, str] = field(default_factory=dict)
+    folder: str = ""
+
+    @property
+    def document(self) -> str:
+        """Name of the document."""
+        return self.job.document
+
+    @property
+    def body(self) -> str:
+        """Name of what was planned."""
+        return self.job.body
+
+    def shown(self, cutter: str = "") -> dict[str, Any]:
+        """A cutter of the plan; by default the selected one, else the one that reaches most."""
+        wanted = cutter or self.plan["selected"]
+        if wanted:
+            found = next((each for each in self.plan["cutters"] if each["id"] == wanted), None)
+            if found is None:
+                raise model.Refused(f"the plan has no cutter {wanted}")
+            return found
+        return max(self.plan["cutters"], key=lambda each: each["interference_free"] + each["accessible"])
+
+    def cutters(self) -> list[str]:
+        """Ids of the cutters, in the order of the plan."""
+        return [each["id"] for each in self.plan["cutters"]]
+
+    def headline(self) -> str:
+        """The verdict in one line."""
+        return self.summary()[0]
+
+    def summary(self) -> list[str]:
+        """What the plan says, line by line: the verdict, the cutters, warnings and notes."""
+        plan, best = self.plan, self.shown()["id"]
+        if plan["selected"]:
+            lines = [f"take {best} ({plan['selection']['why']})"]
+        else:
+            lines = [f"no cutter finishes all that is judged ({plan['selection']['why']}); the colours show {best}"]
+        for each in plan["cutters"]:
+            judged = sum(each[word] for word in WORST_FIRST if word != "unjudged")
+            reached = each["interference_free"] + each["accessible"]
+            worst = sorted(each["by_reason"].items(), key=lambda item: -item[1])
+            lost = ", ".join(f"{name.replace('_', ' ')} {count}" for name, count in worst if count)
+            finishes = {True: "yes", False: "no", None: "not decided"}[each["feasible"]]
+            line = f"{'*' if each['id'] == plan['selected'] else ' '} {each['id']}: finishes {finishes}"
+            line += f", reaches {reached} of {judged} samples"
+            line += f"; lost: {lost}" if lost else ""
+            line += "".join(f"; {word}: {each[word]}" for word in ("undecided", "unjudged") if each[word])
+            lines.append(line)
+        lines += [f"Warning: {text}" for text in plan["part"]["warnings"]]
+        lines += [f"Note: {text}" for text in plan["notes"]]
+        return lines
+
+    def verdicts(self, cutter: str = "") -> list[str]:
+        """Of each face the worst verdict on it, `check` or `ignored`."""
+        counts, words = self.shown(cutter)["faces"], []
+        for face in self.plan["faces"]:
+            mine = counts.get(face["id"], {})
+            if not face["target"]:
+                words.append("ignored" if face["ignored"] else "check")
+            else:
+                words.append(next((word for word in WORST_FIRST if mine.get(word)), "unjudged"))
+        return words
+
+    def legend(self) -> list[tuple[str, str, tuple[float, float, float]]]:
+        """Code, words and colour (0 to 1) of each verdict."""
+        words = self.plan.get("legend_words", {})
+        return [(code, words.get(code, code), colour(text)) for code, text in self.plan["legend"].items()]
+
+    def spots(self, cutter: str = "") -> list[Spot]:
+        """Worst spots of a cutter, by default of the one shown: deepest first, those that were not tried last."""
+        shown = self.shown(cutter)
+        found = [self._spot(shown, number, each) for number, each in enumerate(shown["witnesses"])]
+        return sorted(found, key=lambda spot: -1.0 if spot.depth_mm is None else spot.depth_mm, reverse=True)
+
+    def _spot(self, cutter: dict[str, Any], number: int, entry: dict[str, Any]) -> Spot:
+        posture, axis, tip = entry["best_posture"], None, None
+        samples, row = self._arrays, entry.get("sample")
+        if posture and samples is not None and row is not None and 0 <= row < len(samples["normal"]):
+            normal, direction = samples["normal"][row], samples["direction_max"][row]
+            axis = tuple(posture["axis"])
+            tip = tool.tip(cutter, entry["point"], normal, axis, direction)
+        depth = entry["depth_mm"]
+        words = [entry["face"], entry["reason"].replace("_", " "), entry["obstacle_face"] or ""]
+        text = " ".join(filter(None, words)) + (f", {depth:.3g} mm deep" if depth is not None else "")
+        if entry["verdict"] == "undecided":
+            text += " (undecided)"
+        point, obstacle = tuple(entry["point"]), entry["obstacle_face"] or ""
+        return Spot(cutter["id"], number, entry["face"], point, axis, tip, entry["reason"], obstacle, depth, text)
+
+    @functools.cached_property
+    def _arrays(self) -> dict[str, Any] | None:
+        """Arrays of samples.npz; None where this FreeCAD has no numpy, or the file is missing or torn."""
+        try:
+            found = arrays.read(self.paths["npz"])
+        except (ImportError, KeyError, OSError, ValueError):
+            return None
+        words = [f"{word}_{each}" for each in self.cutters() for word in ("verdict", "axis", "lean", "reason")]
+        whole = {len(found.get(word, ())) for word in ("point", "normal", "direction_max", "face", *words)}
+        return found if whole == {self.plan["samples"]["count"]} else None
+
+    def nearest(self, point, cutter: str = "") -> Sample:
+        """The sample nearest to a point (mm), and its posture for a cutter."""
+        samples, entry = self._arrays, self.shown(cutter)
+        if samples is None:
+            raise model.Refused("the samples of this plan cannot be read: plan again")
+        apart = ((samples["point"] - tuple(point)) ** 2).sum(axis=1)
+        row, mine = int(apart.argmin()), entry["id"]
+        verdict = VERDICTS.get(int(samples[f"verdict_{mine}"][row]), "unjudged")
+        axis = tuple(float(value) for value in samples[f"axis_{mine}"][row])
+        known = all(value == value for value in axis)  # not a number is none
+        at = tuple(float(value) for value in samples["point"][row])
+        lean = samples[f"lean_{mine}"][row]
+        tip = tool.tip(entry, at, samples["normal"][row], axis, lean) if known else None
+        reached = verdict in ("accessible", "interference_free")
+        reason = "" if reached or verdict == "unjudged" else self.plan["reasons"][int(samples[f"reason_{mine}"][row])]
+        return Sample(
+            mine, f"F{int(samples['face'][row])}", at, float(apart[row]) ** 0.5, verdict, reason, axis if known else None, tip,
+            self._angles(mine, row),
+        )  # fmt: skip
+
+    def _angles(self, cutter: str, row: int) -> tuple[dict[str, float], ...]:
+        both, taken = self._arrays.get(f"rotary_{cutter}"), self._arrays.get(f"rotary_taken_{cutter}")
+        machine = self.plan.get("machine")
+        if both is None or taken is None or not machine or int(taken[row]) < 0:
+            return ()
+        names = [each["name"] for each in machine["rotary"]]
+        first = int(taken[row])
+        rows = [both[row][first], *(each for place, each in enumerate(both[row]) if place != first)]
+        return tuple(
+            {name: round(float(value), 6) + 0.0 for name, value in zip(names, each)}
+            for each in rows
+            if all(each == each)
+        )
+
+    def review(self) -> str:
+        """Path of the review page; empty where there is none."""
+        return self.paths.get("html", "")
+
+    def discard(self) -> None:
+        """Take the temporary folder away."""
+        if self.folder:
+            from . import runner
+
+            runner.removed(self.folder)
+
+
+def colour(text: str) -> tuple[float, float, float]:
+    """`#D55E00` as FreeCAD has colours."""
+    return tuple(int(text[place : place + 2], 16) / 255.0 for place in (1, 3, 5))
+
+
+def read(folder: str) -> Result:
+    """The result of a run in its folder.
+
+    Raises
+    ------
+    Refused
+        There is no plan that this workbench can read.
+    """
+    out = os.path.join(folder, "plan")
+    with open(os.path.join(folder, JOB), encoding="utf-8") as file:
+        asked = json.load(file)
+    fingerprints = asked.pop("fingerprints")
+    plan = parsed(os.path.join(out, "plan.json"))
+    paths = {word: os.path.join(out, entry["name"]) for word, entry in plan["files"].items()}
+    paths = {word: path for word, path in paths.items() if os.path.isfile(path)}
+    return Result(plan, model.job_of(asked), fingerprints, {**paths, "json": os.path.join(out, "plan.json")}, folder)
+
+
+def parsed(path: str) -> dict[str, Any]:
+    """`plan.json` as a dict."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            plan = json.load(file)
+    except (OSError, ValueError):
+        raise model.Refused(
+            "the program wrote no plan: give options of plan-cutters alone, no files of parts"
+        ) from None
+    if not isinstance(plan, dict) or plan.get("format") != FORMAT:
+        raise model.Refused("the program wrote no plan of plan-cutters")
+    if plan.get("format_version") != VERSION:
+        version = plan.get("format_version")
+        raise model.Refused(f"the plan has the format {version}, this workbench reads {VERSION}: update the add-on")
+    return plan
