@@ -21,7 +21,7 @@ export class PartView {
 
   private readonly fixtures: [Owner, Mesh][] = [];
 
-  constructor(private readonly drawn: Drawn, arrays: Arrays, check: string, fixture: string) {
+  constructor(private readonly drawn: Drawn, arrays: Pick<Arrays, "get">, check: string, fixture: string) {
     [this.width, this.height] = drawn.meta.atlas ?? [1, 1];
     this.index = drawn.meta.atlas ? arrays.get("atlas.index").values : [-1];
     this.texture = atlasTexture(this.width, this.height);

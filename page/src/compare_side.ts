@@ -1,0 +1,130 @@
+// One of two plans: its picture, coloured by face or by sample.
+
+import { colourOf, type Look } from "./colours.ts";
+import type { Shown, } from "./compare_looks.ts";
+import type { Word } from "./compare_meta.ts";
+import type { Arrays } from "./decode.ts";
+import { el } from "./dom.ts";
+import { borders } from "./edges.ts";
+import { Drawn, type Owner } from "./mesh.ts";
+import type { Meta, Vec } from "./meta.ts";
+import { PartView } from "./part.ts";
+import { Picker } from "./pick.ts";
+import { Samples } from "./samples.ts";
+import { Stage } from "./stage.ts";
+import { cross, dot, minus, plus, scaled } from "./vectors.ts";
+
+/** Texels in a line of the atlas of faces: every device has that many. */
+const LINE = 1024;
+
+/** The triangles with a place in an atlas that has one texel for each face: faces without samples have a colour, too. */
+class DrawnFaces extends Drawn {
+  constructor(meta: Meta, arrays: Arrays) {
+    super({ ...meta, atlas: [LINE, Math.max(1, Math.ceil(meta.faces.length / LINE))] }, arrays);
+    this.owner.forEach((owner, i) => {
+      this.texel[2 * i] = owner < 0 ? -1 : owner % LINE;
+      this.texel[2 * i + 1] = owner < 0 ? -1 : Math.floor(owner / LINE);
+    });
+  }
+}
+
+export class Side implements Shown {
+  readonly frame = el("div", { class: "frame" });
+  readonly under = el("p", { class: "under" });
+  readonly drawn: Drawn;
+  readonly samples: Samples;
+  private readonly faces: PartView;
+  private readonly verdicts: PartView;
+  private readonly places: Map<string, Owner>;
+  private stage_: Stage | null = null;
+  private picker: Picker | null = null;
+
+  constructor(
+    readonly word: Word,
+    readonly meta: Meta,
+    readonly arrays: Arrays,
+  ) {
+    this.samples = new Samples(meta, arrays);
+    const [check, fixture] = [colourOf(meta, "check"), colourOf(meta, "fixture")];
+    this.drawn = new Drawn(meta, arrays);
+    this.verdicts = new PartView(this.drawn, arrays, check, fixture);
+    const whole = new DrawnFaces(meta, arrays);
+    const index = Int32Array.from({ length: LINE * whole.meta.atlas![1] }, (_, i) => (i < meta.faces.length ? i : -1));
+    this.faces = new PartView(whole, { get: () => ({ rows: index.length, columns: 1, values: index }) }, check, fixture);
+    this.places = new Map(meta.faces.map(({ id }, i) => [id, i]));
+  }
+
+  /** Put the picture into its pane; throws where there is no WebGL. */
+  show(pane: Element, view: Meta, vertices: () => Float32Array): void {
+    const canvas = el("canvas", {
+      tabindex: 0,
+      role: "application",
+      "aria-label": `The ${this.word} part in 3D. Arrow keys turn both parts, n and p step through the changes.`,
+    });
+    this.frame.append(canvas, this.under);
+    pane.append(this.frame);
+    this.stage_ = new Stage(canvas, view, vertices);
+    this.stage_.add(this.faces.group, this.verdicts.group);
+    this.picker = new Picker(this.stage_, this.drawn, this.verdicts);
+  }
+
+  get stage(): Stage {
+    if (!this.stage_) throw new Error("there is no picture");
+    return this.stage_;
+  }
+
+  outline(): void {
+    this.stage.add(borders(this.drawn));
+    this.stage.request();
+  }
+
+  /** Colour it, by faces or by samples. */
+  paint(look: Look, byFace: boolean): void {
+    (byFace ? this.faces : this.verdicts).paint(look);
+    this.faces.group.visible = byFace;
+    this.verdicts.group.visible = !byFace;
+    this.stage.request();
+  }
+
+  /** Light a face up; null: none. */
+  light(id: string | null): void {
+    const owner = id === null ? null : (this.places.get(id) ?? null);
+    for (const part of [this.faces, this.verdicts]) part.light(owner, null);
+    this.stage.request();
+  }
+
+  /** The face at a place of the picture. */
+  faceAt(x: number, y: number): string | null {
+    const found = this.picker?.at(x, y);
+    return found && found.owner >= 0 ? (this.meta.faces[found.owner]?.id ?? null) : null;
+  }
+
+  /** Where to look from to see a face; null where it is not drawn. */
+  aimAt(id: string): { target: Vec; half: number; turn: number; rise: number } | null {
+    const owner = this.places.get(id);
+    const place = owner === undefined ? null : this.drawn.middle(owner);
+    if (owner === undefined || !place) return null;
+    const { start, count } = this.meta.faces[owner];
+    const { triangle, position } = this.drawn;
+    const corner = (k: number): Vec => {
+      const i = 3 * triangle[3 * (start + (count >> 1)) + k];
+      return [position[i], position[i + 1], position[i + 2]];
+    };
+    const [a, b, c] = [corner(0), corner(1), corner(2)];
+    const [point, normal] = [scaled(plus(plus(a, b), c), 1 / 3), cross(minus(b, a), minus(c, a))];
+    const { table } = this.stage;
+    const half = Math.max(1.4 * place.radius, 0.25 * this.drawn.partRadius);
+    return { target: place.centre, half, ...this.open(point, normal, table.towards(normal)) };
+  }
+
+  /** A view from which nothing hides a point of the surface, as near as can be to one. */
+  private open(point: Vec, normal: Vec, ideal: { turn: number; rise: number }): { turn: number; rise: number } {
+    const { table } = this.stage;
+    const back = (view: { turn: number; rise: number }): Vec => table.frame({ ...table.aim, ...view }).back;
+    const every = [ideal];
+    for (let turn = 0; turn < 360; turn += 20) for (let rise = -70; rise <= 80; rise += 15) every.push({ turn, rise });
+    const near = every.filter((view) => dot(back(view), normal) > 0);
+    near.sort((one, other) => dot(back(other), back(ideal)) - dot(back(one), back(ideal)));
+    return near.find((view) => !this.picker?.hidden(point, back(view))) ?? ideal;
+  }
+}
