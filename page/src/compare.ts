@@ -32,8 +32,10 @@ class Compared {
     this.again = { old: new Map(told.pairs), new: new Map(told.pairs.map(([was, now]) => [now, was])) };
     this.camera = new OneCamera(sides);
     const shut = matchMedia("(max-width: 700px)").matches;
-    viewer.prepend(this.toolbar());
-    viewer.append(el("details", { id: "legend", open: !shut }, el("summary", {}, "Legend"), this.legend), this.status);
+    viewer.append(this.status);
+    const legend = el("details", { id: "legend", open: !shut }, el("summary", {}, "Legend"), this.legend);
+    const keys = el("p", { class: "hint" }, "Keys: n and p for changes, arrows, + and -, f to fit, 1 to 7 for views.");
+    viewer.after(el("section", { id: "controls", "aria-label": "Colours and views" }, this.toolbar(), legend, keys));
     for (const side of sides) this.listen(side);
     this.rows.forEach((row, k) => {
       press(row.querySelector<HTMLElement>("th")!, () => this.show(k));

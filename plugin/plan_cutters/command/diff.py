@@ -100,10 +100,9 @@ def command(old: str, new: str, **given: Any) -> int:
         with paper(120) as console:
             for each in found.plans:
                 _show(each, console)
-            for line in (*apart(found), verdict(found)):
+            beside = [f"Side by side: {path}" for path in made.values()]
+            for line in (*apart(found), *beside, verdict(found)):
                 console.print(clean(line), soft_wrap=True)
-            for path in made.values():
-                console.print(clean(f"Side by side: {path}"), soft_wrap=True)
     for line in found.unread if given["as_json"] or given["as_markdown"] else ():
         error(f"{_SELF}: {line}")
     return NOT_COMPARABLE if not found.comparable else LOST if found.lost else 0
@@ -126,7 +125,9 @@ def _pages(old: Path, new: Path, found: "Comparison", out: Path) -> dict[str, Pa
     for name, page in pages(old, new, found):
         path = out / name / PAGE
         if (path.parent / PLAN).exists():
-            raise PlanError("holds a plan, whose page would be overwritten: give another folder to -o", file=str(path.parent))
+            raise PlanError(
+                "holds a plan, whose page would be overwritten: give another folder to -o", file=str(path.parent)
+            )
         try:
             if page is None:
                 # What an earlier comparison left says what is not so any more.

@@ -61,13 +61,14 @@ def section(found: PlanDifference) -> Iterator[str]:
     yield from table(CUTTERS, cutter_rows(found))
 
 
-def beside(path: str) -> str:
-    """A link to the page of two plans.
+def beside(path: str, address: str = "") -> str:
+    """A link to the page of two plans, or to an address that has it.
 
     >>> beside("compared/a b/review.html")
     '[Both plans side by side](compared/a%20b/review.html)'
     """
-    return f"[Both plans side by side]({quote(path)})"
+    within = f": {escaped(path)} there" if address else ""
+    return f"[Both plans side by side]({address or quote(path)}){within}"
 
 
 def table(names: Sequence[str], rows: Iterable[Sequence[str]]) -> Iterator[str]:

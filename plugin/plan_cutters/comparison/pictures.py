@@ -11,7 +11,9 @@ from typing import Any, NamedTuple
 from plan_cutters.document.model import Plan
 
 #: Data that a comparison shows nothing of: postures and their maps, operations, other colours, and the frames of samples.
-_LEFT = re.compile(r"(tilt|lean|maps|scalar|operation|operation_lean|setup|reason)\.|sample\.(point|normal|direction|curvature)$")
+_LEFT = re.compile(
+    r"(tilt|lean|maps|scalar|operation|operation_lean|setup|reason)\.|sample\.(point|normal|direction|curvature)$"
+)
 _ELEMENT = r'<script type="{}" id="{}">([^<]*)</script>'
 _FORMAT = 1
 _AGAIN = "plan the part again with --formats json,html"

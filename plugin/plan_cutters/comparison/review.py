@@ -1,8 +1,8 @@
 """The page of two plans side by side: tables of what changed, and both parts under one camera."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from markupsafe import Markup
 
@@ -109,7 +109,10 @@ def page(found: PlanDifference, old: Side, new: Side) -> bytes:
         headline=headline(found),
         remarks=[line for line in (choice(found), known(found)) if line],
         changes=[change(each) for each in found.changes if not each.hinders],
-        faces=list(zip(found.faces, face_rows(found), strict=True)),
+        # What is lost is seen first.
+        faces=sorted(
+            zip(found.faces, face_rows(found), strict=True), key=lambda row: (not row[0].lost, not row[0].won)
+        ),
         cutters=list(cutter_rows(found)),
         facts=list(_facts(old.plan, new.plan)),
         w=numbers,
@@ -151,15 +154,21 @@ def _cutters(old: Plan, new: Plan) -> Iterator[dict[str, str | None]]:
 
 def _facts(old: Plan, new: Plan) -> Iterator[tuple[str, str, str]]:
     """Rows on what was compared: a title, and a cell of each plan."""
-    yield "Part", *(plan.part.file or "part" for plan in (old, new))
-    yield "SHA-256", *((plan.part.sha256 or "no file")[:12] for plan in (old, new))
-    sizes = (" \N{MULTIPLICATION SIGN} ".join(f"{x:.6g}" for x in plan.part.size_mm) for plan in (old, new))
-    yield "Size", *(f"{size} mm" for size in sizes)
-    yield "Faces", *(f"{len(plan.effective.target_faces)} to machine, of {plan.part.faces}" for plan in (old, new))
-    yield "Machine", *(plan.machine.name for plan in (old, new))
-    yield "Cutters", *(numbers.count(len(plan.cutters), "cutter") for plan in (old, new))
-    yield "Cutter to take", *(short_names(plan).get(taken(plan) or "", "none") for plan in (old, new))
-    yield "Version", *(plan.versions.get("plan_cutters", "not known") for plan in (old, new))
+    yield from ((title, told(old), told(new)) for title, told in _FACTS)
 
 
+def _size(plan: Plan) -> str:
+    return " \N{MULTIPLICATION SIGN} ".join(f"{x:.6g}" for x in plan.part.size_mm) + " mm"
+
+
+_FACTS: tuple[tuple[str, Callable[[Plan], str]], ...] = (
+    ("Part", lambda plan: plan.part.file or "part"),
+    ("SHA-256", lambda plan: (plan.part.sha256 or "no file")[:12]),
+    ("Size", _size),
+    ("Faces", lambda plan: f"{len(plan.effective.target_faces)} to machine, of {plan.part.faces}"),
+    ("Machine", lambda plan: plan.machine.name),
+    ("Cutters", lambda plan: numbers.count(len(plan.cutters), "cutter")),
+    ("Cutter to take", lambda plan: short_names(plan).get(taken(plan) or "", "none")),
+    ("Version", lambda plan: plan.versions.get("plan_cutters", "not known")),
+)
 _TEMPLATE = template(_HERE / "review.html.jinja")
