@@ -8,9 +8,10 @@ import { readTold, type Told, type Word, WORDS } from "./compare_meta.ts";
 import { Side } from "./compare_side.ts";
 import { readArrays } from "./decode.ts";
 import { button, el, percent } from "./dom.ts";
-import { press } from "./lists.ts";
 import type { Meta } from "./meta.ts";
 import { swatch } from "./patterns.ts";
+import { schemeSwitch } from "./scheme.ts";
+import { press } from "./tables.ts";
 
 const FACES = "faces";
 const ANY = "any";
@@ -21,6 +22,7 @@ class Compared {
   private readonly legend = el("table", { class: "legend" });
   private readonly rows = [...document.querySelectorAll<HTMLElement>("#faces tbody tr")];
   private readonly again: Record<Word, Map<string, string>>;
+  private readonly looks = new Map<Word, Look>();
   private mode = FACES;
   private at = -1;
 
@@ -74,6 +76,7 @@ class Compared {
       el("label", {}, "Colour by ", colour),
       el("label", {}, "View ", view),
       this.rows.length ? el("span", { class: "group" }, "Changes ", ...steps) : null,
+      schemeSwitch(() => undefined),
     );
   }
 
@@ -147,23 +150,25 @@ class Compared {
       this.camera.lead(shown!);
       this.camera.table.fly(aim);
     }
-    this.status.textContent = `Change ${at + 1} of ${this.rows.length}: ${this.say(word, id)}${aim ? "" : "; it is not drawn"}`;
+    const [was, now] = [...this.rows[at].querySelectorAll("td")].map((cell) => cell.textContent);
+    const said = `${this.say(word, id)}; was ${was}, now ${now}${aim ? "" : "; it is not drawn"}`;
+    this.status.textContent = `Change ${at + 1} of ${this.rows.length}: ${said}`;
   }
 
   private paint(): void {
     const byFace = this.mode === FACES;
     const number = this.mode === ANY ? null : Number(this.mode);
-    const looks = new Map<Word, Look>();
     for (const side of this.sides) {
       const look = byFace ? facesLook(this.told, side) : verdictLook(this.told, side, number);
       side.paint(look, byFace);
-      looks.set(side.word, look);
+      this.looks.set(side.word, look);
     }
-    this.fill(looks, byFace);
+    this.fill(byFace);
   }
 
   /** The legend, with how much of each plan has each colour. */
-  private fill(looks: Map<Word, Look>, byFace: boolean): void {
+  private fill(byFace: boolean): void {
+    const { looks } = this;
     const entries = new Map([...looks.values()].flatMap((look) => look.entries.map((each) => [each.label, each])));
     const order = Object.values(this.told.marks).map((each) => each.label);
     const labels = [...entries.keys()].sort((a, b) => order.indexOf(a) - order.indexOf(b));

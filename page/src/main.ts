@@ -7,11 +7,13 @@ import { colourOf, modesOf } from "./colours.ts";
 import { readArrays, readMeta } from "./decode.ts";
 import { button, el } from "./dom.ts";
 import { borders } from "./edges.ts";
+import { firstView } from "./first_view.ts";
 import { helpDialog, listenKeys } from "./keys.ts";
-import { legend } from "./legend.ts";
+import { legend, NARROW } from "./legend.ts";
 import { enhanceCutters, FaceTable, SpotList } from "./lists.ts";
 import { Marks } from "./marks.ts";
 import { Measure } from "./measure.ts";
+import { Notes } from "./notes.ts";
 import { OperationTables, operationSwitch } from "./operations.ts";
 import { Drawn } from "./mesh.ts";
 import { PartView } from "./part.ts";
@@ -20,6 +22,8 @@ import { listen } from "./pointer.ts";
 import { PosturePanel } from "./posture_map.ts";
 import { Stills } from "./print.ts";
 import { Samples } from "./samples.ts";
+import { schemeSwitch } from "./scheme.ts";
+import { Selection } from "./selection.ts";
 import { Stage } from "./stage.ts";
 import { ToolView } from "./tool.ts";
 
@@ -29,6 +33,8 @@ async function start(): Promise<void> {
   const viewer = document.getElementById("viewer");
   if (!viewer) return;
   performance.mark("start");
+  // What "Save copy" writes: the page before anything in it is changed. Texts are shared, not copied.
+  const pristine = document.documentElement.cloneNode(true) as HTMLElement;
   document.documentElement.classList.add("app");
   const status = el("p", { id: "status", role: "status" });
   const under = el("p", { id: "under" });
@@ -74,6 +80,13 @@ async function start(): Promise<void> {
   const clip = (app.clip = new Clip(app));
   const help = helpDialog(meta);
   const stills = new Stills(app);
+  const selection = new Selection(app);
+  const notes = new Notes(app, pristine);
+  panel.tools.append(button("Select face", () => selection.toggle(app.faceShown()), { title: "Select the face of this sample (s)" }), notes.here);
+  document.querySelector("#summary .first")?.append(
+    el("div", { class: "tools", id: "page-tools" }, schemeSwitch(() => panel.draw()), notes.saveButton),
+  );
+  foldSummary();
   const glass = button("See through", () => setGlass(), { "aria-pressed": "true", title: "See through the tool (g)" });
   const setGlass = (): void => {
     tool.seeThrough(!tool.transparent);
@@ -96,21 +109,24 @@ async function start(): Promise<void> {
     clip.root,
   );
   frame.append(marks.root as unknown as Node, legend(app), measure.output, under);
+  viewer.append(selection.root);
   viewer.prepend(toolbar);
   viewer.append(panel.root);
   viewer.append(stills.root, help);
   app.repaint();
   stage.resize();
+  firstView(app);
   performance.mark("drawn");
 
-  listen(app, measure, (text) => {
+  listen(app, measure, selection, (text) => {
     under.textContent = text;
   });
   enhanceCutters(app);
   const spots = new SpotList(app);
   new FaceTable(app);
+  selection.tabled();
   new OperationTables(app);
-  listenKeys(app, { spots, clip, measure, help, glass: setGlass, tool: setTool });
+  listenKeys(app, { spots, clip, measure, help, selection, glass: setGlass, tool: setTool });
   // The tree over the triangles is what a click needs: once it is there the page answers.
   void app.drawn.tree;
   performance.mark("interactive");
@@ -121,6 +137,16 @@ async function start(): Promise<void> {
   document.documentElement.dataset.ready = "yes";
   // For scripts that ask the page: tests, and people at the console.
   Object.assign(window, { review: app });
+}
+
+/** In a narrow window the reasons are folded, so that the picture comes first. */
+function foldSummary(): void {
+  const why = document.querySelector<HTMLDetailsElement>("#why");
+  const fold = (): void => {
+    if (why) why.open = !NARROW.matches;
+  };
+  NARROW.addEventListener("change", fold);
+  fold();
 }
 
 function colouring(app: App): HTMLSelectElement {

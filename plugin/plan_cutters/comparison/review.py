@@ -17,6 +17,7 @@ from plan_cutters.document.model import Plan
 from plan_cutters.document.palette import PALETTE
 from plan_cutters.report.markup import embedded, policy, template
 from plan_cutters.report.story import numbers
+from plan_cutters.report.story.chip import Chip
 from plan_cutters.report.story.names import short_names
 
 PAGE = "review.html"
@@ -119,13 +120,13 @@ def page(found: PlanDifference, old: Side, new: Side) -> bytes:
     ).encode()
 
 
-def _outcome(found: PlanDifference) -> tuple[str, str, str]:
-    """What became of the part: a word of the style sheet, a sign, and words."""
+def _outcome(found: PlanDifference) -> Chip:
+    """What became of the part."""
     if not found.comparable:
-        return "unsure", "?", "Not comparable"
+        return Chip("unsure", "?", "Not comparable")
     if found.lost:
-        return "lost", "\N{MULTIPLICATION X}", "Lost and won" if found.won else "Lost"
-    return "won", "\N{CHECK MARK}", "Won" if found.won else "Nothing lost"
+        return Chip("bad", "✕", "Lost and won" if found.won else "Lost")
+    return Chip("good", "✓", "Won" if found.won else "Nothing lost")
 
 
 def _states(plan: Plan, marked: dict[str | None, str]) -> dict[str, str]:
