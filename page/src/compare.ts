@@ -206,6 +206,7 @@ function common(metas: Meta[]): Meta {
 async function start(): Promise<void> {
   const viewer = document.getElementById("viewer");
   if (!viewer) return;
+  performance.mark("start");
   const told = readTold();
   const sides: Side[] = [];
   for (const word of WORDS) {
@@ -216,6 +217,7 @@ async function start(): Promise<void> {
     document.documentElement.dataset.ready = "without";
     return;
   }
+  performance.mark("decoded");
   const parts = sides.map((side) => side.drawn.partVertices);
   const whole = new Float32Array(parts.reduce((sum, each) => sum + each.length, 0));
   parts.reduce((from, each) => (whole.set(each, from), from + each.length), 0);
@@ -241,6 +243,7 @@ async function start(): Promise<void> {
     });
     addEventListener("afterprint", () => still.remove());
   }
+  performance.mark("interactive");
   document.documentElement.dataset.ready = "yes";
   // For scripts that ask the page: tests, and people at the console.
   Object.assign(window, { compared: page });
