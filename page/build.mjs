@@ -22,6 +22,7 @@ const made = await build({
 const styles = await build({
   absWorkingDir: here,
   entryPoints: ["src/page.css"],
+  bundle: true,
   minify: true,
   charset: "ascii",
   legalComments: "none",

@@ -8,18 +8,21 @@ import { readArrays, readMeta } from "./decode.ts";
 import { button, el } from "./dom.ts";
 import { borders } from "./edges.ts";
 import { helpDialog, listenKeys } from "./keys.ts";
+import { Inset } from "./inset.ts";
 import { legend } from "./legend.ts";
 import { enhanceCutters, FaceTable, SpotList } from "./lists.ts";
 import { Marks } from "./marks.ts";
 import { Measure } from "./measure.ts";
 import { OperationTables, operationSwitch } from "./operations.ts";
 import { Drawn } from "./mesh.ts";
+import { Outline } from "./outline.ts";
 import { PartView } from "./part.ts";
 import { Picker } from "./pick.ts";
 import { listen } from "./pointer.ts";
 import { PosturePanel } from "./posture_map.ts";
 import { Stills } from "./print.ts";
 import { Samples } from "./samples.ts";
+import { Scale } from "./scale.ts";
 import { Stage } from "./stage.ts";
 import { ToolView } from "./tool.ts";
 
@@ -46,10 +49,13 @@ async function start(): Promise<void> {
   };
 
   const meta = readMeta();
+  // They are inflated while the browser makes ready to draw.
+  const reading = readArrays(meta);
+  reading.catch(() => undefined);
   let stage: Stage;
   let drawn: Drawn | null = null;
   try {
-    stage = new Stage(canvas, meta, () => drawn?.partVertices ?? NONE);
+    stage = new Stage(canvas, meta, () => drawn?.shownVertices ?? NONE);
   } catch {
     frame.remove();
     viewer.classList.add("without");
@@ -59,7 +65,7 @@ async function start(): Promise<void> {
     document.documentElement.dataset.ready = "without";
     return;
   }
-  const arrays = await readArrays(meta);
+  const arrays = await reading;
   performance.mark("decoded");
   const samples = new Samples(meta, arrays);
   drawn = new Drawn(meta, arrays);
@@ -68,6 +74,9 @@ async function start(): Promise<void> {
   stage.add(part.group, tool.group);
   const app = new App(meta, arrays, samples, drawn, stage, part, tool, new Picker(stage, drawn, part), say);
 
+  app.outline = new Outline(stage, drawn);
+  const inset = new Inset(app);
+  const scale = new Scale(app);
   const marks = new Marks(app);
   const panel = new PosturePanel(app);
   const measure = new Measure(app, marks);
@@ -95,12 +104,12 @@ async function start(): Promise<void> {
     button("?", () => help.showModal(), { title: "Mouse and keys (?)", "aria-label": "Help: mouse and keys" }),
     clip.root,
   );
-  frame.append(marks.root as unknown as Node, legend(app), measure.output, under);
+  frame.append(marks.root as unknown as Node, legend(app), scale.root as unknown as Node, inset.root, measure.output, under);
   viewer.prepend(toolbar);
   viewer.append(panel.root);
   viewer.append(stills.root, help);
   app.repaint();
-  stage.resize();
+  stage.begin();
   performance.mark("drawn");
 
   listen(app, measure, (text) => {
@@ -116,6 +125,7 @@ async function start(): Promise<void> {
   performance.mark("interactive");
   setTimeout(() => {
     stage.add(borders(app.drawn));
+    performance.mark("borders");
     stage.request();
   }, 0);
   document.documentElement.dataset.ready = "yes";

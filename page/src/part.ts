@@ -1,6 +1,6 @@
 // The part and its fixtures in 3D, coloured sample by sample through the atlas.
 
-import { type DataTexture, Group, Mesh, type ShaderMaterial, Vector2 } from "three";
+import { type DataTexture, Group, Mesh, type ShaderMaterial } from "three";
 import type { Look } from "./colours.ts";
 import type { Arrays } from "./decode.ts";
 import type { Drawn, Owner } from "./mesh.ts";
@@ -27,7 +27,6 @@ export class PartView {
     this.texture = atlasTexture(this.width, this.height);
     this.material = partMaterial(check, fixture);
     this.material.uniforms.colours.value = this.texture;
-    this.material.uniforms.size.value = new Vector2(this.width, this.height);
     if (drawn.ofFaces) this.group.add(new Mesh(drawn.geometry(0, drawn.ofFaces), this.material));
     drawn.meta.fixtures.forEach(({ start, count }, i) => {
       const mesh = new Mesh(drawn.geometry(start, count), this.material);
