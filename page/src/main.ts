@@ -23,6 +23,7 @@ import { PosturePanel } from "./posture_map.ts";
 import { Stills } from "./print.ts";
 import { Samples } from "./samples.ts";
 import { Scale } from "./scale.ts";
+import { partMaterial } from "./shading.ts";
 import { Stage } from "./stage.ts";
 import { ToolView } from "./tool.ts";
 
@@ -65,11 +66,13 @@ async function start(): Promise<void> {
     document.documentElement.dataset.ready = "without";
     return;
   }
+  const material = partMaterial(colourOf(meta, "check"), colourOf(meta, "fixture"));
+  stage.warm(material);
   const arrays = await reading;
   performance.mark("decoded");
   const samples = new Samples(meta, arrays);
   drawn = new Drawn(meta, arrays);
-  const part = new PartView(drawn, arrays, colourOf(meta, "check"), colourOf(meta, "fixture"));
+  const part = new PartView(drawn, arrays, material);
   const tool = new ToolView();
   stage.add(part.group, tool.group);
   const app = new App(meta, arrays, samples, drawn, stage, part, tool, new Picker(stage, drawn, part), say);

@@ -1,6 +1,6 @@
 // The canvas: it is drawn when something has changed, and at no other time.
 
-import { type Object3D, Scene, Vector3, WebGLRenderer } from "three";
+import { BufferGeometry, type Material, Mesh, type Object3D, Scene, Vector3, WebGLRenderer } from "three";
 import { Turntable } from "./camera.ts";
 import type { Meta, Vec } from "./meta.ts";
 import { shared } from "./shading.ts";
@@ -56,6 +56,11 @@ export class Stage {
   /** Called after each drawing, to draw over it. */
   afterDraw(work: () => void): void {
     this.after.push(work);
+  }
+
+  /** Let the browser compile a material while the data are still read. */
+  warm(material: Material): void {
+    this.renderer.compile(new Mesh(new BufferGeometry(), material), this.table.camera);
   }
 
   /** Draw from now on: all that is to be seen is there. */
