@@ -221,6 +221,12 @@ export class App {
     return this.met && this.met.owner !== null ? { point: this.met.point, owner: this.met.owner } : null;
   }
 
+  /** The face of the sample shown. */
+  faceShown(): Owner | null {
+    const found = this.meta.faces.findIndex((each) => each.number === this.sample?.face);
+    return found < 0 ? null : found;
+  }
+
   atWitness(): boolean {
     const witness = this.witness();
     return this.posture !== null && witness !== null && alike(this.posture, witness);

@@ -157,6 +157,12 @@ export class Turntable {
     this.set({ half, target: plus(plus(this.aim.target, right, x * moved * this.aspect), up, y * moved) });
   }
 
+  /** Look from there at all of it, which stays in the picture until one has moved. */
+  show(turn: number, rise: number): void {
+    this.aim = this.fitted(turn, rise);
+    this.apply();
+  }
+
   set(part: Partial<Aim>): void {
     this.moved = true;
     cancelAnimationFrame(this.flight);

@@ -7,12 +7,14 @@ import { colourOf, modesOf } from "./colours.ts";
 import { readArrays, readMeta } from "./decode.ts";
 import { button, el } from "./dom.ts";
 import { borders } from "./edges.ts";
+import { firstView } from "./first_view.ts";
 import { helpDialog, listenKeys } from "./keys.ts";
 import { Inset } from "./inset.ts";
-import { legend } from "./legend.ts";
+import { legend, NARROW } from "./legend.ts";
 import { enhanceCutters, FaceTable, SpotList } from "./lists.ts";
 import { Marks } from "./marks.ts";
 import { Measure } from "./measure.ts";
+import { Notes } from "./notes.ts";
 import { OperationTables, operationSwitch } from "./operations.ts";
 import { Drawn } from "./mesh.ts";
 import { Outline } from "./outline.ts";
@@ -24,6 +26,8 @@ import { Stills } from "./print.ts";
 import { Samples } from "./samples.ts";
 import { Scale } from "./scale.ts";
 import { partMaterial } from "./shading.ts";
+import { schemeSwitch } from "./scheme.ts";
+import { Selection } from "./selection.ts";
 import { Stage } from "./stage.ts";
 import { ToolView } from "./tool.ts";
 
@@ -33,6 +37,8 @@ async function start(): Promise<void> {
   const viewer = document.getElementById("viewer");
   if (!viewer) return;
   performance.mark("start");
+  // What "Save copy" writes: the page before anything in it is changed. Texts are shared, not copied.
+  const pristine = document.documentElement.cloneNode(true) as HTMLElement;
   document.documentElement.classList.add("app");
   const status = el("p", { id: "status", role: "status" });
   const under = el("p", { id: "under" });
@@ -86,6 +92,13 @@ async function start(): Promise<void> {
   const clip = (app.clip = new Clip(app));
   const help = helpDialog(meta);
   const stills = new Stills(app);
+  const selection = new Selection(app);
+  const notes = new Notes(app, pristine);
+  panel.tools.append(button("Select face", () => selection.toggle(app.faceShown()), { title: "Select the face of this sample (s)" }), notes.here);
+  document.querySelector("#summary .first")?.append(
+    el("div", { class: "tools", id: "page-tools" }, schemeSwitch(() => panel.draw()), notes.saveButton),
+  );
+  foldSummary();
   const glass = button("See through", () => setGlass(), { "aria-pressed": "true", title: "See through the tool (g)" });
   const setGlass = (): void => {
     tool.seeThrough(!tool.transparent);
@@ -108,21 +121,23 @@ async function start(): Promise<void> {
     clip.root,
   );
   frame.append(marks.root as unknown as Node, legend(app), scale.root as unknown as Node, inset.root, measure.output, under);
+  viewer.append(selection.root);
   viewer.prepend(toolbar);
   viewer.append(panel.root);
   viewer.append(stills.root, help);
   app.repaint();
-  stage.begin();
+  stage.begin(() => firstView(app));
   performance.mark("drawn");
 
-  listen(app, measure, (text) => {
+  listen(app, measure, selection, (text) => {
     under.textContent = text;
   });
   enhanceCutters(app);
   const spots = new SpotList(app);
   new FaceTable(app);
+  selection.tabled();
   new OperationTables(app);
-  listenKeys(app, { spots, clip, measure, help, glass: setGlass, tool: setTool });
+  listenKeys(app, { spots, clip, measure, help, selection, glass: setGlass, tool: setTool });
   // The tree over the triangles is what a click needs: once it is there the page answers.
   void app.drawn.tree;
   performance.mark("interactive");
@@ -134,6 +149,16 @@ async function start(): Promise<void> {
   document.documentElement.dataset.ready = "yes";
   // For scripts that ask the page: tests, and people at the console.
   Object.assign(window, { review: app });
+}
+
+/** In a narrow window the reasons are folded, so that the picture comes first. */
+function foldSummary(): void {
+  const why = document.querySelector<HTMLDetailsElement>("#why");
+  const fold = (): void => {
+    if (why) why.open = !NARROW.matches;
+  };
+  NARROW.addEventListener("change", fold);
+  fold();
 }
 
 function colouring(app: App): HTMLSelectElement {

@@ -63,8 +63,11 @@ export class Stage {
     this.renderer.compile(new Mesh(new BufferGeometry(), material), this.table.camera);
   }
 
-  /** Draw from now on: all that is to be seen is there. */
-  begin(): void {
+  /** Draw from now on: all that is to be seen is there. `first`: choose the first view, of which nothing is drawn before. */
+  begin(first: () => void): void {
+    const box = this.canvas.parentElement!.getBoundingClientRect();
+    this.table.resize(Math.max(1, box.width) / Math.max(1, box.height));
+    first();
     this.begun = true;
     this.resize();
   }
