@@ -10,6 +10,7 @@ import { readArrays } from "./decode.ts";
 import { button, el, percent } from "./dom.ts";
 import type { Meta } from "./meta.ts";
 import { swatch } from "./patterns.ts";
+import { Scale } from "./scale.ts";
 import { schemeSwitch } from "./scheme.ts";
 import { press } from "./tables.ts";
 
@@ -133,6 +134,23 @@ class Compared {
     this.status.textContent = "";
   }
 
+  /** Where the first change would be hidden, begin on the side that shows it. */
+  first(): void {
+    const shown = this.rows.length ? this.showing(this.rows[0]) : null;
+    const aim = shown && !shown.side.sees(shown.id) ? shown.side.aimAt(shown.id) : null;
+    if (aim) for (const { stage } of this.sides) stage.table.show(aim.turn, aim.rise);
+  }
+
+  /** The picture that shows a change: the new one, if it is there. */
+  private showing(row: HTMLElement): { side: Side; id: string } | null {
+    const faces = facesOf(row);
+    for (const side of [...this.sides].reverse()) {
+      const id = faces[side.word];
+      if (id !== null) return { side, id };
+    }
+    return null;
+  }
+
   private step(by: number): void {
     const count = this.rows.length;
     if (count) this.show(this.at < 0 ? (by > 0 ? 0 : count - 1) : (this.at + by + count) % count);
@@ -144,10 +162,10 @@ class Compared {
     const faces = facesOf(this.rows[at]);
     this.light(faces);
     const [word, id] = faces.new ? (["new", faces.new] as const) : (["old", faces.old ?? ""] as const);
-    const shown = [...this.sides].reverse().find((side) => faces[side.word] !== null);
-    const aim = shown?.aimAt(faces[shown.word]!);
-    if (aim) {
-      this.camera.lead(shown!);
+    const shown = this.showing(this.rows[at]);
+    const aim = shown?.side.aimAt(shown.id);
+    if (shown && aim) {
+      this.camera.lead(shown.side);
       this.camera.table.fly(aim);
     }
     const [was, now] = [...this.rows[at].querySelectorAll("td")].map((cell) => cell.textContent);
@@ -218,7 +236,7 @@ async function start(): Promise<void> {
     return;
   }
   performance.mark("decoded");
-  const parts = sides.map((side) => side.drawn.partVertices);
+  const parts = sides.map((side) => side.drawn.shownVertices);
   const whole = new Float32Array(parts.reduce((sum, each) => sum + each.length, 0));
   parts.reduce((from, each) => (whole.set(each, from), from + each.length), 0);
   const view = common(sides.map((side) => side.meta));
@@ -232,8 +250,11 @@ async function start(): Promise<void> {
   }
   const page = new Compared(told, sides, viewer);
   document.documentElement.classList.add("pictures");
+  for (const side of sides) side.stage.begin(() => undefined);
+  page.first();
+  const last = sides[sides.length - 1];
+  last.frame.append(new Scale(last).root);
   for (const side of sides) {
-    side.stage.resize();
     setTimeout(() => side.outline(), 0);
     // A canvas is empty on paper.
     const still = el("img", { class: "still", alt: `The ${side.word} part` });

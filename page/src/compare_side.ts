@@ -1,7 +1,9 @@
 // One of two plans: its picture, coloured by face or by sample.
 
+import type { ShaderMaterial } from "three";
+import type { Aim } from "./camera.ts";
 import { colourOf, type Look } from "./colours.ts";
-import type { Shown, } from "./compare_looks.ts";
+import type { Shown } from "./compare_looks.ts";
 import type { Word } from "./compare_meta.ts";
 import type { Arrays } from "./decode.ts";
 import { el } from "./dom.ts";
@@ -11,8 +13,9 @@ import type { Meta, Vec } from "./meta.ts";
 import { PartView } from "./part.ts";
 import { Picker } from "./pick.ts";
 import { Samples } from "./samples.ts";
+import { partMaterial } from "./shading.ts";
 import { Stage } from "./stage.ts";
-import { cross, dot, minus, plus, scaled } from "./vectors.ts";
+import { cross, dot, minus, plus, scaled, unit } from "./vectors.ts";
 
 /** Texels in a line of the atlas of faces: every device has that many. */
 const LINE = 1024;
@@ -22,8 +25,10 @@ class DrawnFaces extends Drawn {
   constructor(meta: Meta, arrays: Arrays) {
     super({ ...meta, atlas: [LINE, Math.max(1, Math.ceil(meta.faces.length / LINE))] }, arrays);
     this.owner.forEach((owner, i) => {
-      this.texel[2 * i] = owner < 0 ? -1 : owner % LINE;
-      this.texel[2 * i + 1] = owner < 0 ? -1 : Math.floor(owner / LINE);
+      const [x, y] = owner < 0 ? [-1, -1] : [owner % LINE, Math.floor(owner / LINE)];
+      this.texel.set([x, y], 2 * i);
+      // Each face is a sheet of its own: no other one has a say in its colour.
+      if (owner >= 0) this.sheet.set([x, y, x, y], 4 * i);
     });
   }
 }
@@ -45,12 +50,12 @@ export class Side implements Shown {
     readonly arrays: Arrays,
   ) {
     this.samples = new Samples(meta, arrays);
-    const [check, fixture] = [colourOf(meta, "check"), colourOf(meta, "fixture")];
+    const material = (): ShaderMaterial => partMaterial(colourOf(meta, "check"), colourOf(meta, "fixture"));
     this.drawn = new Drawn(meta, arrays);
-    this.verdicts = new PartView(this.drawn, arrays, check, fixture);
+    this.verdicts = new PartView(this.drawn, arrays, material());
     const whole = new DrawnFaces(meta, arrays);
     const index = Int32Array.from({ length: LINE * whole.meta.atlas![1] }, (_, i) => (i < meta.faces.length ? i : -1));
-    this.faces = new PartView(whole, { get: () => ({ rows: index.length, columns: 1, values: index }) }, check, fixture);
+    this.faces = new PartView(whole, { get: () => ({ rows: index.length, columns: 1, values: index }) }, material());
     this.places = new Map(meta.faces.map(({ id }, i) => [id, i]));
   }
 
@@ -99,22 +104,32 @@ export class Side implements Shown {
     return found && found.owner >= 0 ? (this.meta.faces[found.owner]?.id ?? null) : null;
   }
 
-  /** Where to look from to see a face; null where it is not drawn. */
-  aimAt(id: string): { target: Vec; half: number; turn: number; rise: number } | null {
-    const owner = this.places.get(id);
-    const place = owner === undefined ? null : this.drawn.middle(owner);
-    if (owner === undefined || !place) return null;
-    const { start, count } = this.meta.faces[owner];
+  /** A place in the middle of a face and the normal there; null where it is not drawn. */
+  private middle(id: string): { point: Vec; normal: Vec } | null {
+    const { start, count } = this.meta.faces[this.places.get(id) ?? -1] ?? { start: 0, count: 0 };
+    if (!count) return null;
     const { triangle, position } = this.drawn;
-    const corner = (k: number): Vec => {
+    const [a, b, c] = [0, 1, 2].map((k): Vec => {
       const i = 3 * triangle[3 * (start + (count >> 1)) + k];
       return [position[i], position[i + 1], position[i + 2]];
-    };
-    const [a, b, c] = [corner(0), corner(1), corner(2)];
-    const [point, normal] = [scaled(plus(plus(a, b), c), 1 / 3), cross(minus(b, a), minus(c, a))];
-    const { table } = this.stage;
+    });
+    return { point: scaled(plus(plus(a, b), c), 1 / 3), normal: unit(cross(minus(b, a), minus(c, a))) };
+  }
+
+  /** Whether the middle of a face is seen from where one looks now. */
+  sees(id: string): boolean {
+    const found = this.middle(id);
+    const { back } = this.stage.table.frame();
+    return found !== null && dot(back, found.normal) > 0.1 && !this.picker?.hidden(found.point, back);
+  }
+
+  /** Where to look from to see a face; null where it is not drawn. */
+  aimAt(id: string): Aim | null {
+    const found = this.middle(id);
+    const place = found && this.drawn.middle(this.places.get(id)!);
+    if (!found || !place) return null;
     const half = Math.max(1.4 * place.radius, 0.25 * this.drawn.partRadius);
-    return { target: place.centre, half, ...this.open(point, normal, table.towards(normal)) };
+    return { target: place.centre, half, ...this.open(found.point, found.normal, this.stage.table.towards(found.normal)) };
   }
 
   /** A view from which nothing hides a point of the surface, as near as can be to one. */

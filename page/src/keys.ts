@@ -9,6 +9,7 @@ import type { SpotList } from "./lists.ts";
 import type { Measure } from "./measure.ts";
 import { nextPlan, plansOf } from "./operations.ts";
 import type { Selection } from "./selection.ts";
+import { closeNow, showSpot } from "./view.ts";
 
 const HELP: [string, string][] = [
   ["Click, Enter", "show the posture map of the sample there (Enter: in the middle of the picture)"],
@@ -21,6 +22,7 @@ const HELP: [string, string][] = [
   ["Shift and arrows, j and k", "step to a neighbouring sample"],
   ["n and p", "next and previous worst spot"],
   ["[ and ]", "previous and next cutter"],
+  ["z", "look closely at the sample shown, or at all of its tool"],
   ["t", "show or hide the tool"],
   ["g", "see through the tool, or not"],
   ["c", "clip: off, across X, Y, Z"],
@@ -84,6 +86,7 @@ export function listenKeys(app: App, parts: Parts): void {
       m: () => parts.measure.toggle(),
       s: () => parts.selection.toggle(app.hot ?? app.faceShown()),
       o: () => (plansOf(app.meta).length ? nextPlan(app) : undefined),
+      z: () => lookClosely(app),
       t: parts.tool,
       g: parts.glass,
       "?": () => parts.help.showModal(),
@@ -123,6 +126,15 @@ function neighbour(app: App, side: number): void {
     return;
   }
   app.select(next);
+}
+
+/** From all of the tool at the sample shown to a close look, and back. */
+function lookClosely(app: App): void {
+  if (!app.sample) return app.say("No sample is selected: press Enter in the picture");
+  app.note = "";
+  const close = !closeNow();
+  showSpot(app, close);
+  app.say(`${close ? "A close look" : "All of the tool"}. ${app.note}`);
 }
 
 function nextCutter(app: App, by: number): void {

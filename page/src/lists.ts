@@ -5,7 +5,7 @@ import { spoken } from "./colours.ts";
 import { button, el } from "./dom.ts";
 import type { Vec } from "./meta.ts";
 import { moreOf, press, sortable } from "./tables.ts";
-import { dot } from "./vectors.ts";
+import { flyTo, showSpot } from "./view.ts";
 
 /** Names of so many letters are never broken. */
 const SHORT = 24;
@@ -133,36 +133,9 @@ export class SpotList {
     item.scrollIntoView({ block: "nearest" });
     this.app.note = "";
     this.app.clip?.release();
-    flyTo(this.app, spot.point, this.app.samples.normal(spot.sample));
+    showSpot(this.app);
     this.app.say(`Spot ${this.at + 1} of ${this.mine.length}: ${spot.face}, ${spoken(this.app.meta, spot.reason)}. ${this.app.note}`);
   }
-}
-
-/** Look at a place of the surface from its outer side, near enough to see the tool there. */
-export function flyTo(app: App, point: Vec, normal: Vec, size?: number): void {
-  const { table } = app.stage;
-  const { partRadius } = app.drawn;
-  const half = size ?? Math.min(0.7 * partRadius, Math.max(6 * app.cutter.radius, 0.08 * partRadius));
-  table.fly({ target: point, half, ...openView(app, point, normal) });
-}
-
-/** A view, askew to the normal if that can be, in which nothing hides a place of the surface. */
-function openView(app: App, point: Vec, normal: Vec): { turn: number; rise: number } {
-  const { table } = app.stage;
-  const wanted = table.towards(normal);
-  const back = (view: { turn: number; rise: number }): Vec => table.frame({ ...table.aim, ...view }).back;
-  const ideal = back(wanted);
-  const every = [wanted];
-  for (let turn = 0; turn < 360; turn += 15) for (let rise = -75; rise <= 85; rise += 10) every.push({ turn, rise });
-  const near = every
-    .map((view) => ({ view, way: back(view) }))
-    .filter(({ way }) => dot(way, normal) > 0.1)
-    .sort((a, b) => dot(b.way, ideal) - dot(a.way, ideal));
-  const found = near.find(({ way }) => !app.picker.hidden(point, way));
-  if (found || !app.clip) return found?.view ?? wanted;
-  const way = app.clip.through(point, normal);
-  app.note = "It is hidden from every side: the part is clipped there.";
-  return table.towards(way);
 }
 
 export class FaceTable {

@@ -9,6 +9,7 @@ import { button, el } from "./dom.ts";
 import { borders } from "./edges.ts";
 import { firstView } from "./first_view.ts";
 import { helpDialog, listenKeys } from "./keys.ts";
+import { Inset } from "./inset.ts";
 import { legend, NARROW } from "./legend.ts";
 import { enhanceCutters, FaceTable, SpotList } from "./lists.ts";
 import { Marks } from "./marks.ts";
@@ -16,12 +17,15 @@ import { Measure } from "./measure.ts";
 import { Notes } from "./notes.ts";
 import { OperationTables, operationSwitch } from "./operations.ts";
 import { Drawn } from "./mesh.ts";
+import { Outline } from "./outline.ts";
 import { PartView } from "./part.ts";
 import { Picker } from "./pick.ts";
 import { listen } from "./pointer.ts";
 import { PosturePanel } from "./posture_map.ts";
 import { Stills } from "./print.ts";
 import { Samples } from "./samples.ts";
+import { Scale } from "./scale.ts";
+import { partMaterial } from "./shading.ts";
 import { schemeSwitch } from "./scheme.ts";
 import { Selection } from "./selection.ts";
 import { Stage } from "./stage.ts";
@@ -52,10 +56,13 @@ async function start(): Promise<void> {
   };
 
   const meta = readMeta();
+  // They are inflated while the browser makes ready to draw.
+  const reading = readArrays(meta);
+  reading.catch(() => undefined);
   let stage: Stage;
   let drawn: Drawn | null = null;
   try {
-    stage = new Stage(canvas, meta, () => drawn?.partVertices ?? NONE);
+    stage = new Stage(canvas, meta, () => drawn?.shownVertices ?? NONE);
   } catch {
     frame.remove();
     viewer.classList.add("without");
@@ -65,15 +72,20 @@ async function start(): Promise<void> {
     document.documentElement.dataset.ready = "without";
     return;
   }
-  const arrays = await readArrays(meta);
+  const material = partMaterial(colourOf(meta, "check"), colourOf(meta, "fixture"));
+  stage.warm(material);
+  const arrays = await reading;
   performance.mark("decoded");
   const samples = new Samples(meta, arrays);
   drawn = new Drawn(meta, arrays);
-  const part = new PartView(drawn, arrays, colourOf(meta, "check"), colourOf(meta, "fixture"));
+  const part = new PartView(drawn, arrays, material);
   const tool = new ToolView();
   stage.add(part.group, tool.group);
   const app = new App(meta, arrays, samples, drawn, stage, part, tool, new Picker(stage, drawn, part), say);
 
+  app.outline = new Outline(stage, drawn);
+  const inset = new Inset(app);
+  const scale = new Scale(app);
   const marks = new Marks(app);
   const panel = new PosturePanel(app);
   const measure = new Measure(app, marks);
@@ -108,14 +120,13 @@ async function start(): Promise<void> {
     button("?", () => help.showModal(), { title: "Mouse and keys (?)", "aria-label": "Help: mouse and keys" }),
     clip.root,
   );
-  frame.append(marks.root as unknown as Node, legend(app), measure.output, under);
+  frame.append(marks.root as unknown as Node, legend(app), scale.root as unknown as Node, inset.root, measure.output, under);
   viewer.append(selection.root);
   viewer.prepend(toolbar);
   viewer.append(panel.root);
   viewer.append(stills.root, help);
   app.repaint();
-  stage.resize();
-  firstView(app);
+  stage.begin(() => firstView(app));
   performance.mark("drawn");
 
   listen(app, measure, selection, (text) => {
@@ -132,6 +143,7 @@ async function start(): Promise<void> {
   performance.mark("interactive");
   setTimeout(() => {
     stage.add(borders(app.drawn));
+    performance.mark("borders");
     stage.request();
   }, 0);
   document.documentElement.dataset.ready = "yes";

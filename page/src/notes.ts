@@ -2,8 +2,8 @@
 
 import type { App } from "./app.ts";
 import { button, el } from "./dom.ts";
-import { flyTo } from "./lists.ts";
 import type { Vec } from "./meta.ts";
+import { flyTo } from "./view.ts";
 
 interface Note {
   text: string;
