@@ -218,7 +218,8 @@ function common(metas: Meta[]): Meta {
   const last = metas[metas.length - 1];
   const end = (of: "low" | "high", most: typeof Math.min): [number, number, number] =>
     [0, 1, 2].map((k) => most(...metas.map(({ part }) => part[of][k]))) as [number, number, number];
-  return { ...last, part: { ...last.part, low: end("low", Math.min), high: end("high", Math.max) } };
+  // No tool is shown beside the parts.
+  return { ...last, cutters: [], part: { ...last.part, low: end("low", Math.min), high: end("high", Math.max) } };
 }
 
 async function start(): Promise<void> {
@@ -242,9 +243,10 @@ async function start(): Promise<void> {
   const view = common(sides.map((side) => side.meta));
   try {
     for (const side of sides) side.show(document.getElementById(side.word)!, view, () => whole);
-  } catch {
+  } catch (error) {
     for (const side of sides) side.frame.remove();
-    viewer.prepend(el("p", { class: "none" }, "This browser shows no 3D here (WebGL is missing or switched off). The tables say what changed."));
+    const why = error instanceof Error ? error.message : String(error);
+    viewer.prepend(el("p", { class: "none" }, `This browser shows no 3D here (${why}). The tables say what changed.`));
     document.documentElement.dataset.ready = "without";
     return;
   }
