@@ -25,6 +25,10 @@ export class OneCamera {
 
   /** Let a side lead from where all look now. */
   lead(side: Side): void {
+    if (side === this.leader) return;
+    // A flight ends where it is, and what was not drawn yet is not lost.
+    this.table.set({});
+    this.follow();
     this.leader = side;
   }
 

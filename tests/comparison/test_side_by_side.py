@@ -236,6 +236,8 @@ def test_axe_finds_nothing(shown, path, width, scheme):
 
 
 def aims(page):
+    """Where both look from, once nothing is left to be drawn."""
+    page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
     return page.evaluate("compared.sides.map(side => side.stage.table.aim)")
 
 
@@ -248,13 +250,22 @@ def test_there_is_one_camera(shown, path):
         found.locator(f"#{word} canvas").focus()
         for key in keys:
             found.keyboard.press(key)
-        found.wait_for_timeout(100)
         now = aims(found)
         assert now[0] == now[1]
         assert now != before
         before = now
+    # Who turns to the other picture before the first one is drawn takes up where that was.
+    old, new = (found.locator(f"#{word} canvas") for word in ("old", "new"))
+    turns = found.evaluate(
+        """([was, now]) => [was, now, was].map(canvas => {
+             canvas.dispatchEvent(new KeyboardEvent("keydown", {key: "ArrowLeft", bubbles: true}));
+             return compared.camera.table.aim.turn; })""",
+        [old.element_handle(), new.element_handle()],
+    )
+    assert turns == [before[0]["turn"] - 8 * k for k in (1, 2, 3)]
+    before = aims(found)
+    assert before[0] == before[1]
     found.set_viewport_size({"width": 1000, "height": 700})
-    found.wait_for_timeout(200)
     assert aims(found) == before
 
 
