@@ -182,6 +182,7 @@ class Compared {
       this.looks.set(side.word, look);
     }
     this.fill(byFace);
+    this.light(this.chosen());
   }
 
   /** The legend, with how much of each plan has each colour. */

@@ -37,10 +37,10 @@ export class Side implements Shown {
   readonly frame = el("div", { class: "frame" });
   readonly under = el("p", { class: "under" });
   readonly drawn: Drawn;
-  readonly samples: Samples;
   private readonly faces: PartView;
-  private readonly verdicts: PartView;
   private readonly places: Map<string, Owner>;
+  private madeSamples: Samples | null = null;
+  private madeVerdicts: PartView | null = null;
   private stage_: Stage | null = null;
   private picker: Picker | null = null;
 
@@ -49,14 +49,28 @@ export class Side implements Shown {
     readonly meta: Meta,
     readonly arrays: Arrays,
   ) {
-    this.samples = new Samples(meta, arrays);
-    const material = (): ShaderMaterial => partMaterial(colourOf(meta, "check"), colourOf(meta, "fixture"));
-    this.drawn = new Drawn(meta, arrays);
-    this.verdicts = new PartView(this.drawn, arrays, material());
-    const whole = new DrawnFaces(meta, arrays);
-    const index = Int32Array.from({ length: LINE * whole.meta.atlas![1] }, (_, i) => (i < meta.faces.length ? i : -1));
-    this.faces = new PartView(whole, { get: () => ({ rows: index.length, columns: 1, values: index }) }, material());
+    this.drawn = new DrawnFaces(meta, arrays);
+    const index = Int32Array.from({ length: LINE * this.drawn.meta.atlas![1] }, (_, i) => (i < meta.faces.length ? i : -1));
+    this.faces = new PartView(this.drawn, { get: () => ({ rows: index.length, columns: 1, values: index }) }, this.material());
     this.places = new Map(meta.faces.map(({ id }, i) => [id, i]));
+  }
+
+  /** Made when it is asked for, as is what is coloured by samples: the first view is one of faces. */
+  get samples(): Samples {
+    this.madeSamples ??= new Samples(this.meta, this.arrays);
+    return this.madeSamples;
+  }
+
+  private get verdicts(): PartView {
+    if (!this.madeVerdicts) {
+      this.madeVerdicts = new PartView(new Drawn(this.meta, this.arrays), this.arrays, this.material());
+      this.stage.add(this.madeVerdicts.group);
+    }
+    return this.madeVerdicts;
+  }
+
+  private material(): ShaderMaterial {
+    return partMaterial(colourOf(this.meta, "check"), colourOf(this.meta, "fixture"));
   }
 
   /** Put the picture into its pane; throws where there is no WebGL. */
@@ -69,8 +83,8 @@ export class Side implements Shown {
     this.frame.append(canvas, this.under);
     pane.append(this.frame);
     this.stage_ = new Stage(canvas, view, vertices);
-    this.stage_.add(this.faces.group, this.verdicts.group);
-    this.picker = new Picker(this.stage_, this.drawn, this.verdicts);
+    this.stage_.add(this.faces.group);
+    this.picker = new Picker(this.stage_, this.drawn, this.faces);
   }
 
   get stage(): Stage {
@@ -87,14 +101,14 @@ export class Side implements Shown {
   paint(look: Look, byFace: boolean): void {
     (byFace ? this.faces : this.verdicts).paint(look);
     this.faces.group.visible = byFace;
-    this.verdicts.group.visible = !byFace;
+    if (this.madeVerdicts) this.madeVerdicts.group.visible = !byFace;
     this.stage.request();
   }
 
   /** Light a face up; null: none. */
   light(id: string | null): void {
     const owner = id === null ? null : (this.places.get(id) ?? null);
-    for (const part of [this.faces, this.verdicts]) part.light(owner, null);
+    for (const part of [this.faces, this.madeVerdicts]) part?.light(owner, null);
     this.stage.request();
   }
 

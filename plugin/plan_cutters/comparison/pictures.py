@@ -20,7 +20,7 @@ _AGAIN = "plan the part again with --formats json,html"
 
 
 class Picture(NamedTuple):
-    """What the page draws of a plan: `meta` and the stream of `docs/review_page_data.md`; or why there is none."""
+    """Hold what the page draws of a plan: `meta` and the stream of `docs/review_page_data.md`; or why there is none."""
 
     meta: dict[str, Any] | None
     data: str
