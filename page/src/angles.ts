@@ -4,7 +4,6 @@ import type { App } from "./app.ts";
 import { copyButton } from "./copy.ts";
 import { el } from "./dom.ts";
 import type { Position } from "./machine.ts";
-import { positions } from "./machine.ts";
 import { cross, DEG, norm } from "./vectors.ts";
 
 /** As in plan_cutters.domain.kinematics: nearer to the axis next to the part a position is singular, degrees. */
@@ -27,7 +26,7 @@ export class Angles {
     const rows = [this.row("Tool axis", vector, "", `Copy the tool axis ${vector}`)];
     const { kinematics } = app.machine;
     const names = app.meta.axes;
-    const found = kinematics && names.length ? ranked(positions(kinematics, axis)) : [];
+    const found = names.length ? app.machine.positions(axis) : [];
     if (kinematics && names.length && !found.length) rows.push(el("p", { class: "hint" }, `No angles of ${names.join(" and ")} hold this tool axis.`));
     found.forEach((each, i) => {
       const words = wordsOf(names, each);
@@ -43,15 +42,6 @@ export class Angles {
     const said = more ? el("span", { class: "hint" }, ` ${more}`) : null;
     return el("p", { class: "angle" }, el("span", { class: "what" }, named), el("span", { class: "value" }, text, said), copyButton("Copy", () => copied, this.app.say, label));
   }
-}
-
-/** Those within the limits first, then the smaller angles, as the plan takes them. */
-function ranked(found: Position[]): Position[] {
-  const size = ({ angles, within }: Position): number =>
-    (within.every(Boolean) ? 0 : 1e6) + angles.reduce((sum, angle) => sum + Math.abs(angle), 0);
-  const sorted = [...found].sort((a, b) => size(a) - size(b));
-  // Where the two are one position, it is told once.
-  return sorted.filter((each, i) => i === 0 || each.angles.some((angle, k) => Math.abs(angle - sorted[0].angles[k]) > 1e-4));
 }
 
 /** Words of a program such as `A-12.5`, in the order of the letters. */
