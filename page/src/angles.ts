@@ -8,7 +8,7 @@ import { cross, DEG, norm } from "./vectors.ts";
 
 /** As in plan_cutters.domain.kinematics: nearer to the axis next to the part a position is singular, degrees. */
 const SINGULAR = 2;
-const DIGITS = { angle: 2, axis: 5 };
+const DIGITS = { angle: 2, axis: 4 };
 
 export class Angles {
   readonly root = el("div", { id: "angles" });
@@ -38,9 +38,16 @@ export class Angles {
     this.root.replaceChildren(...rows);
   }
 
+  /** What is copied leaves the words behind that stand beside it. */
+  private warning(more: string): string {
+    const { state } = this.app;
+    const free = state?.state === "free" ? (state.certified ? "" : ". This posture is not certified") : ". This posture is not free";
+    return `${free}${more ? `. ${more.charAt(0).toUpperCase()}${more.slice(1)}` : ""}`;
+  }
+
   private row(named: string, text: string, more: string, label: string, copied = text): HTMLElement {
     const said = more ? el("span", { class: "hint" }, ` ${more}`) : null;
-    return el("p", { class: "angle" }, el("span", { class: "what" }, named), el("span", { class: "value" }, text, said), copyButton("Copy", () => copied, this.app.say, label));
+    return el("p", { class: "angle" }, el("span", { class: "what" }, named), el("span", { class: "value" }, text, said), copyButton("Copy", () => copied, (said) => this.app.say(said + this.warning(more)), label));
   }
 }
 
