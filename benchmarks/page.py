@@ -2,8 +2,8 @@
 
     python benchmarks/page.py REVIEW.html [--times 5]
 
-`interactive` is when the page answers (clicks, keys, lists), `frame` when the first picture is on the screen; both in ms since the
-browser began to load the page. Clocks tell little on a busy machine: the least of several times is told, and beside it the
+`interactive` is when the page answers (clicks, keys, lists), `frame` when the first picture is on the screen; both in ms since
+the browser began to load the page. Clocks tell little on a busy machine: the least of several times is told, and beside it the
 processor seconds of the page's process and of the one that draws.
 """
 
@@ -44,7 +44,10 @@ def _once(playwright: Playwright, path: Path) -> dict[str, float]:
     marks: dict[str, float] = page.evaluate(_MARKS)
     after = _seconds()
     browser.close()
-    return {**marks, **{f"{kind}, cpu s": after.get(kind, 0.0) - before.get(kind, 0.0) for kind in ("renderer", "gpu-process")}}
+    return {
+        **marks,
+        **{f"{kind}, cpu s": after.get(kind, 0.0) - before.get(kind, 0.0) for kind in ("renderer", "gpu-process")},
+    }
 
 
 def _seconds() -> dict[str, float]:

@@ -18,8 +18,8 @@ Indices = NDArray[np.int64]
 
 #: Rounds of cutting; each brings triangles four times nearer.
 _ROUNDS = 6
-#: The border of a face is drawn as a line, in which corners are seen sooner than in a shaded surface: there edges may turn by this
-#: share of the angle.
+#: The border of a face is drawn as a line, in which corners are seen sooner than in a shaded surface: there edges may turn by
+#: this share of the angle.
 _BORDER = 0.4
 #: Where edges turn too much, they are cut down to this share of the chord error.
 _LEAST = 1 / 16

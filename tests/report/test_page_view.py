@@ -40,7 +40,9 @@ def path(planned, tmp_path_factory):
 def seen_at(page, points):
     """Where points of the part are in the picture, pixels, and the picture's size."""
     found = page.evaluate("points => points.map(each => review.stage.project(each))", np.asarray(points).tolist())
-    return np.array(found), np.array(page.evaluate("[review.stage.canvas.clientWidth, review.stage.canvas.clientHeight]"))
+    return np.array(found), np.array(
+        page.evaluate("[review.stage.canvas.clientWidth, review.stage.canvas.clientHeight]")
+    )
 
 
 def outlined(page):
@@ -50,7 +52,7 @@ def outlined(page):
 
 def test_fixtures_are_in_the_first_view(page):
     at, size = seen_at(page, JAW)
-    assert (at > 0).all() and (at < size).all()
+    assert ((at > 0) & (at < size)).all()
     assert page.locator("#inset").is_hidden()
 
 
@@ -67,9 +69,9 @@ def test_a_worst_spot_shows_all_of_the_tool_and_outlines_what_is_in_the_way(page
     # The holder is 42 mm above the tip: all of it is there.
     assert max(h for part in page.evaluate("review.cutter.outline") for _, h in part["points"]) == pytest.approx(42.0)
     at, size = seen_at(page, np.concatenate(rings))
-    assert (at > 0).all() and (at < size).all()
+    assert ((at > 0) & (at < size)).all()
     place, _ = seen_at(page, [planned.samples.point[page.evaluate("review.sample.row")]])
-    assert (place > 0).all() and (place < size).all()
+    assert ((place > 0) & (place < size)).all()
 
     assert outlined(page) > 200
     obstacle = page.evaluate("review.spot.obstacle_face").rpartition(":")[2]
@@ -94,7 +96,7 @@ def test_a_close_look_and_back(page):
     page.locator("#inset").click()
     page.wait_for_selector("#inset", state="hidden")
     at, size = seen_at(page, JAW)
-    assert (at > 0).all() and (at < size).all()
+    assert ((at > 0) & (at < size)).all()
 
 
 def test_the_bar_and_the_axes_are_true(page):
