@@ -4,12 +4,11 @@ import type { App } from "./app.ts";
 import { copyButton } from "./copy.ts";
 import { el } from "./dom.ts";
 import type { Position } from "./machine.ts";
-import { positions } from "./machine.ts";
 import { cross, DEG, norm } from "./vectors.ts";
 
 /** As in plan_cutters.domain.kinematics: nearer to the axis next to the part a position is singular, degrees. */
 const SINGULAR = 2;
-const DIGITS = { angle: 2, axis: 5 };
+const DIGITS = { angle: 2, axis: 4 };
 
 export class Angles {
   readonly root = el("div", { id: "angles" });
@@ -27,7 +26,7 @@ export class Angles {
     const rows = [this.row("Tool axis", vector, "", `Copy the tool axis ${vector}`)];
     const { kinematics } = app.machine;
     const names = app.meta.axes;
-    const found = kinematics && names.length ? ranked(positions(kinematics, axis)) : [];
+    const found = names.length ? app.machine.positions(axis) : [];
     if (kinematics && names.length && !found.length) rows.push(el("p", { class: "hint" }, `No angles of ${names.join(" and ")} hold this tool axis.`));
     found.forEach((each, i) => {
       const words = wordsOf(names, each);
@@ -39,19 +38,17 @@ export class Angles {
     this.root.replaceChildren(...rows);
   }
 
+  /** What is copied leaves the words behind that stand beside it. */
+  private warning(more: string): string {
+    const { state } = this.app;
+    const free = state?.state === "free" ? (state.certified ? "" : ". This posture is not certified") : ". This posture is not free";
+    return `${free}${more ? `. ${more.charAt(0).toUpperCase()}${more.slice(1)}` : ""}`;
+  }
+
   private row(named: string, text: string, more: string, label: string, copied = text): HTMLElement {
     const said = more ? el("span", { class: "hint" }, ` ${more}`) : null;
-    return el("p", { class: "angle" }, el("span", { class: "what" }, named), el("span", { class: "value" }, text, said), copyButton("Copy", () => copied, this.app.say, label));
+    return el("p", { class: "angle" }, el("span", { class: "what" }, named), el("span", { class: "value" }, text, said), copyButton("Copy", () => copied, (said) => this.app.say(said + this.warning(more)), label));
   }
-}
-
-/** Those within the limits first, then the smaller angles, as the plan takes them. */
-function ranked(found: Position[]): Position[] {
-  const size = ({ angles, within }: Position): number =>
-    (within.every(Boolean) ? 0 : 1e6) + angles.reduce((sum, angle) => sum + Math.abs(angle), 0);
-  const sorted = [...found].sort((a, b) => size(a) - size(b));
-  // Where the two are one position, it is told once.
-  return sorted.filter((each, i) => i === 0 || each.angles.some((angle, k) => Math.abs(angle - sorted[0].angles[k]) > 1e-4));
 }
 
 /** Words of a program such as `A-12.5`, in the order of the letters. */

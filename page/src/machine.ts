@@ -31,6 +31,15 @@ export class Machine {
     return this.setup.kinematics;
   }
 
+  /** Positions of the rotary axes that hold a tool axis: those within the limits first, then the smaller angles, as the plan takes them. */
+  positions(axis: Vec): Position[] {
+    const size = ({ angles, within }: Position): number =>
+      (within.every(Boolean) ? 0 : 1e6) + angles.reduce((sum, angle) => sum + Math.abs(angle), 0);
+    const found = this.kinematics ? positions(this.kinematics, axis).sort((a, b) => size(a) - size(b)) : [];
+    // Where the two are one position, it is told once.
+    return found.filter((each, i) => i === 0 || each.angles.some((angle, k) => Math.abs(angle - found[0].angles[k]) > 1e-4));
+  }
+
   get limited(): boolean {
     return this.meta.tilt_limit_deg !== null || this.meta.kinematics !== null;
   }
@@ -77,7 +86,7 @@ export const turnsTo = (kinematics: Kinematics, axis: Vec): boolean =>
   positions(kinematics, axis).some(({ within }) => within.every(Boolean));
 
 /** Both solutions of a = R(d1, angle1) R(d2, angle2) t, whatever the limits; of fewer axes one; none where none turns there. */
-export function positions({ direction, limit_deg, tool }: Kinematics, axis: Vec): Position[] {
+function positions({ direction, limit_deg, tool }: Kinematics, axis: Vec): Position[] {
   if (direction.length === 0) return norm(cross(axis, tool)) <= PARALLEL && dot(axis, tool) > 0 ? [position([], [])] : [];
   const [first, second] = direction;
   const along = dot(first, axis);

@@ -52,7 +52,7 @@ export class Marks {
     });
     if (label && at.length > 1) {
       // What is in the way is named on the side of its mark where the sample is not.
-      const left = at[0][0] > at[1][0];
+      const left = at[0][0] > at[1][0] && at[1][0] > 150;
       const [x, y] = kind === "obstacle" ? [at[1][0] + (left ? -12 : 12), at[1][1] + 5] : [(at[0][0] + at[1][0]) / 2 + 8, (at[0][1] + at[1][1]) / 2 - 8];
       const place = { x, y, "text-anchor": kind === "obstacle" && left ? "end" : "start" };
       out.push(svg("text", { class: "under", ...place }, label), svg("text", { class: kind, ...place }, label));

@@ -181,7 +181,7 @@ export class Drawn {
   /** What a triangle belongs to, as planners know it: a face's id, or a fixture's name. */
   called(owner: Owner): string {
     if (owner >= 0) return this.meta.faces[owner]?.id ?? "";
-    return `fixture ${(this.meta.fixtures[-1 - owner]?.name ?? "").replace(/^fixture:/, "")}`;
+    return `fixture ${this.meta.fixtures[-1 - owner]?.name.replace(/^fixture:/, "") ?? ""}`;
   }
 
   /** The owner that a plan names as `F12` or `fixture:NAME`. */

@@ -92,7 +92,7 @@ export class Notes {
         el(
           "li",
           {},
-          note.sample === null ? null : button(about(note), () => this.go(note), { class: "text place" }),
+          note.sample === null ? null : button(this.about(note), () => this.go(note), { class: "text place" }),
           el("span", { class: "said" }, note.text),
           button("Remove", () => this.remove(k), { class: "copy", "aria-label": `Remove note ${k + 1}` }),
         ),
@@ -110,13 +110,18 @@ export class Notes {
     flyTo(app, app.samples.point(sample) as Vec, app.samples.normal(sample));
   }
 
+  private about({ face, sample, cutter }: Note): string {
+    const found = this.app.meta.cutters.find((each) => each.id === cutter);
+    return `${face ?? "?"}, sample ${sample}${found ? `, ${found.name || found.id}` : ""}`;
+  }
+
   /** The page as it was loaded, with the notes in it as data and as a list that is read without scripts, too. */
   copy(): string {
     const page = this.pristine.cloneNode(true) as HTMLElement;
     const data = page.querySelector(`#${DATA}`);
     if (!data) throw new Error("the page has no place for notes");
     data.textContent = JSON.stringify(this.notes).replace(/[<>&\u2028\u2029]/g, (sign) => ESCAPED[sign]);
-    const items = this.notes.map((note) => el("li", {}, note.sample === null ? "" : `${about(note)}: `, note.text));
+    const items = this.notes.map((note) => el("li", {}, note.sample === null ? "" : `${this.about(note)}: `, note.text));
     page.querySelector(`#${SECTION}`)?.replaceChildren(...(items.length ? [el("h2", {}, "Review notes"), el("ol", {}, ...items)] : []));
     return `<!doctype html>\n${page.outerHTML}\n`;
   }
@@ -133,8 +138,6 @@ export class Notes {
     this.app.say(`Saved as ${link.download}, where this browser keeps downloads`);
   }
 }
-
-const about = ({ face, sample, cutter }: Note): string => `${face ?? "?"}, sample ${sample}${cutter ? `, ${cutter}` : ""}`;
 
 /** A name that does not take the place of the page itself: the next plan writes over that. */
 export function copyName(path: string): string {

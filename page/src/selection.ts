@@ -19,7 +19,7 @@ export class Selection {
     this.root.append(
       el("span", {}, "Selected: "),
       this.words,
-      copyButton("Copy for --faces", () => this.text, app.say, "Copy the selected faces as text for --faces"),
+      copyButton("Copy for --faces", () => this.text, app.say, "Copy for --faces: the selected faces as text"),
       button("Clear", () => this.clear()),
     );
     app.stage.add(this.tints);

@@ -56,6 +56,7 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
         "limit": answers.limit,
         "narrowest": answers.narrowest,
         "told": answers.change,
+        "called": cutters.called,
         "chip": chip(plan, story),
         "chips": CHIPS,
         "feasible": cutters.FEASIBLE,

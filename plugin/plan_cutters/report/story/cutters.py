@@ -233,5 +233,5 @@ def _worst(face: FaceEntry, c: CutterEntry, lot: float) -> WorstFace:
     depth = "" if deepest is None or deepest.depth_mm is None else figure(deepest.depth_mm)
     return WorstFace(
         face.id, face.name, figure(lot), unreached(c.faces[face.id], share), f"{'undecided: ' * unsure}{main or '?'}", depth,
-        "" if deepest is None else called(deepest.obstacle_face),
+        "" if deepest is None else deepest.obstacle_face or "",
     )  # fmt: skip
