@@ -5,28 +5,13 @@ import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const target = join(here, "..", "plugin", "plan_cutters", "report", "page");
-
-const made = await build({
-  absWorkingDir: here,
-  entryPoints: ["src/main.ts"],
-  bundle: true,
-  minify: true,
-  format: "iife",
-  target: ["es2022"],
-  charset: "ascii",
-  legalComments: "none",
-  metafile: true,
-  write: false,
-});
-const styles = await build({
-  absWorkingDir: here,
-  entryPoints: ["src/page.css"],
-  minify: true,
-  charset: "ascii",
-  legalComments: "none",
-  write: false,
-});
+const rooms = join(here, "..", "plugin", "plan_cutters");
+/** The pages: script and styles of each, and where they go. */
+const pages = [
+  { script: "src/main.ts", style: "src/page.css", into: join(rooms, "report", "page"), name: "page" },
+  { script: "src/compare.ts", style: "src/compare.css", into: join(rooms, "comparison"), name: "review" },
+];
+const common = { absWorkingDir: here, minify: true, charset: "ascii", legalComments: "none", write: false };
 
 /** The packages of which something is bundled, each with its version and licence. */
 function bundled(inputs) {
@@ -45,19 +30,23 @@ function bundled(inputs) {
   });
 }
 
-const parts = bundled(made.metafile.inputs);
-const licences = parts.map((part) => `${part.name} ${part.version}\n\n${part.text}\n`).join("\n----\n\n");
-// What is written into a page must be plain ASCII, and nothing in it may end the script.
-const plain = licences.replaceAll("©", "(c)").replace(/[^\x00-\x7f]/g, "?");
-const code = `/*! This page contains:\n\n${plain.replaceAll("*/", "* /")}*/\n${made.outputFiles[0].text}`;
-const files = { "page.js": code, "page.css": styles.outputFiles[0].text, "licences.txt": plain };
-for (const word of ["</script", "<!--", "sourceMappingURL"]) {
-  if (code.toLowerCase().includes(word.toLowerCase())) throw new Error(`the bundle contains ${word}`);
+const files = new Map();
+for (const { script, style, into, name } of pages) {
+  const made = await build({ ...common, entryPoints: [script], bundle: true, format: "iife", target: ["es2022"], metafile: true });
+  const styles = await build({ ...common, entryPoints: [style], bundle: true });
+  const licences = bundled(made.metafile.inputs).map((part) => `${part.name} ${part.version}\n\n${part.text}\n`).join("\n----\n\n");
+  // What is written into a page must be plain ASCII, and nothing in it may end the script.
+  const plain = licences.replaceAll("©", "(c)").replace(/[^\x00-\x7f]/g, "?");
+  const code = `/*! This page contains:\n\n${plain.replaceAll("*/", "* /")}*/\n${made.outputFiles[0].text}`;
+  for (const word of ["</script", "<!--", "sourceMappingURL"]) {
+    if (code.toLowerCase().includes(word.toLowerCase())) throw new Error(`the bundle contains ${word}`);
+  }
+  files.set(join(into, `${name}.js`), code).set(join(into, `${name}.css`), styles.outputFiles[0].text);
+  files.set(join(into, "licences.txt"), plain);
 }
 
 let stale = 0;
-for (const [name, text] of Object.entries(files)) {
-  const path = join(target, name);
+for (const [path, text] of files) {
   const shown = relative(join(here, ".."), path).split(sep).join("/");
   const same = existsSync(path) && readFileSync(path, "utf8") === text;
   if (process.argv.includes("--check")) {

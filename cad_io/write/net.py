@@ -18,6 +18,9 @@ Indices = NDArray[np.int64]
 
 #: Rounds of cutting; each brings triangles four times nearer.
 _ROUNDS = 6
+#: The border of a face is drawn as a line, in which corners are seen sooner than in a shaded surface: there edges may turn by
+#: this share of the angle.
+_BORDER = 0.4
 #: Where edges turn too much, they are cut down to this share of the chord error.
 _LEAST = 1 / 16
 #: New triangles of a triangle with corners 0, 1, 2 and new nodes 3, 4, 5 in its edges from these, by which edges are cut.
@@ -66,11 +69,12 @@ class Net:
         )
         edge, of = np.stack([key // count, key % count], axis=1), of.reshape(-1, 3)
         uv = 0.5 * (self.uv[edge[:, 0]] + self.uv[edge[:, 1]])
-        ends = np.array(list(self.border), np.int64).reshape(-1, 2)
+        ends, most = np.array(list(self.border), np.int64).reshape(-1, 2), np.full(len(key), angle)
         at = np.minimum(np.searchsorted(key, ends[:, 0] * count + ends[:, 1]), len(key) - 1)
         for i, (k, s, t), (a, b) in zip(at.tolist(), self.border.values(), ends.tolist(), strict=True):
             if key[i] == a * count + b:
                 uv[i] = self.curves[k].curve.Value(0.5 * (s + t)).Coord()
+                most[i] = _BORDER * angle
         point, (first, last) = self.surface.values(uv[:, 0], uv[:, 1]), self.point[edge.T]
         off, length = np.linalg.norm(point - 0.5 * (first + last), axis=1), np.linalg.norm(last - first, axis=1)
         # What the middle of a triangle is off counts for its longest edge.
@@ -82,8 +86,9 @@ class Net:
         np.maximum.at(off, longest, deep)
         off = np.where(np.isfinite(off) & np.isfinite(point).all(axis=1), off, 0.0)
         # An arc with the sagitta s over the length l turns by about 8 s / l.
-        turns = 8.0 * off > angle * length
-        worth = np.where(off > chord, off, np.where(turns & (off > _LEAST * chord), 0.5 * chord, 0.0))
+        turns = 8.0 * off > most * length
+        least = np.where(most < angle, 0.0, _LEAST * chord)
+        worth = np.where(off > chord, off, np.where(turns & (off > least), 0.5 * chord, 0.0))
         return Look(edge, of, uv, point, off, worth)
 
     def cut(self, look: "Look", chosen: NDArray[np.bool_]) -> None:

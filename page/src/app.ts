@@ -8,6 +8,7 @@ import { LiveTool, type Met, Probe, type State } from "./live_map.ts";
 import type { Drawn, Owner } from "./mesh.ts";
 import { Machine } from "./machine.ts";
 import type { Cutter, Meta, Operation, OperationPlan, Spot, Vec } from "./meta.ts";
+import type { Outline } from "./outline.ts";
 import { planOf, postureOf, takenBy } from "./operations.ts";
 import type { PartView } from "./part.ts";
 import type { Picker } from "./pick.ts";
@@ -39,6 +40,7 @@ export class App {
   hot: Owner | null = null;
   toolShown = true;
   clip: Clip | null = null;
+  outline: Outline | null = null;
   /** What is to be added to what is said next. */
   note = "";
   private madeProbe: Probe | null = null;
@@ -219,6 +221,12 @@ export class App {
     return this.met && this.met.owner !== null ? { point: this.met.point, owner: this.met.owner } : null;
   }
 
+  /** The face of the sample shown. */
+  faceShown(): Owner | null {
+    const found = this.meta.faces.findIndex((each) => each.number === this.sample?.face);
+    return found < 0 ? null : found;
+  }
+
   atWitness(): boolean {
     const witness = this.witness();
     return this.posture !== null && witness !== null && alike(this.posture, witness);
@@ -242,6 +250,7 @@ export class App {
     // The face of the sample itself keeps its verdicts in view: what is in the way of it there has a mark.
     const own = way !== null && this.sample !== null && this.meta.faces[way]?.number === this.sample.face;
     this.part.light(this.lit ? this.hot : null, own ? null : way);
+    this.outline?.show(way);
     this.stage.request();
   }
 

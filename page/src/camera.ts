@@ -4,6 +4,13 @@ import { Matrix4, OrthographicCamera, Vector3 } from "three";
 import type { Vec } from "./meta.ts";
 import { across, cross, DEG, dot, mixed, plus, RAD, scaled, unit } from "./vectors.ts";
 
+/** A circle about an axis, or a ball where there is none: what a view is to hold. */
+export interface Ring {
+  centre: Vec;
+  radius: number;
+  axis: Vec | null;
+}
+
 export interface Aim {
   target: Vec;
   /** Turn about the setup axis and height over its plane, degrees. */
@@ -45,6 +52,8 @@ export class Turntable {
     private readonly changed: () => void,
     /** All vertices, three numbers each: what is to fit into the picture. */
     private readonly vertices: () => Float32Array,
+    /** What may stand out of that, mm: the longest tool. */
+    private readonly beyond: number,
   ) {
     const first = x ?? (Math.abs(z[2]) > 0.9 ? [1, 0, 0] : across(z));
     this.x = unit(plus(first as Vec, z, -dot(first as Vec, z)));
@@ -53,8 +62,8 @@ export class Turntable {
     this.apply();
   }
 
-  /** All that is drawn, just within the picture. */
-  fitted(turn: number, rise: number): Aim {
+  /** All that is drawn, just within the picture, or within one of another shape. */
+  fitted(turn: number, rise: number, aspect = this.aspect): Aim {
     const { up, right } = this.frame({ target: this.centre, turn, rise, half: 1 });
     const vertices = this.vertices();
     if (!vertices.length) return { target: this.centre, turn, rise, half: this.radius };
@@ -69,8 +78,22 @@ export class Turntable {
     }
     const shift = (along: Vec, to: number): Vec => scaled(along, to - dot(this.centre, along));
     const middle = plus(plus(this.centre, shift(right, (left + most) / 2)), shift(up, (bottom + top) / 2));
-    const half = 0.53 * Math.max(top - bottom, (most - left) / this.aspect, 1e-3 * this.radius);
+    const half = 0.53 * Math.max(top - bottom, (most - left) / aspect, 1e-3 * this.radius);
     return { target: middle, turn, rise, half };
+  }
+
+  /** Rings and balls, just within the picture. */
+  holding(turn: number, rise: number, rings: readonly Ring[]): Aim {
+    const { up, right } = this.frame({ target: this.centre, turn, rise, half: 1 });
+    const [[left, most], [bottom, top]] = [right, up].map((way) => {
+      const wide = ({ radius, axis }: Ring): number => radius * (axis ? Math.sqrt(Math.max(0, 1 - dot(axis, way) ** 2)) : 1);
+      const ends = rings.flatMap((ring) => [-1, 1].map((sign) => dot(ring.centre, way) + sign * wide(ring)));
+      return [Math.min(...ends), Math.max(...ends)];
+    });
+    const target = rings[0].centre;
+    const shift = (way: Vec, to: number): Vec => scaled(way, to - dot(target, way));
+    const middle = plus(plus(target, shift(right, (left + most) / 2)), shift(up, (bottom + top) / 2));
+    return { target: middle, turn, rise, half: 0.54 * Math.max(top - bottom, (most - left) / this.aspect, 1e-3 * this.radius) };
   }
 
   resize(aspect: number): void {
@@ -90,24 +113,29 @@ export class Turntable {
   }
 
   apply(): void {
-    const { back, up, right } = this.frame();
-    const { target, half } = this.aim;
-    const away = 40 * this.radius;
+    this.point(this.camera, this.aim, this.aspect);
+    this.changed();
+  }
+
+  /** Let a camera look as an aim says, for a picture whose width over its height is given. */
+  point(camera: OrthographicCamera, aim: Aim, aspect: number): void {
+    const { back, up, right } = this.frame(aim);
+    const { target, half } = aim;
+    const deep = 12 * this.radius + 2 * this.beyond;
+    const away = 2 * deep;
     const eye = plus(target, back, away);
-    const { camera } = this;
     camera.position.set(...eye);
     camera.quaternion.setFromRotationMatrix(
       new Matrix4().makeBasis(new Vector3(...right), new Vector3(...up), new Vector3(...back)),
     );
     camera.top = half;
     camera.bottom = -half;
-    camera.left = -half * this.aspect;
-    camera.right = half * this.aspect;
-    camera.near = away - 12 * this.radius;
-    camera.far = away + 12 * this.radius;
+    camera.left = -half * aspect;
+    camera.right = half * aspect;
+    camera.near = away - deep;
+    camera.far = away + deep;
     camera.updateProjectionMatrix();
     camera.updateMatrixWorld();
-    this.changed();
   }
 
   orbit(turn: number, rise: number): void {
@@ -123,10 +151,16 @@ export class Turntable {
 
   /** Zoom about a place in the picture, -1 to 1 each way. */
   zoom(by: number, x = 0, y = 0): void {
-    const half = Math.min(20 * this.radius, Math.max(1e-4 * this.radius, this.aim.half / by));
+    const half = Math.min(20 * this.radius + this.beyond, Math.max(1e-4 * this.radius, this.aim.half / by));
     const { up, right } = this.frame();
     const moved = this.aim.half - half;
     this.set({ half, target: plus(plus(this.aim.target, right, x * moved * this.aspect), up, y * moved) });
+  }
+
+  /** Look from there at all of it, which stays in the picture until one has moved. */
+  show(turn: number, rise: number): void {
+    this.aim = this.fitted(turn, rise);
+    this.apply();
   }
 
   set(part: Partial<Aim>): void {

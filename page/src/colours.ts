@@ -157,7 +157,7 @@ function classLook(meta: Meta, samples: Samples): Look {
   return painted(meta, "Surface class", entries, samples, (i) => Math.min(kind[i], 3));
 }
 
-function painted(meta: Meta, title: string, entries: Entry[], samples: Samples, which: (i: number) => number): Look {
+export function painted(meta: Meta, title: string, entries: Entry[], samples: Samples, which: (i: number) => number): Look {
   const { count } = samples;
   const bytes = new Uint8Array(4 * count);
   const table = entries.map((each) => [...rgb(each.colour), PATTERNS.indexOf(each.pattern)]);

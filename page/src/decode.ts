@@ -43,13 +43,13 @@ export function readMeta(): Meta {
   return meta;
 }
 
-export async function readArrays(meta: Meta): Promise<Arrays> {
-  const packed = fromBase64(text("data"));
+export async function readArrays(meta: Meta, from = "data"): Promise<Arrays> {
+  const packed = fromBase64(text(from));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
   return new Arrays(new Uint8Array(await new Response(stream).arrayBuffer()), meta.arrays);
 }
 
-function text(id: string): string {
+export function text(id: string): string {
   const element = document.getElementById(id);
   if (!element) throw new Error(`the page has no data "${id}"`);
   return element.textContent ?? "";

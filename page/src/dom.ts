@@ -37,11 +37,21 @@ export function button(label: string, work: () => void, attributes: Attributes =
   return made;
 }
 
-/** A length or angle in as few figures as are of use. */
+/** What rounding leaves of nothing is below this. */
+const ROUNDING = 1e-9;
+
+/** A length or angle in as few figures as are of use, without an exponent. */
 export function figure(value: number, digits = 3): string {
   if (!Number.isFinite(value)) return "unknown";
-  const text = Number(value.toPrecision(Math.max(digits, Math.ceil(Math.log10(Math.abs(value) + 1)))));
-  return Object.is(text, -0) ? "0" : String(text);
+  if (Math.abs(value) < ROUNDING) return "0";
+  const rounded = Number(value.toPrecision(Math.max(digits, Math.ceil(Math.log10(Math.abs(value) + 1)))));
+  return rounded.toLocaleString("en", { useGrouping: false, maximumFractionDigits: 12 });
+}
+
+/** An angle to a tenth of a degree, 0 up to 360: what rounds to a whole turn is none. */
+export function degrees(value: number): string {
+  const tenths = Number(value.toFixed(1));
+  return String(tenths === 360 || Object.is(tenths, -0) ? 0 : tenths);
 }
 
 export const percent = (share: number): string =>

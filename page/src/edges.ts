@@ -30,14 +30,15 @@ export function borders(drawn: Drawn): LineSegments {
 }
 
 /** Of each vertex the first one of its face at the same place: triangles of some faces share no vertices. */
-function coincident({ position, owner }: Drawn): Int32Array {
-  const first = new Map<string, number>();
+function coincident({ cell, owner }: Drawn): Int32Array {
   const same = new Int32Array(owner.length);
+  let [of, first] = [Number.NaN, new Map<number, number>()];
   for (let i = 0; i < owner.length; i++) {
-    const key = `${owner[i]} ${position[3 * i]} ${position[3 * i + 1]} ${position[3 * i + 2]}`;
-    const known = first.get(key);
+    // Vertices of a face follow each other.
+    if (owner[i] !== of) [of, first] = [owner[i], new Map()];
+    const known = first.get(cell[i]);
     same[i] = known ?? i;
-    if (known === undefined) first.set(key, i);
+    if (known === undefined) first.set(cell[i], i);
   }
   return same;
 }

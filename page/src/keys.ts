@@ -8,9 +8,12 @@ import type { Meta } from "./meta.ts";
 import type { SpotList } from "./lists.ts";
 import type { Measure } from "./measure.ts";
 import { nextPlan, plansOf } from "./operations.ts";
+import type { Selection } from "./selection.ts";
+import { closeNow, showSpot } from "./view.ts";
 
 const HELP: [string, string][] = [
   ["Click, Enter", "show the posture map of the sample there (Enter: in the middle of the picture)"],
+  ["Ctrl and click, s", "select the face there (s: of the pointer or the sample), to copy it for --faces"],
   ["Drag, arrows", "turn the part (in the posture map: move the tool)"],
   ["Shift and drag, Ctrl and arrows", "shift the picture"],
   ["Wheel, + and -", "zoom"],
@@ -19,6 +22,7 @@ const HELP: [string, string][] = [
   ["Shift and arrows, j and k", "step to a neighbouring sample"],
   ["n and p", "next and previous worst spot"],
   ["[ and ]", "previous and next cutter"],
+  ["z", "look closely at the sample shown, or at all of its tool"],
   ["t", "show or hide the tool"],
   ["g", "see through the tool, or not"],
   ["c", "clip: off, across X, Y, Z"],
@@ -30,7 +34,7 @@ const HELP: [string, string][] = [
 const OPERATIONS: [string, string] = ["o", "show verdicts, or the operations of a plan"];
 
 export function helpDialog(meta: Meta): HTMLDialogElement {
-  const rows = [...HELP.slice(0, 9), ...(plansOf(meta).length ? [OPERATIONS] : []), ...HELP.slice(9)].map(([keys, work]) => el("tr", {}, el("th", { scope: "row" }, keys), el("td", {}, work)));
+  const rows = [...HELP.slice(0, 10), ...(plansOf(meta).length ? [OPERATIONS] : []), ...HELP.slice(10)].map(([keys, work]) => el("tr", {}, el("th", { scope: "row" }, keys), el("td", {}, work)));
   const dialog = el("dialog", { id: "help", "aria-labelledby": "help-title" });
   dialog.append(
     el("h2", { id: "help-title" }, "Mouse and keys"),
@@ -45,6 +49,7 @@ interface Parts {
   clip: Clip;
   measure: Measure;
   help: HTMLDialogElement;
+  selection: Selection;
   glass: () => void;
   tool: () => void;
 }
@@ -79,7 +84,9 @@ export function listenKeys(app: App, parts: Parts): void {
       "]": () => nextCutter(app, 1),
       c: () => parts.clip.next(),
       m: () => parts.measure.toggle(),
+      s: () => parts.selection.toggle(app.hot ?? app.faceShown()),
       o: () => (plansOf(app.meta).length ? nextPlan(app) : undefined),
+      z: () => lookClosely(app),
       t: parts.tool,
       g: parts.glass,
       "?": () => parts.help.showModal(),
@@ -119,6 +126,15 @@ function neighbour(app: App, side: number): void {
     return;
   }
   app.select(next);
+}
+
+/** From all of the tool at the sample shown to a close look, and back. */
+function lookClosely(app: App): void {
+  if (!app.sample) return app.say("No sample is selected: press Enter in the picture");
+  app.note = "";
+  const close = !closeNow();
+  showSpot(app, close);
+  app.say(`${close ? "A close look" : "All of the tool"}. ${app.note}`);
 }
 
 function nextCutter(app: App, by: number): void {

@@ -5,14 +5,24 @@ import { colourOf, type Ramp, ramp, spoken } from "./colours.ts";
 import { el, figure, percent, svg } from "./dom.ts";
 import { swatch } from "./patterns.ts";
 
+/** As in the style sheet: the picture stands above what is to be read. */
+export const NARROW = matchMedia("(max-width: 999.98px)");
+
 export function legend(app: App): HTMLElement {
-  const root = el("aside", { id: "legend", "aria-label": "Legend" });
-  app.on("look", () => root.replaceChildren(...legendOf(app)));
-  return root;
+  const body = el("div", {});
+  const title = el("summary", {}, "Legend");
+  const folded = el("details", { open: !NARROW.matches }, title, body);
+  // In a narrow window the picture is more than what explains it.
+  NARROW.addEventListener("change", () => (folded.open = !NARROW.matches));
+  app.on("look", () => {
+    title.textContent = app.look?.title ?? "Legend";
+    body.replaceChildren(...legendOf(app, false));
+  });
+  return el("aside", { id: "legend", "aria-label": "Legend" }, folded);
 }
 
 /** What is in the legend now, made anew: patterns of a hidden one are not drawn elsewhere. */
-export function legendOf({ look, meta }: App): HTMLElement[] {
+export function legendOf({ look, meta }: App, titled = true): HTMLElement[] {
   if (!look) return [];
   const rows = look.entries.map((entry) =>
     el("li", {}, swatch(entry.colour, entry.pattern), entry.label, el("span", { class: "share" }, percent(entry.share ?? 0))),
@@ -20,7 +30,7 @@ export function legendOf({ look, meta }: App): HTMLElement[] {
   const also = (word: string): void => void rows.push(el("li", {}, swatch(colourOf(meta, word), "plain"), spoken(meta, word)));
   if (meta.faces.some((face) => !face.target)) also("check");
   if (meta.fixtures.length) also("fixture");
-  const found: HTMLElement[] = [el("h2", {}, look.title)];
+  const found: HTMLElement[] = titled ? [el("h2", {}, look.title)] : [];
   if (look.ramp) found.push(scale(look.ramp));
   found.push(el("ul", { class: "legend" }, ...rows));
   const inside = look.entries.some((entry) => entry.label === spoken(meta, "inside_bodies"));

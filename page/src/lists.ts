@@ -4,51 +4,69 @@ import type { App } from "./app.ts";
 import { spoken } from "./colours.ts";
 import { button, el } from "./dom.ts";
 import type { Vec } from "./meta.ts";
-import { dot } from "./vectors.ts";
+import { moreOf, press, sortable } from "./tables.ts";
+import { flyTo, showSpot } from "./view.ts";
 
-/** Turn what an element says into a button in it. */
-export function press(host: HTMLElement, work: () => void): HTMLButtonElement {
-  const made = el("button", { type: "button", class: "text" });
-  made.append(...host.childNodes);
-  host.append(made);
-  made.addEventListener("click", work);
-  return made;
-}
+/** Names of so many letters are never broken. */
+const SHORT = 24;
 
+/** One line a cutter, the one that is shown on top; more of it on opening. */
 export function enhanceCutters(app: App): void {
+  const table = document.querySelector<HTMLTableElement>("#cutters table");
   const rows = [...document.querySelectorAll<HTMLElement>("#cutters tr[data-cutter]")].filter((row) =>
     app.meta.cutters.some((each) => each.id === row.dataset.cutter),
   );
+  const is = (row: HTMLElement): boolean => row.dataset.cutter === app.cutter.id;
   const buttons = new Map<HTMLElement, HTMLButtonElement>();
+  const openers = new Map<HTMLElement, HTMLButtonElement>();
+  const open = (row: HTMLElement, wanted: boolean): void => {
+    const more = moreOf(row);
+    if (more) more.hidden = !wanted;
+    openers.get(row)?.setAttribute("aria-expanded", String(wanted));
+  };
+  const choose = (row: HTMLElement): void => app.setCutter(row.dataset.cutter!);
   for (const row of rows) {
     const name = row.querySelector<HTMLElement>("th, td") ?? row;
-    buttons.set(row, press(name, () => choose(row)));
-    for (const each of [row, moreOf(row)]) {
+    const more = moreOf(row);
+    const said = name.textContent!.trim();
+    const made = press(name, () => choose(row));
+    name.classList.toggle("short", said.length <= SHORT);
+    buttons.set(row, made);
+    if (more) {
+      const opener = button("", () => open(row, Boolean(more.hidden)), {
+        class: "opener", "aria-label": `Details of ${said}`, "aria-controls": more.id, title: "Details",
+      });
+      openers.set(row, opener);
+      name.prepend(opener);
+    }
+    for (const each of [row, more]) {
       each?.addEventListener("click", (event) => {
         if (!(event.target as Element).closest("button, a, summary")) choose(row);
       });
     }
   }
-  const choose = (row: HTMLElement): void => app.setCutter(row.dataset.cutter!);
   const mark = (): void => {
     for (const row of rows) {
-      const shown = row.dataset.cutter === app.cutter.id;
+      const shown = is(row);
       row.classList.toggle("shown", shown);
       moreOf(row)?.classList.toggle("shown", shown);
       buttons.get(row)!.setAttribute("aria-pressed", String(shown));
+      open(row, shown);
+      if (!shown || row.previousElementSibling === null) continue;
+      // A row that is moved loses the focus.
+      const focused = row.contains(document.activeElement) ? (document.activeElement as HTMLElement) : null;
+      const more = moreOf(row);
+      row.parentElement!.prepend(...(more ? [row, more] : [row]));
+      focused?.focus({ preventScroll: true });
     }
     for (const more of document.querySelectorAll<HTMLDetailsElement>("#cutters details[data-cutter]")) {
       more.open = more.dataset.cutter === app.cutter.id;
+      more.hidden = !more.open;
     }
   };
   app.on("cutter", mark);
   mark();
-}
-
-/** The row below that says more of the same cutter. */
-function moreOf(row: HTMLElement): Element | null {
-  const next = row.nextElementSibling;
-  return next?.classList.contains("more") ? next : null;
+  if (table && rows.length > 1) sortable(table, is);
 }
 
 /** The worst spots of the cutter shown, stepped through with n and p. */
@@ -115,36 +133,9 @@ export class SpotList {
     item.scrollIntoView({ block: "nearest" });
     this.app.note = "";
     this.app.clip?.release();
-    flyTo(this.app, spot.point, this.app.samples.normal(spot.sample));
+    showSpot(this.app);
     this.app.say(`Spot ${this.at + 1} of ${this.mine.length}: ${spot.face}, ${spoken(this.app.meta, spot.reason)}. ${this.app.note}`);
   }
-}
-
-/** Look at a place of the surface from its outer side, near enough to see the tool there. */
-export function flyTo(app: App, point: Vec, normal: Vec, size?: number): void {
-  const { table } = app.stage;
-  const { partRadius } = app.drawn;
-  const half = size ?? Math.min(0.7 * partRadius, Math.max(6 * app.cutter.radius, 0.08 * partRadius));
-  table.fly({ target: point, half, ...openView(app, point, normal) });
-}
-
-/** A view, askew to the normal if that can be, in which nothing hides a place of the surface. */
-function openView(app: App, point: Vec, normal: Vec): { turn: number; rise: number } {
-  const { table } = app.stage;
-  const wanted = table.towards(normal);
-  const back = (view: { turn: number; rise: number }): Vec => table.frame({ ...table.aim, ...view }).back;
-  const ideal = back(wanted);
-  const every = [wanted];
-  for (let turn = 0; turn < 360; turn += 15) for (let rise = -75; rise <= 85; rise += 10) every.push({ turn, rise });
-  const near = every
-    .map((view) => ({ view, way: back(view) }))
-    .filter(({ way }) => dot(way, normal) > 0.1)
-    .sort((a, b) => dot(b.way, ideal) - dot(a.way, ideal));
-  const found = near.find(({ way }) => !app.picker.hidden(point, way));
-  if (found || !app.clip) return found?.view ?? wanted;
-  const way = app.clip.through(point, normal);
-  app.note = "It is hidden from every side: the part is clipped there.";
-  return table.towards(way);
 }
 
 export class FaceTable {
@@ -172,7 +163,7 @@ export class FaceTable {
       for (const [row, owner] of this.others) row.classList.toggle("hot", owner === app.hot);
     });
     this.tools();
-    this.sortable();
+    if (this.table) sortable(this.table);
   }
 
   private show(owner: number): void {
@@ -203,28 +194,4 @@ export class FaceTable {
     });
     this.table.before(el("p", { class: "tools" }, box, count));
   }
-
-  /** Heads of columns become buttons that sort by them. */
-  private sortable(): void {
-    const heads = [...(this.table?.tHead?.rows[0]?.cells ?? [])];
-    const body = this.table?.tBodies[0];
-    if (!body) return;
-    heads.forEach((head, k) =>
-      press(head, () => {
-        const up = head.getAttribute("aria-sort") !== "ascending";
-        for (const other of heads) other.removeAttribute("aria-sort");
-        head.setAttribute("aria-sort", up ? "ascending" : "descending");
-        const rows = [...body.rows].sort((a, b) => (up ? 1 : -1) * compared(a.cells[k], b.cells[k]));
-        body.append(...rows);
-      }),
-    );
-  }
-}
-
-/** Order of two cells: by their numbers where they begin with one (`F12`, `<0.1 %`), else by their words. */
-function compared(a: HTMLElement | undefined, b: HTMLElement | undefined): number {
-  const [x, y] = [a, b].map((cell) => cell?.textContent?.trim() ?? "");
-  const [u, v] = [x, y].map((text) => Number.parseFloat(text.replace(/^[F<>\s]+|,/g, "")));
-  if (Number.isFinite(u) && Number.isFinite(v)) return u - v;
-  return x.localeCompare(y, "en");
 }

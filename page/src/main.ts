@@ -7,19 +7,27 @@ import { colourOf, modesOf } from "./colours.ts";
 import { readArrays, readMeta } from "./decode.ts";
 import { button, el } from "./dom.ts";
 import { borders } from "./edges.ts";
+import { firstView } from "./first_view.ts";
 import { helpDialog, listenKeys } from "./keys.ts";
-import { legend } from "./legend.ts";
+import { Inset } from "./inset.ts";
+import { legend, NARROW } from "./legend.ts";
 import { enhanceCutters, FaceTable, SpotList } from "./lists.ts";
 import { Marks } from "./marks.ts";
 import { Measure } from "./measure.ts";
+import { Notes } from "./notes.ts";
 import { OperationTables, operationSwitch } from "./operations.ts";
 import { Drawn } from "./mesh.ts";
+import { Outline } from "./outline.ts";
 import { PartView } from "./part.ts";
 import { Picker } from "./pick.ts";
 import { listen } from "./pointer.ts";
 import { PosturePanel } from "./posture_map.ts";
 import { Stills } from "./print.ts";
 import { Samples } from "./samples.ts";
+import { Scale } from "./scale.ts";
+import { partMaterial } from "./shading.ts";
+import { schemeSwitch } from "./scheme.ts";
+import { Selection } from "./selection.ts";
 import { Stage } from "./stage.ts";
 import { ToolView } from "./tool.ts";
 
@@ -29,6 +37,8 @@ async function start(): Promise<void> {
   const viewer = document.getElementById("viewer");
   if (!viewer) return;
   performance.mark("start");
+  // What "Save copy" writes: the page before anything in it is changed. Texts are shared, not copied.
+  const pristine = document.documentElement.cloneNode(true) as HTMLElement;
   document.documentElement.classList.add("app");
   const status = el("p", { id: "status", role: "status" });
   const under = el("p", { id: "under" });
@@ -46,10 +56,13 @@ async function start(): Promise<void> {
   };
 
   const meta = readMeta();
+  // They are inflated while the browser makes ready to draw.
+  const reading = readArrays(meta);
+  reading.catch(() => undefined);
   let stage: Stage;
   let drawn: Drawn | null = null;
   try {
-    stage = new Stage(canvas, meta, () => drawn?.partVertices ?? NONE);
+    stage = new Stage(canvas, meta, () => drawn?.shownVertices ?? NONE);
   } catch {
     frame.remove();
     viewer.classList.add("without");
@@ -59,21 +72,33 @@ async function start(): Promise<void> {
     document.documentElement.dataset.ready = "without";
     return;
   }
-  const arrays = await readArrays(meta);
+  const material = partMaterial(colourOf(meta, "check"), colourOf(meta, "fixture"));
+  stage.warm(material);
+  const arrays = await reading;
   performance.mark("decoded");
   const samples = new Samples(meta, arrays);
   drawn = new Drawn(meta, arrays);
-  const part = new PartView(drawn, arrays, colourOf(meta, "check"), colourOf(meta, "fixture"));
+  const part = new PartView(drawn, arrays, material);
   const tool = new ToolView();
   stage.add(part.group, tool.group);
   const app = new App(meta, arrays, samples, drawn, stage, part, tool, new Picker(stage, drawn, part), say);
 
+  app.outline = new Outline(stage, drawn);
+  const inset = new Inset(app);
+  const scale = new Scale(app);
   const marks = new Marks(app);
   const panel = new PosturePanel(app);
   const measure = new Measure(app, marks);
   const clip = (app.clip = new Clip(app));
   const help = helpDialog(meta);
   const stills = new Stills(app);
+  const selection = new Selection(app);
+  const notes = new Notes(app, pristine);
+  panel.tools.append(button("Select face", () => selection.toggle(app.faceShown()), { title: "Select the face of this sample (s)" }), notes.here);
+  document.querySelector("#summary .first")?.append(
+    el("div", { class: "tools", id: "page-tools" }, schemeSwitch(() => panel.draw()), notes.saveButton),
+  );
+  foldSummary();
   const glass = button("See through", () => setGlass(), { "aria-pressed": "true", title: "See through the tool (g)" });
   const setGlass = (): void => {
     tool.seeThrough(!tool.transparent);
@@ -95,32 +120,45 @@ async function start(): Promise<void> {
     button("?", () => help.showModal(), { title: "Mouse and keys (?)", "aria-label": "Help: mouse and keys" }),
     clip.root,
   );
-  frame.append(marks.root as unknown as Node, legend(app), measure.output, under);
+  frame.append(marks.root as unknown as Node, legend(app), scale.root as unknown as Node, inset.root, measure.output, under);
+  viewer.append(selection.root);
   viewer.prepend(toolbar);
   viewer.append(panel.root);
   viewer.append(stills.root, help);
   app.repaint();
-  stage.resize();
+  stage.begin(() => firstView(app));
   performance.mark("drawn");
 
-  listen(app, measure, (text) => {
+  listen(app, measure, selection, (text) => {
     under.textContent = text;
   });
   enhanceCutters(app);
   const spots = new SpotList(app);
   new FaceTable(app);
+  selection.tabled();
   new OperationTables(app);
-  listenKeys(app, { spots, clip, measure, help, glass: setGlass, tool: setTool });
+  listenKeys(app, { spots, clip, measure, help, selection, glass: setGlass, tool: setTool });
   // The tree over the triangles is what a click needs: once it is there the page answers.
   void app.drawn.tree;
   performance.mark("interactive");
   setTimeout(() => {
     stage.add(borders(app.drawn));
+    performance.mark("borders");
     stage.request();
   }, 0);
   document.documentElement.dataset.ready = "yes";
   // For scripts that ask the page: tests, and people at the console.
   Object.assign(window, { review: app });
+}
+
+/** In a narrow window the reasons are folded, so that the picture comes first. */
+function foldSummary(): void {
+  const why = document.querySelector<HTMLDetailsElement>("#why");
+  const fold = (): void => {
+    if (why) why.open = !NARROW.matches;
+  };
+  NARROW.addEventListener("change", fold);
+  fold();
 }
 
 function colouring(app: App): HTMLSelectElement {

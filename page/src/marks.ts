@@ -19,9 +19,10 @@ export class Marks {
     this.add(() => {
       const { sample } = app;
       if (!sample) return [];
-      const there = app.inTheWay()?.point;
+      const { point: there = null, owner = null } = app.inTheWay() ?? {};
+      const label = owner === null ? "" : `in the way: ${app.drawn.called(owner)}`;
       return [
-        ...(there ? [{ kind: "obstacle", points: [sample.point, there] } as Mark] : []),
+        ...(there ? [{ kind: "obstacle", points: [sample.point, there], label } as Mark] : []),
         { kind: "sample", points: [sample.point] },
       ];
     });
@@ -50,8 +51,11 @@ export class Marks {
       else out.push(svg("circle", { class: "under", cx, cy, r: 6 }), svg("circle", { class: kind, cx, cy, r: 6 }));
     });
     if (label && at.length > 1) {
-      const [x, y] = [(at[0][0] + at[1][0]) / 2 + 8, (at[0][1] + at[1][1]) / 2 - 8];
-      out.push(svg("text", { class: "under", x, y }, label), svg("text", { class: kind, x, y }, label));
+      // What is in the way is named on the side of its mark where the sample is not.
+      const left = at[0][0] > at[1][0] && at[1][0] > 150;
+      const [x, y] = kind === "obstacle" ? [at[1][0] + (left ? -12 : 12), at[1][1] + 5] : [(at[0][0] + at[1][0]) / 2 + 8, (at[0][1] + at[1][1]) / 2 - 8];
+      const place = { x, y, "text-anchor": kind === "obstacle" && left ? "end" : "start" };
+      out.push(svg("text", { class: "under", ...place }, label), svg("text", { class: kind, ...place }, label));
     }
     return out;
   }

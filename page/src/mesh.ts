@@ -16,7 +16,11 @@ export class Drawn {
   readonly normal: Int8Array;
   readonly texel: Float32Array;
   readonly owner: Float32Array;
+  /** Of each vertex the least and the largest column and row (x, y, x, y) of the atlas that its face has. */
+  readonly sheet: Uint16Array;
   readonly triangle: Uint32Array;
+  /** Of each vertex a number of its place: equal ones lie at one place. */
+  readonly cell: Float64Array;
   /** Triangles of faces; those of fixtures follow. */
   readonly ofFaces: number;
   /** The setup whose fixtures are there, counted from 0; those of others are neither seen nor met. */
@@ -34,6 +38,10 @@ export class Drawn {
     for (let k = 0; k < 3; k++) {
       const step = (high[k] - low[k]) / 65535;
       for (let i = 0; i < count; i++) this.position[3 * i + k] = low[k] + step * place.values[k * count + i];
+    }
+    this.cell = new Float64Array(count);
+    for (let i = 0; i < count; i++) {
+      this.cell[i] = place.values[i] + 65536 * (place.values[count + i] + 65536 * place.values[2 * count + i]);
     }
     const bent = arrays.get("mesh.normal");
     this.normal = new Int8Array(4 * count);
@@ -55,7 +63,11 @@ export class Drawn {
     }
     this.owner = new Float32Array(count);
     this.ofFaces = meta.faces.reduce((most, face) => Math.max(most, face.start + face.count), 0);
-    meta.faces.forEach((face, i) => this.own(face, i));
+    this.sheet = new Uint16Array(4 * count);
+    meta.faces.forEach((face, i) => {
+      this.own(face, i);
+      this.lay(face);
+    });
     meta.fixtures.forEach((fixture, i) => this.own(fixture, -1 - i));
   }
 
@@ -64,12 +76,39 @@ export class Drawn {
     return owner >= 0 || this.meta.fixtures[-1 - owner].setups.includes(this.setup);
   }
 
-  /** Vertices of the part alone, three numbers each: what a picture is to show. */
-  get partVertices(): Float32Array {
-    let end = 0;
-    for (let i = 0; i < 3 * this.ofFaces; i++) end = Math.max(end, this.triangle[i] + 1);
-    return this.position.subarray(0, 3 * end);
+  /** Vertices of the part and of the fixtures that are there, three numbers each: what a picture is to show. Of a fixture no
+   * more than what is about as near to the part as the part is large. */
+  get shownVertices(): Float32Array {
+    let found = this.shown.get(this.setup);
+    if (!found) {
+      let end = 0;
+      for (let i = 0; i < 3 * this.ofFaces; i++) end = Math.max(end, this.triangle[i] + 1);
+      found = this.position.slice();
+      const part = found.subarray(0, 3 * end);
+      const room = this.partRadius;
+      const [low, high]: number[][] = [[], []];
+      for (let k = 0; k < 3; k++) {
+        [low[k], high[k]] = [Infinity, -Infinity];
+        for (let i = k; i < part.length; i += 3) {
+          low[k] = Math.min(low[k], part[i]);
+          high[k] = Math.max(high[k], part[i]);
+        }
+      }
+      let kept = part.length;
+      for (let i = end; i < this.owner.length && end; i++) {
+        if (!this.there(this.owner[i])) continue;
+        for (let k = 0; k < 3; k++) {
+          found[kept++] = Math.min(high[k] + room, Math.max(low[k] - room, this.position[3 * i + k]));
+        }
+      }
+      found = found.slice(0, kept);
+      this.shown.set(this.setup, found);
+    }
+    return found;
   }
+
+  /** By setup. */
+  private readonly shown = new Map<number, Float32Array>();
 
   /** Half the diagonal of the part's box, mm. */
   get partRadius(): number {
@@ -82,12 +121,36 @@ export class Drawn {
     for (let i = 3 * range.start; i < end; i++) this.owner[this.triangle[i]] = owner;
   }
 
+  /** Say of the vertices of a face which part of the atlas is its own: its grid, or one texel for each triangle without a grid. */
+  private lay({ start, count }: { start: number; count: number }): void {
+    const { texel, triangle, sheet } = this;
+    const corners = triangle.subarray(3 * start, 3 * (start + count));
+    const ends = [Infinity, Infinity, -Infinity, -Infinity];
+    let single = true;
+    for (let i = 0; i < corners.length; i++) {
+      const [x, y] = [texel[2 * corners[i]], texel[2 * corners[i] + 1]];
+      if (x < 0) return;
+      const first = corners[i - (i % 3)];
+      single &&= x === texel[2 * first] && y === texel[2 * first + 1];
+      ends[0] = Math.min(ends[0], x);
+      ends[1] = Math.min(ends[1], y);
+      ends[2] = Math.max(ends[2], x);
+      ends[3] = Math.max(ends[3], y);
+    }
+    for (const i of corners) {
+      for (let k = 0; k < 4; k++) {
+        sheet[4 * i + k] = single ? Math.round(texel[2 * i + (k % 2)]) : k < 2 ? Math.floor(ends[k]) : Math.ceil(ends[k]);
+      }
+    }
+  }
+
   /** Triangles from the first one on, as geometry that shares the vertices. */
   geometry(first: number, count: number): BufferGeometry {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", this.shared("position", this.position, 3));
     geometry.setAttribute("normal", this.shared("normal", this.normal, 4));
     geometry.setAttribute("texel", this.shared("texel", this.texel, 2));
+    geometry.setAttribute("sheet", this.shared("sheet", this.sheet, 4));
     geometry.setAttribute("owner", this.shared("owner", this.owner, 1));
     geometry.setIndex(new BufferAttribute(this.triangle.subarray(3 * first, 3 * (first + count)), 1));
     return geometry;
@@ -95,7 +158,7 @@ export class Drawn {
 
   private readonly attributes = new Map<string, BufferAttribute>();
 
-  private shared(name: string, values: Float32Array | Int8Array, size: number): BufferAttribute {
+  private shared(name: string, values: Float32Array | Uint16Array | Int8Array, size: number): BufferAttribute {
     let attribute = this.attributes.get(name);
     if (!attribute) {
       attribute = new BufferAttribute(values, size, values instanceof Int8Array);
@@ -118,7 +181,7 @@ export class Drawn {
   /** What a triangle belongs to, as planners know it: a face's id, or a fixture's name. */
   called(owner: Owner): string {
     if (owner >= 0) return this.meta.faces[owner]?.id ?? "";
-    return `fixture ${this.meta.fixtures[-1 - owner]?.name ?? ""}`;
+    return `fixture ${this.meta.fixtures[-1 - owner]?.name.replace(/^fixture:/, "") ?? ""}`;
   }
 
   /** The owner that a plan names as `F12` or `fixture:NAME`. */
@@ -132,10 +195,16 @@ export class Drawn {
     return fixture >= 0 ? -1 - fixture : mine.includes(true) ? -1 - mine.indexOf(true) : null;
   }
 
+  /** The triangles of an owner; null where none are drawn. */
+  rangeOf(owner: Owner): { start: number; count: number } | null {
+    const range = owner >= 0 ? this.meta.faces[owner] : this.meta.fixtures[-1 - owner];
+    return range?.count ? range : null;
+  }
+
   /** The middle of what an owner covers, by its box. */
   middle(owner: Owner): { centre: Vec; radius: number } | null {
-    const range = owner >= 0 ? this.meta.faces[owner] : this.meta.fixtures[-1 - owner];
-    if (!range || !range.count) return null;
+    const range = this.rangeOf(owner);
+    if (!range) return null;
     const low: Vec = [Infinity, Infinity, Infinity];
     const high: Vec = [-Infinity, -Infinity, -Infinity];
     for (let i = 3 * range.start; i < 3 * (range.start + range.count); i++) {

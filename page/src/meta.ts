@@ -137,6 +137,8 @@ export interface Meta {
   tilt_deg: [number, number];
   tilt_limit_deg: number | null;
   rotary: boolean;
+  /** Names of the rotary axes, the one next to the part first. */
+  axes: string[];
   kinematics: Kinematics | null;
   /** Where there are several: each, the first one first. */
   setups: { z: Vec; kinematics: Kinematics | null }[];

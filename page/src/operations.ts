@@ -3,10 +3,10 @@
 import type { App } from "./app.ts";
 import type { Arrays } from "./decode.ts";
 import { button, el } from "./dom.ts";
-import { press } from "./lists.ts";
 import type { Meta, Operation, OperationPlan, Vec } from "./meta.ts";
 import { swatch } from "./patterns.ts";
 import type { Posture, Sample } from "./samples.ts";
+import { press } from "./tables.ts";
 import { cross, DEG, dot, minus, turned } from "./vectors.ts";
 
 const MODE = "operation:";

@@ -1,10 +1,10 @@
 // The part and its fixtures in 3D, coloured sample by sample through the atlas.
 
-import { type DataTexture, Group, Mesh, type ShaderMaterial, Vector2 } from "three";
+import { type DataTexture, Group, Mesh, type ShaderMaterial } from "three";
 import type { Look } from "./colours.ts";
 import type { Arrays } from "./decode.ts";
 import type { Drawn, Owner } from "./mesh.ts";
-import { atlasTexture, NOBODY, partMaterial } from "./shading.ts";
+import { atlasTexture, NOBODY } from "./shading.ts";
 
 /** Added to the pattern of a sample that is faded, so that others stand out. */
 const FADED = 64;
@@ -13,7 +13,6 @@ const NO_SAMPLE = 255;
 
 export class PartView {
   readonly group = new Group();
-  readonly material: ShaderMaterial;
   private readonly texture: DataTexture;
   private readonly index: ArrayLike<number>;
   private readonly width: number;
@@ -21,13 +20,15 @@ export class PartView {
 
   private readonly fixtures: [Owner, Mesh][] = [];
 
-  constructor(private readonly drawn: Drawn, arrays: Arrays, check: string, fixture: string) {
+  constructor(
+    private readonly drawn: Drawn,
+    arrays: Pick<Arrays, "get">,
+    readonly material: ShaderMaterial,
+  ) {
     [this.width, this.height] = drawn.meta.atlas ?? [1, 1];
     this.index = drawn.meta.atlas ? arrays.get("atlas.index").values : [-1];
     this.texture = atlasTexture(this.width, this.height);
-    this.material = partMaterial(check, fixture);
     this.material.uniforms.colours.value = this.texture;
-    this.material.uniforms.size.value = new Vector2(this.width, this.height);
     if (drawn.ofFaces) this.group.add(new Mesh(drawn.geometry(0, drawn.ofFaces), this.material));
     drawn.meta.fixtures.forEach(({ start, count }, i) => {
       const mesh = new Mesh(drawn.geometry(start, count), this.material);

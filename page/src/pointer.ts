@@ -1,12 +1,14 @@
 // The mouse in the picture: turn, shift, zoom, hover, click.
 
 import type { App } from "./app.ts";
+import { spoken } from "./colours.ts";
 import type { Measure } from "./measure.ts";
+import type { Selection } from "./selection.ts";
 
 /** A press that moves less than this, pixels, is a click. */
 const STILL = 4;
 
-export function listen(app: App, measure: Measure, told: (text: string) => void): void {
+export function listen(app: App, measure: Measure, selection: Selection, told: (text: string) => void): void {
   const { stage } = app;
   const { canvas, table } = stage;
   let down: { x: number; y: number; pan: boolean; moved: boolean } | null = null;
@@ -32,7 +34,10 @@ export function listen(app: App, measure: Measure, told: (text: string) => void)
   const up = (event: PointerEvent): void => {
     const click = down && !down.moved && !down.pan && event.type === "pointerup";
     down = null;
-    if (click) choose(...stage.place(event));
+    if (!click) return;
+    const place = stage.place(event);
+    if (event.ctrlKey || event.metaKey) selection.toggle(app.picker.at(...place)?.owner ?? null);
+    else choose(...place);
   };
   canvas.addEventListener("pointerup", up);
   canvas.addEventListener("pointercancel", up);
@@ -57,7 +62,7 @@ export function listen(app: App, measure: Measure, told: (text: string) => void)
     if (!found) return told("");
     const face = app.meta.faces[found.owner];
     const name = face?.name && face.name !== face.id ? `, ${face.name}` : "";
-    const verdict = found.sample === null ? "" : `: ${app.samples.verdict(app.cutter.id, found.sample).replaceAll("_", " ")}`;
+    const verdict = found.sample === null ? "" : `: ${spoken(app.meta, app.samples.verdict(app.cutter.id, found.sample))}`;
     const operation = found.sample === null ? null : app.operationAt(found.sample);
     told(`${app.drawn.called(found.owner)}${name}${operation ? `: ${operation.label}, ${operation.turned}` : verdict}`);
   };
@@ -91,6 +96,12 @@ function show(app: App, row: number): void {
   const cutter = app.operationAt(row)?.cutter;
   if (cutter && cutter !== app.cutter.id) app.setCutter(cutter);
   app.select(row);
+  const { meta, samples } = app;
+  const face = app.faceShown();
+  const reason = samples.reason(app.cutter.id, row);
+  const verdict = spoken(meta, samples.verdict(app.cutter.id, row)) + (reason ? ` (${spoken(meta, reason)})` : "");
+  // In a narrow window the posture map may be out of view.
+  app.say(`${face === null ? "" : `${app.drawn.called(face)}, `}sample ${row}: ${verdict}`);
 }
 
 /** The sample that is drawn nearest to the middle of the picture and is not hidden; null where there is none. */

@@ -1,12 +1,14 @@
 // The panel of one sample: tilt against rotation, what is free, what forbids the rest, and the posture shown.
 
+import { Angles } from "./angles.ts";
 import type { App } from "./app.ts";
 import { causeOf, OPEN, spoken } from "./colours.ts";
-import { button, el, figure, percent } from "./dom.ts";
+import { button, degrees, el, figure, percent } from "./dom.ts";
 import { STATES, type State } from "./live_map.ts";
 import { swatch, tile } from "./patterns.ts";
 import { SampleMap, wording } from "./posture_states.ts";
 import { alike } from "./samples.ts";
+import { styled } from "./scheme.ts";
 import { StoredMaps } from "./stored_map.ts";
 import { turned } from "./vectors.ts";
 
@@ -29,6 +31,9 @@ export class PosturePanel {
   private readonly rows = el("tbody");
   private readonly caption = el("caption", {});
   private readonly intervals: HTMLElement;
+  private readonly angles: Angles;
+  /** What can be done at the sample; others add to it. */
+  readonly tools = el("p", { class: "tools" }, this.start);
   private readonly body = el("div", { class: "posture-body" });
   private readonly empty = el("p", { class: "hint" });
   private readonly stored: StoredMaps;
@@ -38,7 +43,8 @@ export class PosturePanel {
 
   constructor(private readonly app: App) {
     this.stored = new StoredMaps(app.meta, app.arrays);
-    const head = ["rotation, deg", "free tilts, deg", "else in the way"].map((text) => el("th", { scope: "col" }, text));
+    this.angles = new Angles(app);
+    const head = ["rotation, °", "free tilts, °", "else in the way"].map((text) => el("th", { scope: "col" }, text));
     this.intervals = el(
       "details",
       {},
@@ -52,7 +58,7 @@ export class PosturePanel {
       ),
     );
     this.empty.append("Click the surface, or press Enter in the picture, to see the postures of the cutter at a sample.");
-    this.body.append(this.about, this.kind, this.canvas, this.line, this.witness, this.start, this.legend, this.intervals);
+    this.body.append(this.about, this.kind, this.canvas, this.line, this.angles.root, this.witness, this.tools, this.legend, this.intervals);
     this.root.append(this.title, this.empty, this.body);
     this.body.hidden = true;
     this.canvas.addEventListener("pointermove", (event) => this.point(event));
@@ -147,7 +153,7 @@ export class PosturePanel {
       const of = planned && alike(planned, posture) ? `, ${this.app.operation!.label}` : "";
       const sure = of || (state.state === "free" && found && alike(found, posture) ? ", the posture found" : "");
       this.line.textContent =
-        `tilt ${degrees(posture.tilt)} deg, rotation ${degrees(posture.rotation)} deg: ` +
+        `tilt ${degrees(posture.tilt)}°, rotation ${degrees(posture.rotation)}°: ` +
         (this.app.atWitness() ? this.witnessed() : wording(this.app, state, met) + sure);
       this.line.dataset.state = state.state;
     } else {
@@ -160,7 +166,8 @@ export class PosturePanel {
   /** What the plan says of its witness goes before what the drawn triangles say. */
   private witnessed(): string {
     const { reason, depth_mm, obstacle_face } = this.app.spot!;
-    const met = obstacle_face ?? "the part";
+    const owner = this.app.drawn.ownerOf(obstacle_face);
+    const met = owner === null ? (obstacle_face ?? "the part") : this.app.drawn.called(owner);
     const best = "(the best posture found)";
     if (this.app.samples.verdict(this.app.cutter.id, this.app.sample!.row) === "undecided") {
       const may = depth_mm === null ? "" : `, ${met} may reach ${figure(depth_mm)} mm into the tool`;
@@ -185,7 +192,7 @@ export class PosturePanel {
     return turns.length > 1 ? turns[1] - turns[0] : 360;
   }
 
-  private draw(): void {
+  draw(): void {
     const { map, canvas } = this;
     if (!map) return;
     const ratio = Math.min(2, devicePixelRatio || 1);
@@ -201,7 +208,7 @@ export class PosturePanel {
     const { tilts } = map.grid;
     map.grid.rotations.forEach((rotation, column) => {
       const x = this.x(rotation) - wide / 2;
-      c.fillStyle = "#eceef0";
+      c.fillStyle = styled("ground");
       c.fillRect(x, TOP, wide, HEIGHT - TOP - BOTTOM);
       let from = 0;
       for (let row = 1; row <= tilts.length; row++) {
@@ -240,7 +247,7 @@ export class PosturePanel {
 
   private axes(c: CanvasRenderingContext2D): void {
     const [low, high] = this.app.meta.tilt_deg;
-    c.fillStyle = "#3c434a";
+    c.fillStyle = styled("soft");
     c.font = "11px system-ui, sans-serif";
     c.textAlign = "right";
     c.textBaseline = "middle";
@@ -251,11 +258,11 @@ export class PosturePanel {
     c.textAlign = "center";
     c.textBaseline = "top";
     for (const turn of [0, 90, 180, 270]) c.fillText(String(turn), this.x(turn), HEIGHT - BOTTOM + 4);
-    c.fillText("rotation, deg", LEFT + (this.width - LEFT - RIGHT) / 2, HEIGHT - 13);
+    c.fillText("rotation, °", LEFT + (this.width - LEFT - RIGHT) / 2, HEIGHT - 13);
     c.save();
     c.translate(2, TOP + (HEIGHT - TOP - BOTTOM) / 2);
     c.rotate(-Math.PI / 2);
-    c.fillText("tilt, deg", 0, 0);
+    c.fillText("tilt, °", 0, 0);
     c.restore();
   }
 
@@ -349,8 +356,6 @@ export class PosturePanel {
     this.caption.textContent = map.certified ? "Free tilts by rotation" : "Tilts at which nothing is met, not certified";
   }
 }
-
-const degrees = (value: number): string => String(Number(value.toFixed(1)));
 
 /** A curvature as planners think of it: a radius. */
 function bend(curvature: number): string {

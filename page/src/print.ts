@@ -28,7 +28,7 @@ export class Stills {
     const views = [before, table.fitted(before.turn + 180, before.rise > 0 ? before.rise : 32)];
     views.forEach((aim, i) => {
       table.set(aim);
-      stage.draw();
+      stage.draw(false);
       const context = this.pictures[i].getContext("2d")!;
       const { canvas } = stage;
       const scale = Math.min(SIZE.width / canvas.width, SIZE.height / canvas.height);

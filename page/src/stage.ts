@@ -1,10 +1,14 @@
 // The canvas: it is drawn when something has changed, and at no other time.
 
-import { type Object3D, Scene, Vector3, WebGLRenderer } from "three";
+import { BufferGeometry, type Material, Mesh, type Object3D, Scene, Vector3, WebGLRenderer } from "three";
 import { Turntable } from "./camera.ts";
 import type { Meta, Vec } from "./meta.ts";
 import { shared } from "./shading.ts";
 import { distance, mixed, unit } from "./vectors.ts";
+
+/** Length of the longest tool, mm. */
+const longest = ({ cutters }: Meta): number =>
+  Math.max(0, ...cutters.flatMap(({ outline }) => outline.flatMap(({ points }) => points.map(([r, h]) => r + h))));
 
 export class Stage {
   readonly scene = new Scene();
@@ -12,6 +16,8 @@ export class Stage {
   readonly renderer: WebGLRenderer;
   private asked = 0;
   private readonly before: (() => void)[] = [];
+  private readonly after: (() => void)[] = [];
+  private begun = false;
 
   /** Throws where there is no WebGL. */
   constructor(
@@ -20,6 +26,8 @@ export class Stage {
     vertices: () => Float32Array,
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, stencil: true, powerPreference: "default" });
+    // To ask whether a program was linked is to wait for it.
+    this.renderer.debug.checkShaderErrors = false;
     this.renderer.setClearAlpha(0);
     this.renderer.autoClear = true;
     const { low, high } = meta.part;
@@ -30,9 +38,9 @@ export class Stage {
       Math.max(1e-6, distance(low, high) / 2),
       () => this.request(),
       vertices,
+      longest(meta),
     );
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement!);
-    this.resize();
     canvas.addEventListener("webglcontextrestored", () => this.request());
   }
 
@@ -45,15 +53,36 @@ export class Stage {
     this.before.push(work);
   }
 
-  request(): void {
-    this.asked ||= requestAnimationFrame(() => this.draw());
+  /** Called after each drawing, to draw over it. */
+  afterDraw(work: () => void): void {
+    this.after.push(work);
   }
 
-  draw(): void {
+  /** Let the browser compile a material while the data are still read. */
+  warm(material: Material): void {
+    this.renderer.compile(new Mesh(new BufferGeometry(), material), this.table.camera);
+  }
+
+  /** Draw from now on: all that is to be seen is there. `first`: choose the first view, of which nothing is drawn before. */
+  begin(first: () => void): void {
+    const box = this.canvas.parentElement!.getBoundingClientRect();
+    this.table.resize(Math.max(1, box.width) / Math.max(1, box.height));
+    first();
+    this.begun = true;
+    this.resize();
+  }
+
+  request(): void {
+    if (this.begun) this.asked ||= requestAnimationFrame(() => this.draw());
+  }
+
+  /** `over`: with what is drawn over the picture. */
+  draw(over = true): void {
     cancelAnimationFrame(this.asked);
     this.asked = 0;
     for (const work of this.before) work();
     this.renderer.render(this.scene, this.table.camera);
+    if (over) for (const work of this.after) work();
   }
 
   /** The picture as it is, as a PNG in words. */
@@ -63,6 +92,7 @@ export class Stage {
   }
 
   resize(): void {
+    if (!this.begun) return;
     const box = this.canvas.parentElement!.getBoundingClientRect();
     const [width, height] = [Math.max(1, Math.floor(box.width)), Math.max(1, Math.floor(box.height))];
     const ratio = Math.min(2, devicePixelRatio || 1);

@@ -3,7 +3,7 @@
 import { Group, LatheGeometry, Matrix4, Mesh, type ShaderMaterial, Vector2, Vector3 } from "three";
 import type { Placed } from "./contact.ts";
 import type { Cutter, PartName } from "./meta.ts";
-import { toolMaterial } from "./shading.ts";
+import { ghostMaterial, toolMaterial } from "./shading.ts";
 import { across, cross } from "./vectors.ts";
 
 const GREYS: Record<PartName, string> = { flutes: "#e6e9ec", neck: "#c3c9cf", shank: "#9aa2aa", holder: "#5c646d" };
@@ -11,6 +11,8 @@ const GREYS: Record<PartName, string> = { flutes: "#e6e9ec", neck: "#c3c9cf", sh
 export class ToolView {
   readonly group = new Group();
   private readonly materials = {} as Record<PartName, ShaderMaterial>;
+  /** For what of the tool lies behind or in the part: it is never out of sight. */
+  private readonly ghost = ghostMaterial();
   private of: string | null = null;
   private glass = true;
 
@@ -29,9 +31,12 @@ export class ToolView {
       for (const { part, points } of cutter.outline) {
         if (points.length < 2) continue;
         const profile = points.map(([r, h]) => new Vector2(Math.max(r, 1e-6), h));
-        const mesh = new Mesh(new LatheGeometry(split(profile), 64), this.materials[part]);
+        const geometry = new LatheGeometry(split(profile), 64);
+        const mesh = new Mesh(geometry, this.materials[part]);
         mesh.renderOrder = 5;
-        this.group.add(mesh);
+        const hidden = new Mesh(geometry, this.ghost);
+        hidden.renderOrder = 4;
+        this.group.add(hidden, mesh);
       }
     }
     // A lathe turns about its y.

@@ -78,7 +78,7 @@ def step(folder, base, temp, **inputs):
     for name in ("summary", "output"):
         (temp / name).unlink(missing_ok=True)
     job = {"RUNNER_TEMP": str(temp), "GITHUB_STEP_SUMMARY": str(temp / "summary"), "GITHUB_OUTPUT": str(temp / "output"),
-           "GITHUB_SERVER_URL": "https://forge.test", "GITHUB_REPOSITORY": "us/parts",
+           "GITHUB_SERVER_URL": "https://forge.test", "GITHUB_REPOSITORY": "us/parts", "GITHUB_RUN_ID": "7",
            "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}  # fmt: skip
     done = subprocess.run(["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", mine["run"]], cwd=folder,
                           env=ENV | job | env, capture_output=True, text=True, check=False)  # fmt: skip
@@ -117,6 +117,13 @@ def test_the_action_tells_what_a_branch_loses(repository, ran):
     assert "| fails | parts/slot.step | changed | lost" in summary
     assert "renamed from old.step" in summary
     assert not (temp / "plan-cutters-changed/before/gone.stp").exists()
+    # Both plans side by side: linked beside the summary, and in the artifact of the job.
+    page = "compare/parts/slot.step/review.html"
+    assert b"No picture" not in (temp / "plan-cutters-changed" / page).read_bytes()
+    assert f"[Both plans side by side]({page})\n" in (temp / "plan-cutters-changed/summary.md").read_text()
+    artifacts = "https://forge.test/us/parts/actions/runs/7#artifacts"
+    assert f"[Both plans side by side]({artifacts}): {page} there\n" in summary
+    assert not (temp / "plan-cutters-changed/compare/sub").exists()
     assert (temp / "plan-cutters-changed/after/sub/a name.step/review.html").is_file()
 
 

@@ -80,7 +80,7 @@ def inner(planned, cutter, verdicts, count):
 
 def test_samples_have_the_colours_of_their_verdicts(page, planned):
     names = {0: "inaccessible", 1: "accessible", 2: "interference_free"}
-    page.locator(f'#cutters tr[data-cutter="{OTHER}"] button').click()
+    page.locator(f'#cutters tr[data-cutter="{OTHER}"] button.text').click()
     told = 0
     for code, name in names.items():
         for row in seen(page, inner(planned, OTHER, [code], 12))[:4]:
@@ -94,7 +94,7 @@ def test_samples_have_the_colours_of_their_verdicts(page, planned):
 
 
 def test_what_is_blocked_is_hatched(page, planned):
-    page.locator(f'#cutters tr[data-cutter="{OTHER}"] button').click()
+    page.locator(f'#cutters tr[data-cutter="{OTHER}"] button.text').click()
     page.keyboard.press("5")
 
     def spread(code):
@@ -161,7 +161,7 @@ def test_the_live_map_agrees_with_the_posture_map_away_from_borders(page, planne
 
     The map is asked for with the tolerance that the live one keeps: the drawn triangles lie that far from the surface.
     """
-    page.locator(f'#cutters tr[data-cutter="{OTHER}"] button').click()
+    page.locator(f'#cutters tr[data-cutter="{OTHER}"] button.text').click()
     verdict = planned.reaches[OTHER].verdict
     rows = [
         *np.flatnonzero(verdict == 0)[::9],
@@ -204,7 +204,7 @@ def test_the_live_map_agrees_with_the_posture_map_away_from_borders(page, planne
 
 
 def test_a_map_that_is_not_stored_is_said_to_be_approximate(page, planned):
-    page.locator(f'#cutters tr[data-cutter="{OTHER}"] button').click()
+    page.locator(f'#cutters tr[data-cutter="{OTHER}"] button.text').click()
     row = seen(page, inner(planned, OTHER, [1], 20))[0]
     choose(page, row)
     assert "not certified" in page.inner_text("#posture .kind")
@@ -235,17 +235,17 @@ def test_nothing_beyond_the_axis_limit_is_shown_free(page, planned):
 
 
 def test_a_cutter_is_switched(page, planned):
-    page.locator(f'#cutters tr[data-cutter="{OTHER}"] button').focus()
+    page.locator(f'#cutters tr[data-cutter="{OTHER}"] button.text').focus()
     page.keyboard.press("Enter")
     assert page.evaluate("review.cutter.id") == OTHER
-    assert page.get_attribute(f'#cutters tr[data-cutter="{OTHER}"] button', "aria-pressed") == "true"
+    assert page.get_attribute(f'#cutters tr[data-cutter="{OTHER}"] button.text', "aria-pressed") == "true"
     assert "inaccessible" in page.inner_text("#legend")
     page.keyboard.press("]")
     assert page.evaluate("review.cutter.id") != OTHER
 
 
 def test_a_worst_spot_shows_its_witness(page, planned):
-    page.locator(f'#cutters tr[data-cutter="{OTHER}"] button').click()
+    page.locator(f'#cutters tr[data-cutter="{OTHER}"] button.text').click()
     spots = next(each for each in planned.cutters if each.id == OTHER).witnesses
     page.keyboard.press("n")
     row = page.evaluate("review.sample.row")
@@ -272,7 +272,7 @@ def test_moving_over_the_map_turns_the_tool(page, planned):
     for share in (0.3, 0.5, 0.8):
         page.mouse.move(box["x"] + share * box["width"], box["y"] + 0.5 * box["height"])
         text = page.inner_text("#posture-line")
-        assert re.match(r"tilt [\d.]+ deg, rotation [\d.]+ deg: \w", text), text
+        assert re.match(r"tilt [\d.]+°, rotation [\d.]+°: \w", text), text
         axes.add(tuple(page.evaluate("review.tool.group.matrix.elements.slice(4, 7)")))
     assert len(axes) == 3
     # The tool stands where the posture says: its axis at the tilt from the normal.
@@ -394,12 +394,14 @@ def test_it_prints(page):
     assert min(drawn) > 0.05
 
 
-@pytest.mark.parametrize("width", [1366, 700])
-def test_axe_finds_nothing(browser, path, width):
+@pytest.mark.parametrize(("width", "scheme"), [(1366, "light"), (1366, "dark"), (390, "dark")])
+def test_axe_finds_nothing(browser, path, width, scheme):
     axe = ROOT / "page" / "node_modules" / "axe-core" / "axe.min.js"
     if not axe.exists():
         pytest.skip("axe-core is not installed: npm ci in page/")
-    context = browser.new_context(viewport={"width": width, "height": 768}, reduced_motion="reduce")
+    context = browser.new_context(
+        viewport={"width": width, "height": 768}, reduced_motion="reduce", color_scheme=scheme
+    )
     page = opened(context, path)
     page.evaluate(axe.read_text())
     for step in ("start", "selected", "help"):
@@ -407,7 +409,11 @@ def test_axe_finds_nothing(browser, path, width):
             page.focus("#picture")
             page.keyboard.press("Enter")
             wait_for_map(page, page.evaluate("review.sample.row"))
+            page.keyboard.press("s")
+            page.fill("#note", "a note")
+            page.click("#add-note")
         if step == "help":
+            page.focus("#picture")
             page.keyboard.press("?")
         found = page.evaluate("axe.run().then(result => result.violations)")
         told = [(each["id"], each["nodes"][0]["html"][:120], len(each["nodes"])) for each in found]
@@ -469,6 +475,42 @@ def test_the_page_knows_what_a_machine_holds(page, name):
     wanted = seen_from.allows(every)
     assert wanted[1000:].all()
     assert np.array(found).tolist() == wanted.tolist()
+
+
+@pytest.mark.parametrize("name", machines())
+def test_the_page_tells_the_positions_of_the_axes(page, name):
+    """Both solutions of random tool axes, in the turns that the limits hold, as the plan finds them; at the singular one any."""
+    axes = machines()[name]
+    rng = np.random.default_rng(27)
+    seen_from = axes.seen_from(Rotation.from_rotvec([-0.4, 0.9, 0.2]).as_matrix())
+    limit = np.clip(axes.limit, -4.0, 4.0)
+    own = (
+        seen_from.axis(rng.uniform(limit[:, 0], limit[:, 1], (100, len(limit)))) if len(limit) else seen_from.tool[None]
+    )
+    every = np.concatenate([rng.normal(size=(100, 3)), own])
+    every /= np.linalg.norm(every, axis=1)[:, None]
+    page.evaluate("kinematics => Object.assign(review.meta, { kinematics })", meta._kinematics(seen_from))
+    told = page.evaluate("axes => axes.map(axis => review.machine.positions(axis))", every.tolist())
+    wanted, taken, _ = seen_from.positions(every)
+    held = 0
+    for each, angles, which in zip(told, wanted, taken, strict=True):
+        mine = [np.radians(one["angles"]) for one in each if all(one["within"])]
+        assert bool(mine) == (which >= 0)
+        if not mine or not len(limit):
+            continue
+        known = [row for row in angles if np.isfinite(row).all()]
+        # Each of one is one of the other.
+        for one, other in ((mine, known), (known, mine)):
+            assert all(min(np.abs(a - b).max() for b in other) < 1e-6 for a in one), (mine, known)
+        assert np.abs(mine[0] - angles[which]).sum() < 1e-6 or np.isclose(
+            np.abs(mine[0]).sum(), np.abs(angles[which]).sum()
+        )
+        held += 1
+    assert held >= 100 or len(limit) < 2
+    if len(limit) == 2:
+        singular = page.evaluate("axis => review.machine.positions(axis)", seen_from.direction[0].tolist())
+        assert singular[0]["free"]
+        assert all(singular[0]["within"]) == seen_from.allows(seen_from.direction[:1])[0]
 
 
 def test_stored_intervals_are_cut_to_what_rotary_axes_hold(page, planned):

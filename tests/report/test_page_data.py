@@ -405,7 +405,7 @@ def test_names_stay_text():
     data = page(result)
     read = Page(data)
     tags = [tag for tag, _, _ in read.elements]
-    assert (tags.count("script"), tags.count("h1"), tags.count("img"), tags.count("b")) == (3, 1, 0, 0)
+    assert (tags.count("script"), tags.count("h1"), tags.count("img"), tags.count("b")) == (4, 1, 0, 0)
     assert [face["name"] for face in read.meta["faces"][: len(NASTY)]] == list(NASTY)
     assert read.meta["part"]["file"] == "<b>&\u2028.step"
     shown = {a["data-face"]: text for tag, a, text in read.elements if tag == "tr" and "data-face" in a}
@@ -433,10 +433,10 @@ def test_the_page_says_first_which_cutter_to_take(valley):
     assert title == "Take flat end D12 x 80."
     assert "It is the largest of 3 cutters that reaches every sample." in why
     by_name = {row[0]: row[1:] for row in told(read)}
-    assert by_name["flat end D12 x 80"][:3] == ["yes", "100 %", "–"]
+    assert by_name["flat end D12 x 80"][:3] == ["✓ yes", "100 %", "–"]
     not_reached = result.plan.cutters[0].area_share
     assert by_name["flat end D24 x 60"][:2] == [
-        "no",
+        "✕ no",
         f"{100 * (not_reached.interference_free + not_reached.accessible):.1f} %".replace(".0 %", " %"),
     ]
 

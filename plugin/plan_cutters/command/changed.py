@@ -23,6 +23,7 @@ from plan_cutters.command.repository import Changed, changed, content, publish
 from plan_cutters.command.terminal import error, hand_out, say
 from plan_cutters.command.values import Folder
 from plan_cutters.errors import OptionError, PlanError
+from plan_cutters.files.whole import whole
 
 if TYPE_CHECKING:
     from plan_cutters.comparison.model import PlanDifference
@@ -57,6 +58,8 @@ class Row:
     before: Path | None = None
     after: Path | None = None
     difference: "PlanDifference | None" = None
+    #: The page of both plans, below the output folder, where they differ.
+    beside: Path | None = None
     #: Target faces as it is that no cutter reaches whole.
     unreachable: tuple[str, ...] = ()
     #: Why it could not be planned as it is, or as it was.
@@ -139,8 +142,8 @@ def command(asked: tuple[str, ...], **given: Any) -> int:
         except PlanError as fault:
             error(f"{_SELF}: pictures are in {out} alone: {fault}")
     failing = [row for row in rows if row.breaks(given["fail_on"])]
-    text = _summary(rows, given["fail_on"], failing, links, began)
-    _hand_on(rows, out, text, failing)
+    told, job = (_summary(rows, given["fail_on"], failing, links, began, at) for at in ("", _artifacts()))
+    _hand_on(rows, out, told, job, failing)
     for row in rows:
         for line in filter(None, (row.failed, row.unread)):
             error(f"{_SELF}: {line}")
@@ -152,7 +155,9 @@ def _compared(part: Changed, began: str, head: str, asked: Sequence[str], cache:
     if part.new is None:
         return Row(part)
     from plan_cutters.comparison.folders import PLAN, read_plan
+    from plan_cutters.comparison.pictures import picture_of
     from plan_cutters.comparison.plans import compare
+    from plan_cutters.comparison.review import PAGE, Side, page
     from plan_cutters.comparison.states import unreachable
 
     found: dict[str, Path] = {}
@@ -172,10 +177,18 @@ def _compared(part: Changed, began: str, head: str, asked: Sequence[str], cache:
         except PlanError as fault:
             why[side] = str(fault) if fault.file == path else f"{path}: {fault}"
     plans = {side: read_plan(folder / PLAN) for side, folder in found.items()}
-    both = len(plans) == 2
+    difference = compare(plans["before"], plans["after"], name=part.name) if len(plans) == 2 else None
+    beside = Path("compare", part.name, PAGE)
+    shutil.rmtree((out / beside).parent, ignore_errors=True)
+    if difference and not difference.same:
+        names = {"before": f"as it was, {began[:12]}", "after": "as it is"}
+        (out / beside).parent.mkdir(parents=True)
+        with whole(out / beside) as aside:
+            sides = [Side(names[side], plans[side], picture_of(found[side] / PLAN, plans[side])) for side in names]
+            aside.write_bytes(page(difference, *sides))
     return Row(
-        part, found.get("before"), found.get("after"),
-        difference=compare(plans["before"], plans["after"], name=part.name) if both else None,
+        part, found.get("before"), found.get("after"), difference=difference,
+        beside=beside if (out / beside).is_file() else None,
         unreachable=tuple(unreachable(plans["after"])) if "after" in plans else (),
         failed=why.get("after", ""), unread=why.get("before", ""),
     )  # fmt: skip
@@ -236,10 +249,20 @@ def _links(rows: Sequence[Row], branch: str) -> dict[Path, str]:
     return {folder: f"{where}/{name}" for folder, name in names.items()}
 
 
-def _summary(rows: Sequence[Row], rule: str, failing: Sequence[Row], links: dict[Path, str], began: str) -> str:
+def _artifacts() -> str:
+    """Address of the files that the job keeps; empty where this is no job."""
+    names = ("GITHUB_SERVER_URL", "GITHUB_REPOSITORY", "GITHUB_RUN_ID")
+    server, repository, run_id = (os.environ.get(name, "") for name in names)
+    return f"{server}/{repository}/actions/runs/{run_id}#artifacts" if server and repository and run_id else ""
+
+
+def _summary(
+    rows: Sequence[Row], rule: str, failing: Sequence[Row], links: dict[Path, str], began: str, artifacts: str
+) -> str:
+    """The summary: with links to the files beside it, or to the artifacts of the job, which have them."""
     if not rows:
         return f"## plan-cutters\n\nNo part changed since {began[:12]}.\n"
-    from plan_cutters.comparison.markdown import escaped, section, table
+    from plan_cutters.comparison.markdown import beside, escaped, section, table
     from plan_cutters.report.story.numbers import count
 
     lines = ["## plan-cutters", ""]
@@ -252,6 +275,8 @@ def _summary(rows: Sequence[Row], rule: str, failing: Sequence[Row], links: dict
     for row in rows:
         if row.difference is not None and not row.difference.same:
             lines += ["", *section(row.difference)]
+        if row.beside is not None:
+            lines += ["", beside(row.beside.as_posix(), artifacts)]
         if row.unreachable:
             many = f" and {len(row.unreachable) - 20} more" if len(row.unreachable) > 20 else ""
             lines += [
@@ -293,7 +318,7 @@ def _bar(folder: Path | None) -> str:
     return f"{'█' * full}{'░' * (10 - full)} {100 * share if share == 1.0 else min(99.9, 100 * share):.3g} %"
 
 
-def _hand_on(rows: Sequence[Row], out: Path, text: str, failing: Sequence[Row]) -> None:
+def _hand_on(rows: Sequence[Row], out: Path, text: str, job: str, failing: Sequence[Row]) -> None:
     """The summary and the facts, for people, for the job and for its next steps."""
     out.mkdir(parents=True, exist_ok=True)
     facts = {"format": "plan-cutters-changed", "format_version": 1, "parts": list(_facts(rows, failing))}
@@ -307,7 +332,7 @@ def _hand_on(rows: Sequence[Row], out: Path, text: str, failing: Sequence[Row]) 
         "folder": out,
     }
     told = "".join(f"{name}={value}\n" for name, value in outputs.items())
-    for variable, what in (("GITHUB_STEP_SUMMARY", text), ("GITHUB_OUTPUT", told)):
+    for variable, what in (("GITHUB_STEP_SUMMARY", job), ("GITHUB_OUTPUT", told)):
         if os.environ.get(variable):
             with open(os.environ[variable], "a", encoding="utf-8") as file:
                 file.write(what)

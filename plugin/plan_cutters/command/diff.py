@@ -11,12 +11,12 @@ from plan_cutters.command.codes import USAGE, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.terminal import clean, error, hand_out, paper
-from plan_cutters.command.values import File, Words
+from plan_cutters.command.values import File, Folder, Words
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from plan_cutters.comparison.model import PlanDifference
+    from plan_cutters.comparison.model import Comparison, PlanDifference
 
 _SELF = "plan-cutters diff"
 #: Something was lost; two plans that cannot be compared are as a wrong command line.
@@ -36,6 +36,7 @@ def asked_words() -> Sequence[str]:
     cls=Command,
     examples=(
         (f"{_SELF} before-plan after-plan", "What a change of the part costs:"),
+        (f"{_SELF} before-plan after-plan -o compared", "Both parts side by side, in compared/review.html:"),
         (f"{_SELF} monday friday --markdown", "Two folders of many plans, as Markdown:"),
     ),
     codes=(
@@ -49,6 +50,12 @@ def asked_words() -> Sequence[str]:
 @click.argument("new", type=File("NEW"))
 @_output("--json", "as_json", is_flag=True, help="All differences, as JSON on standard output.")
 @_output("--markdown", "as_markdown", is_flag=True, help="The same tables as Markdown, for the summary of a job.")
+@_output(
+    "-o",
+    "--out",
+    type=Folder("DIR"),
+    help="Both plans side by side, in DIR/review.html; of two folders of many, DIR/NAME/review.html for each pair that differs.",
+)
 @_rules(
     "--slack",
     type=click.FloatRange(0.0, 100.0),
@@ -80,23 +87,59 @@ def command(old: str, new: str, **given: Any) -> int:
         if word not in asked_words():
             raise OptionError(f"--despite {word!r} is not known; give some of {','.join(asked_words())}")
     found = compare_folders(Path(old), Path(new), slack=given["slack"] / 100.0, despite=despite)
+    made = _pages(Path(old), Path(new), found, Path(given["out"])) if given["out"] else {}
     if given["as_json"]:
         hand_out(found.model_dump_json(indent=2) + "\n")
     elif given["as_markdown"]:
         from plan_cutters.comparison.markdown import markdown
 
-        hand_out(markdown(found))
+        hand_out(markdown(found, {name: path.as_posix() for name, path in made.items()}))
     else:
         from plan_cutters.comparison.told import apart, verdict
 
         with paper(120) as console:
             for each in found.plans:
                 _show(each, console)
-            for line in (*apart(found), verdict(found)):
+            beside = [f"Side by side: {path}" for path in made.values()]
+            for line in (*apart(found), *beside, verdict(found)):
                 console.print(clean(line), soft_wrap=True)
     for line in found.unread if given["as_json"] or given["as_markdown"] else ():
         error(f"{_SELF}: {line}")
     return NOT_COMPARABLE if not found.comparable else LOST if found.lost else 0
+
+
+def _pages(old: Path, new: Path, found: "Comparison", out: Path) -> dict[str, Path]:
+    """Write the pages of the pairs that differ; where each is, by the name of its pair.
+
+    Raises
+    ------
+    PlanError
+        A page would take the place of a plan's own, or cannot be written.
+    """
+    from plan_cutters.comparison.folders import PLAN
+    from plan_cutters.comparison.review import PAGE, pages
+    from plan_cutters.errors import PlanError
+    from plan_cutters.files.whole import whole
+
+    made = {}
+    for name, page in pages(old, new, found):
+        path = out / name / PAGE
+        if (path.parent / PLAN).exists():
+            raise PlanError(
+                "holds a plan, whose page would be overwritten: give another folder to -o", file=str(path.parent)
+            )
+        try:
+            if page is None:
+                # What an earlier comparison left says what is not so any more.
+                path.unlink(missing_ok=True)
+                continue
+            path.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise PlanError(f"cannot be written: {error.strerror}", file=str(path)) from None
+        with whole(path) as aside:
+            aside.write_bytes(page)
+        made[name] = path
+    return made
 
 
 def _show(found: "PlanDifference", console: "Console") -> None:

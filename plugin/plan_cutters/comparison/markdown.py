@@ -1,7 +1,9 @@
 """A comparison as Markdown, for the summary of a job in CI."""
 
 import unicodedata
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from types import MappingProxyType
+from urllib.parse import quote
 
 from plan_cutters.comparison.model import Comparison, PlanDifference
 from plan_cutters.comparison.told import (
@@ -23,13 +25,21 @@ MOST_ROWS = 100
 _OWN = frozenset("\\`*_{}[]<>()#+!|~&@$")
 
 
-def markdown(found: Comparison) -> str:
-    """The comparison in Markdown: a section for each pair of plans that differ, and a sentence for the others."""
+def markdown(found: Comparison, pages: Mapping[str, str] = MappingProxyType({})) -> str:
+    """The comparison in Markdown: a section for each pair of plans that differ, and a sentence for the others.
+
+    Parameters
+    ----------
+    found : Comparison
+    pages : mapping
+        Paths of the pages of both plans by the name of their pair; the only one has none.
+    """
     same = [each for each in found.plans if each.same]
     lines = [f"**{verdict(found)}**", ""]
     for each in found.plans:
         if not each.same:
-            lines += [*section(each), ""]
+            page = pages.get(each.name) or pages.get("")
+            lines += [*section(each), *(["", beside(page)] if page else []), ""]
     lines += [f"- {escaped(line)}" for line in apart(found)]
     if same:
         lines += ["", f"Nothing changed: {', '.join(escaped(each.name) for each in same)}."]
@@ -49,6 +59,16 @@ def section(found: PlanDifference) -> Iterator[str]:
             yield f"- {escaped(change(each))}"
     yield from table(FACES, face_rows(found))
     yield from table(CUTTERS, cutter_rows(found))
+
+
+def beside(path: str, address: str = "") -> str:
+    """A link to the page of two plans, or to an address that has it.
+
+    >>> beside("compared/a b/review.html")
+    '[Both plans side by side](compared/a%20b/review.html)'
+    """
+    within = f": {escaped(path)} there" if address else ""
+    return f"[Both plans side by side]({address or quote(path)}){within}"
 
 
 def table(names: Sequence[str], rows: Iterable[Sequence[str]]) -> Iterator[str]:

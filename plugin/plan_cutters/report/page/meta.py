@@ -54,6 +54,7 @@ def meta_of(
         "tilt_deg": list(degrees(result.postures.tilt)),
         "tilt_limit_deg": plan.machine.tilt_limit_deg,
         "rotary": plan.machine.rotary is not None,
+        "axes": [axis.name for axis in result.conditions.machine.rotary or ()],
         "kinematics": None if result.kinematics is None else _kinematics(result.kinematics),
         "setups": []
         if result.ready is None or not result.elsewhere

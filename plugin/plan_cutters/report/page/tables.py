@@ -10,6 +10,7 @@ from plan_cutters.report.page import operations
 from plan_cutters.report.page.facts import Spot
 from plan_cutters.report.protocol import Judged
 from plan_cutters.report.story import answers, cutters, headline, numbers
+from plan_cutters.report.story.chip import CHIPS, chip
 from plan_cutters.report.story.names import named
 from plan_cutters.report.story.next_steps import step_told
 from plan_cutters.report.story.numbers import VERDICTS, reached
@@ -40,6 +41,7 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
     """Everything that the template shows; `more`: spots by cutter that are not listed; `left`: what the data has not."""
     plan, story = result.plan, story_of(result.plan)
     shown = next(c for c in plan.cutters if c.id == story.shown)
+    told = zip(story.cutters, plan.cutters, strict=True)
     first = sorted(story.cutters, key=lambda c: c.id != story.shown)
     faces = _faces(plan, shown)
     lost_by = {word for c in plan.cutters for word in c.area_share.lost_by}
@@ -54,8 +56,12 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
         "limit": answers.limit,
         "narrowest": answers.narrowest,
         "told": answers.change,
+        "called": cutters.called,
+        "chip": chip(plan, story),
+        "chips": CHIPS,
         "feasible": cutters.FEASIBLE,
-        "cutters": [(c, entry, _bars(plan, entry)) for c, entry in zip(story.cutters, plan.cutters, strict=True)],
+        "order": {True: 0, None: 1, False: 2},
+        "cutters": [(c, entry, _bars(plan, entry)) for c, entry in sorted(told, key=lambda each: each[1] is not shown)],
         "label": label,
         "failing": [c for c in first if c.failing][:_CUTTERS],
         "verdicts": _VERDICTS,
@@ -121,10 +127,24 @@ def _faces(plan: Plan, shown: CutterEntry) -> list[tuple[FaceEntry, str, str]]:
 
 def _effective(plan: Plan) -> list[tuple[str, str]]:
     """Options that have a value, as texts."""
-    found = []
-    for name, value in plan.effective.model_dump(mode="json").items():
-        if value in (None, [], ""):
-            continue
-        text = ", ".join(str(each) for each in value) if isinstance(value, list) else str(value)
-        found.append((name.replace("_", " "), text))
-    return found
+    return [
+        (name.replace("_", " "), _value(name, value))
+        for name, value in plan.effective.model_dump(mode="json").items()
+        if value not in (None, [], "")
+    ]
+
+
+def _value(name: str, value: Any) -> str:
+    """A value of an option as people write it."""
+    match value:
+        case bool():
+            return "yes" if value else "no"
+        case float():
+            return numbers.plainly(value, 9)
+        case list() if name == "target_faces":
+            return numbers.ranges(int(each[1:]) for each in value)
+        case list():
+            return ", ".join(_value(name, each) for each in value)
+        case dict():
+            return ", ".join(f"{key.replace('_', ' ')} {_value(key, each)}" for key, each in value.items())
+    return str(value)

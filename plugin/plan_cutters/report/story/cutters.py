@@ -230,7 +230,7 @@ def _worst(face: FaceEntry, c: CutterEntry, lot: float) -> WorstFace:
     unsure = share.undecided > share.inaccessible
     verdict = "undecided" if unsure else "inaccessible"
     deepest = max(mine, key=lambda w: (w.verdict == verdict, w.depth_mm or 0.0), default=None)
-    depth = "" if deepest is None or deepest.depth_mm is None else f"{deepest.depth_mm:.3g}"
+    depth = "" if deepest is None or deepest.depth_mm is None else figure(deepest.depth_mm)
     return WorstFace(
         face.id, face.name, figure(lot), unreached(c.faces[face.id], share), f"{'undecided: ' * unsure}{main or '?'}", depth,
         "" if deepest is None else deepest.obstacle_face or "",

@@ -8,6 +8,8 @@ from plan_cutters.domain.verdicts import WORDS
 
 #: Verdicts, from best to worst.
 VERDICTS = tuple(WORDS.values())
+#: Numbers of less than this are what rounding leaves of nothing.
+ROUNDING = 1e-9
 _REACHED, _NOT_REACHED = ("interference_free", "accessible"), ("inaccessible", "undecided")
 
 
@@ -30,14 +32,29 @@ def percent(share: float, *, some: bool, whole: bool) -> str:
 
 
 def figure(number: float) -> str:
-    """Three digits of a number, without an exponent where it is large.
+    """Three digits of a number, without an exponent.
 
     Examples
     --------
-    >>> figure(12345.6), figure(0.0456), figure(7.769e6)
-    ('12,300', '0.0456', '7,770,000')
+    >>> figure(12345.6), figure(0.0456), figure(7.769e6), figure(0.00001234), figure(-2.776e-17)
+    ('12,300', '0.0456', '7,770,000', '0.0000123', '0')
     """
-    return f"{float(f'{number:.3g}'):,.0f}" if abs(number) >= 100.0 else f"{number:.3g}"
+    if not math.isfinite(number) or abs(number) < ROUNDING:
+        return "0" if math.isfinite(number) else f"{number:g}"
+    return f"{float(f'{number:.3g}'):,.0f}" if abs(number) >= 100.0 else plainly(number, 3)
+
+
+def plainly(number: float, digits: int) -> str:
+    """So many digits of a number, as people write it: without an exponent, and without zeros that say nothing.
+
+    >>> plainly(0.00001234, 3), plainly(100.0, 4), plainly(-2.776e-17, 4), plainly(1234567.8, 4)
+    ('0.0000123', '100', '0', '1234568')
+    """
+    if not math.isfinite(number) or abs(number) < ROUNDING:
+        return "0" if math.isfinite(number) else f"{number:g}"
+    behind = max(0, digits - 1 - math.floor(math.log10(abs(float(f"{number:.{digits}g}")))))
+    text = f"{number:.{behind}f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text
 
 
 def part_of(counts: VerdictCounts, share: AreaShare, words: Iterable[str]) -> str:
@@ -65,13 +82,22 @@ def some(share: float) -> str:
 
 
 def mm(length: float | None) -> str:
-    """A length, three digits of it."""
-    return "" if length is None else f"{length:.3g} mm"
+    """A length, three digits of it.
+
+    >>> mm(12345.6), mm(0.0456), mm(-2.776e-17)
+    ('12,300 mm', '0.0456 mm', '0 mm')
+    """
+    return "" if length is None else f"{figure(length)} mm"
 
 
 def angle(degrees: float) -> str:
-    """An angle, to a tenth of a degree."""
-    return f"{round(degrees, 1) + 0.0:g}°"
+    """An angle to a tenth of a degree; a whole turn is none.
+
+    >>> angle(359.97), angle(-0.01), angle(12.34)
+    ('0°', '0°', '12.3°')
+    """
+    tenths = round(degrees, 1) + 0.0
+    return f"{0.0 if abs(tenths) == 360.0 else tenths:g}°"
 
 
 def area(mm2: float) -> str:
@@ -84,8 +110,12 @@ def area(mm2: float) -> str:
 
 
 def place(point: Sequence[float] | None) -> str:
-    """A point or direction."""
-    return "" if point is None else ", ".join(f"{x + 0.0:.4g}" for x in point)
+    """A point or direction: four digits, and no more than four behind the point.
+
+    >>> place((-2.776e-17, 12345.678, -0.70710678)), place(None)
+    ('0, 12346, -0.7071', '')
+    """
+    return "" if point is None else ", ".join(plainly(round(x, 4), 4) for x in point)
 
 
 def up(length: float | None) -> str:
@@ -112,6 +142,22 @@ def count(number: int, word: str) -> str:
     ('1 face', '1,200 samples')
     """
     return f"{number:,} {word}{'' if number == 1 else 's'}"
+
+
+def ranges(faces: Iterable[int]) -> str:
+    """Numbers of faces as `--faces` takes them.
+
+    >>> ranges([7, 1, 3, 4, 5, 9, 10]), ranges([])
+    ('F1,3-5,7,9,10', '')
+    """
+    runs: list[list[int]] = []
+    for number in sorted(set(faces)):
+        if runs and number == runs[-1][-1] + 1:
+            runs[-1].append(number)
+        else:
+            runs.append([number])
+    told = [f"{run[0]}-{run[-1]}" if len(run) > 2 else ",".join(map(str, run)) for run in runs]
+    return f"F{','.join(told)}" if told else ""
 
 
 def capital(text: str) -> str:

@@ -1,0 +1,115 @@
+// Faces that are picked to be named: they are tinted in the picture, and are copied as the text of --faces.
+
+import { GLSL3, Group, Mesh, ShaderMaterial } from "three";
+import type { App } from "./app.ts";
+import { copyButton } from "./copy.ts";
+import { button, el } from "./dom.ts";
+import type { Owner } from "./mesh.ts";
+import { shared } from "./shading.ts";
+
+export class Selection {
+  readonly root = el("div", { id: "selection", role: "group", "aria-label": "Selected faces" });
+  private readonly picked = new Set<Owner>();
+  private readonly tints = new Group();
+  private readonly material = tint();
+  private readonly words = el("output", {});
+  private readonly boxes = new Map<Owner, HTMLInputElement>();
+
+  constructor(private readonly app: App) {
+    this.root.append(
+      el("span", {}, "Selected: "),
+      this.words,
+      copyButton("Copy for --faces", () => this.text, app.say, "Copy for --faces: the selected faces as text"),
+      button("Clear", () => this.clear()),
+    );
+    app.stage.add(this.tints);
+    this.show();
+  }
+
+  /** Such as `F1,3-5`, as --faces takes it. */
+  get text(): string {
+    return ranges([...this.picked].map((owner) => this.app.meta.faces[owner].number));
+  }
+
+  toggle(owner: Owner | null): void {
+    const face = owner === null ? undefined : this.app.meta.faces[owner];
+    if (owner === null || !face) return this.app.say("No face is there to select");
+    if (!this.picked.delete(owner)) this.picked.add(owner);
+    this.show();
+    this.app.say(`${face.id} is ${this.picked.has(owner) ? "selected" : "no longer selected"}${this.picked.size ? `: ${this.text}` : ""}`);
+  }
+
+  private clear(): void {
+    this.picked.clear();
+    this.show();
+    this.app.say("No face is selected");
+  }
+
+  private show(): void {
+    this.root.hidden = this.picked.size === 0;
+    this.words.value = this.text;
+    for (const [owner, box] of this.boxes) box.checked = this.picked.has(owner);
+    this.tints.clear();
+    for (const owner of this.picked) this.tints.add(this.tinted(owner));
+    this.app.stage.request();
+  }
+
+  // Kept: their vertices are those of the part, which go with a geometry that is disposed of.
+  private readonly meshes = new Map<Owner, Mesh>();
+
+  private tinted(owner: Owner): Mesh {
+    const { start, count } = this.app.meta.faces[owner];
+    const mesh = this.meshes.get(owner) ?? new Mesh(this.app.drawn.geometry(start, count), this.material);
+    this.meshes.set(owner, mesh);
+    return mesh;
+  }
+
+  /** A box in each row of the table of faces, once the rows are alive. */
+  tabled(): void {
+    for (const row of document.querySelectorAll<HTMLElement>("#faces tr[data-face]")) {
+      const owner = this.app.meta.faces.findIndex((face) => face.number === Number(row.dataset.face));
+      if (owner < 0) continue;
+      const box = el("input", { type: "checkbox", "aria-label": `Select ${this.app.meta.faces[owner].id}` });
+      box.addEventListener("change", () => this.toggle(owner));
+      row.querySelector("th")!.prepend(box);
+      this.boxes.set(owner, box);
+    }
+  }
+}
+
+/** Numbers of faces as text for --faces. */
+export function ranges(numbers: number[]): string {
+  const runs: number[][] = [];
+  for (const number of [...numbers].sort((a, b) => a - b)) {
+    const last = runs[runs.length - 1];
+    if (last && last[last.length - 1] + 1 === number) last.push(number);
+    else runs.push([number]);
+  }
+  const told = runs.map((run) => (run.length > 2 ? `${run[0]}-${run[run.length - 1]}` : run.join(",")));
+  return told.length ? `F${told.join(",")}` : "";
+}
+
+function tint(): ShaderMaterial {
+  return new ShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: `
+out vec3 vPlace;
+void main() {
+  vPlace = position;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+}`,
+    fragmentShader: `
+precision highp float;
+uniform vec4 plane;
+in vec3 vPlace;
+out vec4 colour;
+void main() {
+  if (dot(plane.xyz, vPlace) > plane.w) discard;
+  colour = vec4(0.45, 0.12, 0.85, 0.5);
+}`,
+    uniforms: { ...shared },
+    transparent: true,
+    side: 2,
+    depthWrite: false,
+  });
+}

@@ -1,0 +1,70 @@
+// Where to look from, so that a place of the surface is seen, and the tool that stands there.
+
+import type { App } from "./app.ts";
+import type { Ring } from "./camera.ts";
+import type { Vec } from "./meta.ts";
+import { dot, plus } from "./vectors.ts";
+
+type View = { turn: number; rise: number };
+
+/** A tool is seen well from its side: up to this cosine between its axis and the way to the eye nothing is lost. */
+const SIDE = 0.5;
+/** Of so many views, the best ones first, it is asked whether something hides the place. */
+const LOOKED_AT = 80;
+
+/** Look at a place of the surface from its outer side, near enough to see what is there. */
+export function flyTo(app: App, point: Vec, normal: Vec, size = near(app)): void {
+  app.stage.table.fly({ target: point, half: size, ...openView(app, [point], normal, null) });
+}
+
+/** Half of the height of a view that is near a place, mm. */
+function near({ cutter, drawn: { partRadius } }: App): number {
+  return Math.min(0.7 * partRadius, Math.max(6 * cutter.radius, 0.08 * partRadius));
+}
+
+let isClose = false;
+/** Whether the last look at a sample was a close one. */
+export const closeNow = (): boolean => isClose;
+
+/** Look at the sample shown and at all of the tool that stands there; `close`: at the sample and at what is in the way. */
+export function showSpot(app: App, close = false): void {
+  const { sample, stage: { table } } = app;
+  if (!sample) return;
+  isClose = close;
+  const there = app.inTheWay()?.point ?? null;
+  const placed = app.toolShown ? app.placed() : null;
+  const axis = placed?.axis ?? null;
+  const view = openView(app, there ? [sample.point, there] : [sample.point], sample.normal, axis);
+  const least = close ? 0.35 * near(app) : near(app);
+  const ball = (centre: Vec, radius: number): Ring => ({ centre, radius, axis: null });
+  const rings = [ball(sample.point, least), ...(there ? [ball(there, 0.3 * least)] : [])];
+  if (placed && !close) rings.push(...rounds(app, placed.tip, placed.axis));
+  table.fly(table.holding(view.turn, view.rise, placed || close ? rings : [ball(sample.point, least)]));
+}
+
+/** The corners of the outline of the tool shown, turned about its axis. */
+function rounds({ cutter }: App, tip: Vec, axis: Vec): Ring[] {
+  return cutter.outline.flatMap(({ points }) => points.map(([radius, h]) => ({ centre: plus(tip, axis, h), radius, axis })));
+}
+
+/** A view, askew to the normal and to the tool axis if that can be, in which nothing hides the places; at least the first one. */
+function openView(app: App, places: Vec[], normal: Vec, axis: Vec | null): View {
+  const { table } = app.stage;
+  const wanted = table.towards(normal);
+  const back = (view: View): Vec => table.frame({ ...table.aim, ...view }).back;
+  const ideal = back(wanted);
+  const worth = (way: Vec): number => dot(way, ideal) - (axis ? 1.5 * Math.max(0, Math.abs(dot(way, axis)) - SIDE) : 0);
+  const every = [wanted];
+  for (let turn = 0; turn < 360; turn += 15) for (let rise = -75; rise <= 85; rise += 10) every.push({ turn, rise });
+  const sorted = every
+    .map((view) => ({ view, way: back(view) }))
+    .filter(({ way }) => dot(way, normal) > 0.1)
+    .sort((a, b) => worth(b.way) - worth(a.way));
+  const open = (most: number, seen: Vec[]): View | undefined =>
+    sorted.slice(0, most).find(({ way }) => !seen.some((place) => app.picker.hidden(place, way)))?.view;
+  const found = (places.length > 1 ? open(LOOKED_AT, places) : undefined) ?? open(sorted.length, places.slice(0, 1));
+  if (found || !app.clip) return found ?? wanted;
+  const way = app.clip.through(places[0], normal);
+  app.note = "It is hidden from every side: the part is clipped there.";
+  return table.towards(way);
+}

@@ -1,0 +1,375 @@
+"""The review page as people meet it: first screen, list of cutters, selection, notes and schemes, on a desk and on a phone."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+
+from plan_cutters import plan
+from plan_cutters.report.page.write import write_html
+from plan_cutters.report.story.chip import CHIPS, chip
+from plan_cutters.report.story.story import story_of
+from tests.support.browser import chromium, opened, place_of, seen
+from tests.support.places import ROOT
+from tests.support.review_page import Page
+
+pytest.importorskip("playwright.sync_api", reason="playwright is not installed: setup.sh dev")
+#: The last one alone is too short for its holder.
+CUTTERS = [
+    "D2L20", "D3L25", "D4L30", "D5L35", "D6L40", "D8L50", "D10L60", "D12L80", "D16L90", "D4L30rc2", "D6L40rc3", "D8L50rc4",
+    "D10L60rc5", "D12L80rc6", "D16L90rc8", "D6L40rc0.5", "D8L50rc1", "D10L60rc1", "D20L12",
+]  # fmt: skip
+#: Samples off the border of the face.
+INNER = [5 * i + j for i in (1, 2, 3) for j in (1, 2, 3)]
+SCREENS = {"desk": (1366, 768), "wide": (1920, 1080), "phone": (390, 844)}
+
+
+@pytest.fixture(scope="module")
+def planned():
+    """A block with a sculptured top, nineteen cutters, and a jaw beside it that is in the way of all but slender ones."""
+    chromium()
+    return plan(
+        ROOT / "samples" / "pocket_top.step", cutters=CUTTERS, holder="D44L60", machine="trunnion-ac", grid=5, area_budget=0,
+        fixtures=["box:15,60,40@62,-10,-10"],
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def path(planned, tmp_path_factory):
+    path = tmp_path_factory.mktemp("page") / "review.html"
+    write_html(planned, None, path)
+    return path
+
+
+@pytest.fixture
+def at(browser, path):
+    """Open the page at a screen in a scheme; in the end no page has said anything on its console."""
+    contexts, pages = [], []
+
+    def open_(screen="desk", scheme="light", where=path, **more):
+        width, height = SCREENS[screen]
+        touch = {"has_touch": True, "is_mobile": True} if screen == "phone" else {}
+        context = browser.new_context(
+            viewport={"width": width, "height": height}, reduced_motion="reduce", color_scheme=scheme, **touch, **more
+        )
+        contexts.append(context)
+        pages.append(opened(context, where))
+        return pages[-1]
+
+    yield open_
+    for context in contexts:
+        context.close()
+    assert [page.said for page in pages] == [[]] * len(pages)
+
+
+def names(page):
+    """Ids of the cutters as they are listed, from the top."""
+    return page.eval_on_selector_all("#cutters tr[data-cutter]", "rows => rows.map(row => row.dataset.cutter)")
+
+
+def within(page, selector):
+    """Whether an element lies in the window as a whole, and nothing covers its middle."""
+    return page.evaluate(
+        """selector => { const element = document.querySelector(selector), box = element.getBoundingClientRect();
+             const there = document.elementFromPoint((box.left + box.right) / 2, (box.top + box.bottom) / 2);
+             return box.height > 0 && box.top >= 0 && box.bottom <= innerHeight && box.left >= 0 && box.right <= innerWidth
+               && (element.contains(there) || there.contains(element)); }""",
+        selector,
+    )
+
+
+@pytest.mark.parametrize("screen", SCREENS)
+def test_the_first_screen_has_verdict_picture_and_the_cutter_shown(at, planned, screen):
+    page = at(screen)
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme)
+        assert page.evaluate("document.documentElement.scrollWidth") <= SCREENS[screen][0]
+        for selector in ("#verdict", "h1", "#picture", "#cutters tr[data-cutter] th"):
+            assert within(page, selector), selector
+        ground = page.evaluate("getComputedStyle(document.querySelector('header')).backgroundColor")
+        assert (min(map(int, re.findall(r"\d+", ground)[:3])) > 128) == (scheme == "light")
+    assert names(page)[0] == planned.shown == page.evaluate("review.cutter.id")
+    assert page.locator("#cutters tr.more:visible").count() == 1
+    if screen != "phone":
+        # All of nineteen cutters in one list, each in a line.
+        lines = page.eval_on_selector_all("#cutters tr[data-cutter]", "rows => rows.map(row => row.offsetHeight)")
+        assert len(lines) == len(CUTTERS)
+        assert max(lines) <= 34
+
+
+def test_the_verdict_is_told_by_sign_and_word(planned, path):
+    page = Page(path.read_bytes())
+    said = chip(planned.plan, story_of(planned.plan))
+    assert page.of("strong", id="verdict") == [f"{said.sign} {said.word}"]
+    assert len({each.sign for each in CHIPS.values()} | {said.sign}) >= 3
+
+
+@pytest.mark.parametrize(
+    ("change", "wanted"),
+    [
+        ({}, "Feasible"),
+        ({"unjudged": 1}, "Feasible where judged"),
+        ({"selected": None}, "Not feasible"),
+    ],
+)
+def test_feasible_is_said_only_of_what_is(planned, change, wanted):
+    """One sample that could not be judged is enough to say so in the first word."""
+    whole = planned.plan
+    made = whole.model_copy(update={"selected": change["selected"]} if "selected" in change else {})
+    if "unjudged" in change:
+        made = made.model_copy(update={"samples": whole.samples.model_copy(update=change)})
+    if wanted == "Not feasible":
+        made = made.model_copy(update={"cutters": [c for c in whole.cutters if c.feasible is False]})
+    assert chip(made, story_of(made)).word == wanted
+
+
+def test_the_cutter_shown_comes_to_the_top_and_says_more(at, planned):
+    page = at()
+    other = names(page)[-1]
+    button = page.locator(f'#cutters tr[data-cutter="{other}"] th button.text')
+    button.focus()
+    page.keyboard.press("Enter")
+    assert names(page)[0] == other == page.evaluate("review.cutter.id")
+    assert sorted(names(page)) == sorted(each.id for each in planned.plan.cutters)
+    # Who came by the keyboard is still there.
+    assert page.evaluate("document.activeElement.closest('tr').dataset.cutter") == other
+    assert page.locator("#cutters tr.more:visible").count() == 1
+    # What another one's row says is opened without showing that cutter.
+    opener = page.locator("#cutters tr[data-cutter]:not(.shown) .opener").first
+    opener.click()
+    assert opener.get_attribute("aria-expanded") == "true"
+    assert page.locator("#cutters tr.more:visible").count() == 2
+    assert page.evaluate("review.cutter.id") == other
+
+
+def test_cutters_are_sorted_by_exact_shares_below_the_one_shown(at, planned):
+    page = at()
+    head = page.locator("#cutters thead button", has_text="Reached")
+    share = {c.id: c.area_share.interference_free + c.area_share.accessible for c in planned.plan.cutters}
+    assert len(set(share.values())) > 2
+    for direction, sign in (("ascending", 1), ("descending", -1)):
+        head.click()
+        assert page.get_attribute("#cutters thead th:nth-child(3)", "aria-sort") == direction
+        order = names(page)
+        assert order[0] == planned.shown
+        below = [sign * share[each] for each in order[1:]]
+        assert below == sorted(below)
+        # What a row says more stays below it.
+        pairs = page.eval_on_selector_all(
+            "#cutters tr.more",
+            """rows => rows.map(row =>
+                 [row.id, row.previousElementSibling.querySelector('.opener').getAttribute('aria-controls')])""",
+        )
+        assert all(one == other for one, other in pairs)
+
+
+def lost(page):
+    """Share of the lost area, of the cutter shown, that faces the eye and that nothing hides."""
+    return page.evaluate(
+        """() => { const { back } = review.stage.table.frame(); let [all, seen] = [0, 0];
+             for (let row = 0; row < review.samples.count; row++) {
+               if (!["inaccessible", "undecided"].includes(review.samples.verdict(review.cutter.id, row))) continue;
+               const normal = review.samples.normal(row), front = normal.reduce((sum, x, k) => sum + x * back[k], 0);
+               all += review.samples.area(row);
+               if (front > 0.1 && !review.picker.hidden(review.samples.point(row), back)) seen += review.samples.area(row); }
+             return all ? seen / all : null; }"""
+    )
+
+
+def test_the_first_view_shows_what_is_lost(at, tmp_path):
+    """The jaw stands between the eye's usual place and what it makes inaccessible."""
+    found = plan(
+        ROOT / "samples" / "pocket_top.step", cutters=["D12L80rc6"], holder="D60L60", grid=11, area_budget=0,
+        fixtures=["box:15,60,40@62,-10,-10"],
+    )  # fmt: skip
+    write_html(found, None, tmp_path / "review.html")
+    page = at(where=tmp_path / "review.html")
+    assert page.inner_text("#verdict") == "✕ Not feasible"
+    assert lost(page) > 0.9
+    page.keyboard.press("7")
+    assert lost(page) < 0.5
+
+
+def test_numbers_are_written_as_people_write_them(planned, path):
+    text = re.sub(
+        r"(?s)<script.*?</script>|<style.*?</style>|<code>.*?</code>|<[^>]+>", " ", path.read_text(encoding="utf-8")
+    )
+    assert not re.search(r"\d[eE][-+]?\d", text)
+    assert not re.search(r"\b-0\b|(?<!\d)360°|\bmm2\b", text)
+    page = Page(path.read_bytes())
+    rows = page.of("tr")
+    assert {"allowance mm0", "setup0, 0, 1", "target facesF1", "proposeno"} <= set(rows)
+
+
+def test_selected_faces_are_copied_as_the_option_takes_them(at, planned):
+    page = at(permissions=["clipboard-read", "clipboard-write"])
+    for number in (5, 1, 3, 4):
+        page.locator(f"#faces tr[data-face='{number}'] input").check()
+    page.get_by_role("button", name="Copy for --faces").click()
+    page.locator("#status", has_text="Copied").wait_for()
+    text = page.evaluate("navigator.clipboard.readText()")
+    assert text == "F1,3-5"
+    # The face under the pointer, by the mouse and by a key.
+    row = seen(page, INNER)[0]
+    page.keyboard.down("Control")
+    page.mouse.click(*place_of(page, row))
+    page.keyboard.up("Control")
+    assert page.inner_text("#selection output") == "F3-5"
+    page.locator("#under", has_text="F1").wait_for()
+    page.keyboard.press("s")
+    assert page.inner_text("#selection output") == "F1,3-5"
+    assert page.locator("#faces tr[data-face='1'] input").is_checked()
+    page.get_by_role("button", name="Clear").click()
+    assert page.locator("#selection").is_hidden()
+
+
+def test_a_tapped_spot_is_seen_on_a_phone(at, planned):
+    page = at("phone")
+    failing = next(c.id for c in planned.plan.cutters if c.witnesses)
+    page.locator(f'#cutters tr[data-cutter="{failing}"] th button.text').tap()
+    spot = page.locator("#spots [data-spot]:visible button").first
+    spot.scroll_into_view_if_needed()
+    spot.tap()
+    assert within(page, "#picture")
+    assert within(page, "#status")
+    assert page.inner_text("#status").startswith("Spot 1 of")
+    x, y = place_of(page, page.evaluate("review.sample.row"))
+    box = page.locator("#picture").bounding_box()
+    assert box["x"] < x < box["x"] + box["width"]
+    assert box["y"] < y < box["y"] + box["height"]
+    assert page.locator(".marks circle.sample").count() == 1
+    assert page.locator("#legend details").get_attribute("open") is None
+    # The picture keeps its size of the window.
+    assert box["height"] < 0.5 * SCREENS["phone"][1]
+
+
+def test_both_solutions_of_the_rotary_axes_are_told_at_a_click(at, planned):
+    page = at(permissions=["clipboard-read", "clipboard-write"])
+    angles, taken = planned.rotary(planned.shown)
+    rows = [row for row in seen(page, INNER) if taken[row] >= 0][:3]
+    assert rows
+    names_ = [axis.name for axis in planned.conditions.machine.rotary]
+    for row in rows:
+        page.mouse.click(*place_of(page, row))
+        assert page.evaluate("review.sample.row") == row
+        told = page.eval_on_selector_all("#angles .value", "all => all.map(each => each.textContent)")
+        first, other = angles[row][taken[row]], angles[row][1 - taken[row]]
+        for text, wanted in zip(told[1:], (first, other), strict=False):
+            found = {word[0]: float(word[1:]) for word in re.findall(r"[A-C]-?[\d.]+", text)}
+            for name, angle in zip(names_, np.degrees(wanted), strict=True):
+                if np.isfinite(angle):
+                    assert abs(found[name] - angle) % 360 == pytest.approx(0, abs=0.3)
+        page.locator("#angles .copy").nth(1).click()
+        page.locator("#status", has_text="Copied").wait_for()
+        assert page.evaluate("navigator.clipboard.readText()") == " ".join(re.findall(r"[A-C]-?[\d.]+", told[1]))
+    # A posture that is not free may be copied, but not without a word.
+    failing = next(c.id for c in planned.plan.cutters if c.witnesses)
+    page.locator(f'#cutters tr[data-cutter="{failing}"] th button.text').click()
+    page.keyboard.press("n")
+    page.locator("#angles .copy").first.click()
+    page.locator("#status", has_text="Copied").wait_for()
+    assert "not free" in page.inner_text("#status")
+
+
+def saved(path):
+    """A page that a browser wrote: it ends the elements that have nothing in them."""
+    return Page(path.read_bytes().replace(b"></rect>", b"/>").replace(b"></path>", b"/>"))
+
+
+def test_notes_are_kept_in_the_copy_that_is_saved(at, planned, path, tmp_path):
+    page = at()
+    text = 'Is F1 to be <b>bold</b>? </script><script>alert(1)</script> & \u2028 "so"'
+    page.fill("#note", text)
+    page.click("#add-note")
+    row = seen(page, INNER)[0]
+    page.mouse.click(*place_of(page, row))
+    page.click("#note-here")
+    page.keyboard.type("here")
+    page.keyboard.press("Control+Enter")
+    with page.expect_download() as waiting:
+        page.click("#save-copy")
+    assert waiting.value.suggested_filename == "review-notes.html"
+    copy = tmp_path / "review-notes.html"
+    waiting.value.save_as(copy)
+    assert "Saved as review-notes.html" in page.inner_text("#status")
+
+    # All but the notes is as it was.
+    old, new = Page(path.read_bytes()), saved(copy)
+    assert (new.meta, new.stream) == (old.meta, old.stream)
+    (data,) = (text for tag, a, text in new.elements if a.get("id") == "notes-data")
+    assert [each["text"] for each in json.loads(data)] == [text, "here"]
+    assert [tag for tag, a, _ in new.elements].count("script") == [tag for tag, a, _ in old.elements].count("script")
+    # Without scripts they are read, too.
+    assert any("F1 to be <b>bold</b>?" in item for item in new.of("li"))
+
+    again = at(where=copy)
+    assert again.eval_on_selector_all("ol.notes .said", "all => all.map(each => each.textContent)") == [text, "here"]
+    again.locator("ol.notes .place").click()
+    assert again.evaluate("review.sample.row") == row
+    again.get_by_role("button", name="Remove note 1").click()
+    with again.expect_download() as waiting:
+        again.click("#save-copy")
+    assert waiting.value.suggested_filename == "review-notes.html"
+    waiting.value.save_as(copy)
+    third = saved(copy)
+    (data,) = (text for tag, a, text in third.elements if a.get("id") == "notes-data")
+    assert [each["text"] for each in json.loads(data)] == ["here"]
+
+
+def test_who_leaves_with_unsaved_notes_is_asked(at):
+    page = at()
+    dialogs = []
+    page.on("dialog", lambda dialog: (dialogs.append(dialog.type), dialog.accept()))
+    page.fill("#note", "not yet saved")
+    page.click("#add-note")
+    page.close(run_before_unload=True)
+    page.wait_for_event("close")
+    assert dialogs == ["beforeunload"]
+
+
+def test_the_scheme_is_switched_and_paper_stays_white(at):
+    def dark():
+        colour = page.evaluate("getComputedStyle(document.querySelector('header')).backgroundColor")
+        return max(map(int, re.findall(r"\d+", colour)[:3])) < 128
+
+    page = at(scheme="dark")
+    assert dark()
+    page.select_option("#scheme", "light")
+    assert not dark()
+    page.select_option("#scheme", "dark")
+    page.emulate_media(color_scheme="light")
+    assert dark()
+    page.emulate_media(media="print")
+    assert not dark()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("screen", SCREENS)
+def test_a_thousand_faces_are_listed_filtered_and_selected(at, thousand, screen):
+    page = at(screen, where=thousand)
+    for scheme in ("dark", "light"):
+        page.emulate_media(color_scheme=scheme)
+        assert page.evaluate("document.documentElement.scrollWidth") <= SCREENS[screen][0]
+    assert page.locator("#faces tbody tr").count() == 1000
+    page.fill("#faces input[type=search]", "f99")
+    found = page.locator("#faces tbody tr:visible")
+    assert found.count() == page.evaluate("review.meta.faces.filter(face => /^F99/.test(face.id)).length")
+    for k in range(found.count()):
+        found.nth(k).locator("input").check()
+    numbers = sorted(page.evaluate("review.meta.faces.filter(face => /^F99/.test(face.id)).map(face => face.number)"))
+    assert numbers == [99, *range(990, 1000)]
+    assert page.inner_text("#selection output") == "F99,990-999"
+
+
+@pytest.fixture(scope="module")
+def thousand(tmp_path_factory):
+    """A hundred and seventy boxes of six faces on a plane, apart from each other."""
+    from cad_io import Part
+    from tests.support.cad_parts import box, compound
+
+    part = Part(compound(*(box(4, 4, 4, at=(10 * (k % 13), 10 * (k // 13), 0)) for k in range(170))), file="boxes.step")
+    found = plan(part, cutters=["D4L20"], faces="all", grid=2, area_budget=0)
+    path = tmp_path_factory.mktemp("thousand") / "review.html"
+    write_html(found, None, path)
+    return path
