@@ -10,7 +10,7 @@ from plan_cutters import plan
 from plan_cutters.report.page.write import write_html
 from plan_cutters.report.story.chip import CHIPS, chip
 from plan_cutters.report.story.story import story_of
-from tests.support.browser import chromium, opened, place_of, seen, wait_for_map
+from tests.support.browser import chromium, opened, place_of, seen
 from tests.support.places import ROOT
 from tests.support.review_page import Page
 
@@ -79,17 +79,18 @@ def within(page, selector):
     )
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("screen", SCREENS)
-def test_the_first_screen_has_verdict_picture_and_the_cutter_shown(at, planned, screen, scheme):
-    page = at(screen, scheme)
-    assert page.evaluate("document.documentElement.scrollWidth") <= SCREENS[screen][0]
-    for selector in ("#verdict", "h1", "#picture", "#cutters tr[data-cutter] th"):
-        assert within(page, selector), selector
+def test_the_first_screen_has_verdict_picture_and_the_cutter_shown(at, planned, screen):
+    page = at(screen)
+    for scheme in ("light", "dark"):
+        page.emulate_media(color_scheme=scheme)
+        assert page.evaluate("document.documentElement.scrollWidth") <= SCREENS[screen][0]
+        for selector in ("#verdict", "h1", "#picture", "#cutters tr[data-cutter] th"):
+            assert within(page, selector), selector
+        ground = page.evaluate("getComputedStyle(document.querySelector('header')).backgroundColor")
+        assert (min(map(int, re.findall(r"\d+", ground)[:3])) > 128) == (scheme == "light")
     assert names(page)[0] == planned.shown == page.evaluate("review.cutter.id")
     assert page.locator("#cutters tr.more:visible").count() == 1
-    light = page.evaluate("getComputedStyle(document.body.querySelector('header')).backgroundColor")
-    assert (min(map(int, re.findall(r"\d+", light)[:3])) > 128) == (scheme == "light")
     if screen != "phone":
         # All of nineteen cutters in one list, each in a line.
         lines = page.eval_on_selector_all("#cutters tr[data-cutter]", "rows => rows.map(row => row.offsetHeight)")
@@ -251,7 +252,7 @@ def test_both_solutions_of_the_rotary_axes_are_told_at_a_click(at, planned):
     names_ = [axis.name for axis in planned.conditions.machine.rotary]
     for row in rows:
         page.mouse.click(*place_of(page, row))
-        wait_for_map(page, row)
+        assert page.evaluate("review.sample.row") == row
         told = page.eval_on_selector_all("#angles .value", "all => all.map(each => each.textContent)")
         first, other = angles[row][taken[row]], angles[row][1 - taken[row]]
         for text, wanted in zip(told[1:], (first, other), strict=False):
@@ -283,7 +284,6 @@ def test_notes_are_kept_in_the_copy_that_is_saved(at, planned, path, tmp_path):
     page.click("#add-note")
     row = seen(page, INNER)[0]
     page.mouse.click(*place_of(page, row))
-    wait_for_map(page, row)
     page.click("#note-here")
     page.keyboard.type("here")
     page.keyboard.press("Control+Enter")
@@ -345,11 +345,12 @@ def test_the_scheme_is_switched_and_paper_stays_white(at):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("screen", SCREENS)
-def test_a_thousand_faces_are_listed_filtered_and_selected(at, thousand, screen, scheme):
-    page = at(screen, scheme, where=thousand)
-    assert page.evaluate("document.documentElement.scrollWidth") <= SCREENS[screen][0]
+def test_a_thousand_faces_are_listed_filtered_and_selected(at, thousand, screen):
+    page = at(screen, where=thousand)
+    for scheme in ("dark", "light"):
+        page.emulate_media(color_scheme=scheme)
+        assert page.evaluate("document.documentElement.scrollWidth") <= SCREENS[screen][0]
     assert page.locator("#faces tbody tr").count() == 1000
     page.fill("#faces input[type=search]", "f99")
     found = page.locator("#faces tbody tr:visible")
