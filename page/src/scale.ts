@@ -5,7 +5,7 @@ import { svg } from "./dom.ts";
 import { axis, dot } from "./vectors.ts";
 
 /** Length of an axis, and of the bar at most, pixels. */
-const [ARM, BAR] = [24, 110];
+const [ARM, BAR] = [24, 100];
 const [WIDTH, HEIGHT] = [190, 76];
 const MIDDLE: [number, number] = [WIDTH - 38, 38];
 
