@@ -123,7 +123,8 @@ def test_a_killed_child_and_one_that_takes_too_long_cost_one_part(client, tmp_pa
     assert (rows["a"].status, rows["a"].code) == ("failed", 3)
     assert "killed (SIGKILL)" in rows["a"].error
     rows = ran(jobs(tmp_path, "a"), client, out, timeout=0.3)
-    assert "not planned within 0.3 s" in rows["a"].error
+    assert "not done within 0.3 s" in rows["a"].error
+    assert rows["a"].code == TIMED_OUT
     assert children(client) == []
     assert not (tmp_path / "out/a-plan").exists()
 

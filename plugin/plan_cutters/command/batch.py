@@ -70,7 +70,8 @@ _many = heading("Many parts")
        help="Scheduler of a running Dask cluster, or its scheduler file.  [default: workers of this machine]")  # fmt: skip
 @_many("--workers", type=click.IntRange(min=1), metavar="N",
        help="Workers of this machine, each for one part at a time.  [default: by its cores and memory]")  # fmt: skip
-@_many("--timeout-part", type=float, metavar="S", help="Seconds for a part; one that takes longer has failed.")
+@_many("--timeout-part", "--timeout", "timeout_part", type=float, metavar="S",
+       help="Seconds for the whole of a part; one that takes longer has failed, with exit code 124.")  # fmt: skip
 @_many("--limit-memory", type=float, metavar="GB",
        help="Most memory of a part.  [default: an equal share of 3/4 of this machine's, at least 4]")  # fmt: skip
 @_many("--force", is_flag=True, help="Plan again what is done already.")
