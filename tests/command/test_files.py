@@ -367,7 +367,7 @@ def test_what_is_old_is_named(tmp_path):
     words = [SAMPLES / "pocket_top.step", "--cutter", "R4L60", "--grid", "3", "--area-budget", "0", "--formats", "json",
              "-o", "out"]  # fmt: skip
     done = run(*words, cwd=tmp_path)
-    assert "merged.glb" in next(line for line in done.stderr.splitlines() if line.startswith("Left over"))
+    assert "merged.glb" in next(line for line in done.stdout.splitlines() if line.startswith("Left over"))
     assert (tmp_path / "out" / "merged.glb").read_text() == "whose?"
 
 

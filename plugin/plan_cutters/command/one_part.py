@@ -135,7 +135,7 @@ class Onlooker:
     def summarise(self, plan: "Plan") -> None:
         self.end()
         if not self.given["quiet"]:
-            summary(plan, _tells(self.given), verbose=self.given["verbose"])
+            summary(plan, verbose=self.given["verbose"], tells=_tells(self.given))
 
     def safe(self, plan: "Plan") -> None:
         self.plan = plan

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rich.text import Text
 
 from plan_cutters.command.rows import cell, cutter_rows, worst_faces
+from plan_cutters.command.terminal import show
 from plan_cutters.report.story.cutters import left
 from plan_cutters.report.story.headline import area
 from plan_cutters.report.story.names import named
@@ -23,7 +24,7 @@ _LINES, _OTHERS = 5, 3
 _MARKS = {True: "bold green", False: "bold red", None: "bold yellow"}
 
 
-def summary(plan: "Plan", tells: Callable[..., None], *, verbose: bool = False) -> None:
+def summary(plan: "Plan", *, verbose: bool = False, tells: Callable[..., None] = show) -> None:
     """Tell what is found, but not what is not reached: that comes last."""
     story = story_of(plan)
     title, good, about, why = story.headline

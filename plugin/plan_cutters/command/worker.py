@@ -39,7 +39,8 @@ def report(word: str, text: str) -> None:
     """Tell the parent, if there is one: `part FILE`, `staging FOLDER`, `stage NAME`, `detail TEXT`, `at DONE TOTAL`,
     `work WHOSE FACE`, `say TEXT`, `show TEXT`, `safe CODE FOLDER`, `done CODE`.
 
-    `say`: for people; `show`: for them, on standard output; `safe`: the plan of this part is in the folder, models follow; `done`: so are they.
+    `say`: for people; `show`: for them, on standard output; `safe`: the plan of this part is in the folder, models follow;
+    `done`: so are they.
     """
     if not is_child():
         return
