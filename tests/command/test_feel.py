@@ -24,6 +24,7 @@ from plan_cutters.command.terminal import clean, show
 from plan_cutters.document.model import Plan
 from plan_cutters.domain.default_tools import builtin
 from plan_cutters.report.story.numbers import percent
+from plan_cutters.report.story.story import story_of
 from tests.support.commands import assert_one_line, in_lines, leftovers, said_until
 from tests.support.forked import ENV, run
 from tests.support.places import SAMPLES
@@ -289,16 +290,14 @@ def test_many_cutters_are_said_in_few_lines(capsys, failing):
     assert all(f" ({c.id})" in whole for c in many)
 
 
-def test_nineteen_cutters_are_one_table_with_their_whole_names(capsys, planned):
-    names = [each.name for each in builtin()][:19]
-    cutters = [
-        planned.cutters[k % 3].model_copy(update={"id": f"R{k + 1}L80", "sources": [], "name": name})
-        for k, name in enumerate(names)
-    ]
-    said = shown(capsys, planned.model_copy(update={"cutters": cutters, "selected": "R1L80"})).splitlines()
+def test_nineteen_cutters_are_one_table_with_their_whole_names(capsys):
+    document = plan(GROOVE, cutters=builtin()[:19], grid=3, area_budget=0).plan
+    names = [each.name for each in story_of(document).cutters]
+    said = shown(capsys, document).splitlines()
     head = next(k for k, line in enumerate(said) if line.startswith("  cutter "))
     rows = said[head + 1 : head + 20]
     assert [re.match(r"[> ] (.*?) +(?:yes|no|unsure) ", row)[1] for row in rows] == names
+    assert len(set(names)) == 19
     assert max(map(len, rows)) <= 80
     assert said[head + 20] == ""
 

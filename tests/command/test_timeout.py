@@ -10,6 +10,7 @@ from plan_cutters.batch import job
 from plan_cutters.command import retry
 from plan_cutters.command.worker import TIMED_OUT
 from plan_cutters.command.worker_errors import OutOfTime
+from plan_cutters.report.to_json import PENDING
 from tests.support.commands import assert_one_line, leftovers
 from tests.support.forked import run
 from tests.support.places import SAMPLES
@@ -78,7 +79,7 @@ def test_parts_that_are_done_keep_their_code_where_only_the_end_is_slow(monkeypa
 def test_a_plan_that_is_there_already_stays_and_says_what_is_missing(monkeypatch, capsys, tmp_path):
     out = tmp_path / "out"
     plan(SAMPLES / "v_groove.step", cutters=["R6L80"], grid=3, area_budget=0).write(out, ("json",))
-    document = json.loads((out / "plan.json").read_text()) | {"not_written": {"step": "not written yet"}}
+    document = json.loads((out / "plan.json").read_text()) | {"not_written": {"step": PENDING}}
     (out / "plan.json").write_text(json.dumps(document))
     Children(monkeypatch, OutOfTime(2, 0, out))
     assert planned() == TIMED_OUT
