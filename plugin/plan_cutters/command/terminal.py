@@ -10,7 +10,7 @@ import re
 import sys
 import unicodedata
 from collections.abc import Callable, Iterator
-from io import StringIO
+from io import StringIO, TextIOWrapper
 from typing import IO, TYPE_CHECKING, Any, Literal
 
 from plan_cutters.command.worker import is_child, report
@@ -155,9 +155,9 @@ def give(text: str) -> None:
         report("show", text)
     elif sys.stdout is not None and not _unshown:
         try:
-            if hasattr(sys.stdout, "reconfigure"):
+            if isinstance(sys.stdout, TextIOWrapper):
                 # Names may have no place in the terminal's encoding.
-                handing_out(lambda: sys.stdout.reconfigure(errors="backslashreplace"))
+                sys.stdout.reconfigure(errors="backslashreplace")
             hand_out(text)
         except (ReaderGone, PlanError) as error:
             _unshown.append(error)
