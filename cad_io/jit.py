@@ -61,11 +61,11 @@ def cache_folder(sources: Path) -> str:
 
 
 #: In newer versions of the compiler they have names without a line in front.
-_Impl = getattr(caching, "CacheImpl", None) or caching._CacheImpl
-_Asked = getattr(caching, "UserProvidedCacheLocator", None) or caching._UserProvidedCacheLocator
+_Impl: Any = getattr(caching, "CacheImpl", None) or caching._CacheImpl
+_Asked: Any = getattr(caching, "UserProvidedCacheLocator", None) or caching._UserProvidedCacheLocator
 
 
-class _BesideContent(_Asked):  # type: ignore[misc]
+class _BesideContent(_Asked):
     """Machine code lies by what it was made of, which its folder's name says, and not by where the sources are or how old.
 
     So another environment with the same sources, or another checkout, takes what is there.

@@ -98,7 +98,7 @@ def test_what_a_cube_stands_on():
         assert set(stands) == {n for n, out in normal.items() if out @ axis < -1.0 + 1e-9}
 
 
-HOW = {"cutters": "R2L60rc2", "faces": "all", "grid": 3, "area_budget": 0}
+HOW = {"cutters": "R2L60rc2", "faces": "all", "grid": 5, "area_budget": 0}
 
 
 def test_a_proposal_stands_on_a_face_and_holds_what_it_promised():
