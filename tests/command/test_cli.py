@@ -14,7 +14,7 @@ import pytest
 
 from plan_cutters.report import Staging
 from tests.support.commands import assert_one_line, in_lines, leftovers, said_until
-from tests.support.forked import ENV, run, start
+from tests.support.forked import ENV, run
 from tests.support.places import ROOT, SAMPLES
 
 
@@ -240,7 +240,10 @@ def test_a_read_that_hangs_is_ended(tmp_path):
 
 
 def test_a_crash_of_the_kernel_is_one_line(tmp_path):
-    process = start(SAMPLES / "peaks_and_valleys.step", "--grid", "401", cwd=tmp_path)
+    process = subprocess.Popen(
+        [sys.executable, "-m", "plan_cutters", str(SAMPLES / "peaks_and_valleys.step"), "--grid", "401"],
+        cwd=tmp_path, env=ENV, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
     said_until(process, "taking samples")
     children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
     os.kill(int(children[0]), signal.SIGSEGV)

@@ -26,7 +26,6 @@ from cad_io.write.canonical import canonical
 from plan_cutters import Cutter, plan
 from plan_cutters.report import models
 from tests.support.forked import run
-from tests.support.forked import start as begun
 from tests.support.places import ROOT, SAMPLES
 from tests.support.split_parts import labels
 
@@ -293,7 +292,8 @@ def test_a_plan_that_names_files_of_others_removes_none(result, tmp_path):
 
 def start(*words, cwd):
     """The command, as far as it has begun to write models, and what it has said until then."""
-    process = begun(*words, cwd=cwd)
+    process = subprocess.Popen([sys.executable, "-m", "plan_cutters", *map(str, words)], cwd=cwd, env=ENV,
+                               stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)  # fmt: skip
     said = []
     for line in process.stderr:
         said.append(line)

@@ -2,7 +2,7 @@
 
 A copy of this process, which has imported the CAD kernel and the compiler, runs the command's `main` with streams, folder,
 environment and signals of its own; the worker that the command starts is a fork, too. Tests that are about the start of a
-process, about signals at its start or about what it imports start a real one.
+process, about signals to it or about what it imports start a real one.
 """
 
 import faulthandler
@@ -17,7 +17,6 @@ import tempfile
 import time
 import traceback
 import warnings
-from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 
 from plan_cutters.command import entry
@@ -49,22 +48,6 @@ def run(*words, cwd=None, command="plan-cutters", environment=None, bare=False, 
             stream.seek(0)
             said.append(stream.read().decode(errors="backslashreplace").replace("\r\n", "\n"))
     return subprocess.CompletedProcess([command, *words], code, *said)
-
-
-def start(*words, cwd):
-    """Begin `plan-cutters` and leave it to itself: what of `subprocess.Popen` with pipes is asked for by tests that end it."""
-    _warm("plan-cutters")
-    words = [str(word) for word in words]
-    (out, out_there), (err, err_there) = os.pipe(), os.pipe()
-    there = (os.fdopen(out_there, "wb"), os.fdopen(err_there, "wb"))
-    pid = os.fork()
-    if pid == 0:
-        os.close(out)
-        os.close(err)
-        _live(lambda: _command("plan-cutters", words, cwd, ENV, there, False))
-    for each in there:
-        each.close()
-    return _Begun(pid, out, err)
 
 
 @functools.cache
@@ -103,9 +86,6 @@ def _live(work):
 def _command(command, words, cwd, environment, streams, bare):
     for number, stream in enumerate((os.open(os.devnull, os.O_RDONLY), *(each.fileno() for each in streams))):
         os.dup2(stream, number)
-    # Who reads to their end waits for this process alone.
-    for each in streams:
-        each.close()
     sys.stdin, sys.stdout = os.fdopen(0), os.fdopen(1, "w", encoding="utf-8")
     sys.stderr = os.fdopen(2, "w", encoding="utf-8", errors="backslashreplace")
     os.environ.clear()
@@ -192,22 +172,3 @@ class _Copy:
     def send_signal(self, number):
         if self.poll() is None:
             os.kill(self.pid, number)
-
-
-class _Begun(_Copy):
-    """A copy that is still at work: what it says can be read meanwhile."""
-
-    def __init__(self, pid, out, err):
-        super().__init__(pid)
-        self.stdout, self.stderr = (os.fdopen(each, encoding="utf-8", errors="backslashreplace") for each in (out, err))
-
-    def communicate(self, timeout=None):
-        """Both streams to their ends, as far as they were not read yet."""
-        with ThreadPoolExecutor(2) as pool, self.stdout, self.stderr:
-            said = [pool.submit(each.read) for each in (self.stdout, self.stderr)]
-            try:
-                self.wait(timeout)
-            except BaseException:
-                os.kill(self.pid, signal.SIGKILL)
-                raise
-            return tuple(each.result() for each in said)
