@@ -18,6 +18,7 @@ from typing import Any
 
 import numba
 from llvmlite import binding as llvm
+from numba.core import caching
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.types import unliteral  # type: ignore[attr-defined]
@@ -59,14 +60,34 @@ def cache_folder(sources: Path) -> str:
     return tempfile.mkdtemp(prefix="plan-cutters-")
 
 
+#: In newer versions of the compiler they have names without a line in front.
+_Impl: Any = getattr(caching, "CacheImpl", None) or caching._CacheImpl
+_Asked: Any = getattr(caching, "UserProvidedCacheLocator", None) or caching._UserProvidedCacheLocator
+
+
+class _BesideContent(_Asked):
+    """Machine code lies by what it was made of, which its folder's name says, and not by where the sources are or how old.
+
+    So another environment with the same sources, or another checkout, takes what is there.
+    """
+
+    @classmethod
+    def get_suitable_cache_subpath(cls, file: str) -> str:
+        return Path(file).parent.name
+
+    def get_source_stamp(self) -> str:
+        return "by content"
+
+
 @contextmanager
 def _our_cache(sources: Path, *beneath: str) -> Iterator[None]:
-    before = numba.config.CACHE_DIR
+    before = numba.config.CACHE_DIR, _Impl._locator_classes
     numba.config.CACHE_DIR = str(Path(cache_folder(sources), *beneath))
+    _Impl._locator_classes = [_BesideContent, *before[1]]
     try:
         yield
     finally:
-        numba.config.CACHE_DIR = before
+        numba.config.CACHE_DIR, _Impl._locator_classes = before
 
 
 class _Linked(JITCodeLibrary):

@@ -21,12 +21,12 @@ _CUTTERS = ["--cutters", "samples/shop.toml", "--cutter", "D16L90", "--holder", 
 
 
 def run(*words: str) -> str:
-    """Run one of the commands as a user does; what it says."""
+    """Run one of the commands as a user does; what it found."""
     command, *rest = words
-    done = subprocess.run([str(Path(sys.executable).with_name(command)), *rest], cwd=ROOT, text=True, stderr=subprocess.STDOUT,
-                          stdout=subprocess.PIPE, check=False)  # fmt: skip
+    done = subprocess.run([str(Path(sys.executable).with_name(command)), *rest], cwd=ROOT, text=True, capture_output=True,
+                          check=False)  # fmt: skip
     if done.returncode > 1:
-        raise SystemExit(done.stdout)
+        raise SystemExit(done.stderr)
     return done.stdout
 
 
@@ -43,9 +43,8 @@ def main() -> None:
             "-o",
             str(out / "p"),
         )
-        # What is printed while it works tells seconds: they differ.
-        kept = said[said.index("\nTake ") + 1 : said.index("\nWritten")].splitlines()
-        text = "\n".join(line for line in kept if " s  " not in line[:12])
+        # The last lines tell seconds, which differ, and a folder.
+        text = said[said.index("\nTake ") + 1 : said.index("\nWritten")]
         (PICTURES / "summary.txt").write_text(text.rstrip() + "\n", encoding="utf-8")
         _readme(text.splitlines())
         run("plan-cutters-map", "samples/peaks_and_valleys.step", "--at", "-2.241,4.502,-22.43", "--cutter", "D16L90", "-o",

@@ -1,7 +1,8 @@
 """Tests on real files say which one they miss where the files are not at hand; files of tests are shared out whole.
 
-What a module of tests has planned once for all of them is then planned in one process only. The longest files begin, so that no
-process is left alone with one of them at the end; what needs kernels that no one has compiled yet begins beside what needs none.
+What a module of tests has planned once for all of them is then planned in one process only. The longest files begin and the
+shortest end, so that no process is left alone with one of them at the end; what needs kernels that no one has compiled yet begins
+beside what needs none.
 What has been imported stays to the end: the collector of garbage passes over it.
 """
 
@@ -15,8 +16,10 @@ from hypothesis import settings
 settings.register_profile("suite", settings(), deadline=None)
 settings.load_profile("suite")
 
-#: Files of tests that begin, in this order; the others follow by name.
-FIRST = ("ahead", "machine_files", "cli", "feel", "files")
+#: Files of tests that begin, in this order; the others follow by name, and those of the last folders fill what is left of time:
+#: they are short, so that all processes end together.
+FIRST = ("ahead", "machine_files", "cli", "feel", "files", "lifetime", "setup_ranking", "batch_command")
+LAST = ("document", "domain", "library")
 
 
 def pytest_sessionstart():
@@ -35,7 +38,7 @@ def pytest_collection_modifyitems(items):
             if isinstance(value, Path) and not value.exists():
                 item.add_marker(pytest.mark.skip(reason=f"the real file {value.name} is not at hand (shared/data/cad)"))
     rank = {f"test_{name}": k for k, name in enumerate(FIRST)}
-    items.sort(key=lambda item: rank.get(item.path.stem, len(rank)))
+    items.sort(key=lambda item: rank.get(item.path.stem, len(rank) + (item.path.parent.name in LAST)))
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -99,6 +99,7 @@ def test_each_bad_part_of_a_manifest_is_one_line_and_the_others_go_on(batch, par
         (["--cutter", "R6"], "R6"),
         (["--formats", "dwg"], "format 'dwg' is not built in"),
         (["--timeout-part", "-1"], "--timeout-part must be a positive number"),
+        (["--timeout", "0"], "--timeout-part must be a positive number"),
         (["--limit-memory", "1"], "--limit-memory must be at least 2 GB"),
         (["--cluster", "none.json"], "--cluster none.json: no such file"),
         (["--cluster", "tcp://127.0.0.1:1"], "--cluster tcp://127.0.0.1:1: "),
@@ -121,9 +122,9 @@ def test_an_output_that_cannot_be_written_is_one_line(batch, parts):
     assert "b.step" in done.stderr
 
 
-def killed_at(parts, moment, victim):
+def killed_at(parts, moment, victim, workers="2"):
     """Begin a batch and kill something; the client's exit code, and what was left alive."""
-    client = started(".", "--out", "out", *QUICK, "--workers", "2", "--quiet", cwd=parts)
+    client = started(".", "--out", "out", *QUICK, "--workers", workers, "--quiet", cwd=parts)
     try:
         moment(client)
         seen = descendants(client)
@@ -140,11 +141,14 @@ def killed_at(parts, moment, victim):
         client.communicate()
 
 
-def finished(parts):
+def finished(parts, workers="2"):
     """Run again to the end: what each part was, planned or kept."""
-    client = started(".", "--out", "out", *QUICK, "--workers", "2", "--quiet", cwd=parts)
-    _, said = client.communicate(timeout=240)
+    client = started(".", "--out", "out", *QUICK, "--workers", workers, cwd=parts)
+    found, said = client.communicate(timeout=240)
     assert client.returncode == 0, said
+    first, *where = found.splitlines()
+    assert first == "3 parts: 3 finished."
+    assert "".join("".join(where).split()) == f"Lookattheminabrowser:{parts}/out/index.html"
     with (parts / "out/index.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     for name in ("a", "b", "c"):
@@ -159,12 +163,12 @@ def test_a_killed_client_leaves_nothing_and_is_gone_on_with(parts):
         while not list(parts.glob("out/*-plan/done.json")) and time.monotonic() < ends and client.poll() is None:
             time.sleep(0.02)
 
-    code, alive = killed_at(parts, one_is_done, "client")
+    code, alive = killed_at(parts, one_is_done, "client", "1")
     assert code == -signal.SIGKILL
     assert alive == []
     before = {file.parent.name[0] for file in parts.glob("out/*-plan/done.json")}
     assert 1 <= len(before) < 3
-    statuses = finished(parts)
+    statuses = finished(parts, "1")
     assert {name for name, status in statuses.items() if status == "kept"} == before
     assert set(statuses) == {"a", "b", "c"}
 

@@ -13,7 +13,7 @@ import pytest
 
 from plan_cutters import Options, plan_many
 from plan_cutters.batch import cluster, keys
-from plan_cutters.batch.job import Fault, Job, Settings
+from plan_cutters.batch.job import TIMED_OUT, Fault, Job, Settings
 from plan_cutters.batch.row import PartRow
 from plan_cutters.batch.run import Terms, foreseen, handed_out, outcomes, run_batch
 from plan_cutters.batch.store import Store
@@ -123,7 +123,8 @@ def test_a_killed_child_and_one_that_takes_too_long_cost_one_part(client, tmp_pa
     assert (rows["a"].status, rows["a"].code) == ("failed", 3)
     assert "killed (SIGKILL)" in rows["a"].error
     rows = ran(jobs(tmp_path, "a"), client, out, timeout=0.3)
-    assert "not planned within 0.3 s" in rows["a"].error
+    assert "not done within 0.3 s" in rows["a"].error
+    assert rows["a"].code == TIMED_OUT
     assert children(client) == []
     assert not (tmp_path / "out/a-plan").exists()
 

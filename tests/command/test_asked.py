@@ -158,8 +158,8 @@ def test_ignoring_on_the_command_line(tmp_path):
     words = ("covered.step", "--cutter", "R3L40", "--spacing", "4", "--tolerance", "0.05", "--area-budget", "0")
     done = run(*words, "--ignore", "F2", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert "1 to machine, 1 ignored" in in_lines(done.stderr)
-    assert "No face that can be judged is sculptured" in in_lines(done.stderr)
+    assert "1 to machine, 1 ignored" in in_lines(done.stdout)
+    assert "No face that can be judged is sculptured" in in_lines(done.stdout)
     document = json.loads((tmp_path / "covered-plan" / "plan.json").read_text())
     jsonschema.Draft202012Validator(json.loads((ROOT / "plugin/plan_cutters/plan.schema.json").read_text())).validate(
         document

@@ -143,11 +143,11 @@ def test_the_files_of_a_plan(tmp_path):
         parts = ("interference_free", "accessible", "inaccessible", "undecided", "unjudged")
         assert sum(c[k] for k in parts) == plan["samples"]["count"]
         assert sum(c["by_reason"].values()) == c["inaccessible"]
-    assert "R3L60" in done.stderr
-    assert "without a holder" in in_lines(done.stderr)
-    assert done.stderr.index("Take flat end D6 x 60") < done.stderr.index("flat end D80 x 60 ")
+    assert "R3L60" in done.stdout
+    assert "without a holder" in in_lines(done.stdout)
+    assert done.stdout.index("Take flat end D6 x 60") < done.stdout.index("flat end D80 x 60 ")
     # The last lines say what is not reached, and why.
-    assert re.search(r"\nFlat end D80 x 60 does not reach .*\n(  .*\n)*$", done.stderr)
+    assert re.search(r"\nFlat end D80 x 60 does not reach .*\n(  .*\n)*$", done.stdout)
 
 
 def test_two_runs_give_the_same_bytes(tmp_path):
@@ -296,7 +296,8 @@ def test_a_copy_of_this_process_says_what_a_new_one_does(tmp_path):
     for words in ((*quick, "bad.step"), (*quick, "--grid", "1")):
         anew, copied = run_anew(*words, cwd=tmp_path), run(*words, cwd=tmp_path)
         assert anew.returncode == copied.returncode
-        assert seconds.sub("", anew.stderr).split() == seconds.sub("", copied.stderr).split()
+        for a, b in ((anew.stderr, copied.stderr), (anew.stdout, copied.stdout)):
+            assert seconds.sub("", a).split() == seconds.sub("", b).split()
 
 
 def test_too_little_memory_is_said(tmp_path):

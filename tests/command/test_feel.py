@@ -20,9 +20,11 @@ from plan_cutters.command import summary as summaries
 from plan_cutters.command.progress import Display
 from plan_cutters.command.rows import _distinct
 from plan_cutters.command.supervise import _Watch
-from plan_cutters.command.terminal import clean, say
+from plan_cutters.command.terminal import clean, show
 from plan_cutters.document.model import Plan
+from plan_cutters.domain.default_tools import builtin
 from plan_cutters.report.story.numbers import percent
+from plan_cutters.report.story.story import story_of
 from tests.support.commands import assert_one_line, in_lines, leftovers, said_until
 from tests.support.forked import ENV, run
 from tests.support.places import SAMPLES
@@ -50,8 +52,8 @@ def shown(capsys, document, *, verbose=False):
     """What the summary says."""
     capsys.readouterr()
     summaries.summary(document, verbose=verbose)
-    say(*summaries.written(document, Path("out"), ("json",)), *summaries.not_reached(document, verbose=verbose))
-    return capsys.readouterr().err
+    show(*summaries.written(document, Path("out"), ("json",)), *summaries.not_reached(document, verbose=verbose))
+    return capsys.readouterr().out
 
 
 # ---- what is looked at before the kernel
@@ -74,6 +76,7 @@ def shown(capsys, document, *, verbose=False):
         ([GROOVE, "--holder-clearance", "inf"], 2, "holder clearance inf must be"),
         ([GROOVE, "--jobs", "99999999999"], 2, "jobs"),
         ([GROOVE, "--read-timeout", "nan"], 2, "--read-timeout"),
+        ([GROOVE, "--timeout", "0"], 2, "--timeout"),
         ([GROOVE, "--memory", "nan"], 2, "--memory"),
         ([GROOVE, "--faces", "9-3"], 2, "9-3 runs backwards"),
         ([GROOVE, "--faces", "F0"], 2, "numbered from 1"),
@@ -105,7 +108,7 @@ def test_of_several_parts_those_that_cannot_be_read_are_named_at_once(tmp_path):
     first, *rest = done.stderr.splitlines()
     assert first == "plan-cutters: missing.step: no such file; the other parts are planned"
     assert rest[-1] == "missing.step: plan-cutters: missing.step: no such file"
-    assert f"{GROOVE}: a cutter finishes every judged sample" in rest
+    assert f"{GROOVE}: a cutter finishes every judged sample" in done.stdout.splitlines()
     assert leftovers(tmp_path) == ["v_groove-plan"]
 
 
@@ -266,7 +269,7 @@ def long_names(document):
 
 @pytest.mark.parametrize("columns", [20, 40, 72, 79, 80, 200])
 def test_it_fits_any_terminal(capsys, monkeypatch, planned, failing, columns):
-    monkeypatch.setattr("plan_cutters.command.terminal.is_terminal", lambda: True)
+    monkeypatch.setattr("plan_cutters.command.terminal.is_terminal", lambda *_: True)
     monkeypatch.setenv("COLUMNS", str(columns))
     monkeypatch.setenv("NO_COLOR", "1")
     for document in (planned, failing, long_names(planned), long_names(failing)):
@@ -279,11 +282,30 @@ def test_many_cutters_are_said_in_few_lines(capsys, failing):
     many = [c.model_copy(update={"id": f"{c.id}S{i}"}) for i in range(60) for c in failing.cutters]
     document = failing.model_copy(update={"cutters": many})
     said = shown(capsys, document)
-    assert len(said.splitlines()) < 100
+    # 40 rows, each with a name of up to two lines.
+    assert len(said.splitlines()) < 120
     assert "and 140 more cutters that reach less" in said
     assert "more cutters leave" in in_lines(said)
-    whole = shown(capsys, document, verbose=True)
-    assert all(f" ({c.id}) " in whole for c in many)
+    whole = in_lines(shown(capsys, document, verbose=True))
+    assert all(f" ({c.id})" in whole for c in many)
+
+
+def test_nineteen_cutters_are_one_table_with_their_whole_names(capsys):
+    document = plan(GROOVE, cutters=builtin()[:19], grid=3, area_budget=0).plan
+    names = [each.name for each in story_of(document).cutters]
+    said = shown(capsys, document).splitlines()
+    head = next(k for k, line in enumerate(said) if line.startswith("  cutter "))
+    rows = said[head + 1 : head + 20]
+    assert [re.match(r"[> ] (.*?) +(?:yes|no|unsure) ", row)[1] for row in rows] == names
+    assert len(set(names)) == 19
+    assert max(map(len, rows)) <= 80
+    assert said[head + 20] == ""
+
+
+def test_a_long_name_has_a_second_line_of_its_own(capsys, planned):
+    said = shown(capsys, long_names(planned))
+    rows = re.findall(r"^[> ] (\S.*?) +(?:yes|no) .*\n +(\S.*)$", said, re.MULTILINE)
+    assert len(set(rows)) == len(planned.cutters)
 
 
 def test_names_that_are_shortened_stay_apart():
@@ -296,7 +318,7 @@ def test_names_that_are_shortened_stay_apart():
 def test_colours_where_they_help_and_words_always(capsys, monkeypatch, planned):
     plain = shown(capsys, planned)
     assert "\x1b" not in plain
-    monkeypatch.setattr("plan_cutters.command.terminal.is_terminal", lambda: True)
+    monkeypatch.setattr("plan_cutters.command.terminal.is_terminal", lambda *_: True)
     monkeypatch.setenv("TERM", "xterm-256color")
     monkeypatch.setenv("COLUMNS", "80")
     monkeypatch.delenv("NO_COLOR", raising=False)
@@ -357,19 +379,20 @@ def test_nothing_is_shown_where_it_is_quiet(capsys):
 def test_what_the_child_says_comes_through_whatever_it_holds():
     here, there = os.pipe()
     heard = []
-    display = SimpleNamespace(begins=heard.append, stage=heard.append, at=lambda *n: heard.append(n), say=heard.append)
+    display = SimpleNamespace(begins=heard.append, stage=heard.append, at=lambda *n: heard.append(n), say=heard.append,
+                              show=heard.append)  # fmt: skip
     watch = _Watch(1.0, display)
     watch.pipe = here
     odd = "a\nsafe 0 /tmp\\x\udcff ü\u2028.step"
     child = f"from plan_cutters.command.worker import report as tell; odd = {odd!r}\n"
-    child += "tell('part', odd); tell('at', '3 9'); tell('say', odd)"
+    child += "tell('part', odd); tell('at', '3 9'); tell('say', odd); tell('show', odd)"
     subprocess.run(
         [sys.executable, "-c", child], env=ENV | {"PLAN_CUTTERS_REPORT": str(there)}, pass_fds=(there,), check=True
     )
     watch.listen(0.0)
     os.close(here)
     os.close(there)
-    assert heard == [odd, (3, 9), odd]
+    assert heard == [odd, (3, 9), odd, odd]
     assert watch.part == odd
     assert watch.safe is None
 
@@ -377,7 +400,9 @@ def test_what_the_child_says_comes_through_whatever_it_holds():
 def test_it_speaks_soon_and_shows_a_clock_on_a_terminal(tmp_path):
     parent, child = pty.openpty()
     words = [sys.executable, "-m", "plan_cutters", str(GROOVE), *QUICK, *FILES]
-    process = subprocess.Popen(words, cwd=tmp_path, env=ENV | {"TERM": "xterm", "COLUMNS": "80"}, stderr=child)
+    process = subprocess.Popen(
+        words, cwd=tmp_path, env=ENV | {"TERM": "xterm", "COLUMNS": "80"}, stdout=child, stderr=child
+    )
     os.close(child)
     said = b""
     while True:
@@ -402,6 +427,32 @@ def test_it_speaks_soon_and_shows_a_clock_on_a_terminal(tmp_path):
 
 
 # ---- streams
+
+
+def test_what_is_found_goes_to_standard_output_and_all_else_to_standard_error(tmp_path):
+    done = run(GROOVE, *QUICK, *FILES, cwd=tmp_path)
+    assert done.stdout.startswith("\nTake flat end D12 x 80 for v_groove.step")
+    assert "\nWritten to out: plan.json" in done.stdout
+    assert done.stderr
+    assert all(re.fullmatch(r" +\d+\.\d s  .+", line) for line in done.stderr.splitlines())
+    done = run(GROOVE, *QUICK, "--json", "-", cwd=tmp_path)
+    assert json.loads(done.stdout)["selected"] == "R6L80"
+    assert "\nTake flat end D12 x 80 for v_groove.step" in done.stderr
+
+
+@pytest.mark.parametrize(("close", "code", "said"), [
+    ("| true", 141, []),
+    (">/dev/full", 2, ["plan-cutters: standard output: cannot be written: No space left on device"]),
+    (">&-", 0, []),
+])  # fmt: skip
+def test_a_summary_that_nobody_can_read_costs_no_file(tmp_path, close, code, said):
+    words = " ".join(map(str, (GROOVE, *QUICK, *FILES)))
+    done = subprocess.run(["bash", "-c", f"{sys.executable} -m plan_cutters {words} {close}; exit ${{PIPESTATUS[0]}}"],
+                          cwd=tmp_path, env=ENV, capture_output=True, text=True, check=False)  # fmt: skip
+    assert done.returncode == code
+    assert [line for line in done.stderr.splitlines() if " s  " not in line] == said
+    assert leftovers(tmp_path / "out") == ["annotated.glb", "annotated.step", "plan.json", "samples.npz"]
+    assert json.loads((tmp_path / "out/plan.json").read_text())["not_written"] == {}
 
 
 def test_a_full_disk_behind_standard_output_is_one_line(tmp_path):
@@ -442,7 +493,8 @@ def test_standard_error_that_cannot_be_written_changes_nothing(tmp_path):
     with open("/dev/full", "w") as full:
         done = subprocess.run([sys.executable, "-m", "plan_cutters", str(GROOVE), *QUICK, *FILES], cwd=tmp_path, env=ENV,
                               stdout=subprocess.PIPE, stderr=full, check=False)  # fmt: skip
-    assert (done.returncode, done.stdout) == (0, b"")
+    assert done.returncode == 0
+    assert done.stdout.startswith(b"\nTake flat end D12 x 80")
     assert leftovers(tmp_path / "out") == ["annotated.glb", "annotated.step", "plan.json", "samples.npz"]
 
 
@@ -454,8 +506,8 @@ def test_files_with_odd_names(tmp_path):
     (tmp_path / odd).write_bytes(GROOVE.read_bytes())
     done = run(odd, *QUICK, "--formats", "json", "-o", "out", cwd=tmp_path)
     assert done.returncode == 0
-    assert "\x1b" not in done.stderr
-    assert r"Take flat end D12 x 80 for a\n\x1b[31mß.step" in done.stderr
+    assert "\x1b" not in done.stdout + done.stderr
+    assert r"Take flat end D12 x 80 for a\n\x1b[31mß.step" in done.stdout
     (tmp_path / "-x.step").write_bytes(GROOVE.read_bytes())
     assert run("--quiet", "--formats", "json", "-o", "out", *QUICK, "--", "-x.step", cwd=tmp_path).returncode == 0
 

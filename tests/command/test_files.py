@@ -323,7 +323,7 @@ def child_of(process):
 
 @pytest.mark.parametrize(("number", "word"), [(signal.SIGSEGV, "SIGSEGV"), (signal.SIGSTOP, "within")])
 def test_a_crash_or_hang_while_splitting_costs_the_models_alone(tmp_path, number, word):
-    process, said = start(*WORDS, "--read-timeout", "3", "--json", "-", "-o", "out", cwd=tmp_path)
+    process, said = start(*WORDS, "--read-timeout", "2", "--json", "-", "-o", "out", cwd=tmp_path)
     assert "flat end D8 x 60" in said
     os.kill(child_of(process), number)
     shown, rest = process.communicate(timeout=120)
@@ -367,7 +367,7 @@ def test_what_is_old_is_named(tmp_path):
     words = [SAMPLES / "pocket_top.step", "--cutter", "R4L60", "--grid", "3", "--area-budget", "0", "--formats", "json",
              "-o", "out"]  # fmt: skip
     done = run(*words, cwd=tmp_path)
-    assert "merged.glb" in next(line for line in done.stderr.splitlines() if line.startswith("Left over"))
+    assert "merged.glb" in next(line for line in done.stdout.splitlines() if line.startswith("Left over"))
     assert (tmp_path / "out" / "merged.glb").read_text() == "whose?"
 
 

@@ -136,7 +136,14 @@ ENDED = [
 ]
 
 
-@pytest.mark.parametrize(("number", "where"), ENDED, ids=lambda each: getattr(each, "name", each))
+#: These stand for the others of their half: it is one way that ends all of them.
+OFTEN = ("read:", "tessellate:", "R6L80:", "split:", "step:", *COPIES)
+
+
+@pytest.mark.parametrize(("number", "where"), [
+    pytest.param(number, where, id=f"{number.name}-{where}", marks=() if where in OFTEN else pytest.mark.slow)
+    for number, where in ENDED
+])  # fmt: skip
 def test_a_command_that_is_ended_leaves_nothing_running(tmp_path, number, where):
     with Run(tmp_path, where) as run:
         run.until_stuck()

@@ -1,6 +1,7 @@
 """Kernels are linked into entries, and only entries are made machine code."""
 
 import ast
+import os
 import subprocess
 import sys
 
@@ -87,6 +88,21 @@ def test_a_kernel_that_is_kept_is_linked_into_the_next_entry(run):
 def test_python_calls_a_kernel(run):
     for _ in range(2):
         assert run("k.middle(x, 1), k.deepest(4.0), k.deepest(9), k.first(x)")[0] == [8.0, 3.0, 4.0, 6.0]
+
+
+def test_the_same_sources_elsewhere_and_later_are_not_compiled_again(tmp_path):
+    """As in another environment, or in a new checkout: its files have other places and other times."""
+    told = []
+    for k, place in enumerate(("one", "two")):
+        room = tmp_path / place / "room"
+        room.mkdir(parents=True)
+        (room / "kernels_of_test.py").write_text(SOURCE)
+        os.utime(room / "kernels_of_test.py", (1e9 + k, 1e9 + k))
+        environment = {**ENV, "NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": str(room)}
+        done = subprocess.run([sys.executable, "-c", RUN.format(call="k.total(x)")], env=environment, capture_output=True,
+                              text=True, check=True)  # fmt: skip
+        told.append(ast.literal_eval(done.stdout.split("] ", 1)[1])["total"][1:])
+    assert told == [(1, 0), (0, 1)]
 
 
 def test_sources_in_rooms_below_count(tmp_path, monkeypatch):

@@ -156,7 +156,7 @@ def test_the_command_ends_with_0_1_or_2(folder, tmp_path):
     words = [str(ROOT / POCKET), "--cutter", "R6L80", "--faces", "all", "--grid", "7", "--machine", "trunnion-ac"]
     done = run(*words, "--check-operations", str(folder / "plan.json"), cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert done.stderr.count("holds:") == 3
+    assert done.stdout.count("holds:") == 3
     document = json.loads((folder / "plan.json").read_text())
     document["operations"]["plans"][0]["operations"][0]["angles_deg"] = {"C": 0.0, "A": 45.0}
     (tmp_path / "plan.json").write_text(json.dumps(document))
@@ -166,7 +166,7 @@ def test_the_command_ends_with_0_1_or_2(folder, tmp_path):
     (tmp_path / "operations.npz").write_bytes((folder / "operations.npz").read_bytes())
     forged = run(*words, "--check-operations", str(tmp_path / "plan.json"), cwd=tmp_path)
     assert forged.returncode == 1
-    assert "FAILS" in forged.stderr
+    assert "FAILS" in forged.stdout
     (tmp_path / "operations.npz").write_bytes(b"no archive")
     broken = run(*words, "--check-operations", str(tmp_path / "plan.json"), cwd=tmp_path)
     assert broken.returncode == 2

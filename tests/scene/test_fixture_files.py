@@ -165,7 +165,7 @@ def test_the_command_names_and_draws_fixtures(tmp_path):
                "--formats", "json,glb,merged", "--fixture", "jaw.stl", "--fixture", "table:0",
                "-o", "out", cwd=tmp_path)  # fmt: skip
     assert done.returncode == 1, done.stderr
-    assert "fixture:jaw: STL files name no unit: mm was assumed." in in_lines(done.stderr)
+    assert "fixture:jaw: STL files name no unit: mm was assumed." in in_lines(done.stdout)
     document = json.loads((tmp_path / "out/plan.json").read_text())
     assert document["effective"]["fixtures"] == ["jaw.stl", "table:0"]
     jaw, table = document["fixtures"]

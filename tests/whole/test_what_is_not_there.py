@@ -65,7 +65,7 @@ def test_what_is_missing_far_away_leaves_the_verdict_in_doubt(tmp_path):
     done = run(str(path), "--faces", "6", "--grid", "4", "--cutter", "R2L30", "--area-budget", "0", "-o", str(tmp_path / "out"),
                "--formats", "json", cwd=tmp_path)  # fmt: skip
     assert done.returncode == 4
-    assert "Missing obstacle: F7 (" in done.stderr
+    assert "Missing obstacle: F7 (" in done.stdout
     document = json.loads((tmp_path / "out" / "plan.json").read_text())
     assert [c["feasible"] for c in document["cutters"]] == [None]
     assert document["selected"] is None

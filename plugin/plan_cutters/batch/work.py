@@ -13,7 +13,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from plan_cutters.batch import handing, keys, store
-from plan_cutters.batch.job import UNREADABLE, USAGE, Handed
+from plan_cutters.batch.job import TIMED_OUT, UNREADABLE, USAGE, Handed
 from plan_cutters.batch.row import PartRow
 from plan_cutters.errors import PlanError
 
@@ -278,8 +278,8 @@ def _planned(task: Task, data: bytes, folder: Path) -> tuple[int, str]:
             except subprocess.TimeoutExpired:
                 if time.monotonic() > ends:
                     _end(child)
-                    return UNREADABLE, (f"{task.file}: not planned within {task.timeout:g} s: sample more coarsely "
-                                        "(--spacing), or give more time (--timeout-part)")  # fmt: skip
+                    return TIMED_OUT, (f"{task.file}: not done within {task.timeout:g} s: sample more coarsely "
+                                       "(--spacing), or give more time (--timeout-part)")  # fmt: skip
                 if not wanted():
                     _end(child)
                     return 130, f"{task.file}: interrupted"

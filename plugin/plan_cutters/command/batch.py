@@ -2,6 +2,7 @@
 
 import functools
 import os
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -70,7 +71,8 @@ _many = heading("Many parts")
        help="Scheduler of a running Dask cluster, or its scheduler file.  [default: workers of this machine]")  # fmt: skip
 @_many("--workers", type=click.IntRange(min=1), metavar="N",
        help="Workers of this machine, each for one part at a time.  [default: by its cores and memory]")  # fmt: skip
-@_many("--timeout-part", type=float, metavar="S", help="Seconds for a part; one that takes longer has failed.")
+@_many("--timeout-part", "--timeout", "timeout_part", type=float, metavar="S",
+       help="Seconds for the whole of a part; one that takes longer has failed, with exit code 124.")  # fmt: skip
 @_many("--limit-memory", type=float, metavar="GB",
        help="Most memory of a part.  [default: an equal share of 3/4 of this machine's, at least 4]")  # fmt: skip
 @_many("--force", is_flag=True, help="Plan again what is done already.")
@@ -115,12 +117,15 @@ def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
 def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", given: dict[str, Any]) -> int:
     """Plan them under the eyes of a board; the largest exit code."""
     from plan_cutters.batch import cluster
+    from plan_cutters.batch.index import PAGE
     from plan_cutters.batch.progress import Board
     from plan_cutters.batch.run import run_batch
+    from plan_cutters.batch.summary import OUTCOMES, outcome
+    from plan_cutters.report.story.numbers import count as counted
 
     out.begin()  # what is wrong with it is said before any worker is started
     board = Board(given["quiet"], len(parts))
-    code = FEASIBLE
+    code, found = FEASIBLE, Counter[str]()
     try:
         count, share = cluster.workers_of(given["workers"], terms.memory, given["jobs"] or 1)
         if given["cluster"] is None:
@@ -131,10 +136,15 @@ def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", given: di
                       + (f"; dashboard {facts['dashboard']}" if facts["dashboard"] else ""))  # fmt: skip
             for row in run_batch(parts, client, out, terms, board=board, title=" ".join(given["title"])):
                 code = max(code, row.code)
+                found[outcome(row)] += 1
                 board.row(row)
     finally:
         board.close()
         out.end()
+    if not given["quiet"]:
+        many = ", ".join(f"{found[each]} {word}" for each, word in reversed(OUTCOMES.items()) if found[each])
+        terminal.show(f"{counted(found.total(), 'part')}: {many}.", f"Look at them in a browser: {out.root_url}/{PAGE}")
+        terminal.all_shown()
     return code
 
 

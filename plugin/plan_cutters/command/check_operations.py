@@ -33,7 +33,7 @@ def checked(part: str, file: str, options: "Options", given: dict[str, Any]) -> 
             f"the plan of operations cannot be understood ({type(error).__name__}: {error})", file=file
         ) from None
     if not given["quiet"]:
-        terminal.say(*(f"{'holds' if each.holds else 'FAILS'}: {each.words}" for each in findings))
+        terminal.show(*(f"{'holds' if each.holds else 'FAILS'}: {each.words}" for each in findings))
     return 0 if all(each.holds for each in findings) else 1
 
 

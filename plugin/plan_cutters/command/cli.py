@@ -2,6 +2,7 @@
 
 import contextlib
 import gc
+import math
 import os
 import signal
 import sys
@@ -79,12 +80,14 @@ def command(parts: tuple[str, ...], **given: Any) -> int:
         since, aside = None, {}
         codes.append(code)
         report("done", str(code))
-        if len(parts) > 1 and not given["quiet"]:
-            terminal.error(f"{part}: {line or dict(CODES).get(str(code), '')}")
-        elif code and line:
-            terminal.error(line)
+        if line:
+            terminal.error(f"{part}: {line}" if len(parts) > 1 and not given["quiet"] else line)
+        elif len(parts) > 1 and not given["quiet"]:
+            terminal.give(terminal.clean(f"{part}: {dict(CODES).get(str(code), '')}") + "\n")
         if code == INTERRUPTED:
             break
+    if not is_child():
+        terminal.all_shown()
     return max(codes)
 
 
@@ -128,6 +131,7 @@ def _watched(words: list[str], name: str) -> int:
     from plan_cutters.command.progress import Display
     from plan_cutters.command.retry import supervised
     from plan_cutters.command.validation import check
+    from plan_cutters.errors import OptionError
     from plan_cutters.report.story.names import called
 
     try:
@@ -137,6 +141,8 @@ def _watched(words: list[str], name: str) -> int:
         return done.exit_code
     asked, faults = check(given["parts"], given)
     if not can_supervise():
+        if given["timeout"] is not None:
+            raise OptionError("--timeout: this system has no process that could be ended; leave it out")
         keep_output()
         return invoked(command, _SELF, words)
     names = {cutter.id: called(cutter) for cutter in asked.judged}
@@ -146,11 +152,16 @@ def _watched(words: list[str], name: str) -> int:
     memory = default_memory() if given["memory"] is None else int(given["memory"] * 1e9)
     display.stage("start")
     try:
-        return supervised(words, read_timeout=given["read_timeout"], memory=memory, display=display)
+        found = supervised(
+            words, parts=given["parts"], read_timeout=given["read_timeout"], memory=memory, display=display,
+            timeout=math.inf if given["timeout"] is None else given["timeout"], since=began(),
+        )  # fmt: skip
     except Unfinished as stopped:
         from plan_cutters.command.partial_plan import without_models
 
         display.clear()
-        return without_models(stopped, given)
+        found = without_models(stopped, given)
     finally:
         display.clear()
+    terminal.all_shown()
+    return found

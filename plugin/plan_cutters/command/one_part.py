@@ -71,10 +71,15 @@ def one_part(
     if given["json_out"] == "-":
         terminal.hand_out(dumps(document))
     if not given["quiet"]:
-        terminal.say(*written(document, out, formats), *not_reached(document, verbose=given["verbose"]))
+        _tells(given)(*written(document, out, formats), *not_reached(document, verbose=given["verbose"]))
     for name, why in document.not_written.items():
         terminal.error(f"plan-cutters: {file_name(name)} was not written: {why}")
     return code_of(document), ""
+
+
+def _tells(given: dict[str, Any]) -> Callable[..., None]:
+    """What tells results: where a program reads the plan on standard output, nothing else is written there."""
+    return terminal.say if given["json_out"] == "-" else terminal.show
 
 
 def _compiling(options: "Options", quiet: bool) -> Callable[[str], None]:
@@ -130,7 +135,7 @@ class Onlooker:
     def summarise(self, plan: "Plan") -> None:
         self.end()
         if not self.given["quiet"]:
-            summary(plan, verbose=self.given["verbose"])
+            summary(plan, verbose=self.given["verbose"], tells=_tells(self.given))
 
     def safe(self, plan: "Plan") -> None:
         self.plan = plan

@@ -37,6 +37,7 @@ CODES = (
         "a cutter would finish all that could be judged, but something could not, obstacles are missing, or samples are farther "
         "apart than its radius and nobody asked for that",
     ),
+    ("124", "a part was not done within --timeout; nothing is half-written"),
     ENDED,
 )
 
@@ -318,6 +319,13 @@ _OPTIONS = (
         default=120.0,
         metavar="S",
         help="Seconds that reading a part may take; from it follow the limits of later stages and single faces.  [default: 120]",
+    ),
+    _run(
+        "--timeout",
+        type=float,
+        metavar="S",
+        help="Seconds for the whole of a part; one that is not done by then is left with a line and exit code 124, and the "
+        "next one is planned.",
     ),
     _run("--memory", type=float, metavar="GB", help="Most memory to use.  [default: 3/4 of the machine's]"),
     _run("--debug", is_flag=True, help="Show tracebacks."),

@@ -101,6 +101,10 @@ class Display:
         self.clear()
         terminal.emit(text)
 
+    def show(self, text: str) -> None:
+        self.clear()
+        terminal.give(text)
+
     def tick(self) -> None:
         self._show(False)
 

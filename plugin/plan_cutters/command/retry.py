@@ -1,13 +1,19 @@
-"""A face at which the CAD kernel came to no end, or crashed, is set aside, and the rest is planned without it."""
+"""A face at which the CAD kernel came to no end, or crashed, is set aside, and the rest is planned without it.
+
+A part that takes longer than it may is left, and the next one is planned.
+"""
 
 import json
+import math
 import os
 from collections.abc import Sequence
+from pathlib import Path
 
 from plan_cutters.command import terminal
 from plan_cutters.command.progress import Display
 from plan_cutters.command.supervise import supervise
-from plan_cutters.command.worker_errors import Stuck, Unfinished
+from plan_cutters.command.worker import TIMED_OUT
+from plan_cutters.command.worker_errors import OutOfTime, Stuck, Unfinished
 
 #: Environment variable by which the child knows which parts are done and which faces of the next one are set aside.
 ASIDE = "PLAN_CUTTERS_ASIDE"
@@ -21,14 +27,22 @@ def set_aside() -> tuple[int, dict[int, str]]:
     return found[0], {int(number): why for number, why in found[1].items()}
 
 
-def supervised(words: Sequence[str], *, read_timeout: float, memory: int, display: Display | None = None) -> int:
-    """`supervise`, again and again without the face at which it ended."""
+def supervised(
+    words: Sequence[str], *, parts: Sequence[str], read_timeout: float, memory: int, timeout: float = math.inf, since: float,
+    display: Display | None = None,
+) -> int:  # fmt: skip
+    """`supervise`, again and again without the face at which it ended, or without the part that took too long.
+
+    `since`: when the first of the parts began; all else as there.
+    """
     done, code = 0, 0
+    began: float | None = since
     faces: dict[int, str] = {}
     while True:
         more = {ASIDE: json.dumps([done, faces])} if done or faces else {}
         try:
-            return max(code, supervise(words, read_timeout=read_timeout, memory=memory, display=display, more=more))
+            return max(code, supervise(words, read_timeout=read_timeout, memory=memory, display=display, more=more,
+                                       timeout=timeout, since=began))  # fmt: skip
         except Unfinished as stopped:
             stopped.parts += done
             stopped.code = max(code, stopped.code)
@@ -36,8 +50,30 @@ def supervised(words: Sequence[str], *, read_timeout: float, memory: int, displa
         except Stuck as stopped:
             if stopped.before:
                 done, faces = done + stopped.before, {}
-            code = max(code, stopped.code)
+            code, began = max(code, stopped.code), stopped.since
             if stopped.face in faces or len(faces) >= MOST:
                 raise
             faces[stopped.face] = stopped.why
             terminal.error(f"plan-cutters: {stopped.part}: F{stopped.face}: {stopped.why}; planned without this face")
+        except OutOfTime as stopped:
+            done, code = done + stopped.before, max(code, stopped.code)
+            if done == len(parts):  # all of them are, and only the end was slow
+                return code
+            terminal.error(f"plan-cutters: {parts[done]}: {_left(stopped.out, timeout)}")
+            done, faces, began = done + 1, {}, None
+            code = max(code, TIMED_OUT)
+            if done == len(parts):
+                return code
+
+
+def _left(out: Path | None, timeout: float) -> str:
+    """Say why a part is left, and what is missing where its plan is in the output already."""
+    why = f"not done within {timeout:g} s"
+    advice = "sample more coarsely (--spacing), or give more time (--timeout)"
+    if out is None:
+        return f"{why}: {advice}"
+    from plan_cutters.report import file_name
+    from plan_cutters.report.folder import ended
+
+    missing = ", ".join(map(file_name, ended(out, why))) or "a model"
+    return f"{why}: the plan is in {out}, without {missing}; {advice}"

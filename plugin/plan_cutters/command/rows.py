@@ -1,17 +1,20 @@
 """Tables of the summary: a row for each cutter, and the worst faces of one; lists where a terminal is too narrow for them."""
 
-from collections.abc import Sequence
-from io import StringIO
+import textwrap
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
 
-from plan_cutters.command.terminal import clean, console
+from plan_cutters.command.terminal import clean, wrapped
 from plan_cutters.report.story.cutters import FEASIBLE
 
 if TYPE_CHECKING:
+    from rich.console import Console, ConsoleOptions
+
     from plan_cutters.document.model import Plan
     from plan_cutters.report.story.cutters import CutterStory, WorstFace
     from plan_cutters.report.story.story import Story
@@ -25,8 +28,10 @@ WORDS = {
 }
 #: Rows that are shown unless all are asked for.
 MOST_ROWS = 40
-#: Widest that the name of a cutter is shown beside its numbers.
-_NAME = 22
+#: Widest line of a cutter's name beside its numbers, so that 80 columns hold all; what is longer has a second line.
+_NAME = 27
+#: Longest that a cutter is called here, and an obstacle.
+_CUTTER, _OBSTACLE = 2 * _NAME - 4, 22
 _COLOURS = {True: "green", False: "red", None: "yellow"}
 
 
@@ -44,13 +49,13 @@ def cutter_rows(plan: "Plan", story: "Story", *, verbose: bool) -> list[Any]:
         rows = [c for c in rows if c in kept]
     here = f", over {1 + len(plan.effective.other_setups)} setups" if plan.effective.other_setups else ""
     found: list[Any] = [f"Share of the area to machine, by the verdict of its samples{here}:"]
-    short = _distinct([clean(c.name) for c in rows], _NAME)
-    table = _table(("  cutter", "feasible"), tuple(WORDS.values()))
+    short = _distinct([clean(c.name) for c in rows], _CUTTER)
+    table = _table(("  cutter", "feasible"), tuple(WORDS.values()), apart=1)
     for c, name in zip(rows, short, strict=True):
         taken = c.id == story.taken
-        table.add_row(Text(f"{'>' if taken else ' '} {name}", "bold" if taken else ""),
+        table.add_row(Text(f"{'>' if taken else ' '} {_in_lines(name)}", "bold" if taken else ""),
                       Text(FEASIBLE[c.feasible], _COLOURS[c.feasible]), *(c.shares[word] for word in WORDS))  # fmt: skip
-    found += [table] if _fits(table) else [_listed(c, c.id == story.taken) for c in rows]
+    found.append(_Fitting(table, [_listed(c, c.id == story.taken) for c in rows]))
     if len(rows) < len(plan.cutters):
         found.append(f"  and {len(plan.cutters) - len(rows)} more cutters that reach less: -v or plan.json.")
     return found
@@ -75,23 +80,37 @@ def worst_faces(story: "Story") -> list[Any]:
     table = _table(("  face", "mainly", "in the way"), ("mm2 lost", "of the face", "mm too deep"))
     for f in c.faces:
         table.add_row(
-            f"  {f.id}", f.reason, cell(_distinct([f.obstacle or "-"], _NAME)[0]), f.area, f.share, f.depth or "-"
+            f"  {f.id}", f.reason, cell(_distinct([f.obstacle or "-"], _OBSTACLE)[0]), f.area, f.share, f.depth or "-"
         )
-    return [*lines, table] if _fits(table) else [*lines, *(cell(_said(f)) for f in c.faces)]
+    return [*lines, _Fitting(table, [cell(_said(f)) for f in c.faces])]
 
 
-def _table(words: Sequence[str], numbers: Sequence[str]) -> Table:
-    """An empty table without lines: columns of words, then of numbers."""
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
+@dataclass(frozen=True)
+class _Fitting:
+    """A table is shown where there is room for all of it, and lines elsewhere."""
+
+    table: Table
+    lines: Sequence[Text]
+
+    def __rich_console__(self, page: "Console", options: "ConsoleOptions") -> "Iterator[Table | Text]":
+        if Measurement.get(page, options.update_width(1000), self.table).maximum <= page.width:
+            yield self.table
+        else:
+            for line in self.lines:
+                yield from wrapped(line, page)
+
+
+def _table(words: Sequence[str], numbers: Sequence[str], *, apart: int = 2) -> Table:
+    """An empty table without lines: columns of words, then of numbers, `apart` blanks from each other."""
+    table = Table(box=None, pad_edge=False, padding=(0, apart, 0, 0), header_style="bold")
     for name in (*words, *numbers):
         table.add_column(name, justify="right" if name in numbers else "left", no_wrap=True)
     return table
 
 
-def _fits(table: Table) -> bool:
-    """Whether a terminal has room for all of a table."""
-    page = console(StringIO())
-    return Measurement.get(page, page.options.update_width(1000), table).maximum <= page.width
+def _in_lines(name: str) -> str:
+    """A name in lines that its column has room for, all but the first indented."""
+    return "\n".join(textwrap.wrap(name, _NAME, subsequent_indent="    ", break_on_hyphens=False)) or name
 
 
 def _said(f: "WorstFace") -> str:

@@ -142,7 +142,8 @@ def stored(part: str | None, postures: str, options: "Options", given: dict[str,
             lines.append(f"Obstacles are missing or guessed, so nothing is beyond doubt: {_some(missing)}.")
         if unjudged:
             lines.append(f"Not judged: {_some(unjudged)}.")
-        terminal.say(*(terminal.clean(line) for line in lines))
+        tells = terminal.say if given["json_out"] == "-" else terminal.show
+        tells(*(terminal.clean(line) for line in lines))
     if counts["inaccessible"]:
         return NONE_FEASIBLE
     return NOT_ALL_JUDGED if counts["undecided"] or counts["unjudged"] or missing or unjudged else FEASIBLE

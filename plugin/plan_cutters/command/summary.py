@@ -1,13 +1,13 @@
 """Print the results in a terminal: the story of a plan is laid out in paragraphs and tables."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rich.text import Text
 
 from plan_cutters.command.rows import cell, cutter_rows, worst_faces
-from plan_cutters.command.terminal import say
+from plan_cutters.command.terminal import show
 from plan_cutters.report.story.cutters import left
 from plan_cutters.report.story.headline import area
 from plan_cutters.report.story.names import named
@@ -24,12 +24,12 @@ _LINES, _OTHERS = 5, 3
 _MARKS = {True: "bold green", False: "bold red", None: "bold yellow"}
 
 
-def summary(plan: "Plan", *, verbose: bool = False) -> None:
-    """Say what is found, but not what is not reached: that comes last."""
+def summary(plan: "Plan", *, verbose: bool = False, tells: Callable[..., None] = show) -> None:
+    """Tell what is found, but not what is not reached: that comes last."""
     story = story_of(plan)
     title, good, about, why = story.headline
     targets, ignored = len(plan.effective.target_faces), sum(f.ignored for f in plan.faces)
-    say(
+    tells(
         "",
         *([_marked("Inside other bodies:", story.inside[0]), *map(cell, story.inside[1:]), ""] if story.inside else []),
         Text.assemble(cell(title, _MARKS[good]), cell(f"{about}. {why}")),

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from plan_cutters.command.worker import INTERRUPTED, MEMORY, Worker, early
-from plan_cutters.command.worker_errors import Stuck, Supervised, Unfinished
+from plan_cutters.command.worker_errors import OutOfTime, Stuck, Supervised, Unfinished
 
 if TYPE_CHECKING:
     from plan_cutters.command.progress import Display
@@ -81,7 +81,7 @@ def default_memory() -> int:
 
 def supervise(
     words: Sequence[str], *, read_timeout: float = math.inf, memory: int | None = None, display: "Display | None" = None,
-    name: str = "plan-cutters", more: Mapping[str, str] | None = None,
+    name: str = "plan-cutters", more: Mapping[str, str] | None = None, timeout: float = math.inf, since: float | None = None,
 ) -> int:  # fmt: skip
     """Run a command in a child.
 
@@ -101,6 +101,10 @@ def supervise(
         The command's, as `entry.begin` takes it.
     more : mapping, optional
         More environment variables of the child.
+    timeout : float
+        Seconds that the whole of a part may take.
+    since : float, optional
+        When the first part began (`time.monotonic`); default now.
 
     Returns
     -------
@@ -110,9 +114,9 @@ def supervise(
     Raises
     ------
     Supervised
-        It crashed or was stopped; `Stuck` where this was at a face.
+        It crashed or was stopped; `Stuck` where this was at a face, `OutOfTime` by the `timeout`.
     """
-    watch = _Watch(read_timeout, display)
+    watch = _Watch(read_timeout, display, began=since)
     child: Worker | None = None
     asked: list[int] = []
 
@@ -139,6 +143,8 @@ def supervise(
             if watch.over:  # neither the child nor a copy of it holds the other end: it has ended, or is about to
                 with contextlib.suppress(subprocess.TimeoutExpired):
                     child.process.wait(0.2)
+            if time.monotonic() - watch.began > timeout:
+                raise OutOfTime(watch.dones, watch.code, watch.safe and watch.safe[1])
             if watch.late():
                 raise watch.ended(*watch.verdict())
             if display is not None:
@@ -188,14 +194,17 @@ def _processor(child: int | None) -> float:
 class _Watch:
     """Keep all that the child has reported so far."""
 
-    def __init__(self, read_timeout: float, display: "Display | None" = None) -> None:
+    def __init__(
+        self, read_timeout: float, display: "Display | None" = None, *, began: float | None = None
+    ) -> None:  # fmt: skip
         self.pipe, self.read_timeout, self.display = -1, read_timeout, display
         self.part, self.stage, self.since = "part", "start", time.monotonic()
+        self.began = self.since if began is None else began
         self.work, self.spent, self.why = "", 0.0, ""
         self.child: int | None = None
         self.staging: set[str] = set()
         self.rest = b""
-        self.parts, self.code = 0, 0
+        self.parts, self.dones, self.code = 0, 0, 0
         self.over = False
         self.safe: tuple[int, Path] | None = None
 
@@ -220,13 +229,14 @@ class _Watch:
                     self.safe = int(code), Path(folder)
                 elif word == "done":
                     self.code, self.safe = max(self.code, int(text)), None
+                    self.dones, self.began = self.dones + 1, time.monotonic()
                 elif word == "staging":
                     self.staging.add(text)
 
     def _show(self, word: str, text: str) -> None:
         if self.display is None:
             return
-        if word in ("part", "stage", "detail", "say"):
+        if word in ("part", "stage", "detail", "say", "show"):
             getattr(self.display, "begins" if word == "part" else word)(text)
         elif word == "at":
             done, total = map(int, text.split())
@@ -267,7 +277,7 @@ class _Watch:
         """Make the error to raise when the child is gone."""
         if self.safe is None and self.face and self.why and not interrupted:
             face, before = int(self.face[1:]), self.parts - 1
-            return Stuck(f"{self.part}: {what}; {advice}", self.part, face, self.why, before, self.code)
+            return Stuck(f"{self.part}: {what}; {advice}", self.part, face, self.why, before, self.code, self.began)
         if self.safe is None:
             return Supervised(f"{self.part}: {what}; {advice}")
         code, out = self.safe

@@ -1,4 +1,7 @@
-"""Write texts for people to standard error: wrapped, coloured where that helps, and free of terminal control codes."""
+"""Write texts for people: what was found on standard output, all else on standard error.
+
+They are wrapped, coloured where that helps, and free of terminal control codes.
+"""
 
 import contextlib
 import errno
@@ -7,8 +10,8 @@ import re
 import sys
 import unicodedata
 from collections.abc import Callable, Iterator
-from io import StringIO
-from typing import IO, TYPE_CHECKING, Any
+from io import StringIO, TextIOWrapper
+from typing import IO, TYPE_CHECKING, Any, Literal
 
 from plan_cutters.command.worker import is_child, report
 from plan_cutters.errors import PlanError
@@ -17,6 +20,8 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.text import Text
 
+#: The name of a standard stream, in `sys`.
+Where = Literal["stdout", "stderr"]
 #: Columns that nothing for people is wider than, and that are there where the output is no terminal.
 COLUMNS = 80
 #: Categories of characters that a terminal may obey, or that have no form of their own: controls, lone surrogates, breaks.
@@ -37,6 +42,10 @@ class ReaderGone(Exception):
     """Whoever read our standard output has closed it."""
 
 
+#: Why nothing more can be shown; the work goes on, for its files hold all.
+_unshown: list[Exception] = []
+
+
 def clean(text: str) -> str:
     r"""A text with what a terminal would obey written out; names in files may hold anything.
 
@@ -50,38 +59,47 @@ def clean(text: str) -> str:
     )
 
 
-def is_terminal() -> bool:
-    """Whether standard error goes to a terminal."""
+def is_terminal(where: Where = "stderr") -> bool:
+    """Whether a stream goes to a terminal."""
     with contextlib.suppress(OSError, ValueError, AttributeError):
-        return sys.stderr.isatty()
+        return bool(getattr(sys, where).isatty())
     return False
 
 
-def redraws() -> bool:
+def redraws(where: Where = "stderr") -> bool:
     """Whether it can redraw a line, and colour it."""
-    return is_terminal() and os.environ.get("TERM") != "dumb"
+    return is_terminal(where) and os.environ.get("TERM") != "dumb"
 
 
-def width() -> int:
+def width(where: Where = "stderr") -> int:
     """Columns to set text in: the terminal's, but no more than COLUMNS."""
     columns = 0
-    if is_terminal():
+    if is_terminal(where):
         with contextlib.suppress(OSError, ValueError):
-            columns = int(os.environ.get("COLUMNS") or os.get_terminal_size(sys.stderr.fileno()).columns)
+            columns = int(os.environ.get("COLUMNS") or os.get_terminal_size(getattr(sys, where).fileno()).columns)
     return min(COLUMNS, columns) if columns > 0 else COLUMNS
 
 
-def console(stream: "IO[str] | None" = None) -> "Console":
-    """Where everything for people is set: standard error, or a stream that is set as that would be."""
+def console(text: "IO[str] | None" = None, where: Where = "stderr") -> "Console":
+    """Standard error as people see it, or a text that is set as it would be there or on standard output."""
     from rich.console import Console
 
-    return Console(file=stream, stderr=stream is None, width=width(), force_terminal=redraws() or None, highlight=False,
-                   markup=False, emoji=False)  # fmt: skip
+    return Console(file=text, stderr=text is None, width=width(where), force_terminal=redraws(where) or None,
+                   highlight=False, markup=False, emoji=False)  # fmt: skip
 
 
 def say(*what: Any) -> None:
     """Set paragraphs (str or Text, wrapped, later lines indented) and tables on standard error."""
-    page = console(text := StringIO())
+    emit(_set(what, "stderr"))
+
+
+def show(*what: Any) -> None:
+    """Set them on standard output: it is what was found."""
+    give(_set(what, "stdout"))
+
+
+def _set(what: tuple[Any, ...], where: Where) -> str:
+    page = console(text := StringIO(), where)
     for each in what:
         if not each:
             page.print()
@@ -90,7 +108,7 @@ def say(*what: Any) -> None:
                 page.print(line, no_wrap=True, overflow="ignore", crop=False)
         else:
             page.print(each)
-    emit("".join(f"{line.rstrip()}\n" for line in text.getvalue().splitlines()))
+    return "".join(f"{line.rstrip()}\n" for line in text.getvalue().splitlines())
 
 
 def wrapped(what: "str | Text", page: "Console", indent: int = 2) -> "list[Text]":
@@ -126,6 +144,29 @@ def emit(text: str) -> None:
     with contextlib.suppress(OSError, ValueError, AttributeError):
         sys.stderr.write(text)
         sys.stderr.flush()
+
+
+def give(text: str) -> None:
+    """Write for people on standard output, as far as it goes; the child lets its parent do it.
+
+    What cannot be shown ends no work: `all_shown` says so at its end.
+    """
+    if is_child():
+        report("show", text)
+    elif sys.stdout is not None and not _unshown:
+        try:
+            if isinstance(sys.stdout, TextIOWrapper):
+                # Names may have no place in the terminal's encoding.
+                sys.stdout.reconfigure(errors="backslashreplace")
+            hand_out(text)
+        except (ReaderGone, PlanError) as error:
+            _unshown.append(error)
+
+
+def all_shown() -> None:
+    """Raise what kept results from being shown; nothing where nobody could read them from the start."""
+    if _unshown:
+        raise _unshown.pop()
 
 
 def hand_out(text: str) -> None:

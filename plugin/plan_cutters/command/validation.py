@@ -102,6 +102,8 @@ def _words(parts: Sequence[str], given: dict[str, Any]) -> None:
         raise OptionError("no such file, or it is no file", file=given["postures"])
     if not 0.0 < given["read_timeout"] < math.inf:
         raise OptionError("--read-timeout must be a positive number of seconds")
+    if given["timeout"] is not None and not 0.0 < given["timeout"] < math.inf:
+        raise OptionError("--timeout must be a positive number of seconds")
     if given["memory"] is not None and not LEAST_MEMORY <= given["memory"] * 1e9 < 1e18:
         raise OptionError("--memory must be at least 2 GB")
 

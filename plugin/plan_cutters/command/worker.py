@@ -21,6 +21,8 @@ GO = "PLAN_CUTTERS_GO"
 _TELLING = threading.Lock()
 #: Exit code of an interrupted run.
 INTERRUPTED = 130
+#: Of a run with a part that took longer than it may: as of `timeout`, the program.
+TIMED_OUT = 124
 
 
 def can_supervise() -> bool:
@@ -35,9 +37,10 @@ def is_child() -> bool:
 
 def report(word: str, text: str) -> None:
     """Tell the parent, if there is one: `part FILE`, `staging FOLDER`, `stage NAME`, `detail TEXT`, `at DONE TOTAL`,
-    `work WHOSE FACE`, `say TEXT`, `safe CODE FOLDER`, `done CODE`.
+    `work WHOSE FACE`, `say TEXT`, `show TEXT`, `safe CODE FOLDER`, `done CODE`.
 
-    `say`: for people; `safe`: the plan of this part is in the folder, models follow; `done`: so are they.
+    `say`: for people; `show`: for them, on standard output; `safe`: the plan of this part is in the folder, models follow;
+    `done`: so are they.
     """
     if not is_child():
         return

@@ -21,11 +21,29 @@ class Stuck(Supervised):
         Parts that were done.
     code : int
         The exit code that these ask for.
+    since : float
+        When this part began (`time.monotonic`).
     """
 
-    def __init__(self, text: str, part: str, face: int, why: str, before: int, code: int) -> None:
+    def __init__(self, text: str, part: str, face: int, why: str, before: int, code: int, since: float) -> None:
         super().__init__(text)
-        self.part, self.face, self.why, self.before, self.code = part, face, why, before, code
+        self.part, self.face, self.why, self.before, self.code, self.since = part, face, why, before, code, since
+
+
+class OutOfTime(Supervised):
+    """A part was not done within the time for the whole of it.
+
+    Attributes
+    ----------
+    before, code : int
+        Parts that were done, and the exit code that these ask for.
+    out : Path, optional
+        The output where the plan was in it already, so that only models are missing.
+    """
+
+    def __init__(self, before: int, code: int, out: Path | None) -> None:
+        super().__init__("not done in time")
+        self.before, self.code, self.out = before, code, out
 
 
 class Unfinished(Supervised):

@@ -220,8 +220,8 @@ module._sample_face = sample
 @pytest.mark.parametrize(
     ("module", "code", "fault", "parts", "timeout", "said"),
     [
-        ("cad_io.part.part", MEASURE, HANG, ["a.step"], 8, "did not end its measuring of faces within 2 s"),
-        ("cad_io.sample.on_grids", SAMPLE, HANG, ["a.step"], 4, "did not end its sampling within 4 s"),
+        ("cad_io.part.part", MEASURE, HANG, ["a.step"], 4, "did not end its measuring of faces within 1 s"),
+        ("cad_io.sample.on_grids", SAMPLE, HANG, ["a.step"], 2, "did not end its sampling within 2 s"),
         ("cad_io.sample.on_grids", SAMPLE, CRASH, ["a.step", "b.step"], 60, "crashed (SIGSEGV) at its sampling"),
     ],
     ids=["measure", "sample", "crash"],

@@ -61,7 +61,7 @@ def test_the_rest_of_a_part_is_planned(tmp_path):
     write_step(compound(box(at=(30, 0, 0)), triangulated(ball())), tmp_path / "some.step")
     done = run("some.step", "--cutter", "R3L40", "--grid", "4", cwd=tmp_path)
     assert done.returncode == 4, done.stderr
-    assert f"Not judged: F7 ({REASON}" in in_lines(done.stderr)
+    assert f"Not judged: F7 ({REASON}" in in_lines(done.stdout)
     plan = json.loads((tmp_path / "some-plan" / "plan.json").read_text())
     assert [bool(face["unjudged"]) for face in plan["faces"]] == [False] * 6 + [True]
     cutter = plan["cutters"][0]
@@ -80,7 +80,7 @@ def test_faces_without_area_or_edges_do_not_stop_the_rest(tmp_path):
     write_brep(compound(box(at=(30, 0, 0)), speck, edgeless), tmp_path / "part.brep")
     done = run("part.brep", "--faces", "all", "--cutter", "R3L40", "--grid", "4", "--formats", "json", cwd=tmp_path)
     assert done.returncode == 4, done.stderr
-    assert "Not judged: F7 (has no area)." in done.stderr
-    assert "Not judged: F8 (has no edges)." in done.stderr
+    assert "Not judged: F7 (has no area)." in done.stdout
+    assert "Not judged: F8 (has no edges)." in done.stdout
     plan = json.loads((tmp_path / "part-plan" / "plan.json").read_text())
     assert plan["samples"]["count"] == 96
