@@ -240,7 +240,7 @@ FINE = {
     },
     "posture_map": {
         "rotations": "three, a half, minus one, no list, number in list", "machine": "None", "flip": "True",
-        "ignore": "None, no list", "tolerance": "None",
+        "ignore": "None, no list", "tolerance": "None", "tilt": "None",
     },
     "read_part": {
         "unit": "None", "guarded": "True", "timeout": "three, minus one, a half, huge, inf",
@@ -264,7 +264,7 @@ FINE = {
 }  # fmt: skip
 PARAMETERS = [
     *(("plan", word) for word in [*FINE["plan"], "part", "setup", "tilt", "rotation", "tolerance"]),
-    *(("posture_map", word) for word in [*FINE["posture_map"], "part", "point", "cutter", "tilt", "setup"]),
+    *(("posture_map", word) for word in [*FINE["posture_map"], "part", "point", "cutter", "setup"]),
     *(("read_part", word) for word in [*FINE["read_part"], "source"]),
     *((call, word) for call in ("Cutter", "Machine", "PostureRange", "Options") for word in FINE[call]),
 ]

@@ -267,7 +267,9 @@ def _summary(
 
     lines = ["## plan-cutters", ""]
     many = count(len(rows), "part")
-    said = f"{len(failing)} of {many} fail" if failing else f"{many} changed, none fails"
+    said = (
+        f"{len(failing)} of {many} fail{'s' if len(failing) == 1 else ''}" if failing else f"{many} changed, none fails"
+    )
     lines += [f"**{said}** by the rule `{rule}`, since {began[:12]}."]
     lines += table(
         ("", "part", "how", "result", "reached before", "reached now"), (_line(row, row in failing) for row in rows)
@@ -288,7 +290,10 @@ def _summary(
         ]
         lines += [line for side, link in shown for line in ("", f"![{escaped(row.part.name)} {side}]({link})")]
     if not links:
-        lines += ["", "Pictures and review pages are in the artifact of this job."]
+        lines += [
+            "",
+            f"Pictures and review pages are {'in the artifact of this job' if artifacts else 'beside this summary'}.",
+        ]
     return "\n".join(lines) + "\n"
 
 
