@@ -11,8 +11,10 @@ import { dot, minus } from "./vectors.ts";
 const NEAR = 0.75;
 /** Its side as a share of the picture's shorter one, and in pixels at least and at most. */
 const [SHARE, LEAST, MOST] = [0.3, 88, 180];
-/** From the upper right corner of the picture, pixels: below the words for what is under the pointer. */
-const [RIGHT, TOP] = [8, 34];
+/** From an upper corner of the picture, pixels: below the words for what is under the pointer. */
+const [BESIDE, TOP] = [8, 34];
+/** Pixels around the sample that the inset leaves free. */
+const FREE = 24;
 
 export class Inset {
   readonly root = el("button", { id: "inset", type: "button", title: "Show the whole part (f)", "aria-label": "Show the whole part", hidden: true });
@@ -37,7 +39,9 @@ export class Inset {
     if (this.root.hidden) return;
     const whole = table.fitted(aim.turn, aim.rise, 1);
     table.point(this.camera, whole, 1);
-    const [x, y] = [width - side - RIGHT, height - side - TOP];
+    const left = this.covers(side, width, height);
+    this.root.classList.toggle("left", left);
+    const [x, y] = [left ? BESIDE : width - side - BESIDE, height - side - TOP];
     renderer.setViewport(x, y, side, side);
     renderer.setScissor(x, y, side, side);
     renderer.setScissorTest(true);
@@ -45,6 +49,18 @@ export class Inset {
     renderer.setScissorTest(false);
     renderer.setViewport(0, 0, width, height);
     this.mark(side, whole);
+  }
+
+  /** Whether the sample would lie below the inset in the right corner. */
+  private covers(side: number, width: number, height: number): boolean {
+    const { sample, stage } = this.app;
+    if (!sample) return false;
+    const { aim } = stage.table;
+    const { right, up } = stage.table.frame(aim);
+    const away = minus(sample.point, aim.target);
+    const scale = height / (2 * aim.half);
+    const [x, y] = [width / 2 + scale * dot(away, right), height / 2 - scale * dot(away, up)];
+    return x > width - side - BESIDE - FREE && y < TOP + side + FREE;
   }
 
   private mark(side: number, whole: Aim): void {
