@@ -54,7 +54,7 @@ class PartBox:
         )
         self._kind = windows.combo(FACES, choices.faces)
         self._kind.setObjectName("faces")
-        layout.addRow("Machine", self._kind)
+        layout.addRow("To machine", self._kind)
         self._list = windows.words("", "picked")
         self.pick = windows.button("Pick", self._picking, "Click faces in the view, more of them with Ctrl", True)
         self._line = QtGui.QWidget()

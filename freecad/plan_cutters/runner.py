@@ -143,6 +143,8 @@ class _Watched:
                 answer = self._answer(self._process)
             except model.Refused as error:
                 self._ends("failed", str(error))
+            except Exception as error:  # a window must not ask again and again
+                self._ends("failed", f"the answer cannot be read ({type(error).__name__}: {error})")
             else:
                 self._ends("done", answer)
         else:

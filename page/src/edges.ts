@@ -1,8 +1,8 @@
 // The borders of faces, as thin lines: a part reads better with them.
 
-import { BufferAttribute, BufferGeometry, LineSegments, ShaderMaterial, GLSL3 } from "three";
+import { BufferAttribute, BufferGeometry, LineSegments } from "three";
 import type { Drawn } from "./mesh.ts";
-import { shared } from "./shading.ts";
+import { plain } from "./plain.ts";
 
 /** Edges of triangles that no other triangle of the same face shares. */
 export function borders(drawn: Drawn): LineSegments {
@@ -24,7 +24,7 @@ export function borders(drawn: Drawn): LineSegments {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(position, 3));
   geometry.setIndex(ends);
-  const lines = new LineSegments(geometry, material());
+  const lines = new LineSegments(geometry, plain("0.09, 0.11, 0.13, 0.75"));
   lines.renderOrder = 0.5;
   return lines;
 }
@@ -41,27 +41,4 @@ function coincident({ cell, owner }: Drawn): Int32Array {
     if (known === undefined) first.set(cell[i], i);
   }
   return same;
-}
-
-function material(): ShaderMaterial {
-  return new ShaderMaterial({
-    glslVersion: GLSL3,
-    vertexShader: `
-out vec3 vPlace;
-void main() {
-  vPlace = position;
-  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-}`,
-    fragmentShader: `
-precision highp float;
-uniform vec4 plane;
-in vec3 vPlace;
-out vec4 colour;
-void main() {
-  if (dot(plane.xyz, vPlace) > plane.w) discard;
-  colour = vec4(0.09, 0.11, 0.13, 0.75);
-}`,
-    uniforms: { ...shared },
-    transparent: true,
-  });
 }

@@ -1,17 +1,17 @@
 // Faces that are picked to be named: they are tinted in the picture, and are copied as the text of --faces.
 
-import { GLSL3, Group, Mesh, ShaderMaterial } from "three";
+import { Group, Mesh } from "three";
 import type { App } from "./app.ts";
 import { copyButton } from "./copy.ts";
 import { button, el } from "./dom.ts";
 import type { Owner } from "./mesh.ts";
-import { shared } from "./shading.ts";
+import { plain } from "./plain.ts";
 
 export class Selection {
   readonly root = el("div", { id: "selection", role: "group", "aria-label": "Selected faces" });
   private readonly picked = new Set<Owner>();
   private readonly tints = new Group();
-  private readonly material = tint();
+  private readonly material = plain("0.45, 0.12, 0.85, 0.5", { side: 2, depthWrite: false });
   private readonly words = el("output", {});
   private readonly boxes = new Map<Owner, HTMLInputElement>();
 
@@ -87,29 +87,4 @@ export function ranges(numbers: number[]): string {
   }
   const told = runs.map((run) => (run.length > 2 ? `${run[0]}-${run[run.length - 1]}` : run.join(",")));
   return told.length ? `F${told.join(",")}` : "";
-}
-
-function tint(): ShaderMaterial {
-  return new ShaderMaterial({
-    glslVersion: GLSL3,
-    vertexShader: `
-out vec3 vPlace;
-void main() {
-  vPlace = position;
-  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-}`,
-    fragmentShader: `
-precision highp float;
-uniform vec4 plane;
-in vec3 vPlace;
-out vec4 colour;
-void main() {
-  if (dot(plane.xyz, vPlace) > plane.w) discard;
-  colour = vec4(0.45, 0.12, 0.85, 0.5);
-}`,
-    uniforms: { ...shared },
-    transparent: true,
-    side: 2,
-    depthWrite: false,
-  });
 }
