@@ -143,9 +143,8 @@ class Findings:
         )
         line = self.result.headline()
         if cutter != self.result.shown()["id"]:
-            line = (
-                f"{line.partition('; the colours show ')[0]}; the colours show {cutter}, each face by its worst verdict"
-            )
+            verdict, shown = line.partition("; the colours show ")[0], self.result.called(cutter)
+            line = f"{verdict}; the colours show {shown}, each face by its worst verdict"
         self._headline.setText(line[:1].upper() + line[1:])
         while self._legend.rowCount():
             self._legend.removeRow(0)

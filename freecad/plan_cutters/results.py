@@ -124,17 +124,26 @@ class Result:
         """Ids of the cutters, in the order of the plan."""
         return [each["id"] for each in self.plan["cutters"]]
 
+    def called(self, cutter: str) -> str:
+        """The name of a cutter for people: as its tool is called, its id where another one has that name."""
+        names = {each["id"]: each["name"] for each in self.plan["cutters"]}
+        name = names.get(cutter)
+        return name if name and list(names.values()).count(name) == 1 else cutter
+
     def headline(self) -> str:
         """The verdict in one line."""
         return self.summary()[0]
 
     def summary(self) -> list[str]:
         """What the plan says, line by line: the verdict, the cutters, warnings and notes."""
-        plan, best = self.plan, self.shown()["id"]
+        plan, best = self.plan, self.called(self.shown()["id"])
+        why = plan["selection"]["why"]
+        for cutter in sorted(self.cutters(), key=len, reverse=True):
+            why = why.replace(cutter, self.called(cutter))
         if plan["selected"]:
-            lines = [f"take {best} ({plan['selection']['why']})"]
+            lines = [f"take {best} ({why})"]
         else:
-            lines = [f"no cutter finishes all that is judged ({plan['selection']['why']}); the colours show {best}"]
+            lines = [f"no cutter finishes all that is judged ({why}); the colours show {best}"]
         for each in plan["cutters"]:
             judged = sum(each[word] for word in WORST_FIRST if word != "unjudged")
             reached = each["interference_free"] + each["accessible"]

@@ -116,7 +116,7 @@ def session():
     pump(lambda: findings.LAST is not None or one._run is None, 120)
     pump()
     two = findings.LAST
-    found["result"] = [two._chip.text(), two._headline.text(), two.group.Cutter]
+    found["result"] = [two._chip.text(), two._headline.text(), two.result.called(two.group.Cutter)]
     found["only ours"] = [left(), objects.stale(two.group)]
     found["legend"] = [label.text() for label in two.form[1].findChildren(QtGui.QLabel) if label.text()]
     found["spots"] = [two._list.topLevelItem(place).text(0) for place in range(two._list.topLevelItemCount())]
