@@ -63,8 +63,8 @@ def sentence(sample) -> str:
     return " ".join(words).replace(" ;", ";")
 
 
-class Findings:
-    """The panel: FreeCAD shows the widgets of `form` and calls the methods in mixed case."""
+class Findings(windows.Panel):
+    """The panel that shows a result: verdict, legend, worst spots, the tool at one of them."""
 
     def __init__(self, group) -> None:
         self.group, self.result = group, objects.result_of(group)
@@ -331,15 +331,6 @@ class Findings:
         App.removeDocumentObserver(self)
         if self._drawing is not None:
             self._drawing.cancel()
-
-    def isAllowedAlterSelection(self) -> bool:
-        return True
-
-    def isAllowedAlterView(self) -> bool:
-        return True
-
-    def isAllowedAlterDocument(self) -> bool:
-        return True
 
 
 def open_panel(group=None) -> Findings:

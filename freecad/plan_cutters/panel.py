@@ -13,8 +13,8 @@ from .windows import QtCore, QtGui
 _PLAN, _CLOSE = QtGui.QDialogButtonBox.Apply, QtGui.QDialogButtonBox.Close
 
 
-class Panel:
-    """The panel: FreeCAD shows the widgets of `form` and calls the methods in mixed case."""
+class Panel(windows.Panel):
+    """The panel that asks: what is to be machined, with which tools, on which machine."""
 
     def __init__(self) -> None:
         self._run, self._buttons, self._ready = None, None, False
@@ -161,15 +161,6 @@ class Panel:
 
     def reject(self) -> bool:
         self._leave()
-        return True
-
-    def isAllowedAlterSelection(self) -> bool:
-        return True
-
-    def isAllowedAlterView(self) -> bool:
-        return True
-
-    def isAllowedAlterDocument(self) -> bool:
         return True
 
 

@@ -12,6 +12,19 @@ from . import host
 QtCore, QtGui = host.qt("QtCore"), host.qt("QtGui")
 
 
+class Panel:
+    """A task panel beside which one goes on working: FreeCAD shows the widgets of `form` and calls the methods in mixed case."""
+
+    def isAllowedAlterSelection(self) -> bool:
+        return True
+
+    def isAllowedAlterView(self) -> bool:
+        return True
+
+    def isAllowedAlterDocument(self) -> bool:
+        return True
+
+
 def complain(text: str) -> None:
     """Say in a window, and in the report view, why something was not done."""
     App.Console.PrintError(f"plan-cutters: {text}\n")

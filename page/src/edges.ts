@@ -2,7 +2,7 @@
 
 import { BufferAttribute, BufferGeometry, LineSegments } from "three";
 import type { Drawn } from "./mesh.ts";
-import { plain } from "./plain.ts";
+import { plainMaterial } from "./shading.ts";
 
 /** Edges of triangles that no other triangle of the same face shares. */
 export function borders(drawn: Drawn): LineSegments {
@@ -24,7 +24,7 @@ export function borders(drawn: Drawn): LineSegments {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(position, 3));
   geometry.setIndex(ends);
-  const lines = new LineSegments(geometry, plain("0.09, 0.11, 0.13, 0.75"));
+  const lines = new LineSegments(geometry, plainMaterial("0.09, 0.11, 0.13, 0.75", { transparent: true }));
   lines.renderOrder = 0.5;
   return lines;
 }

@@ -1,17 +1,17 @@
 // Faces that are picked to be named: they are tinted in the picture, and are copied as the text of --faces.
 
-import { Group, Mesh } from "three";
+import { DoubleSide, Group, Mesh } from "three";
 import type { App } from "./app.ts";
 import { copyButton } from "./copy.ts";
 import { button, el } from "./dom.ts";
 import type { Owner } from "./mesh.ts";
-import { plain } from "./plain.ts";
+import { plainMaterial } from "./shading.ts";
 
 export class Selection {
   readonly root = el("div", { id: "selection", role: "group", "aria-label": "Selected faces" });
   private readonly picked = new Set<Owner>();
   private readonly tints = new Group();
-  private readonly material = plain("0.45, 0.12, 0.85, 0.5", { side: 2, depthWrite: false });
+  private readonly material = plainMaterial("0.45, 0.12, 0.85, 0.5", { transparent: true, side: DoubleSide, depthWrite: false });
   private readonly words = el("output", {});
   private readonly boxes = new Map<Owner, HTMLInputElement>();
 

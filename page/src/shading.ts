@@ -10,6 +10,7 @@ import {
   NearestFilter,
   RGBAFormat,
   ShaderMaterial,
+  type ShaderMaterialParameters,
   UnsignedByteType,
   Vector3,
   Vector4,
@@ -185,11 +186,16 @@ void main() {
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
 }`;
 
-/** What is in the way, as a mask: all of it, whether something lies before it or not. */
-export function maskMaterial(): ShaderMaterial {
+/** One colour without light, clipped as everything is: red, green, blue and opacity as GLSL writes them. */
+export function plainMaterial(colour: string, more: ShaderMaterialParameters = {}): ShaderMaterial {
   return new ShaderMaterial({
     glslVersion: GLSL3,
-    vertexShader: VERTEX,
+    vertexShader: `
+out vec3 vPlace;
+void main() {
+  vPlace = position;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+}`,
     fragmentShader: `
 precision highp float;
 uniform vec4 plane;
@@ -197,13 +203,16 @@ in vec3 vPlace;
 out vec4 colour;
 void main() {
   if (dot(plane.xyz, vPlace) > plane.w) discard;
-  colour = vec4(1.0);
+  colour = vec4(${colour});
 }`,
     uniforms: { ...shared },
-    depthTest: false,
-    depthWrite: false,
-    side: DoubleSide,
+    ...more,
   });
+}
+
+/** What is in the way, as a mask: all of it, whether something lies before it or not. */
+export function maskMaterial(): ShaderMaterial {
+  return plainMaterial("1.0, 1.0, 1.0, 1.0", { depthTest: false, depthWrite: false, side: DoubleSide });
 }
 
 /** A line with a bright seam along the borders of a mask, in pixels of the screen. */
@@ -257,19 +266,7 @@ export function ghostMaterial(): ShaderMaterial {
 
 /** Draws nothing seen: it turns a bit over for each surface behind the clipping plane, for the cap. */
 export function countingMaterial(): ShaderMaterial {
-  return new ShaderMaterial({
-    glslVersion: GLSL3,
-    vertexShader: VERTEX,
-    fragmentShader: `
-precision highp float;
-uniform vec4 plane;
-in vec3 vPlace;
-out vec4 colour;
-void main() {
-  if (dot(plane.xyz, vPlace) > plane.w) discard;
-  colour = vec4(0.0);
-}`,
-    uniforms: { ...shared },
+  return plainMaterial("0.0, 0.0, 0.0, 0.0", {
     colorWrite: false,
     depthWrite: false,
     depthTest: false,

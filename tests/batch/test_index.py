@@ -21,7 +21,7 @@ from plan_cutters.batch.row import PartRow
 from plan_cutters.batch.rows_of_plans import reached_share, row_of
 from plan_cutters.batch.summary import NAMED, OUTCOMES, Summary, code_of, outcome, schema_text
 from plan_cutters.document.model import CutterEntry
-from tests.support.browser import launch, opened
+from tests.support.browser import opened
 from tests.support.places import ROOT
 
 HOSTILE = "</script><script>document.title='gone'</script>\"'&\n\x1b[2J\u202e部品\udcff"
@@ -274,15 +274,6 @@ def folder(tmp_path_factory, files):
     (folder / "blade").mkdir()
     (folder / "blade/review.png").write_bytes(PIXEL)
     return folder
-
-
-@pytest.fixture(scope="module")
-def browser():
-    sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: setup.sh dev")
-    with sync_api.sync_playwright() as playwright:
-        browser = launch(playwright)
-        yield browser
-        browser.close()
 
 
 @pytest.fixture

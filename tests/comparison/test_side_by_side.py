@@ -20,7 +20,7 @@ from plan_cutters.document.model import FileEntry
 from plan_cutters.document.shares import FaceVerdicts
 from plan_cutters.report.page.write import write_html
 from plan_cutters.report.to_json import dumps
-from tests.support.browser import launch, opened
+from tests.support.browser import opened
 from tests.support.forked import run
 from tests.support.places import ROOT
 from tests.support.review_page import decoded
@@ -189,15 +189,6 @@ def test_of_many_pairs_those_that_differ_have_a_page(results, tmp_path):
     assert sorted(each.relative_to(tmp_path / "out").as_posix() for each in tmp_path.glob("out/**/*.html")) == [
         "a b/review.html"
     ]
-
-
-@pytest.fixture(scope="module")
-def browser():
-    sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: setup.sh dev")
-    with sync_api.sync_playwright() as playwright:
-        browser = launch(playwright)
-        yield browser
-        browser.close()
 
 
 @pytest.fixture

@@ -1,22 +1,18 @@
-"""The review page in a browser: modules of tests that have the `path` of a page get a `browser` and, for each test, a `page`."""
+"""The review page in a browser: where a module has a `planned` result, or the `path` of a page, tests get a `page`."""
 
 import pytest
 
-from tests.support.browser import launch, opened
+from tests.support.browser import opened
 
 
 @pytest.fixture(scope="module")
-def playwright():
-    sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed: setup.sh dev")
-    with sync_api.sync_playwright() as playwright:
-        yield playwright
+def path(planned, tmp_path_factory):
+    """The page of what the module has planned."""
+    from plan_cutters.report.page.write import write_html
 
-
-@pytest.fixture(scope="module")
-def browser(playwright):
-    browser = launch(playwright)
-    yield browser
-    browser.close()
+    path = tmp_path_factory.mktemp("page") / "review.html"
+    write_html(planned, None, path)
+    return path
 
 
 @pytest.fixture

@@ -32,15 +32,6 @@ def planned():
     )  # fmt: skip
 
 
-@pytest.fixture(scope="module")
-def path(planned, tmp_path_factory):
-    from plan_cutters.report.page.write import write_html
-
-    path = tmp_path_factory.mktemp("page") / "review.html"
-    write_html(planned, None, path)
-    return path
-
-
 def colour(page, row):
     """Mean colour of the pixels about a sample, and where they are in the picture."""
     box = page.locator("#frame").bounding_box()

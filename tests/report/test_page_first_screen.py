@@ -35,13 +35,6 @@ def planned():
     )  # fmt: skip
 
 
-@pytest.fixture(scope="module")
-def path(planned, tmp_path_factory):
-    path = tmp_path_factory.mktemp("page") / "review.html"
-    write_html(planned, None, path)
-    return path
-
-
 @pytest.fixture
 def at(browser, path):
     """Open the page at a screen in a scheme; in the end no page has said anything on its console."""

@@ -28,15 +28,6 @@ def planned():
     )  # fmt: skip
 
 
-@pytest.fixture(scope="module")
-def path(planned, tmp_path_factory):
-    from plan_cutters.report.page.write import write_html
-
-    path = tmp_path_factory.mktemp("page") / "review.html"
-    write_html(planned, None, path)
-    return path
-
-
 def seen_at(page, points):
     """Where points of the part are in the picture, pixels, and the picture's size."""
     found = page.evaluate("points => points.map(each => review.stage.project(each))", np.asarray(points).tolist())

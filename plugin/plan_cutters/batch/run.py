@@ -172,10 +172,11 @@ def handed_out(
     ready: queue.SimpleQueue[Future] = queue.SimpleQueue()
     flying: dict[Future, Any] = {}
     done, most, looked, gone, begun_all = 0, _LEAST, 0.0, 0.0, False
+    threads: dict[str, int] = {}
     unfit: set[str] = set()
 
     def hand(task: Any) -> None:
-        fit = [each for each in _threads(client) if each not in unfit] if unfit else None
+        fit = [each for each in threads if each not in unfit] if unfit else None
         future = client.submit(function, task, key=f"plan-{run}-{next(count)}", pure=False, retries=0, workers=fit or None,
                                allow_other_workers=bool(fit))  # fmt: skip
         flying[future] = task
@@ -184,7 +185,8 @@ def handed_out(
     try:
         while True:
             if not gone and time.monotonic() - looked > _LOOK:
-                most, looked = max(_LEAST, _AHEAD * sum(_threads(client).values())), time.monotonic()
+                threads, looked = _threads(client), time.monotonic()
+                most = max(_LEAST, _AHEAD * sum(threads.values()))
             while not begun_all and len(flying) < most and not gone:
                 task = next(tasks, None)
                 if task is None:
@@ -208,7 +210,8 @@ def handed_out(
             future.release()
             if where := getattr(found, "unfit", ""):
                 unfit.add(where)
-                if any(each not in unfit for each in _threads(client)):
+                threads = _threads(client)
+                if any(each not in unfit for each in threads):
                     if board is not None:
                         board.say(f"worker {where} is left out: {found.row.error}")
                     hand(task)
