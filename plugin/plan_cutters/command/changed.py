@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from plan_cutters import __version__
 from plan_cutters.command.codes import run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
@@ -225,18 +224,20 @@ def _planned(data: bytes, name: str, asked: Sequence[str], cache: Path) -> Path:
 
 def _key(data: bytes, name: str, asked: Sequence[str]) -> str:
     """Of all that a plan is made of: the part, the options, every file beside those that options name, and the version."""
-    digest = hashlib.sha256()
-    for each in (__version__.encode(), _FORMATS.encode(), name.encode(errors="surrogateescape"), data):
-        digest.update(hashlib.sha256(each).digest())
+    from plan_cutters.batch.digest import digest
+    from plan_cutters.batch.keys import version
+
+    beside = []
     for word in asked:
-        digest.update(hashlib.sha256(word.encode(errors="surrogateescape")).digest())
         # FILE@x,y,z, FILE:inch, FILE#C,A, --option=FILE; setup files name others beside them.
-        for text in {word, word.partition("=")[2]}:
+        for text in (word, word.partition("=")[2]):
             path = next((p for p in (Path(text), *(Path(text.partition(c)[0]) for c in "@#:")) if p.is_file()), None)
-            beside = sorted(each for each in path.parent.iterdir() if each.is_file()) if path else ()
-            for file in beside:
-                digest.update(hashlib.sha256(file.name.encode(errors="surrogateescape") + file.read_bytes()).digest())
-    return digest.hexdigest()
+            beside += (
+                sorted((each.name, each.read_bytes()) for each in path.parent.iterdir() if each.is_file())
+                if path
+                else []
+            )
+    return digest([version(), _FORMATS, name, data, list(asked), beside]).hex()
 
 
 def _links(rows: Sequence[Row], branch: str) -> dict[Path, str]:
