@@ -146,6 +146,20 @@ def test_what_is_damaged_is_said_and_judged_again(tmp_path, damage):
     assert planned(tmp_path)[1:] == ([], [])  # it was replaced
 
 
+@pytest.mark.parametrize("kind", ["pipe", "device"])
+def test_an_entry_that_is_no_file_is_not_opened(tmp_path, kind):
+    """A pipe would be waited for, and a device read until memory ends."""
+    plain = planned(tmp_path)[0]
+    entry = sorted(tmp_path.rglob("*.verdicts"))[0]
+    entry.unlink()
+    os.mkfifo(entry) if kind == "pipe" else entry.symlink_to("/dev/zero")
+    result, judged, (fault,) = planned(tmp_path)
+    assert len(judged) == 1
+    assert "is no regular file" in fault
+    assert told(result) == told(plain)
+    assert planned(tmp_path)[1:] == ([], [])  # it was replaced
+
+
 def test_an_entry_of_something_else_is_not_used(tmp_path):
     planned(tmp_path)
     one, other = sorted(tmp_path.rglob("*.verdicts"))

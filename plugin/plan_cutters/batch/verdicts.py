@@ -21,6 +21,7 @@ from plan_cutters.batch.store import file_system
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import NO_REASON, REASONS, UNJUDGED, WORDS, Verdicts
 from plan_cutters.errors import PlanError
+from plan_cutters.files.regular import regular_bytes
 from plan_cutters.scene.ground import Ground
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.question import METHOD
@@ -35,6 +36,8 @@ _COLUMNS = {"verdict": ("u1", ()), "axis": ("<f8", (3,)), "tilt_direction": ("<f
 _A_SAMPLE = sum(np.dtype(kind).itemsize * (shape or (1,))[0] for kind, shape in _COLUMNS.values())
 #: Rooms on whose sources verdicts depend, and the packages.
 _ROOMS, _PACKAGES = ("domain", "kernels", "scene", "stages"), ("numba", "numpy", "scipy")
+#: Most bytes of an entry, some ten million samples.
+_MOST = 1 << 30
 #: The end of an entry's name.
 _SUFFIX = ".verdicts"
 
@@ -225,10 +228,7 @@ class _Local:
         self._root = Path(where)
 
     def get(self, name: str) -> bytes | None:
-        try:
-            return (self._root / name).read_bytes()
-        except (FileNotFoundError, NotADirectoryError):
-            return None
+        return regular_bytes(self._root / name, _MOST)
 
     def put(self, name: str, content: bytes) -> None:
         path = self._root / name
